@@ -1,0 +1,156 @@
+//! Which columns of the trace the report reads, and one row of them.
+//!
+//! Columns are found by name, once. What a trace does not have stays NaN in
+//! every [`Sample`], and NaN is not drawn.
+
+use crepitus_model::Phase;
+use crepitus_scene::trace::Column;
+
+/// What the report must know before the first row.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup<'a> {
+    /// The columns of every row that will come.
+    pub columns: &'a [Column],
+    /// How many rows will come, about. Zero if it is not known; a wrong
+    /// number costs resolution, nothing else.
+    pub rows_expected: u64,
+    /// Time from one row to the next, s. The spectrum needs it.
+    pub row_step_s: f64,
+    /// The torques between which the object sticks and slips, if the scene
+    /// has them: drawn as lines.
+    pub levels: Option<TorqueLevels>,
+}
+
+/// The torques between which the imaginary object sticks and slips, as
+/// magnitudes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorqueLevels {
+    /// Torque at which stick starts, N·m: 2Tk − Ts in the elastic restart.
+    pub restart_nm: f64,
+    /// Torque while slipping, N·m: Tk.
+    pub kinetic_nm: f64,
+    /// Torque at which stick breaks, N·m: Ts.
+    pub static_nm: f64,
+}
+
+impl TorqueLevels {
+    /// The levels of the elastic restart: 2Tk − Ts, Tk, Ts.
+    pub fn elastic(kinetic_nm: f64, static_nm: f64) -> Self {
+        Self {
+            restart_nm: 2.0 * kinetic_nm - static_nm,
+            kinetic_nm,
+            static_nm,
+        }
+    }
+}
+
+/// One row, reduced to what is drawn. Absent or broken values are NaN.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sample {
+    pub(crate) time: f64,
+    pub(crate) angle: f64,
+    pub(crate) omega: f64,
+    pub(crate) encoder_omega: f64,
+    pub(crate) phase: Option<Phase>,
+    pub(crate) theta: f64,
+    pub(crate) theta_dot: f64,
+    pub(crate) torque: f64,
+}
+
+/// Where in a row each value stands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Channels {
+    time: Option<usize>,
+    angle: Option<usize>,
+    omega: Option<usize>,
+    encoder_omega: Option<usize>,
+    phase: Option<usize>,
+    theta: Option<usize>,
+    theta_dot: Option<usize>,
+    torque: Option<usize>,
+}
+
+impl Channels {
+    pub(crate) fn find(columns: &[Column]) -> Self {
+        let at = |name: &str| columns.iter().position(|column| column.name == name);
+        Self {
+            time: at("t_s"),
+            angle: at("angle_rad"),
+            omega: at("omega_rad_s"),
+            encoder_omega: at("encoder_omega_rad_s"),
+            phase: at("phase"),
+            theta: at("theta_rad"),
+            theta_dot: at("theta_dot_rad_s"),
+            torque: at("torque_nm"),
+        }
+    }
+
+    pub(crate) fn sample(&self, row: &[f64]) -> Sample {
+        let value = |at: Option<usize>| {
+            at.and_then(|i| row.get(i))
+                .copied()
+                .filter(|v| v.is_finite())
+                .unwrap_or(f64::NAN)
+        };
+        Sample {
+            time: value(self.time),
+            angle: value(self.angle),
+            omega: value(self.omega),
+            encoder_omega: value(self.encoder_omega),
+            phase: phase_of(value(self.phase)),
+            theta: value(self.theta),
+            theta_dot: value(self.theta_dot),
+            torque: value(self.torque),
+        }
+    }
+
+    pub(crate) fn has_torque(&self) -> bool {
+        self.torque.is_some()
+    }
+
+    pub(crate) fn has_object(&self) -> bool {
+        self.theta.is_some() && self.theta_dot.is_some() && self.phase.is_some()
+    }
+}
+
+fn phase_of(number: f64) -> Option<Phase> {
+    if number.is_nan() {
+        None
+    } else if number > 0.5 {
+        Some(Phase::from_sign(1))
+    } else if number < -0.5 {
+        Some(Phase::from_sign(-1))
+    } else {
+        Some(Phase::Stick)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_scene::trace::ColumnKind;
+
+    #[test]
+    fn absent_short_and_broken_values_are_nan() {
+        let column = |name| Column {
+            name,
+            kind: ColumnKind::Number,
+        };
+        let columns = [
+            column("t_s"),
+            column("angle_rad"),
+            column("omega_rad_s"),
+            column("phase"),
+        ];
+        let channels = Channels::find(&columns);
+        assert!(!channels.has_torque());
+        let sample = channels.sample(&[1.0, f64::INFINITY, 2.0]);
+        assert_eq!(sample.time, 1.0);
+        assert!(sample.angle.is_nan());
+        assert_eq!(sample.omega, 2.0);
+        assert_eq!(sample.phase, None);
+        assert!(sample.torque.is_nan());
+        let sample = channels.sample(&[1.0, 0.0, 2.0, -1.0]);
+        assert_eq!(sample.phase.map(Phase::sign), Some(-1));
+    }
+}

@@ -1,0 +1,194 @@
+//! Takes rows and events as they come and keeps what the figures need.
+//!
+//! Memory does not grow with the run: each part has a bound of its own, and
+//! together they stay below a few megabytes.
+
+use crepitus_scene::trace::EventRecord;
+
+use crate::channels::{Channels, Setup, TorqueLevels};
+use crate::choice::Choice;
+use crate::envelope::Envelope;
+use crate::hysteresis::Hysteresis;
+use crate::spectrum::{Spectrum, Welch};
+use crate::thinned::Thinned;
+use crate::window::Window;
+
+/// Bins of the lines over the whole run: more than a chart has pixels.
+const LINE: usize = 1600;
+
+/// Collects a bounded amount of data while a run streams by.
+///
+/// An event at time t comes before the first row with a time of t or later.
+#[derive(Debug)]
+pub struct Collector {
+    channels: Channels,
+    levels: Option<TorqueLevels>,
+    rows: u64,
+    broken_rows: u64,
+    angle: Thinned,
+    omega: Thinned,
+    encoder_omega: Thinned,
+    envelope: Envelope,
+    whole: Window,
+    choice: Choice,
+    hysteresis: Hysteresis,
+    welch: Option<Welch>,
+}
+
+/// What is left of a run when it is over: enough to draw it.
+#[derive(Debug)]
+pub struct Figures {
+    pub(crate) levels: Option<TorqueLevels>,
+    pub(crate) rows: u64,
+    pub(crate) broken_rows: u64,
+    pub(crate) has_torque: bool,
+    pub(crate) has_object: bool,
+    pub(crate) angle: Thinned,
+    pub(crate) omega: Thinned,
+    pub(crate) encoder_omega: Thinned,
+    pub(crate) envelope: Envelope,
+    /// The whole run, as a window; its phases and events are complete only if
+    /// it did not overflow.
+    pub(crate) whole: Window,
+    pub(crate) onset: Option<Window>,
+    pub(crate) fastest: Option<Window>,
+    pub(crate) hysteresis: Hysteresis,
+    pub(crate) spectrum: Option<Spectrum>,
+}
+
+impl Collector {
+    /// Ready for the first row.
+    pub fn new(setup: &Setup) -> Self {
+        let channels = Channels::find(setup.columns);
+        Self {
+            channels,
+            levels: setup.levels.filter(|levels| {
+                [levels.restart_nm, levels.kinetic_nm, levels.static_nm]
+                    .iter()
+                    .all(|level| level.is_finite())
+            }),
+            rows: 0,
+            broken_rows: 0,
+            angle: Thinned::new(LINE),
+            omega: Thinned::new(LINE),
+            encoder_omega: Thinned::new(LINE),
+            envelope: Envelope::new(setup.rows_expected),
+            whole: Window::new(),
+            choice: Choice::new(),
+            hysteresis: Hysteresis::new(),
+            welch: channels
+                .has_torque()
+                .then(|| Welch::new(setup.row_step_s, setup.rows_expected))
+                .flatten(),
+        }
+    }
+
+    /// Takes one row of the trace, in the order of the columns. A value that
+    /// is not finite is left out of the figures, and the page says so.
+    pub fn row(&mut self, values: &[f64]) {
+        self.rows += 1;
+        if values.iter().any(|value| !value.is_finite()) {
+            self.broken_rows += 1;
+        }
+        let sample = self.channels.sample(values);
+        if sample.time.is_nan() {
+            return;
+        }
+        self.angle.push(sample.time, sample.angle);
+        self.omega.push(sample.time, sample.omega);
+        self.encoder_omega.push(sample.time, sample.encoder_omega);
+        if self.channels.has_torque() {
+            self.envelope.row(sample.time, sample.torque, sample.phase);
+            self.whole.row(&sample);
+            self.choice.row(&sample);
+            self.hysteresis
+                .row(sample.angle, sample.omega, sample.theta);
+            if let Some(welch) = &mut self.welch {
+                welch.push(sample.torque);
+            }
+        }
+    }
+
+    /// Takes one event.
+    pub fn event(&mut self, event: &EventRecord) {
+        if self.channels.has_torque() && event.time_s.is_finite() {
+            self.envelope.event(event);
+            self.whole.event(event);
+            self.choice.event(event);
+        }
+    }
+
+    /// The run is over.
+    pub fn finish(self) -> Figures {
+        let (onset, fastest) = self.choice.finish();
+        Figures {
+            levels: self.levels,
+            rows: self.rows,
+            broken_rows: self.broken_rows,
+            has_torque: self.channels.has_torque(),
+            has_object: self.channels.has_object(),
+            angle: self.angle,
+            omega: self.omega,
+            encoder_omega: self.encoder_omega,
+            envelope: self.envelope.finish(),
+            whole: self.whole,
+            onset,
+            fastest,
+            hysteresis: self.hysteresis,
+            spectrum: self.welch.and_then(Welch::finish),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{Motion, Run};
+    use std::cell::RefCell;
+
+    #[test]
+    fn memory_does_not_grow_with_the_run() {
+        let columns = Run::columns(true, true);
+        let run = Run::new(Motion::Constant { speed: 1.0 }, 250.0, 5e-5);
+        // Also with a row count that is far off.
+        let collector = RefCell::new(Collector::new(&Setup {
+            columns: &columns,
+            rows_expected: 1000,
+            row_step_s: 5e-5,
+            levels: None,
+        }));
+        run.with_encoder().play(
+            |row| collector.borrow_mut().row(row),
+            |event| collector.borrow_mut().event(event),
+        );
+        let figures = collector.into_inner().finish();
+        assert!(figures.rows >= 5_000_000);
+        assert!(figures.envelope.breaks() > 7000);
+        assert!(figures.envelope.bins().len() <= Envelope::CAPACITY + 1);
+        for line in [&figures.angle, &figures.omega, &figures.encoder_omega] {
+            assert!(line.stored() <= LINE);
+        }
+        for window in [Some(&figures.whole), figures.onset.as_ref()] {
+            let window = window.expect("recorded");
+            assert!(window.torque.stored() <= LINE);
+            assert!(window.orbit.stored() <= 4000);
+            assert!(window.events().len() <= Window::EVENTS);
+        }
+        assert!(figures.hysteresis.stored() <= 2002);
+        assert!(figures.spectrum.expect("long enough").points.len() <= 32_769);
+    }
+
+    #[test]
+    fn a_run_without_rows_finishes() {
+        let columns = Run::columns(true, false);
+        let figures = Collector::new(&Setup {
+            columns: &columns,
+            rows_expected: 0,
+            row_step_s: 0.0,
+            levels: None,
+        })
+        .finish();
+        assert_eq!(figures.rows, 0);
+        assert!(figures.onset.is_none() && figures.spectrum.is_none());
+    }
+}

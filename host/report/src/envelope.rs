@@ -1,0 +1,276 @@
+//! The torque of a whole run: per stretch of time its lowest, highest and
+//! mean value, and how long the object spent in each phase.
+//!
+//! Times in a phase come from the events, not from the rows, so that a stick
+//! shorter than a row counts in full.
+
+use crepitus_model::{EventKind, Phase, Sense};
+use crepitus_scene::trace::EventRecord;
+
+/// One stretch of time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bin {
+    pub(crate) start: f64,
+    pub(crate) end: f64,
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    sum: f64,
+    count: u64,
+    rows: u64,
+    pub(crate) breaks: u64,
+    stick_s: f64,
+    positive_s: f64,
+    negative_s: f64,
+}
+
+/// Shares of the time of a [`Bin`], each 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shares {
+    pub(crate) stick: f64,
+    pub(crate) positive: f64,
+    pub(crate) negative: f64,
+}
+
+impl Bin {
+    const EMPTY: Self = Self {
+        start: f64::INFINITY,
+        end: f64::NEG_INFINITY,
+        low: f64::INFINITY,
+        high: f64::NEG_INFINITY,
+        sum: 0.0,
+        count: 0,
+        rows: 0,
+        breaks: 0,
+        stick_s: 0.0,
+        positive_s: 0.0,
+        negative_s: 0.0,
+    };
+
+    fn append(&mut self, other: &Self) {
+        self.start = self.start.min(other.start);
+        self.end = self.end.max(other.end);
+        self.low = self.low.min(other.low);
+        self.high = self.high.max(other.high);
+        self.sum += other.sum;
+        self.count += other.count;
+        self.rows += other.rows;
+        self.breaks += other.breaks;
+        self.stick_s += other.stick_s;
+        self.positive_s += other.positive_s;
+        self.negative_s += other.negative_s;
+    }
+
+    pub(crate) fn mean(&self) -> f64 {
+        self.sum / self.count as f64
+    }
+
+    pub(crate) fn middle(&self) -> f64 {
+        0.5 * (self.start + self.end)
+    }
+
+    pub(crate) fn shares(&self) -> Option<Shares> {
+        let total = self.stick_s + self.positive_s + self.negative_s;
+        (total > 0.0).then(|| Shares {
+            stick: self.stick_s / total,
+            positive: self.positive_s / total,
+            negative: self.negative_s / total,
+        })
+    }
+
+    fn is_active(&self) -> bool {
+        self.positive_s + self.negative_s > 0.0
+    }
+}
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub(crate) struct Envelope {
+    bins: Vec<Bin>,
+    open: Bin,
+    rows_per_bin: u64,
+    phase: Option<Phase>,
+    since: f64,
+    events_seen: bool,
+}
+
+impl Envelope {
+    /// About as many bins as a chart has pixels across; even.
+    pub(crate) const CAPACITY: usize = 1200;
+
+    pub(crate) fn new(rows_expected: u64) -> Self {
+        Self {
+            bins: Vec::new(),
+            open: Bin::EMPTY,
+            rows_per_bin: rows_expected.div_ceil(Self::CAPACITY as u64).max(1),
+            phase: None,
+            since: f64::NAN,
+            events_seen: false,
+        }
+    }
+
+    pub(crate) fn row(&mut self, time: f64, torque: f64, phase: Option<Phase>) {
+        self.advance(time);
+        // Where there are events they alone say when a phase ends.
+        if !self.events_seen || self.phase.is_none() {
+            self.phase = phase;
+        }
+        self.open.start = self.open.start.min(time);
+        self.open.end = self.open.end.max(time);
+        self.open.rows += 1;
+        if torque.is_finite() {
+            self.extreme(torque);
+            self.open.sum += torque;
+            self.open.count += 1;
+        }
+        if self.open.rows >= self.rows_per_bin {
+            self.close();
+        }
+    }
+
+    pub(crate) fn event(&mut self, event: &EventRecord) {
+        if self.phase.is_none() {
+            self.phase = Some(Phase::from_sign(event.from));
+        }
+        self.advance(event.time_s);
+        self.events_seen = true;
+        self.phase = Some(Phase::from_sign(event.to));
+        self.extreme(event.torque_before_nm);
+        self.extreme(event.torque_after_nm);
+        if event.kind == EventKind::Break {
+            self.open.breaks += 1;
+        }
+    }
+
+    fn extreme(&mut self, torque: f64) {
+        // A comparison with NaN is false: nothing changes.
+        if torque < self.open.low {
+            self.open.low = torque;
+        }
+        if torque > self.open.high {
+            self.open.high = torque;
+        }
+    }
+
+    fn advance(&mut self, time: f64) {
+        let spent = time - self.since;
+        if spent > 0.0 {
+            match self.phase {
+                Some(Phase::Stick) => self.open.stick_s += spent,
+                Some(Phase::Slip(Sense::Positive)) => self.open.positive_s += spent,
+                Some(Phase::Slip(Sense::Negative)) => self.open.negative_s += spent,
+                None => {}
+            }
+        }
+        self.since = time;
+    }
+
+    fn close(&mut self) {
+        if self.bins.len() == Self::CAPACITY {
+            self.bins = merged(&self.bins, 2);
+            self.rows_per_bin *= 2;
+        }
+        // After halving, the open bin is a short one; it stays open.
+        if self.open.rows >= self.rows_per_bin {
+            self.bins.push(self.open);
+            self.open = Bin::EMPTY;
+        }
+    }
+
+    pub(crate) fn finish(mut self) -> Self {
+        if self.open.rows > 0 {
+            self.bins.push(self.open);
+            self.open = Bin::EMPTY;
+        }
+        self
+    }
+
+    pub(crate) fn bins(&self) -> &[Bin] {
+        &self.bins
+    }
+
+    pub(crate) fn breaks(&self) -> u64 {
+        self.bins.iter().map(|bin| bin.breaks).sum()
+    }
+
+    /// Bins so wide that each holds a few whole cycles on average: narrower
+    /// ones would show the beat of bins against cycles, not the torque.
+    pub(crate) fn cycle_bins(&self) -> Vec<Bin> {
+        const CYCLES: u64 = 3;
+        const FEWEST_BINS: usize = 60;
+        let active = self.bins.iter().filter(|bin| bin.is_active()).count() as u64;
+        let wanted = (CYCLES * active).checked_div(self.breaks()).unwrap_or(1);
+        let at_most = (self.bins.len() / FEWEST_BINS).max(1);
+        merged(
+            &self.bins,
+            usize::try_from(wanted).map_or(at_most, |n| n.clamp(1, at_most)),
+        )
+    }
+}
+
+fn merged(bins: &[Bin], count: usize) -> Vec<Bin> {
+    bins.chunks(count)
+        .map(|group| {
+            let mut bin = Bin::EMPTY;
+            for part in group {
+                bin.append(part);
+            }
+            bin
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn event(time_s: f64, kind: EventKind, from: i8, to: i8) -> EventRecord {
+        EventRecord {
+            time_s,
+            kind,
+            from,
+            to,
+            theta_rad: 0.0,
+            omega_rad_s: 1.0,
+            torque_before_nm: 0.4,
+            torque_after_nm: 0.2,
+        }
+    }
+
+    #[test]
+    fn extremes_survive_any_number_of_rows() {
+        for expected in [0, 100, 100_000, 10_000_000] {
+            let mut envelope = Envelope::new(expected);
+            for i in 0..100_000_u32 {
+                let torque = if i == 4321 { 7.0 } else { 0.5 };
+                envelope.row(f64::from(i), torque, Some(Phase::Stick));
+            }
+            let envelope = envelope.finish();
+            assert!(envelope.bins().len() <= Envelope::CAPACITY + 1);
+            let high = envelope.bins().iter().map(|b| b.high).fold(0.0, f64::max);
+            assert_eq!(high, 7.0);
+            let rows: u64 = envelope.bins().iter().map(|b| b.count).sum();
+            assert_eq!(rows, 100_000);
+        }
+    }
+
+    #[test]
+    fn phase_times_come_from_the_events() {
+        let mut envelope = Envelope::new(1);
+        envelope.row(0.0, 0.0, Some(Phase::Stick));
+        envelope.event(&event(0.25, EventKind::Break, 0, 1));
+        envelope.event(&event(0.75, EventKind::Stick, 1, 0));
+        envelope.row(1.0, f64::NAN, Some(Phase::Stick));
+        let envelope = envelope.finish();
+        let shares = envelope.bins().last().and_then(Bin::shares);
+        assert_eq!(
+            shares,
+            Some(Shares {
+                stick: 0.5,
+                positive: 0.5,
+                negative: 0.0
+            })
+        );
+        assert_eq!(envelope.breaks(), 1);
+        assert_eq!(envelope.bins().last().map(|b| b.high), Some(0.4));
+    }
+}

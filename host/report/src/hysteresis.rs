@@ -1,0 +1,172 @@
+//! The imaginary object against the shaft angle over a whole run: for each
+//! angle and each direction of motion the range that θ covered.
+//!
+//! The number of angle bins is bounded: when the shaft reaches further, bins
+//! widen to twice their width and neighbours merge.
+
+use std::collections::BTreeMap;
+
+/// What θ did in one bin of angle, rad.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Range {
+    pub(crate) angle: f64,
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    pub(crate) mean: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    low: f64,
+    high: f64,
+    sum: f64,
+    count: u64,
+}
+
+impl Cell {
+    fn append(&mut self, other: &Self) {
+        self.low = self.low.min(other.low);
+        self.high = self.high.max(other.high);
+        self.sum += other.sum;
+        self.count += other.count;
+    }
+}
+
+type Cells = BTreeMap<i64, Cell>;
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub(crate) struct Hysteresis {
+    flexing: Cells,
+    extending: Cells,
+    width: f64,
+    last_angle: f64,
+    last_was_flexing: bool,
+    travel: f64,
+}
+
+impl Hysteresis {
+    const CAPACITY: usize = 1000;
+
+    pub(crate) fn new() -> Self {
+        Self {
+            flexing: Cells::new(),
+            extending: Cells::new(),
+            width: 1e-4,
+            last_angle: f64::NAN,
+            last_was_flexing: true,
+            travel: 0.0,
+        }
+    }
+
+    pub(crate) fn row(&mut self, angle: f64, omega: f64, theta: f64) {
+        if !(angle.is_finite() && theta.is_finite()) {
+            return;
+        }
+        let moved = angle - self.last_angle;
+        if moved.is_finite() {
+            self.travel += moved.abs();
+        }
+        self.last_angle = angle;
+        // At rest the last direction goes on.
+        if omega > 0.0 {
+            self.last_was_flexing = true;
+        } else if omega < 0.0 {
+            self.last_was_flexing = false;
+        }
+        let bin = bin_of(angle, self.width);
+        let cells = if self.last_was_flexing {
+            &mut self.flexing
+        } else {
+            &mut self.extending
+        };
+        let cell = Cell {
+            low: theta,
+            high: theta,
+            sum: theta,
+            count: 1,
+        };
+        cells
+            .entry(bin)
+            .and_modify(|known| known.append(&cell))
+            .or_insert(cell);
+        if cells.len() > Self::CAPACITY {
+            self.flexing = widened(&self.flexing, 2);
+            self.extending = widened(&self.extending, 2);
+            self.width *= 2.0;
+        }
+    }
+
+    /// How far the shaft moved in all, rad.
+    pub(crate) fn travel(&self) -> f64 {
+        self.travel
+    }
+
+    /// The ranges in bins of at least `width` rad: those of growing angle,
+    /// then those of falling angle.
+    pub(crate) fn ranges(&self, width: f64) -> [Vec<Range>; 2] {
+        let factor = (width / self.width).ceil().clamp(1.0, 1e6);
+        // In range by the clamp above.
+        #[allow(clippy::cast_possible_truncation)]
+        let factor_whole = factor as i64;
+        let width = self.width * factor;
+        [&self.flexing, &self.extending].map(|cells| {
+            widened(cells, factor_whole)
+                .iter()
+                .map(|(bin, cell)| Range {
+                    angle: (*bin as f64 + 0.5) * width,
+                    low: cell.low,
+                    high: cell.high,
+                    mean: cell.sum / cell.count as f64,
+                })
+                .collect()
+        })
+    }
+
+    #[cfg(test)]
+    pub(crate) fn stored(&self) -> usize {
+        self.flexing.len() + self.extending.len()
+    }
+}
+
+// The cast saturates, which is what an absurd angle deserves.
+#[allow(clippy::cast_possible_truncation)]
+fn bin_of(angle: f64, width: f64) -> i64 {
+    (angle / width).floor() as i64
+}
+
+fn widened(cells: &Cells, factor: i64) -> Cells {
+    let mut wide = Cells::new();
+    for (bin, cell) in cells {
+        wide.entry(bin.div_euclid(factor))
+            .and_modify(|known: &mut Cell| known.append(cell))
+            .or_insert(*cell);
+    }
+    wide
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_stay_apart_and_memory_is_bounded() {
+        let mut map = Hysteresis::new();
+        for i in 0..200_000_u32 {
+            let phase = f64::from(i) * 1e-3;
+            map.row(phase.sin(), phase.cos(), phase.cos().signum() * 0.5);
+        }
+        assert!(map.stored() <= 2 * Hysteresis::CAPACITY + 2);
+        let [flexing, extending] = map.ranges(0.05);
+        // Halfway there is only the value of the direction itself.
+        let near_zero = |ranges: &[Range]| {
+            ranges
+                .iter()
+                .find(|r| r.angle.abs() < 0.05)
+                .map(|r| (r.low, r.high))
+        };
+        assert_eq!(near_zero(&flexing), Some((0.5, 0.5)));
+        assert_eq!(near_zero(&extending), Some((-0.5, -0.5)));
+        assert!((map.travel() - 400.0 / std::f64::consts::PI * 1.0).abs() < 2.0);
+    }
+}

@@ -1,0 +1,224 @@
+//! A stretch of a run recorded closely enough to zoom into, in bounded
+//! memory: lines, the phases with their edges at event times, the events.
+
+use crepitus_model::{EventKind, Phase};
+use crepitus_scene::trace::EventRecord;
+
+use crate::channels::Sample;
+use crate::orbit::Orbit;
+use crate::thinned::Thinned;
+
+/// A stretch of time in one phase.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Span {
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    pub(crate) phase: Phase,
+}
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub(crate) struct Window {
+    pub(crate) torque: Thinned,
+    pub(crate) omega: Thinned,
+    pub(crate) theta_dot: Thinned,
+    pub(crate) orbit: Orbit,
+    pub(crate) start: f64,
+    pub(crate) end: f64,
+    events: Vec<EventRecord>,
+    changes: Vec<(f64, Phase)>,
+    overflowed: bool,
+    speed_sum: f64,
+    speed_count: u64,
+}
+
+impl Window {
+    /// Bins of each line: about twice the pixels across a chart.
+    const LINE: usize = 1600;
+    /// More events than this cannot be told apart in one chart.
+    pub(crate) const EVENTS: usize = 120;
+
+    pub(crate) fn new() -> Self {
+        Self {
+            torque: Thinned::new(Self::LINE),
+            omega: Thinned::new(Self::LINE),
+            theta_dot: Thinned::new(Self::LINE),
+            orbit: Orbit::new(),
+            start: f64::INFINITY,
+            end: f64::NEG_INFINITY,
+            events: Vec::new(),
+            changes: Vec::new(),
+            overflowed: false,
+            speed_sum: 0.0,
+            speed_count: 0,
+        }
+    }
+
+    pub(crate) fn row(&mut self, sample: &Sample) {
+        self.extend(sample.time);
+        self.torque.push(sample.time, sample.torque);
+        self.omega.push(sample.time, sample.omega);
+        self.theta_dot.push(sample.time, sample.theta_dot);
+        self.orbit.row(sample);
+        self.count_speed(sample.omega);
+        // Where there are events they alone say when a phase ends.
+        if self.events.is_empty()
+            && let Some(phase) = sample.phase
+        {
+            self.change(sample.time, phase);
+        }
+    }
+
+    pub(crate) fn event(&mut self, event: &EventRecord) {
+        let time = event.time_s;
+        self.extend(time);
+        // Both sides of the jump, so that it is upright however far apart the
+        // rows are.
+        self.torque.push(time, event.torque_before_nm);
+        self.torque.push(time, event.torque_after_nm);
+        if event.kind != EventKind::Reverse {
+            // At both ends of a stick the object moves with the shaft.
+            self.theta_dot.push(time, event.omega_rad_s);
+        }
+        self.orbit.event(event);
+        self.count_speed(event.omega_rad_s);
+        if self.events.len() >= Self::EVENTS {
+            self.overflowed = true;
+            return;
+        }
+        if self.changes.is_empty() {
+            self.change(time, Phase::from_sign(event.from));
+        }
+        self.events.push(*event);
+        self.change(time, Phase::from_sign(event.to));
+    }
+
+    fn extend(&mut self, time: f64) {
+        self.start = self.start.min(time);
+        self.end = self.end.max(time);
+    }
+
+    fn count_speed(&mut self, omega: f64) {
+        if omega.is_finite() {
+            self.speed_sum += omega.abs();
+            self.speed_count += 1;
+        }
+    }
+
+    fn change(&mut self, time: f64, phase: Phase) {
+        if self.changes.last().map(|(_, last)| *last) == Some(phase) {
+            return;
+        }
+        if self.changes.len() >= 2 * Self::EVENTS {
+            self.overflowed = true;
+        } else {
+            self.changes.push((time, phase));
+        }
+    }
+
+    /// Whether there was more than one chart can show; phases and events are
+    /// then incomplete.
+    pub(crate) fn overflowed(&self) -> bool {
+        self.overflowed
+    }
+
+    pub(crate) fn events(&self) -> &[EventRecord] {
+        &self.events
+    }
+
+    pub(crate) fn count(&self, kind: EventKind) -> usize {
+        self.events.iter().filter(|e| e.kind == kind).count()
+    }
+
+    /// Mean of |Ω|, rad/s; zero without rows.
+    pub(crate) fn mean_speed(&self) -> f64 {
+        if self.speed_count == 0 {
+            0.0
+        } else {
+            self.speed_sum / self.speed_count as f64
+        }
+    }
+
+    /// The phases between two times.
+    pub(crate) fn spans(&self, from: f64, to: f64) -> Vec<Span> {
+        let ends = self
+            .changes
+            .iter()
+            .skip(1)
+            .map(|(time, _)| *time)
+            .chain([self.end]);
+        self.changes
+            .iter()
+            .zip(ends)
+            .map(|(&(start, phase), end)| Span {
+                from: start.max(from),
+                to: end.min(to),
+                phase,
+            })
+            .filter(|span| span.to > span.from)
+            .collect()
+    }
+
+    /// The time worth showing: the events and at most one cycle around them,
+    /// so that a long rest before or after does not squeeze them.
+    pub(crate) fn view(&self) -> (f64, f64) {
+        let (Some(first), Some(last)) = (self.events.first(), self.events.last()) else {
+            return (self.start, self.end);
+        };
+        let cycle = (last.time_s - first.time_s) / (self.count(EventKind::Break).max(2) - 1) as f64;
+        if cycle > 0.0 {
+            (
+                self.start.max(first.time_s - cycle),
+                self.end.min(last.time_s + cycle),
+            )
+        } else {
+            (self.start, self.end)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{Motion, Run};
+
+    #[test]
+    fn phases_change_at_event_times_not_at_rows() {
+        let mut window = Window::new();
+        let channels = crate::channels::Channels::find(&Run::columns(true, false));
+        Run::new(Motion::Constant { speed: 1.0 }, 0.1, 1e-3).play(
+            |row| window.row(&channels.sample(row)),
+            |_| {},
+        );
+        let by_rows = window.spans(0.0, 1.0);
+        assert!(by_rows.iter().all(|s| (s.from / 1e-3).fract().abs() < 1e-6
+            || (s.from / 1e-3).fract() > 1.0 - 1e-6));
+
+        let run = Run::new(Motion::Constant { speed: 1.0 }, 0.1, 1e-3);
+        let window = std::cell::RefCell::new(Window::new());
+        run.play(
+            |row| window.borrow_mut().row(&channels.sample(row)),
+            |event| window.borrow_mut().event(event),
+        );
+        let window = window.into_inner();
+        let spans = window.spans(0.0, 1.0);
+        let expected: Vec<f64> = window.events().iter().map(|e| e.time_s).collect();
+        let edges: Vec<f64> = spans.iter().skip(1).map(|s| s.from).collect();
+        assert_eq!(edges, expected);
+        assert!(!window.overflowed());
+    }
+
+    #[test]
+    fn more_events_than_fit_are_flagged_not_stored() {
+        let channels = crate::channels::Channels::find(&Run::columns(true, false));
+        let window = std::cell::RefCell::new(Window::new());
+        Run::new(Motion::Constant { speed: 1.0 }, 10.0, 1e-3).play(
+            |row| window.borrow_mut().row(&channels.sample(row)),
+            |event| window.borrow_mut().event(event),
+        );
+        let window = window.into_inner();
+        assert!(window.overflowed());
+        assert_eq!(window.events().len(), Window::EVENTS);
+        assert!(window.torque.stored() <= Window::LINE);
+    }
+}

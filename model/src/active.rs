@@ -1,0 +1,142 @@
+//! What a step uses: plain numbers, made from [`Settings`] outside the tick.
+
+use crate::oscillator::Oscillator;
+use crate::real::Real;
+use crate::settings::{Restart, Settings, SettingsError, Validated};
+use crate::ticks::Ticks;
+
+/// Settings turned into the numbers of one step length.
+///
+/// Everything is computed in f64 and rounded once, so an f32 joint starts
+/// from the nearest values and its period does not drift.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Active<F> {
+    /// Step length h, s.
+    pub step_s: F,
+    /// 1/h, 1/s.
+    pub per_step: F,
+    /// kr, N·m/rad.
+    pub stiffness: F,
+    /// 1/kr, rad/(N·m).
+    pub compliance: F,
+    /// J, kg·m².
+    pub inertia: F,
+    /// c, N·m·s/rad.
+    pub damping: F,
+    /// Tk, N·m.
+    pub kinetic_nm: F,
+    /// Ts, N·m.
+    pub static_nm: F,
+    /// Tk/kr, rad: the angle about which the object swings in a slip.
+    pub kinetic_angle_rad: F,
+    /// Angle at which a frozen slip ends: (2Tk − Ts)/kr, or Tk/kr, rad.
+    pub restart_angle_rad: F,
+    /// Ts − Tk, N·m.
+    pub drop_nm: F,
+    /// √(J·kr), N·m·s/rad.
+    pub impedance: F,
+    /// 2/(ωn·h): ticks per half radian, doubled as eq. (10) needs it.
+    pub ticks_per_half_radian: F,
+    /// 2π/(ωn·h): one free period of the object.
+    pub period: Ticks<F>,
+    /// Free motion of the object in a slip.
+    pub oscillator: Oscillator<F>,
+}
+
+impl<F: Real> Active<F> {
+    /// The numbers for a step of `step_s`.
+    ///
+    /// # Errors
+    /// [`SettingsError::Step`] if the step is not positive and finite, or
+    /// above 1000 s.
+    pub fn new(settings: &Validated<Settings>, step_s: f64) -> Result<Self, SettingsError> {
+        if !(step_s > 0.0 && step_s <= 1e3) {
+            return Err(SettingsError::Step { step_s });
+        }
+        let p = &settings.parameters;
+        let f = F::from_f64;
+        let kr = p.stiffness_nm_per_rad;
+        let restart_nm = match settings.restart {
+            Restart::Elastic => p.restart_torque_nm(),
+            Restart::FromKinetic => p.kinetic_torque_nm,
+        };
+        let radians_per_step = p.natural_rad_s() * step_s;
+        Ok(Self {
+            step_s: f(step_s),
+            per_step: f(1.0 / step_s),
+            stiffness: f(kr),
+            compliance: f(1.0 / kr),
+            inertia: f(p.inertia_kg_m2),
+            damping: f(p.damping_nms_per_rad),
+            kinetic_nm: f(p.kinetic_torque_nm),
+            static_nm: f(p.static_torque_nm),
+            kinetic_angle_rad: f(p.kinetic_torque_nm / kr),
+            restart_angle_rad: f(restart_nm / kr),
+            drop_nm: f(p.static_torque_nm - p.kinetic_torque_nm),
+            impedance: f(p.impedance_nms_per_rad()),
+            ticks_per_half_radian: f(2.0 / radians_per_step),
+            period: Ticks::from_f64(core::f64::consts::TAU / radians_per_step),
+            oscillator: Oscillator::new(p),
+        })
+    }
+
+    /// Duration of a frozen slip that begins while the shaft moves with
+    /// `relative_rad_s` = s·Ω(t₀), eqs. (10)–(11):
+    /// ωn·t = 2(π − atan2(Ts − Tk, max(0, s·Ω(t₀))·√(J·kr))).
+    pub fn slip_time(&self, relative_rad_s: F) -> Ticks<F> {
+        let lag = self
+            .drop_nm
+            .atan2(F::ZERO.at_least(relative_rad_s) * self.impedance);
+        self.period
+            .less(Ticks::new(lag * self.ticks_per_half_radian))
+    }
+
+    /// `torque_nm` held within ±Ts.
+    #[inline]
+    pub fn limited(&self, torque_nm: F) -> F {
+        torque_nm.at_most(self.static_nm).at_least(-self.static_nm)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn active<F: Real>() -> Active<F> {
+        Active::new(&Settings::default().validate().unwrap(), 5e-5).unwrap()
+    }
+
+    #[test]
+    fn slip_time_is_the_closed_form() {
+        // ωn·t = π + 2·atan(Ω√(J·kr)/(Ts − Tk)), the other way to write it.
+        for omega in [0.01_f64, 0.1, 1.0, 5.0] {
+            let expected = (core::f64::consts::PI + 2.0 * libm::atan(omega * 2.0 / 0.2)) / 200.0;
+            let double = active::<f64>().slip_time(omega).value() * 5e-5;
+            assert!((double - expected).abs() < 1e-17, "{omega}");
+            let span = active::<f32>().slip_time(F32::from_f64(omega));
+            #[expect(clippy::cast_precision_loss, reason = "small numbers")]
+            let single = (span.whole as f64 + f64::from(span.fraction)) * 5e-5;
+            assert!(
+                (single - expected).abs() < 4e-9,
+                "{omega}: {single} {expected}"
+            );
+        }
+    }
+
+    type F32 = f32;
+
+    #[test]
+    fn a_slip_against_the_shaft_lasts_half_a_period() {
+        let half_period = core::f64::consts::PI / 200.0 / 5e-5;
+        let span = active::<f64>().slip_time(-3.0).value();
+        assert!((span - half_period).abs() < 1e-9);
+    }
+
+    #[test]
+    fn steps_that_are_no_step_are_refused() {
+        let settings = Settings::default().validate().unwrap();
+        for step_s in [0.0, -1e-3, f64::NAN, f64::INFINITY, 1e4] {
+            assert!(Active::<f32>::new(&settings, step_s).is_err());
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! How the end of a phase is found: one file a rung of the ladder.
+//!
+//! A stick ends where its torque reaches the static limit; a slip ends where
+//! the shaft's velocity meets the object's. A locator is asked for the time of
+//! either within the part of a step that is left.
+
+mod end_of_step;
+mod exact;
+
+pub use end_of_step::EndOfStep;
+pub use exact::ExactEvents;
+
+use crate::oscillator::Oscillator;
+use crate::phase::Sense;
+use crate::propagate::Propagate;
+use crate::real::Real;
+
+/// The torque of a stick over what is left of a step: the parabola
+/// T(u) = torque + rate·u + curvature·u²/2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StickPath<F> {
+    /// T at the start, N·m.
+    pub torque_nm: F,
+    /// Ṫ at the start, N·m/s.
+    pub rate: F,
+    /// T̈, N·m/s².
+    pub curvature: F,
+}
+
+impl<F: Real> StickPath<F> {
+    /// T(u), N·m.
+    #[inline]
+    pub fn at(&self, time_s: F) -> F {
+        self.torque_nm + time_s * (self.rate + F::HALF * self.curvature * time_s)
+    }
+
+    /// The same path, begun `time_s` later.
+    #[must_use]
+    pub fn from(&self, time_s: F) -> Self {
+        Self {
+            torque_nm: self.at(time_s),
+            rate: self.rate + self.curvature * time_s,
+            curvature: self.curvature,
+        }
+    }
+}
+
+/// A slip over what is left of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct SlipPath<'a, F, P> {
+    /// Moves the object.
+    pub propagator: &'a P,
+    /// Accelerations and their bound.
+    pub oscillator: &'a Oscillator<F>,
+    /// The sense of the slip.
+    pub sense: Sense,
+    /// x = θ − s·Tk/kr at the start, rad.
+    pub x: F,
+    /// Velocity of the object at the start, rad/s.
+    pub v: F,
+    /// Ω at the start, rad/s.
+    pub omega: F,
+    /// Ω̇, rad/s².
+    pub omega_dot: F,
+}
+
+impl<F: Real, P: Propagate<F>> SlipPath<'_, F, P> {
+    /// The speed s·(Ω − v) by which the shaft overtakes the object when that
+    /// moves with `v`, `time_s` later.
+    #[inline]
+    pub fn overtaking(&self, time_s: F, v: F) -> F {
+        self.sense
+            .of_signed(self.omega + self.omega_dot * time_s - v)
+    }
+}
+
+/// Finds the end of a phase.
+pub trait Locate<F: Real> {
+    /// The first time in [0, `length_s`] at which s·T reaches `limit_nm`
+    /// outwards; 0 if it is beyond the limit from the start.
+    fn break_time(path: &StickPath<F>, sense: Sense, limit_nm: F, length_s: F) -> Option<F>;
+
+    /// The first time in [0, `length_s`] at which the shaft's velocity falls
+    /// to the object's, which is `v_end` when all of it has passed.
+    fn match_time<P: Propagate<F>>(slip: &SlipPath<'_, F, P>, length_s: F, v_end: F) -> Option<F>;
+}

@@ -1,0 +1,244 @@
+//! The imaginary object while it slips: a free oscillator, solved exactly.
+//!
+//! During a slip the friction torque is the constant s·Tk, so with
+//! x = θ − s·Tk/kr the object obeys J·ẍ + c·ẋ + kr·x = 0. With a = c/2J and
+//! D = ωn² − a² its motion over a time u is linear in (x, v = ẋ):
+//!
+//! ```text
+//! x⁺ = (C + a·S)·x + S·v          C = e^(−a·u)·cos(√D·u)
+//! v⁺ = −ωn²·S·x + (C − a·S)·v     S = e^(−a·u)·sin(√D·u)/√D
+//! ```
+//!
+//! (cosh and sinh for D < 0, 1 and u for D = 0.) Both cos √z and sin √z/√z are
+//! entire functions of z = D·u², so one pair of short power series covers
+//! damping below, at and above critical for the small angles inside a step.
+//!
+//! The motion depends on time alone, not on the shaft: for a fixed step C and
+//! S are constants, and an exact step costs four multiplications.
+
+use crate::parameters::Parameters;
+use crate::real::Real;
+
+/// The free motion of an object with given J, c, kr.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Oscillator<F> {
+    /// ωn² = kr/J, rad²/s².
+    omega_n_squared: F,
+    /// a = c/2J, 1/s.
+    decay: F,
+    /// D = ωn² − a², rad²/s²: negative above critical damping.
+    discriminant: F,
+    /// √|D|, rad/s.
+    root: F,
+}
+
+/// The exact motion over one fixed time: (x, v) ↦ (xx·x + xv·v, vx·x + vv·v).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transition<F> {
+    xx: F,
+    xv: F,
+    vx: F,
+    vv: F,
+}
+
+impl<F: Real> Oscillator<F> {
+    /// From parameters; computed in f64 and rounded once.
+    pub fn new(parameters: &Parameters) -> Self {
+        let omega_n_squared = parameters.stiffness_nm_per_rad / parameters.inertia_kg_m2;
+        let decay = parameters.damping_nms_per_rad / (2.0 * parameters.inertia_kg_m2);
+        // (ωn − a)(ωn + a): no cancellation near critical damping.
+        let omega_n = libm::sqrt(omega_n_squared);
+        let discriminant = (omega_n - decay) * (omega_n + decay);
+        Self {
+            omega_n_squared: F::from_f64(omega_n_squared),
+            decay: F::from_f64(decay),
+            discriminant: F::from_f64(discriminant),
+            root: F::from_f64(libm::sqrt(libm::fabs(discriminant))),
+        }
+    }
+
+    /// The motion over `time_s` ≥ 0.
+    pub fn transition(&self, time_s: F) -> Transition<F> {
+        let (c, s) = self.cosine_and_sine(time_s);
+        Transition {
+            xx: c + self.decay * s,
+            xv: s,
+            vx: -(self.omega_n_squared * s),
+            vv: c - self.decay * s,
+        }
+    }
+
+    /// The acceleration at (x, v): −ωn²·x − 2a·v, rad/s².
+    #[inline]
+    pub fn acceleration(&self, x: F, v: F) -> F {
+        -(self.omega_n_squared * x) - F::TWO * self.decay * v
+    }
+
+    /// The time of a quarter radian of free swing, 1/(4·ωn), s.
+    pub fn quarter_radian_s(&self) -> F {
+        F::HALF * F::HALF / self.omega_n_squared.sqrt()
+    }
+
+    /// A bound of |v̈| that holds for the whole free motion from (x, v) on:
+    /// (|4a² − ωn²| + 2a·ωn)·√(v² + ωn²x²), rad/s³. The root is the object's
+    /// energy, which free motion never raises.
+    pub fn jerk_bound(&self, x: F, v: F) -> F {
+        let (two_a, w2) = (F::TWO * self.decay, self.omega_n_squared);
+        let energy = (v * v + w2 * x * x).sqrt();
+        ((two_a * two_a - w2).abs() + two_a * w2.sqrt()) * energy
+    }
+
+    /// (C, S) of the module's equations.
+    fn cosine_and_sine(&self, time_s: F) -> (F, F) {
+        // Within this angle eight terms of each series are exact in f64.
+        const SERIES_ANGLE_SQUARED: f64 = 0.3;
+        let z = self.discriminant * time_s * time_s;
+        if z.abs() <= F::from_f64(SERIES_ANGLE_SQUARED) {
+            let damped = if self.decay > F::ZERO {
+                (-(self.decay * time_s)).exp()
+            } else {
+                F::ONE
+            };
+            return (
+                damped * cosine_of_root(z),
+                damped * time_s * sine_over_root(z),
+            );
+        }
+        if z > F::ZERO {
+            let damped = if self.decay > F::ZERO {
+                (-(self.decay * time_s)).exp()
+            } else {
+                F::ONE
+            };
+            let (sin, cos) = (self.root * time_s).sin_cos();
+            (damped * cos, damped * sin / self.root)
+        } else {
+            // Two decaying exponentials: cosh and sinh alone would overflow.
+            // The slow rate a − √−D is written without cancellation.
+            let fast = self.decay + self.root;
+            let slow = self.omega_n_squared / fast;
+            let e_slow = (-(slow * time_s)).exp();
+            let e_fast = (-(fast * time_s)).exp();
+            (
+                F::HALF * (e_slow + e_fast),
+                F::HALF * (e_slow - e_fast) / self.root,
+            )
+        }
+    }
+}
+
+impl<F: Real> Transition<F> {
+    /// Moves (x, v).
+    #[inline]
+    pub fn apply(&self, x: F, v: F) -> (F, F) {
+        (self.xx * x + self.xv * v, self.vx * x + self.vv * v)
+    }
+}
+
+/// cos √z = Σ (−z)ᵏ/(2k)!.
+#[inline]
+fn cosine_of_root<F: Real>(z: F) -> F {
+    series(z, &[2.0, 12.0, 30.0, 56.0, 90.0, 132.0, 182.0])
+}
+
+/// sin √z/√z = Σ (−z)ᵏ/(2k+1)!.
+#[inline]
+fn sine_over_root<F: Real>(z: F) -> F {
+    series(z, &[6.0, 20.0, 42.0, 72.0, 110.0, 156.0, 210.0])
+}
+
+/// 1 − z/r₁·(1 − z/r₂·(1 − …)).
+#[inline]
+fn series<F: Real, const N: usize>(z: F, ratios: &[f64; N]) -> F {
+    ratios.iter().rev().fold(F::ONE, |inner, &ratio| {
+        F::ONE - z * F::from_f64(1.0 / ratio) * inner
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with(damping_ratio: f64) -> (Parameters, Oscillator<f64>) {
+        let mut p = Parameters::default();
+        p.damping_nms_per_rad = 2.0 * damping_ratio * p.impedance_nms_per_rad();
+        (p, Oscillator::new(&p))
+    }
+
+    /// Classical Runge-Kutta with very small steps, as an independent check.
+    fn integrate(p: &Parameters, time_s: f64, (mut x, mut v): (f64, f64)) -> (f64, f64) {
+        let n = 20_000;
+        let h = time_s / f64::from(n);
+        let f = |x: f64, v: f64| {
+            (
+                v,
+                -(p.stiffness_nm_per_rad * x + p.damping_nms_per_rad * v) / p.inertia_kg_m2,
+            )
+        };
+        for _ in 0..n {
+            let (a, b) = f(x, v);
+            let (c, d) = f(x + h / 2.0 * a, v + h / 2.0 * b);
+            let (e, g) = f(x + h / 2.0 * c, v + h / 2.0 * d);
+            let (i, j) = f(x + h * e, v + h * g);
+            x += h / 6.0 * (a + 2.0 * c + 2.0 * e + i);
+            v += h / 6.0 * (b + 2.0 * d + 2.0 * g + j);
+        }
+        (x, v)
+    }
+
+    #[test]
+    fn every_damping_matches_an_independent_integration() {
+        for damping_ratio in [0.0, 1e-3, 0.5, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 1.5, 30.0] {
+            let (p, oscillator) = with(damping_ratio);
+            for time_s in [1e-5, 1e-3, 0.02, 0.05] {
+                let exact = oscillator.transition(time_s).apply(1e-3, 0.7);
+                let numeric = integrate(&p, time_s, (1e-3, 0.7));
+                assert!(
+                    (exact.0 - numeric.0).abs() < 1e-11 && (exact.1 - numeric.1).abs() < 1e-9,
+                    "ζ = {damping_ratio}, t = {time_s}: {exact:?} {numeric:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn two_half_steps_are_one_step() {
+        for damping_ratio in [0.0, 0.02, 1.0, 3.0] {
+            let (_, oscillator) = with(damping_ratio);
+            for time_s in [1e-4, 4e-3, 0.03] {
+                let half = oscillator.transition(time_s / 2.0);
+                let (x, v) = half.apply(2e-4, -0.3);
+                let (a, b) = (
+                    half.apply(x, v),
+                    oscillator.transition(time_s).apply(2e-4, -0.3),
+                );
+                assert!((a.0 - b.0).abs() < 1e-17 && (a.1 - b.1).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn series_and_trigonometry_meet() {
+        let (_, o) = with(0.0);
+        let (below, above) = (0.547_722 / 200.0, 0.547_723 / 200.0);
+        let (a, b) = (o.transition(below), o.transition(above));
+        assert!((a.xx - b.xx).abs() < 1e-6 && (a.xv - b.xv).abs() < 1e-8);
+        let (s, c) = libm::sincos(below * 200.0);
+        assert!((a.xx - c).abs() < 3e-16 && (a.xv * 200.0 - s).abs() < 3e-16);
+    }
+
+    #[test]
+    fn the_jerk_bound_bounds() {
+        for damping_ratio in [0.0, 0.3, 1.0, 2.0] {
+            let (p, o) = with(damping_ratio);
+            let bound = o.jerk_bound(3e-4, -0.2);
+            for i in 0..1000 {
+                let (x, v) = o.transition(f64::from(i) * 5e-5).apply(3e-4, -0.2);
+                let a = o.acceleration(x, v);
+                let jerk =
+                    -(p.stiffness_nm_per_rad * v + p.damping_nms_per_rad * a) / p.inertia_kg_m2;
+                assert!(jerk.abs() <= bound * (1.0 + 1e-12));
+            }
+        }
+    }
+}

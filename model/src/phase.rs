@@ -1,0 +1,107 @@
+//! The phases of the imaginary object and the events between them.
+
+use crate::real::Real;
+
+/// The direction of a slip: the sign of the shaft's velocity relative to the
+/// imaginary object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sense {
+    /// The shaft overtakes the object towards growing angle; T = +Tk.
+    Positive,
+    /// The shaft overtakes the object towards falling angle; T = −Tk.
+    Negative,
+}
+
+impl Sense {
+    /// The sense of a number, `None` for zero (and for NaN).
+    pub fn of<F: Real>(x: F) -> Option<Self> {
+        if x > F::ZERO {
+            Some(Self::Positive)
+        } else if x < F::ZERO {
+            Some(Self::Negative)
+        } else {
+            None
+        }
+    }
+
+    /// `x` for a positive sense, `−x` for a negative one: the product s·x,
+    /// exact for every `x`.
+    #[inline]
+    pub fn of_signed<F: Real>(self, x: F) -> F {
+        match self {
+            Self::Positive => x,
+            Self::Negative => -x,
+        }
+    }
+
+    /// The other sense.
+    #[inline]
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Positive => Self::Negative,
+            Self::Negative => Self::Positive,
+        }
+    }
+}
+
+/// What the imaginary object does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// It moves with the shaft.
+    Stick,
+    /// It slides against the shaft.
+    Slip(Sense),
+}
+
+impl Phase {
+    /// −1, 0 (stick) or +1, as traces and recordings write it.
+    pub fn sign(self) -> i8 {
+        match self {
+            Self::Slip(Sense::Negative) => -1,
+            Self::Stick => 0,
+            Self::Slip(Sense::Positive) => 1,
+        }
+    }
+
+    /// The name in files: `slip-`, `stick`, `slip+`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Slip(Sense::Negative) => "slip-",
+            Self::Stick => "stick",
+            Self::Slip(Sense::Positive) => "slip+",
+        }
+    }
+
+    /// The phase with this [`sign`](Self::sign); zero and everything else is
+    /// stick.
+    pub fn from_sign(sign: i8) -> Self {
+        match sign {
+            -1 => Self::Slip(Sense::Negative),
+            1 => Self::Slip(Sense::Positive),
+            _ => Self::Stick,
+        }
+    }
+}
+
+/// What can happen to the imaginary object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum EventKind {
+    /// Stick ends: the torque reached the static limit, or the shaft jumped.
+    Break,
+    /// Slip ends in stick.
+    Stick,
+    /// Slip ends in slip of the other sense: at the velocity match the static
+    /// limit could not hold the object, or the shaft jumped past it.
+    Reverse,
+}
+
+impl EventKind {
+    /// The name in files: `break`, `stick`, `reverse`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Break => "break",
+            Self::Stick => "stick",
+            Self::Reverse => "reverse",
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! How a slip is carried forward: one file a rung of the ladder.
+//!
+//! A propagator knows nothing of phases and events; a
+//! [locator](crate::locate) knows nothing of the method that moves the object.
+
+mod exact;
+
+pub use exact::Exact;
+
+use crate::active::Active;
+use crate::real::Real;
+
+/// Moves the object through a slip: J·ẍ + c·ẋ + kr·x = 0 with
+/// x = θ − s·Tk/kr and v = ẋ.
+pub trait Propagate<F: Real>: Sized {
+    /// The propagator for the parameters and the step of `active`.
+    fn new(active: &Active<F>) -> Self;
+
+    /// (x, v) one whole step later.
+    fn step(&self, x: F, v: F) -> (F, F);
+
+    /// (x, v) a part of a step later, `time_s` in [0, h].
+    fn part(&self, x: F, v: F, time_s: F) -> (F, F);
+}

@@ -1,0 +1,31 @@
+//! The exact propagator: no error but rounding, four multiplications a step.
+
+use super::Propagate;
+use crate::active::Active;
+use crate::oscillator::{Oscillator, Transition};
+use crate::real::Real;
+
+/// Exact free motion: see [`crate::oscillator`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exact<F> {
+    oscillator: Oscillator<F>,
+    whole_step: Transition<F>,
+}
+
+impl<F: Real> Propagate<F> for Exact<F> {
+    fn new(active: &Active<F>) -> Self {
+        Self {
+            oscillator: active.oscillator,
+            whole_step: active.oscillator.transition(active.step_s),
+        }
+    }
+
+    #[inline]
+    fn step(&self, x: F, v: F) -> (F, F) {
+        self.whole_step.apply(x, v)
+    }
+
+    fn part(&self, x: F, v: F, time_s: F) -> (F, F) {
+        self.oscillator.transition(time_s).apply(x, v)
+    }
+}

@@ -1,0 +1,95 @@
+//! The numbers the model computes with: f32 on the device, f64 on the host.
+//!
+//! [`Real`] holds just the operations that the model uses. They are the same
+//! instructions on every target: no fused multiply-add, no platform `sinf`.
+//! For f64 the elementary functions are those of the pure-Rust `libm`. For f32
+//! they are the short polynomials of [`single`], because `libm`'s f32 sine
+//! computes in f64, which a Cortex-M4F does in software.
+
+mod double;
+pub mod single;
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// A floating-point type that the model can run in.
+///
+/// Implemented for `f32` and `f64`; the trait is sealed by what it is for,
+/// not by type: a third precision would be one more file beside these two.
+pub trait Real:
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + PartialOrd
+    + Add<Output = Self>
+    + AddAssign
+    + Sub<Output = Self>
+    + SubAssign
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Send
+    + Sync
+    + 'static
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1/2.
+    const HALF: Self;
+    /// 1.
+    const ONE: Self;
+    /// 2.
+    const TWO: Self;
+    /// Distance from 1 to the next larger number.
+    const EPSILON: Self;
+    /// Relative slack of the static limit: a required torque within
+    /// `Ts·(1 ± LIMIT_SLACK)` counts as *at* the limit.
+    ///
+    /// Some parameter sets re-stick exactly on the limit (Tk = 0 ends every
+    /// slip at −Ts), where rounding decides which side one sees. The slack is
+    /// far above the rounding of one cycle and far below what a hand can feel.
+    const LIMIT_SLACK: Self;
+    /// Name in scene files: `f32` or `f64`.
+    const NAME: &'static str;
+
+    /// The nearest number to `x`.
+    fn from_f64(x: f64) -> Self;
+    /// The same number as f64 (exact for both precisions).
+    fn to_f64(self) -> f64;
+    /// The whole part of a non-negative number; negative and NaN give 0, too
+    /// large gives `u64::MAX`.
+    fn whole(self) -> u64;
+    /// The nearest number to a whole one.
+    fn from_whole(n: u64) -> Self;
+
+    /// The nearest number to an encoder count.
+    fn from_count(n: i32) -> Self;
+
+    /// |x|.
+    fn abs(self) -> Self;
+    /// √x, correctly rounded.
+    fn sqrt(self) -> Self;
+    /// eˣ.
+    fn exp(self) -> Self;
+    /// (sin x, cos x), x in rad.
+    fn sin_cos(self) -> (Self, Self);
+    /// The angle of the point (x, y) with y = `self`, in (−π, π].
+    fn atan2(self, x: Self) -> Self;
+    /// Neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+
+    /// The larger of two; a NaN on the right is ignored.
+    #[inline]
+    #[must_use]
+    fn at_least(self, low: Self) -> Self {
+        if low > self { low } else { self }
+    }
+
+    /// The smaller of two; a NaN on the right is ignored.
+    #[inline]
+    #[must_use]
+    fn at_most(self, high: Self) -> Self {
+        if high < self { high } else { self }
+    }
+}

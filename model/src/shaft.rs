@@ -1,0 +1,63 @@
+//! What the model is told of the shaft, and the path it assumes within a step.
+
+use crate::active::Active;
+use crate::real::Real;
+
+/// The shaft's motion over one step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShaftStep<F> {
+    /// The exact change of the shaft angle over the step, rad.
+    pub delta_phi_rad: F,
+    /// Shaft velocity just after the start of the step, Ω(tₙ⁺), rad/s.
+    pub omega_start_rad_s: F,
+    /// Shaft velocity just before its end, Ω(tₙ₊₁⁻), rad/s.
+    pub omega_end_rad_s: F,
+}
+
+/// The path within the step: Ω is linear, and the angle the parabola of that
+/// slope which ends exactly at Δφ.
+///
+/// The angle's velocity therefore differs from Ω by the constant
+/// Δφ/h − (Ω₀ + Ω₁)/2, which is the error of the trapezoidal rule for an
+/// analytic motion and the estimator's error on a device. Position events
+/// (break) use the angle, velocity events (match) use Ω.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShaftPath<F> {
+    /// Velocity of the angle at the start, rad/s.
+    rate: F,
+    /// Ω at the start, rad/s.
+    omega: F,
+    /// Ω̇, rad/s².
+    pub omega_dot: F,
+}
+
+impl<F: Real> ShaftPath<F> {
+    /// The path of a step of the length that `active` was made for.
+    #[inline]
+    pub fn new(step: &ShaftStep<F>, active: &Active<F>) -> Self {
+        let omega_dot = (step.omega_end_rad_s - step.omega_start_rad_s) * active.per_step;
+        Self {
+            rate: step.delta_phi_rad * active.per_step - F::HALF * omega_dot * active.step_s,
+            omega: step.omega_start_rad_s,
+            omega_dot,
+        }
+    }
+
+    /// Ω at `time_s` into the step, rad/s.
+    #[inline]
+    pub fn omega(&self, time_s: F) -> F {
+        self.omega + self.omega_dot * time_s
+    }
+
+    /// Velocity of the angle at `time_s` into the step, rad/s.
+    #[inline]
+    pub fn rate(&self, time_s: F) -> F {
+        self.rate + self.omega_dot * time_s
+    }
+
+    /// Change of the angle between two times within the step, rad.
+    #[inline]
+    pub fn travel(&self, from_s: F, to_s: F) -> F {
+        (to_s - from_s) * (self.rate + F::HALF * self.omega_dot * (from_s + to_s))
+    }
+}

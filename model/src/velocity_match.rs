@@ -1,0 +1,383 @@
+//! The `paper` and `physical` conventions: a slip ends when the object's
+//! velocity meets the shaft's, eq. (8).
+//!
+//! At that velocity match the static limit is checked, which the paper leaves
+//! out: if the torque that stick needs is above Ts, the object slips on in the
+//! other sense (`reverse`). Both conventions share everything but the torque
+//! of a stick, which is their [`StickTorque`].
+
+use core::marker::PhantomData;
+
+use crate::active::Active;
+use crate::compensated::Compensated;
+use crate::event::{EVENTS_PER_STEP, Event};
+use crate::frozen::first_break;
+use crate::locate::{Locate, SlipPath, StickPath};
+use crate::phase::{EventKind, Phase, Sense};
+use crate::propagate::Propagate;
+use crate::real::Real;
+use crate::shaft::{ShaftPath, ShaftStep};
+use crate::stick_slip::StickSlip;
+
+/// What the torque of a stick contains beside the spring's.
+pub trait StickTorque<F: Real> {
+    /// The part that comes from the object's own motion, N·m.
+    fn inertial(active: &Active<F>, omega: F, omega_dot: F) -> F;
+}
+
+/// `paper`: T = kr·θ, eq. (7).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Paper;
+
+/// `physical`: T = kr·θ + J·Ω̇ + c·Ω.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Physical;
+
+impl<F: Real> StickTorque<F> for Paper {
+    #[inline]
+    fn inertial(_: &Active<F>, _: F, _: F) -> F {
+        F::ZERO
+    }
+}
+
+impl<F: Real> StickTorque<F> for Physical {
+    #[inline]
+    fn inertial(active: &Active<F>, omega: F, omega_dot: F) -> F {
+        active.inertia * omega_dot + active.damping * omega
+    }
+}
+
+/// The stick-slip object whose slips end at a velocity match: `C` is its stick
+/// torque, `P` moves it in a slip, `L` finds its events.
+#[derive(Clone, Debug)]
+pub struct VelocityMatch<F, C, P, L> {
+    active: Active<F>,
+    propagator: P,
+    state: State<F>,
+    /// Ω at the end of the last step.
+    omega_rad_s: F,
+    rules: PhantomData<(C, L)>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum State<F> {
+    Stick {
+        theta: Compensated<F>,
+        /// The part of the torque that is not the spring's, N·m.
+        inertial_nm: F,
+    },
+    Slip {
+        sense: Sense,
+        /// x = θ − s·Tk/kr, rad.
+        x: F,
+        /// θ̇, rad/s.
+        v: F,
+    },
+}
+
+/// Where in a step the object is.
+struct Here<F> {
+    time_s: F,
+    omega: F,
+    fraction: F,
+}
+
+impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F, C, P, L> {
+    /// An object in stick at θ = 0 on a shaft that moves with `omega_rad_s`.
+    pub fn new(active: Active<F>, omega_rad_s: F) -> Self {
+        Self {
+            propagator: P::new(&active),
+            state: State::Stick {
+                theta: Compensated::new(F::ZERO),
+                inertial_nm: C::inertial(&active, omega_rad_s, F::ZERO),
+            },
+            active,
+            omega_rad_s,
+            rules: PhantomData,
+        }
+    }
+
+    /// Begins a slip and reports how.
+    fn begin_slip(
+        &mut self,
+        sense: Sense,
+        (theta, v): (F, F),
+        here: &Here<F>,
+        on_event: &mut impl FnMut(Event<F>),
+    ) {
+        let a = &self.active;
+        let (kind, from, torque_before_nm) = match self.state {
+            State::Stick { inertial_nm, .. } => (
+                EventKind::Break,
+                Phase::Stick,
+                a.limited(a.stiffness * theta + inertial_nm),
+            ),
+            State::Slip { sense, .. } => (
+                EventKind::Reverse,
+                Phase::Slip(sense),
+                sense.of_signed(a.kinetic_nm),
+            ),
+        };
+        on_event(Event {
+            kind,
+            fraction: here.fraction,
+            from,
+            to: Phase::Slip(sense),
+            theta_rad: theta,
+            theta_dot_before_rad_s: v,
+            omega_rad_s: here.omega,
+            torque_before_nm,
+            torque_after_nm: sense.of_signed(a.kinetic_nm),
+        });
+        self.state = State::Slip {
+            sense,
+            x: theta - sense.of_signed(a.kinetic_angle_rad),
+            v,
+        };
+    }
+
+    /// The stick's torque from `here` on.
+    fn stick_path(&self, path: &ShaftPath<F>, theta: F, here: &Here<F>) -> StickPath<F> {
+        let a = &self.active;
+        let still = C::inertial(a, here.omega, path.omega_dot);
+        // The inertial part grows by its own change of Ω: linear, so exact.
+        let grown = C::inertial(a, here.omega + path.omega_dot, path.omega_dot);
+        StickPath {
+            torque_nm: a.stiffness * theta + still,
+            rate: a.stiffness * path.rate(here.time_s) + (grown - still),
+            curvature: a.stiffness * path.omega_dot,
+        }
+    }
+
+    /// Can the object slip in `sense` at all, when stick shows `torque_nm`?
+    ///
+    /// A slip needs the shaft to overtake the object: d(Ω − θ̇)/dt =
+    /// (kr·θ + J·Ω̇ + c·Ω − s·Tk)/J must have the sign s. Under `physical` this
+    /// follows from reaching Ts ≥ Tk. The paper's torque leaves the inertia
+    /// out, so while the hand brakes harder than (Ts − Tk)/J it would break
+    /// and re-stick without end; there the stick is held, shown at its limit.
+    fn slips(&self, sense: Sense, torque_nm: F, omega: F, omega_dot: F) -> bool {
+        let hidden = Physical::inertial(&self.active, omega, omega_dot)
+            - C::inertial(&self.active, omega, omega_dot);
+        sense.of_signed(torque_nm + hidden) >= self.active.kinetic_nm * (F::ONE - F::LIMIT_SLACK)
+    }
+
+    /// The first break in what is left of the step.
+    fn find_break(&self, path: &ShaftPath<F>, theta: F, here: &Here<F>) -> Option<(F, Sense)> {
+        let a = &self.active;
+        let stick = self.stick_path(path, theta, here);
+        let length_s = a.step_s - here.time_s;
+        let (after_s, sense) = first_break::<F, L>(&stick, a.static_nm, length_s)?;
+        let omega = path.omega(here.time_s + after_s);
+        if self.slips(sense, stick.at(after_s), omega, path.omega_dot) {
+            return Some((after_s, sense));
+        }
+        // Held at the limit: the slip begins when the true torque reaches Tk.
+        let mut later = stick.from(after_s);
+        later.torque_nm +=
+            Physical::inertial(a, omega, path.omega_dot) - C::inertial(a, omega, path.omega_dot);
+        later.rate += a.damping * path.omega_dot;
+        L::break_time(&later, sense, a.kinetic_nm, length_s - after_s)
+            .map(|more_s| (after_s + more_s, sense))
+    }
+
+    /// A velocity jump of the shaft at the start of a step: what sticks is
+    /// torn loose, what slips may have to slip the other way.
+    fn jump(&mut self, omega: F, on_event: &mut impl FnMut(Event<F>)) {
+        let (state, v) = match self.state {
+            State::Stick { theta, .. } => ((theta.value(), self.omega_rad_s), self.omega_rad_s),
+            State::Slip { sense, x, v } => {
+                let theta = x + sense.of_signed(self.active.kinetic_angle_rad);
+                ((theta, v), v)
+            }
+        };
+        let here = Here {
+            time_s: F::ZERO,
+            omega,
+            fraction: F::ZERO,
+        };
+        match (Sense::of(omega - v), self.phase()) {
+            (None, _) => {}
+            (Some(s), Phase::Slip(now)) if s == now => {}
+            (Some(s), _) => self.begin_slip(s, state, &here, on_event),
+        }
+    }
+
+    /// The velocity match of a slip at `here`, object at (x, v).
+    fn meet(
+        &mut self,
+        path: &ShaftPath<F>,
+        sense: Sense,
+        (x, v): (F, F),
+        here: &Here<F>,
+        on_event: &mut impl FnMut(Event<F>),
+    ) {
+        let a = &self.active;
+        let theta = x + sense.of_signed(a.kinetic_angle_rad);
+        let stick = self.stick_path(path, theta, here);
+        let limit = a.static_nm;
+        if stick.torque_nm.abs() > limit * (F::ONE + F::LIMIT_SLACK) {
+            let other = if stick.torque_nm > F::ZERO {
+                Sense::Positive
+            } else {
+                Sense::Negative
+            };
+            if self.slips(other, stick.torque_nm, here.omega, path.omega_dot) {
+                self.begin_slip(other, (theta, here.omega), here, on_event);
+                return;
+            }
+        } else {
+            let at_limit = sense.of_signed(stick.torque_nm) >= limit * (F::ONE - F::LIMIT_SLACK);
+            let outwards = sense.of_signed(stick.rate) >= F::ZERO;
+            if at_limit && outwards {
+                // Ts = Tk: the stick would break where it begins. A touch: the
+                // slip goes on, and nothing is felt or reported.
+                self.state = State::Slip {
+                    sense,
+                    x,
+                    v: here.omega,
+                };
+                return;
+            }
+        }
+        on_event(Event {
+            kind: EventKind::Stick,
+            fraction: here.fraction,
+            from: Phase::Slip(sense),
+            to: Phase::Stick,
+            theta_rad: theta,
+            theta_dot_before_rad_s: v,
+            omega_rad_s: here.omega,
+            torque_before_nm: sense.of_signed(a.kinetic_nm),
+            torque_after_nm: a.limited(stick.torque_nm),
+        });
+        self.state = self.stick(Compensated::new(theta), here.omega, path.omega_dot);
+    }
+
+    /// The place `time_s` into the step.
+    fn at(&self, path: &ShaftPath<F>, time_s: F) -> Here<F> {
+        Here {
+            time_s,
+            omega: path.omega(time_s),
+            fraction: (time_s * self.active.per_step).at_most(F::ONE),
+        }
+    }
+
+    /// A stick at `theta` on a shaft of this velocity and acceleration.
+    fn stick(&self, theta: Compensated<F>, omega: F, omega_dot: F) -> State<F> {
+        State::Stick {
+            theta,
+            inertial_nm: C::inertial(&self.active, omega, omega_dot),
+        }
+    }
+}
+
+impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
+    for VelocityMatch<F, C, P, L>
+{
+    fn step(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
+        let step_s = self.active.step_s;
+        let path = ShaftPath::new(shaft, &self.active);
+        let mut here = Here {
+            time_s: F::ZERO,
+            omega: shaft.omega_start_rad_s,
+            fraction: F::ZERO,
+        };
+        let mut changes = 0;
+        if shaft.omega_start_rad_s != self.omega_rad_s {
+            self.jump(shaft.omega_start_rad_s, &mut on_event);
+            changes += 1;
+        }
+        loop {
+            let left_s = step_s - here.time_s;
+            let may_change = changes < EVENTS_PER_STEP;
+            match self.state {
+                State::Stick { mut theta, .. } => {
+                    let found = if may_change {
+                        self.find_break(&path, theta.value(), &here)
+                    } else {
+                        None
+                    };
+                    let Some((after_s, sense)) = found else {
+                        theta.add(if changes == 0 {
+                            shaft.delta_phi_rad
+                        } else {
+                            path.travel(here.time_s, step_s)
+                        });
+                        self.state = self.stick(theta, shaft.omega_end_rad_s, path.omega_dot);
+                        break;
+                    };
+                    let from_s = here.time_s;
+                    here = self.at(&path, from_s + after_s);
+                    if after_s > F::ZERO {
+                        theta.add(path.travel(from_s, here.time_s));
+                        self.state = self.stick(theta, here.omega, path.omega_dot);
+                    }
+                    self.begin_slip(sense, (theta.value(), here.omega), &here, &mut on_event);
+                }
+                State::Slip { sense, x, v } => {
+                    let end = if changes == 0 {
+                        self.propagator.step(x, v)
+                    } else {
+                        self.propagator.part(x, v, left_s)
+                    };
+                    let slip = SlipPath {
+                        propagator: &self.propagator,
+                        oscillator: &self.active.oscillator,
+                        sense,
+                        x,
+                        v,
+                        omega: here.omega,
+                        omega_dot: path.omega_dot,
+                    };
+                    let found = if may_change {
+                        L::match_time(&slip, left_s, end.1)
+                    } else {
+                        None
+                    };
+                    let Some(after_s) = found else {
+                        let (x, v) = end;
+                        self.state = State::Slip { sense, x, v };
+                        break;
+                    };
+                    let met = self.propagator.part(x, v, after_s);
+                    here = self.at(&path, here.time_s + after_s);
+                    self.meet(&path, sense, met, &here, &mut on_event);
+                }
+            }
+            changes += 1;
+        }
+        self.omega_rad_s = shaft.omega_end_rad_s;
+    }
+
+    fn phase(&self) -> Phase {
+        match self.state {
+            State::Stick { .. } => Phase::Stick,
+            State::Slip { sense, .. } => Phase::Slip(sense),
+        }
+    }
+
+    fn torque_nm(&self) -> F {
+        let a = &self.active;
+        match self.state {
+            State::Stick { theta, inertial_nm } => {
+                a.limited(a.stiffness * theta.value() + inertial_nm)
+            }
+            State::Slip { sense, .. } => sense.of_signed(a.kinetic_nm),
+        }
+    }
+
+    fn theta_rad(&self) -> F {
+        match self.state {
+            State::Stick { theta, .. } => theta.value(),
+            State::Slip { sense, x, .. } => x + sense.of_signed(self.active.kinetic_angle_rad),
+        }
+    }
+
+    fn theta_dot_rad_s(&self) -> F {
+        match self.state {
+            State::Stick { .. } => self.omega_rad_s,
+            State::Slip { v, .. } => v,
+        }
+    }
+}
