@@ -73,6 +73,7 @@ pub mod velocity_match;
 pub use active::Active;
 pub use event::{EVENTS_PER_STEP, Event};
 pub use frozen::Frozen;
+pub use parameters::Parameters;
 pub use phase::{EventKind, Phase, Sense};
 pub use real::Real;
 pub use settings::{Convention, Restart, Settings, SettingsError, Validated};

@@ -50,6 +50,9 @@ pub trait Real:
     /// slip at −Ts), where rounding decides which side one sees. The slack is
     /// far above the rounding of one cycle and far below what a hand can feel.
     const LIMIT_SLACK: Self;
+    /// Relative slack of a touch. With Ts = Tk the velocities meet without
+    /// crossing, and such a time is known to the root of the rounding only.
+    const TOUCH_SLACK: Self;
     /// Name in scene files: `f32` or `f64`.
     const NAME: &'static str;
 

@@ -1,1 +1,51 @@
-//! stub
+//! Draws a run of Crepitus as one HTML page that needs nothing else: no
+//! network, no scripts, no fonts. It follows light and dark, prints, and
+//! reads on a phone.
+//!
+//! ```text
+//! rows, events → Collector → Figures ┐
+//!                 (bounded)          ├→ html → report.html
+//! titles, tables, warnings → Text ───┘
+//! ```
+//!
+//! A [`Collector`] sees every row and every event of a run but keeps only
+//! what the figures need, so its memory does not depend on how long the run
+//! is. What a scene does not have is not drawn.
+
+// Counts become numbers to be drawn; none comes near 2^53.
+#![allow(clippy::cast_precision_loss)]
+
+mod axis;
+mod canvas;
+mod channels;
+mod chart_motion;
+mod chart_orbit;
+mod chart_spectrum;
+mod chart_torque;
+mod chart_zoom;
+mod choice;
+mod collector;
+mod envelope;
+mod error;
+mod figure;
+mod hysteresis;
+mod levels;
+mod number;
+mod orbit;
+mod page;
+mod palette;
+mod simplify;
+mod spectrum;
+mod text;
+mod thinned;
+mod window;
+
+#[cfg(test)]
+#[path = "../tests/fixture/mod.rs"]
+mod fixture;
+
+pub use channels::{Setup, TorqueLevels};
+pub use collector::{Collector, Figures};
+pub use error::ReportError;
+pub use page::html;
+pub use text::{Section, Text};

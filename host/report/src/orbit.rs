@@ -96,9 +96,9 @@ impl Orbit {
                 odd = !odd;
                 odd || stop.begins.is_some()
             });
-            self.stride *= 2;
+            self.stride = self.stride.saturating_mul(2);
         }
-        // Only events are left: more of them would show nothing new.
+        // Full of events, which a window bounds: more would show nothing new.
         if self.stops.len() < Self::CAPACITY {
             self.stops.push(stop);
         }

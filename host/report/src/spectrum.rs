@@ -101,11 +101,9 @@ impl Welch {
         for ((out, value), weight) in self.work.iter_mut().zip(&self.segment).zip(&self.hann) {
             *out = (value - mean) * weight;
         }
-        let done = self.fft.process_with_scratch(
-            &mut self.work,
-            &mut self.transform,
-            &mut self.scratch,
-        );
+        let done =
+            self.fft
+                .process_with_scratch(&mut self.work, &mut self.transform, &mut self.scratch);
         // The lengths are those that the plan itself made: it cannot fail.
         if done.is_ok() {
             for (power, bin) in self.power.iter_mut().zip(&self.transform) {

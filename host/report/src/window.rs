@@ -57,10 +57,13 @@ impl Window {
     pub(crate) fn row(&mut self, sample: &Sample) {
         self.extend(sample.time);
         self.torque.push(sample.time, sample.torque);
+        self.count_speed(sample.omega);
+        if self.overflowed {
+            return;
+        }
         self.omega.push(sample.time, sample.omega);
         self.theta_dot.push(sample.time, sample.theta_dot);
         self.orbit.row(sample);
-        self.count_speed(sample.omega);
         // Where there are events they alone say when a phase ends.
         if self.events.is_empty()
             && let Some(phase) = sample.phase
@@ -76,16 +79,16 @@ impl Window {
         // rows are.
         self.torque.push(time, event.torque_before_nm);
         self.torque.push(time, event.torque_after_nm);
+        self.count_speed(event.omega_rad_s);
+        self.overflowed |= self.events.len() >= Self::EVENTS;
+        if self.overflowed {
+            return;
+        }
         if event.kind != EventKind::Reverse {
             // At both ends of a stick the object moves with the shaft.
             self.theta_dot.push(time, event.omega_rad_s);
         }
         self.orbit.event(event);
-        self.count_speed(event.omega_rad_s);
-        if self.events.len() >= Self::EVENTS {
-            self.overflowed = true;
-            return;
-        }
         if self.changes.is_empty() {
             self.change(time, Phase::from_sign(event.from));
         }
@@ -116,8 +119,8 @@ impl Window {
         }
     }
 
-    /// Whether there was more than one chart can show; phases and events are
-    /// then incomplete.
+    /// Whether more happened than one chart can show. From then on only the
+    /// torque is recorded.
     pub(crate) fn overflowed(&self) -> bool {
         self.overflowed
     }
@@ -186,13 +189,15 @@ mod tests {
     fn phases_change_at_event_times_not_at_rows() {
         let mut window = Window::new();
         let channels = crate::channels::Channels::find(&Run::columns(true, false));
-        Run::new(Motion::Constant { speed: 1.0 }, 0.1, 1e-3).play(
-            |row| window.row(&channels.sample(row)),
-            |_| {},
-        );
+        Run::new(Motion::Constant { speed: 1.0 }, 0.1, 1e-3)
+            .play(|row| window.row(&channels.sample(row)), |_| {});
         let by_rows = window.spans(0.0, 1.0);
-        assert!(by_rows.iter().all(|s| (s.from / 1e-3).fract().abs() < 1e-6
-            || (s.from / 1e-3).fract() > 1.0 - 1e-6));
+        assert!(
+            by_rows
+                .iter()
+                .all(|s| (s.from / 1e-3).fract().abs() < 1e-6
+                    || (s.from / 1e-3).fract() > 1.0 - 1e-6)
+        );
 
         let run = Run::new(Motion::Constant { speed: 1.0 }, 0.1, 1e-3);
         let window = std::cell::RefCell::new(Window::new());

@@ -9,6 +9,7 @@ impl Real for f64 {
     const TWO: Self = 2.0;
     const EPSILON: Self = f64::EPSILON;
     const LIMIT_SLACK: Self = 1e-9;
+    const TOUCH_SLACK: Self = 1e-6;
     const NAME: &'static str = "f64";
 
     #[inline]

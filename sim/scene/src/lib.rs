@@ -1,2 +1,3 @@
 //! scene (being written)
+pub mod reference;
 pub mod trace;

@@ -13,7 +13,9 @@ pub(super) fn read(source: &Source<'_>, file: File) -> Result<Samples, Recording
     let mut record = csv::StringRecord::new();
 
     let Some(line) = rows.next(&mut record)? else {
-        return Err(RecordingError::Empty { place: Place::file(source.path) });
+        return Err(RecordingError::Empty {
+            place: Place::file(source.path),
+        });
     };
     let names: Vec<&str> = record.iter().collect();
     if let [only] = names.as_slice()
@@ -71,11 +73,14 @@ impl<'a> Rows<'a> {
     fn describe(&self, error: csv::Error, line: u64) -> RecordingError {
         let path = self.source.path;
         match error.into_kind() {
-            csv::ErrorKind::Io(source) => {
-                RecordingError::Unreadable { place: Place::file(path), source }
-            }
+            csv::ErrorKind::Io(source) => RecordingError::Unreadable {
+                place: Place::file(path),
+                source,
+            },
             // With rows of any length allowed, the one other error is text that is not UTF-8.
-            _ => RecordingError::NotText { place: Place::line(path, line) },
+            _ => RecordingError::NotText {
+                place: Place::line(path, line),
+            },
         }
     }
 }

@@ -17,19 +17,32 @@ pub struct Place {
 
 impl Place {
     pub(super) fn file(path: &Path) -> Self {
-        Self { path: path.to_owned(), line: None, column: None }
+        Self {
+            path: path.to_owned(),
+            line: None,
+            column: None,
+        }
     }
 
     pub(super) fn line(path: &Path, line: u64) -> Self {
-        Self { line: Some(line), ..Self::file(path) }
+        Self {
+            line: Some(line),
+            ..Self::file(path)
+        }
     }
 
     pub(super) fn cell(path: &Path, line: u64, column: &str) -> Self {
-        Self { column: Some(column.to_owned()), ..Self::line(path, line) }
+        Self {
+            column: Some(column.to_owned()),
+            ..Self::line(path, line)
+        }
     }
 
     pub(super) fn column_of(source: &Source<'_>, column: &str) -> Self {
-        Self { column: Some(column.to_owned()), ..Self::file(source.path) }
+        Self {
+            column: Some(column.to_owned()),
+            ..Self::file(source.path)
+        }
     }
 }
 
@@ -49,10 +62,16 @@ impl fmt::Display for Place {
 /// Why a recording cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message above each variant says what its fields mean")]
+#[expect(
+    missing_docs,
+    reason = "the message above each variant says what its fields mean"
+)]
 pub enum RecordingError {
     #[error("{place}: cannot be read: {source}; check the path and the permissions")]
-    Unreadable { place: Place, source: std::io::Error },
+    Unreadable {
+        place: Place,
+        source: std::io::Error,
+    },
     #[error("{place}: is not a file; name a CSV, .mot or .sto file")]
     NotAFile { place: Place },
     #[error("{place}: has {bytes} bytes, at most {MAX_BYTES} are read; cut or thin the recording")]
@@ -63,116 +82,134 @@ pub enum RecordingError {
     NotText { place: Place },
     #[error("{place}: is empty; a recording is a line of column names and then rows of numbers")]
     Empty { place: Place },
-    #[error("{place}: no line \"endheader\", which ends the header of an OpenSim file; \
-             a CSV file must not be named .mot or .sto")]
+    #[error(
+        "{place}: no line \"endheader\", which ends the header of an OpenSim file; \
+             a CSV file must not be named .mot or .sto"
+    )]
     NoEndHeader { place: Place },
     #[error("{place}: nothing follows \"endheader\"; a line of column names and rows are missing")]
     NoLabels { place: Place },
     #[error("{place}: has column names but no rows; export the recording again")]
     NoRows { place: Place },
-    #[error("{place}: has only {found} rows, at least {MIN_SAMPLES} are needed")]
+    #[error("{place}: the rows end after {found}, at least {MIN_SAMPLES} are needed")]
     TooFewSamples { place: Place, found: usize },
     #[error("{place}: time_column and angle_column are the same; name two columns")]
     TimeIsAngle { place: Place },
     /// `role` is the key that named the column.
-    #[error("{place}: there is no such column ({role}){}; the file has {}",
-            suggestion(place, available), list(available))]
-    MissingColumn { place: Place, role: &'static str, available: Vec<String> },
-    #[error("{place}: the cells are separated by {separator:?}; write commas between cells \
-             and points as decimal signs")]
+    #[error(
+        "{place}: there is no such column ({role}){}; the file has {}",
+        suggestion(place, available),
+        list(available)
+    )]
+    MissingColumn {
+        place: Place,
+        role: &'static str,
+        available: Vec<String>,
+    },
+    #[error(
+        "{place}: the cells are separated by {separator:?}; write commas between cells \
+             and points as decimal signs"
+    )]
     NotCommaSeparated { place: Place, separator: char },
     /// The positions count from 1.
     #[error("{place}: the name is used twice, for columns {first} and {second}; rename one")]
-    RepeatedColumn { place: Place, first: usize, second: usize },
-    #[error("{place}: the file ends inside this row, with {found} of {expected} cells; \
-             delete the line or copy the file again")]
-    CutRow { place: Place, found: usize, expected: usize },
-    #[error("{place}: the row has {found} cells, the names are {expected}; give every row one \
-             cell for each name (a comma always separates, decimal signs are points)")]
-    RowWidth { place: Place, found: usize, expected: usize },
+    RepeatedColumn {
+        place: Place,
+        first: usize,
+        second: usize,
+    },
+    #[error(
+        "{place}: the file ends inside this row, with {found} of {expected} cells; \
+             delete the line or copy the file again"
+    )]
+    CutRow {
+        place: Place,
+        found: usize,
+        expected: usize,
+    },
+    #[error(
+        "{place}: the row has {found} cells, the names are {expected}; give every row one \
+             cell for each name (a comma always separates, decimal signs are points)"
+    )]
+    RowWidth {
+        place: Place,
+        found: usize,
+        expected: usize,
+    },
     #[error("{place}: the cell is empty; fill the gap or cut the recording before it")]
     EmptyCell { place: Place },
     #[error("{place}: \"{text}\" is not a number{}",
             if text.contains(',') { " (use a point as the decimal sign)" }
             else { "; write a number such as 12.4" })]
     NotANumber { place: Place, text: String },
-    #[error("{place}: \"{text}\" is not a finite number; fill the gap or cut the recording \
-             before it")]
+    #[error(
+        "{place}: \"{text}\" is not a finite number; fill the gap or cut the recording \
+             before it"
+    )]
     NotFinite { place: Place, text: String },
     /// The times are those in the file.
-    #[error("{place}: time goes back from {before_s} s to {after_s} s; sort the rows, or keep \
-             one recording per file")]
-    TimeBackwards { place: Place, before_s: f64, after_s: f64 },
-    #[error("{place}: time stands still at {time_s} s; remove one of the two rows, or write the \
-             times with more digits")]
+    #[error(
+        "{place}: time goes back from {before_s} s to {after_s} s; sort the rows, or keep \
+             one recording per file"
+    )]
+    TimeBackwards {
+        place: Place,
+        before_s: f64,
+        after_s: f64,
+    },
+    #[error(
+        "{place}: time stands still at {time_s} s; remove one of the two rows, or write the \
+             times with more digits"
+    )]
     TimeStill { place: Place, time_s: f64 },
-    #[error("{place}: {value} is no time in seconds, at most ±{limit} is believed; check the \
-             column and its unit")]
-    TimeOutOfRange { place: Place, value: f64, limit: f64 },
+    #[error(
+        "{place}: {value} is no time in seconds, at most ±{limit} is believed; check the \
+             column and its unit"
+    )]
+    TimeOutOfRange {
+        place: Place,
+        value: f64,
+        limit: f64,
+    },
     #[error("{place}: {value} {unit} is no joint angle, at most ±{} {unit} is believed; check \
              the column{}", unit.limit(),
             if *unit == AngleUnit::Rad { ", and write unit = \"deg\" if it is in degrees" }
             else { "" })]
-    AngleOutOfRange { place: Place, value: f64, unit: AngleUnit },
+    AngleOutOfRange {
+        place: Place,
+        value: f64,
+        unit: AngleUnit,
+    },
     /// `header` is the header's own words, `unit` what they mean.
-    #[error("{place}: the header says {header}, so the angles are in {unit}; \
-             write unit = \"{unit}\"")]
-    UnitContradiction { place: Place, header: String, unit: AngleUnit },
-    #[error("a cutoff of {cutoff_hz} Hz is not possible: it must be above 0 and below \
-             {nyquist_hz} Hz, half the rate of the samples (6 Hz is usual; if the limit is far \
-             too low, check that the time is in seconds)")]
+    #[error(
+        "{place}: the header says {header}, so the angles are in {unit}; \
+             write unit = \"{unit}\""
+    )]
+    UnitContradiction {
+        place: Place,
+        header: String,
+        unit: AngleUnit,
+    },
+    #[error(
+        "a cutoff of {cutoff_hz} Hz is not possible: it must be above 0 and below \
+             {nyquist_hz:.4} Hz, half the rate of the samples (6 Hz is usual; if the limit is far \
+             too low, check that the time is in seconds)"
+    )]
     Cutoff { cutoff_hz: f64, nyquist_hz: f64 },
-    #[error("a recording of {duration_s} s is too short for a cutoff of {cutoff_hz} Hz; \
-             at least {least_s} s are needed")]
-    TooShort { duration_s: f64, cutoff_hz: f64, least_s: f64 },
+    #[error(
+        "a recording of {duration_s} s is too short for a cutoff of {cutoff_hz} Hz; \
+             {enough_s} s are enough"
+    )]
+    TooShort {
+        duration_s: f64,
+        cutoff_hz: f64,
+        enough_s: f64,
+    },
     /// Only samples that were not made by `read` can be so.
     #[error("sample {index} (from 0): {problem}")]
     BadSamples { index: usize, problem: &'static str },
     #[error("the smoothing spline failed: {reason}; please report it with the recording")]
     Spline { reason: String },
-}
-
-/// What is odd about a recording that can still be used.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the text of each is in Display below")]
-pub enum Warning {
-    DeclaredRows { place: Place, declared: u64, found: u64 },
-    DeclaredColumns { place: Place, declared: u64, found: u64 },
-    /// The longest of `count` gaps, in the times of the file.
-    Gap { place: Place, from_s: f64, to_s: f64, median_interval_s: f64, count: usize },
-    UnitInName { place: Place, unit: AngleUnit },
-    SmallAngles { place: Place, largest_deg: f64 },
-}
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::DeclaredRows { place, declared, found } => write!(
-                f,
-                "{place}: the header declares {declared} rows, the file has {found}; \
-                 it may have been cut"
-            ),
-            Self::DeclaredColumns { place, declared, found } => write!(
-                f,
-                "{place}: the header declares {declared} columns, the line of names has {found}"
-            ),
-            Self::Gap { place, from_s, to_s, median_interval_s, count } => write!(
-                f,
-                "{place}: no samples between {from_s:.3} s and {to_s:.3} s, where \
-                 {median_interval_s:.3} s is usual ({count} such {}); the motion there is a guess",
-                if *count == 1 { "gap" } else { "gaps, this is the longest" }
-            ),
-            Self::UnitInName { place, unit } => {
-                write!(f, "{place}: the name does not look like the chosen unit, \"{unit}\"")
-            }
-            Self::SmallAngles { place, largest_deg } => write!(
-                f,
-                "{place}: no angle is beyond ±{largest_deg:.3} deg; \
-                 if the file is in radians, write unit = \"rad\""
-            ),
-        }
-    }
 }
 
 fn suggestion(place: &Place, available: &[String]) -> String {
@@ -185,14 +222,23 @@ fn suggestion(place: &Place, available: &[String]) -> String {
         .map(|name| (strsim::jaro_winkler(&wanted, &name.to_lowercase()), name))
         .filter(|(likeness, _)| *likeness > 0.8)
         .max_by(|(a, _), (b, _)| a.total_cmp(b))
-        .map_or_else(String::new, |(_, name)| format!("; did you mean \"{name}\"?"))
+        .map_or_else(String::new, |(_, name)| {
+            format!("; did you mean \"{name}\"?")
+        })
 }
 
 fn list(names: &[String]) -> String {
     const SHOWN: usize = 40;
-    let shown: Vec<String> =
-        names.iter().take(SHOWN).map(|name| format!("\"{}\"", name.escape_debug())).collect();
+    let shown: Vec<String> = names
+        .iter()
+        .take(SHOWN)
+        .map(|name| format!("\"{}\"", name.escape_debug()))
+        .collect();
     let more = names.len().saturating_sub(SHOWN);
-    let tail = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let tail = if more > 0 {
+        format!(" and {more} more")
+    } else {
+        String::new()
+    };
     format!("{}{tail}", shown.join(", "))
 }

@@ -15,7 +15,10 @@ mod error;
 mod opensim_file;
 mod smooth;
 mod table;
+mod warning;
 
+#[cfg(test)]
+mod test_cells;
 #[cfg(test)]
 mod test_data;
 #[cfg(test)]
@@ -23,8 +26,9 @@ mod test_read;
 #[cfg(test)]
 mod test_smooth;
 
-pub use error::{Place, RecordingError, Warning};
+pub use error::{Place, RecordingError};
 pub use smooth::{CubicSegment, acceleration_ripple_rad_s2, smooth};
+pub use warning::Warning;
 
 use std::fmt;
 use std::fs::{self, File};
@@ -109,8 +113,11 @@ impl Samples {
 
     /// The median of the intervals between the samples, in s; `None` below two samples.
     pub fn median_interval_s(&self) -> Option<f64> {
-        let mut intervals: Vec<f64> =
-            self.time_s.array_windows().map(|[before, after]| after - before).collect();
+        let mut intervals: Vec<f64> = self
+            .time_s
+            .array_windows()
+            .map(|[before, after]| after - before)
+            .collect();
         if intervals.is_empty() {
             return None;
         }
@@ -121,7 +128,8 @@ impl Samples {
     /// Half the median sampling rate, in Hz: the limit for the cutoff of [`smooth`]. 0 below two
     /// samples.
     pub fn nyquist_hz(&self) -> f64 {
-        self.median_interval_s().map_or(0.0, |interval_s| 0.5 / interval_s)
+        self.median_interval_s()
+            .map_or(0.0, |interval_s| 0.5 / interval_s)
     }
 }
 
@@ -144,14 +152,22 @@ pub fn read(source: &Source<'_>) -> Result<Samples, RecordingError> {
 }
 
 fn open(path: &Path) -> Result<File, RecordingError> {
-    let unreadable = |io| RecordingError::Unreadable { place: Place::file(path), source: io };
+    let unreadable = |io| RecordingError::Unreadable {
+        place: Place::file(path),
+        source: io,
+    };
     // Before opening: a pipe would block, a device never end.
     let metadata = fs::metadata(path).map_err(unreadable)?;
     if !metadata.is_file() {
-        return Err(RecordingError::NotAFile { place: Place::file(path) });
+        return Err(RecordingError::NotAFile {
+            place: Place::file(path),
+        });
     }
     if metadata.len() > MAX_BYTES {
-        return Err(RecordingError::TooLarge { place: Place::file(path), bytes: metadata.len() });
+        return Err(RecordingError::TooLarge {
+            place: Place::file(path),
+            bytes: metadata.len(),
+        });
     }
     File::open(path).map_err(unreadable)
 }

@@ -19,11 +19,18 @@ use std::io::{BufRead, BufReader};
 
 pub(super) fn read(source: &Source<'_>, file: File) -> Result<Samples, RecordingError> {
     let path = source.path;
-    let mut lines = Lines { source, reader: BufReader::new(file), number: 0, bytes: Vec::new() };
+    let mut lines = Lines {
+        source,
+        reader: BufReader::new(file),
+        number: 0,
+        bytes: Vec::new(),
+    };
     let header = Header::read(source, &mut lines)?;
 
     let Some((names_line, names_text)) = lines.next_filled()? else {
-        return Err(RecordingError::NoLabels { place: Place::line(path, lines.number) });
+        return Err(RecordingError::NoLabels {
+            place: Place::line(path, lines.number),
+        });
     };
     let names: Vec<&str> = if names_text.contains('\t') {
         names_text.split('\t').map(str::trim).collect()
@@ -36,7 +43,11 @@ pub(super) fn read(source: &Source<'_>, file: File) -> Result<Samples, Recording
     {
         let found = table.width() as u64;
         let place = Place::line(path, line);
-        table.warn(Warning::DeclaredColumns { place, declared, found });
+        table.warn(Warning::DeclaredColumns {
+            place,
+            declared,
+            found,
+        });
     }
 
     while let Some((line, text)) = lines.next_filled()? {
@@ -59,7 +70,11 @@ pub(super) fn read(source: &Source<'_>, file: File) -> Result<Samples, Recording
         && declared != found
     {
         let place = Place::line(path, line);
-        table.warn(Warning::DeclaredRows { place, declared, found });
+        table.warn(Warning::DeclaredRows {
+            place,
+            declared,
+            found,
+        });
     }
     table.finish(header.names_unit)
 }
@@ -138,7 +153,10 @@ impl Lines<'_> {
             let read = self
                 .reader
                 .read_until(b'\n', &mut self.bytes)
-                .map_err(|source| RecordingError::Unreadable { place: Place::file(path), source })?;
+                .map_err(|source| RecordingError::Unreadable {
+                    place: Place::file(path),
+                    source,
+                })?;
             if read == 0 {
                 return Ok(None);
             }
@@ -147,8 +165,12 @@ impl Lines<'_> {
                 break;
             }
         }
-        let text = str::from_utf8(&self.bytes)
-            .map_err(|_| RecordingError::NotText { place: Place::line(path, self.number) })?;
-        Ok(Some((self.number, text.trim_start_matches('\u{feff}').trim_end())))
+        let text = str::from_utf8(&self.bytes).map_err(|_| RecordingError::NotText {
+            place: Place::line(path, self.number),
+        })?;
+        Ok(Some((
+            self.number,
+            text.trim_start_matches('\u{feff}').trim_end(),
+        )))
     }
 }

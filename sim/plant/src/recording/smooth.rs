@@ -14,8 +14,10 @@
 //! ```
 //! and its phase: the magnitude of a second-order Butterworth filter run forwards and backwards,
 //! with the same cutoff. Half the amplitude is left there; where a text means 71 % (Winter's
-//! correction for the dual pass), its cutoff is to be divided by 0.802. For samples at a spacing Δ the exact
-//! ratio has ((2 − 2 cos ωΔ)/Δ²)² · 3/(2 + cos ωΔ) = ω⁴ (1 − (ωΔ)⁴/720 + …) in place of ω⁴.
+//! correction for the dual pass), its cutoff is to be divided by 0.802. For samples at a spacing Δ
+//! the exact ratio has ((2 − 2 cos ωΔ)/Δ²)² · 3/(2 + cos ωΔ) = ω⁴ (1 − (ωΔ)⁴/720 + …) in place
+//! of ω⁴.
+//!
 //! Within about 5/ωc of either end (0.13 s at 6 Hz) there is less to average and the straight
 //! continuation shows: Ω̇ is 0 at the first and the last sample.
 //!
@@ -80,7 +82,10 @@ pub fn smooth(samples: &Samples, cutoff_hz: f64) -> Result<Vec<CubicSegment>, Re
     check(samples)?;
     let nyquist_hz = samples.nyquist_hz();
     if !(cutoff_hz > 0.0 && cutoff_hz < nyquist_hz) {
-        return Err(RecordingError::Cutoff { cutoff_hz, nyquist_hz });
+        return Err(RecordingError::Cutoff {
+            cutoff_hz,
+            nyquist_hz,
+        });
     }
     let bin_s = 1.0 / (BINS_PER_PERIOD * cutoff_hz);
     let knots = average(samples, bin_s);
@@ -88,7 +93,8 @@ pub fn smooth(samples: &Samples, cutoff_hz: f64) -> Result<Vec<CubicSegment>, Re
         return Err(RecordingError::TooShort {
             duration_s: samples.duration_s(),
             cutoff_hz,
-            least_s: 4.0 * bin_s,
+            // A bin and the samples up to the next are at most two bins of regular sampling.
+            enough_s: 6.0 * bin_s,
         });
     }
     let time_s: Vec<f64> = knots.iter().map(|knot| knot.time_s).collect();
@@ -113,17 +119,29 @@ pub fn acceleration_ripple_rad_s2(segments: &[CubicSegment]) -> f64 {
 /// `Samples` can be built by hand, and the solver panics where these fail.
 fn check(samples: &Samples) -> Result<(), RecordingError> {
     let bad = |index, problem| Err(RecordingError::BadSamples { index, problem });
-    let Samples { time_s, angle_rad, .. } = samples;
+    let Samples {
+        time_s, angle_rad, ..
+    } = samples;
     if time_s.len() != angle_rad.len() {
-        return bad(time_s.len().min(angle_rad.len()), "there is a time or an angle, but not both");
+        return bad(
+            time_s.len().min(angle_rad.len()),
+            "there is a time or an angle, but not both",
+        );
     }
     if time_s.len() < MIN_SAMPLES {
         return bad(time_s.len(), "is missing, at least 4 samples are needed");
     }
-    if let Some(index) = time_s.iter().zip(angle_rad).position(|(t, y)| !(t + y).is_finite()) {
+    if let Some(index) = time_s
+        .iter()
+        .zip(angle_rad)
+        .position(|(t, y)| !(t + y).is_finite())
+    {
         return bad(index, "is not finite");
     }
-    if let Some(index) = time_s.array_windows().position(|[before, after]| after <= before) {
+    if let Some(index) = time_s
+        .array_windows()
+        .position(|[before, after]| after <= before)
+    {
         return bad(index + 1, "is not later than the one before");
     }
     Ok(())
@@ -139,12 +157,15 @@ struct Knot {
 /// The means over bins; a bin begins at the first sample that the bin before does not hold.
 /// Where the samples are further apart than a bin, each is its own.
 fn average(samples: &Samples, bin_s: f64) -> Vec<Knot> {
-    let Samples { time_s, angle_rad, .. } = samples;
+    let Samples {
+        time_s, angle_rad, ..
+    } = samples;
     let before = time_s.first().into_iter().chain(time_s);
     let after = time_s.iter().skip(1).chain(time_s.last());
     let mut knots: Vec<Knot> = Vec::new();
     let mut bin_start_s = f64::NEG_INFINITY;
-    for (((&time_s, &angle_rad), before), after) in time_s.iter().zip(angle_rad).zip(before).zip(after)
+    for (((&time_s, &angle_rad), before), after) in
+        time_s.iter().zip(angle_rad).zip(before).zip(after)
     {
         let weight_s = 0.5 * (after - before);
         match knots.last_mut() {
@@ -156,7 +177,11 @@ fn average(samples: &Samples, bin_s: f64) -> Vec<Knot> {
             }
             _ => {
                 bin_start_s = time_s;
-                knots.push(Knot { time_s, angle_rad, weight_s });
+                knots.push(Knot {
+                    time_s,
+                    angle_rad,
+                    weight_s,
+                });
             }
         }
     }
@@ -216,7 +241,11 @@ fn natural_spline(time_s: &[f64], angle_rad: &[f64]) -> Vec<CubicSegment> {
         .map(|(([t0, t1], [y0, y1]), [m0, m1])| {
             let h = t1 - t0;
             let c1 = (y1 - y0) / h - h * (2.0 * m0 + m1) / 6.0;
-            CubicSegment { start_s: *t0, end_s: *t1, c: [*y0, c1, 0.5 * m0, (m1 - m0) / (6.0 * h)] }
+            CubicSegment {
+                start_s: *t0,
+                end_s: *t1,
+                c: [*y0, c1, 0.5 * m0, (m1 - m0) / (6.0 * h)],
+            }
         })
         .collect()
 }
@@ -229,13 +258,24 @@ fn extend(segments: &mut Vec<CubicSegment>, samples: &Samples) {
     {
         let at = last.end_s;
         let c = [last.angle_rad(at), last.omega_rad_s(at), 0.0, 0.0];
-        segments.push(CubicSegment { start_s: at, end_s, c });
+        segments.push(CubicSegment {
+            start_s: at,
+            end_s,
+            c,
+        });
     }
     if let (Some(first), Some(&start_s)) = (segments.first(), samples.time_s.first())
         && start_s < first.start_s
     {
         let [c0, c1, ..] = first.c;
         let c = [c0 - c1 * (first.start_s - start_s), c1, 0.0, 0.0];
-        segments.insert(0, CubicSegment { start_s, end_s: first.start_s, c });
+        segments.insert(
+            0,
+            CubicSegment {
+                start_s,
+                end_s: first.start_s,
+                c,
+            },
+        );
     }
 }

@@ -41,7 +41,11 @@ impl<'a> Table<'a> {
             first_time_s: 0.0,
             last_time_s: 0.0,
             last_line: line,
-            samples: Samples { time_s: Vec::new(), angle_rad: Vec::new(), warnings: Vec::new() },
+            samples: Samples {
+                time_s: Vec::new(),
+                angle_rad: Vec::new(),
+                warnings: Vec::new(),
+            },
         })
     }
 
@@ -67,7 +71,9 @@ impl<'a> Table<'a> {
     ) -> Result<(), RecordingError> {
         let path = self.source.path;
         if self.rows() >= MAX_ROWS {
-            return Err(RecordingError::TooManyRows { place: Place::line(path, line) });
+            return Err(RecordingError::TooManyRows {
+                place: Place::line(path, line),
+            });
         }
         let time_place = || Place::cell(path, line, self.source.time_column);
         let angle_place = || Place::cell(path, line, self.source.angle_column);
@@ -94,7 +100,10 @@ impl<'a> Table<'a> {
                 });
             }
             if time_s == before_s {
-                return Err(RecordingError::TimeStill { place: time_place(), time_s: file_time_s });
+                return Err(RecordingError::TimeStill {
+                    place: time_place(),
+                    time_s: file_time_s,
+                });
             }
         }
 
@@ -119,9 +128,17 @@ impl<'a> Table<'a> {
         let place = Place::line(self.source.path, line);
         let expected = self.width;
         if is_last && found < expected {
-            RecordingError::CutRow { place, found, expected }
+            RecordingError::CutRow {
+                place,
+                found,
+                expected,
+            }
         } else {
-            RecordingError::RowWidth { place, found, expected }
+            RecordingError::RowWidth {
+                place,
+                found,
+                expected,
+            }
         }
     }
 
@@ -130,7 +147,9 @@ impl<'a> Table<'a> {
         let path = self.source.path;
         match self.rows() {
             0 => {
-                return Err(RecordingError::NoRows { place: Place::line(path, self.names_line) });
+                return Err(RecordingError::NoRows {
+                    place: Place::line(path, self.names_line),
+                });
             }
             found if found < MIN_SAMPLES => {
                 let place = Place::line(path, self.last_line);
@@ -167,7 +186,9 @@ impl<'a> Table<'a> {
 
     /// Degrees read as radians are out of range; radians read as degrees are only small.
     fn doubtful_unit(&self) -> Option<Warning> {
-        let Source { angle_column, unit, .. } = *self.source;
+        let Source {
+            angle_column, unit, ..
+        } = *self.source;
         let place = Place::column_of(self.source, angle_column);
         let name = angle_column.to_lowercase();
         let other: &[&str] = match unit {
@@ -177,7 +198,11 @@ impl<'a> Table<'a> {
         if other.iter().any(|ending| name.ends_with(ending)) {
             return Some(Warning::UnitInName { place, unit });
         }
-        let angles = self.samples.angle_rad.iter().map(|angle| angle.to_degrees());
+        let angles = self
+            .samples
+            .angle_rad
+            .iter()
+            .map(|angle| angle.to_degrees());
         let lowest = angles.clone().fold(f64::INFINITY, f64::min);
         let highest = angles.fold(f64::NEG_INFINITY, f64::max);
         let largest_deg = highest.abs().max(lowest.abs());
@@ -195,16 +220,25 @@ fn find(
     role: &'static str,
 ) -> Result<usize, RecordingError> {
     let place = Place::cell(source.path, line, wanted);
-    let mut matches =
-        names.iter().enumerate().filter(|(_, name)| **name == wanted).map(|(index, _)| index);
+    let mut matches = names
+        .iter()
+        .enumerate()
+        .filter(|(_, name)| **name == wanted)
+        .map(|(index, _)| index);
     match (matches.next(), matches.next()) {
         (Some(index), None) => Ok(index),
-        (Some(first), Some(second)) => {
-            Err(RecordingError::RepeatedColumn { place, first: first + 1, second: second + 1 })
-        }
+        (Some(first), Some(second)) => Err(RecordingError::RepeatedColumn {
+            place,
+            first: first + 1,
+            second: second + 1,
+        }),
         (None, _) => {
             let available = names.iter().map(|&name| name.to_owned()).collect();
-            Err(RecordingError::MissingColumn { place, role, available })
+            Err(RecordingError::MissingColumn {
+                place,
+                role,
+                available,
+            })
         }
     }
 }
@@ -215,8 +249,14 @@ fn number(text: &str, place: impl Fn() -> Place) -> Result<f64, RecordingError> 
     }
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(RecordingError::NotFinite { place: place(), text: shorten(text) }),
-        Err(_) => Err(RecordingError::NotANumber { place: place(), text: shorten(text) }),
+        Ok(_) => Err(RecordingError::NotFinite {
+            place: place(),
+            text: shorten(text),
+        }),
+        Err(_) => Err(RecordingError::NotANumber {
+            place: place(),
+            text: shorten(text),
+        }),
     }
 }
 

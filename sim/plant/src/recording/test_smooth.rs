@@ -5,18 +5,27 @@ use std::f64::consts::{PI, TAU};
 
 fn samples(time_s: Vec<f64>, angle: impl Fn(f64) -> f64) -> Samples {
     let angle_rad = time_s.iter().map(|&t| angle(t)).collect();
-    Samples { time_s, angle_rad, warnings: Vec::new() }
+    Samples {
+        time_s,
+        angle_rad,
+        warnings: Vec::new(),
+    }
 }
 
 fn regular(rate_hz: f64, duration_s: f64) -> Vec<f64> {
-    (0..).map(|i| f64::from(i) / rate_hz).take_while(|t| *t <= duration_s).collect()
+    (0..1_000_000)
+        .map(|i| f64::from(i) / rate_hz)
+        .take_while(|t| *t <= duration_s)
+        .collect()
 }
 
 /// Uniform in [0, 1), the same in every run.
 fn noise() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
     move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         f64::from(u32::try_from(state >> 33).unwrap()) / f64::from(1_u32 << 31)
     }
 }
@@ -51,7 +60,10 @@ fn response(segments: &[CubicSegment], frequency_hz: f64) -> (f64, f64) {
         sine += angle * (TAU * frequency_hz * t).sin() * 2.0 / f64::from(n);
         cosine += angle * (TAU * frequency_hz * t).cos() * 2.0 / f64::from(n);
     }
-    (sine.hypot(cosine), -cosine.atan2(sine) / (TAU * frequency_hz))
+    (
+        sine.hypot(cosine),
+        -cosine.atan2(sine) / (TAU * frequency_hz),
+    )
 }
 
 fn assert_response(time_s: &[f64], cutoff_hz: f64, frequency_hz: f64, tolerance: f64) {
@@ -60,7 +72,10 @@ fn assert_response(time_s: &[f64], cutoff_hz: f64, frequency_hz: f64, tolerance:
     let (amplitude, delay_s) = response(&segments, frequency_hz);
     let expected = 1.0 / (1.0 + (frequency_hz / cutoff_hz).powi(4));
     let what = format!("{frequency_hz} Hz at cutoff {cutoff_hz} Hz");
-    assert!((amplitude / expected - 1.0).abs() < tolerance, "{what}: {amplitude} {expected}");
+    assert!(
+        (amplitude / expected - 1.0).abs() < tolerance,
+        "{what}: {amplitude} {expected}"
+    );
     assert!(delay_s.abs() < 1e-4, "{what}: delay {delay_s} s");
 }
 
@@ -86,15 +101,25 @@ fn the_amplitude_does_not_depend_on_jitter_in_the_sampling() {
 #[test]
 fn the_cutoff_does_not_depend_on_the_rate() {
     // One recording at 200 Hz and then at 50 Hz: the same sine keeps the same amplitude.
-    let time_s: Vec<f64> =
-        (0..1600).map(|i| if i < 1200 { f64::from(i) / 200.0 } else { f64::from(i - 900) / 50.0 })
-            .collect();
+    let time_s: Vec<f64> = (0..1600)
+        .map(|i| {
+            if i < 1200 {
+                f64::from(i) / 200.0
+            } else {
+                f64::from(i - 900) / 50.0
+            }
+        })
+        .collect();
     assert_response(&time_s, 6.0, 5.0, 0.01);
 }
 
 #[test]
 fn a_straight_line_passes_unchanged() {
-    for time_s in [regular(100.0, 3.0), jittered(100.0, 3.0, 0.9), regular(20_000.0, 3.0)] {
+    for time_s in [
+        regular(100.0, 3.0),
+        jittered(100.0, 3.0, 0.9),
+        regular(20_000.0, 3.0),
+    ] {
         let line = |t: f64| 0.3 - 1.7 * t;
         let segments = smooth(&samples(time_s.clone(), line), 6.0).unwrap();
         for &t in &time_s {
@@ -125,9 +150,15 @@ pub(super) fn jumps(segments: &[CubicSegment]) -> [f64; 3] {
 fn angle_velocity_and_acceleration_are_continuous() {
     let mut random = noise();
     let mut noisy = |time_s: Vec<f64>| {
-        let angle_rad =
-            time_s.iter().map(|t| (1.0 - (TAU * t).cos()) / 2.0 + 0.01 * random()).collect();
-        Samples { time_s, angle_rad, warnings: Vec::new() }
+        let angle_rad = time_s
+            .iter()
+            .map(|t| (1.0 - (TAU * t).cos()) / 2.0 + 0.01 * random())
+            .collect();
+        Samples {
+            time_s,
+            angle_rad,
+            warnings: Vec::new(),
+        }
     };
     for time_s in [
         regular(50.0, 10.0),
@@ -140,11 +171,13 @@ fn angle_velocity_and_acceleration_are_continuous() {
         for cutoff_hz in [1.0, 6.0, 20.0] {
             let segments = smooth(&recording, cutoff_hz).unwrap();
             let [angle, omega, acceleration] = jumps(&segments);
-            let nyquist_hz = recording.nyquist_hz();
-            eprintln!("{nyquist_hz} Hz, {cutoff_hz} Hz: {angle:e} {omega:e} {acceleration:e}");
-            assert!(angle < 1e-14 && omega < 2e-13 && acceleration < 1e-13);
+            let worst = angle.max(omega).max(acceleration);
+            assert!(worst < 2e-15, "{angle:e} {omega:e} {acceleration:e}");
             assert_eq!(segments[0].start_s, 0.0);
-            assert_eq!(segments.last().unwrap().end_s, *recording.time_s.last().unwrap());
+            assert_eq!(
+                segments.last().unwrap().end_s,
+                *recording.time_s.last().unwrap()
+            );
         }
     }
 }
@@ -160,13 +193,23 @@ fn the_smoothed_motion_follows_the_samples() {
 
 #[test]
 fn the_ripple_is_the_largest_change_of_acceleration_between_breaks() {
-    let segment = |start_s, c3| CubicSegment { start_s, end_s: start_s + 0.5, c: [0., 1., 2., c3] };
+    let segment = |start_s, c3| CubicSegment {
+        start_s,
+        end_s: start_s + 0.5,
+        c: [0., 1., 2., c3],
+    };
     assert_eq!(acceleration_ripple_rad_s2(&[]), 0.0);
-    assert_eq!(acceleration_ripple_rad_s2(&[segment(0.0, 1.0), segment(0.5, -2.0)]), 6.0);
+    assert_eq!(
+        acceleration_ripple_rad_s2(&[segment(0.0, 1.0), segment(0.5, -2.0)]),
+        6.0
+    );
     // A sine of 1 Hz at 100 Hz: the largest Ω̈ over 10 ms.
     let sine = samples(regular(100.0, 5.0), |t| (TAU * t).sin());
     let ripple = acceleration_ripple_rad_s2(&smooth(&sine, 20.0).unwrap());
-    assert!((ripple / (TAU.powi(3) * 0.01) - 1.0).abs() < 0.15, "{ripple}");
+    assert!(
+        (ripple / (TAU.powi(3) * 0.01) - 1.0).abs() < 0.15,
+        "{ripple}"
+    );
 }
 
 #[test]
@@ -178,14 +221,18 @@ fn the_cutoff_is_limited_by_the_sampling() {
         assert!(matches!(error, RecordingError::Cutoff { .. }), "{error}");
     }
     let error = smooth(&recording, 60.0).unwrap_err().to_string();
-    assert!(error.starts_with("a cutoff of 60 Hz is not possible: it must be above 0 and below 5"));
+    let start = "a cutoff of 60 Hz is not possible: it must be above 0 and below 50.0000 Hz";
+    assert!(error.starts_with(start), "{error}");
     smooth(&recording, 49.0).unwrap();
 }
 
 #[test]
 fn a_recording_of_few_bins_is_too_short() {
-    let short = samples(regular(100_000.0, 0.01), f64::sin);
-    assert!(matches!(smooth(&short, 6.0), Err(RecordingError::TooShort { .. })));
+    let short = samples(regular(100_000.0, 0.005), f64::sin);
+    assert!(matches!(
+        smooth(&short, 6.0),
+        Err(RecordingError::TooShort { .. })
+    ));
     smooth(&short, 100.0).unwrap();
 }
 
@@ -202,7 +249,10 @@ fn samples_that_break_their_promises_are_refused() {
         let mut samples = good.clone();
         change(&mut samples);
         let error = smooth(&samples, 6.0).unwrap_err();
-        assert!(matches!(error, RecordingError::BadSamples { .. }), "{error}");
+        assert!(
+            matches!(error, RecordingError::BadSamples { .. }),
+            "{error}"
+        );
     };
     broken(|s| s.time_s.push(1.0));
     broken(|s| s.angle_rad[3] = f64::NAN);
@@ -223,7 +273,11 @@ fn odd_spacing_does_not_break_the_solver() {
             time_s.push(time_s.last().unwrap() + step_s);
         }
         let angle_rad = time_s.iter().map(|_| random()).collect();
-        let recording = Samples { time_s, angle_rad, warnings: Vec::new() };
+        let recording = Samples {
+            time_s,
+            angle_rad,
+            warnings: Vec::new(),
+        };
         match smooth(&recording, 0.2 * recording.nyquist_hz().min(50.0)) {
             Ok(segments) => {
                 assert!(segments.iter().all(|s| s.c.iter().all(|c| c.is_finite())));

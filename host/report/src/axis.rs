@@ -1,0 +1,204 @@
+//! One axis of a chart: its range, and ticks at round numbers with exactly
+//! the decimals they need.
+
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{
+    KeyPointHint, NoDefaultFormatting, Ranged, ReversibleRanged, ValueFormatter,
+};
+
+use crate::number;
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub(crate) struct Axis {
+    low: f64,
+    high: f64,
+    ticks: Vec<f64>,
+    decimals: usize,
+    logarithmic: bool,
+}
+
+impl Axis {
+    /// From `low` to `high`, with about `ticks` ticks.
+    pub(crate) fn linear(low: f64, high: f64, ticks: u32) -> Self {
+        let (low, high) = sound(low, high);
+        let step = round_step((high - low) / f64::from(ticks.max(1)));
+        let first = (low / step - 1e-6).ceil();
+        let ticks = (0..100_u8)
+            .map(|i| (first + f64::from(i)) * step)
+            .take_while(|tick| *tick <= high + 1e-6 * step)
+            .collect();
+        // The step is 1, 2 or 5 times a power of ten.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let decimals = (-step.log10() - 1e-9).ceil().clamp(0.0, 12.0) as usize;
+        Self {
+            low,
+            high,
+            ticks,
+            decimals,
+            logarithmic: false,
+        }
+    }
+
+    /// Covers all values, with a little room at both ends.
+    pub(crate) fn covering(values: impl IntoIterator<Item = f64>, ticks: u32) -> Self {
+        let (low, high) = extent(values);
+        let (low, high) = sound(low, high);
+        let room = 0.05 * (high - low);
+        Self::linear(low - room, high + room, ticks)
+    }
+
+    /// Logarithmic; both ends positive. `marks` are the labelled ticks.
+    pub(crate) fn logarithmic(low: f64, high: f64, marks: &[f64]) -> Self {
+        Self {
+            low,
+            high: if high > low { high } else { low * 10.0 },
+            ticks: marks
+                .iter()
+                .copied()
+                .filter(|mark| (low..=high * 1.000_001).contains(mark))
+                .collect(),
+            decimals: 0,
+            logarithmic: true,
+        }
+    }
+
+    pub(crate) fn low(&self) -> f64 {
+        self.low
+    }
+
+    pub(crate) fn high(&self) -> f64 {
+        self.high
+    }
+
+    /// Where a value stands: 0 at the low end, 1 at the high end. What is
+    /// outside stands at the edge.
+    pub(crate) fn place(&self, value: f64) -> f64 {
+        let share = if self.logarithmic {
+            (value.max(self.low) / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        };
+        share.clamp(0.0, 1.0)
+    }
+}
+
+/// The smallest and largest finite value.
+pub(crate) fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    values
+        .into_iter()
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        })
+}
+
+/// A range that can be drawn: finite, and wider than rounding noise.
+fn sound(low: f64, high: f64) -> (f64, f64) {
+    if !(low.is_finite() && high.is_finite() && low <= high) {
+        return (0.0, 1.0);
+    }
+    let size = low.abs().max(high.abs());
+    if high - low > 1e-9 * size && high > low {
+        (low, high)
+    } else {
+        let half = if size > 0.0 { 0.5 * size } else { 1.0 };
+        (low - half, high + half)
+    }
+}
+
+/// The next round number: 1, 2 or 5 times a power of ten.
+fn round_step(raw: f64) -> f64 {
+    let power = 10_f64.powf(raw.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0];
+    let step = steps.into_iter().find(|s| raw <= s * power * 1.000_001);
+    step.unwrap_or(10.0) * power
+}
+
+impl Ranged for Axis {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        let (from, to) = (f64::from(limit.0), f64::from(limit.1));
+        // Between two numbers that are i32.
+        #[allow(clippy::cast_possible_truncation)]
+        let place = (from + self.place(*value) * (to - from)).round() as i32;
+        place
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if hint.weight().allow_light_points() {
+            Vec::new()
+        } else {
+            self.ticks.clone()
+        }
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.low..self.high
+    }
+}
+
+impl ReversibleRanged for Axis {
+    fn unmap(&self, input: i32, limit: (i32, i32)) -> Option<f64> {
+        let share = f64::from(input - limit.0) / f64::from(limit.1 - limit.0);
+        share.is_finite().then(|| {
+            if self.logarithmic {
+                self.low * (self.high / self.low).powf(share)
+            } else {
+                self.low + share * (self.high - self.low)
+            }
+        })
+    }
+}
+
+impl ValueFormatter<f64> for Axis {
+    fn format_ext(&self, value: &f64) -> String {
+        if self.logarithmic {
+            number::rounded(*value)
+        } else {
+            number::fixed(*value, self.decimals)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(axis: &Axis) -> Vec<String> {
+        axis.ticks.iter().map(|t| axis.format_ext(t)).collect()
+    }
+
+    #[test]
+    fn ticks_are_round_and_evenly_written() {
+        let axis = Axis::linear(-0.05, 0.42, 5);
+        assert_eq!(labels(&axis), ["0.0", "0.1", "0.2", "0.3", "0.4"]);
+        let axis = Axis::linear(7.3, 7.42, 6);
+        assert_eq!(labels(&axis)[0], "7.30");
+        let axis = Axis::linear(0.0, 20_000.0, 2);
+        assert_eq!(labels(&axis), ["0", "10\u{202F}000", "20\u{202F}000"]);
+        let axis = Axis::logarithmic(0.5, 500.0, &[0.1, 1.0, 10.0, 100.0]);
+        assert_eq!(labels(&axis), ["1", "10", "100"]);
+    }
+
+    #[test]
+    fn no_range_is_too_odd() {
+        for (low, high) in [
+            (f64::NAN, 1.0),
+            (f64::INFINITY, f64::NEG_INFINITY),
+            (0.0, 0.0),
+            (5.0, 5.0),
+            (5.0, 5.0 + 1e-15),
+            (-1e300, 1e300),
+            (0.0, 1e-300),
+        ] {
+            let axis = Axis::covering([low, high], 5);
+            assert!(axis.low < axis.high, "{low} {high}");
+            assert!(!axis.ticks.is_empty(), "{low} {high}");
+            assert!((0.0..=1.0).contains(&axis.place(low)) || low.is_nan());
+        }
+    }
+}

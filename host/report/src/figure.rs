@@ -1,0 +1,58 @@
+//! A figure as the page shows it: heading, legend, charts, caption.
+
+use crate::window::Window;
+
+/// See the module.
+#[derive(Debug)]
+pub(crate) struct Figure {
+    pub(crate) title: &'static str,
+    pub(crate) legend: Vec<Key>,
+    pub(crate) charts: Vec<Chart>,
+    /// What one sees and how to read it.
+    pub(crate) caption: String,
+}
+
+/// One chart.
+#[derive(Debug)]
+pub(crate) struct Chart {
+    pub(crate) heading: Option<String>,
+    pub(crate) svg: String,
+    /// Two of these stand side by side where there is room.
+    pub(crate) half: bool,
+}
+
+/// One entry of a legend.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Key {
+    pub(crate) sign: Sign,
+    pub(crate) text: &'static str,
+}
+
+/// How a legend shows what it explains.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Sign {
+    /// A class of the style sheet: a line in the ink of this name.
+    Line(&'static str),
+    /// A filled patch in the ink of this name.
+    Patch(&'static str),
+    /// A character.
+    Mark(&'static str),
+}
+
+impl Key {
+    pub(crate) const fn new(sign: Sign, text: &'static str) -> Self {
+        Self { sign, text }
+    }
+}
+
+pub(crate) const PHASE_KEYS: [Key; 3] = [
+    Key::new(Sign::Patch("slip-positive"), "slip +"),
+    Key::new(Sign::Patch("stick"), "stick"),
+    Key::new(Sign::Patch("slip-negative"), "slip −"),
+];
+
+/// A window with the words that say which one it is.
+pub(crate) struct Titled<'w> {
+    pub(crate) title: String,
+    pub(crate) window: &'w Window,
+}

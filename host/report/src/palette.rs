@@ -1,0 +1,147 @@
+//! The colours. Charts are drawn once, in fixed marker colours; a style sheet
+//! made here turns each marker into the colour of its role in light, dark and
+//! print.
+//!
+//! Data colours are those of Okabe and Ito, told apart by the colour-blind;
+//! the three phases also differ in lightness, for grey prints.
+
+use std::fmt::Write as _;
+
+use plotters::style::RGBColor;
+
+/// A role on the page and its colours.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ink {
+    /// The name of the style sheet's variable.
+    name: &'static str,
+    /// The colour charts are drawn in, unique to the role.
+    marker: RGBColor,
+    light: &'static str,
+    dark: &'static str,
+}
+
+const fn ink(
+    name: &'static str,
+    marker: (u8, u8, u8),
+    light: &'static str,
+    dark: &'static str,
+) -> Ink {
+    Ink {
+        name,
+        marker: RGBColor(marker.0, marker.1, marker.2),
+        light,
+        dark,
+    }
+}
+
+impl Ink {
+    pub(crate) fn marker(&self) -> RGBColor {
+        self.marker
+    }
+}
+
+/// Text in charts.
+pub(crate) const TEXT: Ink = ink("text", (0x22, 0x22, 0x21), "#1f2428", "#e6e8ea");
+/// Axis lines and ticks.
+pub(crate) const AXIS: Ink = ink("axis", (0x88, 0x88, 0x81), "#7b838a", "#8b949c");
+/// Grid lines, over shading.
+pub(crate) const GRID: Ink = ink("grid", (0xDD, 0xDD, 0xD1), "#0000001c", "#ffffff1f");
+/// The paper behind a marker.
+pub(crate) const PAPER: Ink = ink("paper", (0xFF, 0xFF, 0xF1), "#ffffff", "#15181b");
+/// The torque.
+pub(crate) const TORQUE: Ink = ink("torque", (0x11, 0x11, 0x31), "#16161d", "#f4f4f6");
+/// The range of the torque in an overview.
+pub(crate) const RANGE: Ink = ink("range", (0x99, 0xAA, 0xB1), "#b4c3d1", "#43525f");
+/// Torque levels.
+pub(crate) const LEVEL: Ink = ink("level", (0x55, 0x55, 0x51), "#454d54", "#b4bcc4");
+/// The shaft.
+pub(crate) const SHAFT: Ink = ink("shaft", (0xD5, 0x5E, 0x01), "#c95000", "#f2933f");
+/// The imaginary object; the angle in the overview.
+pub(crate) const OBJECT: Ink = ink("object", (0x01, 0x72, 0xB2), "#0072b2", "#56b4e9");
+/// What the encoder says.
+pub(crate) const ENCODER: Ink = ink("encoder", (0xCC, 0x79, 0xA7), "#c07ba0", "#d79dbd");
+/// Stick.
+pub(crate) const STICK: Ink = ink("stick", (0xA9, 0xA9, 0xC1), "#a3abbd", "#6a7488");
+/// Slip towards growing angle.
+pub(crate) const SLIP_POSITIVE: Ink =
+    ink("slip-positive", (0xD9, 0xEE, 0xF9), "#e3f2fb", "#12303f");
+/// Slip towards falling angle.
+pub(crate) const SLIP_NEGATIVE: Ink =
+    ink("slip-negative", (0xFC, 0xE2, 0xC1), "#fbd9ae", "#5a3c14");
+/// Frequency bands, every second one.
+pub(crate) const BAND: Ink = ink("band", (0xEE, 0xEE, 0xE1), "#eef1f4", "#20262b");
+
+const ALL: [Ink; 14] = [
+    TEXT,
+    AXIS,
+    GRID,
+    PAPER,
+    TORQUE,
+    RANGE,
+    LEVEL,
+    SHAFT,
+    OBJECT,
+    ENCODER,
+    STICK,
+    SLIP_POSITIVE,
+    SLIP_NEGATIVE,
+    BAND,
+];
+
+/// The style sheet: variables for light and dark, and the rules that apply
+/// them to the charts. Print is always light.
+pub(crate) fn style() -> String {
+    let mut light = String::new();
+    let mut dark = String::new();
+    let mut rules = String::new();
+    for ink in &ALL {
+        let name = ink.name;
+        let RGBColor(r, g, b) = ink.marker;
+        // Writing to a String cannot fail.
+        let _ = write!(light, "--{name}:{};", ink.light);
+        let _ = write!(dark, "--{name}:{};", ink.dark);
+        let _ = write!(
+            rules,
+            "svg [fill=\"#{r:02X}{g:02X}{b:02X}\"]{{fill:var(--{name})}}\
+             svg [stroke=\"#{r:02X}{g:02X}{b:02X}\"]{{stroke:var(--{name})}}\
+             .swatch-{name}{{background:var(--{name})}}\
+             .line-{name}{{border-color:var(--{name})}}\n"
+        );
+    }
+    format!(
+        ":root{{{light}}}\n\
+         @media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{rules}"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_role_has_its_own_marker() {
+        for (i, a) in ALL.iter().enumerate() {
+            for b in ALL.iter().skip(i + 1) {
+                assert_ne!(a.marker, b.marker, "{} and {}", a.name, b.name);
+                assert_ne!(a.name, b.name);
+            }
+        }
+    }
+
+    /// Relative luminance of `#rrggbb`.
+    fn luminance(css: &str) -> f64 {
+        let part = |i| f64::from(u8::from_str_radix(&css[i..i + 2], 16).expect("hex")) / 255.0;
+        0.2126 * part(1).powf(2.2) + 0.7152 * part(3).powf(2.2) + 0.0722 * part(5).powf(2.2)
+    }
+
+    #[test]
+    fn phases_differ_in_lightness() {
+        for pick in [|i: &Ink| i.light, |i: &Ink| i.dark] {
+            let phases = [STICK, SLIP_POSITIVE, SLIP_NEGATIVE].map(|i| luminance(pick(&i)));
+            for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+                let (low, high) = (phases[a].min(phases[b]), phases[a].max(phases[b]));
+                assert!((high + 0.05) / (low + 0.05) > 1.15, "{phases:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,270 @@
+//! Whole reports, from rows to a page: what is on it, and that nothing on it
+//! depends on anything outside.
+//!
+//! The pages are left in the target's `tmp` directory to be looked at.
+
+mod fixture;
+
+use std::cell::RefCell;
+use std::path::Path;
+
+use crepitus_report::{Collector, Figures, Section, Setup, Text, TorqueLevels, html};
+use fixture::{KINETIC, Motion, Run, STATIC};
+
+fn collect(run: Run, duration: f64, step: f64, encoder: bool) -> Figures {
+    let columns = Run::columns(true, encoder);
+    let collector = RefCell::new(Collector::new(&Setup {
+        columns: &columns,
+        rows_expected: (duration / step) as u64 + 1,
+        row_step_s: step,
+        levels: Some(TorqueLevels::elastic(KINETIC, STATIC)),
+    }));
+    let run = if encoder { run.with_encoder() } else { run };
+    run.play(
+        |row| collector.borrow_mut().row(row),
+        |event| collector.borrow_mut().event(event),
+    );
+    collector.into_inner().finish()
+}
+
+fn text(title: &str) -> Text {
+    let row = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+    Text {
+        title: title.to_owned(),
+        description: Some(
+            "The joint of a patient with coarse crepitus, moved slowly.\n\
+             Parameters are those of the paper."
+                .to_owned(),
+        ),
+        warnings: vec![
+            "The step of 1 ms is longer than a stick phase (0.95 ms at 1 rad/s): torque peaks \
+             between rows are seen only at events."
+                .to_owned(),
+        ],
+        sections: vec![
+            Section {
+                title: "Run".to_owned(),
+                rows: vec![
+                    row("Scene", "coarse-sine"),
+                    row("Duration", "10 s"),
+                    row("Solver", "exact-events, 50 µs, f64"),
+                    row("Real-time factor", "812"),
+                ],
+            },
+            Section {
+                title: "Torque".to_owned(),
+                rows: vec![
+                    row("Smallest", "−0.4 N·m"),
+                    row("Mean", "0.012 N·m"),
+                    row("Largest", "0.4 N·m"),
+                    row("RMS", "0.213 N·m"),
+                ],
+            },
+            Section {
+                title: "Effects".to_owned(),
+                rows: vec![
+                    row("crepitus", "2 states, 31 ns a step"),
+                    row("encoder", "1 state, 9 ns a step"),
+                ],
+            },
+        ],
+        footer: "crepitus 0.1.0, report of a closed-form run".to_owned(),
+    }
+}
+
+/// Draws, checks what every page must keep to, and leaves the page to be
+/// looked at.
+fn page(name: &str, text: &Text, figures: &Figures) -> String {
+    let page = html(text, figures).expect("drawn");
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.html"));
+    std::fs::write(path, &page).expect("written");
+    assert!(page.len() < 500_000, "{name}: {} bytes", page.len());
+    for forbidden in ["http", "url(", "<script", "@import", "NaN", "inf,"] {
+        assert!(!page.contains(forbidden), "{name} contains {forbidden}");
+    }
+    assert_balanced(&page);
+    page
+}
+
+/// Every element that opens closes, in order.
+fn assert_balanced(page: &str) {
+    let mut open = Vec::new();
+    for part in page.split('<').skip(1) {
+        let tag = part.split('>').next().unwrap_or_default();
+        let name = tag.split([' ', '\n']).next().unwrap_or_default();
+        if let Some(closed) = name.strip_prefix('/') {
+            assert_eq!(open.pop(), Some(closed), "closing in {part:.60}");
+        } else if !(tag.ends_with('/') || name.starts_with('!') || name == "meta") {
+            open.push(name);
+        }
+    }
+    assert!(open.is_empty(), "{open:?}");
+}
+
+fn count(page: &str, part: &str) -> usize {
+    page.matches(part).count()
+}
+
+#[test]
+fn a_long_sine_with_an_encoder() {
+    let motion = Motion::Sine {
+        amplitude: 0.785,
+        frequency: 0.25,
+        phase: -1.5,
+    };
+    let figures = collect(Run::new(motion, 10.0, 5e-5), 10.0, 5e-5, true);
+    let page = page("sine", &text("Coarse crepitus, slow flexion"), &figures);
+    // Motion, torque, two zooms, two orbits and the whole run, spectrum.
+    assert_eq!(count(&page, "<svg "), 8);
+    assert_eq!(count(&page, "role=\"img\""), 8);
+    assert!(page.contains("speed by the encoder"));
+    assert!(page.contains("The fastest part"));
+    assert!(page.contains("−(2Tk−Ts)"));
+    assert!(page.contains("Warning"));
+}
+
+#[test]
+fn a_steady_run() {
+    let motion = Motion::Constant { speed: 1.0 };
+    let figures = collect(Run::new(motion, 10.0, 5e-5), 10.0, 5e-5, false);
+    let page = page("steady", &text("Constant speed of 1 rad/s"), &figures);
+    assert_eq!(count(&page, "<svg "), 6);
+    assert!(!page.contains("speed by the encoder"));
+    // The cycle lasts 1 ms + 30.4 ms.
+    assert!(page.contains("line is at 31."));
+}
+
+#[test]
+fn a_short_run_shows_every_cycle() {
+    let motion = Motion::Constant { speed: 1.0 };
+    let figures = collect(Run::new(motion, 0.8, 5e-5), 0.8, 5e-5, false);
+    let page = page("short", &text("Less than a second"), &figures);
+    assert!(!page.contains("too many cycles"));
+    assert!(page.contains("Tk 0.2"));
+}
+
+#[test]
+fn coarse_rows_still_show_the_cycles() {
+    let motion = Motion::Constant { speed: 1.0 };
+    let figures = collect(Run::new(motion, 2.0, 4e-3), 2.0, 4e-3, false);
+    let page = page("coarse", &text("A trace of few rows"), &figures);
+    assert!(page.contains("too few for a spectrum"));
+    assert!(page.contains("The onset"));
+}
+
+#[test]
+fn slow_motion_sticks_for_long() {
+    let motion = Motion::Sine {
+        amplitude: 0.01,
+        frequency: 0.1,
+        phase: -1.5,
+    };
+    let figures = collect(Run::new(motion, 10.0, 1e-3), 10.0, 1e-3, false);
+    page("slow", &text("Slow motion"), &figures);
+}
+
+#[test]
+fn presliding_has_no_events() {
+    let motion = Motion::Sine {
+        amplitude: 8e-4,
+        frequency: 0.5,
+        phase: 0.0,
+    };
+    let figures = collect(Run::new(motion, 4.0, 1e-3), 4.0, 1e-3, false);
+    let page = page("presliding", &text("Presliding"), &figures);
+    assert!(page.contains("never broke loose"));
+}
+
+#[test]
+fn a_healthy_joint_is_motion_only() {
+    let columns = Run::columns(false, false);
+    let mut collector = Collector::new(&Setup {
+        columns: &columns,
+        rows_expected: 1000,
+        row_step_s: 1e-3,
+        levels: None,
+    });
+    for i in 0..1000_u32 {
+        let t = f64::from(i) * 1e-3;
+        collector.row(&[t, t.sin(), t.cos()]);
+    }
+    let page = page("healthy", &text("Healthy"), &collector.finish());
+    assert_eq!(count(&page, "<svg "), 1);
+    for absent in ["Torque (N·m)", "A zoom", "Spectrum", "Imaginary"] {
+        assert!(!page.contains(absent), "{absent}");
+    }
+}
+
+#[test]
+fn no_rows_and_one_row() {
+    let columns = Run::columns(true, true);
+    let setup = Setup {
+        columns: &columns,
+        rows_expected: 0,
+        row_step_s: 5e-5,
+        levels: Some(TorqueLevels::elastic(KINETIC, STATIC)),
+    };
+    let empty = page("empty", &Text::default(), &Collector::new(&setup).finish());
+    assert!(empty.contains("nothing to draw"));
+    let mut collector = Collector::new(&setup);
+    collector.row(&[0.0, 0.1, 1.0, 0.0, 0.0, 1.0, 0.0, 0.1, 1.0]);
+    page("one-row", &Text::default(), &collector.finish());
+}
+
+#[test]
+fn broken_values_are_left_out_and_counted() {
+    let columns = Run::columns(true, false);
+    let collector = RefCell::new(Collector::new(&Setup {
+        columns: &columns,
+        rows_expected: 2000,
+        row_step_s: 1e-3,
+        levels: Some(TorqueLevels::elastic(f64::NAN, STATIC)),
+    }));
+    let mut broken = 0;
+    Run::new(Motion::Constant { speed: 1.0 }, 2.0, 1e-3).play(
+        |row| {
+            let mut row = row.to_vec();
+            broken += 1;
+            match broken % 50 {
+                7 => row[6] = f64::NAN,
+                19 => row[1] = f64::INFINITY,
+                23 => row[0] = f64::NAN,
+                31 => row.fill(f64::NEG_INFINITY),
+                _ => {}
+            }
+            collector.borrow_mut().row(&row);
+        },
+        |event| {
+            let mut event = *event;
+            event.torque_after_nm = f64::NAN;
+            collector.borrow_mut().event(&event);
+        },
+    );
+    let page = page("broken", &text("Broken"), &collector.into_inner().finish());
+    assert!(page.contains("values that are not finite"));
+}
+
+#[test]
+fn words_are_escaped() {
+    let evil = "<script>alert('&')</script>";
+    let columns = Run::columns(false, false);
+    let figures = Collector::new(&Setup {
+        columns: &columns,
+        rows_expected: 0,
+        row_step_s: 1.0,
+        levels: None,
+    })
+    .finish();
+    let text = Text {
+        title: evil.to_owned(),
+        description: Some(evil.to_owned()),
+        warnings: vec![evil.to_owned()],
+        sections: vec![Section {
+            title: evil.to_owned(),
+            rows: vec![(evil.to_owned(), evil.to_owned())],
+        }],
+        footer: evil.to_owned(),
+    };
+    let page = page("escaped", &text, &figures);
+    assert_eq!(count(&page, "&lt;script&gt;"), 8);
+}

@@ -1,0 +1,233 @@
+//! The smooth pieces that every motion is made of.
+//!
+//! A motion of the shaft is analytic between a few knots. A piece gives the
+//! angle and three derivatives at any time, and bounds of them, from which the
+//! event-driven reference solver knows how far it may look ahead.
+
+use std::f64::consts::TAU;
+
+/// The shaft at one time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShaftState {
+    /// Angle φ, rad.
+    pub phi_rad: f64,
+    /// Velocity Ω, rad/s.
+    pub omega_rad_s: f64,
+    /// Acceleration Ω̇, rad/s².
+    pub omega_dot: f64,
+    /// Ω̈, rad/s³.
+    pub omega_ddot: f64,
+}
+
+/// Bounds over a stretch of time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bounds {
+    /// max |Ω̇|, rad/s².
+    pub omega_dot: f64,
+    /// max |Ω̈|, rad/s³.
+    pub omega_ddot: f64,
+    /// max |d³Ω/dt³|, rad/s⁴.
+    pub omega_dddot: f64,
+}
+
+/// An analytic stretch of a motion, from `start_s` to `end_s`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// When it begins, s.
+    pub start_s: f64,
+    /// When it ends, s; infinite for the last piece of a motion.
+    pub end_s: f64,
+    /// Whether the velocity jumps where it begins. Without a jump the piece
+    /// before ends with the same velocity, though perhaps not the same bits.
+    pub jump: bool,
+    /// The angle.
+    pub curve: Curve,
+}
+
+/// The angle of a piece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Curve {
+    /// φ = Σ cₖ·τᵏ with τ = t − start.
+    Polynomial([f64; 6]),
+    /// φ = A·sin(2π(f·t + p)).
+    Sine {
+        /// A, rad.
+        amplitude_rad: f64,
+        /// f, Hz.
+        frequency_hz: f64,
+        /// p, turns.
+        phase_turns: f64,
+    },
+}
+
+impl Piece {
+    /// The shaft at `time_s`, which may be either end.
+    pub fn at(&self, time_s: f64) -> ShaftState {
+        match self.curve {
+            Curve::Polynomial(c) => {
+                let t = time_s - self.start_s;
+                ShaftState {
+                    phi_rad: derivative(&c, 0, t),
+                    omega_rad_s: derivative(&c, 1, t),
+                    omega_dot: derivative(&c, 2, t),
+                    omega_ddot: derivative(&c, 3, t),
+                }
+            }
+            Curve::Sine {
+                amplitude_rad,
+                frequency_hz,
+                phase_turns,
+            } => {
+                let (sin, cos) = sin_cos_turns(frequency_hz * time_s + phase_turns);
+                let w = TAU * frequency_hz;
+                ShaftState {
+                    phi_rad: amplitude_rad * sin,
+                    omega_rad_s: amplitude_rad * w * cos,
+                    omega_dot: -(amplitude_rad * w * w * sin),
+                    omega_ddot: -(amplitude_rad * w * w * w * cos),
+                }
+            }
+        }
+    }
+
+    /// Bounds of the derivatives between two times within the piece.
+    pub fn bounds(&self, from_s: f64, to_s: f64) -> Bounds {
+        match self.curve {
+            Curve::Polynomial(c) => {
+                let reach = (from_s - self.start_s)
+                    .abs()
+                    .max((to_s - self.start_s).abs());
+                let magnitudes = c.map(f64::abs);
+                let bound = |order| {
+                    // A derivative that is constant has a bound without limit.
+                    let at_zero = derivative(&magnitudes, order, 0.0);
+                    let grown = derivative(&magnitudes, order, reach);
+                    if grown.is_nan() { at_zero } else { grown }
+                };
+                Bounds {
+                    omega_dot: bound(2),
+                    omega_ddot: bound(3),
+                    omega_dddot: bound(4),
+                }
+            }
+            Curve::Sine {
+                amplitude_rad,
+                frequency_hz,
+                ..
+            } => {
+                let w = TAU * frequency_hz;
+                let a = amplitude_rad.abs() * w * w;
+                Bounds {
+                    omega_dot: a,
+                    omega_ddot: a * w,
+                    omega_dddot: a * w * w,
+                }
+            }
+        }
+    }
+}
+
+/// The `order`-th derivative of Σ cₖ·tᵏ at `t`, by Horner's scheme.
+fn derivative(c: &[f64; 6], order: usize, t: f64) -> f64 {
+    let mut sum = 0.0;
+    for (k, &coefficient) in c.iter().enumerate().skip(order).rev() {
+        let falling: f64 = (k + 1 - order..=k).map(small).product();
+        sum = sum * t + coefficient * falling;
+    }
+    sum
+}
+
+/// A number below six as f64.
+fn small(n: usize) -> f64 {
+    u8::try_from(n).map_or(f64::NAN, f64::from)
+}
+
+/// (sin 2πx, cos 2πx), exact at every quarter turn however large x is.
+fn sin_cos_turns(x: f64) -> (f64, f64) {
+    let r = x - x.round();
+    let quarter = (4.0 * r).round();
+    let (sin, cos) = (TAU * (r - quarter / 4.0)).sin_cos();
+    if quarter == 0.0 {
+        (sin, cos)
+    } else if quarter == 1.0 {
+        (cos, -sin)
+    } else if quarter == -1.0 {
+        (-cos, sin)
+    } else {
+        (-sin, -cos)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pieces() -> [Piece; 2] {
+        [
+            Piece {
+                start_s: 0.5,
+                end_s: 2.0,
+                jump: false,
+                curve: Curve::Polynomial([0.1, -0.4, 0.3, 1.1, -0.6, 0.2]),
+            },
+            Piece {
+                start_s: 0.0,
+                end_s: 2.0,
+                jump: false,
+                curve: Curve::Sine {
+                    amplitude_rad: 0.7,
+                    frequency_hz: 0.9,
+                    phase_turns: 0.1,
+                },
+            },
+        ]
+    }
+
+    #[test]
+    fn derivatives_match_differences() {
+        let h = 1e-5;
+        for piece in pieces() {
+            for t in [0.6, 1.0, 1.9] {
+                let (a, m, b) = (piece.at(t - h), piece.at(t), piece.at(t + h));
+                let slope = |f: fn(&ShaftState) -> f64| (f(&b) - f(&a)) / (2.0 * h);
+                assert!((slope(|s| s.phi_rad) - m.omega_rad_s).abs() < 1e-8);
+                assert!((slope(|s| s.omega_rad_s) - m.omega_dot).abs() < 1e-7);
+                assert!((slope(|s| s.omega_dot) - m.omega_ddot).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn bounds_bound() {
+        for piece in pieces() {
+            let bounds = piece.bounds(0.6, 1.9);
+            for i in 0..=130 {
+                let s = piece.at(0.6 + 0.01 * f64::from(i));
+                assert!(s.omega_dot.abs() <= bounds.omega_dot * (1.0 + 1e-12));
+                assert!(s.omega_ddot.abs() <= bounds.omega_ddot * (1.0 + 1e-12));
+            }
+        }
+    }
+
+    #[test]
+    fn a_piece_without_end_has_finite_bounds_when_it_is_linear() {
+        let bounds = Piece {
+            start_s: 0.0,
+            end_s: f64::INFINITY,
+            jump: false,
+            curve: Curve::Polynomial([0.0, 2.0, 0.5, 0.0, 0.0, 0.0]),
+        }
+        .bounds(0.0, f64::INFINITY);
+        assert_eq!((bounds.omega_dot, bounds.omega_ddot), (1.0, 0.0));
+    }
+
+    #[test]
+    fn quarter_turns_are_exact_after_a_million_of_them() {
+        for n in [0.0, 1.0, 1e6, -1e6] {
+            assert_eq!(sin_cos_turns(n), (0.0, 1.0));
+            assert_eq!(sin_cos_turns(n + 0.25), (1.0, 0.0));
+            assert_eq!(sin_cos_turns(n - 0.25), (-1.0, 0.0));
+            assert_eq!(sin_cos_turns(n + 0.5).1, -1.0);
+        }
+    }
+}
