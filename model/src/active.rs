@@ -91,6 +91,13 @@ impl<F: Real> Active<F> {
             .less(Ticks::new(lag * self.ticks_per_half_radian))
     }
 
+    /// Ts = Tk, as far as numbers tell: at a steady speed nothing ever sticks,
+    /// the velocities only touch once a period.
+    #[inline]
+    pub fn touches(&self) -> bool {
+        self.drop_nm <= F::LIMIT_SLACK * self.static_nm
+    }
+
     /// `torque_nm` held within ±Ts.
     #[inline]
     pub fn limited(&self, torque_nm: F) -> F {

@@ -120,7 +120,7 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                         from: Phase::Stick,
                         to: Phase::Slip(sense),
                         theta_rad: theta,
-                        theta_dot_before_rad_s: omega,
+                        theta_dot_rad_s: omega,
                         omega_rad_s: omega,
                         torque_before_nm: a.limited(a.stiffness * theta),
                         torque_after_nm: sense.of_signed(a.kinetic_nm),
@@ -139,13 +139,10 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                     events += 1;
                     // Ts = Tk: the stick would break where it begins. The slip
                     // goes on, and nothing is felt or reported.
-                    let at_limit = a.stiffness * a.restart_angle_rad
-                        >= a.static_nm * (F::ONE - F::LIMIT_SLACK);
-                    if at_limit && sense.of_signed(path.rate(from_s)) > F::ZERO {
+                    if a.touches() && sense.of_signed(path.rate(from_s)) > F::ZERO {
                         self.state = State::Slip(self.slip(sense, fraction, theta, omega));
                         continue;
                     }
-                    let theta_dot_before_rad_s = slip.velocity(&a, slip.duration);
                     self.state = State::Stick {
                         theta: Compensated::new(theta),
                     };
@@ -155,7 +152,7 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                         from: Phase::Slip(sense),
                         to: Phase::Stick,
                         theta_rad: theta,
-                        theta_dot_before_rad_s,
+                        theta_dot_rad_s: omega,
                         omega_rad_s: omega,
                         torque_before_nm: sense.of_signed(a.kinetic_nm),
                         torque_after_nm: a.limited(torque),
@@ -186,10 +183,6 @@ impl<F: Real> Slip<F> {
             .oscillator
             .transition(after.value() * active.step_s)
             .apply(self.x, self.v)
-    }
-
-    fn velocity(&self, active: &Active<F>, after: Ticks<F>) -> F {
-        self.motion(active, after).1
     }
 }
 
@@ -232,7 +225,7 @@ impl<F: Real, L: Locate<F>> StickSlip<F> for Frozen<F, L> {
     fn theta_dot_rad_s(&self) -> F {
         match &self.state {
             State::Stick { .. } => self.omega_rad_s,
-            State::Slip(slip) => slip.velocity(&self.active, slip.duration.less(slip.end)),
+            State::Slip(slip) => slip.motion(&self.active, slip.duration.less(slip.end)).1,
         }
     }
 }

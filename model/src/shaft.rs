@@ -14,6 +14,15 @@ pub struct ShaftStep<F> {
     pub omega_end_rad_s: F,
 }
 
+impl<F: Real> ShaftStep<F> {
+    /// Change of the angle after `fraction` of a step of `step_s`, rad, on the
+    /// path that [`ShaftPath`] assumes.
+    pub fn travel(&self, fraction: F, step_s: F) -> F {
+        let bend = (self.omega_end_rad_s - self.omega_start_rad_s) * step_s;
+        self.delta_phi_rad * fraction - F::HALF * bend * fraction * (F::ONE - fraction)
+    }
+}
+
 /// The path within the step: Ω is linear, and the angle the parabola of that
 /// slope which ends exactly at Δφ.
 ///

@@ -124,7 +124,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
             from,
             to: Phase::Slip(sense),
             theta_rad: theta,
-            theta_dot_before_rad_s: v,
+            theta_dot_rad_s: v,
             omega_rad_s: here.omega,
             torque_before_nm,
             torque_after_nm: sense.of_signed(a.kinetic_nm),
@@ -203,12 +203,12 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
         }
     }
 
-    /// The velocity match of a slip at `here`, object at (x, v).
+    /// The velocity match of a slip at `here`, object at x.
     fn meet(
         &mut self,
         path: &ShaftPath<F>,
         sense: Sense,
-        (x, v): (F, F),
+        x: F,
         here: &Here<F>,
         on_event: &mut impl FnMut(Event<F>),
     ) {
@@ -226,19 +226,18 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
                 self.begin_slip(other, (theta, here.omega), here, on_event);
                 return;
             }
-        } else {
-            let at_limit = sense.of_signed(stick.torque_nm) >= limit * (F::ONE - F::LIMIT_SLACK);
-            let outwards = sense.of_signed(stick.rate) >= F::ZERO;
-            if at_limit && outwards {
-                // Ts = Tk: the stick would break where it begins. A touch: the
-                // slip goes on, and nothing is felt or reported.
-                self.state = State::Slip {
-                    sense,
-                    x,
-                    v: here.omega,
-                };
-                return;
-            }
+        } else if a.touches()
+            && sense.of_signed(stick.torque_nm) >= limit * (F::ONE - F::TOUCH_SLACK)
+            && sense.of_signed(stick.rate) >= F::ZERO
+        {
+            // The stick would break where it begins. A touch: the slip goes
+            // on, and nothing is felt or reported.
+            self.state = State::Slip {
+                sense,
+                x,
+                v: here.omega,
+            };
+            return;
         }
         on_event(Event {
             kind: EventKind::Stick,
@@ -246,7 +245,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
             from: Phase::Slip(sense),
             to: Phase::Stick,
             theta_rad: theta,
-            theta_dot_before_rad_s: v,
+            theta_dot_rad_s: here.omega,
             omega_rad_s: here.omega,
             torque_before_nm: sense.of_signed(a.kinetic_nm),
             torque_after_nm: a.limited(stick.torque_nm),
@@ -340,9 +339,9 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
                         self.state = State::Slip { sense, x, v };
                         break;
                     };
-                    let met = self.propagator.part(x, v, after_s);
+                    let (x, _) = self.propagator.part(x, v, after_s);
                     here = self.at(&path, here.time_s + after_s);
-                    self.meet(&path, sense, met, &here, &mut on_event);
+                    self.meet(&path, sense, x, &here, &mut on_event);
                 }
             }
             changes += 1;

@@ -108,12 +108,17 @@ fn sound(low: f64, high: f64) -> (f64, f64) {
     }
 }
 
-/// The next round number: 1, 2 or 5 times a power of ten.
+/// The nearest round number: 1, 2 or 5 times a power of ten.
 fn round_step(raw: f64) -> f64 {
     let power = 10_f64.powf(raw.log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0];
-    let step = steps.into_iter().find(|s| raw <= s * power * 1.000_001);
-    step.unwrap_or(10.0) * power
+    // Halfway between two steps on a logarithmic scale.
+    let step = match raw / power {
+        r if r < 1.41 => 1.0,
+        r if r < 3.16 => 2.0,
+        r if r < 7.07 => 5.0,
+        _ => 10.0,
+    };
+    step * power
 }
 
 impl Ranged for Axis {

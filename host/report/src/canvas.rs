@@ -126,6 +126,7 @@ impl Plot<'_, '_> {
     /// Axes, ticks, grid. After the shading, before the lines.
     pub(crate) fn grid(&mut self) -> Drawn {
         let text = text_style(TEXT, HPos::Center, VPos::Center);
+        let unlabelled = |_: &f64| String::new();
         let mut mesh = self.chart.configure_mesh();
         mesh.label_style(text.clone())
             .axis_desc_style(text)
@@ -133,13 +134,12 @@ impl Plot<'_, '_> {
             .bold_line_style(GRID.marker().stroke_width(px(1)))
             .set_all_tick_mark_size(px(4))
             .y_desc(self.y_title.clone());
-        match &self.x_title {
-            Some(title) => mesh.x_desc(title.clone()).draw(),
-            None => {
-                let nothing = |_: &f64| String::new();
-                mesh.x_label_formatter(&nothing).draw()
-            }
+        if let Some(title) = &self.x_title {
+            mesh.x_desc(title.clone());
+        } else {
+            mesh.x_label_formatter(&unlabelled);
         }
+        mesh.draw()
     }
 
     pub(crate) fn x(&self) -> &Axis {

@@ -63,8 +63,9 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
             }
             .on(&below)?;
             plot.grid()?;
-            plot.line(&encoder, ENCODER, 4)?;
-            plot.line(&speed, SHAFT, 7)
+            // Wider, so that it shows even where it is exact.
+            plot.line(&encoder, ENCODER, 12)?;
+            plot.line(&speed, SHAFT, 6)
         },
     )?;
 
@@ -73,18 +74,21 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         Key::new(Sign::Line("shaft"), "shaft speed Ω"),
     ];
     let (low, high) = crate::axis::extent(speed.iter().map(|p| p.y));
+    let (low, high) = (rounded(low), rounded(high));
+    let speeds = if low == high {
+        format!("The speed is {low} °/s throughout.")
+    } else {
+        format!("The speed ranges from {low} to {high} °/s.")
+    };
     let mut caption = format!(
-        "The motion of the joint over all {} rows; growing angle is flexion. \
-         The speed ranges from {} to {} °/s.",
+        "The motion of the joint over all {} rows; growing angle is flexion. {speeds}",
         count(figures.rows),
-        rounded(low),
-        rounded(high)
     );
     if !encoder.is_empty() {
         legend.push(Key::new(Sign::Line("encoder"), "speed by the encoder"));
         caption.push_str(
-            " The encoder's estimate lies behind the true speed: what sticks out \
-             is quantisation and delay.",
+            " The wide line behind the true speed is the encoder's estimate: where it \
+             strays, that is quantisation and delay.",
         );
     }
     Ok(Some(Figure {

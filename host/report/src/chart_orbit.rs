@@ -24,7 +24,7 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         return Ok(None);
     }
     let mut charts = Vec::new();
-    let mut cycles_drawn = false;
+    let mut phases = Vec::new();
     let whole = (figures.whole.start, figures.whole.end);
     for Titled { title, window } in windows(figures) {
         let view = window.view();
@@ -34,56 +34,67 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         if is_whole || path.is_empty() {
             continue;
         }
-        cycles_drawn = true;
-        charts.push(chart(title, true, |area| draw_path(area, &path))?);
+        phases.extend(path.iter().map(|segment| segment.phase));
+        charts.push(chart(title, true, |area| draw_path(area, &path, true))?);
     }
-    // Next to one other chart, or below two.
-    let half = charts.len() < 2;
-    let range = figures.whole.overflowed();
-    if range {
+    // Next to one other chart; alone or below two it takes the full width.
+    let half = charts.len() == 1;
+    let mut ranges = None;
+    if figures.whole.overflowed() {
         // A few cycles a bin, as in the overview of the torque.
         let cycle = figures.hysteresis.travel() / figures.envelope.breaks().max(1) as f64;
-        let [flexing, extending] = figures.hysteresis.ranges(3.0 * cycle);
+        let both = figures.hysteresis.ranges(3.0 * cycle);
         charts.push(chart("The whole run".to_owned(), half, |area| {
-            draw_ranges(area, &flexing, &extending)
+            draw_ranges(area, &both, half)
         })?);
+        ranges = Some(both);
     } else {
         let path = figures.whole.orbit.segments(whole.0, whole.1);
         if !path.is_empty() {
-            cycles_drawn = true;
+            phases.extend(path.iter().map(|segment| segment.phase));
             charts.push(chart("The whole run".to_owned(), half, |area| {
-                draw_path(area, &path)
+                draw_path(area, &path, half)
             })?);
         }
     }
     if charts.is_empty() {
         return Ok(None);
     }
-    let mut legend = Vec::new();
-    let mut caption = String::new();
-    if cycles_drawn {
-        legend.push(Key::new(Sign::Line("torque"), "stick"));
-        legend.push(Key::new(Sign::Line("object"), "slip"));
-        caption.push_str(
-            "Where the object sticks, θ and φ grow by the same amount; where it slips, θ \
-             swings while the shaft moves on. ",
-        );
-    }
-    if range {
-        legend.push(Key::new(Sign::Line("object"), "flexing, mean and range"));
-        legend.push(Key::new(Sign::Line("shaft"), "extending, mean and range"));
-        caption.push_str(
-            "Over the whole run the bands span all that θ did at each angle, for each \
-             direction of motion; the lines are the means. The distance between the two \
-             directions is the friction.",
-        );
-    }
+    let (legend, caption) = words(&phases, ranges.as_ref());
     Ok(Some(Figure {
         title: "Imaginary object against shaft",
         legend,
         charts,
-        caption: caption.trim_end().to_owned(),
+        caption,
     }))
+}
+
+/// Legend and caption for what was drawn.
+fn words(phases: &[Phase], ranges: Option<&[Vec<Range>; 2]>) -> (Vec<Key>, String) {
+    let mut legend = Vec::new();
+    let mut parts = Vec::new();
+    if phases.contains(&Phase::Stick) {
+        legend.push(Key::new(Sign::Line("torque"), "stick"));
+        parts.push("Where the object sticks, θ and φ grow by the same amount.");
+    }
+    if phases.iter().any(|phase| *phase != Phase::Stick) {
+        legend.push(Key::new(Sign::Line("object"), "slip"));
+        parts.push("Where it slips, θ swings while the shaft moves on.");
+    }
+    if let Some([flexing, extending]) = ranges {
+        if !flexing.is_empty() {
+            legend.push(Key::new(Sign::Line("object"), "flexing, range"));
+        }
+        if !extending.is_empty() {
+            legend.push(Key::new(Sign::Line("shaft"), "extending, range"));
+        }
+        parts.push(
+            "Over the whole run the bands span all that θ did at each angle, for each \
+             direction of motion. Friction drags the object along, so that slips swing around \
+             +Tk/kr in flexion and −Tk/kr in extension, the wider the faster the shaft moves.",
+        );
+    }
+    (legend, parts.join(" "))
 }
 
 fn chart(
@@ -99,9 +110,9 @@ fn chart(
     })
 }
 
-fn axes(points: &[Point]) -> Panel<'static> {
+fn axes(points: &[Point], half: bool) -> Panel<'static> {
     Panel {
-        x: Axis::covering(points.iter().map(|p| p.x), 5),
+        x: Axis::covering(points.iter().map(|p| p.x), if half { 5 } else { 9 }),
         y: Axis::covering(points.iter().map(|p| p.y), 5),
         x_title: Some(X_TITLE),
         y_title: Y_TITLE,
@@ -114,7 +125,7 @@ fn shown(angle: f64, theta: f64) -> Point {
     Point::new(angle.to_degrees(), 1e3 * theta)
 }
 
-fn draw_path(area: &Area, path: &[Segment]) -> Drawn {
+fn draw_path(area: &Area, path: &[Segment], half: bool) -> Drawn {
     let lines: Vec<(Phase, Vec<Point>)> = path
         .iter()
         .map(|segment| {
@@ -126,7 +137,7 @@ fn draw_path(area: &Area, path: &[Segment]) -> Drawn {
         .iter()
         .flat_map(|(_, points)| points.clone())
         .collect();
-    let mut plot = axes(&all).on(area)?;
+    let mut plot = axes(&all, half).on(area)?;
     plot.grid()?;
     for slipping in [true, false] {
         for (phase, points) in &lines {
@@ -139,7 +150,7 @@ fn draw_path(area: &Area, path: &[Segment]) -> Drawn {
     Ok(())
 }
 
-fn draw_ranges(area: &Area, flexing: &[Range], extending: &[Range]) -> Drawn {
+fn draw_ranges(area: &Area, [flexing, extending]: &[Vec<Range>; 2], half: bool) -> Drawn {
     let edge = |ranges: &[Range], pick: fn(&Range) -> f64| -> Vec<Point> {
         ranges.iter().map(|r| shown(r.angle, pick(r))).collect()
     };
@@ -148,14 +159,15 @@ fn draw_ranges(area: &Area, flexing: &[Range], extending: &[Range]) -> Drawn {
         all.extend(edge(ranges, |r| r.low));
         all.extend(edge(ranges, |r| r.high));
     }
-    let mut plot = axes(&all).on(area)?;
+    let mut plot = axes(&all, half).on(area)?;
     plot.grid()?;
     let inks: [(&[Range], Ink); 2] = [(flexing, OBJECT), (extending, SHAFT)];
     for (ranges, ink) in inks {
         plot.veil(&edge(ranges, |r| r.low), &edge(ranges, |r| r.high), ink)?;
     }
     for (ranges, ink) in inks {
-        plot.line(&edge(ranges, |r| r.mean), ink, 8)?;
+        plot.line(&edge(ranges, |r| r.low), ink, 6)?;
+        plot.line(&edge(ranges, |r| r.high), ink, 6)?;
     }
     Ok(())
 }

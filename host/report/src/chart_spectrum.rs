@@ -14,11 +14,13 @@ use crate::thinned::Point;
 
 const LOWEST_HZ: f64 = 0.5;
 const HIGHEST_HZ: f64 = 500.0;
+/// Below this, lines belong to the motion rather than to the joint.
+const MOTION_HZ: f64 = 10.0;
 /// Bands in use for the vibration of joints; every second one is shaded.
 const BANDS: [(f64, f64, &str, bool); 3] = [
     (10.0, 50.0, "10–50 Hz", true),
     (50.0, 250.0, "50–250 Hz", false),
-    (250.0, 450.0, "250–450", true),
+    (250.0, 450.0, "250–450 Hz", true),
 ];
 const FREQUENCIES: [f64; 10] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0];
 
@@ -49,13 +51,9 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         .filter(|p| (LOWEST_HZ..=HIGHEST_HZ).contains(&p.x))
         .map(|p| Point::new(p.x, 1e3 * p.y))
         .collect();
-    let peak = points
-        .iter()
-        .copied()
-        .reduce(|best, p| if p.y > best.y { p } else { best });
-    let Some(peak) = peak.filter(|peak| peak.y > 1e-9) else {
+    if !points.iter().any(|p| p.y > 1e-9) {
         return nothing("Not drawn: the torque does not vibrate.".to_owned());
-    };
+    }
     let svg = svg(
         (960, 340),
         "Amplitude of the torque against frequency",
@@ -69,22 +67,38 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
             svg,
             half: false,
         }],
-        caption: caption(spectrum, peak),
+        caption: caption(spectrum, strongest_line(&points)),
     }))
 }
 
-fn caption(spectrum: &Spectrum, peak: Point) -> String {
+/// The highest peak above the frequencies of the motion. A slope is not a
+/// line: both neighbours are lower.
+fn strongest_line(points: &[Point]) -> Option<Point> {
+    points
+        .windows(3)
+        .filter(|w| w[1].x >= MOTION_HZ && w[1].y > w[0].y && w[1].y > w[2].y)
+        .map(|w| w[1])
+        .reduce(|best, p| if p.y > best.y { p } else { best })
+}
+
+fn caption(spectrum: &Spectrum, line: Option<Point>) -> String {
+    let strongest = line.map_or_else(String::new, |line| {
+        format!(
+            " Above {} Hz the strongest line is at {} Hz with {} mN·m.",
+            rounded(MOTION_HZ),
+            rounded(line.x),
+            rounded(line.y)
+        )
+    });
+    let windows = match spectrum.segments {
+        1 => "one Hann window".to_owned(),
+        n => format!("{} half-overlapping Hann windows", count(n)),
+    };
     format!(
-        "How strongly the torque vibrates at each frequency, as the amplitude of a sine. The \
-         strongest line is at {} Hz with {} mN·m. Regular cycles make a comb: the cycle \
-         frequency and its multiples. Welch's method over {}, resolution {} Hz; the marked \
-         bands are those in use for the vibration of joints.",
-        rounded(peak.x),
-        rounded(peak.y),
-        match spectrum.segments {
-            1 => "one Hann window".to_owned(),
-            n => format!("{} half-overlapping Hann windows", count(n)),
-        },
+        "How strongly the torque vibrates at each frequency, as the amplitude of a sine. \
+         Regular cycles make a comb: the cycle frequency and its multiples.{strongest} Welch's \
+         method over {windows}, resolution {} Hz; the marked bands are those in use for the \
+         vibration of joints.",
         rounded(spectrum.resolution_hz)
     )
 }
@@ -101,7 +115,13 @@ fn draw(area: &Area, points: &[Point]) -> Drawn {
         .first()
         .zip(points.last())
         .map_or((LOWEST_HZ, HIGHEST_HZ), |(a, b)| {
-            (LOWEST_HZ.max(a.x.min(1.0)), b.x.max(10.0))
+            // Up to the round number if the last bin just misses it.
+            let to = if b.x > 0.95 * HIGHEST_HZ {
+                HIGHEST_HZ
+            } else {
+                b.x
+            };
+            (LOWEST_HZ.max(a.x.min(1.0)), to.max(10.0))
         });
     let mut plot = Panel {
         x: Axis::logarithmic(from, to, &FREQUENCIES),

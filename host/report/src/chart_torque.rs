@@ -12,7 +12,7 @@ use crate::canvas::{Area, Drawn, Panel, Plot, px, svg};
 use crate::chart_motion::time_axis;
 use crate::collector::Figures;
 use crate::envelope::Bin;
-use crate::figure::{Chart, Figure, Key, PHASE_KEYS, Sign};
+use crate::figure::{Chart, Figure, Key, Sign, phase_keys};
 use crate::levels;
 use crate::number::{count, rounded};
 use crate::palette::{Ink, RANGE, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, TORQUE};
@@ -44,29 +44,20 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         return Ok(None);
     }
     let torque = figures.whole.torque.points();
-    let mean = {
-        let bins = figures.envelope.bins();
-        let means: Vec<f64> = bins
-            .iter()
-            .map(Bin::mean)
-            .filter(|m| m.is_finite())
-            .collect();
-        means.iter().sum::<f64>() / means.len() as f64
-    };
     let (low, high) = extent(torque.iter().map(|p| p.y));
     let breaks = figures.envelope.breaks();
     let numbers = format!(
-        "It ranges from {} to {} N·m with a mean of {} N·m; the object broke loose {}.",
+        "It ranges from {} to {} N·m with a mean of {} N·m; the object {}.",
         rounded(low),
         rounded(high),
-        rounded(mean),
+        rounded(figures.envelope.mean()),
         match breaks {
-            0 => "never".to_owned(),
-            1 => "once".to_owned(),
-            n => format!("{} times", count(n)),
+            0 => "never broke loose".to_owned(),
+            1 => "broke loose once".to_owned(),
+            n => format!("broke loose {} times", count(n)),
         }
     );
-    let label = "Torque on the hand over the whole run";
+    let label = "Torque of the joint over the whole run";
     let (svg, mut legend, caption) = if figures.whole.overflowed() {
         (
             svg((960, RANGE_HEIGHT + SHARE_HEIGHT), label, |area| {
@@ -76,7 +67,7 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
                 Key::new(Sign::Patch("range"), "range of the torque"),
                 Key::new(Sign::Line("torque"), "mean torque"),
             ],
-            "The torque that the hand feels; positive torque opposes flexion. There are too \
+            "The torque of the joint; positive torque opposes flexion. There are too \
              many cycles to draw each: the band spans the lowest and the highest torque of \
              each stretch of a few cycles, the line is its mean. The strip below shows how \
              the time of each stretch divides between sticking and slipping.",
@@ -87,13 +78,13 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
                 draw_line(area, figures, &torque)
             })?,
             vec![Key::new(Sign::Line("torque"), "torque")],
-            "The torque that the hand feels; positive torque opposes flexion. The background \
+            "The torque of the joint; positive torque opposes flexion. The background \
              shows the phase of the imaginary object: where it sticks the torque rises with \
              the angle like that of a spring, where it slips the torque stays at Tk.",
         )
     };
     if figures.has_object {
-        legend.extend(PHASE_KEYS);
+        legend.extend(phase_keys(figures.envelope.phases()));
     }
     Ok(Some(Figure {
         title: "Torque",
@@ -126,14 +117,16 @@ fn draw_line(area: &Area, figures: &Figures, torque: &[Point]) -> Drawn {
 
 fn draw_range(area: &Area, figures: &Figures, torque: &[Point]) -> Drawn {
     let bins = figures.envelope.cycle_bins();
+    // Two points a bin: steps, since extremes belong to the whole bin.
     let edge = |pick: fn(&Bin) -> f64| -> Vec<Point> {
         bins.iter()
             .filter(|bin| bin.low <= bin.high)
-            .map(|bin| Point::new(bin.middle(), pick(bin)))
+            .flat_map(|bin| [bin.start, bin.end].map(|time| Point::new(time, pick(bin))))
             .collect()
     };
-    let mean: Vec<Point> = edge(Bin::mean)
-        .into_iter()
+    let mean: Vec<Point> = bins
+        .iter()
+        .map(|bin| Point::new(bin.middle(), bin.mean()))
         .filter(|point| point.y.is_finite())
         .collect();
     let time = time_axis(torque);
@@ -172,7 +165,7 @@ fn draw_shares(plot: &mut Plot, bins: &[Bin]) -> Drawn {
     let mut ceiling = Vec::new();
     for bin in bins {
         if let Some(shares) = bin.shares() {
-            // Two points a bin: steps, since a share belongs to the whole bin.
+            // Steps, as above.
             for time in [bin.start, bin.end] {
                 floor.push(Point::new(time, 0.0));
                 over_stick.push(Point::new(time, 100.0 * shares.stick));

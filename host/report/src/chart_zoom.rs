@@ -9,7 +9,7 @@ use crate::canvas::{Area, Drawn, Panel, px, svg};
 use crate::chart_motion::degrees;
 use crate::chart_torque::shade;
 use crate::collector::Figures;
-use crate::figure::{Chart, Figure, Key, PHASE_KEYS, Sign, Titled};
+use crate::figure::{Chart, Figure, Key, Sign, Titled, phase_keys};
 use crate::levels;
 use crate::number::rounded;
 use crate::palette::{OBJECT, SHAFT, TORQUE};
@@ -85,7 +85,10 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
     if figures.has_object {
         legend.push(Key::new(Sign::Line("shaft"), "shaft velocity Ω"));
         legend.push(Key::new(Sign::Line("object"), "object velocity θ̇"));
-        legend.extend(PHASE_KEYS);
+        legend.extend(phase_keys(windows.iter().flat_map(|titled| {
+            let (from, to) = titled.window.view();
+            titled.window.spans(from, to).into_iter().map(|s| s.phase)
+        })));
     }
     let caption = if happened {
         legend.extend(MARK_KEYS.into_iter().filter(|key| {
@@ -95,18 +98,23 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
                     .iter()
                     .any(|w| w.window.count(EventKind::Reverse) > 0)
         }));
-        "Single stick-slip cycles. While the object sticks (dark) the torque climbs from the \
-         restart torque 2Tk−Ts to the static limit Ts; there it breaks, the torque falls to \
-         Tk, and the object swings freely on its spring until its velocity meets that of the \
-         shaft again. What the hand feels as crepitus are the climbs and falls; the time \
-         between them is set by the spring and the inertia. Edges of the shading are the \
-         times of the events, not of the rows."
+        "Single stick-slip cycles. While the object sticks (grey) the torque climbs from the \
+         restart torque to the static limit Ts; there it breaks, the torque falls to Tk, and \
+         the object swings freely on its spring until it sticks again: when its velocity meets \
+         that of the shaft, or, in the frozen convention, when it would meet that of a steady \
+         shaft. The climbs and falls are what is felt as crepitus; the time between them is \
+         set by spring and inertia. Edges of the shading are the times of the events, not of \
+         the rows."
     } else {
         "The object never broke loose: the torque stayed within ±Ts and the object moved with \
          the shaft all the time, like a spring."
     };
     Ok(Some(Figure {
-        title: "A zoom on a few cycles",
+        title: if happened {
+            "A zoom on a few cycles"
+        } else {
+            "Torque and velocities"
+        },
         legend,
         charts,
         caption: caption.to_owned(),
@@ -168,6 +176,7 @@ fn draw(area: &Area, figures: &Figures, window: &Window) -> Drawn {
     .on(&below)?;
     shade(&mut plot, &spans)?;
     plot.grid()?;
-    plot.line(&shaft, SHAFT, 10)?;
-    plot.line(&object, OBJECT, 7)
+    // Wider: while the object sticks it covers the shaft.
+    plot.line(&shaft, SHAFT, 16)?;
+    plot.line(&object, OBJECT, 6)
 }

@@ -164,7 +164,7 @@ mod tests {
         let figures = collector.into_inner().finish();
         assert!(figures.rows >= 5_000_000);
         assert!(figures.envelope.breaks() > 7000);
-        assert!(figures.envelope.bins().len() <= Envelope::CAPACITY + 1);
+        assert!(figures.envelope.bins.len() <= Envelope::CAPACITY + 1);
         for line in [&figures.angle, &figures.omega, &figures.encoder_omega] {
             assert!(line.stored() <= LINE);
         }

@@ -1,5 +1,7 @@
 //! A figure as the page shows it: heading, legend, charts, caption.
 
+use crepitus_model::{Phase, Sense};
+
 use crate::window::Window;
 
 /// See the module.
@@ -45,11 +47,26 @@ impl Key {
     }
 }
 
-pub(crate) const PHASE_KEYS: [Key; 3] = [
-    Key::new(Sign::Patch("slip-positive"), "slip +"),
-    Key::new(Sign::Patch("stick"), "stick"),
-    Key::new(Sign::Patch("slip-negative"), "slip −"),
-];
+/// The keys of the phases that occur.
+pub(crate) fn phase_keys(phases: impl IntoIterator<Item = Phase>) -> Vec<Key> {
+    let mut occurs = [false; 3];
+    for phase in phases {
+        match phase {
+            Phase::Slip(Sense::Positive) => occurs[0] = true,
+            Phase::Stick => occurs[1] = true,
+            Phase::Slip(Sense::Negative) => occurs[2] = true,
+        }
+    }
+    [
+        Key::new(Sign::Patch("slip-positive"), "slip +"),
+        Key::new(Sign::Patch("stick"), "stick"),
+        Key::new(Sign::Patch("slip-negative"), "slip −"),
+    ]
+    .into_iter()
+    .zip(occurs)
+    .filter_map(|(key, occurs)| occurs.then_some(key))
+    .collect()
+}
 
 /// A window with the words that say which one it is.
 pub(crate) struct Titled<'w> {

@@ -12,23 +12,22 @@ pub(crate) struct Range {
     pub(crate) angle: f64,
     pub(crate) low: f64,
     pub(crate) high: f64,
-    pub(crate) mean: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Cell {
+    from: f64,
+    to: f64,
     low: f64,
     high: f64,
-    sum: f64,
-    count: u64,
 }
 
 impl Cell {
     fn append(&mut self, other: &Self) {
+        self.from = self.from.min(other.from);
+        self.to = self.to.max(other.to);
         self.low = self.low.min(other.low);
         self.high = self.high.max(other.high);
-        self.sum += other.sum;
-        self.count += other.count;
     }
 }
 
@@ -81,10 +80,10 @@ impl Hysteresis {
             &mut self.extending
         };
         let cell = Cell {
+            from: angle,
+            to: angle,
             low: theta,
             high: theta,
-            sum: theta,
-            count: 1,
         };
         cells
             .entry(bin)
@@ -102,22 +101,27 @@ impl Hysteresis {
         self.travel
     }
 
-    /// The ranges in bins of at least `width` rad: those of growing angle,
-    /// then those of falling angle.
+    /// The ranges in bins of about `width` rad, narrower if that left only a
+    /// few: those of growing angle, then those of falling angle.
     pub(crate) fn ranges(&self, width: f64) -> [Vec<Range>; 2] {
+        const FEWEST_BINS: f64 = 30.0;
+        let bins = || self.flexing.keys().chain(self.extending.keys());
+        let span = match (bins().min(), bins().max()) {
+            (Some(low), Some(high)) => (*high as f64 - *low as f64) * self.width,
+            _ => 0.0,
+        };
+        let width = width.min(span / FEWEST_BINS);
         let factor = (width / self.width).ceil().clamp(1.0, 1e6);
         // In range by the clamp above.
         #[allow(clippy::cast_possible_truncation)]
         let factor_whole = factor as i64;
-        let width = self.width * factor;
         [&self.flexing, &self.extending].map(|cells| {
             widened(cells, factor_whole)
-                .iter()
-                .map(|(bin, cell)| Range {
-                    angle: (*bin as f64 + 0.5) * width,
+                .values()
+                .map(|cell| Range {
+                    angle: 0.5 * (cell.from + cell.to),
                     low: cell.low,
                     high: cell.high,
-                    mean: cell.sum / cell.count as f64,
                 })
                 .collect()
         })

@@ -86,7 +86,7 @@ pub(crate) fn draw(plot: &mut Plot, levels: &[Level], height: u32) -> Drawn {
         let middle = group.iter().map(|level| level.0).sum::<f64>() / group.len() as f64;
         let same = group.iter().all(|level| level.0.abs() == first.0.abs());
         let label = if same {
-            format!("{} {}", names.join(", "), rounded(first.0))
+            format!("{} = {}", names.join(" = "), rounded(first.0))
         } else {
             names.join(", ")
         };

@@ -15,16 +15,7 @@ const LAYOUT: &str = include_str!("page.css");
 /// # Errors
 /// [`ReportError::Draw`] if the drawing library refuses a chart.
 pub fn html(text: &Text, figures: &Figures) -> Result<String, ReportError> {
-    let drawn: Vec<Figure> = [
-        chart_motion::figure(figures)?,
-        chart_torque::figure(figures)?,
-        chart_zoom::figure(figures)?,
-        chart_orbit::figure(figures)?,
-        chart_spectrum::figure(figures)?,
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
+    let drawn = draw(figures)?;
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -46,7 +37,7 @@ pub fn html(text: &Text, figures: &Figures) -> Result<String, ReportError> {
                 (warnings(&text.warnings))
                 main {
                     @if drawn.is_empty() {
-                        p { "The run has no rows: there is nothing to draw." }
+                        p { "There are too few rows to draw anything." }
                     }
                     @for drawn in &drawn { (figure(drawn)) }
                     (left_out(figures))
@@ -59,6 +50,21 @@ pub fn html(text: &Text, figures: &Figures) -> Result<String, ReportError> {
         }
     };
     Ok(page.into_string())
+}
+
+fn draw(figures: &Figures) -> Result<Vec<Figure>, ReportError> {
+    // One row makes no line.
+    if figures.rows < 2 {
+        return Ok(Vec::new());
+    }
+    let drawn = [
+        chart_motion::figure(figures)?,
+        chart_torque::figure(figures)?,
+        chart_zoom::figure(figures)?,
+        chart_orbit::figure(figures)?,
+        chart_spectrum::figure(figures)?,
+    ];
+    Ok(drawn.into_iter().flatten().collect())
 }
 
 fn warnings(warnings: &[String]) -> Markup {

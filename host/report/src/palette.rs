@@ -51,7 +51,7 @@ pub(crate) const PAPER: Ink = ink("paper", (0xFF, 0xFF, 0xF1), "#ffffff", "#1518
 /// The torque.
 pub(crate) const TORQUE: Ink = ink("torque", (0x11, 0x11, 0x31), "#16161d", "#f4f4f6");
 /// The range of the torque in an overview.
-pub(crate) const RANGE: Ink = ink("range", (0x99, 0xAA, 0xB1), "#b4c3d1", "#43525f");
+pub(crate) const RANGE: Ink = ink("range", (0x99, 0xAA, 0xB1), "#c8d5e0", "#3d4b57");
 /// Torque levels.
 pub(crate) const LEVEL: Ink = ink("level", (0x55, 0x55, 0x51), "#454d54", "#b4bcc4");
 /// The shaft.
@@ -61,7 +61,7 @@ pub(crate) const OBJECT: Ink = ink("object", (0x01, 0x72, 0xB2), "#0072b2", "#56
 /// What the encoder says.
 pub(crate) const ENCODER: Ink = ink("encoder", (0xCC, 0x79, 0xA7), "#c07ba0", "#d79dbd");
 /// Stick.
-pub(crate) const STICK: Ink = ink("stick", (0xA9, 0xA9, 0xC1), "#a3abbd", "#6a7488");
+pub(crate) const STICK: Ink = ink("stick", (0xA9, 0xA9, 0xC1), "#bcc3d3", "#636d80");
 /// Slip towards growing angle.
 pub(crate) const SLIP_POSITIVE: Ink =
     ink("slip-positive", (0xD9, 0xEE, 0xF9), "#e3f2fb", "#12303f");
@@ -100,12 +100,12 @@ pub(crate) fn style() -> String {
         // Writing to a String cannot fail.
         let _ = write!(light, "--{name}:{};", ink.light);
         let _ = write!(dark, "--{name}:{};", ink.dark);
-        let _ = write!(
+        let _ = writeln!(
             rules,
             "svg [fill=\"#{r:02X}{g:02X}{b:02X}\"]{{fill:var(--{name})}}\
              svg [stroke=\"#{r:02X}{g:02X}{b:02X}\"]{{stroke:var(--{name})}}\
              .swatch-{name}{{background:var(--{name})}}\
-             .line-{name}{{border-color:var(--{name})}}\n"
+             .line-{name}{{border-color:var(--{name})}}"
         );
     }
     format!(

@@ -84,6 +84,7 @@ impl Window {
         if self.overflowed {
             return;
         }
+        self.omega.push(time, event.omega_rad_s);
         if event.kind != EventKind::Reverse {
             // At both ends of a stick the object moves with the shaft.
             self.theta_dot.push(time, event.omega_rad_s);

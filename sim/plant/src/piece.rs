@@ -62,15 +62,18 @@ pub enum Curve {
 
 impl Piece {
     /// The shaft at `time_s`, which may be either end.
+    #[inline]
     pub fn at(&self, time_s: f64) -> ShaftState {
         match self.curve {
             Curve::Polynomial(c) => {
                 let t = time_s - self.start_s;
+                let [c0, c1, c2, c3, c4, c5] = c;
                 ShaftState {
-                    phi_rad: derivative(&c, 0, t),
-                    omega_rad_s: derivative(&c, 1, t),
-                    omega_dot: derivative(&c, 2, t),
-                    omega_ddot: derivative(&c, 3, t),
+                    phi_rad: ((((c5 * t + c4) * t + c3) * t + c2) * t + c1) * t + c0,
+                    omega_rad_s: (((5.0 * c5 * t + 4.0 * c4) * t + 3.0 * c3) * t + 2.0 * c2) * t
+                        + c1,
+                    omega_dot: ((20.0 * c5 * t + 12.0 * c4) * t + 6.0 * c3) * t + 2.0 * c2,
+                    omega_ddot: (60.0 * c5 * t + 24.0 * c4) * t + 6.0 * c3,
                 }
             }
             Curve::Sine {
@@ -97,17 +100,16 @@ impl Piece {
                 let reach = (from_s - self.start_s)
                     .abs()
                     .max((to_s - self.start_s).abs());
-                let magnitudes = c.map(f64::abs);
-                let bound = |order| {
-                    // A derivative that is constant has a bound without limit.
-                    let at_zero = derivative(&magnitudes, order, 0.0);
-                    let grown = derivative(&magnitudes, order, reach);
-                    if grown.is_nan() { at_zero } else { grown }
-                };
+                let [_, _, c2, c3, c4, c5] = c.map(f64::abs);
+                // 0·∞ is nothing: a piece without end is at most parabolic.
+                let term = |c: f64, power: i32| if c == 0.0 { 0.0 } else { c * reach.powi(power) };
                 Bounds {
-                    omega_dot: bound(2),
-                    omega_ddot: bound(3),
-                    omega_dddot: bound(4),
+                    omega_dot: 2.0 * c2
+                        + 6.0 * term(c3, 1)
+                        + 12.0 * term(c4, 2)
+                        + 20.0 * term(c5, 3),
+                    omega_ddot: 6.0 * c3 + 24.0 * term(c4, 1) + 60.0 * term(c5, 2),
+                    omega_dddot: 24.0 * c4 + 120.0 * term(c5, 1),
                 }
             }
             Curve::Sine {
@@ -125,21 +127,6 @@ impl Piece {
             }
         }
     }
-}
-
-/// The `order`-th derivative of Σ cₖ·tᵏ at `t`, by Horner's scheme.
-fn derivative(c: &[f64; 6], order: usize, t: f64) -> f64 {
-    let mut sum = 0.0;
-    for (k, &coefficient) in c.iter().enumerate().skip(order).rev() {
-        let falling: f64 = (k + 1 - order..=k).map(small).product();
-        sum = sum * t + coefficient * falling;
-    }
-    sum
-}
-
-/// A number below six as f64.
-fn small(n: usize) -> f64 {
-    u8::try_from(n).map_or(f64::NAN, f64::from)
 }
 
 /// (sin 2πx, cos 2πx), exact at every quarter turn however large x is.

@@ -1,3 +1,29 @@
-//! scene (being written)
+//! # Scenes
+//!
+//! A scene file says what is simulated; this crate reads and checks it, runs
+//! it, and sums the run up.
+//!
+//! ```text
+//! scene file ── scene ──> Scene ── run ──> rows, events ──> Observer
+//!                                   └────> Summary
+//! ```
+//!
+//! | to find | look in |
+//! |---|---|
+//! | the form of a scene file, its checks and errors | [`scene`], [`error`] |
+//! | the loop, the totals, the summary | [`run`] |
+//! | columns, rows and events | [`trace`] |
+//! | the files of a run, written whole or not at all | [`output`] |
+//! | the event-driven solver without a step | [`reference`] |
+
+mod document;
+pub mod error;
+pub mod output;
 pub mod reference;
+pub mod run;
+pub mod scene;
 pub mod trace;
+
+pub use error::SceneError;
+pub use run::{Observer, RunError, Summary, run};
+pub use scene::{Overrides, Scene};

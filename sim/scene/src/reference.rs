@@ -195,6 +195,12 @@ impl<'a> Reference<'a> {
         sense.of_signed(self.settings.parameters.kinetic_torque_nm)
     }
 
+    /// Ts = Tk, as far as numbers tell.
+    fn touches(&self) -> bool {
+        let p = &self.settings.parameters;
+        p.static_torque_nm - p.kinetic_torque_nm <= SLACK * p.static_torque_nm
+    }
+
     fn limited(&self, torque_nm: f64) -> f64 {
         let limit = self.settings.parameters.static_torque_nm;
         torque_nm.min(limit).max(-limit)
@@ -316,7 +322,7 @@ impl<'a> Reference<'a> {
             from,
             to: Phase::Slip(sense),
             theta_rad: theta,
-            theta_dot_before_rad_s: v,
+            theta_dot_rad_s: v,
             omega_rad_s: omega,
             torque_before_nm: self.limited(torque_before_nm),
             torque_after_nm: self.slip_torque(sense),
@@ -335,12 +341,12 @@ impl<'a> Reference<'a> {
         } else {
             f64::INFINITY
         };
-        // Ts = Tk: the slip begins with a touch, which is no match.
-        let touching = drop <= SLACK * p.static_torque_nm;
+
         Slip {
             sense,
             start_s: self.time_s,
-            apart_s: if touching {
+            // A slip that begins with a touch does not end with it.
+            apart_s: if self.touches() {
                 self.time_s + self.oscillator.quarter_radian_s()
             } else {
                 self.time_s
@@ -356,7 +362,7 @@ impl<'a> Reference<'a> {
         let p = self.settings.parameters;
         let sense = slip.sense;
         let shaft = self.shaft();
-        let (x, v) = self.swing(slip, self.time_s);
+        let (x, _) = self.swing(slip, self.time_s);
         let theta = match (self.settings.convention, self.settings.restart) {
             (Convention::Frozen, Restart::Elastic) => {
                 sense.of_signed(p.restart_torque_nm() / p.stiffness_nm_per_rad)
@@ -378,11 +384,12 @@ impl<'a> Reference<'a> {
                 self.begin_slip(other, (theta, shaft.omega_rad_s), before, on_event);
                 return;
             }
-        } else if sense.of_signed(required) >= limit * (1.0 - SLACK)
+        } else if self.touches()
+            && sense.of_signed(required) >= limit * (1.0 - <f64 as Real>::TOUCH_SLACK)
             && sense.of_signed(shaft.omega_rad_s) > 0.0
         {
-            // Ts = Tk: the stick would break where it begins. A touch: the
-            // slip goes on, and nothing is felt or reported.
+            // The stick would break where it begins. A touch: the slip goes
+            // on, and nothing is felt or reported.
             self.state = State::Slip(self.slip(sense, theta, shaft.omega_rad_s));
             return;
         }
@@ -392,7 +399,7 @@ impl<'a> Reference<'a> {
             from: Phase::Slip(sense),
             to: Phase::Stick,
             theta_rad: theta,
-            theta_dot_before_rad_s: v,
+            theta_dot_rad_s: shaft.omega_rad_s,
             omega_rad_s: shaft.omega_rad_s,
             torque_before_nm: self.slip_torque(sense),
             torque_after_nm: self.limited(required),

@@ -4,6 +4,7 @@
 //! effect that is absent has no column. A row is a slice of numbers in the
 //! order of the columns; the phase column holds -1, 0 or +1.
 
+use crepitus_model::Event;
 pub use crepitus_model::EventKind;
 
 /// One column of a trace.
@@ -20,6 +21,8 @@ pub struct Column {
 pub enum ColumnKind {
     /// As a number that reads back to the same bits.
     Number,
+    /// As a whole number.
+    Whole,
     /// As `slip-`, `stick` or `slip+` for -1, 0 and +1.
     Phase,
 }
@@ -43,4 +46,20 @@ pub struct EventRecord {
     pub torque_before_nm: f64,
     /// Torque just after, N·m.
     pub torque_after_nm: f64,
+}
+
+impl EventRecord {
+    /// The record of `event` at `time_s` since the start of the run.
+    pub fn new(time_s: f64, event: &Event<f64>) -> Self {
+        Self {
+            time_s,
+            kind: event.kind,
+            from: event.from.sign(),
+            to: event.to.sign(),
+            theta_rad: event.theta_rad,
+            omega_rad_s: event.omega_rad_s,
+            torque_before_nm: event.torque_before_nm,
+            torque_after_nm: event.torque_after_nm,
+        }
+    }
 }

@@ -1,0 +1,189 @@
+//! A TOML document in which every value knows where it came from.
+//!
+//! The parser is the `toml` crate's; what this adds is that errors can name
+//! the line of the key they are about, and that values given on the command
+//! line (`--set PATH=VALUE`) take the place of those in the file.
+
+mod section;
+
+pub(crate) use section::{Range, Section};
+
+use crate::error::{Origin, SceneError};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use toml::de::{DeTable, DeValue};
+
+/// A value and its origin.
+#[derive(Clone, Debug)]
+pub(crate) struct Node {
+    pub(crate) origin: Origin,
+    pub(crate) value: Value,
+}
+
+/// What TOML can hold, as far as scenes use it.
+#[derive(Clone, Debug)]
+pub(crate) enum Value {
+    Text(String),
+    /// A whole or a decimal number; scenes do not tell them apart.
+    Number(f64),
+    List(Vec<Node>),
+    Table(BTreeMap<String, Node>),
+    /// Something that no key of a scene takes: its type's name.
+    Other(&'static str),
+}
+
+/// A scene file's text as a tree.
+#[derive(Clone, Debug)]
+pub(crate) struct Document {
+    file: PathBuf,
+    root: BTreeMap<String, Node>,
+}
+
+impl Document {
+    /// Parses `text`, which stands in `file`.
+    pub(crate) fn parse(file: &Path, text: &str) -> Result<Self, SceneError> {
+        let lines = Lines::of(text);
+        let error = |span: Option<std::ops::Range<usize>>, message: &str| SceneError {
+            file: file.to_owned(),
+            origin: span.map(|s| Origin::Line(lines.line(s.start))),
+            key: String::new(),
+            message: format!("this is not valid TOML: {}", message.trim_end()),
+        };
+        let table = DeTable::parse(text).map_err(|e| error(e.span(), e.message()))?;
+        Ok(Self {
+            file: file.to_owned(),
+            root: table_of(table.get_ref(), &|start| Origin::Line(lines.line(start))),
+        })
+    }
+
+    /// Puts `value` (TOML, or plain text where that is no TOML) at the dotted
+    /// `path`, whether there was something or not.
+    pub(crate) fn set(&mut self, flag: &str, path: &str, value: &str) -> Result<(), SceneError> {
+        let origin = Origin::Override(flag.to_owned());
+        let refuse = |message: String| SceneError {
+            file: self.file.clone(),
+            origin: Some(origin.clone()),
+            key: path.to_owned(),
+            message,
+        };
+        let parsed = format!("value = {value}");
+        let value = match DeTable::parse(&parsed) {
+            Ok(table) => table
+                .get_ref()
+                .get("value")
+                .map(|v| value_of(v.get_ref(), &|_| origin.clone())),
+            Err(_) => Some(Value::Text(value.to_owned())),
+        };
+        let value = value.ok_or_else(|| refuse("this is not a value".to_owned()))?;
+        let mut names = path.split('.').peekable();
+        let mut table = &mut self.root;
+        while let Some(name) = names.next() {
+            if name.is_empty() {
+                return Err(refuse(
+                    "a path is names with points between them, such as solver.step_s".to_owned(),
+                ));
+            }
+            if names.peek().is_none() {
+                let node = Node {
+                    origin: origin.clone(),
+                    value,
+                };
+                table.insert(name.to_owned(), node);
+                return Ok(());
+            }
+            let node = table.entry(name.to_owned()).or_insert_with(|| Node {
+                origin: origin.clone(),
+                value: Value::Table(BTreeMap::new()),
+            });
+            let Value::Table(inner) = &mut node.value else {
+                return Err(SceneError {
+                    file: self.file.clone(),
+                    origin: Some(origin),
+                    key: path.to_owned(),
+                    message: format!("`{name}` is not a table that could hold further names"),
+                });
+            };
+            table = inner;
+        }
+        Ok(())
+    }
+
+    /// Takes the value at the dotted `path` away, if there is one.
+    pub(crate) fn remove(&mut self, path: &str) {
+        let mut table = &mut self.root;
+        let mut names = path.split('.').peekable();
+        while let Some(name) = names.next() {
+            if names.peek().is_none() {
+                table.remove(name);
+                return;
+            }
+            match table.get_mut(name).map(|n| &mut n.value) {
+                Some(Value::Table(inner)) => table = inner,
+                _ => return,
+            }
+        }
+    }
+
+    /// The whole document as a section to read keys from.
+    pub(crate) fn section(&self) -> Section<'_> {
+        Section::new(&self.file, String::new(), None, &self.root)
+    }
+}
+
+/// Line numbers of byte positions.
+struct Lines {
+    starts: Vec<usize>,
+}
+
+impl Lines {
+    fn of(text: &str) -> Self {
+        let breaks = text.match_indices('\n').map(|(at, _)| at + 1);
+        Self {
+            starts: std::iter::once(0).chain(breaks).collect(),
+        }
+    }
+
+    /// The line of a byte, from 1.
+    fn line(&self, byte: usize) -> usize {
+        self.starts.partition_point(|&start| start <= byte)
+    }
+}
+
+fn table_of(table: &DeTable<'_>, origin: &dyn Fn(usize) -> Origin) -> BTreeMap<String, Node> {
+    table
+        .iter()
+        .map(|(key, value)| {
+            let node = Node {
+                origin: origin(key.span().start),
+                value: value_of(value.get_ref(), origin),
+            };
+            (key.get_ref().to_string(), node)
+        })
+        .collect()
+}
+
+fn value_of(value: &DeValue<'_>, origin: &dyn Fn(usize) -> Origin) -> Value {
+    match value {
+        DeValue::String(s) => Value::Text(s.to_string()),
+        DeValue::Integer(i) => match i64::from_str_radix(i.as_str(), i.radix()) {
+            #[expect(clippy::cast_precision_loss, reason = "nearest is meant")]
+            Ok(n) => Value::Number(n as f64),
+            Err(_) => Value::Other("integer beyond 64 bits"),
+        },
+        DeValue::Float(x) => match x.as_str().parse() {
+            Ok(x) => Value::Number(x),
+            Err(_) => Value::Other("unreadable number"),
+        },
+        DeValue::Array(items) => Value::List(
+            items
+                .iter()
+                .map(|item| Node {
+                    origin: origin(item.span().start),
+                    value: value_of(item.get_ref(), origin),
+                })
+                .collect(),
+        ),
+        DeValue::Table(table) => Value::Table(table_of(table, origin)),
+        other => Value::Other(other.type_str()),
+    }
+}

@@ -1,0 +1,44 @@
+//! Why a scene cannot be read, said so that a person can mend it.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// Where something in a scene comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// A line of the scene file, counted from 1.
+    Line(usize),
+    /// An override on the command line, as it was written.
+    Override(String),
+}
+
+/// A scene that cannot be read: where, which key, what is wrong and what is
+/// allowed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneError {
+    /// The scene file.
+    pub file: PathBuf,
+    /// Where in it, if at one place.
+    pub origin: Option<Origin>,
+    /// The key with its path, such as `solver.step_s`; empty for the whole
+    /// file.
+    pub key: String,
+    /// What is wrong and what is allowed.
+    pub message: String,
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.origin {
+            Some(Origin::Line(line)) => write!(f, "{}, line {line}: ", self.file.display())?,
+            Some(Origin::Override(text)) => write!(f, "{}, {text}: ", self.file.display())?,
+            None => write!(f, "{}: ", self.file.display())?,
+        }
+        if !self.key.is_empty() {
+            write!(f, "`{}`: ", self.key)?;
+        }
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for SceneError {}

@@ -1,0 +1,190 @@
+//! Runs a scene.
+//!
+//! The scene decides once which types do the work (precision, convention,
+//! solver, sensor); the loop then contains nothing of what the scene leaves
+//! out. What is observed on the way goes to an [`Observer`]; nothing of a run
+//! is kept in memory but its totals.
+
+mod energy;
+mod event_driven;
+mod probe;
+mod sensor;
+mod stepping;
+mod summary;
+mod tally;
+
+pub use summary::{
+    CycleSummary, EffectSummary, EnergySummary, EventCounts, ParameterValue, SUMMARY_VERSION,
+    Summary, TorqueSummary,
+};
+
+use crate::scene::{Precision, Scene, SolverChoice};
+use crate::trace::{Column, ColumnKind, EventRecord};
+use crepitus_model::SettingsError;
+use std::convert::Infallible;
+use std::time::Instant;
+
+/// Sees a run go by.
+pub trait Observer {
+    /// Why it cannot go on.
+    type Error;
+
+    /// Whether rows of the trace are wanted at all.
+    const WANTS_ROWS: bool = true;
+
+    /// A row of the trace, in the order of [`columns`].
+    fn row(&mut self, values: &[f64]) -> Result<(), Self::Error>;
+
+    /// An event; it comes before the first row that is not before it.
+    fn event(&mut self, event: &EventRecord) -> Result<(), Self::Error>;
+
+    /// Called now and then with the time reached.
+    fn progress(&mut self, time_s: f64) -> Result<(), Self::Error>;
+}
+
+/// Sees nothing: a run for its totals.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Blind;
+
+impl Observer for Blind {
+    type Error = Infallible;
+    const WANTS_ROWS: bool = false;
+
+    fn row(&mut self, _: &[f64]) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn event(&mut self, _: &EventRecord) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+/// Why a run ended early.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError<E> {
+    /// The observer could not go on.
+    #[error(transparent)]
+    Observer(E),
+    /// Settings that do not go together.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+}
+
+/// The totals of a run before they are put into words.
+pub(crate) struct Totals {
+    steps: u64,
+    end_s: f64,
+    tally: Option<tally::Tally>,
+    fastest_rad_s: f64,
+}
+
+/// The columns that the trace of a scene has.
+pub fn columns(scene: &Scene) -> Vec<Column> {
+    let number = |name| Column {
+        name,
+        kind: ColumnKind::Number,
+    };
+    let mut columns = ["t_s", "angle_rad", "omega_rad_s"].map(number).to_vec();
+    if scene.crepitus.is_some() {
+        columns.push(Column {
+            name: "phase",
+            kind: ColumnKind::Phase,
+        });
+        columns.extend(["theta_rad", "theta_dot_rad_s", "torque_nm"].map(number));
+    }
+    if scene.encoder.is_some() {
+        columns.extend(<sensor::Encoded<f64> as sensor::Sensor<f64>>::COLUMNS);
+    }
+    columns
+}
+
+/// How many rows the trace of a scene has.
+pub fn rows(scene: &Scene) -> u64 {
+    let (steps, every) = steps(scene);
+    steps / every + 1
+}
+
+/// Runs `scene` to its end.
+///
+/// # Errors
+/// What the observer returns, or settings that cannot work together.
+pub fn run<O: Observer>(scene: &Scene, observer: &mut O) -> Result<Summary, RunError<O::Error>> {
+    let begun = Instant::now();
+    let totals = simulate(scene, observer)?;
+    let wall_s = begun.elapsed().as_secs_f64();
+    let costs = probe::costs(scene);
+    Ok(summary::summarise(scene, &totals, wall_s, &costs))
+}
+
+/// Runs `scene` without timing anything.
+fn simulate<O: Observer>(scene: &Scene, observer: &mut O) -> Result<Totals, RunError<O::Error>> {
+    match scene.solver {
+        SolverChoice::Reference => event_driven::simulate(scene, observer),
+        SolverChoice::Ladder {
+            precision: Precision::F32,
+            ..
+        } => stepping::simulate::<f32, O>(scene, observer),
+        SolverChoice::Ladder {
+            precision: Precision::F64,
+            ..
+        } => stepping::simulate::<f64, O>(scene, observer),
+    }
+}
+
+/// Number of steps, and of steps between trace rows.
+fn steps(scene: &Scene) -> (u64, u64) {
+    let step_s = step_s(scene);
+    // A duration written in decimals may miss a whole number by rounding.
+    let steps = whole(scene.duration_s / step_s * (1.0 + 1e-12) + 1e-9);
+    let every = whole((scene.trace_step_s / step_s).round()).max(1);
+    (steps.max(1), every)
+}
+
+/// The step of the solver; of `reference`, the time between rows.
+fn step_s(scene: &Scene) -> f64 {
+    match scene.solver {
+        SolverChoice::Reference => scene.trace_step_s,
+        SolverChoice::Ladder { step_s, .. } => step_s,
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "non-negative, and below 2^53 by the scene's checks"
+)]
+fn whole(x: f64) -> u64 {
+    x as u64
+}
+
+/// The time of step `n`: by division where the rate is a whole number, so that
+/// 20,000 steps of 50 µs are one second to the bit.
+struct Clock {
+    step_s: f64,
+    rate_hz: Option<f64>,
+}
+
+impl Clock {
+    fn new(step_s: f64) -> Self {
+        let rate = 1.0 / step_s;
+        let whole = (rate - rate.round()).abs() <= 1e-9 * rate;
+        Self {
+            step_s,
+            rate_hz: whole.then_some(rate.round()),
+        }
+    }
+
+    #[inline]
+    #[expect(clippy::cast_precision_loss, reason = "below 2^53")]
+    fn time_s(&self, n: u64) -> f64 {
+        match self.rate_hz {
+            Some(rate) => n as f64 / rate,
+            None => n as f64 * self.step_s,
+        }
+    }
+}

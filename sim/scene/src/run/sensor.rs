@@ -1,0 +1,106 @@
+//! What the joint is told of the shaft: the truth, or what an encoder sees.
+
+use crate::trace::{Column, ColumnKind};
+use crepitus_model::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::{Real, SettingsError, ShaftStep};
+use crepitus_plant::ShaftState;
+use crepitus_plant::encoder::Encoder;
+
+/// Turns the true motion over a step into the joint's input.
+///
+/// Implementations are chosen once per run; an absent sensor is the type
+/// [`Ideal`], which has no state, no column and no test in the step.
+pub(super) trait Sensor<F: Real> {
+    /// Its columns in the trace.
+    const COLUMNS: &'static [Column];
+
+    /// Takes in one step. Velocities are those just inside the step.
+    fn see(&mut self, from: &ShaftState, to: &ShaftState) -> ShaftStep<F>;
+
+    /// Writes its columns.
+    fn write(&self, row: &mut Vec<f64>);
+}
+
+/// The joint knows the true motion.
+pub(super) struct Ideal;
+
+impl<F: Real> Sensor<F> for Ideal {
+    const COLUMNS: &'static [Column] = &[];
+
+    #[inline]
+    fn see(&mut self, from: &ShaftState, to: &ShaftState) -> ShaftStep<F> {
+        ShaftStep {
+            delta_phi_rad: F::from_f64(to.phi_rad - from.phi_rad),
+            omega_start_rad_s: F::from_f64(from.omega_rad_s),
+            omega_end_rad_s: F::from_f64(to.omega_rad_s),
+        }
+    }
+
+    fn write(&self, _: &mut Vec<f64>) {}
+}
+
+/// The joint knows the counts of an encoder at the motor.
+pub(super) struct Encoded<F> {
+    encoder: Encoder,
+    reader: EncoderReader<F>,
+    first_count: i32,
+    first_rad: f64,
+    count: i32,
+    omega_rad_s: F,
+}
+
+impl<F: Real> Encoded<F> {
+    /// An encoder on a shaft that has moved like this for a while: the
+    /// velocity estimate has settled.
+    pub(super) fn new(
+        settings: &EncoderSettings,
+        step_s: f64,
+        shaft: &ShaftState,
+    ) -> Result<Self, SettingsError> {
+        let encoder = Encoder::new(settings);
+        let count = encoder.count(shaft.phi_rad);
+        let omega_rad_s = F::from_f64(shaft.omega_rad_s);
+        Ok(Self {
+            reader: EncoderReader::new(settings, step_s, count, omega_rad_s)?,
+            first_count: count,
+            first_rad: (shaft.phi_rad / encoder.rad_per_count()).floor() * encoder.rad_per_count(),
+            encoder,
+            count,
+            omega_rad_s,
+        })
+    }
+}
+
+impl<F: Real> Sensor<F> for Encoded<F> {
+    const COLUMNS: &'static [Column] = &[
+        Column {
+            name: "encoder_count",
+            kind: ColumnKind::Whole,
+        },
+        Column {
+            name: "encoder_angle_rad",
+            kind: ColumnKind::Number,
+        },
+        Column {
+            name: "encoder_omega_rad_s",
+            kind: ColumnKind::Number,
+        },
+    ];
+
+    #[inline]
+    fn see(&mut self, _: &ShaftState, to: &ShaftState) -> ShaftStep<F> {
+        self.count = self.encoder.count(to.phi_rad);
+        let step = self.reader.read(self.count);
+        self.omega_rad_s = step.omega_end_rad_s;
+        step
+    }
+
+    fn write(&self, row: &mut Vec<f64>) {
+        let moved = f64::from(self.count.wrapping_sub(self.first_count));
+        row.extend([
+            f64::from(self.count),
+            self.first_rad + moved * self.encoder.rad_per_count(),
+            self.omega_rad_s.to_f64(),
+        ]);
+    }
+}

@@ -1,0 +1,324 @@
+//! A run in fixed steps: true motion → sensor → joint.
+
+use super::sensor::{Encoded, Ideal, Sensor};
+use super::tally::{StickEnd, Tally};
+use super::{Clock, Observer, RunError, Totals, steps};
+use crate::scene::{Scene, SolverChoice};
+use crate::trace::EventRecord;
+use crepitus_model::solver::{JointVisitor, with_joint};
+use crepitus_model::{Event, Phase, Real, Settings, ShaftStep, StickSlip};
+use crepitus_plant::{Motion, Piece, ShaftState};
+
+/// How many steps go by between two reports of progress.
+const PROGRESS_STEPS: u64 = 1 << 16;
+
+/// Chooses the types that the scene calls for, and runs.
+pub(super) fn simulate<F: Real, O: Observer>(
+    scene: &Scene,
+    observer: &mut O,
+) -> Result<Totals, RunError<O::Error>> {
+    let SolverChoice::Ladder { solver, step_s, .. } = scene.solver else {
+        unreachable!("the event-driven solver does not step");
+    };
+    let shaft = scene.motion.at(0.0);
+    match (&scene.crepitus, &scene.encoder) {
+        (None, None) => bare::<F, _, _>(scene, observer, Ideal),
+        (None, Some(encoder)) => {
+            bare::<F, _, _>(scene, observer, Encoded::new(encoder, step_s, &shaft)?)
+        }
+        (Some(crepitus), None) => with_joint::<F, _>(
+            &crepitus.settings,
+            solver,
+            step_s,
+            F::from_f64(shaft.omega_rad_s),
+            Run {
+                scene,
+                observer,
+                settings: *crepitus.settings,
+                sensor: Ideal,
+            },
+        )?,
+        (Some(crepitus), Some(encoder)) => with_joint::<F, _>(
+            &crepitus.settings,
+            solver,
+            step_s,
+            F::from_f64(shaft.omega_rad_s),
+            Run {
+                scene,
+                observer,
+                settings: *crepitus.settings,
+                sensor: Encoded::new(encoder, step_s, &shaft)?,
+            },
+        )?,
+    }
+}
+
+/// The true motion, step by step.
+struct Walk<'a> {
+    motion: &'a Motion,
+    piece: Piece,
+    clock: Clock,
+    n: u64,
+    time_s: f64,
+    /// The shaft at the last step's end, as the next step starts.
+    now: ShaftState,
+}
+
+impl<'a> Walk<'a> {
+    fn new(motion: &'a Motion, step_s: f64) -> Self {
+        let piece = motion.piece(0.0);
+        Self {
+            motion,
+            piece,
+            clock: Clock::new(step_s),
+            n: 0,
+            time_s: 0.0,
+            now: piece.at(0.0),
+        }
+    }
+
+    /// The shaft at both ends of the next step, just inside it.
+    #[inline]
+    fn step(&mut self) -> (ShaftState, ShaftState) {
+        self.n += 1;
+        self.time_s = self.clock.time_s(self.n);
+        let from = self.now;
+        while self.piece.end_s < self.time_s {
+            self.piece = self.motion.piece(self.piece.end_s);
+        }
+        let to = self.piece.at(self.time_s);
+        self.now = to;
+        if self.piece.end_s == self.time_s {
+            self.piece = self.motion.piece(self.time_s);
+            // Without a jump both sides are one velocity, to the bit.
+            if self.piece.jump {
+                self.now = self.piece.at(self.time_s);
+            }
+        }
+        (from, to)
+    }
+}
+
+/// A scene without a joint: the motion, and perhaps its sensor.
+fn bare<F: Real, O: Observer, S: Sensor<F>>(
+    scene: &Scene,
+    observer: &mut O,
+    mut sensor: S,
+) -> Result<Totals, RunError<O::Error>> {
+    let (steps, every) = steps(scene);
+    let mut walk = Walk::new(&scene.motion, super::step_s(scene));
+    let mut row = Vec::new();
+    let mut fastest_rad_s = walk.now.omega_rad_s.abs();
+    let mut until_row = 1;
+    loop {
+        until_row -= 1;
+        if O::WANTS_ROWS && until_row == 0 {
+            until_row = every;
+            row.clear();
+            row.extend([walk.time_s, walk.now.phi_rad, walk.now.omega_rad_s]);
+            sensor.write(&mut row);
+            observer.row(&row).map_err(RunError::Observer)?;
+        }
+        if walk.n.is_multiple_of(PROGRESS_STEPS) {
+            observer.progress(walk.time_s).map_err(RunError::Observer)?;
+        }
+        if walk.n == steps {
+            break;
+        }
+        let (from, to) = walk.step();
+        fastest_rad_s = fastest_rad_s.max(to.omega_rad_s.abs());
+        std::hint::black_box(sensor.see(&from, &to));
+    }
+    Ok(Totals {
+        steps,
+        end_s: walk.time_s,
+        tally: None,
+        fastest_rad_s,
+    })
+}
+
+/// A scene with a joint.
+struct Run<'a, O, S> {
+    scene: &'a Scene,
+    observer: &'a mut O,
+    settings: Settings,
+    sensor: S,
+}
+
+impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
+    type Output = Result<Totals, RunError<O::Error>>;
+
+    fn visit<J: StickSlip<F>>(self, mut joint: J) -> Self::Output {
+        let Self {
+            scene,
+            observer,
+            settings,
+            mut sensor,
+        } = self;
+        let (steps, every) = steps(scene);
+        let step_s = super::step_s(scene);
+        let mut walk = Walk::new(&scene.motion, step_s);
+        let mut books = Books::new(settings, step_s, walk.now.omega_rad_s);
+        let mut row = Vec::new();
+        let mut fastest_rad_s = walk.now.omega_rad_s.abs();
+        books.tally.shown(joint.torque_nm().to_f64());
+        let mut until_row = 1;
+        loop {
+            until_row -= 1;
+            if O::WANTS_ROWS && until_row == 0 {
+                until_row = every;
+                row.clear();
+                row.extend([
+                    walk.time_s,
+                    walk.now.phi_rad,
+                    walk.now.omega_rad_s,
+                    f64::from(joint.phase().sign()),
+                    joint.theta_rad().to_f64(),
+                    joint.theta_dot_rad_s().to_f64(),
+                    joint.torque_nm().to_f64(),
+                ]);
+                sensor.write(&mut row);
+                observer.row(&row).map_err(RunError::Observer)?;
+            }
+            if walk.n.is_multiple_of(PROGRESS_STEPS) {
+                observer.progress(walk.time_s).map_err(RunError::Observer)?;
+            }
+            if walk.n == steps {
+                break;
+            }
+            let start_s = walk.time_s;
+            let (from, to) = walk.step();
+            fastest_rad_s = fastest_rad_s.max(to.omega_rad_s.abs());
+            let seen = sensor.see(&from, &to);
+            let mut result = Ok(());
+            joint.step(&seen, |event| {
+                let record = books.event(start_s, &seen, &event);
+                if result.is_ok() {
+                    result = observer.event(&record);
+                }
+            });
+            result.map_err(RunError::Observer)?;
+            books.end_step(&seen, joint.phase(), || {
+                (joint.theta_rad(), joint.torque_nm())
+            });
+        }
+        let (theta, theta_dot) = (joint.theta_rad(), joint.theta_dot_rad_s());
+        books.tally.finish(
+            walk.time_s,
+            books.phi_rad,
+            theta.to_f64(),
+            theta_dot.to_f64(),
+        );
+        Ok(Totals {
+            steps,
+            end_s: walk.time_s,
+            tally: Some(books.tally),
+            fastest_rad_s,
+        })
+    }
+}
+
+/// Keeps the tally of a stepping run: where in the step it is, and what the
+/// joint has seen of the shaft.
+struct Books {
+    tally: Tally,
+    step_s: f64,
+    /// Angle of the shaft as the joint has seen it, at the start of the step.
+    phi_rad: f64,
+    /// The last point of the step that is booked, as a fraction of it.
+    booked: f64,
+    stick: StickEnd,
+}
+
+impl Books {
+    fn new(settings: Settings, step_s: f64, omega_rad_s: f64) -> Self {
+        Self {
+            tally: Tally::new(settings, omega_rad_s),
+            step_s,
+            phi_rad: 0.0,
+            booked: 0.0,
+            stick: StickEnd {
+                theta_rad: 0.0,
+                omega_rad_s,
+                omega_dot: 0.0,
+            },
+        }
+    }
+
+    /// Books the events of a step in the order of time.
+    fn event<F: Real>(
+        &mut self,
+        start_s: f64,
+        seen: &ShaftStep<F>,
+        event: &Event<F>,
+    ) -> EventRecord {
+        let event = event.to_f64();
+        let time_s = start_s + event.fraction * self.step_s;
+        let travel = travel(seen, event.fraction, self.step_s);
+        if event.from == Phase::Stick {
+            self.book_stick(seen, event.fraction, event.theta_rad);
+        }
+        self.tally.event(time_s, self.phi_rad + travel, &event);
+        self.booked = event.fraction;
+        self.stick = self.stick_end(seen, event.fraction, event.theta_rad);
+        EventRecord::new(time_s, &event)
+    }
+
+    /// Books the rest of a step.
+    #[inline]
+    fn end_step<F: Real>(
+        &mut self,
+        seen: &ShaftStep<F>,
+        phase: Phase,
+        theta_and_torque: impl FnOnce() -> (F, F),
+    ) {
+        if phase == Phase::Stick {
+            let (theta, torque) = theta_and_torque();
+            self.tally.shown(torque.to_f64());
+            self.book_stick(seen, 1.0, theta.to_f64());
+        }
+        self.booked = 0.0;
+        self.phi_rad += seen.delta_phi_rad.to_f64();
+    }
+
+    /// Books the stick from the last booked point to `fraction`.
+    fn book_stick<F: Real>(&mut self, seen: &ShaftStep<F>, fraction: f64, theta_rad: f64) {
+        let end = self.stick_end(seen, fraction, theta_rad);
+        let delta_phi =
+            travel(seen, fraction, self.step_s) - travel(seen, self.booked, self.step_s);
+        let start = StickEnd {
+            omega_dot: end.omega_dot,
+            ..self.stick
+        };
+        self.tally.stick(
+            (fraction - self.booked) * self.step_s,
+            delta_phi,
+            start,
+            end,
+        );
+        self.stick = end;
+    }
+
+    /// The stick at `fraction` of the step.
+    fn stick_end<F: Real>(&self, seen: &ShaftStep<F>, fraction: f64, theta_rad: f64) -> StickEnd {
+        let (a, b) = (
+            seen.omega_start_rad_s.to_f64(),
+            seen.omega_end_rad_s.to_f64(),
+        );
+        StickEnd {
+            theta_rad,
+            omega_rad_s: a + fraction * (b - a),
+            omega_dot: (b - a) / self.step_s,
+        }
+    }
+}
+
+/// Shaft angle travelled after `fraction` of a step, rad.
+fn travel<F: Real>(seen: &ShaftStep<F>, fraction: f64, step_s: f64) -> f64 {
+    ShaftStep {
+        delta_phi_rad: seen.delta_phi_rad.to_f64(),
+        omega_start_rad_s: seen.omega_start_rad_s.to_f64(),
+        omega_end_rad_s: seen.omega_end_rad_s.to_f64(),
+    }
+    .travel(fraction, step_s)
+}

@@ -1,0 +1,304 @@
+//! The summary of a run: what `summary.json` holds.
+
+use super::probe::Cost;
+use super::tally::Tally;
+use super::{Totals, step_s};
+use crate::scene::{Crepitus, EFFECTS, SCENE_VERSION, Scene, SolverChoice};
+use crepitus_model::Parameters;
+use crepitus_model::encoder::ENCODER_PARAMETERS;
+use crepitus_model::parameters::PARAMETERS;
+use serde::Serialize;
+
+/// Version of the form of `summary.json`.
+pub const SUMMARY_VERSION: u32 = 1;
+
+/// A run in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Version of this form.
+    pub summary_version: u32,
+    /// Version of the program.
+    pub crepitus_version: &'static str,
+    /// Version of the scene file's form.
+    pub scene_version: u32,
+    /// The scene file.
+    pub scene: String,
+    /// Its title.
+    pub title: String,
+    /// Kind of motion.
+    pub motion: &'static str,
+    /// Seed of everything random, if the scene gives one.
+    pub seed: Option<u64>,
+    /// Name of the solver.
+    pub solver: &'static str,
+    /// Its step, s; none for `reference`.
+    pub step_s: Option<f64>,
+    /// Its precision.
+    pub precision: &'static str,
+    /// Convention of the stick-slip object, if there is one.
+    pub convention: Option<&'static str>,
+    /// Its restart rule.
+    pub restart: Option<&'static str>,
+    /// Its preset, if it started from one.
+    pub preset: Option<&'static str>,
+    /// The effects that ran.
+    pub effects: Vec<EffectSummary>,
+    /// Simulated time, s.
+    pub simulated_s: f64,
+    /// Steps taken; rows of `reference`.
+    pub steps: u64,
+    /// Highest speed of the shaft, rad/s.
+    pub fastest_rad_s: f64,
+    /// Events by kind.
+    pub events: Option<EventCounts>,
+    /// Stick-slip cycles.
+    pub cycles: Option<CycleSummary>,
+    /// The torque shown.
+    pub torque: Option<TorqueSummary>,
+    /// The energy balance.
+    pub energy: Option<EnergySummary>,
+    /// Time that the run took, with its outputs, s.
+    pub wall_s: f64,
+    /// Simulated time over that.
+    pub real_time_factor: f64,
+    /// What was odd.
+    pub warnings: Vec<String>,
+}
+
+/// One effect that ran.
+#[derive(Clone, Debug, Serialize)]
+pub struct EffectSummary {
+    /// Its name in scene files.
+    pub name: &'static str,
+    /// Its state variables.
+    pub states: &'static [&'static str],
+    /// Time that it cost, ns per step; none for `reference`.
+    pub ns_per_step: Option<f64>,
+    /// Its parameters.
+    pub parameters: Vec<ParameterValue>,
+}
+
+/// A parameter in force.
+#[derive(Clone, Debug, Serialize)]
+pub struct ParameterValue {
+    /// Name with unit, as in scene files.
+    pub key: &'static str,
+    /// Value.
+    pub value: f64,
+}
+
+/// Events by kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct EventCounts {
+    /// Stick ended.
+    #[serde(rename = "break")]
+    pub breaks: u64,
+    /// Slip ended in stick.
+    #[serde(rename = "stick")]
+    pub sticks: u64,
+    /// Slip ended in slip of the other sense.
+    #[serde(rename = "reverse")]
+    pub reverses: u64,
+}
+
+/// Cycles, from break to break in the same sense.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct CycleSummary {
+    /// How many were complete.
+    pub count: u64,
+    /// One over the mean length, Hz.
+    pub frequency_hz: Option<f64>,
+    /// Shortest, s.
+    pub shortest_s: Option<f64>,
+    /// Longest, s.
+    pub longest_s: Option<f64>,
+}
+
+/// Torque over time, N·m.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TorqueSummary {
+    /// Smallest.
+    pub min_nm: f64,
+    /// Mean over time.
+    pub mean_nm: f64,
+    /// Largest.
+    pub max_nm: f64,
+    /// Root mean square over time.
+    pub rms_nm: f64,
+}
+
+/// Terms of the energy balance, J:
+/// work_in + convention = spring_change + kinetic_change + friction + viscous + residual.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct EnergySummary {
+    /// ∫T dφ: what the hand puts in.
+    pub work_in_j: f64,
+    /// What the convention gives the object without showing a torque for it.
+    pub convention_j: f64,
+    /// Change of the spring's energy.
+    pub spring_change_j: f64,
+    /// Change of the object's kinetic energy.
+    pub kinetic_change_j: f64,
+    /// Dissipated by friction between shaft and object.
+    pub friction_j: f64,
+    /// Dissipated by the object's damping.
+    pub viscous_j: f64,
+    /// What the terms leave over.
+    pub residual_j: f64,
+    /// That, as a share of the energy that went through.
+    pub residual_relative: f64,
+}
+
+/// Puts the totals of a run into words.
+pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64, costs: &[Cost]) -> Summary {
+    let tally = totals.tally.as_ref();
+    let (step, precision) = match scene.solver {
+        SolverChoice::Reference => (None, "f64"),
+        SolverChoice::Ladder {
+            step_s, precision, ..
+        } => (Some(step_s), precision.name()),
+    };
+    let mut warnings = scene.warnings.clone();
+    warnings.extend(run_warnings(scene, totals));
+    Summary {
+        summary_version: SUMMARY_VERSION,
+        crepitus_version: env!("CARGO_PKG_VERSION"),
+        scene_version: SCENE_VERSION,
+        scene: scene.file.display().to_string(),
+        title: scene.title.clone(),
+        motion: scene.motion_kind.name(),
+        seed: scene.seed,
+        solver: scene.solver.name(),
+        step_s: step,
+        precision,
+        convention: scene.crepitus.map(|c| c.settings.convention.name()),
+        restart: scene.crepitus.map(|c| c.settings.restart.name()),
+        preset: scene.crepitus.and_then(|c| c.preset),
+        effects: effects(scene, costs),
+        simulated_s: totals.end_s,
+        steps: totals.steps,
+        fastest_rad_s: totals.fastest_rad_s,
+        events: tally.map(|t| EventCounts {
+            breaks: t.events[0],
+            sticks: t.events[1],
+            reverses: t.events[2],
+        }),
+        cycles: tally.map(cycles),
+        torque: tally.map(|t| TorqueSummary {
+            min_nm: t.torque.min_nm,
+            mean_nm: t.torque.integral / totals.end_s,
+            max_nm: t.torque.max_nm,
+            rms_nm: (t.torque.square / totals.end_s).sqrt(),
+        }),
+        energy: tally.map(|t| EnergySummary {
+            work_in_j: t.energy.work_in_j,
+            convention_j: t.energy.convention_j,
+            spring_change_j: t.energy.spring_change_j,
+            kinetic_change_j: t.energy.kinetic_change_j,
+            friction_j: t.energy.friction_j,
+            viscous_j: t.energy.viscous_j,
+            residual_j: t.energy.residual_j(),
+            residual_relative: t.energy.relative_residual(),
+        }),
+        wall_s,
+        real_time_factor: totals.end_s / wall_s,
+        warnings,
+    }
+}
+
+fn cycles(tally: &Tally) -> CycleSummary {
+    let c = tally.cycles;
+    let any = c.count > 0;
+    #[expect(clippy::cast_precision_loss, reason = "nearest is meant")]
+    let count = c.count as f64;
+    CycleSummary {
+        count: c.count,
+        frequency_hz: any.then(|| count / c.total_s),
+        shortest_s: any.then_some(c.shortest_s),
+        longest_s: any.then_some(c.longest_s),
+    }
+}
+
+fn effects(scene: &Scene, costs: &[Cost]) -> Vec<EffectSummary> {
+    let values = |keys: Vec<&'static str>, values: Vec<f64>| {
+        keys.into_iter()
+            .zip(values)
+            .map(|(key, value)| ParameterValue { key, value })
+            .collect::<Vec<_>>()
+    };
+    EFFECTS
+        .iter()
+        .filter_map(|effect| {
+            let parameters = match effect.name {
+                "crepitus" => scene.crepitus.map(|c| {
+                    values(
+                        PARAMETERS.iter().map(|p| p.key).collect(),
+                        c.settings.parameters.values().to_vec(),
+                    )
+                }),
+                _ => scene.encoder.map(|e| {
+                    values(
+                        ENCODER_PARAMETERS.iter().map(|p| p.key).collect(),
+                        e.values().to_vec(),
+                    )
+                }),
+            }?;
+            Some(EffectSummary {
+                name: effect.name,
+                states: effect.states,
+                ns_per_step: costs
+                    .iter()
+                    .find(|c| c.effect == effect.name)
+                    .map(|c| c.ns_per_step),
+                parameters,
+            })
+        })
+        .collect()
+}
+
+/// What is odd about how the scene ran.
+fn run_warnings(scene: &Scene, totals: &Totals) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let missed_s = scene.duration_s - totals.end_s;
+    if missed_s > 1e-9 * scene.duration_s {
+        warnings.push(format!(
+            "duration_s = {} s is not a whole number of {} of {} s: the run ends at {} s",
+            scene.duration_s,
+            if scene.solver == SolverChoice::Reference {
+                "rows"
+            } else {
+                "steps"
+            },
+            step_s(scene),
+            totals.end_s
+        ));
+    }
+    if let (Some(crepitus), SolverChoice::Ladder { step_s, .. }) = (&scene.crepitus, scene.solver) {
+        warnings.extend(step_warnings(crepitus, step_s, totals.fastest_rad_s));
+    }
+    warnings
+}
+
+/// Steps too long to see what happens within them.
+fn step_warnings(crepitus: &Crepitus, step_s: f64, fastest_rad_s: f64) -> Vec<String> {
+    let p: &Parameters = &crepitus.settings.parameters;
+    let mut warnings = Vec::new();
+    // 2(Ts − Tk)/(kr·Ω): the shortest stick of the run.
+    let stick_s =
+        2.0 * (p.static_torque_nm - p.kinetic_torque_nm) / (p.stiffness_nm_per_rad * fastest_rad_s);
+    if stick_s < step_s {
+        warnings.push(format!(
+            "step longer than a stick phase: at the highest speed, {fastest_rad_s:.3} rad/s, a stick lasts \
+             {:.1} µs and a step {:.1} µs; a solver that does not locate events inside the step misses cycles",
+            stick_s * 1e6,
+            step_s * 1e6
+        ));
+    }
+    let radians = p.natural_rad_s() * step_s;
+    if radians > std::f64::consts::FRAC_PI_4 {
+        warnings.push(format!(
+            "step long against the object's swing: ωn·h = {radians:.2}, above π/4; a shorter step shows the slip"
+        ));
+    }
+    warnings
+}

@@ -1,0 +1,258 @@
+//! What a run adds up: events, cycles, torque, energy.
+//!
+//! Energy is booked by phase, from its two ends and closed forms, so a slip
+//! costs nothing per step. The terms of one run satisfy
+//!
+//! ```text
+//! work_in + convention = Δspring + Δkinetic + friction + viscous + residual
+//! ```
+//!
+//! `work_in` is ∫T·dφ of the torque shown. `convention` is the energy that the
+//! object gains without a torque being shown for it: under `frozen` and
+//! `paper` the inertia and damping that the stick torque leaves out, under
+//! `frozen` also the reset at the end of a slip. `residual` is what numerical
+//! error leaves.
+
+use super::energy::Energy;
+use crepitus_model::oscillator::Oscillator;
+use crepitus_model::{Convention, Event, EventKind, Phase, Sense, Settings};
+
+/// Extremes, mean and root mean square of the torque over time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TorqueTally {
+    pub(super) min_nm: f64,
+    pub(super) max_nm: f64,
+    /// ∫T dt, N·m·s.
+    pub(super) integral: f64,
+    /// ∫T² dt, N²·m²·s.
+    pub(super) square: f64,
+}
+
+/// Cycles: break to break in the same sense with one stick between.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cycles {
+    pub(super) count: u64,
+    pub(super) total_s: f64,
+    pub(super) shortest_s: f64,
+    pub(super) longest_s: f64,
+    last_break: Option<(f64, Sense)>,
+}
+
+/// One end of a stretch of stick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StickEnd {
+    pub(super) theta_rad: f64,
+    pub(super) omega_rad_s: f64,
+    pub(super) omega_dot: f64,
+}
+
+/// The running totals.
+#[derive(Clone, Debug)]
+pub(super) struct Tally {
+    settings: Settings,
+    oscillator: Oscillator<f64>,
+    start: PhaseStart,
+    pub(super) events: [u64; 3],
+    pub(super) cycles: Cycles,
+    pub(super) torque: TorqueTally,
+    pub(super) energy: Energy,
+}
+
+/// The beginning of the phase that goes on.
+#[derive(Clone, Copy, Debug)]
+struct PhaseStart {
+    phase: Phase,
+    time_s: f64,
+    phi_rad: f64,
+    theta_rad: f64,
+    theta_dot_rad_s: f64,
+}
+
+impl Tally {
+    /// A run that begins in stick at θ = 0 with the shaft at `omega_rad_s`;
+    /// angles of the shaft count from here.
+    pub(super) fn new(settings: Settings, omega_rad_s: f64) -> Self {
+        Self {
+            oscillator: Oscillator::new(&settings.parameters),
+            start: PhaseStart {
+                phase: Phase::Stick,
+                time_s: 0.0,
+                phi_rad: 0.0,
+                theta_rad: 0.0,
+                theta_dot_rad_s: omega_rad_s,
+            },
+            events: [0; 3],
+            cycles: Cycles::default(),
+            torque: TorqueTally {
+                min_nm: f64::INFINITY,
+                max_nm: f64::NEG_INFINITY,
+                integral: 0.0,
+                square: 0.0,
+            },
+            energy: Energy::new(&settings.parameters, omega_rad_s),
+            settings,
+        }
+    }
+
+    /// Notes a torque that was shown.
+    #[inline]
+    pub(super) fn shown(&mut self, torque_nm: f64) {
+        self.torque.min_nm = self.torque.min_nm.min(torque_nm);
+        self.torque.max_nm = self.torque.max_nm.max(torque_nm);
+    }
+
+    /// A stretch of stick of `dt_s` in which the shaft turned by `delta_phi`.
+    pub(super) fn stick(&mut self, dt_s: f64, delta_phi: f64, a: StickEnd, b: StickEnd) {
+        let p = &self.settings.parameters;
+        let kr = p.stiffness_nm_per_rad;
+        // ∫θ dt over a cubic with these ends and slopes.
+        let theta_dt = dt_s * (a.theta_rad + b.theta_rad) / 2.0
+            + dt_s * dt_s * (a.omega_rad_s - b.omega_rad_s) / 12.0;
+        let mut integral = kr * theta_dt;
+        let (mut from, mut to) = (kr * a.theta_rad, kr * b.theta_rad);
+        // ∫Ω² dt of a linear Ω.
+        let omega_squared = dt_s
+            * (a.omega_rad_s * a.omega_rad_s
+                + a.omega_rad_s * b.omega_rad_s
+                + b.omega_rad_s * b.omega_rad_s)
+            / 3.0;
+        let viscous = p.damping_nms_per_rad * omega_squared;
+        self.energy.viscous_j += viscous;
+        if self.settings.convention == Convention::Physical {
+            integral += p.inertia_kg_m2 * (b.omega_rad_s - a.omega_rad_s)
+                + p.damping_nms_per_rad * delta_phi;
+            let inertial = |e: &StickEnd| {
+                p.inertia_kg_m2 * e.omega_dot + p.damping_nms_per_rad * e.omega_rad_s
+            };
+            from += inertial(&a);
+            to += inertial(&b);
+            self.energy.work_in_j += viscous;
+        } else {
+            self.energy.convention_j += viscous;
+            // Held at the limit, less is shown than the spring pulls.
+            let limit = p.static_torque_nm;
+            let excess = f64::midpoint(from, to) - f64::midpoint(from, to).clamp(-limit, limit);
+            if excess != 0.0 {
+                self.energy.work_in_j -= excess * delta_phi;
+                self.energy.convention_j += excess * delta_phi;
+                integral -= excess * dt_s;
+            }
+        }
+        self.torque.integral += integral;
+        self.torque.square += dt_s * (from * from + from * to + to * to) / 3.0;
+    }
+
+    /// An event at `time_s`, shaft at `phi_rad`.
+    pub(super) fn event(&mut self, time_s: f64, phi_rad: f64, event: &Event<f64>) {
+        self.events[match event.kind {
+            EventKind::Break => 0,
+            EventKind::Stick => 1,
+            EventKind::Reverse => 2,
+        }] += 1;
+        self.cycles.event(time_s, event);
+        self.shown(event.torque_before_nm);
+        self.shown(event.torque_after_nm);
+        let frozen = self.settings.convention == Convention::Frozen;
+        let (theta, theta_dot) = match self.start.phase {
+            // A frozen slip ends with a reset: the object's own state is the
+            // closed form.
+            Phase::Slip(sense) if frozen => self.swing(sense, time_s - self.start.time_s),
+            _ => (event.theta_rad, event.theta_dot_rad_s),
+        };
+        self.end_phase(time_s, phi_rad, theta, theta_dot);
+        if frozen && event.kind == EventKind::Stick {
+            self.energy
+                .reset(theta, theta_dot, event.theta_rad, event.theta_dot_rad_s);
+        }
+        self.start = PhaseStart {
+            phase: event.to,
+            time_s,
+            phi_rad,
+            theta_rad: event.theta_rad,
+            theta_dot_rad_s: event.theta_dot_rad_s,
+        };
+    }
+
+    /// Closes the books at the end of the run.
+    pub(super) fn finish(&mut self, time_s: f64, phi_rad: f64, theta: f64, theta_dot: f64) {
+        self.end_phase(time_s, phi_rad, theta, theta_dot);
+        self.energy.finish(theta, theta_dot);
+    }
+
+    /// State of the object `after_s` into the slip that goes on.
+    fn swing(&self, sense: Sense, after_s: f64) -> (f64, f64) {
+        let centre = sense.of_signed(
+            self.settings.parameters.kinetic_torque_nm
+                / self.settings.parameters.stiffness_nm_per_rad,
+        );
+        let (x, v) = self
+            .oscillator
+            .transition(after_s)
+            .apply(self.start.theta_rad - centre, self.start.theta_dot_rad_s);
+        (x + centre, v)
+    }
+
+    fn end_phase(&mut self, time_s: f64, phi_rad: f64, theta: f64, theta_dot: f64) {
+        let p = self.settings.parameters;
+        let s = self.start;
+        let delta_phi = phi_rad - s.phi_rad;
+        match s.phase {
+            Phase::Stick => {
+                let mean_theta = s.theta_rad + delta_phi / 2.0;
+                self.energy.work_in_j += p.stiffness_nm_per_rad * mean_theta * delta_phi;
+                let kinetic = 0.5
+                    * p.inertia_kg_m2
+                    * (theta_dot - s.theta_dot_rad_s)
+                    * (theta_dot + s.theta_dot_rad_s);
+                if self.settings.convention == Convention::Physical {
+                    self.energy.work_in_j += kinetic;
+                } else {
+                    self.energy.convention_j += kinetic;
+                }
+            }
+            Phase::Slip(sense) => {
+                let torque = sense.of_signed(p.kinetic_torque_nm);
+                let dt_s = time_s - s.time_s;
+                self.torque.integral += torque * dt_s;
+                self.torque.square += torque * torque * dt_s;
+                self.shown(torque);
+                self.energy.work_in_j += torque * delta_phi;
+                self.energy.friction_j += torque * (delta_phi - (theta - s.theta_rad));
+                if p.damping_nms_per_rad > 0.0 {
+                    let centre = torque / p.stiffness_nm_per_rad;
+                    self.energy.viscous_j += super::energy::viscous_loss(
+                        &p,
+                        &self.oscillator,
+                        (s.theta_rad - centre, s.theta_dot_rad_s),
+                        dt_s,
+                    );
+                }
+            }
+        }
+    }
+}
+
+impl Cycles {
+    fn event(&mut self, time_s: f64, event: &Event<f64>) {
+        match (event.kind, event.to) {
+            (EventKind::Break, Phase::Slip(sense)) => {
+                if let Some((last_s, last_sense)) = self.last_break
+                    && last_sense == sense
+                {
+                    let length_s = time_s - last_s;
+                    self.shortest_s = if self.count == 0 {
+                        length_s
+                    } else {
+                        self.shortest_s.min(length_s)
+                    };
+                    self.longest_s = self.longest_s.max(length_s);
+                    self.count += 1;
+                    self.total_s += length_s;
+                }
+                self.last_break = Some((time_s, sense));
+            }
+            (EventKind::Reverse, _) => self.last_break = None,
+            _ => {}
+        }
+    }
+}

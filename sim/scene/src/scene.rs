@@ -1,0 +1,340 @@
+//! A scene: everything that decides a run, checked.
+
+mod effects;
+mod motion;
+
+pub use effects::EFFECTS;
+pub use motion::MotionKind;
+
+use crate::document::{Document, Range, Section};
+use crate::error::SceneError;
+use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::solver::Solver;
+use crepitus_model::{Convention, Settings, Validated};
+use crepitus_plant::Motion;
+use std::path::{Path, PathBuf};
+
+/// The only version of scene files so far.
+pub const SCENE_VERSION: u32 = 1;
+
+/// The most steps of one run, and the most rows of one trace.
+const MOST_STEPS: f64 = 1e12;
+
+/// What is to be simulated.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The file that it was read from.
+    pub file: PathBuf,
+    /// What it shows, in one line.
+    pub title: String,
+    /// What it shows, at length.
+    pub description: Option<String>,
+    /// Length of the run, s.
+    pub duration_s: f64,
+    /// Name of the kind of motion, as the file writes it.
+    pub motion_kind: MotionKind,
+    /// The shaft's motion.
+    pub motion: Motion,
+    /// Seed of everything random, if the scene has any.
+    pub seed: Option<u64>,
+    /// How the joint is integrated.
+    pub solver: SolverChoice,
+    /// The stick-slip object, if the scene calls for it.
+    pub crepitus: Option<Crepitus>,
+    /// The encoder, if the scene calls for it.
+    pub encoder: Option<EncoderSettings>,
+    /// Time between rows of the trace, s.
+    pub trace_step_s: f64,
+    /// What was odd but not wrong.
+    pub warnings: Vec<String>,
+}
+
+/// The `crepitus` effect of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Crepitus {
+    /// The preset it started from, if any.
+    pub preset: Option<&'static str>,
+    /// The settings in force.
+    pub settings: Validated<Settings>,
+}
+
+/// How the joint is integrated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SolverChoice {
+    /// From event to event on the true motion, in f64.
+    Reference,
+    /// A rung of the ladder.
+    Ladder {
+        /// The rung.
+        solver: Solver,
+        /// Its step, s.
+        step_s: f64,
+        /// Its precision.
+        precision: Precision,
+    },
+}
+
+/// The numbers that the model computes with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// Single, as on the device.
+    F32,
+    /// Double.
+    F64,
+}
+
+impl SolverChoice {
+    /// Names of all solvers, cheapest first.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        Solver::ALL.iter().map(|s| s.name()).chain([REFERENCE])
+    }
+
+    /// Name in scene files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Reference => REFERENCE,
+            Self::Ladder { solver, .. } => solver.name(),
+        }
+    }
+}
+
+/// Name of the event-driven solver.
+const REFERENCE: &str = "reference";
+
+impl Precision {
+    /// Name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+}
+
+/// What the command line changes in a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Overrides {
+    /// Another solver.
+    pub solver: Option<String>,
+    /// Another step, as TOML.
+    pub step: Option<String>,
+    /// Another precision.
+    pub precision: Option<String>,
+    /// PATH=VALUE pairs.
+    pub set: Vec<(String, String)>,
+}
+
+impl Scene {
+    /// Reads and checks a scene file.
+    ///
+    /// # Errors
+    /// [`SceneError`] says where, which key, what is wrong, what is allowed.
+    pub fn read(file: &Path, overrides: &Overrides) -> Result<Self, SceneError> {
+        let whole = |message: String| SceneError {
+            file: file.to_owned(),
+            origin: None,
+            key: String::new(),
+            message,
+        };
+        let bytes = std::fs::read(file).map_err(|e| whole(format!("cannot be read: {e}")))?;
+        let text = String::from_utf8(bytes)
+            .map_err(|e| whole(format!("is not UTF-8 text: {}", e.utf8_error())))?;
+        Self::parse(file, &text, overrides)
+    }
+
+    /// Checks the text of a scene file; `file` names it in errors and is the
+    /// place from which a recording's path is relative.
+    ///
+    /// # Errors
+    /// As [`Scene::read`].
+    pub fn parse(file: &Path, text: &str, overrides: &Overrides) -> Result<Self, SceneError> {
+        let mut document = Document::parse(file, text)?;
+        overrides.apply(&mut document)?;
+        let root = document.section();
+
+        let version = root.number("version", Range::closed(0.0, 1e9))?;
+        if version != f64::from(SCENE_VERSION) {
+            return Err(root.key_error(
+                "version",
+                format!("{version} is not known: this program reads version {SCENE_VERSION}"),
+            ));
+        }
+        let title = root.text("title")?.to_owned();
+        let description = root
+            .optional_text("description")?
+            .map(|d| d.trim().to_owned());
+        let duration_s = root.number("duration_s", Range::above(0.0, 1e7))?;
+        let motion = motion::read(&root.section("motion")?, duration_s)?;
+        let solver_section = root.section("solver")?;
+        let solver = read_solver(&solver_section)?;
+        let effects = effects::read(root.optional_section("effects")?.as_ref())?;
+        let output = root.optional_section("output")?;
+        let trace_step_s = read_trace_step(output.as_ref(), &solver_section, solver, duration_s)?;
+        root.finish()?;
+
+        if solver == SolverChoice::Reference && effects.encoder.is_some() {
+            return Err(solver_section.key_error(
+                "kind",
+                "\"reference\" has no step at which an encoder could be read: choose another solver, \
+                 or leave [effects.encoder] out",
+            ));
+        }
+        let mut warnings = motion.warnings;
+        if let Some(crepitus) = &effects.crepitus {
+            warnings.extend(sampled_motion_warning(crepitus, motion.ripple_rad_s2));
+        }
+        Ok(Self {
+            file: file.to_owned(),
+            title,
+            description,
+            duration_s,
+            motion_kind: motion.kind,
+            motion: motion.motion,
+            seed: motion.seed,
+            solver,
+            crepitus: effects.crepitus,
+            encoder: effects.encoder,
+            trace_step_s,
+            warnings,
+        })
+    }
+
+    /// Takes an effect out of the scene, by its name.
+    pub fn leave_out(&mut self, effect: &str) {
+        if effect == effects::CREPITUS.name {
+            self.crepitus = None;
+        } else if effect == effects::ENCODER.name {
+            self.encoder = None;
+        }
+    }
+
+    /// Names of the effects that the scene calls for.
+    pub fn effects(&self) -> Vec<&'static str> {
+        let crepitus = self.crepitus.is_some().then_some(effects::CREPITUS.name);
+        let encoder = self.encoder.is_some().then_some(effects::ENCODER.name);
+        crepitus.into_iter().chain(encoder).collect()
+    }
+}
+
+impl Overrides {
+    fn apply(&self, document: &mut Document) -> Result<(), SceneError> {
+        for (path, value) in &self.set {
+            document.set(&format!("--set {path}={value}"), path, value)?;
+        }
+        let quoted = |name: &String| format!("\"{name}\"");
+        if let Some(kind) = &self.solver {
+            document.set(&format!("--solver {kind}"), "solver.kind", &quoted(kind))?;
+            if kind == REFERENCE {
+                // What only a stepping solver has does not come along.
+                document.remove("solver.step_s");
+                document.remove("solver.precision");
+            }
+        }
+        if let Some(step) = &self.step {
+            document.set(&format!("--step {step}"), "solver.step_s", step)?;
+        }
+        if let Some(precision) = &self.precision {
+            let flag = format!("--precision {precision}");
+            document.set(&flag, "solver.precision", &quoted(precision))?;
+        }
+        Ok(())
+    }
+}
+
+fn read_solver(section: &Section<'_>) -> Result<SolverChoice, SceneError> {
+    let ladder = Solver::ALL.map(|s| (s.name(), Some(s)));
+    let names: Vec<_> = ladder.into_iter().chain([(REFERENCE, None)]).collect();
+    let kind = section.choice("kind", &names)?;
+    let step_s = section.optional_number("step_s", Range::above(0.0, 1.0))?;
+    let precisions = [Precision::F32, Precision::F64].map(|p| (p.name(), p));
+    let precision = section.optional_choice("precision", &precisions)?;
+    section.finish()?;
+    match kind {
+        None => {
+            if step_s.is_some() {
+                return Err(section.key_error("step_s", "\"reference\" has no step: leave it out"));
+            }
+            if precision == Some(Precision::F32) {
+                return Err(section.key_error("precision", "\"reference\" computes in f64 only"));
+            }
+            Ok(SolverChoice::Reference)
+        }
+        Some(solver) => Ok(SolverChoice::Ladder {
+            solver,
+            step_s: step_s.ok_or_else(|| {
+                section.key_error(
+                    "step_s",
+                    format!(
+                        "this key is missing: \"{}\" needs a step in seconds, for example 5e-5",
+                        solver.name()
+                    ),
+                )
+            })?,
+            precision: precision.unwrap_or(Precision::F64),
+        }),
+    }
+}
+
+/// Time between trace rows: a whole number of solver steps.
+fn read_trace_step(
+    output: Option<&Section<'_>>,
+    solver_section: &Section<'_>,
+    solver: SolverChoice,
+    duration_s: f64,
+) -> Result<f64, SceneError> {
+    /// Of `reference`, which has no step of its own: the device's tick.
+    const DEFAULT_STEP_S: f64 = 5e-5;
+    let wanted = match output {
+        None => None,
+        Some(section) => {
+            let step = section.optional_number("trace_step_s", Range::above(0.0, 1e7))?;
+            section.finish()?;
+            step
+        }
+    };
+    let refuse = |message: String| match (output, wanted) {
+        (Some(section), Some(_)) => section.key_error("trace_step_s", message),
+        _ => solver_section.key_error("step_s", message),
+    };
+    let step_s = match solver {
+        SolverChoice::Reference => wanted.unwrap_or(DEFAULT_STEP_S),
+        SolverChoice::Ladder { step_s, .. } => {
+            if duration_s / step_s > MOST_STEPS {
+                return Err(solver_section.key_error(
+                    "step_s",
+                    format!("{step_s} s makes more than {MOST_STEPS:e} steps of {duration_s} s"),
+                ));
+            }
+            let wanted = wanted.unwrap_or(step_s);
+            let steps = wanted / step_s;
+            if steps < 0.5 || (steps - steps.round()).abs() > 1e-6 * steps {
+                return Err(refuse(format!(
+                    "{wanted} s is not a whole number of steps of {step_s} s"
+                )));
+            }
+            wanted
+        }
+    };
+    if duration_s / step_s > MOST_STEPS {
+        return Err(refuse(format!(
+            "{step_s} s makes more than {MOST_STEPS:e} rows of {duration_s} s"
+        )));
+    }
+    Ok(step_s)
+}
+
+/// `physical` turns each kink of a recording's acceleration into torque.
+fn sampled_motion_warning(crepitus: &Crepitus, ripple_rad_s2: Option<f64>) -> Option<String> {
+    /// The torque from which an error is worth removing, N·m.
+    const WORTH_HAVING_NM: f64 = 5e-3;
+    let settings = &crepitus.settings;
+    let ripple_nm = settings.parameters.inertia_kg_m2 * ripple_rad_s2?;
+    (settings.convention == Convention::Physical && ripple_nm > WORTH_HAVING_NM).then(|| {
+        format!(
+            "under \"physical\" the torque contains J·Ω̇, and between two samples of this recording that changes \
+             by up to {ripple_nm:.2} N·m (Ts is {} N·m): the joint feels the sampling; a lower cutoff_hz or \
+             \"frozen\" avoids it",
+            settings.parameters.static_torque_nm
+        )
+    })
+}

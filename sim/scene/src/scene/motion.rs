@@ -1,0 +1,227 @@
+//! The `[motion]` table.
+
+use crate::document::{Range, Section};
+use crate::error::SceneError;
+use crepitus_plant::Motion;
+use crepitus_plant::motion::{Strokes, VelocityKnot};
+use crepitus_plant::recording::{self, AngleUnit, Source};
+
+/// Angles and velocities of any joint that this could mean.
+const ANY_RAD: Range = Range::closed(-1e6, 1e6);
+const ANY_DEG: Range = Range::closed(-6e7, 6e7);
+
+/// Half-amplitude frequency of the low-pass over a recording, Hz: the 6 Hz
+/// that gait laboratories use (Winter).
+const DEFAULT_CUTOFF_HZ: f64 = 6.0;
+
+/// The kinds of motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionKind {
+    /// One velocity.
+    Constant,
+    /// A sine of the angle.
+    Sine,
+    /// A piecewise linear velocity.
+    VelocityKnots,
+    /// Minimum-jerk strokes there and back.
+    Strokes,
+    /// A recording.
+    Recording,
+}
+
+impl MotionKind {
+    /// All kinds.
+    pub const ALL: [Self; 5] = [
+        Self::Constant,
+        Self::Sine,
+        Self::VelocityKnots,
+        Self::Strokes,
+        Self::Recording,
+    ];
+
+    /// Name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::Sine => "sine",
+            Self::VelocityKnots => "velocity-knots",
+            Self::Strokes => "strokes",
+            Self::Recording => "recording",
+        }
+    }
+}
+
+/// A motion as read.
+pub(super) struct ReadMotion {
+    pub(super) kind: MotionKind,
+    pub(super) motion: Motion,
+    pub(super) seed: Option<u64>,
+    pub(super) warnings: Vec<String>,
+    /// Largest change of Ω̇ between samples of a recording, rad/s².
+    pub(super) ripple_rad_s2: Option<f64>,
+}
+
+pub(super) fn read(section: &Section<'_>, duration_s: f64) -> Result<ReadMotion, SceneError> {
+    let kind = section.choice("kind", &MotionKind::ALL.map(|k| (k.name(), k)))?;
+    let mut warnings = Vec::new();
+    let mut ripple_rad_s2 = None;
+    let motion = match kind {
+        MotionKind::Constant => Motion::constant(section.number("velocity_rad_s", ANY_RAD)?),
+        MotionKind::Sine => sine(section)?,
+        MotionKind::VelocityKnots => velocity_knots(section)?,
+        MotionKind::Strokes => strokes(section)?,
+        MotionKind::Recording => {
+            let (motion, ripple) = recording(section, duration_s, &mut warnings)?;
+            ripple_rad_s2 = Some(ripple);
+            motion
+        }
+    };
+    let seed = seed(section)?;
+    section.finish()?;
+    Ok(ReadMotion {
+        kind,
+        motion,
+        seed,
+        warnings,
+        ripple_rad_s2,
+    })
+}
+
+/// A whole number that f64 holds exactly.
+fn seed(section: &Section<'_>) -> Result<Option<u64>, SceneError> {
+    /// 2^53: above it, neighbouring seeds would be the same number.
+    const LARGEST: f64 = 9_007_199_254_740_992.0;
+    match section.optional_number("seed", Range::closed(0.0, LARGEST))? {
+        None => Ok(None),
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole and in range"
+        )]
+        Some(x) if x.fract() == 0.0 => Ok(Some(x as u64)),
+        Some(x) => Err(section.key_error("seed", format!("{x} is not a whole number"))),
+    }
+}
+
+fn sine(section: &Section<'_>) -> Result<Motion, SceneError> {
+    let rad = section.optional_number("amplitude_rad", ANY_RAD)?;
+    let deg = section.optional_number("amplitude_deg", ANY_DEG)?;
+    let amplitude_rad = match (rad, deg) {
+        (Some(rad), None) => rad,
+        (None, Some(deg)) => deg.to_radians(),
+        (Some(_), Some(_)) => {
+            return Err(section.key_error(
+                "amplitude_deg",
+                "give amplitude_rad or amplitude_deg, not both",
+            ));
+        }
+        (None, None) => {
+            return Err(section.error("a sine needs amplitude_deg or amplitude_rad"));
+        }
+    };
+    let frequency_hz = section.number("frequency_hz", Range::above(0.0, 1e4))?;
+    let phase_deg = section
+        .optional_number("phase_deg", Range::closed(-360.0, 360.0))?
+        .unwrap_or(0.0);
+    Ok(Motion::sine(amplitude_rad, frequency_hz, phase_deg))
+}
+
+fn velocity_knots(section: &Section<'_>) -> Result<Motion, SceneError> {
+    let items = section.sections("knots")?;
+    let mut knots: Vec<VelocityKnot> = Vec::with_capacity(items.len());
+    for item in &items {
+        let time_s = item.number("t_s", Range::closed(0.0, 1e7))?;
+        let one = item.optional_number("omega_rad_s", ANY_RAD)?;
+        let left = item.optional_number("omega_left_rad_s", ANY_RAD)?;
+        let right = item.optional_number("omega_right_rad_s", ANY_RAD)?;
+        let (omega_left_rad_s, omega_right_rad_s) = match (one, left, right) {
+            (Some(omega), None, None) => (omega, omega),
+            (None, Some(left), Some(right)) => (left, right),
+            _ => {
+                return Err(item.error(
+                    "a knot has omega_rad_s, or omega_left_rad_s and omega_right_rad_s where the velocity jumps",
+                ));
+            }
+        };
+        item.finish()?;
+        match knots.last() {
+            None if time_s != 0.0 => {
+                return Err(item.key_error("t_s", "the first knot must be at t_s = 0"));
+            }
+            Some(before) if time_s <= before.time_s => {
+                return Err(item.key_error(
+                    "t_s",
+                    format!(
+                        "{time_s} is not after the knot before it, at {}",
+                        before.time_s
+                    ),
+                ));
+            }
+            _ => {}
+        }
+        knots.push(VelocityKnot {
+            time_s,
+            omega_left_rad_s,
+            omega_right_rad_s,
+        });
+    }
+    if knots.is_empty() {
+        return Err(section.key_error("knots", "at least one knot is needed, at t_s = 0"));
+    }
+    Ok(Motion::velocity_knots(&knots))
+}
+
+fn strokes(section: &Section<'_>) -> Result<Motion, SceneError> {
+    let from_deg = section.number("from_deg", ANY_DEG)?;
+    let to_deg = section.number("to_deg", ANY_DEG)?;
+    if from_deg == to_deg {
+        return Err(section.key_error("to_deg", "a stroke needs two different angles"));
+    }
+    let peak_deg_s = section.number("peak_speed_deg_s", Range::above(0.0, 1e6))?;
+    let pause_s = section.number("pause_s", Range::closed(0.0, 1e6))?;
+    Ok(Motion::Strokes(Strokes {
+        from_rad: from_deg.to_radians(),
+        to_rad: to_deg.to_radians(),
+        peak_speed_rad_s: peak_deg_s.to_radians(),
+        pause_s,
+    }))
+}
+
+/// The motion of a recording and the largest change of its acceleration.
+fn recording(
+    section: &Section<'_>,
+    duration_s: f64,
+    warnings: &mut Vec<String>,
+) -> Result<(Motion, f64), SceneError> {
+    let file = section.text("file")?;
+    let time_column = section.text("time_column")?;
+    let angle_column = section.text("angle_column")?;
+    let unit = section.choice("unit", &[("deg", AngleUnit::Deg), ("rad", AngleUnit::Rad)])?;
+    let cutoff_hz = section
+        .optional_number("cutoff_hz", Range::above(0.0, 1e6))?
+        .unwrap_or(DEFAULT_CUTOFF_HZ);
+    let folder = section.file().parent().unwrap_or(section.file());
+    let path = folder.join(file);
+    let samples = recording::read(&Source {
+        path: &path,
+        time_column,
+        angle_column,
+        unit,
+    })
+    .map_err(|e| section.key_error("file", e.to_string()))?;
+    warnings.extend(samples.warnings.iter().map(ToString::to_string));
+    // A duration written with fewer digits than the file's last time is meant.
+    if duration_s > samples.duration_s() * (1.0 + 1e-9) {
+        return Err(section.key_error(
+            "file",
+            format!(
+                "the recording lasts {} s, duration_s is {duration_s}: a scene cannot be longer than its recording",
+                samples.duration_s()
+            ),
+        ));
+    }
+    let segments = recording::smooth(&samples, cutoff_hz)
+        .map_err(|e| section.key_error("cutoff_hz", e.to_string()))?;
+    let ripple = recording::acceleration_ripple_rad_s2(&segments);
+    Ok((Motion::recording(&segments), ripple))
+}

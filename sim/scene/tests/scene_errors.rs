@@ -1,0 +1,246 @@
+//! Every mistake in a scene is named: file, line, key, what is allowed.
+
+use crepitus_scene::{Overrides, Scene};
+use std::path::Path;
+
+const GOOD: &str = r#"version = 1
+title = "A scene"
+duration_s = 1.0
+
+[motion]
+kind = "constant"
+velocity_rad_s = 1.0
+
+[solver]
+kind = "exact-events"
+step_s = 5e-5
+
+[effects.crepitus]
+preset = "coarse"
+"#;
+
+fn error_of(text: &str, overrides: &Overrides) -> String {
+    match Scene::parse(Path::new("scenes/x.toml"), text, overrides) {
+        Err(e) => e.to_string(),
+        Ok(_) => panic!("this scene must be refused:\n{text}"),
+    }
+}
+
+fn refused(from: &str, to: &str) -> String {
+    assert!(GOOD.contains(from), "{from}");
+    error_of(&GOOD.replace(from, to), &Overrides::default())
+}
+
+#[test]
+fn the_good_scene_is_good() {
+    let scene = Scene::parse(Path::new("x.toml"), GOOD, &Overrides::default()).unwrap();
+    assert_eq!(scene.effects(), ["crepitus"]);
+    assert!(scene.warnings.is_empty());
+}
+
+#[test]
+#[expect(clippy::too_many_lines, reason = "one table")]
+fn every_error_names_line_key_and_what_is_allowed() {
+    let cases = [
+        (
+            refused("version = 1", "version = 2"),
+            ["line 1", "`version`", "version 1"],
+        ),
+        (
+            refused("duration_s = 1.0", "duration_s = -1.0"),
+            ["line 3", "`duration_s`", "above 0"],
+        ),
+        (
+            refused("duration_s = 1.0", "duration_s = \"1 s\""),
+            ["line 3", "`duration_s`", "the text \"1 s\""],
+        ),
+        (
+            refused("duration_s = 1.0", "duration_s = nan"),
+            ["line 3", "`duration_s`", "above 0"],
+        ),
+        (
+            refused("title = \"A scene\"\n", ""),
+            ["x.toml", "`title`", "missing"],
+        ),
+        (
+            refused("kind = \"constant\"", "kind = \"constnat\""),
+            ["line 6", "`motion.kind`", "did you mean constant"],
+        ),
+        (
+            refused("velocity_rad_s", "velocity_deg_s"),
+            ["line 5", "`motion.velocity_rad_s`", "missing"],
+        ),
+        (
+            refused("velocity_rad_s = 1.0", "velocity_rad_s = 1.0\nvelocity = 3"),
+            ["line 8", "`motion.velocity`", "velocity_rad_s"],
+        ),
+        (
+            refused("exact-events", "exact-event"),
+            [
+                "line 10",
+                "`solver.kind`",
+                "exact, exact-events and reference",
+            ],
+        ),
+        (
+            refused("step_s = 5e-5\n", ""),
+            ["line 9", "`solver.step_s`", "missing"],
+        ),
+        (
+            refused("step_s = 5e-5", "step_s = 0"),
+            ["line 11", "`solver.step_s`", "above 0"],
+        ),
+        (
+            refused("\"exact-events\"", "\"reference\""),
+            ["line 11", "`solver.step_s`", "has no step"],
+        ),
+        (
+            refused("step_s = 5e-5", "step_s = 5e-5\nprecision = \"f16\""),
+            ["line 12", "`solver.precision`", "f32 and f64"],
+        ),
+        (
+            refused("preset = \"coarse\"", "preset = \"rough\""),
+            [
+                "line 14",
+                "`effects.crepitus.preset`",
+                "coarse, fine and bone-on-bone",
+            ],
+        ),
+        (
+            refused("preset = \"coarse\"", "kinetic_torque_nm = 0.5"),
+            ["line 13", "`effects.crepitus`", "Tk ≤ Ts"],
+        ),
+        (
+            refused("preset = \"coarse\"", "inertia_kg_m2 = 0"),
+            ["line 14", "`effects.crepitus.inertia_kg_m2`", "from 1e-12"],
+        ),
+        (
+            refused("preset = \"coarse\"", "damping_nms_per_rad = 0.1"),
+            ["line 13", "`effects.crepitus`", "frozen"],
+        ),
+        (
+            refused(
+                "preset = \"coarse\"",
+                "convention = \"paper\"\nrestart = \"from-kinetic\"",
+            ),
+            ["line 13", "`effects.crepitus`", "frozen"],
+        ),
+        (
+            refused("[effects.crepitus]", "[effects.crepitation]"),
+            ["line 13", "`effects.crepitation`", "did you mean crepitus"],
+        ),
+        (
+            refused(
+                "[effects.crepitus]",
+                "[output]\ntrace_step_s = 7e-5\n[effects.crepitus]",
+            ),
+            ["line 14", "`output.trace_step_s`", "whole number of steps"],
+        ),
+        (refused("[motion]", "[motion"), ["line 5", "TOML", ""]),
+        (
+            refused("title", "version = 1\ntitle"),
+            ["line 2", "TOML", "duplicate"],
+        ),
+    ];
+    for (message, parts) in cases {
+        assert!(message.starts_with("scenes/x.toml"), "{message}");
+        for part in parts {
+            assert!(message.contains(part), "{message:?} does not say {part:?}");
+        }
+    }
+}
+
+#[test]
+fn motions_are_checked_key_by_key() {
+    let motion = |text: &str| {
+        let scene = GOOD.replace("kind = \"constant\"\nvelocity_rad_s = 1.0", text);
+        error_of(&scene, &Overrides::default())
+    };
+    let cases = [
+        (
+            "kind = \"sine\"\nfrequency_hz = 1",
+            "amplitude_deg or amplitude_rad",
+        ),
+        (
+            "kind = \"sine\"\nfrequency_hz = 1\namplitude_deg = 1\namplitude_rad = 1",
+            "not both",
+        ),
+        ("kind = \"velocity-knots\"\nknots = []", "at least one knot"),
+        ("kind = \"velocity-knots\"\nknots = 3", "a list of tables"),
+        (
+            "kind = \"velocity-knots\"\nknots = [{ t_s = 1.0, omega_rad_s = 0 }]",
+            "first knot must be at t_s = 0",
+        ),
+        (
+            "kind = \"velocity-knots\"\nknots = [{ t_s = 0, omega_rad_s = 0 }, { t_s = 0, omega_rad_s = 0 }]",
+            "not after the knot before",
+        ),
+        (
+            "kind = \"velocity-knots\"\nknots = [{ t_s = 0, omega_left_rad_s = 0 }]",
+            "omega_left_rad_s and omega_right_rad_s",
+        ),
+        (
+            "kind = \"velocity-knots\"\nknots = [{ t_s = 0, omega_rad_s = 0, x = 1 }]",
+            "motion.knots[0].x",
+        ),
+        (
+            "kind = \"strokes\"\nfrom_deg = 10\nto_deg = 10\npeak_speed_deg_s = 5\npause_s = 0",
+            "two different angles",
+        ),
+        (
+            "kind = \"strokes\"\nfrom_deg = 10\nto_deg = 20\npeak_speed_deg_s = 0\npause_s = 0",
+            "above 0",
+        ),
+        (
+            "kind = \"constant\"\nvelocity_rad_s = 1\nseed = 1.5",
+            "whole number",
+        ),
+        (
+            "kind = \"recording\"\nfile = \"none.csv\"\ntime_column = \"t\"\nangle_column = \"a\"\nunit = \"deg\"",
+            "none.csv",
+        ),
+    ];
+    for (text, part) in cases {
+        let message = motion(text);
+        assert!(
+            message.contains(part) && message.contains("line "),
+            "{message:?} does not say {part:?}"
+        );
+    }
+}
+
+#[test]
+fn overrides_are_checked_and_named() {
+    let set = |path: &str, value: &str| Overrides {
+        set: vec![(path.to_owned(), value.to_owned())],
+        ..Overrides::default()
+    };
+    let message = error_of(GOOD, &set("solver.step", "1e-3"));
+    assert!(
+        message.contains("--set solver.step=1e-3") && message.contains("step_s"),
+        "{message}"
+    );
+    let message = error_of(GOOD, &set("title.x", "1"));
+    assert!(message.contains("`title` is not a table"), "{message}");
+    let message = error_of(
+        GOOD,
+        &Overrides {
+            step: Some("fast".into()),
+            ..Overrides::default()
+        },
+    );
+    assert!(
+        message.contains("--step fast") && message.contains("solver.step_s"),
+        "{message}"
+    );
+
+    let scene = |o: &Overrides| Scene::parse(Path::new("x.toml"), GOOD, o).unwrap();
+    // Plain text needs no quotes; numbers are numbers.
+    let changed = scene(&set("effects.crepitus.preset", "fine"));
+    assert_eq!(changed.crepitus.unwrap().preset, Some("fine"));
+    let reference = scene(&Overrides {
+        solver: Some("reference".into()),
+        ..Overrides::default()
+    });
+    assert_eq!(reference.solver.name(), "reference");
+}
