@@ -1,0 +1,133 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// A motorised brace as a patient with a diseased knee: simulate the joint
+/// that the trainee feels.
+///
+/// Exit codes: 0 done, 1 the work failed, 2 bad usage or bad input.
+#[derive(Debug, Parser)]
+#[command(
+    name = "crepitus",
+    version,
+    max_term_width = 100,
+    arg_required_else_help = true
+)]
+#[command(after_help = "\
+Start with:
+  crepitus scenes                           what there is to see
+  crepitus run scenes/slow-examination.toml simulate it, then open out/slow-examination/report.html")]
+pub(crate) struct Cli {
+    /// Print JSON for machines instead of text for people.
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Simulate a scene and write its trace, events, summary and report.
+    Run(RunArguments),
+    /// List the scenes that ship, with what each shows.
+    Scenes(ScenesArguments),
+    /// List the parameter presets, with what each feels like and its source.
+    #[command(after_help = "Example:\n  crepitus presets --json")]
+    Presets,
+    /// Print a completion script for a shell.
+    #[command(after_help = "\
+Example:
+  crepitus completions bash > ~/.local/share/bash-completion/completions/crepitus")]
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
+}
+
+/// A shell that completions can be made for.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Shell {
+    Bash,
+    Elvish,
+    Fish,
+    Powershell,
+    Zsh,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus run scenes/fig6-ideal-cycle.toml
+  crepitus run slow-examination --out /tmp/exam --solver exact --step 1e-3
+  crepitus run high-speed --set effects.crepitus.preset=fine --set duration_s=2
+
+SCENE is a file, or the name of a scene that ships. Any key of the scene can be \
+set: PATH is its name with the tables before it, VALUE is written as in the file.")]
+pub(crate) struct RunArguments {
+    /// Scene file, or name of a scene that ships.
+    pub(crate) scene: PathBuf,
+
+    /// Folder for trace.csv, events.csv, summary.json and report.html [default: out/SCENE].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Another solver: exact, exact-events or reference.
+    #[arg(long, value_name = "KIND")]
+    pub(crate) solver: Option<String>,
+
+    /// Another solver step, in seconds.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub(crate) step: Option<String>,
+
+    /// Another precision: f32 or f64.
+    #[arg(long, value_name = "PRECISION")]
+    pub(crate) precision: Option<String>,
+
+    /// Set a key of the scene.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value)]
+    pub(crate) set: Vec<(String, String)>,
+
+    /// Write only every Nth row of the trace.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) trace_every: u64,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus scenes
+  crepitus scenes fig6-ideal-cycle > my-scene.toml")]
+pub(crate) struct ScenesArguments {
+    /// Print the file of this scene, as a start for one's own.
+    pub(crate) name: Option<String>,
+}
+
+fn key_and_value(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((path, value)) if !path.trim().is_empty() => {
+            Ok((path.trim().to_owned(), value.trim().to_owned()))
+        }
+        _ => Err("write PATH=VALUE, for example solver.step_s=1e-3".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_verb_shows_an_example() {
+        for verb in Cli::command().get_subcommands_mut() {
+            let help = verb.render_long_help().to_string();
+            assert!(help.contains("Example"), "{}", verb.get_name());
+        }
+    }
+}

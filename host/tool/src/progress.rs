@@ -1,0 +1,53 @@
+//! A progress bar for work that takes over a second, on a terminal only.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::{Duration, Instant};
+
+/// How long work may take before a bar appears.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Progress through a simulated time.
+pub(crate) struct Progress {
+    begun: Instant,
+    total_s: f64,
+    bar: Option<ProgressBar>,
+}
+
+impl Progress {
+    pub(crate) fn new(total_s: f64) -> Self {
+        Self {
+            begun: Instant::now(),
+            total_s,
+            bar: None,
+        }
+    }
+
+    /// The simulation has reached `time_s`.
+    pub(crate) fn reached(&mut self, time_s: f64) {
+        if self.begun.elapsed() < PATIENCE {
+            return;
+        }
+        let milliseconds = |s: f64| Duration::from_secs_f64(s.max(0.0)).as_millis();
+        let position = u64::try_from(milliseconds(time_s)).unwrap_or(u64::MAX);
+        let length = u64::try_from(milliseconds(self.total_s)).unwrap_or(u64::MAX);
+        let bar = self.bar.get_or_insert_with(|| {
+            // Hidden by itself where stderr is no terminal.
+            let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
+            if let Ok(style) = ProgressStyle::with_template(
+                "{bar:40} {percent:>3} % of the simulated time, {eta} to go",
+            ) {
+                bar.set_style(style);
+            }
+            bar
+        });
+        bar.set_position(position);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! The scenes that ship, inside the program: it runs them from anywhere.
+
+use crepitus_scene::{Overrides, Scene, SceneError};
+use std::path::{Path, PathBuf};
+
+/// A scene that ships.
+pub(crate) struct Shipped {
+    /// File name without `.toml`.
+    pub(crate) name: &'static str,
+    /// The file.
+    pub(crate) text: &'static str,
+}
+
+macro_rules! shipped {
+    ($($name:literal),* $(,)?) => {
+        /// All of them, in the order of a first visit.
+        pub(crate) const SHIPPED: &[Shipped] = &[$(Shipped {
+            name: $name,
+            text: include_str!(concat!("../../../scenes/", $name, ".toml")),
+        }),*];
+    };
+}
+
+shipped![
+    "fig6-ideal-cycle",
+    "slow-examination",
+    "low-speed",
+    "high-speed",
+    "tardieu-fast",
+    "reversal-inside-stick",
+    "presliding",
+    "knee-pass-frozen",
+    "knee-pass-physical",
+    "restart-elastic",
+    "restart-from-kinetic",
+    "preset-coarse",
+    "preset-fine",
+    "preset-bone-on-bone",
+    "encoder",
+];
+
+impl Shipped {
+    /// The scene of this name.
+    pub(crate) fn find(name: &Path) -> Option<&'static Self> {
+        let name = name.to_str()?;
+        SHIPPED.iter().find(|s| s.name == name)
+    }
+
+    /// Where the file stands in the repository.
+    pub(crate) fn file(&self) -> PathBuf {
+        PathBuf::from(format!("scenes/{}.toml", self.name))
+    }
+
+    /// The scene, read.
+    pub(crate) fn read(&self, overrides: &Overrides) -> Result<Scene, SceneError> {
+        Scene::parse(&self.file(), self.text, overrides)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_in_the_folder_ships_and_reads() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+        let mut files: Vec<_> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|e| e.unwrap().path())
+            .filter(|p| p.extension().is_some_and(|e| e == "toml"))
+            .map(|p| p.file_stem().unwrap().to_str().unwrap().to_owned())
+            .collect();
+        files.sort();
+        let mut names: Vec<_> = SHIPPED.iter().map(|s| s.name.to_owned()).collect();
+        names.sort();
+        assert_eq!(files, names);
+        for shipped in SHIPPED {
+            let scene = shipped.read(&Overrides::default()).unwrap();
+            assert!(
+                scene.description.is_some(),
+                "{} explains nothing",
+                shipped.name
+            );
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! What `crepitus` can do: one file a verb.
+
+pub(crate) mod completions;
+pub(crate) mod presets;
+pub(crate) mod run;
+pub(crate) mod scenes;

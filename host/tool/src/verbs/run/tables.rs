@@ -1,0 +1,168 @@
+//! A run's summary as a person reads it: a few lines on the terminal, tables
+//! in the report.
+
+use crepitus_model::encoder::ENCODER_PARAMETERS;
+use crepitus_model::parameters::{PARAMETERS, ParameterSpec};
+use crepitus_report::Section;
+use crepitus_scene::Summary;
+use crepitus_scene::run::EffectSummary;
+
+/// What happened, in three lines.
+pub(super) fn in_brief(s: &Summary) -> String {
+    let mut lines = Vec::new();
+    if let Some(e) = &s.events {
+        let cycles = match s.cycles.and_then(|c| c.frequency_hz) {
+            Some(frequency) => format!(", cycles at {frequency:.3} Hz on average"),
+            None => String::new(),
+        };
+        lines.push(format!(
+            "  {} breaks, {} sticks, {} reverses{cycles}",
+            e.breaks, e.sticks, e.reverses
+        ));
+    }
+    if let Some(t) = &s.torque {
+        lines.push(format!(
+            "  torque {:.4} to {:.4} N·m, mean {:.4} N·m",
+            t.min_nm, t.max_nm, t.mean_nm
+        ));
+    }
+    lines.push(format!(
+        "  {} s simulated by {} in {:.2} s, {:.0} times real time with all outputs",
+        s.simulated_s, s.solver, s.wall_s, s.real_time_factor
+    ));
+    lines.join("\n")
+}
+
+/// The tables of the report.
+pub(super) fn sections(s: &Summary) -> Vec<Section> {
+    let mut sections = vec![run_section(s)];
+    if let Some(t) = &s.torque {
+        sections.push(section(
+            "Torque over time",
+            [
+                ("smallest", nm(t.min_nm)),
+                ("mean", nm(t.mean_nm)),
+                ("largest", nm(t.max_nm)),
+                ("root mean square", nm(t.rms_nm)),
+            ],
+        ));
+    }
+    if let Some(c) = &s.cycles {
+        let time = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.4} ms", x * 1e3));
+        let frequency = c
+            .frequency_hz
+            .map_or("–".to_owned(), |f| format!("{f:.4} Hz"));
+        sections.push(section(
+            "Cycles, from break to break in the same sense",
+            [
+                ("complete", c.count.to_string()),
+                ("mean frequency", frequency),
+                ("shortest", time(c.shortest_s)),
+                ("longest", time(c.longest_s)),
+            ],
+        ));
+    }
+    if let Some(e) = &s.energy {
+        sections.push(section(
+            "Energy",
+            [
+                ("work of the hand", millijoule(e.work_in_j)),
+                (
+                    "given by the convention, without a torque",
+                    millijoule(e.convention_j),
+                ),
+                ("change in the spring", millijoule(e.spring_change_j)),
+                ("change in motion", millijoule(e.kinetic_change_j)),
+                ("dissipated by friction", millijoule(e.friction_j)),
+                ("dissipated by damping", millijoule(e.viscous_j)),
+                (
+                    "left over, relative",
+                    format!("{:.1e}", e.residual_relative),
+                ),
+            ],
+        ));
+    }
+    sections.extend(s.effects.iter().map(effect_section));
+    sections
+}
+
+fn run_section(s: &Summary) -> Section {
+    let mut rows = vec![
+        ("scene", s.scene.clone()),
+        ("motion", s.motion.to_owned()),
+        (
+            "highest speed",
+            format!("{:.1} °/s", s.fastest_rad_s.to_degrees()),
+        ),
+        ("solver", format!("{} ({})", s.solver, s.precision)),
+    ];
+    rows.extend(
+        s.step_s
+            .map(|h| ("step", format!("{} µs", trimmed(h * 1e6)))),
+    );
+    rows.extend(s.convention.map(|c| ("convention", c.to_owned())));
+    rows.extend(s.restart.map(|r| ("restart", r.to_owned())));
+    rows.extend(s.preset.map(|p| ("preset", p.to_owned())));
+    rows.push(("simulated", format!("{} s", s.simulated_s)));
+    if let Some(e) = &s.events {
+        rows.push((
+            "events",
+            format!(
+                "{} breaks, {} sticks, {} reverses",
+                e.breaks, e.sticks, e.reverses
+            ),
+        ));
+    }
+    rows.push((
+        "real-time factor, outputs included",
+        format!("{:.0}", s.real_time_factor),
+    ));
+    section("Run", rows)
+}
+
+fn effect_section(effect: &EffectSummary) -> Section {
+    let specs: &[&[ParameterSpec]] = &[&PARAMETERS, &ENCODER_PARAMETERS];
+    let mut rows: Vec<(String, String)> = effect
+        .parameters
+        .iter()
+        .map(|p| {
+            let spec = specs.iter().flat_map(|t| t.iter()).find(|s| s.key == p.key);
+            match spec {
+                Some(s) => (
+                    format!("{} ({})", s.symbol, s.key),
+                    format!("{} {}", p.value, s.unit),
+                ),
+                None => (p.key.to_owned(), p.value.to_string()),
+            }
+        })
+        .collect();
+    rows.push(("states".to_owned(), effect.states.join(", ")));
+    if let Some(ns) = effect.ns_per_step {
+        rows.push(("cost".to_owned(), format!("{ns:.1} ns per step")));
+    }
+    Section {
+        title: format!("Effect: {}", effect.name),
+        rows,
+    }
+}
+
+fn section<'a>(title: &str, rows: impl IntoIterator<Item = (&'a str, String)>) -> Section {
+    Section {
+        title: title.to_owned(),
+        rows: rows.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
+    }
+}
+
+fn nm(x: f64) -> String {
+    format!("{x:.5} N·m")
+}
+
+fn millijoule(x: f64) -> String {
+    format!("{:.5} mJ", x * 1e3)
+}
+
+/// A number without the digits that rounding added.
+fn trimmed(x: f64) -> String {
+    let text = format!("{x:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

@@ -1,0 +1,80 @@
+//! Sees a run go by: writes its rows and events, collects the report's
+//! figures, moves the progress bar, and stops when asked.
+
+use crate::interrupt;
+use crate::progress::Progress;
+use crepitus_report::{Collector, Figures, Setup};
+use crepitus_scene::Observer;
+use crepitus_scene::output::{EventsCsv, Folder, TraceCsv};
+use crepitus_scene::trace::EventRecord;
+use std::fs::File;
+use std::io::{self, BufWriter};
+
+pub(super) struct Watch {
+    trace: TraceCsv<BufWriter<File>>,
+    events: EventsCsv<BufWriter<File>>,
+    collector: Collector,
+    progress: Progress,
+    trace_every: u64,
+    rows: u64,
+}
+
+/// Why a run ends early.
+#[derive(Debug)]
+pub(super) enum WatchError {
+    /// The results cannot be written.
+    Write(io::Error),
+    /// Ctrl-C.
+    Interrupted,
+}
+
+impl Watch {
+    pub(super) fn new(
+        folder: &Folder,
+        setup: &Setup<'_>,
+        duration_s: f64,
+        trace_every: u64,
+    ) -> io::Result<Self> {
+        Ok(Self {
+            trace: TraceCsv::new(folder.file("trace.csv")?, setup.columns.to_vec())?,
+            events: EventsCsv::new(folder.file("events.csv")?)?,
+            collector: Collector::new(setup),
+            progress: Progress::new(duration_s),
+            trace_every,
+            rows: 0,
+        })
+    }
+
+    /// Finishes both files and gives the figures.
+    pub(super) fn finish(self) -> io::Result<Figures> {
+        Folder::finish(self.trace.into_inner())?;
+        Folder::finish(self.events.into_inner())?;
+        Ok(self.collector.finish())
+    }
+}
+
+impl Observer for Watch {
+    type Error = WatchError;
+
+    fn row(&mut self, values: &[f64]) -> Result<(), WatchError> {
+        self.collector.row(values);
+        if self.rows.is_multiple_of(self.trace_every) {
+            self.trace.row(values).map_err(WatchError::Write)?;
+        }
+        self.rows += 1;
+        Ok(())
+    }
+
+    fn event(&mut self, event: &EventRecord) -> Result<(), WatchError> {
+        self.collector.event(event);
+        self.events.event(event).map_err(WatchError::Write)
+    }
+
+    fn progress(&mut self, time_s: f64) -> Result<(), WatchError> {
+        self.progress.reached(time_s);
+        if interrupt::asked() {
+            return Err(WatchError::Interrupted);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,46 @@
+//! `crepitus scenes [NAME]`.
+
+use crate::cli::ScenesArguments;
+use crate::failure::{Failure, print, print_json};
+use crate::shipped::{SHIPPED, Shipped};
+use crepitus_scene::Overrides;
+use serde_json::json;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Lists the scenes that ship, or prints one.
+pub(crate) fn scenes(arguments: &ScenesArguments, as_json: bool) -> Result<(), Failure> {
+    if let Some(name) = &arguments.name {
+        let name = name.trim_end_matches(".toml");
+        return match Shipped::find(Path::new(name)) {
+            Some(shipped) => print(shipped.text),
+            None => Err(Failure::Input(format!(
+                "no scene \"{name}\" ships: `crepitus scenes` lists those that do"
+            ))),
+        };
+    }
+    let mut text = String::new();
+    let mut list = Vec::new();
+    for shipped in SHIPPED {
+        let scene = shipped
+            .read(&Overrides::default())
+            .map_err(Failure::input)?;
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{:22} {}", shipped.name, scene.title);
+        list.push(json!({
+            "name": shipped.name,
+            "file": shipped.file(),
+            "title": scene.title,
+            "description": scene.description,
+            "duration_s": scene.duration_s,
+            "motion": scene.motion_kind.name(),
+            "solver": scene.solver.name(),
+            "effects": scene.effects(),
+        }));
+    }
+    if as_json {
+        return print_json(&list);
+    }
+    text.push_str("\nRun one with `crepitus run NAME`; `crepitus scenes NAME` prints its file.\n");
+    print(&text)
+}
