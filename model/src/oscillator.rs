@@ -22,6 +22,8 @@ use crate::real::Real;
 /// The free motion of an object with given J, c, kr.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oscillator<F> {
+    /// ωn, rad/s.
+    omega_n: F,
     /// ωn² = kr/J, rad²/s².
     omega_n_squared: F,
     /// a = c/2J, 1/s.
@@ -30,6 +32,8 @@ pub struct Oscillator<F> {
     discriminant: F,
     /// √|D|, rad/s.
     root: F,
+    /// |4a² − ωn²| + 2a·ωn, rad²/s².
+    jerk_factor: F,
 }
 
 /// The exact motion over one fixed time: (x, v) ↦ (xx·x + xv·v, vx·x + vv·v).
@@ -49,7 +53,10 @@ impl<F: Real> Oscillator<F> {
         // (ωn − a)(ωn + a): no cancellation near critical damping.
         let omega_n = libm::sqrt(omega_n_squared);
         let discriminant = (omega_n - decay) * (omega_n + decay);
+        let jerk_factor = libm::fabs(4.0 * decay * decay - omega_n_squared) + 2.0 * decay * omega_n;
         Self {
+            omega_n: F::from_f64(omega_n),
+            jerk_factor: F::from_f64(jerk_factor),
             omega_n_squared: F::from_f64(omega_n_squared),
             decay: F::from_f64(decay),
             discriminant: F::from_f64(discriminant),
@@ -76,16 +83,16 @@ impl<F: Real> Oscillator<F> {
 
     /// The time of a quarter radian of free swing, 1/(4·ωn), s.
     pub fn quarter_radian_s(&self) -> F {
-        F::HALF * F::HALF / self.omega_n_squared.sqrt()
+        F::HALF * F::HALF / self.omega_n
     }
 
     /// A bound of |v̈| that holds for the whole free motion from (x, v) on:
-    /// (|4a² − ωn²| + 2a·ωn)·√(v² + ωn²x²), rad/s³. The root is the object's
-    /// energy, which free motion never raises.
+    /// (|4a² − ωn²| + 2a·ωn)·(|v| + ωn|x|), rad/s³. The last factor is at least
+    /// √(v² + ωn²x²), the root of the object's energy, which free motion never
+    /// raises.
+    #[inline]
     pub fn jerk_bound(&self, x: F, v: F) -> F {
-        let (two_a, w2) = (F::TWO * self.decay, self.omega_n_squared);
-        let energy = (v * v + w2 * x * x).sqrt();
-        ((two_a * two_a - w2).abs() + two_a * w2.sqrt()) * energy
+        self.jerk_factor * (v.abs() + self.omega_n * x.abs())
     }
 
     /// (C, S) of the module's equations.

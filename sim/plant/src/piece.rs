@@ -61,20 +61,16 @@ pub enum Curve {
 }
 
 impl Piece {
-    /// The shaft at `time_s`, which may be either end.
+    /// Angle and velocity at `time_s`, rad and rad/s: all that a step needs.
     #[inline]
-    pub fn at(&self, time_s: f64) -> ShaftState {
+    pub fn angle_and_velocity(&self, time_s: f64) -> (f64, f64) {
         match self.curve {
-            Curve::Polynomial(c) => {
+            Curve::Polynomial([c0, c1, c2, c3, c4, c5]) => {
                 let t = time_s - self.start_s;
-                let [c0, c1, c2, c3, c4, c5] = c;
-                ShaftState {
-                    phi_rad: ((((c5 * t + c4) * t + c3) * t + c2) * t + c1) * t + c0,
-                    omega_rad_s: (((5.0 * c5 * t + 4.0 * c4) * t + 3.0 * c3) * t + 2.0 * c2) * t
-                        + c1,
-                    omega_dot: ((20.0 * c5 * t + 12.0 * c4) * t + 6.0 * c3) * t + 2.0 * c2,
-                    omega_ddot: (60.0 * c5 * t + 24.0 * c4) * t + 6.0 * c3,
-                }
+                (
+                    ((((c5 * t + c4) * t + c3) * t + c2) * t + c1) * t + c0,
+                    (((5.0 * c5 * t + 4.0 * c4) * t + 3.0 * c3) * t + 2.0 * c2) * t + c1,
+                )
             }
             Curve::Sine {
                 amplitude_rad,
@@ -82,12 +78,35 @@ impl Piece {
                 phase_turns,
             } => {
                 let (sin, cos) = sin_cos_turns(frequency_hz * time_s + phase_turns);
+                (
+                    amplitude_rad * sin,
+                    amplitude_rad * TAU * frequency_hz * cos,
+                )
+            }
+        }
+    }
+
+    /// The shaft at `time_s`, which may be either end.
+    pub fn at(&self, time_s: f64) -> ShaftState {
+        let (phi_rad, omega_rad_s) = self.angle_and_velocity(time_s);
+        match self.curve {
+            Curve::Polynomial(c) => {
+                let t = time_s - self.start_s;
+                let [_, _, c2, c3, c4, c5] = c;
+                ShaftState {
+                    phi_rad,
+                    omega_rad_s,
+                    omega_dot: ((20.0 * c5 * t + 12.0 * c4) * t + 6.0 * c3) * t + 2.0 * c2,
+                    omega_ddot: (60.0 * c5 * t + 24.0 * c4) * t + 6.0 * c3,
+                }
+            }
+            Curve::Sine { frequency_hz, .. } => {
                 let w = TAU * frequency_hz;
                 ShaftState {
-                    phi_rad: amplitude_rad * sin,
-                    omega_rad_s: amplitude_rad * w * cos,
-                    omega_dot: -(amplitude_rad * w * w * sin),
-                    omega_ddot: -(amplitude_rad * w * w * w * cos),
+                    phi_rad,
+                    omega_rad_s,
+                    omega_dot: -(w * w * phi_rad),
+                    omega_ddot: -(w * w * omega_rad_s),
                 }
             }
         }

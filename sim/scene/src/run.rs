@@ -109,7 +109,8 @@ pub fn rows(scene: &Scene) -> u64 {
     steps / every + 1
 }
 
-/// Runs `scene` to its end.
+/// Runs `scene` to its end. What each effect costs is not in the summary yet:
+/// see [`measure_costs`].
 ///
 /// # Errors
 /// What the observer returns, or settings that cannot work together.
@@ -117,8 +118,19 @@ pub fn run<O: Observer>(scene: &Scene, observer: &mut O) -> Result<Summary, RunE
     let begun = Instant::now();
     let totals = simulate(scene, observer)?;
     let wall_s = begun.elapsed().as_secs_f64();
-    let costs = probe::costs(scene);
-    Ok(summary::summarise(scene, &totals, wall_s, &costs))
+    Ok(summary::summarise(scene, &totals, wall_s))
+}
+
+/// Times each effect of `scene`, in a few thousand steps with it and without
+/// it, and notes the costs in its `summary`.
+pub fn measure_costs(scene: &Scene, summary: &mut Summary) {
+    for cost in probe::costs(scene) {
+        for effect in &mut summary.effects {
+            if effect.name == cost.effect {
+                effect.ns_per_step = Some(cost.ns_per_step);
+            }
+        }
+    }
 }
 
 /// Runs `scene` without timing anything.
@@ -180,11 +192,16 @@ impl Clock {
     }
 
     #[inline]
-    #[expect(clippy::cast_precision_loss, reason = "below 2^53")]
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_wrap,
+        reason = "below 2^53; a signed number converts in one instruction"
+    )]
     fn time_s(&self, n: u64) -> f64 {
+        let n = n as i64 as f64;
         match self.rate_hz {
-            Some(rate) => n as f64 / rate,
-            None => n as f64 * self.step_s,
+            Some(rate) => n / rate,
+            None => n * self.step_s,
         }
     }
 }

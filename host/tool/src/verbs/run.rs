@@ -79,13 +79,14 @@ fn simulate(scene: &Scene, out: &Path, trace_every: u64) -> Result<(Summary, Fol
     };
     let mut watch = Watch::new(&folder, &setup, scene.duration_s, trace_every)
         .map_err(|e| failed("writing the results", &e))?;
-    let summary = crepitus_scene::run(scene, &mut watch).map_err(|e| match e {
+    let mut summary = crepitus_scene::run(scene, &mut watch).map_err(|e| match e {
         RunError::Observer(WatchError::Write(e)) => failed("writing the results", &e),
         RunError::Observer(WatchError::Interrupted) => {
             Failure::Work("interrupted: nothing was written".to_owned())
         }
         other => Failure::Work(format!("{}: {other:?}", scene.file.display())),
     })?;
+    runner::measure_costs(scene, &mut summary);
     let figures = watch
         .finish()
         .map_err(|e| failed("writing the results", &e))?;

@@ -1,13 +1,13 @@
 //! A run in fixed steps: true motion → sensor → joint.
 
-use super::sensor::{Encoded, Ideal, Sensor};
+use super::sensor::{Encoded, Ideal, Sensor, Shaft};
 use super::tally::{StickEnd, Tally};
 use super::{Clock, Observer, RunError, Totals, steps};
 use crate::scene::{Scene, SolverChoice};
 use crate::trace::EventRecord;
 use crepitus_model::solver::{JointVisitor, with_joint};
 use crepitus_model::{Event, Phase, Real, Settings, ShaftStep, StickSlip};
-use crepitus_plant::{Motion, Piece, ShaftState};
+use crepitus_plant::{Motion, Piece};
 
 /// How many steps go by between two reports of progress.
 const PROGRESS_STEPS: u64 = 1 << 16;
@@ -20,7 +20,7 @@ pub(super) fn simulate<F: Real, O: Observer>(
     let SolverChoice::Ladder { solver, step_s, .. } = scene.solver else {
         unreachable!("the event-driven solver does not step");
     };
-    let shaft = scene.motion.at(0.0);
+    let shaft = Shaft::of(&scene.motion.piece(0.0), 0.0);
     match (&scene.crepitus, &scene.encoder) {
         (None, None) => bare::<F, _, _>(scene, observer, Ideal),
         (None, Some(encoder)) => {
@@ -61,7 +61,7 @@ struct Walk<'a> {
     n: u64,
     time_s: f64,
     /// The shaft at the last step's end, as the next step starts.
-    now: ShaftState,
+    now: Shaft,
 }
 
 impl<'a> Walk<'a> {
@@ -73,26 +73,26 @@ impl<'a> Walk<'a> {
             clock: Clock::new(step_s),
             n: 0,
             time_s: 0.0,
-            now: piece.at(0.0),
+            now: Shaft::of(&piece, 0.0),
         }
     }
 
     /// The shaft at both ends of the next step, just inside it.
     #[inline]
-    fn step(&mut self) -> (ShaftState, ShaftState) {
+    fn step(&mut self) -> (Shaft, Shaft) {
         self.n += 1;
         self.time_s = self.clock.time_s(self.n);
         let from = self.now;
         while self.piece.end_s < self.time_s {
             self.piece = self.motion.piece(self.piece.end_s);
         }
-        let to = self.piece.at(self.time_s);
+        let to = Shaft::of(&self.piece, self.time_s);
         self.now = to;
         if self.piece.end_s == self.time_s {
             self.piece = self.motion.piece(self.time_s);
             // Without a jump both sides are one velocity, to the bit.
             if self.piece.jump {
-                self.now = self.piece.at(self.time_s);
+                self.now = Shaft::of(&self.piece, self.time_s);
             }
         }
         (from, to)

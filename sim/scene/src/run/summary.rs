@@ -1,6 +1,5 @@
 //! The summary of a run: what `summary.json` holds.
 
-use super::probe::Cost;
 use super::tally::Tally;
 use super::{Totals, step_s};
 use crate::scene::{Crepitus, EFFECTS, SCENE_VERSION, Scene, SolverChoice};
@@ -72,7 +71,7 @@ pub struct EffectSummary {
     pub name: &'static str,
     /// Its state variables.
     pub states: &'static [&'static str],
-    /// Time that it cost, ns per step; none for `reference`.
+    /// Time that it costs, ns per step, once measured; never for `reference`.
     pub ns_per_step: Option<f64>,
     /// Its parameters.
     pub parameters: Vec<ParameterValue>,
@@ -150,7 +149,7 @@ pub struct EnergySummary {
 }
 
 /// Puts the totals of a run into words.
-pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64, costs: &[Cost]) -> Summary {
+pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64) -> Summary {
     let tally = totals.tally.as_ref();
     let (step, precision) = match scene.solver {
         SolverChoice::Reference => (None, "f64"),
@@ -174,7 +173,7 @@ pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64, costs: &[Co
         convention: scene.crepitus.map(|c| c.settings.convention.name()),
         restart: scene.crepitus.map(|c| c.settings.restart.name()),
         preset: scene.crepitus.and_then(|c| c.preset),
-        effects: effects(scene, costs),
+        effects: effects(scene),
         simulated_s: totals.end_s,
         steps: totals.steps,
         fastest_rad_s: totals.fastest_rad_s,
@@ -219,7 +218,7 @@ fn cycles(tally: &Tally) -> CycleSummary {
     }
 }
 
-fn effects(scene: &Scene, costs: &[Cost]) -> Vec<EffectSummary> {
+fn effects(scene: &Scene) -> Vec<EffectSummary> {
     let values = |keys: Vec<&'static str>, values: Vec<f64>| {
         keys.into_iter()
             .zip(values)
@@ -246,10 +245,7 @@ fn effects(scene: &Scene, costs: &[Cost]) -> Vec<EffectSummary> {
             Some(EffectSummary {
                 name: effect.name,
                 states: effect.states,
-                ns_per_step: costs
-                    .iter()
-                    .find(|c| c.effect == effect.name)
-                    .map(|c| c.ns_per_step),
+                ns_per_step: None,
                 parameters,
             })
         })
