@@ -86,13 +86,19 @@ impl<F: Real> Oscillator<F> {
         F::HALF * F::HALF / self.omega_n
     }
 
+    /// A bound of |v| that holds for the whole free motion from (x, v) on:
+    /// |v| + ωn|x|, rad/s. It is at least √(v² + ωn²x²), the root of the
+    /// object's energy, which free motion never raises.
+    #[inline]
+    pub fn speed_bound(&self, x: F, v: F) -> F {
+        v.abs() + self.omega_n * x.abs()
+    }
+
     /// A bound of |v̈| that holds for the whole free motion from (x, v) on:
-    /// (|4a² − ωn²| + 2a·ωn)·(|v| + ωn|x|), rad/s³. The last factor is at least
-    /// √(v² + ωn²x²), the root of the object's energy, which free motion never
-    /// raises.
+    /// |4a² − ωn²| + 2a·ωn times the speed bound, rad/s³.
     #[inline]
     pub fn jerk_bound(&self, x: F, v: F) -> F {
-        self.jerk_factor * (v.abs() + self.omega_n * x.abs())
+        self.jerk_factor * self.speed_bound(x, v)
     }
 
     /// (C, S) of the module's equations.

@@ -353,6 +353,7 @@ def all_cases():
     add("n06_const_minus_1", "constant -1 rad/s", const(-1), 1)
     add("c03z_const_0p5_frozen", "constant 0.5 rad/s", const(0.5), 1, "frozen")
     add("s07_sine_0p25Hz", "45 degrees at 0.25 Hz", knee(0.25), 4)
+    add("s07p_sine_0p25Hz_paper7", "45 degrees at 0.25 Hz", knee(0.25), 4, "paper7")
     add("s08_sine_0p5Hz", "45 degrees at 0.5 Hz", knee(0.5), 4)
     add("s08p_sine_0p5Hz_paper7", "45 degrees at 0.5 Hz", knee(0.5), 4, "paper7")
     add("t09_through_zero", "Omega passes 0 during slip", THROUGH_ZERO, 0.6)

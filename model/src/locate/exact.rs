@@ -73,7 +73,8 @@ fn search<F: Real, P: Propagate<F>>(slip: &SlipPath<'_, F, P>, length_s: F, boun
         let v_dot = slip.oscillator.acceleration(x, v);
         let g = slip.sense.of_signed(omega - v).at_least(F::ZERO);
         let g_dot = slip.sense.of_signed(slip.omega_dot - v_dot);
-        let advance = if g <= rounding * (omega.abs() + v.abs()) {
+        let noise = rounding * (omega.abs() + slip.oscillator.speed_bound(x, v));
+        let advance = if g <= noise {
             if g_dot.abs() <= rounding * (slip.omega_dot.abs() + v_dot.abs()) {
                 // A touch: the velocities meet without crossing. Leave it, if
                 // they part again; a quarter radian of swing is surely apart.

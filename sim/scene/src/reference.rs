@@ -290,7 +290,8 @@ impl<'a> Reference<'a> {
         first_root(from_s, to_s, |time_s| {
             let (x, v) = self.swing(slip, time_s);
             let s = self.piece.at(time_s);
-            let noise = 2.0 * f64::EPSILON * (s.omega_rad_s.abs() + v.abs());
+            let speed = s.omega_rad_s.abs() + self.oscillator.speed_bound(x, v);
+            let noise = 2.0 * f64::EPSILON * speed;
             Sample {
                 value: slip.sense.of_signed(s.omega_rad_s - v),
                 slope: slip

@@ -109,11 +109,8 @@ fn bare<F: Real, O: Observer, S: Sensor<F>>(
     let mut walk = Walk::new(&scene.motion, super::step_s(scene));
     let mut row = Vec::new();
     let mut fastest_rad_s = walk.now.omega_rad_s.abs();
-    let mut until_row = 1;
     loop {
-        until_row -= 1;
-        if O::WANTS_ROWS && until_row == 0 {
-            until_row = every;
+        if O::WANTS_ROWS && walk.n.is_multiple_of(every) {
             row.clear();
             row.extend([walk.time_s, walk.now.phi_rad, walk.now.omega_rad_s]);
             sensor.write(&mut row);
@@ -162,11 +159,8 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
         let mut row = Vec::new();
         let mut fastest_rad_s = walk.now.omega_rad_s.abs();
         books.tally.shown(joint.torque_nm().to_f64());
-        let mut until_row = 1;
         loop {
-            until_row -= 1;
-            if O::WANTS_ROWS && until_row == 0 {
-                until_row = every;
+            if O::WANTS_ROWS && walk.n.is_multiple_of(every) {
                 row.clear();
                 row.extend([
                     walk.time_s,
