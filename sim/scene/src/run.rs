@@ -154,7 +154,7 @@ fn steps(scene: &Scene) -> (u64, u64) {
     // A duration written in decimals may miss a whole number by rounding.
     let steps = whole(scene.duration_s / step_s * (1.0 + 1e-12) + 1e-9);
     let every = whole((scene.trace_step_s / step_s).round()).max(1);
-    (steps.max(1), every)
+    (steps, every)
 }
 
 /// The step of the solver; of `reference`, the time between rows.

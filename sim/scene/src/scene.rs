@@ -305,6 +305,12 @@ fn read_trace_step(
                     format!("{step_s} s makes more than {MOST_STEPS:e} steps of {duration_s} s"),
                 ));
             }
+            if duration_s < step_s * (1.0 - 1e-9) {
+                return Err(solver_section.key_error(
+                    "step_s",
+                    format!("a step of {step_s} s is longer than the run of {duration_s} s"),
+                ));
+            }
             let wanted = wanted.unwrap_or(step_s);
             let steps = wanted / step_s;
             if steps < 0.5 || (steps - steps.round()).abs() > 1e-6 * steps {

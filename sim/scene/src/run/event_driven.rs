@@ -6,7 +6,7 @@ use super::{Clock, Observer, RunError, Totals, steps};
 use crate::reference::Reference;
 use crate::scene::Scene;
 use crate::trace::EventRecord;
-use crepitus_model::{Phase, Settings};
+use crepitus_model::{Event, Phase, Settings};
 use crepitus_plant::{Motion, ShaftState};
 
 /// How many rows go by between two reports of progress.
@@ -27,34 +27,26 @@ pub(super) fn simulate<O: Observer>(
         )
     });
     let mut row = Vec::new();
-    let mut end_s = 0.0;
+
     for n in 0..=rows {
         let time_s = clock.time_s(n);
         row.clear();
         if let Some((reference, books)) = &mut joint {
             let mut result = Ok(());
-            reference.advance(time_s, |event| {
-                let mut event = event;
-                let at_s = std::mem::take(&mut event.fraction);
-                books.event(at_s, &event);
-                if result.is_ok() {
-                    result = observer.event(&EventRecord::new(at_s, &event));
-                }
-            });
+            reference.advance(time_s, |event| books.pass_on(event, observer, &mut result));
             result.map_err(RunError::Observer)?;
-            let (phase, theta) = (reference.phase(), reference.theta_rad());
-            let (shaft, torque) = (reference.shaft(), reference.torque_nm());
-            books.end_row(time_s, phase, theta, &shaft, torque);
+            books.end_row(time_s, reference);
+            let shaft = reference.shaft();
             fastest_rad_s = fastest_rad_s.max(shaft.omega_rad_s.abs());
             if O::WANTS_ROWS {
                 row.extend([
                     time_s,
                     shaft.phi_rad,
                     shaft.omega_rad_s,
-                    f64::from(phase.sign()),
-                    theta,
+                    f64::from(reference.phase().sign()),
+                    reference.theta_rad(),
                     reference.theta_dot_rad_s(),
-                    torque,
+                    reference.torque_nm(),
                 ]);
             }
         } else {
@@ -70,7 +62,14 @@ pub(super) fn simulate<O: Observer>(
         if n.is_multiple_of(PROGRESS_ROWS) {
             observer.progress(time_s).map_err(RunError::Observer)?;
         }
-        end_s = time_s;
+    }
+    // What is left after the last row has events, too.
+    let end_s = scene.duration_s.max(clock.time_s(rows));
+    if let Some((reference, books)) = &mut joint {
+        let mut result = Ok(());
+        reference.advance(end_s, |event| books.pass_on(event, observer, &mut result));
+        result.map_err(RunError::Observer)?;
+        books.end_row(end_s, reference);
     }
     let tally = joint.map(|(reference, mut books)| {
         let phi = reference.shaft().phi_rad - books.phi_start_rad;
@@ -109,20 +108,31 @@ impl<'a> Books<'a> {
         }
     }
 
-    fn event(&mut self, time_s: f64, event: &crepitus_model::Event<f64>) {
+    /// Books an event, whose `fraction` is its time, and tells the observer.
+    fn pass_on<O: Observer>(
+        &mut self,
+        event: Event<f64>,
+        observer: &mut O,
+        result: &mut Result<(), O::Error>,
+    ) {
+        let time_s = event.fraction;
         let shaft = self.motion.at(time_s);
         if event.from == Phase::Stick {
             self.book_stick(time_s, event.theta_rad, &shaft);
         }
         self.tally
-            .event(time_s, shaft.phi_rad - self.phi_start_rad, event);
+            .event(time_s, shaft.phi_rad - self.phi_start_rad, &event);
         self.booked = (time_s, shaft.phi_rad, stick_end(event.theta_rad, &shaft));
+        if result.is_ok() {
+            *result = observer.event(&EventRecord::new(time_s, &event));
+        }
     }
 
-    fn end_row(&mut self, time_s: f64, phase: Phase, theta: f64, shaft: &ShaftState, torque: f64) {
-        self.tally.shown(torque);
-        if phase == Phase::Stick {
-            self.book_stick(time_s, theta, shaft);
+    /// Books the time up to a row, or to the end.
+    fn end_row(&mut self, time_s: f64, reference: &Reference<'_>) {
+        self.tally.shown(reference.torque_nm());
+        if reference.phase() == Phase::Stick {
+            self.book_stick(time_s, reference.theta_rad(), &reference.shaft());
         }
     }
 

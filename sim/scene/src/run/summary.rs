@@ -258,13 +258,8 @@ fn run_warnings(scene: &Scene, totals: &Totals) -> Vec<String> {
     let missed_s = scene.duration_s - totals.end_s;
     if missed_s > 1e-9 * scene.duration_s {
         warnings.push(format!(
-            "duration_s = {} s is not a whole number of {} of {} s: the run ends at {} s",
+            "duration_s = {} s is not a whole number of steps of {} s: the run ends at {} s",
             scene.duration_s,
-            if scene.solver == SolverChoice::Reference {
-                "rows"
-            } else {
-                "steps"
-            },
             step_s(scene),
             totals.end_s
         ));

@@ -1,0 +1,280 @@
+//! `crepitus run`, `scenes`, `presets`, `completions` as a person or a script
+//! uses them.
+
+mod support;
+
+use std::fs;
+use support::{crepitus, csv, names, number, run, stderr, stdout, summary};
+
+const FILES: [&str; 4] = ["events.csv", "report.html", "summary.json", "trace.csv"];
+
+#[test]
+fn a_scene_becomes_four_files() {
+    let home = tempfile::tempdir().unwrap();
+    let output = crepitus()
+        .args(["run", "fig6-ideal-cycle"])
+        .current_dir(home.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let folder = home.path().join("out/fig6-ideal-cycle");
+    assert_eq!(names(&folder), FILES);
+    assert_eq!(names(&home.path().join("out")), ["fig6-ideal-cycle"]);
+    let report = "out/fig6-ideal-cycle/report.html";
+    assert!(stdout(&output).replace('\\', "/").contains(report));
+
+    let (header, rows) = csv(&folder.join("trace.csv"));
+    assert_eq!(
+        header.join(","),
+        "t_s,angle_rad,omega_rad_s,phase,theta_rad,theta_dot_rad_s,torque_nm"
+    );
+    assert_eq!(rows.len(), 40_001);
+    assert_eq!(
+        (rows[6000][0].as_str(), rows[40_000][0].as_str()),
+        ("0.3", "2.0")
+    );
+    for row in &rows {
+        assert!(["stick", "slip+", "slip-"].contains(&row[3].as_str()));
+        assert!(number(&row[6]) <= 0.4 && number(&row[6]) >= 0.0);
+    }
+
+    let (header, events) = csv(&folder.join("events.csv"));
+    assert_eq!(
+        header.join(","),
+        "t_s,event,theta_rad,omega_rad_s,torque_before_nm,torque_after_nm"
+    );
+    assert_eq!(events.len(), 127);
+    assert_eq!(
+        (number(&events[0][0]), events[0][1].as_str()),
+        (1e-3, "break")
+    );
+
+    let summary = summary(&folder);
+    assert_eq!(summary["events"]["break"], 64);
+    assert_eq!(summary["effects"][0]["name"], "crepitus");
+    assert!(summary["effects"][0]["ns_per_step"].as_f64().unwrap() < 1e4);
+    assert_eq!(summary["convention"], "frozen");
+
+    let report = fs::read_to_string(folder.join("report.html")).unwrap();
+    assert!(report.len() < 5_000_000);
+    assert!(!report.contains("http://") && !report.contains("https://"));
+    assert!(!report.contains("<script"));
+    assert!(report.matches("<svg").count() >= 5);
+}
+
+#[test]
+fn trace_rows_can_be_thinned_and_stay_the_same_rows() {
+    let home = tempfile::tempdir().unwrap();
+    let rows = |every: &str| {
+        let out = home.path().join(every);
+        let output = run(&[
+            "run",
+            "encoder",
+            "--set",
+            "duration_s=0.2",
+            "--trace-every",
+            every,
+            "--out",
+            out.to_str().unwrap(),
+        ]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        csv(&out.join("trace.csv")).1
+    };
+    let (all, some) = (rows("1"), rows("7"));
+    assert_eq!(all.len(), 4001);
+    assert_eq!(some, all.into_iter().step_by(7).collect::<Vec<_>>());
+}
+
+#[test]
+fn the_same_run_gives_the_same_bytes() {
+    let home = tempfile::tempdir().unwrap();
+    for solver in ["exact", "exact-events"] {
+        let files = |name: &str| {
+            let out = home.path().join(name);
+            let output = run(&[
+                "run",
+                "encoder",
+                "--solver",
+                solver,
+                "--set",
+                "duration_s=1",
+                "--out",
+                out.to_str().unwrap(),
+            ]);
+            assert!(output.status.success());
+            ["trace.csv", "events.csv"].map(|f| fs::read(out.join(f)).unwrap())
+        };
+        assert_eq!(files("a"), files("b"));
+    }
+}
+
+#[test]
+fn options_change_the_scene() {
+    let home = tempfile::tempdir().unwrap();
+    let out = home.path().join("run");
+    let output = run(&[
+        "--json",
+        "run",
+        "high-speed",
+        "--solver",
+        "exact",
+        "--step",
+        "1e-3",
+        "--precision",
+        "f32",
+        "--set",
+        "effects.crepitus.preset=fine",
+        "--set",
+        "duration_s=0.5",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let printed: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(printed["summary"], summary(&out));
+    assert_eq!(printed["out"], out.to_str().unwrap());
+    let summary = &printed["summary"];
+    assert_eq!(summary["solver"], "exact");
+    assert_eq!(summary["step_s"], 1e-3);
+    assert_eq!(summary["precision"], "f32");
+    assert_eq!(summary["preset"], "fine");
+    assert_eq!(summary["simulated_s"], 0.5);
+    let warnings = summary["warnings"].to_string();
+    assert!(
+        warnings.contains("step longer than a stick phase"),
+        "{warnings}"
+    );
+}
+
+#[test]
+fn bad_input_is_exit_code_2_and_writes_nothing() {
+    let home = tempfile::tempdir().unwrap();
+    let bad = home.path().join("bad.toml");
+    fs::write(&bad, "version = 1\ntitle = \"x\"\nduration_s = 1\n").unwrap();
+    let latin = home.path().join("latin.toml");
+    fs::write(&latin, b"title = \"45\xb0\"\n").unwrap();
+    let before = names(home.path());
+    let cases: [(&[&str], &str); 9] = [
+        (&["run", "nothing.toml"], "no such file"),
+        (&["run", "bad.toml"], "[motion]"),
+        (&["run", "latin.toml"], "UTF-8"),
+        (&["run", "."], "cannot be read"),
+        (
+            &["run", "low-speed", "--solver", "exat"],
+            "did you mean exact",
+        ),
+        (&["run", "low-speed", "--step", "-1"], "above 0"),
+        (
+            &["run", "low-speed", "--set", "duration_s=forever"],
+            "a number",
+        ),
+        (
+            &["run", "low-speed", "--set", "effects.crepitus.stiffness=3"],
+            "stiffness_nm_per_rad",
+        ),
+        (
+            &["run", "encoder", "--solver", "reference"],
+            "[effects.encoder]",
+        ),
+    ];
+    for (arguments, part) in cases {
+        let output = crepitus()
+            .args(arguments)
+            .current_dir(home.path())
+            .output()
+            .unwrap();
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(
+            message.starts_with("error: ") && message.contains(part),
+            "{arguments:?}: {message}"
+        );
+        let json = crepitus()
+            .arg("--json")
+            .args(arguments)
+            .current_dir(home.path())
+            .output()
+            .unwrap();
+        let printed: serde_json::Value = serde_json::from_str(&stdout(&json)).unwrap();
+        assert_eq!(printed["error"]["exit_code"], 2);
+    }
+    assert_eq!(names(home.path()), before);
+}
+
+#[test]
+fn bad_usage_is_exit_code_2() {
+    for arguments in [
+        &["fly"][..],
+        &["run"],
+        &["run", "low-speed", "--set", "x"],
+        &["run", "low-speed", "--trace-every", "0"],
+    ] {
+        assert_eq!(run(arguments).status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn every_shipped_scene_is_listed_and_printed() {
+    let listed = stdout(&run(&["scenes"]));
+    let json: serde_json::Value =
+        serde_json::from_str(&stdout(&run(&["scenes", "--json"]))).unwrap();
+    let scenes = json.as_array().unwrap();
+    assert!(scenes.len() >= 12);
+    for scene in scenes {
+        let name = scene["name"].as_str().unwrap();
+        assert!(listed.contains(name));
+        let file = support::repository().join(scene["file"].as_str().unwrap());
+        assert_eq!(
+            stdout(&run(&["scenes", name])),
+            fs::read_to_string(file).unwrap()
+        );
+        assert!(
+            scene["description"].as_str().unwrap().len() > 60,
+            "{name} explains little"
+        );
+    }
+    assert_eq!(run(&["scenes", "nothing"]).status.code(), Some(2));
+}
+
+#[test]
+fn what_scenes_promise_comes_true() {
+    let home = tempfile::tempdir().unwrap();
+    let breaks = |name: &str| {
+        let out = home.path().join(name);
+        let output = run(&["run", name, "--out", out.to_str().unwrap()]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let summary = summary(&out);
+        assert_eq!(
+            summary["warnings"].as_array().unwrap().len(),
+            0,
+            "{summary}"
+        );
+        summary["events"]["break"].as_u64().unwrap()
+    };
+    assert_eq!(breaks("knee-pass-frozen"), 124);
+    assert_eq!(breaks("knee-pass-physical"), 3);
+    assert_eq!(breaks("presliding"), 0);
+    assert_eq!(breaks("reversal-inside-stick"), 24);
+    assert!(breaks("restart-from-kinetic") > breaks("restart-elastic"));
+}
+
+#[test]
+fn presets_name_every_parameter() {
+    let text = stdout(&run(&["presets"]));
+    let json: serde_json::Value =
+        serde_json::from_str(&stdout(&run(&["presets", "--json"]))).unwrap();
+    assert_eq!(json[0]["parameters"]["static_torque_nm"], 0.4);
+    for preset in json.as_array().unwrap() {
+        assert!(text.contains(preset["name"].as_str().unwrap()));
+        assert_eq!(preset["parameters"].as_object().unwrap().len(), 5);
+    }
+}
+
+#[test]
+fn completions_know_the_verbs() {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let output = run(&["completions", shell]);
+        assert!(output.status.success());
+        assert!(stdout(&output).contains("presets"), "{shell}");
+    }
+}
