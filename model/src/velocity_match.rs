@@ -216,22 +216,24 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
         let theta = x + sense.of_signed(a.kinetic_angle_rad);
         let stick = self.stick_path(path, theta, here);
         let limit = a.static_nm;
-        if stick.torque_nm.abs() > limit * (F::ONE + F::LIMIT_SLACK) {
-            let other = if stick.torque_nm > F::ZERO {
-                Sense::Positive
-            } else {
-                Sense::Negative
-            };
-            if self.slips(other, stick.torque_nm, here.omega, path.omega_dot) {
-                self.begin_slip(other, (theta, here.omega), here, on_event);
-                return;
-            }
-        } else if a.touches()
-            && sense.of_signed(stick.torque_nm) >= limit * (F::ONE - F::TOUCH_SLACK)
-            && sense.of_signed(stick.rate) >= F::ZERO
+        let beyond = stick.torque_nm.abs() > limit * (F::ONE + F::LIMIT_SLACK);
+        // The sense in which it slips on, if stick cannot hold it.
+        let slips = Sense::of(stick.torque_nm)
+            .filter(|s| beyond && self.slips(*s, stick.torque_nm, here.omega, path.omega_dot));
+        if let Some(other) = slips
+            && other != sense
         {
-            // The stick would break where it begins. A touch: the slip goes
-            // on, and nothing is felt or reported.
+            self.begin_slip(other, (theta, here.omega), here, on_event);
+            return;
+        }
+        // With Ts = Tk the stick would break where it begins.
+        let breaks_at_once = a.touches()
+            && !beyond
+            && sense.of_signed(stick.torque_nm) >= limit * (F::ONE - F::TOUCH_SLACK)
+            && sense.of_signed(stick.rate) >= F::ZERO;
+        if slips.is_some() || breaks_at_once {
+            // A touch: the velocities meet and part again. The slip goes on,
+            // and nothing is felt or reported.
             self.state = State::Slip {
                 sense,
                 x,

@@ -92,6 +92,7 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         );
     }
     Ok(Some(Figure {
+        name: "motion",
         title: "Motion",
         legend,
         charts: vec![Chart {

@@ -62,6 +62,7 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
     }
     let (legend, caption) = words(&phases, ranges.as_ref());
     Ok(Some(Figure {
+        name: "theta-phi",
         title: "Imaginary object against shaft",
         legend,
         charts,

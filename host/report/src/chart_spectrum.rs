@@ -31,6 +31,7 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
     let title = "Spectrum of the torque";
     let nothing = |caption: String| {
         Ok(Some(Figure {
+            name: "spectrum",
             title,
             legend: Vec::new(),
             charts: Vec::new(),
@@ -60,6 +61,7 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         |area| draw(area, &points),
     )?;
     Ok(Some(Figure {
+        name: "spectrum",
         title,
         legend: Vec::new(),
         charts: vec![Chart {

@@ -87,6 +87,7 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         legend.extend(phase_keys(figures.envelope.phases()));
     }
     Ok(Some(Figure {
+        name: "torque",
         title: "Torque",
         legend,
         charts: vec![Chart {

@@ -110,6 +110,7 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
          the shaft all the time, like a spring."
     };
     Ok(Some(Figure {
+        name: "zoom",
         title: if happened {
             "A zoom on a few cycles"
         } else {

@@ -7,6 +7,8 @@ use crate::window::Window;
 /// See the module.
 #[derive(Debug)]
 pub(crate) struct Figure {
+    /// For files.
+    pub(crate) name: &'static str,
     pub(crate) title: &'static str,
     pub(crate) legend: Vec<Key>,
     pub(crate) charts: Vec<Chart>,

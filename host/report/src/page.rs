@@ -52,7 +52,8 @@ pub fn html(text: &Text, figures: &Figures) -> Result<String, ReportError> {
     Ok(page.into_string())
 }
 
-fn draw(figures: &Figures) -> Result<Vec<Figure>, ReportError> {
+/// The figures that these data make.
+pub(crate) fn draw(figures: &Figures) -> Result<Vec<Figure>, ReportError> {
     // One row makes no line.
     if figures.rows < 2 {
         return Ok(Vec::new());

@@ -89,6 +89,10 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value)]
     pub(crate) set: Vec<(String, String)>,
 
+    /// Write each chart of the report as an SVG file of its own, too.
+    #[arg(long)]
+    pub(crate) pictures: bool,
+
     /// Write only every Nth row of the trace.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) trace_every: u64,

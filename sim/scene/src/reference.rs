@@ -373,25 +373,30 @@ impl<'a> Reference<'a> {
         };
         let required = self.stick_torque(theta, shaft.phi_rad, &shaft);
         let limit = p.static_torque_nm;
-        if required.abs() > limit * (1.0 + SLACK) {
-            let other = if required > 0.0 {
-                Sense::Positive
-            } else {
-                Sense::Negative
-            };
-            let true_torque = p.stiffness_nm_per_rad * theta + self.inertial(&shaft);
-            if other.of_signed(true_torque) >= p.kinetic_torque_nm * (1.0 - SLACK) {
-                let before = self.slip_torque(sense);
-                self.begin_slip(other, (theta, shaft.omega_rad_s), before, on_event);
-                return;
-            }
-        } else if self.touches()
-            && sense.of_signed(required) >= limit * (1.0 - <f64 as Real>::TOUCH_SLACK)
-            && sense.of_signed(shaft.omega_rad_s) > 0.0
+        let beyond = required.abs() > limit * (1.0 + SLACK);
+        let true_torque = p.stiffness_nm_per_rad * theta + self.inertial(&shaft);
+        // The sense in which it slips on, if stick cannot hold it.
+        let slips = Sense::of(required)
+            .filter(|s| beyond && s.of_signed(true_torque) >= p.kinetic_torque_nm * (1.0 - SLACK));
+        if let Some(other) = slips
+            && other != sense
         {
-            // The stick would break where it begins. A touch: the slip goes
-            // on, and nothing is felt or reported.
-            self.state = State::Slip(self.slip(sense, theta, shaft.omega_rad_s));
+            let before = self.slip_torque(sense);
+            self.begin_slip(other, (theta, shaft.omega_rad_s), before, on_event);
+            return;
+        }
+        // With Ts = Tk the stick would break where it begins.
+        let breaks_at_once = self.touches()
+            && !beyond
+            && sense.of_signed(required) >= limit * (1.0 - <f64 as Real>::TOUCH_SLACK)
+            && sense.of_signed(shaft.omega_rad_s) > 0.0;
+        if slips.is_some() || breaks_at_once {
+            // A touch: the velocities meet and part again. The slip goes on,
+            // and nothing is felt or reported.
+            self.state = State::Slip(Slip {
+                apart_s: self.time_s + self.oscillator.quarter_radian_s(),
+                ..self.slip(sense, theta, shaft.omega_rad_s)
+            });
             return;
         }
         on_event(Event {

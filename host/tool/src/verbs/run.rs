@@ -20,7 +20,7 @@ use watch::{Watch, WatchError};
 pub(crate) fn run(arguments: &RunArguments, as_json: bool) -> Result<(), Failure> {
     let scene = read(arguments)?;
     let out = out_folder(arguments, &scene);
-    let (summary, files) = simulate(&scene, &out, arguments.trace_every)?;
+    let (summary, files) = simulate(&scene, &out, arguments)?;
     files
         .commit()
         .map_err(|e| Failure::at(&out, "moving the results into place", &e))?;
@@ -67,7 +67,11 @@ fn out_folder(arguments: &RunArguments, scene: &Scene) -> PathBuf {
 }
 
 /// Runs the scene into a folder that still has to be committed.
-fn simulate(scene: &Scene, out: &Path, trace_every: u64) -> Result<(Summary, Folder), Failure> {
+fn simulate(
+    scene: &Scene,
+    out: &Path,
+    arguments: &RunArguments,
+) -> Result<(Summary, Folder), Failure> {
     let failed = |doing: &str, e: &std::io::Error| Failure::at(out, doing, e);
     let folder = Folder::create(out).map_err(|e| failed("cannot be written", &e))?;
     interrupt::listen();
@@ -77,7 +81,7 @@ fn simulate(scene: &Scene, out: &Path, trace_every: u64) -> Result<(Summary, Fol
         row_step_s: scene.trace_step_s,
         levels: levels(scene),
     };
-    let mut watch = Watch::new(&folder, &setup, scene.duration_s, trace_every)
+    let mut watch = Watch::new(&folder, &setup, scene.duration_s, arguments.trace_every)
         .map_err(|e| failed("writing the results", &e))?;
     let mut summary = crepitus_scene::run(scene, &mut watch).map_err(|e| match e {
         RunError::Observer(WatchError::Write(e)) => failed("writing the results", &e),
@@ -100,13 +104,25 @@ fn simulate(scene: &Scene, out: &Path, trace_every: u64) -> Result<(Summary, Fol
             summary.crepitus_version
         ),
     };
-    let page = crepitus_report::html(&text, &figures)
-        .map_err(|e| Failure::Work(format!("the report cannot be drawn: {e}")))?;
+    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
+    let page = crepitus_report::html(&text, &figures).map_err(undrawn)?;
     let json = serde_json::to_string_pretty(&summary)
         .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
-    for (name, content) in [("report.html", page), ("summary.json", json + "\n")] {
+    let mut texts = vec![
+        ("report.html".to_owned(), page),
+        ("summary.json".to_owned(), json + "\n"),
+    ];
+    if arguments.pictures {
+        let pictures = crepitus_report::pictures(&figures).map_err(undrawn)?;
+        texts.extend(
+            pictures
+                .into_iter()
+                .map(|p| (format!("{}.svg", p.name), p.svg)),
+        );
+    }
+    for (name, content) in texts {
         folder
-            .file(name)
+            .file(&name)
             .and_then(|mut file| {
                 file.write_all(content.as_bytes())?;
                 Folder::finish(file)

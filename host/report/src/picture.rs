@@ -1,0 +1,114 @@
+//! Charts as SVG files of their own, for a paper, slides or a document.
+
+use std::fmt::Write as _;
+
+use crate::ReportError;
+use crate::collector::Figures;
+use crate::figure::{Key, Sign};
+use crate::{page, palette};
+
+/// One chart as a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// A name for the file, without extension: `torque`, `zoom-1`.
+    pub name: String,
+    /// The SVG document. It follows light and dark where it is shown.
+    pub svg: String,
+}
+
+/// Every chart of the report, with its legend.
+///
+/// # Errors
+/// [`ReportError::Draw`] if the drawing library refuses a chart.
+pub fn pictures(figures: &Figures) -> Result<Vec<Picture>, ReportError> {
+    let mut pictures = Vec::new();
+    for figure in page::draw(figures)? {
+        let several = figure.charts.len() > 1;
+        for (i, chart) in figure.charts.iter().enumerate() {
+            pictures.push(Picture {
+                name: if several {
+                    format!("{}-{}", figure.name, i + 1)
+                } else {
+                    figure.name.to_owned()
+                },
+                svg: document(&chart.svg, &figure.legend),
+            });
+        }
+    }
+    Ok(pictures)
+}
+
+/// Room at the left, CSS pixels.
+const MARGIN: u32 = 8;
+
+/// Height of the legend above a chart, CSS pixels.
+const LEGEND_HEIGHT: u32 = 34;
+
+/// A chart as a document: what the page gave it by its style sheet it now
+/// brings along, and its legend stands above it.
+fn document(chart: &str, legend: &[Key]) -> String {
+    let size = view_box(chart);
+    let (width, height) = size.unwrap_or((800.0, 400.0));
+    // The chart's own grid is finer than a CSS pixel; the legend is in pixels.
+    let scale = 4.0;
+    let (chart_width, chart_height) = (width / scale, height / scale);
+    let width = chart_width + f64::from(MARGIN);
+    let height = chart_height + f64::from(LEGEND_HEIGHT);
+    let chart = chart.replacen(
+        "<svg ",
+        &format!(
+            "<svg x=\"{MARGIN}\" overflow=\"visible\" y=\"{LEGEND_HEIGHT}\" width=\"{chart_width}\" height=\"{chart_height}\" "),
+        1,
+    );
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\">\n\
+         <style>{}\nsvg{{font-family:system-ui,-apple-system,\"Segoe UI\",Roboto,\"Noto Sans\",sans-serif}}\n\
+         svg polyline[stroke=\"#555551\"]{{stroke-dasharray:24 16}}\n</style>\n\
+         <rect width=\"100%\" height=\"100%\" style=\"fill:var(--paper)\"/>\n{}{chart}\n</svg>\n",
+        palette::style(),
+        entries(legend),
+    )
+}
+
+/// Width and height of a chart's view box.
+fn view_box(chart: &str) -> Option<(f64, f64)> {
+    let (_, rest) = chart.split_once("viewBox=\"0 0 ")?;
+    let (size, _) = rest.split_once('"')?;
+    let (width, height) = size.split_once(' ')?;
+    Some((width.parse().ok()?, height.parse().ok()?))
+}
+
+/// The legend in one line.
+fn entries(legend: &[Key]) -> String {
+    let mut out = String::new();
+    let mut x = 12.0;
+    for key in legend {
+        // Writing to a String cannot fail.
+        let _ = match key.sign {
+            Sign::Line(ink) => writeln!(
+                out,
+                "<line x1=\"{x}\" x2=\"{}\" y1=\"17\" y2=\"17\" style=\"stroke:var(--{ink});stroke-width:2.5\"/>",
+                x + 18.0
+            ),
+            Sign::Patch(ink) => writeln!(
+                out,
+                "<rect x=\"{x}\" y=\"10\" width=\"18\" height=\"13\" style=\"fill:var(--{ink});stroke:var(--axis)\"/>"
+            ),
+            Sign::Mark(mark) => writeln!(
+                out,
+                "<text x=\"{}\" y=\"22\" font-size=\"13\" style=\"fill:var(--text)\">{mark}</text>",
+                x + 4.0
+            ),
+        };
+        let _ = writeln!(
+            out,
+            "<text x=\"{}\" y=\"22\" font-size=\"14\" style=\"fill:var(--text)\">{}</text>",
+            x + 23.0,
+            key.text
+        );
+        // About eight pixels a letter at this size.
+        let letters = key.text.chars().fold(0.0, |n, _| n + 1.0);
+        x += 40.0 + 8.0 * letters;
+    }
+    out
+}
