@@ -53,7 +53,7 @@ fn motion() -> impl Strategy<Value = Vec<ShaftStep<f64>>> {
                 let at = |n: u8| start + (target - start) * f64::from(n) / 10.0;
                 let (a, b) = (at(i), at(i + 1));
                 steps.push(ShaftStep {
-                    delta_phi_rad: (a + b) / 2.0 * 5e-5,
+                    delta_phi_rad: f64::midpoint(a, b) * 5e-5,
                     omega_start_rad_s: a,
                     omega_end_rad_s: b,
                 });
