@@ -11,10 +11,10 @@
 //! | to find | look in |
 //! |---|---|
 //! | the form of a scene file, its checks and errors | [`scene`], [`error`] |
-//! | the loop, the totals, the summary | [`run`] |
+//! | the loop, the totals, the summary | [`mod@run`] |
 //! | columns, rows and events | [`trace`] |
 //! | the files of a run, written whole or not at all | [`output`] |
-//! | the event-driven solver without a step | [`reference`] |
+//! | the event-driven solver without a step | [`mod@reference`] |
 
 mod document;
 pub mod error;

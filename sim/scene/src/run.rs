@@ -138,13 +138,13 @@ fn simulate<O: Observer>(scene: &Scene, observer: &mut O) -> Result<Totals, RunE
     match scene.solver {
         SolverChoice::Reference => event_driven::simulate(scene, observer),
         SolverChoice::Ladder {
-            precision: Precision::F32,
-            ..
-        } => stepping::simulate::<f32, O>(scene, observer),
-        SolverChoice::Ladder {
-            precision: Precision::F64,
-            ..
-        } => stepping::simulate::<f64, O>(scene, observer),
+            solver,
+            step_s,
+            precision,
+        } => match precision {
+            Precision::F32 => stepping::simulate::<f32, O>(scene, solver, step_s, observer),
+            Precision::F64 => stepping::simulate::<f64, O>(scene, solver, step_s, observer),
+        },
     }
 }
 

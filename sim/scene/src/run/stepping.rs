@@ -3,9 +3,9 @@
 use super::sensor::{Encoded, Ideal, Sensor, Shaft};
 use super::tally::{StickEnd, Tally};
 use super::{Clock, Observer, RunError, Totals, steps};
-use crate::scene::{Scene, SolverChoice};
+use crate::scene::Scene;
 use crate::trace::EventRecord;
-use crepitus_model::solver::{JointVisitor, with_joint};
+use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{Event, Phase, Real, Settings, ShaftStep, StickSlip};
 use crepitus_plant::{Motion, Piece};
 
@@ -15,42 +15,38 @@ const PROGRESS_STEPS: u64 = 1 << 16;
 /// Chooses the types that the scene calls for, and runs.
 pub(super) fn simulate<F: Real, O: Observer>(
     scene: &Scene,
+    solver: Solver,
+    step_s: f64,
     observer: &mut O,
 ) -> Result<Totals, RunError<O::Error>> {
-    let SolverChoice::Ladder { solver, step_s, .. } = scene.solver else {
-        unreachable!("the event-driven solver does not step");
-    };
-    let shaft = Shaft::of(&scene.motion.piece(0.0), 0.0);
-    match (&scene.crepitus, &scene.encoder) {
-        (None, None) => bare::<F, _, _>(scene, observer, Ideal),
-        (None, Some(encoder)) => {
-            bare::<F, _, _>(scene, observer, Encoded::new(encoder, step_s, &shaft)?)
+    let start = Shaft::of(&scene.motion.piece(0.0), 0.0);
+    match &scene.encoder {
+        None => with_sensor::<F, O, _>(scene, solver, step_s, observer, Ideal),
+        Some(encoder) => {
+            let sensor = Encoded::new(encoder, step_s, &start)?;
+            with_sensor::<F, O, _>(scene, solver, step_s, observer, sensor)
         }
-        (Some(crepitus), None) => with_joint::<F, _>(
-            &crepitus.settings,
-            solver,
-            step_s,
-            F::from_f64(shaft.omega_rad_s),
-            Run {
-                scene,
-                observer,
-                settings: *crepitus.settings,
-                sensor: Ideal,
-            },
-        )?,
-        (Some(crepitus), Some(encoder)) => with_joint::<F, _>(
-            &crepitus.settings,
-            solver,
-            step_s,
-            F::from_f64(shaft.omega_rad_s),
-            Run {
-                scene,
-                observer,
-                settings: *crepitus.settings,
-                sensor: Encoded::new(encoder, step_s, &shaft)?,
-            },
-        )?,
     }
+}
+
+fn with_sensor<F: Real, O: Observer, S: Sensor<F>>(
+    scene: &Scene,
+    solver: Solver,
+    step_s: f64,
+    observer: &mut O,
+    sensor: S,
+) -> Result<Totals, RunError<O::Error>> {
+    let Some(crepitus) = &scene.crepitus else {
+        return bare(scene, observer, sensor);
+    };
+    let omega = F::from_f64(Shaft::of(&scene.motion.piece(0.0), 0.0).omega_rad_s);
+    let run = Run {
+        scene,
+        observer,
+        settings: *crepitus.settings,
+        sensor,
+    };
+    with_joint::<F, _>(&crepitus.settings, solver, step_s, omega, run)?
 }
 
 /// The true motion, step by step.

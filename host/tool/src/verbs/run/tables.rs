@@ -22,8 +22,10 @@ pub(super) fn in_brief(s: &Summary) -> String {
     }
     if let Some(t) = &s.torque {
         lines.push(format!(
-            "  torque {:.4} to {:.4} N·m, mean {:.4} N·m",
-            t.min_nm, t.max_nm, t.mean_nm
+            "  torque {} to {}, mean {}",
+            nm(t.min_nm),
+            nm(t.max_nm),
+            nm(t.mean_nm)
         ));
     }
     lines.push(format!(
@@ -154,11 +156,16 @@ fn section<'a>(title: &str, rows: impl IntoIterator<Item = (&'a str, String)>) -
 }
 
 fn nm(x: f64) -> String {
-    format!("{x:.5} N·m")
+    format!("{:.5} N·m", rounded(x))
 }
 
 fn millijoule(x: f64) -> String {
-    format!("{:.5} mJ", x * 1e3)
+    format!("{:.5} mJ", rounded(x * 1e3))
+}
+
+/// Rounded to five digits behind the point; a zero has no sign.
+fn rounded(x: f64) -> f64 {
+    (x * 1e5).round() / 1e5 + 0.0
 }
 
 /// A number without the digits that rounding added.
