@@ -27,6 +27,11 @@ impl Solver {
     /// All rungs, from the cheapest.
     pub const ALL: [Self; 2] = [Self::Exact, Self::ExactEvents];
 
+    /// Why this rung has no meaning under a convention, if it has none.
+    pub fn refusal(self, _convention: Convention) -> Option<&'static str> {
+        None
+    }
+
     /// Name in scene files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
