@@ -24,7 +24,7 @@
 //! |---|---|
 //! | what people set, ranges, presets | [`parameters`], [`presets`], [`settings`] |
 //! | what a tick uses | [`active`], [`ticks`], [`shaft`] |
-//! | the object itself | [`stick_slip`], [`frozen`], [`velocity_match`] |
+//! | the object itself | [`stick_slip`], [`frozen`], [`velocity_match`], [`implicit_euler`] |
 //! | how a slip is carried forward | [`propagate`], [`oscillator`] |
 //! | how the end of a phase is found | [`locate`] |
 //! | which of these a scene or a firmware selects | [`solver`] |
@@ -58,6 +58,7 @@ pub mod compensated;
 pub mod encoder;
 mod event;
 pub mod frozen;
+pub mod implicit_euler;
 pub mod locate;
 pub mod oscillator;
 pub mod parameters;

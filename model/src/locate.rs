@@ -6,9 +6,13 @@
 
 mod end_of_step;
 mod exact;
+mod exact_break;
+mod interpolated;
 
 pub use end_of_step::EndOfStep;
 pub use exact::ExactEvents;
+pub use exact_break::ExactBreak;
+pub use interpolated::Interpolated;
 
 use crate::oscillator::Oscillator;
 use crate::phase::Sense;
@@ -71,6 +75,22 @@ impl<F: Real, P: Propagate<F>> SlipPath<'_, F, P> {
     pub fn overtaking(&self, time_s: F, v: F) -> F {
         self.sense
             .of_signed(self.omega + self.omega_dot * time_s - v)
+    }
+
+    /// Whether the shaft has fallen back to the object at the end of the
+    /// stretch, for those who look only there.
+    ///
+    /// A slip begins with equal velocities, and where its first stretch is
+    /// very short rounding can make them look met: a lead that never was
+    /// cannot be lost.
+    #[inline]
+    pub fn has_met(&self, length_s: F, v_end: F) -> bool {
+        let end = self.overtaking(length_s, v_end);
+        if end > F::ZERO {
+            return false;
+        }
+        let noise = F::from_f64(8.0) * F::EPSILON * (self.omega.abs() + v_end.abs());
+        end < -noise || self.overtaking(F::ZERO, self.v) > noise
     }
 }
 

@@ -3,9 +3,17 @@
 //! A propagator knows nothing of phases and events; a
 //! [locator](crate::locate) knows nothing of the method that moves the object.
 
+mod euler;
 mod exact;
+mod rk4;
+mod semi_implicit_euler;
+mod verlet;
 
+pub use euler::Euler;
 pub use exact::Exact;
+pub use rk4::Rk4;
+pub use semi_implicit_euler::SemiImplicitEuler;
+pub use verlet::Verlet;
 
 use crate::active::Active;
 use crate::real::Real;

@@ -108,6 +108,13 @@ pub enum SettingsError {
         /// The convention asked for.
         convention: Convention,
     },
+    /// The rung of the ladder has no meaning under the convention.
+    Solver {
+        /// Its name.
+        solver: &'static str,
+        /// Why.
+        reason: &'static str,
+    },
     /// The step is not a positive, finite time.
     Step {
         /// What was asked for, s.
@@ -143,6 +150,9 @@ impl fmt::Display for SettingsError {
                  angle that the object has",
                 convention.name()
             ),
+            Self::Solver { solver, reason } => {
+                write!(f, "solver \"{solver}\" is refused: {reason}")
+            }
             Self::Step { step_s } => {
                 write!(
                     f,

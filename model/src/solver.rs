@@ -7,36 +7,92 @@
 
 use crate::active::Active;
 use crate::frozen::Frozen;
-use crate::locate::{EndOfStep, ExactEvents, Locate};
-use crate::propagate::{Exact, Propagate};
+use crate::implicit_euler::ImplicitEuler;
+use crate::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
+use crate::propagate::{Euler, Exact, Propagate, Rk4, SemiImplicitEuler, Verlet};
 use crate::real::Real;
 use crate::settings::{Convention, Settings, SettingsError, Validated};
 use crate::stick_slip::StickSlip;
-use crate::velocity_match::{Paper, Physical, VelocityMatch};
+use crate::velocity_match::{Paper, Physical, StickTorque, VelocityMatch};
 
-/// A rung of the ladder.
+/// A rung of the ladder: how a slip is carried forward, and how the end of a
+/// phase is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Solver {
-    /// Exact propagator, switching at the end of the step: first order.
+    /// Explicit Euler, switching at the end of the step.
+    Euler,
+    /// Semi-implicit Euler, switching at the end of the step.
+    SemiImplicitEuler,
+    /// Velocity Verlet, switching at the end of the step.
+    Verlet,
+    /// Runge-Kutta of fourth order, switching at the end of the step.
+    Rk4,
+    /// Set-valued backward Euler: decides and propagates in one.
+    ImplicitEuler,
+    /// Exact propagator, switching at the end of the step.
     Exact,
-    /// Exact propagator, both events located exactly inside the step.
+    /// Exact propagator, the break located inside the step.
+    ExactBreak,
+    /// Exact propagator, both events by one interpolation.
+    ExactInterpolated,
+    /// Exact propagator, both events located exactly.
     ExactEvents,
+    /// Runge-Kutta of fourth order, both events located.
+    Rk4Events,
 }
 
 impl Solver {
-    /// All rungs, from the cheapest.
-    pub const ALL: [Self; 2] = [Self::Exact, Self::ExactEvents];
-
-    /// Why this rung has no meaning under a convention, if it has none.
-    pub fn refusal(self, _convention: Convention) -> Option<&'static str> {
-        None
-    }
+    /// All rungs.
+    pub const ALL: [Self; 10] = [
+        Self::Euler,
+        Self::SemiImplicitEuler,
+        Self::Verlet,
+        Self::Rk4,
+        Self::ImplicitEuler,
+        Self::Exact,
+        Self::ExactBreak,
+        Self::ExactInterpolated,
+        Self::ExactEvents,
+        Self::Rk4Events,
+    ];
 
     /// Name in scene files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Euler => "euler",
+            Self::SemiImplicitEuler => "semi-implicit-euler",
+            Self::Verlet => "verlet",
+            Self::Rk4 => "rk4",
+            Self::ImplicitEuler => "implicit-euler",
             Self::Exact => "exact",
+            Self::ExactBreak => "exact-break",
+            Self::ExactInterpolated => "exact-interpolated",
             Self::ExactEvents => "exact-events",
+            Self::Rk4Events => "rk4-events",
+        }
+    }
+
+    /// Why this rung has no meaning under a convention, if it has none.
+    pub fn refusal(self, convention: Convention) -> Option<&'static str> {
+        match (self, convention) {
+            (
+                Self::Euler
+                | Self::SemiImplicitEuler
+                | Self::Verlet
+                | Self::Rk4
+                | Self::ImplicitEuler
+                | Self::Rk4Events,
+                Convention::Frozen,
+            ) => Some(
+                "under \"frozen\" a slip lasts a known time and is not integrated, so a method of \
+                 integration has nothing to do; the rungs that differ in how the break is found are \
+                 exact, exact-break, exact-interpolated and exact-events",
+            ),
+            (Self::ImplicitEuler, Convention::Paper) => Some(
+                "the set-valued step needs the object's inertia in the torque of a stick, which \
+                 \"paper\" leaves out; use \"physical\"",
+            ),
+            _ => None,
         }
     }
 }
@@ -54,7 +110,8 @@ pub trait JointVisitor<F: Real> {
 /// on a shaft that moves with `omega_rad_s`, and hands it to `visitor`.
 ///
 /// # Errors
-/// [`SettingsError::Step`] if the step is not positive and finite.
+/// [`SettingsError::Step`] if the step is not positive and finite,
+/// [`SettingsError::Solver`] if the rung has no meaning under the convention.
 pub fn with_joint<F: Real, V: JointVisitor<F>>(
     settings: &Validated<Settings>,
     solver: Solver,
@@ -62,31 +119,70 @@ pub fn with_joint<F: Real, V: JointVisitor<F>>(
     omega_rad_s: F,
     visitor: V,
 ) -> Result<V::Output, SettingsError> {
-    let active = Active::new(settings, step_s)?;
-    Ok(match solver {
-        Solver::Exact => {
-            rung::<F, Exact<F>, EndOfStep, V>(settings.convention, active, omega_rad_s, visitor)
-        }
-        Solver::ExactEvents => {
-            rung::<F, Exact<F>, ExactEvents, V>(settings.convention, active, omega_rad_s, visitor)
-        }
+    let start = Start {
+        active: Active::new(settings, step_s)?,
+        omega_rad_s,
+    };
+    let refused = |reason| SettingsError::Solver {
+        solver: solver.name(),
+        reason,
+    };
+    if let Some(reason) = solver.refusal(settings.convention) {
+        return Err(refused(reason));
+    }
+    Ok(match settings.convention {
+        Convention::Frozen => match solver {
+            Solver::ExactBreak => start.frozen::<ExactBreak, V>(visitor),
+            Solver::ExactInterpolated => start.frozen::<Interpolated, V>(visitor),
+            Solver::ExactEvents => start.frozen::<ExactEvents, V>(visitor),
+            _ => start.frozen::<EndOfStep, V>(visitor),
+        },
+        Convention::Paper => start.velocity_match::<Paper, V>(solver, visitor),
+        Convention::Physical => start.velocity_match::<Physical, V>(solver, visitor),
     })
 }
 
-/// One rung under the convention asked for.
-fn rung<F: Real, P: Propagate<F>, L: Locate<F>, V: JointVisitor<F>>(
-    convention: Convention,
+/// What every joint starts from.
+struct Start<F> {
     active: Active<F>,
     omega_rad_s: F,
-    visitor: V,
-) -> V::Output {
-    match convention {
-        Convention::Frozen => visitor.visit(Frozen::<F, L>::new(active, omega_rad_s)),
-        Convention::Paper => {
-            visitor.visit(VelocityMatch::<F, Paper, P, L>::new(active, omega_rad_s))
+}
+
+impl<F: Real> Start<F> {
+    fn frozen<L: Locate<F>, V: JointVisitor<F>>(self, visitor: V) -> V::Output {
+        visitor.visit(Frozen::<F, L>::new(self.active, self.omega_rad_s))
+    }
+
+    fn velocity_match<C: StickTorque<F>, V: JointVisitor<F>>(
+        self,
+        solver: Solver,
+        visitor: V,
+    ) -> V::Output {
+        match solver {
+            Solver::Euler => self.rung::<C, Euler<F>, EndOfStep, V>(visitor),
+            Solver::SemiImplicitEuler => {
+                self.rung::<C, SemiImplicitEuler<F>, EndOfStep, V>(visitor)
+            }
+            Solver::Verlet => self.rung::<C, Verlet<F>, EndOfStep, V>(visitor),
+            Solver::Rk4 => self.rung::<C, Rk4<F>, EndOfStep, V>(visitor),
+            Solver::ImplicitEuler => {
+                visitor.visit(ImplicitEuler::new(self.active, self.omega_rad_s))
+            }
+            Solver::Exact => self.rung::<C, Exact<F>, EndOfStep, V>(visitor),
+            Solver::ExactBreak => self.rung::<C, Exact<F>, ExactBreak, V>(visitor),
+            Solver::ExactInterpolated => self.rung::<C, Exact<F>, Interpolated, V>(visitor),
+            Solver::ExactEvents => self.rung::<C, Exact<F>, ExactEvents, V>(visitor),
+            Solver::Rk4Events => self.rung::<C, Rk4<F>, ExactEvents, V>(visitor),
         }
-        Convention::Physical => {
-            visitor.visit(VelocityMatch::<F, Physical, P, L>::new(active, omega_rad_s))
-        }
+    }
+
+    fn rung<C: StickTorque<F>, P: Propagate<F>, L: Locate<F>, V: JointVisitor<F>>(
+        self,
+        visitor: V,
+    ) -> V::Output {
+        visitor.visit(VelocityMatch::<F, C, P, L>::new(
+            self.active,
+            self.omega_rad_s,
+        ))
     }
 }

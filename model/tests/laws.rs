@@ -141,7 +141,15 @@ proptest! {
         settings in settings(),
         steps in motion(),
     ) {
+        let explicit = [Solver::Euler, Solver::SemiImplicitEuler, Solver::Verlet, Solver::Rk4, Solver::Rk4Events];
         for solver in Solver::ALL {
+            // Explicit methods have a limit of stability, and no laws beyond.
+            let radians = settings.parameters.natural_rad_s() * 5e-5;
+            let damped = settings.parameters.damping_nms_per_rad / settings.parameters.inertia_kg_m2 * 5e-5;
+            let unstable = explicit.contains(&solver) && (radians > 0.5 || damped > 0.5);
+            if unstable || solver.refusal(settings.convention).is_some() {
+                continue;
+            }
             check::<f64>(settings, solver, &steps);
             check::<f32>(settings, solver, &steps);
         }

@@ -73,7 +73,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
-    /// Another solver: exact, exact-events or reference.
+    /// Another solver: exact, exact-events, reference, … (a wrong name lists them all).
     #[arg(long, value_name = "KIND")]
     pub(crate) solver: Option<String>,
 

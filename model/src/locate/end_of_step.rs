@@ -19,6 +19,6 @@ impl<F: Real> Locate<F> for EndOfStep {
 
     #[inline]
     fn match_time<P: Propagate<F>>(slip: &SlipPath<'_, F, P>, length_s: F, v_end: F) -> Option<F> {
-        (slip.overtaking(length_s, v_end) <= F::ZERO).then_some(length_s)
+        slip.has_met(length_s, v_end).then_some(length_s)
     }
 }

@@ -179,6 +179,14 @@ impl Scene {
                  or leave [effects.encoder] out",
             ));
         }
+        if let (Some(crepitus), SolverChoice::Ladder { solver, .. }) = (&effects.crepitus, solver)
+            && let Some(reason) = solver.refusal(crepitus.settings.convention)
+        {
+            return Err(solver_section.key_error(
+                "kind",
+                format!("\"{}\" is refused: {reason}", solver.name()),
+            ));
+        }
         let mut warnings = motion.warnings;
         if let Some(crepitus) = &effects.crepitus {
             warnings.extend(sampled_motion_warning(crepitus, motion.ripple_rad_s2));

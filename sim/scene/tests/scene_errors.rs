@@ -79,7 +79,7 @@ fn every_error_names_line_key_and_what_is_allowed() {
             [
                 "line 10",
                 "`solver.kind`",
-                "exact, exact-events and reference",
+                "exact-events, rk4-events and reference",
             ],
         ),
         (

@@ -1,0 +1,128 @@
+//! The set-valued backward-Euler friction step of the haptics literature
+//! (Kikuuwe et al. 2005, 2006), for `physical`.
+//!
+//! Unknown are the velocity v⁺ and the torque T⁺ at the end of the step:
+//!
+//! ```text
+//! J·(v⁺ − v)/h + c·v⁺ + kr·θ⁺ = T⁺          θ⁺ = θ + h·v⁺
+//! T⁺ = Tk·sgn(Ω⁺ − v⁺)  if v⁺ ≠ Ω⁺,         |T⁺| ≤ Ts  if v⁺ = Ω⁺
+//! ```
+//!
+//! The torque T* that stick would need decides in closed form: a slip of sense
+//! s is consistent if s·T* > Tk, a stick if |T*| ≤ Ts, and where both are, the
+//! phase stays as it is. The step never chatters and never overshoots,
+//! whatever its length. It also damps the swing by ωn·h/2, and above
+//! λ²/4π, the damping at which stick-slip ceases, it shows no crepitus at all:
+//! stable and wrong.
+
+use crate::active::Active;
+use crate::compensated::Compensated;
+use crate::event::Event;
+use crate::phase::{EventKind, Phase, Sense};
+use crate::real::Real;
+use crate::shaft::ShaftStep;
+use crate::stick_slip::StickSlip;
+
+/// The stick-slip object in backward-Euler steps.
+#[derive(Clone, Debug)]
+pub struct ImplicitEuler<F> {
+    active: Active<F>,
+    /// J/h, N·m·s/rad.
+    inertia_per_step: F,
+    /// 1/(J/h + c + h·kr).
+    mobility: F,
+    phase: Phase,
+    theta: Compensated<F>,
+    v: F,
+    torque_nm: F,
+}
+
+impl<F: Real> ImplicitEuler<F> {
+    /// An object in stick at θ = 0 on a shaft that moves with `omega_rad_s`.
+    pub fn new(active: Active<F>, omega_rad_s: F) -> Self {
+        let inertia_per_step = active.inertia * active.per_step;
+        let stiffness_step = active.step_s * active.stiffness;
+        Self {
+            inertia_per_step,
+            mobility: F::ONE / (inertia_per_step + active.damping + stiffness_step),
+            phase: Phase::Stick,
+            theta: Compensated::new(F::ZERO),
+            v: omega_rad_s,
+            torque_nm: active.limited(active.damping * omega_rad_s),
+            active,
+        }
+    }
+
+    /// The phase at the end of a step for which stick would need `torque_nm`.
+    fn phase_for(&self, torque_nm: F) -> Phase {
+        if let Phase::Slip(sense) = self.phase
+            && sense.of_signed(torque_nm) > self.active.kinetic_nm
+        {
+            return self.phase;
+        }
+        if torque_nm.abs() <= self.active.static_nm {
+            return Phase::Stick;
+        }
+        Sense::of(torque_nm).map_or(Phase::Stick, Phase::Slip)
+    }
+}
+
+impl<F: Real> StickSlip<F> for ImplicitEuler<F> {
+    #[inline]
+    fn step(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
+        let a = &self.active;
+        let omega = shaft.omega_end_rad_s;
+        let theta = self.theta.value();
+        let needed = self.inertia_per_step * (omega - self.v)
+            + a.damping * omega
+            + a.stiffness * (theta + shaft.delta_phi_rad);
+        let (before, torque_before_nm) = (self.phase, self.torque_nm);
+        self.phase = self.phase_for(needed);
+        match self.phase {
+            Phase::Stick => {
+                self.theta.add(shaft.delta_phi_rad);
+                self.v = omega;
+                self.torque_nm = a.limited(needed);
+            }
+            Phase::Slip(sense) => {
+                self.torque_nm = sense.of_signed(a.kinetic_nm);
+                let push = self.inertia_per_step * self.v + self.torque_nm - a.stiffness * theta;
+                self.v = self.mobility * push;
+                self.theta.add(a.step_s * self.v);
+            }
+        }
+        if self.phase != before {
+            on_event(Event {
+                kind: match (before, self.phase) {
+                    (_, Phase::Stick) => EventKind::Stick,
+                    (Phase::Stick, _) => EventKind::Break,
+                    _ => EventKind::Reverse,
+                },
+                fraction: F::ONE,
+                from: before,
+                to: self.phase,
+                theta_rad: self.theta.value(),
+                theta_dot_rad_s: self.v,
+                omega_rad_s: omega,
+                torque_before_nm,
+                torque_after_nm: self.torque_nm,
+            });
+        }
+    }
+
+    fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    fn torque_nm(&self) -> F {
+        self.active.limited(self.torque_nm)
+    }
+
+    fn theta_rad(&self) -> F {
+        self.theta.value()
+    }
+
+    fn theta_dot_rad_s(&self) -> F {
+        self.v
+    }
+}
