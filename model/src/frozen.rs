@@ -11,7 +11,7 @@ use core::marker::PhantomData;
 use crate::active::Active;
 use crate::compensated::Compensated;
 use crate::event::{EVENTS_PER_STEP, Event};
-use crate::locate::{Locate, StickPath};
+use crate::locate::{Locate, StickPath, first_break};
 use crate::phase::{EventKind, Phase, Sense};
 use crate::real::Real;
 use crate::shaft::{ShaftPath, ShaftStep};
@@ -160,19 +160,6 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                 }
             }
         }
-    }
-}
-
-/// The earlier of the two breaks that a stick path can have.
-pub(crate) fn first_break<F: Real, L: Locate<F>>(
-    stick: &StickPath<F>,
-    limit_nm: F,
-    length_s: F,
-) -> Option<(F, Sense)> {
-    let at = |sense| L::break_time(stick, sense, limit_nm, length_s).map(|t| (t, sense));
-    match (at(Sense::Positive), at(Sense::Negative)) {
-        (Some(p), Some(n)) => Some(if n.0 < p.0 { n } else { p }),
-        (p, n) => p.or(n),
     }
 }
 

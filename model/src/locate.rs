@@ -104,3 +104,17 @@ pub trait Locate<F: Real> {
     /// to the object's, which is `v_end` when all of it has passed.
     fn match_time<P: Propagate<F>>(slip: &SlipPath<'_, F, P>, length_s: F, v_end: F) -> Option<F>;
 }
+
+/// The earlier of the two breaks that a stick path can have within
+/// `length_s`: its time and sense.
+pub fn first_break<F: Real, L: Locate<F>>(
+    stick: &StickPath<F>,
+    limit_nm: F,
+    length_s: F,
+) -> Option<(F, Sense)> {
+    let at = |sense| L::break_time(stick, sense, limit_nm, length_s).map(|t| (t, sense));
+    match (at(Sense::Positive), at(Sense::Negative)) {
+        (Some(p), Some(n)) => Some(if n.0 < p.0 { n } else { p }),
+        (p, n) => p.or(n),
+    }
+}

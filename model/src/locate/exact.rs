@@ -26,6 +26,9 @@ impl<F: Real> Locate<F> for ExactEvents {
         let rate = sense.of_signed(path.rate);
         let curvature = sense.of_signed(path.curvature);
         let time_s = if left > F::ZERO {
+            if rate <= F::ZERO && curvature <= F::ZERO {
+                return None;
+            }
             // Smallest u > 0 with rate·u + curvature·u²/2 = left, without
             // cancellation.
             let square = rate * rate + F::TWO * curvature * left;

@@ -61,6 +61,16 @@ pub enum Curve {
 }
 
 impl Piece {
+    /// Whether the velocity is linear in time, so that the angle is a parabola.
+    pub fn is_parabolic(&self) -> bool {
+        matches!(self.curve, Curve::Polynomial([_, _, _, c3, c4, c5]) if (c3, c4, c5) == (0.0, 0.0, 0.0))
+    }
+
+    /// Whether the velocity is constant.
+    pub fn is_steady(&self) -> bool {
+        self.is_parabolic() && matches!(self.curve, Curve::Polynomial([_, _, c2, ..]) if c2 == 0.0)
+    }
+
     /// Angle and velocity at `time_s`, rad and rad/s: all that a step needs.
     #[inline]
     pub fn angle_and_velocity(&self, time_s: f64) -> (f64, f64) {

@@ -4,6 +4,7 @@
 //! `cargo bench -p crepitus-scene` counts simulated seconds as items: read
 //! "item/s" as simulated seconds per second.
 
+use crepitus_scene::reference::Reference;
 use crepitus_scene::run::Blind;
 use crepitus_scene::{Overrides, Scene, run};
 use divan::counter::ItemsCount;
@@ -63,4 +64,21 @@ fn frozen_with_encoder(bencher: Bencher) {
 #[divan::bench]
 fn without_effects(bencher: Bencher) {
     bench(bencher, &scene(CONSTANT, "exact", "f64", ""));
+}
+
+/// From event to event, without a step: ten seconds at 1 rad/s, 637 events.
+#[divan::bench(args = ["frozen", "physical"])]
+fn reference_events_only(bencher: Bencher, convention: &str) {
+    let effects = format!("[effects.crepitus]\nconvention = \"{convention}\"");
+    let text = scene(CONSTANT, "exact-events", "f64", &effects);
+    let settings = text.crepitus.expect("crepitus").settings;
+    bencher.bench_local(|| {
+        let mut events = 0;
+        let mut last = 0.0;
+        Reference::new(&settings, black_box(&text.motion)).advance(10.0, |e| {
+            events += 1;
+            last = e.fraction;
+        });
+        (events, last)
+    });
 }

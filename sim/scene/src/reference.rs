@@ -10,6 +10,8 @@
 //! written a second time and for the true motion, so that each checks the
 //! other.
 
+mod find_break;
+mod find_match;
 mod first_root;
 
 use crepitus_model::oscillator::Oscillator;
@@ -17,7 +19,7 @@ use crepitus_model::{
     Convention, Event, EventKind, Phase, Real, Restart, Sense, Settings, Validated,
 };
 use crepitus_plant::{Motion, Piece, ShaftState};
-use first_root::{Sample, first_root};
+use find_match::SteadySlip;
 
 /// How near to the static limit counts as at it, as in the model.
 const SLACK: f64 = <f64 as Real>::LIMIT_SLACK;
@@ -30,9 +32,16 @@ pub struct Reference<'a> {
     oscillator: Oscillator<f64>,
     /// Tk/kr, rad.
     kinetic_angle_rad: f64,
+    /// ωn, rad/s, and √(J·kr), N·m·s/rad.
+    natural_rad_s: f64,
+    impedance: f64,
     piece: Piece,
     time_s: f64,
     state: State,
+    /// The last slip at a steady speed: the next one is the same.
+    steady: Option<SteadySlip>,
+    /// The last frozen slip: s·Ω when it began, and its duration, s.
+    frozen: (f64, f64),
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +80,10 @@ impl<'a> Reference<'a> {
             settings: **settings,
             oscillator: Oscillator::new(p),
             kinetic_angle_rad: p.kinetic_torque_nm / p.stiffness_nm_per_rad,
+            natural_rad_s: p.natural_rad_s(),
+            impedance: p.impedance_nms_per_rad(),
+            steady: None,
+            frozen: (f64::NAN, f64::NAN),
             piece,
             time_s: 0.0,
             state: State::Stick {
@@ -154,7 +167,7 @@ impl<'a> Reference<'a> {
                 };
                 let shaft = self.piece.at(time_s);
                 let before = self.stick_torque(theta, phi, &shaft);
-                let theta = theta + (shaft.phi_rad - phi);
+                let theta = self.break_angle(sense, before, &shaft, theta + (shaft.phi_rad - phi));
                 self.time_s = time_s;
                 self.begin_slip(sense, (theta, shaft.omega_rad_s), before, on_event);
                 true
@@ -173,6 +186,21 @@ impl<'a> Reference<'a> {
                 true
             }
         }
+    }
+
+    /// θ at a break. At the static limit it is known better than the sum of
+    /// the travel, which carries the rounding of a large angle.
+    fn break_angle(&self, sense: Sense, torque: f64, shaft: &ShaftState, theta: f64) -> f64 {
+        let p = &self.settings.parameters;
+        let limit = sense.of_signed(p.static_torque_nm);
+        if (torque - limit).abs() > SLACK * p.static_torque_nm {
+            return theta;
+        }
+        let inertial = match self.settings.convention {
+            Convention::Physical => self.inertial(shaft),
+            Convention::Frozen | Convention::Paper => 0.0,
+        };
+        (limit - inertial) / p.stiffness_nm_per_rad
     }
 
     /// The torque that keeps the object with the shaft, N·m.
@@ -213,97 +241,6 @@ impl<'a> Reference<'a> {
             .apply(slip.x, slip.v)
     }
 
-    /// When s·T first reaches `limit_nm` in a stick whose torque is the
-    /// spring's, with the object's inertia and damping if `inertial`.
-    fn reaches(
-        &self,
-        (theta, phi): (f64, f64),
-        inertial: bool,
-        (sense, limit_nm): (Sense, f64),
-        (from_s, to_s): (f64, f64),
-    ) -> Option<f64> {
-        let p = &self.settings.parameters;
-        let (j, c) = if inertial {
-            (p.inertia_kg_m2, p.damping_nms_per_rad)
-        } else {
-            (0.0, 0.0)
-        };
-        let kr = p.stiffness_nm_per_rad;
-        let bounds = self.piece.bounds(from_s, to_s);
-        let bound = kr * bounds.omega_dot + c * bounds.omega_ddot + j * bounds.omega_dddot;
-        first_root(from_s, to_s, |time_s| {
-            let s = self.piece.at(time_s);
-            let torque = kr * (theta + (s.phi_rad - phi)) + (j * s.omega_dot + c * s.omega_rad_s);
-            let rate = kr * s.omega_rad_s + (j * s.omega_ddot + c * s.omega_dot);
-            Sample {
-                value: limit_nm - sense.of_signed(torque),
-                slope: -sense.of_signed(rate),
-                bound,
-                noise: 2.0 * f64::EPSILON * (limit_nm + torque.abs()),
-                slack: SLACK * limit_nm,
-            }
-        })
-    }
-
-    /// The next break of a stick up to `to_s`.
-    fn find_break(&self, theta: f64, phi: f64, to_s: f64) -> Option<(f64, Sense)> {
-        let anchor = (theta, phi);
-        let limit = self.settings.parameters.static_torque_nm;
-        let physical = self.settings.convention == Convention::Physical;
-        let at = |sense, from_s| {
-            self.reaches(anchor, physical, (sense, limit), (from_s, to_s))
-                .map(|t| (t, sense))
-        };
-        let first = match (
-            at(Sense::Positive, self.time_s),
-            at(Sense::Negative, self.time_s),
-        ) {
-            (Some(p), Some(n)) => Some(if n.0 < p.0 { n } else { p }),
-            (p, n) => p.or(n),
-        }?;
-        if self.settings.convention != Convention::Paper {
-            return Some(first);
-        }
-        // `paper`: a slip cannot begin while the shaft brakes too hard for it;
-        // until the true torque reaches Tk the stick is held at its limit.
-        let (mut time_s, sense) = first;
-        let kinetic = self.settings.parameters.kinetic_torque_nm;
-        loop {
-            let slips_s = self.reaches(anchor, true, (sense, kinetic), (time_s, to_s))?;
-            let shaft = self.piece.at(slips_s);
-            let torque = sense.of_signed(self.stick_torque(theta, phi, &shaft));
-            if torque >= limit * (1.0 - SLACK) {
-                return Some((slips_s, sense));
-            }
-            // Meanwhile the spring fell below the limit: look for it again.
-            (time_s, _) = at(sense, slips_s)?;
-        }
-    }
-
-    /// The next velocity match of a slip up to `to_s`.
-    fn find_match(&self, slip: &Slip, to_s: f64) -> Option<f64> {
-        let from_s = self.time_s.max(slip.apart_s);
-        if from_s > to_s {
-            return None;
-        }
-        let motion_bound = self.piece.bounds(from_s, to_s).omega_ddot;
-        first_root(from_s, to_s, |time_s| {
-            let (x, v) = self.swing(slip, time_s);
-            let s = self.piece.at(time_s);
-            let speed = s.omega_rad_s.abs() + self.oscillator.speed_bound(x, v);
-            let noise = 2.0 * f64::EPSILON * speed;
-            Sample {
-                value: slip.sense.of_signed(s.omega_rad_s - v),
-                slope: slip
-                    .sense
-                    .of_signed(s.omega_dot - self.oscillator.acceleration(x, v)),
-                bound: motion_bound + self.oscillator.jerk_bound(x, v),
-                noise,
-                slack: noise,
-            }
-        })
-    }
-
     /// Begins a slip now, object at (θ, θ̇).
     fn begin_slip(
         &mut self,
@@ -328,21 +265,26 @@ impl<'a> Reference<'a> {
             torque_before_nm: self.limited(torque_before_nm),
             torque_after_nm: self.slip_torque(sense),
         });
-        self.state = State::Slip(self.slip(sense, theta, v));
+        let slip = self.slip(sense, theta, v);
+        self.state = State::Slip(slip);
     }
 
     /// A slip that begins now.
-    fn slip(&self, sense: Sense, theta: f64, v: f64) -> Slip {
+    fn slip(&mut self, sense: Sense, theta: f64, v: f64) -> Slip {
         let p = &self.settings.parameters;
         let drop = p.static_torque_nm - p.kinetic_torque_nm;
         let end_s = if self.settings.convention == Convention::Frozen {
             // Eqs. (10)–(11).
-            let lag = drop.atan2(sense.of_signed(v).max(0.0) * p.impedance_nms_per_rad());
-            self.time_s + 2.0 * (std::f64::consts::PI - lag) / p.natural_rad_s()
+            let relative = sense.of_signed(v).max(0.0);
+            if relative != self.frozen.0 {
+                let lag = drop.atan2(relative * self.impedance);
+                let duration_s = 2.0 * (std::f64::consts::PI - lag) / self.natural_rad_s;
+                self.frozen = (relative, duration_s);
+            }
+            self.time_s + self.frozen.1
         } else {
             f64::INFINITY
         };
-
         Slip {
             sense,
             start_s: self.time_s,
@@ -363,13 +305,12 @@ impl<'a> Reference<'a> {
         let p = self.settings.parameters;
         let sense = slip.sense;
         let shaft = self.shaft();
-        let (x, _) = self.swing(slip, self.time_s);
         let theta = match (self.settings.convention, self.settings.restart) {
             (Convention::Frozen, Restart::Elastic) => {
                 sense.of_signed(p.restart_torque_nm() / p.stiffness_nm_per_rad)
             }
             (Convention::Frozen, Restart::FromKinetic) => sense.of_signed(self.kinetic_angle_rad),
-            _ => x + sense.of_signed(self.kinetic_angle_rad),
+            _ => self.met_at(slip) + sense.of_signed(self.kinetic_angle_rad),
         };
         let required = self.stick_torque(theta, shaft.phi_rad, &shaft);
         let limit = p.static_torque_nm;
@@ -393,9 +334,10 @@ impl<'a> Reference<'a> {
         if slips.is_some() || breaks_at_once {
             // A touch: the velocities meet and part again. The slip goes on,
             // and nothing is felt or reported.
+            let slip = self.slip(sense, theta, shaft.omega_rad_s);
             self.state = State::Slip(Slip {
                 apart_s: self.time_s + self.oscillator.quarter_radian_s(),
-                ..self.slip(sense, theta, shaft.omega_rad_s)
+                ..slip
             });
             return;
         }
