@@ -29,6 +29,9 @@ impl<F: Real> Locate<F> for ExactEvents {
             if rate <= F::ZERO && curvature <= F::ZERO {
                 return None;
             }
+            if curvature == F::ZERO {
+                return Some(left / rate).filter(|u| *u <= length_s);
+            }
             // Smallest u > 0 with rate·u + curvature·u²/2 = left, without
             // cancellation.
             let square = rate * rate + F::TWO * curvature * left;

@@ -62,6 +62,7 @@ pub enum Curve {
 
 impl Piece {
     /// Whether the velocity is linear in time, so that the angle is a parabola.
+    #[inline]
     pub fn is_parabolic(&self) -> bool {
         matches!(self.curve, Curve::Polynomial([_, _, _, c3, c4, c5]) if (c3, c4, c5) == (0.0, 0.0, 0.0))
     }
@@ -77,6 +78,9 @@ impl Piece {
         match self.curve {
             Curve::Polynomial([c0, c1, c2, c3, c4, c5]) => {
                 let t = time_s - self.start_s;
+                if self.is_parabolic() {
+                    return ((c2 * t + c1) * t + c0, 2.0 * c2 * t + c1);
+                }
                 (
                     ((((c5 * t + c4) * t + c3) * t + c2) * t + c1) * t + c0,
                     (((5.0 * c5 * t + 4.0 * c4) * t + 3.0 * c3) * t + 2.0 * c2) * t + c1,
@@ -97,6 +101,7 @@ impl Piece {
     }
 
     /// The shaft at `time_s`, which may be either end.
+    #[inline]
     pub fn at(&self, time_s: f64) -> ShaftState {
         let (phi_rad, omega_rad_s) = self.angle_and_velocity(time_s);
         match self.curve {

@@ -37,6 +37,8 @@ pub struct Reference<'a> {
     impedance: f64,
     piece: Piece,
     time_s: f64,
+    /// The shaft now; just after a knot, at it.
+    now: ShaftState,
     state: State,
     /// The last slip at a steady speed: the next one is the same.
     steady: Option<SteadySlip>,
@@ -86,6 +88,7 @@ impl<'a> Reference<'a> {
             frozen: (f64::NAN, f64::NAN),
             piece,
             time_s: 0.0,
+            now: piece.at(0.0),
             state: State::Stick {
                 theta: 0.0,
                 phi: piece.at(0.0).phi_rad,
@@ -101,11 +104,12 @@ impl<'a> Reference<'a> {
             if self.next_event(horizon_s, &mut on_event) {
                 continue;
             }
-            self.time_s = horizon_s;
+            self.go_to(horizon_s);
             if self.piece.end_s > to_s {
                 return;
             }
             self.piece = self.motion.piece(self.piece.end_s);
+            self.now = self.piece.at(self.time_s);
             if self.piece.jump {
                 self.jump(&mut on_event);
             }
@@ -119,7 +123,7 @@ impl<'a> Reference<'a> {
 
     /// The shaft now; just after it, at a knot.
     pub fn shaft(&self) -> ShaftState {
-        self.piece.at(self.time_s)
+        self.now
     }
 
     /// What the object does now.
@@ -158,6 +162,11 @@ impl<'a> Reference<'a> {
         }
     }
 
+    fn go_to(&mut self, time_s: f64) {
+        self.time_s = time_s;
+        self.now = self.piece.at(time_s);
+    }
+
     /// Carries out the next event up to `horizon_s`, within the piece.
     fn next_event(&mut self, horizon_s: f64, on_event: &mut impl FnMut(Event<f64>)) -> bool {
         match self.state {
@@ -165,10 +174,10 @@ impl<'a> Reference<'a> {
                 let Some((time_s, sense)) = self.find_break(theta, phi, horizon_s) else {
                     return false;
                 };
-                let shaft = self.piece.at(time_s);
+                self.go_to(time_s);
+                let shaft = self.now;
                 let before = self.stick_torque(theta, phi, &shaft);
                 let theta = self.break_angle(sense, before, &shaft, theta + (shaft.phi_rad - phi));
-                self.time_s = time_s;
                 self.begin_slip(sense, (theta, shaft.omega_rad_s), before, on_event);
                 true
             }
@@ -181,7 +190,7 @@ impl<'a> Reference<'a> {
                 let Some(time_s) = time_s else {
                     return false;
                 };
-                self.time_s = time_s;
+                self.go_to(time_s);
                 self.end_slip(&slip, on_event);
                 true
             }

@@ -62,12 +62,11 @@ impl Reference<'_> {
         let from_s = self.time_s;
         if self.piece.is_parabolic() {
             // So is the torque, whose root the model knows.
-            let shaft = self.piece.at(from_s);
-            let (torque_nm, rate) = self.torque_and_rate(anchor, physical, &shaft);
+            let (torque_nm, rate) = self.torque_and_rate(anchor, physical, &self.now);
             let path = StickPath {
                 torque_nm,
                 rate,
-                curvature: self.settings.parameters.stiffness_nm_per_rad * shaft.omega_dot,
+                curvature: self.settings.parameters.stiffness_nm_per_rad * self.now.omega_dot,
             };
             return first_break::<f64, ExactEvents>(&path, limit, to_s - from_s)
                 .map(|(after_s, sense)| (from_s + after_s, sense));
