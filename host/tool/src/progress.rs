@@ -32,7 +32,8 @@ impl Progress {
         let length = u64::try_from(milliseconds(self.total_s)).unwrap_or(u64::MAX);
         let bar = self.bar.get_or_insert_with(|| {
             // Hidden by itself where stderr is no terminal.
-            let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
+            let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr())
+                .with_elapsed(self.begun.elapsed());
             if let Ok(style) = ProgressStyle::with_template(
                 "{bar:40} {percent:>3} % of the simulated time, {eta} to go",
             ) {
