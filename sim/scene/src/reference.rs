@@ -13,6 +13,7 @@
 mod find_break;
 mod find_match;
 mod first_root;
+mod repeat;
 
 use crepitus_model::oscillator::Oscillator;
 use crepitus_model::{
@@ -102,6 +103,9 @@ impl<'a> Reference<'a> {
         loop {
             let horizon_s = self.piece.end_s.min(to_s);
             if self.next_event(horizon_s, &mut on_event) {
+                if self.piece.is_steady() {
+                    self.repeat_cycles(horizon_s, &mut on_event);
+                }
                 continue;
             }
             self.go_to(horizon_s);

@@ -14,6 +14,11 @@ pub(super) struct SteadySlip {
 }
 
 impl SteadySlip {
+    /// Duration, s, and x at its end, if it began with this x and v.
+    pub(super) fn for_state(&self, x: f64, v: f64) -> Option<(f64, f64)> {
+        (x == self.x && v == self.v).then_some((self.duration_s, self.x_end))
+    }
+
     /// Whether `slip` is this one again.
     fn repeats(&self, slip: &Slip, reference: &Reference<'_>) -> bool {
         slip.x == self.x && slip.v == self.v && reference.is_steady(slip)
