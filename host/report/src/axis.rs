@@ -17,6 +17,8 @@ pub(crate) struct Axis {
     ticks: Vec<f64>,
     decimals: usize,
     logarithmic: bool,
+    /// Ticks are written as powers of ten.
+    powers: bool,
 }
 
 impl Axis {
@@ -38,6 +40,7 @@ impl Axis {
             ticks,
             decimals,
             logarithmic: false,
+            powers: false,
         }
     }
 
@@ -61,6 +64,27 @@ impl Axis {
                 .collect(),
             decimals: 0,
             logarithmic: true,
+            powers: false,
+        }
+    }
+
+    /// Logarithmic; both ends positive, ticks at powers of ten, `most` of
+    /// them.
+    pub(crate) fn decades(low: f64, high: f64, most: i32) -> Self {
+        // Exponents of doubles.
+        #[allow(clippy::cast_possible_truncation)]
+        let (from, to) = (
+            (low.log10() - 1e-9).ceil() as i32,
+            (high.log10() + 1e-9).floor() as i32,
+        );
+        let stride = ((to - from) / most.max(1) + 1).max(1);
+        let marks: Vec<f64> = (from..=to)
+            .filter(|exponent| exponent.rem_euclid(stride) == 0)
+            .map(|exponent| 10_f64.powi(exponent))
+            .collect();
+        Self {
+            powers: from < -2 || to > 5,
+            ..Self::logarithmic(low, high, &marks)
         }
     }
 
@@ -161,7 +185,9 @@ impl ReversibleRanged for Axis {
 
 impl ValueFormatter<f64> for Axis {
     fn format_ext(&self, value: &f64) -> String {
-        if self.logarithmic {
+        if self.powers {
+            number::power(*value)
+        } else if self.logarithmic {
             number::rounded(*value)
         } else {
             number::fixed(*value, self.decimals)
@@ -187,6 +213,10 @@ mod tests {
         assert_eq!(labels(&axis), ["0", "10\u{202F}000", "20\u{202F}000"]);
         let axis = Axis::logarithmic(0.5, 500.0, &[0.1, 1.0, 10.0, 100.0]);
         assert_eq!(labels(&axis), ["1", "10", "100"]);
+        let axis = Axis::decades(1e-4, 0.5, 2);
+        assert_eq!(labels(&axis), ["10⁻⁴", "10⁻²"]);
+        let axis = Axis::decades(3.0, 2e3, 6);
+        assert_eq!(labels(&axis), ["10", "100", "1000"]);
     }
 
     #[test]

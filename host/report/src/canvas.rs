@@ -18,6 +18,7 @@ use plotters::style::{Color, ShapeStyle, TextStyle};
 
 use crate::ReportError;
 use crate::axis::Axis;
+use crate::escape::escaped;
 use crate::palette::{AXIS, GRID, Ink, PAPER, TEXT};
 use crate::simplify::simplify;
 use crate::thinned::Point;
@@ -43,11 +44,24 @@ pub(crate) fn svg(
     label: &str,
     draw: impl FnOnce(&Area) -> Drawn,
 ) -> Result<String, ReportError> {
+    svg_with((width, height), label, |area| {
+        draw(area).map(|()| String::new())
+    })
+}
+
+/// As [`svg`], with elements over the drawing that the drawing library has no
+/// word for. They are in grid lines and end as they are.
+pub(crate) fn svg_with(
+    (width, height): (u32, u32),
+    label: &str,
+    draw: impl FnOnce(&Area) -> Result<String, Fault>,
+) -> Result<String, ReportError> {
     let mut raw = String::new();
+    let over;
     {
         let area = SVGBackend::with_string(&mut raw, (px(width), px(height))).into_drawing_area();
-        draw(&area)
-            .and_then(|()| area.present())
+        over = draw(&area)
+            .and_then(|over| area.present().map(|()| over))
             .map_err(|fault| ReportError::Draw {
                 chart: label.to_owned(),
                 reason: fault.to_string(),
@@ -61,18 +75,11 @@ pub(crate) fn svg(
         .replace(" stroke=\"none\"", "")
         .replace(" font-family=\"sans-serif\"", "")
         .replace(" \"/>", "\"/>");
-    let mut escaped = String::new();
-    for c in label.chars() {
-        match c {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '"' => escaped.push_str("&quot;"),
-            c => escaped.push(c),
-        }
-    }
+    let body = body.trim_end().strip_suffix("</svg>").unwrap_or(&body);
     Ok(format!(
-        "<svg role=\"img\" aria-label=\"{escaped}\" viewBox=\"0 0 {} {}\" \
-         style=\"--nominal:{width}px\">{body}",
+        "<svg role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {} {}\" \
+         style=\"--nominal:{width}px\">{body}{over}</svg>\n",
+        escaped(label),
         px(width),
         px(height),
     ))
@@ -140,6 +147,11 @@ impl Plot<'_, '_> {
             mesh.x_label_formatter(&unlabelled);
         }
         mesh.draw()
+    }
+
+    /// Where a point stands, in grid lines of the whole drawing.
+    pub(crate) fn at(&self, point: (f64, f64)) -> (i32, i32) {
+        self.chart.backend_coord(&point)
     }
 
     pub(crate) fn x(&self) -> &Axis {

@@ -2,6 +2,7 @@
 
 use crepitus_model::{Phase, Sense};
 
+use crate::accuracy::hand::Hand;
 use crate::window::Window;
 
 /// See the module.
@@ -41,6 +42,20 @@ pub(crate) enum Sign {
     Patch(&'static str),
     /// A character.
     Mark(&'static str),
+    /// A curve of a work-precision diagram.
+    Curve(Hand),
+    /// A sign on it, filled.
+    Filled(Hand),
+}
+
+impl Sign {
+    /// CSS pixels.
+    pub(crate) fn width(self) -> u8 {
+        match self {
+            Self::Line(_) | Self::Patch(_) | Self::Mark(_) => 18,
+            Self::Curve(_) | Self::Filled(_) => 44,
+        }
+    }
 }
 
 impl Key {

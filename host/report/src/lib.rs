@@ -1,6 +1,6 @@
-//! Draws a run of Crepitus as one HTML page that needs nothing else: no
-//! network, no scripts, no fonts. It follows light and dark, prints, and
-//! reads on a phone.
+//! Draws a run of Crepitus, and the study of what accuracy costs, each as one
+//! HTML page that needs nothing else: no network, no scripts, no fonts. It
+//! follows light and dark, prints, and reads on a phone.
 //!
 //! ```text
 //! rows, events → Collector → Figures ┐
@@ -11,10 +11,14 @@
 //! A [`Collector`] sees every row and every event of a run but keeps only
 //! what the figures need, so its memory does not depend on how long the run
 //! is. What a scene does not have is not drawn.
+//!
+//! [`accuracy`] is the report of the study: work-precision diagrams from its
+//! points.
 
 // Counts become numbers to be drawn; none comes near 2^53.
 #![allow(clippy::cast_precision_loss)]
 
+pub mod accuracy;
 mod axis;
 mod canvas;
 mod channels;
@@ -27,7 +31,9 @@ mod choice;
 mod collector;
 mod envelope;
 mod error;
+mod escape;
 mod figure;
+mod frame;
 mod hysteresis;
 mod levels;
 mod number;

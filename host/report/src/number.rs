@@ -44,6 +44,61 @@ pub(crate) fn rounded(value: f64) -> String {
     }
 }
 
+/// A power of ten, from any value nearest to it: 10⁻⁶.
+pub(crate) fn power(value: f64) -> String {
+    let exponent = fixed(value.abs().log10().round(), 0);
+    let raised: String = exponent.chars().map(superscript).collect();
+    format!("10{raised}")
+}
+
+/// `value` with two significant digits and a power of ten: 2.7·10⁻⁷.
+pub(crate) fn scientific(value: f64) -> String {
+    if !value.is_finite() {
+        return "–".to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let digits = format!("{value:.1e}");
+    let (mantissa, exponent) = digits.split_once('e').unwrap_or((&digits, "0"));
+    let raised: String = exponent.chars().map(superscript).collect();
+    let mantissa = mantissa.replace('-', "\u{2212}");
+    match exponent {
+        "0" => mantissa,
+        _ => format!("{mantissa}·10{raised}"),
+    }
+}
+
+fn superscript(c: char) -> char {
+    match c {
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '0' => '⁰',
+        '4' => '⁴',
+        '5' => '⁵',
+        '6' => '⁶',
+        '7' => '⁷',
+        '8' => '⁸',
+        '9' => '⁹',
+        '-' | '\u{2212}' => '⁻',
+        c => c,
+    }
+}
+
+/// A time, s, in the unit that suits it: 50 µs.
+pub(crate) fn duration(seconds: f64) -> String {
+    // What is a hair under one of a unit is one of it.
+    let size = seconds.abs() * (1.0 + 1e-9);
+    let (scale, unit) = match size {
+        s if s >= 1.0 => (1.0, "s"),
+        s if s >= 1e-3 => (1e3, "ms"),
+        s if s >= 1e-6 => (1e6, "µs"),
+        _ => (1e9, "ns"),
+    };
+    format!("{} {unit}", rounded(seconds * scale))
+}
+
 /// A count.
 pub(crate) fn count(value: u64) -> String {
     fixed(value as f64, 0)
@@ -63,5 +118,12 @@ mod tests {
         assert_eq!(rounded(123_456.0), "123\u{202F}456");
         assert_eq!(rounded(f64::NAN), "–");
         assert_eq!(count(7), "7");
+        assert_eq!(power(1e-15), "10⁻¹⁵");
+        assert_eq!(scientific(2.74e-7), "2.7·10⁻⁷");
+        assert_eq!(scientific(9.99), "1.0·10¹");
+        assert_eq!(scientific(-3.0), "−3.0");
+        assert_eq!(duration(5e-5), "50 µs");
+        assert_eq!(duration(1e-3), "1 ms");
+        assert_eq!(duration(5e-7), "500 ns");
     }
 }

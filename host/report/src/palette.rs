@@ -38,6 +38,12 @@ impl Ink {
     pub(crate) fn marker(&self) -> RGBColor {
         self.marker
     }
+
+    /// The marker as an attribute's value, which the style sheet finds.
+    pub(crate) fn hex(&self) -> String {
+        let RGBColor(r, g, b) = self.marker;
+        format!("#{r:02X}{g:02X}{b:02X}")
+    }
 }
 
 /// Text in charts.
@@ -71,7 +77,20 @@ pub(crate) const SLIP_NEGATIVE: Ink =
 /// Frequency bands, every second one.
 pub(crate) const BAND: Ink = ink("band", (0xEE, 0xEE, 0xE1), "#eef1f4", "#20262b");
 
-const ALL: [Ink; 14] = [
+/// Curves of one diagram, in the order in which they are given out: those of
+/// Okabe and Ito, the pale ones darker on white paper.
+pub(crate) const CURVES: [Ink; 8] = [
+    ink("vermillion", (0xD5, 0x5E, 0x03), "#d55e00", "#f0803c"),
+    ink("sky", (0x56, 0xB4, 0xE3), "#3a9bd3", "#7cc8f2"),
+    ink("green", (0x00, 0x9E, 0x73), "#009068", "#2fc29a"),
+    ink("purple", (0xCC, 0x79, 0xA3), "#bb5a94", "#dd93bd"),
+    ink("yellow", (0xF0, 0xE4, 0x43), "#a39300", "#f0e442"),
+    ink("black", (0x01, 0x01, 0x03), "#16161d", "#f4f4f6"),
+    ink("orange", (0xE6, 0x9F, 0x03), "#cf8c00", "#e69f00"),
+    ink("blue", (0x03, 0x72, 0xB3), "#0067a8", "#4a90e2"),
+];
+
+const PAGE: [Ink; 14] = [
     TEXT,
     AXIS,
     GRID,
@@ -94,16 +113,16 @@ pub(crate) fn style() -> String {
     let mut light = String::new();
     let mut dark = String::new();
     let mut rules = String::new();
-    for ink in &ALL {
+    for ink in PAGE.iter().chain(&CURVES) {
         let name = ink.name;
-        let RGBColor(r, g, b) = ink.marker;
+        let marker = ink.hex();
         // Writing to a String cannot fail.
         let _ = write!(light, "--{name}:{};", ink.light);
         let _ = write!(dark, "--{name}:{};", ink.dark);
         let _ = writeln!(
             rules,
-            "svg [fill=\"#{r:02X}{g:02X}{b:02X}\"]{{fill:var(--{name})}}\
-             svg [stroke=\"#{r:02X}{g:02X}{b:02X}\"]{{stroke:var(--{name})}}\
+            "svg [fill=\"{marker}\"]{{fill:var(--{name})}}\
+             svg [stroke=\"{marker}\"]{{stroke:var(--{name})}}\
              .swatch-{name}{{background:var(--{name})}}\
              .line-{name}{{border-color:var(--{name})}}"
         );
@@ -120,8 +139,9 @@ mod tests {
 
     #[test]
     fn every_role_has_its_own_marker() {
-        for (i, a) in ALL.iter().enumerate() {
-            for b in ALL.iter().skip(i + 1) {
+        let all: Vec<&Ink> = PAGE.iter().chain(&CURVES).collect();
+        for (i, a) in all.iter().enumerate() {
+            for b in all.iter().skip(i + 1) {
                 assert_ne!(a.marker, b.marker, "{} and {}", a.name, b.name);
                 assert_ne!(a.name, b.name);
             }

@@ -4,12 +4,15 @@
 //! The pages are left in the target's `tmp` directory to be looked at.
 
 mod fixture;
+#[path = "fixture/markup.rs"]
+mod markup;
 
 use std::cell::RefCell;
 use std::path::Path;
 
 use crepitus_report::{Collector, Figures, Section, Setup, Text, TorqueLevels, html};
 use fixture::{KINETIC, Motion, Run, STATIC};
+use markup::{assert_balanced, count};
 
 /// A run of this motion, with as many rows as it announces.
 fn collect(motion: Motion, rows: u32, step: f64, encoder: bool) -> Figures {
@@ -86,25 +89,6 @@ fn page(name: &str, text: &Text, figures: &Figures) -> String {
     }
     assert_balanced(&page);
     page
-}
-
-/// Every element that opens closes, in order.
-fn assert_balanced(page: &str) {
-    let mut open = Vec::new();
-    for part in page.split('<').skip(1) {
-        let tag = part.split('>').next().unwrap_or_default();
-        let name = tag.split([' ', '\n']).next().unwrap_or_default();
-        if let Some(closed) = name.strip_prefix('/') {
-            assert_eq!(open.pop(), Some(closed), "closing in {part:.60}");
-        } else if !(tag.ends_with('/') || name.starts_with('!') || name == "meta") {
-            open.push(name);
-        }
-    }
-    assert!(open.is_empty(), "{open:?}");
-}
-
-fn count(page: &str, part: &str) -> usize {
-    page.matches(part).count()
 }
 
 #[test]

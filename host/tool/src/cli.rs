@@ -31,6 +31,8 @@ pub(crate) struct Cli {
 pub(crate) enum Verb {
     /// Simulate a scene and write its trace, events, summary and report.
     Run(RunArguments),
+    /// Show what accuracy costs in time: every solver against the reference.
+    Accuracy(AccuracyArguments),
     /// List the scenes that ship, with what each shows.
     Scenes(ScenesArguments),
     /// List the parameter presets, with what each feels like and its source.
@@ -96,6 +98,67 @@ pub(crate) struct RunArguments {
     /// Write only every Nth row of the trace.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) trace_every: u64,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus accuracy --quick
+  crepitus accuracy --scene slow-examination --out /tmp/accuracy
+  crepitus accuracy --need torque=5e-3,interval=5e-4 --rate 20000
+  crepitus accuracy --need frequency=1e-6 --convention physical --precision f64
+
+Every solver, in f32 and f64 and at steps from 1 ms to 2 µs, is compared with the reference \
+on four constant speeds and a hand-like sine, and timed on this machine.
+
+A NEED is a list of limits that must hold on every scene: torque (rms torque error, N·m), \
+peak-torque (largest torque error, N·m), event (worst event-time error, s), interval (worst \
+interval error, s), frequency (relative error of the cycle frequency). The answer is the \
+cheapest solver that meets them; where none does the exit code is 1. With --need, files are \
+written only if --out is given.")]
+pub(crate) struct AccuracyArguments {
+    /// Study the motion and the crepitus of this scene instead: a file, or the name of one that
+    /// ships. Its solver and its encoder play no part.
+    #[arg(long, value_name = "SCENE")]
+    pub(crate) scene: Option<PathBuf>,
+
+    /// Folder for points.csv, summary.json and report.html [default: out/accuracy].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Fewer steps and repeats: seconds instead of minutes.
+    #[arg(long)]
+    pub(crate) quick: bool,
+
+    /// Write each diagram of the report as an SVG file of its own, too.
+    #[arg(long)]
+    pub(crate) pictures: bool,
+
+    /// Which solver is the cheapest that is accurate enough? For example torque=5e-3,interval=5e-4.
+    #[arg(long, value_name = "NEED")]
+    pub(crate) need: Option<String>,
+
+    /// Only steps of this rate, in Hz: that of the device is 20000.
+    #[arg(
+        long,
+        value_name = "HZ",
+        requires = "need",
+        allow_negative_numbers = true
+    )]
+    pub(crate) rate: Option<f64>,
+
+    /// The convention that the need is for [default: frozen, or that of the scene].
+    #[arg(long, value_name = "CONVENTION", requires = "need")]
+    pub(crate) convention: Option<String>,
+
+    /// The precision that the need is for: the device computes in f32.
+    #[arg(long, value_name = "PRECISION", requires = "need", default_value = "f32",
+          value_parser = ["f32", "f64"])]
+    pub(crate) precision: String,
+
+    /// Other steps, in seconds.
+    #[arg(long, value_name = "SECONDS,…", value_delimiter = ',', hide = true)]
+    pub(crate) steps: Vec<f64>,
 }
 
 #[derive(Debug, Args)]

@@ -13,6 +13,9 @@ pub(crate) enum Failure {
     Input(String),
     /// The work failed: exit code 1.
     Work(String),
+    /// The work was done and its result says no: nothing more to say, exit
+    /// code 1.
+    Negative,
     /// Whoever read the output has gone: nothing more to say, exit code 1.
     NoReader,
 }
@@ -33,7 +36,7 @@ impl Failure {
         let (message, code) = match self {
             Self::Input(message) => (message, 2),
             Self::Work(message) => (message, 1),
-            Self::NoReader => return ExitCode::from(1),
+            Self::Negative | Self::NoReader => return ExitCode::from(1),
         };
         if json {
             // Where stdout is gone, the exit code is all that is left.

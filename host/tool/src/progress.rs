@@ -10,6 +10,8 @@ const PATIENCE: Duration = Duration::from_secs(1);
 pub(crate) struct Progress {
     begun: Instant,
     total_s: f64,
+    /// Of what the percentage is.
+    whole: &'static str,
     bar: Option<ProgressBar>,
 }
 
@@ -18,8 +20,16 @@ impl Progress {
         Self {
             begun: Instant::now(),
             total_s,
+            whole: "simulated time",
             bar: None,
         }
+    }
+
+    /// Progress through a study, from 0 to 1.
+    pub(crate) fn of_study() -> Self {
+        let mut progress = Self::new(1.0);
+        progress.whole = "study";
+        progress
     }
 
     /// The simulation has reached `time_s`.
@@ -34,9 +44,10 @@ impl Progress {
             // Hidden by itself where stderr is no terminal.
             let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr())
                 .with_elapsed(self.begun.elapsed());
-            if let Ok(style) = ProgressStyle::with_template(
-                "{bar:40} {percent:>3} % of the simulated time, {eta} to go",
-            ) {
+            if let Ok(style) = ProgressStyle::with_template(&format!(
+                "{{bar:40}} {{percent:>3}} % of the {}, {{eta}} to go",
+                self.whole
+            )) {
                 bar.set_style(style);
             }
             bar

@@ -1,5 +1,6 @@
 //! The scenes that ship, inside the program: it runs them from anywhere.
 
+use crate::failure::Failure;
 use crepitus_scene::{Overrides, Scene, SceneError};
 use std::path::{Path, PathBuf};
 
@@ -54,6 +55,20 @@ impl Shipped {
     /// The scene, read.
     pub(crate) fn read(&self, overrides: &Overrides) -> Result<Scene, SceneError> {
         Scene::parse(&self.file(), self.text, overrides)
+    }
+}
+
+/// The scene that a person names: a file, or the name of a scene that ships.
+pub(crate) fn scene(path: &Path, overrides: &Overrides) -> Result<Scene, Failure> {
+    if path.exists() {
+        return Scene::read(path, overrides).map_err(Failure::input);
+    }
+    match Shipped::find(path) {
+        Some(shipped) => shipped.read(overrides).map_err(Failure::input),
+        None => Err(Failure::Input(format!(
+            "{}: there is no such file, and no such scene ships: `crepitus scenes` lists those that do",
+            path.display()
+        ))),
     }
 }
 

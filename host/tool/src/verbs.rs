@@ -1,5 +1,6 @@
 //! What `crepitus` can do: one file a verb.
 
+pub(crate) mod accuracy;
 pub(crate) mod completions;
 pub(crate) mod presets;
 pub(crate) mod run;

@@ -2,7 +2,40 @@
 //!
 //! What accuracy costs in time: every rung of the solver ladder, in both
 //! precisions, over a range of steps, against the event-driven reference.
+//!
+//! ```text
+//! scenes ─┬─> reference: true events, true torque ─┐
+//!         └─> each rung × precision × step ────────┴─> errors ─┐
+//!             each rung × precision × step, interleaved ─> time ┴─> points ─┬─> points.csv, orders
+//!                                                                           └─> an answer to a need
+//! ```
+//!
+//! | to find | look in |
+//! |---|---|
+//! | what is studied | [`scenes`] |
+//! | the whole study, its progress and its results | [`study`] |
+//! | one point of the diagram, and its file | [`point`], [`points_csv`] |
+//! | which event belongs to which, and what the errors are | [`matching`], [`event_errors`] |
+//! | the torque to compare with | [`reference_torque`] |
+//! | how a run is measured and how it is timed | [`measure`], [`timing`] |
+//! | orders of convergence | [`orders`] |
+//! | the cheapest rung that meets a need | [`need`] |
 
+pub mod event_errors;
+pub mod matching;
+pub mod measure;
+pub mod need;
+pub mod orders;
 pub mod point;
+pub mod points_csv;
+pub mod reference_torque;
+pub mod sampling;
+pub mod scenes;
+pub mod study;
+pub mod timing;
+pub mod true_events;
 
+pub use need::{Need, Question, answer};
 pub use point::Point;
+pub use scenes::StudyScene;
+pub use study::{Plan, Study, StudyError, Watcher, run};

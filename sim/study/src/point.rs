@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 /// A measured point. Errors are against the event-driven reference, over
-/// interior events matched one to one. Field names are the columns of
+/// events matched one to one; see [`matching`](crate::matching) and
+/// [`event_errors`](crate::event_errors) for the definitions. Field names are the columns of
 /// `points.csv`, in this order.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Point {
@@ -42,4 +43,32 @@ pub struct Point {
     pub us_per_simulated_s: f64,
     /// Spread of the repeats: (third quartile − first quartile)/median.
     pub time_spread: f64,
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A made-up point of precision `f32` with every error small.
+    pub(crate) fn point(solver: &'static str, step_s: f64) -> Point {
+        Point {
+            scene: "constant-1".to_owned(),
+            convention: "frozen",
+            solver,
+            precision: "f32",
+            step_s,
+            events: 100,
+            events_true: 100,
+            unmatched: 0,
+            max_event_error_s: 1e-5,
+            rms_event_error_s: 5e-6,
+            max_interval_error_s: 1e-5,
+            frequency_error_rel: 1e-6,
+            rms_torque_error_nm: 1e-4,
+            max_torque_error_nm: 1e-2,
+            ns_per_step: 4.0,
+            us_per_simulated_s: 4e-3 / step_s,
+            time_spread: 0.01,
+        }
+    }
 }

@@ -6,7 +6,7 @@ mod watch;
 use crate::cli::RunArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
-use crate::shipped::Shipped;
+use crate::shipped;
 use crepitus_model::Restart;
 use crepitus_report::{Setup, Text, TorqueLevels};
 use crepitus_scene::output::Folder;
@@ -46,16 +46,7 @@ fn read(arguments: &RunArguments) -> Result<Scene, Failure> {
         precision: arguments.precision.clone(),
         set: arguments.set.clone(),
     };
-    let path = &arguments.scene;
-    let shipped = (!path.exists()).then(|| Shipped::find(path)).flatten();
-    match shipped {
-        Some(shipped) => shipped.read(&overrides).map_err(Failure::input),
-        None if path.exists() => Scene::read(path, &overrides).map_err(Failure::input),
-        None => Err(Failure::Input(format!(
-            "{}: there is no such file, and no such scene ships: `crepitus scenes` lists those that do",
-            path.display()
-        ))),
-    }
+    shipped::scene(&arguments.scene, &overrides)
 }
 
 /// `--out`, or `out/<scene>`.

@@ -1,0 +1,92 @@
+//! Our solvers: `exact-events` in steps, and `reference` from event to event.
+
+use crate::work::{DURATION_S, Delivery, Mode, OMEGA, RATE_HZ, Runner, SAMPLES, Sampler, Task};
+use crepitus_model::solver::{JointVisitor, Solver, with_joint};
+use crepitus_model::{Convention, Settings, ShaftStep, StickSlip, Validated};
+use crepitus_plant::Motion;
+use crepitus_scene::reference::Reference;
+use std::hint::black_box;
+
+/// `exact-events` in f64, a step for each sample, which is all that it can be asked for.
+pub fn exact_events(convention: Convention) -> Runner {
+    let settings = settings(convention);
+    Box::new(move |task, out| {
+        if task != Task::Samples {
+            return Err("steps through all samples".into());
+        }
+        out.events.clear();
+        with_joint(
+            black_box(&settings),
+            Solver::ExactEvents,
+            1.0 / RATE_HZ,
+            black_box(OMEGA),
+            Steps(out),
+        )
+        .map_err(|e| e.to_string())
+    })
+}
+
+/// `reference`, which has no step: it goes from event to event, and to the samples in sticks where
+/// those are asked for.
+pub fn reference(convention: Convention) -> Runner {
+    let settings = settings(convention);
+    let motion = Motion::constant(OMEGA);
+    Box::new(move |task, out| {
+        if task == Task::Samples {
+            return Err("has no steps".into());
+        }
+        let Delivery { events, torque } = out;
+        events.clear();
+        let (settings, motion) = (black_box(&settings), black_box(&motion));
+        Reference::new(settings, motion).advance(DURATION_S, |event| events.push(event.fraction));
+        if task == Task::Events {
+            return Ok(());
+        }
+        // Once more, now that it is known how far each mode goes.
+        let mut reference = Reference::new(settings, motion);
+        let mut sampler = Sampler::new(task, torque);
+        let mut mode = Mode::Stick;
+        for &until_s in events.iter().chain([&DURATION_S]) {
+            sampler.deliver(mode, until_s, |time_s| {
+                reference.advance(time_s, |_| ());
+                reference.torque_nm()
+            });
+            mode = mode.next();
+        }
+        Ok(())
+    })
+}
+
+/// The paper's parameters, which are the default.
+fn settings(convention: Convention) -> Validated<Settings> {
+    Settings {
+        convention,
+        ..Settings::default()
+    }
+    .validate()
+    .expect("the paper's parameters are valid")
+}
+
+struct Steps<'a>(&'a mut Delivery);
+
+impl JointVisitor<f64> for Steps<'_> {
+    type Output = ();
+
+    fn visit<J: StickSlip<f64>>(self, mut joint: J) {
+        let Delivery { events, torque } = self.0;
+        let omega = black_box(OMEGA);
+        let shaft = ShaftStep {
+            delta_phi_rad: omega / RATE_HZ,
+            omega_start_rad_s: omega,
+            omega_end_rad_s: omega,
+        };
+        let mut steps = 0.0;
+        for torque in &mut torque[..SAMPLES] {
+            joint.step(&shaft, |event| {
+                events.push((steps + event.fraction) / RATE_HZ);
+            });
+            *torque = joint.torque_nm();
+            steps += 1.0;
+        }
+    }
+}

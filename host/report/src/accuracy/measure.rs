@@ -1,0 +1,112 @@
+//! The three errors that diagrams show.
+
+use crepitus_study::Point;
+
+/// See the module.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Measure {
+    EventTime,
+    Torque,
+    Frequency,
+}
+
+/// A line of FACTS: from here on an error is worth having, or cannot be felt.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PerceptualLine {
+    pub(crate) value: f64,
+    pub(crate) label: &'static str,
+}
+
+const EVENT_TIME: [PerceptualLine; 2] = [
+    PerceptualLine {
+        value: 5e-4,
+        label: "0.5 ms worth having",
+    },
+    PerceptualLine {
+        value: 1e-4,
+        label: "0.1 ms imperceptible",
+    },
+];
+
+const TORQUE: [PerceptualLine; 2] = [
+    PerceptualLine {
+        value: 5e-3,
+        label: "5 mN·m worth having",
+    },
+    PerceptualLine {
+        value: 1e-3,
+        label: "1 mN·m imperceptible",
+    },
+];
+
+impl Measure {
+    pub(crate) const ALL: [Self; 3] = [Self::EventTime, Self::Torque, Self::Frequency];
+
+    pub(crate) fn of(self, point: &Point) -> f64 {
+        match self {
+            Self::EventTime => point.max_event_error_s,
+            Self::Torque => point.rms_torque_error_nm,
+            Self::Frequency => point.frequency_error_rel,
+        }
+    }
+
+    /// For files.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::EventTime => "event-time",
+            Self::Torque => "torque",
+            Self::Frequency => "frequency",
+        }
+    }
+
+    pub(crate) fn title(self) -> &'static str {
+        match self {
+            Self::EventTime => "Event time: the worst error against the cost",
+            Self::Torque => "Torque: the RMS error against the cost",
+            Self::Frequency => "Cycle frequency: the relative error against the cost",
+        }
+    }
+
+    pub(crate) fn axis(self) -> &'static str {
+        match self {
+            Self::EventTime => "Worst event-time error (s)",
+            Self::Torque => "RMS torque error (N·m)",
+            Self::Frequency => "Relative frequency error",
+        }
+    }
+
+    /// After a number; with its space.
+    pub(crate) fn unit(self) -> &'static str {
+        match self {
+            Self::EventTime => " s",
+            Self::Torque => " N·m",
+            Self::Frequency => "",
+        }
+    }
+
+    /// From the larger to the smaller.
+    pub(crate) fn lines(self) -> &'static [PerceptualLine] {
+        match self {
+            Self::EventTime => &EVENT_TIME,
+            Self::Torque => &TORQUE,
+            Self::Frequency => &[],
+        }
+    }
+
+    pub(crate) fn caption(self) -> &'static str {
+        match self {
+            Self::EventTime => {
+                "How far the worst break, stick or reversal is from where it belongs. Below 0.5 ms \
+                 a better time is still worth having; below 0.1 ms nobody feels it."
+            }
+            Self::Torque => {
+                "The torque's error at the ends of steps, as root mean square: a jump of the \
+                 torque that comes late counts in full while it is late. Below 5 mN·m less is \
+                 still worth having; below 1 mN·m nobody feels it."
+            }
+            Self::Frequency => {
+                "The error of the number of cycles per second: 10⁻⁵ are five correct digits."
+            }
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! The answer to a need, in sentences.
+
+use super::plan::Studied;
+use super::words;
+use crate::failure::{Failure, print, print_json};
+use crepitus_study::need::{Answer, Candidate, Mark, Need, Question};
+use crepitus_study::{Study, answer};
+use serde_json::json;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Answers, and fails if nothing meets the need.
+pub(super) fn tell(
+    need: &Need,
+    studied: &Studied,
+    study: &Study,
+    out: Option<&Path>,
+    as_json: bool,
+) -> Result<(), Failure> {
+    let question = Question {
+        convention: studied.convention.name(),
+        precision: studied.precision.name(),
+        step_s: studied.step_s,
+    };
+    let answer = answer(&study.points, need, &question);
+    if as_json {
+        print_json(&json!({
+            "need": need, "question": question, "answer": answer, "out": out,
+        }))?;
+    } else {
+        print(&in_words(need, &question, study, &answer))?;
+    }
+    if answer.chosen.is_some() {
+        Ok(())
+    } else {
+        Err(Failure::Negative)
+    }
+}
+
+fn in_words(need: &Need, question: &Question<'_>, study: &Study, answer: &Answer) -> String {
+    let mut text = asked(need, question, study);
+    // Writing to a String cannot fail.
+    let _ = match (&answer.chosen, &answer.nearest) {
+        (Some(chosen), _) => write!(text, "{}", recommended(chosen, answer)),
+        (None, Some(nearest)) => writeln!(
+            text,
+            "Nothing studied meets it. The nearest is {}: {}.",
+            at_step(nearest),
+            why_not(nearest)
+        ),
+        (None, None) => writeln!(
+            text,
+            "No scene is long enough for the step: nothing was studied."
+        ),
+    };
+    if !answer.longest.is_empty() && answer.chosen.is_some() {
+        text.push_str("The longest studied step at which each meets it:\n");
+        for longest in &answer.longest {
+            let _ = match &longest.candidate {
+                Some(c) => write!(
+                    text,
+                    "  {:20} {:>9}  {:>6} ns a step, {:>8} µs per simulated second",
+                    c.solver,
+                    words::step(c.step_s),
+                    words::plain(c.ns_per_step),
+                    words::plain(c.us_per_simulated_s)
+                ),
+                None => write!(text, "  {:20}     never", longest.solver),
+            };
+            if !longest.fails_below_s.is_empty() {
+                let steps: Vec<_> = longest
+                    .fails_below_s
+                    .iter()
+                    .map(|h| words::step(*h))
+                    .collect();
+                let _ = write!(text, ", but not at {}", steps.join(", "));
+            }
+            text.push('\n');
+        }
+    }
+    if !answer.cheaper.is_empty() {
+        text.push_str("Why not a cheaper one:\n");
+        for c in &answer.cheaper {
+            let _ = writeln!(
+                text,
+                "  {}, {} µs per simulated second: {}",
+                at_step(c),
+                words::plain(c.us_per_simulated_s),
+                why_not(c)
+            );
+        }
+    }
+    text
+}
+
+fn asked(need: &Need, question: &Question<'_>, study: &Study) -> String {
+    let limits: Vec<_> = need
+        .limits()
+        .iter()
+        .map(|l| {
+            let unit = l.criterion.unit();
+            let space = if unit.is_empty() { "" } else { " " };
+            format!(
+                "{} at most {:e}{space}{unit}",
+                l.criterion.meaning(),
+                l.at_most
+            )
+        })
+        .collect();
+    let scenes: Vec<_> = study
+        .scenes
+        .iter()
+        .filter(|s| s.convention == question.convention)
+        .map(|s| s.name.as_str())
+        .collect();
+    format!(
+        "Need: {}; {}, {}, on {}.\n",
+        limits.join(", "),
+        question.convention,
+        question.precision,
+        scenes.join(", ")
+    )
+}
+
+fn recommended(chosen: &Candidate, answer: &Answer) -> String {
+    let mut text = format!(
+        "Use {} ({} Hz). It costs {} ns a step, {} µs per simulated second: {} % of one core.\n",
+        at_step(chosen),
+        words::plain(1.0 / chosen.step_s),
+        words::plain(chosen.ns_per_step),
+        words::plain(chosen.us_per_simulated_s),
+        words::plain(chosen.core_share() * 100.0),
+    );
+    if let Some(mark) = chosen.tightest() {
+        let _ = writeln!(
+            text,
+            "It is tightest in the {}: {}, {} % of the limit.",
+            mark.limit.criterion.meaning(),
+            value(mark),
+            words::plain(mark.ratio() * 100.0)
+        );
+    }
+    if !answer.equals.is_empty() {
+        let names: Vec<_> = answer.equals.iter().map(at_step).collect();
+        let _ = writeln!(
+            text,
+            "At the same cost within the spread of the timings, and not more exact: {}.",
+            names.join("; ")
+        );
+    }
+    let _ = match (&answer.better, chosen.tightest()) {
+        (Some(better), Some(mark)) => writeln!(
+            text,
+            "The next better one is {}: {} ns a step, {} µs per simulated second, {} times as much; \
+             its {} is {}.",
+            at_step(better),
+            words::plain(better.ns_per_step),
+            words::plain(better.us_per_simulated_s),
+            words::plain(better.us_per_simulated_s / chosen.us_per_simulated_s),
+            mark.limit.criterion.meaning(),
+            better
+                .mark(mark.limit.criterion)
+                .map_or_else(|| "not known".to_owned(), value)
+        ),
+        _ => writeln!(text, "No dearer one is better where it is tightest."),
+    };
+    text
+}
+
+/// `exact-break with a step of 50 µs`.
+fn at_step(c: &Candidate) -> String {
+    format!("{} with a step of {}", c.solver, words::step(c.step_s))
+}
+
+/// Error and scene.
+fn value(mark: &Mark) -> String {
+    format!(
+        "{} on {}",
+        words::with_unit(mark.error, mark.limit.criterion.unit()),
+        mark.scene
+    )
+}
+
+/// What fails, by how much and where.
+fn why_not(c: &Candidate) -> String {
+    let mut reasons = Vec::new();
+    if let Some(lost) = &c.unmatched {
+        reasons.push(format!(
+            "{} unmatched events on {}, which has {}",
+            lost.events, lost.scene, lost.events_true
+        ));
+    }
+    for mark in c.marks.iter().filter(|m| m.ratio() > 1.0) {
+        if mark.error.is_infinite() {
+            reasons.push(format!("the object flies off on {}", mark.scene));
+            continue;
+        }
+        reasons.push(format!(
+            "{} {}, {} times the limit",
+            mark.limit.criterion.meaning(),
+            value(mark),
+            words::plain(mark.ratio())
+        ));
+    }
+    reasons.join("; ")
+}

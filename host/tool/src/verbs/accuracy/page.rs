@@ -1,0 +1,159 @@
+//! The words of a study's report.
+
+use super::summary::Summary;
+use super::words;
+use crate::failure::Failure;
+use crepitus_report::Section;
+use crepitus_report::accuracy::{self, AccuracyText};
+use crepitus_study::orders::{Order, Orders};
+use crepitus_study::{Point, Study};
+
+/// The report, and each of its diagrams as an SVG of its own if asked for:
+/// names and contents of files.
+pub(super) fn files(
+    study: &Study,
+    summary: &Summary<'_>,
+    pictures: bool,
+) -> Result<Vec<(String, String)>, Failure> {
+    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
+    let page = accuracy::html(&study.points, &text(study, summary)).map_err(undrawn)?;
+    let mut files = vec![("report.html".to_owned(), page)];
+    if pictures {
+        let pictures = accuracy::pictures(&study.points).map_err(undrawn)?;
+        files.extend(
+            pictures
+                .into_iter()
+                .map(|p| (format!("{}.svg", p.name), p.svg)),
+        );
+    }
+    Ok(files)
+}
+
+fn text(study: &Study, summary: &Summary<'_>) -> AccuracyText {
+    let mut tables = vec![studied(study, summary)];
+    tables.extend(convergence(study));
+    tables.extend(refused(study));
+    AccuracyText {
+        title: "What accuracy costs in time".to_owned(),
+        intro: "Every solver, in single and double precision and at a range of steps, against the event-driven \
+                reference. A solver down and to the left of another is both better and cheaper."
+            .to_owned(),
+        notes: notes(study),
+        tables,
+        footer: format!(
+            "crepitus {} · research and education prototype, not a medical device",
+            summary.crepitus_version
+        ),
+    }
+}
+
+fn notes(study: &Study) -> Vec<String> {
+    let mut notes = vec![
+        "Events are matched one to one in the order of time, by kind and sense. Where interior events have no \
+         partner a solver has not simulated the same thing: such points are in no curve and are listed beside it."
+            .to_owned(),
+        "Torque is compared at the ends of steps. It jumps at an event, so a step's end that falls between the true \
+         event and the found one counts with the whole jump."
+            .to_owned(),
+        format!(
+            "Time is that of the stepping alone: the step, its events and the torque it leaves, with the motion \
+             prepared beforehand; the median of {} repeats in which all solvers take turns.",
+            study.timing_repeats
+        ),
+    ];
+    notes.extend(unsteady(&study.points));
+    notes
+}
+
+/// A word of caution where the machine was busy.
+fn unsteady(points: &[Point]) -> Option<String> {
+    /// From here on two costs that differ by a fifth may be the same.
+    const UNSTEADY: f64 = 0.2;
+    let count = points.iter().filter(|p| p.time_spread > UNSTEADY).count();
+    (count > 0).then(|| {
+        format!(
+            "The timings of {count} of {} points spread by more than 20 % between their quartiles: the machine was \
+             busy.",
+            points.len()
+        )
+    })
+}
+
+fn studied(study: &Study, summary: &Summary<'_>) -> Section {
+    let mut rows: Vec<(String, String)> = study
+        .scenes
+        .iter()
+        .map(|s| {
+            (
+                format!("{}, {}", s.name, s.convention),
+                format!("{}; {} events", s.title, s.events_true),
+            )
+        })
+        .collect();
+    let steps: Vec<_> = study.steps_s.iter().map(|h| words::step(*h)).collect();
+    rows.push(("steps".to_owned(), steps.join(", ")));
+    rows.push(("measured on".to_owned(), summary.measured_on()));
+    rows.push((
+        "the study took".to_owned(),
+        format!("{} s", words::plain(study.wall_s)),
+    ));
+    Section {
+        title: "What was studied".to_owned(),
+        rows,
+    }
+}
+
+/// A table of orders a scene and convention.
+fn convergence(study: &Study) -> Vec<Section> {
+    let mut sections: Vec<Section> = Vec::new();
+    for orders in &study.orders {
+        let Orders {
+            scene,
+            convention,
+            solver,
+            frequency,
+            event_time,
+        } = orders;
+        let title = format!("Measured orders in f64: {scene}, {convention}");
+        let row = (
+            (*solver).to_owned(),
+            format!(
+                "frequency {}, event time {}",
+                order(*frequency),
+                order(*event_time)
+            ),
+        );
+        match sections.last_mut().filter(|s| s.title == title) {
+            Some(section) => section.rows.push(row),
+            None => sections.push(Section {
+                title,
+                rows: vec![row],
+            }),
+        }
+    }
+    sections
+}
+
+fn order(order: Order) -> String {
+    match order {
+        Order::Slope { order, .. } => format!("{order:.1}"),
+        Order::RoundOff { .. } => "round-off".to_owned(),
+        Order::TooFewPoints { .. } => "–".to_owned(),
+    }
+}
+
+fn refused(study: &Study) -> Option<Section> {
+    (!study.refused.is_empty()).then(|| Section {
+        title: "Left out, because it has no meaning".to_owned(),
+        rows: study
+            .refused
+            .iter()
+            .map(|r| {
+                (
+                    format!("{} under {}", r.solver, r.convention),
+                    r.reason.to_owned(),
+                )
+            })
+            .collect(),
+    })
+}

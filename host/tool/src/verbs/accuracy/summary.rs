@@ -1,0 +1,47 @@
+//! `summary.json` of a study.
+
+use super::plan::Studied;
+use crepitus_study::Study;
+use serde::Serialize;
+
+/// Version of this form.
+const SUMMARY_VERSION: u32 = 1;
+
+/// A study without its points.
+#[derive(Serialize)]
+pub(super) struct Summary<'a> {
+    #[serde(rename = "summary_version")]
+    version: u32,
+    pub(super) crepitus_version: &'static str,
+    /// Where the times were measured.
+    host: String,
+    quick: bool,
+    precisions: Vec<&'static str>,
+    points: usize,
+    #[serde(flatten)]
+    study: &'a Study,
+}
+
+impl<'a> Summary<'a> {
+    pub(super) fn new(quick: bool, studied: &Studied, study: &'a Study) -> Self {
+        Self {
+            version: SUMMARY_VERSION,
+            crepitus_version: env!("CARGO_PKG_VERSION"),
+            host: format!("{} {}", std::env::consts::ARCH, std::env::consts::OS),
+            quick,
+            precisions: studied.plan.precisions.iter().map(|p| p.name()).collect(),
+            points: study.points.len(),
+            study,
+        }
+    }
+
+    /// What the times were measured on, and in which build.
+    pub(super) fn measured_on(&self) -> String {
+        let build = if cfg!(debug_assertions) {
+            "a debug build: times mean little"
+        } else {
+            "a release build"
+        };
+        format!("{}, {build}", self.host)
+    }
+}

@@ -1,0 +1,133 @@
+//! The study at the device's tick, as a table for the terminal.
+
+use super::words;
+use crepitus_study::{Point, Study};
+use std::fmt::Write;
+
+/// The device's tick, s.
+const TICK_S: f64 = 5e-5;
+
+/// For each convention every rung at the device's tick, or at the studied step
+/// that is nearest to it: the worst of all scenes.
+pub(super) fn at_the_tick(study: &Study) -> String {
+    let away = |h: f64| (h / TICK_S).ln().abs();
+    let Some(step_s) = study
+        .points
+        .iter()
+        .map(|p| p.step_s)
+        .min_by(|a, b| away(*a).total_cmp(&away(*b)))
+    else {
+        return "no scene is long enough for any of the steps".to_owned();
+    };
+    let mut text = format!("What accuracy costs at a step of {}", words::step(step_s));
+    let mut heading = "";
+    for row in rows(study, step_s) {
+        if row.convention != heading {
+            heading = row.convention;
+            // Writing to a String cannot fail.
+            let _ = write!(
+                text,
+                "\n\n{heading}, worst of {}:\n  {:20} {:9} {:>7}  {:>17}  {:>16}  events",
+                scenes(study, heading),
+                "solver",
+                "precision",
+                "ns/step",
+                "event error, s",
+                "rms torque, N·m"
+            );
+        }
+        let _ = write!(
+            text,
+            "\n  {:20} {:9} {:>7.1}  {:>17}  {:>16}  {}",
+            row.solver,
+            row.precision,
+            row.ns_per_step,
+            words::error(row.event_s),
+            words::error(row.torque_nm),
+            if row.unmatched == 0 {
+                "all matched".to_owned()
+            } else {
+                format!("{} unmatched", row.unmatched)
+            }
+        );
+    }
+    text.push('\n');
+    for refused in &study.refused {
+        let _ = write!(
+            text,
+            "\nnot under {}: {}",
+            refused.convention, refused.solver
+        );
+    }
+    if !study.refused.is_empty() {
+        text.push_str("\n(the reasons are in summary.json)");
+    }
+    text
+}
+
+fn scenes(study: &Study, convention: &str) -> String {
+    let count = study
+        .scenes
+        .iter()
+        .filter(|s| s.convention == convention)
+        .count();
+    if count == 1 {
+        "one scene".to_owned()
+    } else {
+        format!("{count} scenes")
+    }
+}
+
+/// A rung over the scenes of a convention.
+struct Row {
+    convention: &'static str,
+    solver: &'static str,
+    precision: &'static str,
+    /// Mean over the scenes, ns.
+    ns_per_step: f64,
+    event_s: f64,
+    torque_nm: f64,
+    unmatched: u64,
+}
+
+fn rows(study: &Study, step_s: f64) -> Vec<Row> {
+    let mut rows: Vec<(Row, f64)> = Vec::new();
+    for p in study.points.iter().filter(|p| p.step_s == step_s) {
+        match rows.iter_mut().find(|(r, _)| r.is_of(p)) {
+            Some((row, count)) => {
+                *count += 1.0;
+                row.ns_per_step += (p.ns_per_step - row.ns_per_step) / *count;
+                row.event_s = worse(row.event_s, p.max_event_error_s);
+                row.torque_nm = worse(row.torque_nm, p.rms_torque_error_nm);
+                row.unmatched += p.unmatched;
+            }
+            None => rows.push((Row::of(p), 1.0)),
+        }
+    }
+    let order = |convention: &str| study.scenes.iter().position(|s| s.convention == convention);
+    rows.sort_by_key(|(row, _)| order(row.convention));
+    rows.into_iter().map(|(row, _)| row).collect()
+}
+
+/// NaN, for not known, is the worst.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
+impl Row {
+    fn of(p: &Point) -> Self {
+        Self {
+            convention: p.convention,
+            solver: p.solver,
+            precision: p.precision,
+            ns_per_step: p.ns_per_step,
+            event_s: p.max_event_error_s,
+            torque_nm: p.rms_torque_error_nm,
+            unmatched: p.unmatched,
+        }
+    }
+
+    fn is_of(&self, p: &Point) -> bool {
+        self.convention == p.convention && self.solver == p.solver && self.precision == p.precision
+    }
+}

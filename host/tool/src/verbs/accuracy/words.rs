@@ -1,0 +1,58 @@
+//! Numbers as a person reads them.
+
+/// An error in two digits; a dash if it is not known.
+pub(super) fn error(x: f64) -> String {
+    if x.is_nan() {
+        "–".to_owned()
+    } else if x == 0.0 {
+        "0".to_owned()
+    } else {
+        format!("{x:.1e}")
+    }
+}
+
+/// An error with its unit.
+pub(super) fn with_unit(x: f64, unit: &str) -> String {
+    if unit.is_empty() {
+        error(x)
+    } else {
+        format!("{} {unit}", error(x))
+    }
+}
+
+/// A step in µs, without the digits that rounding added.
+pub(super) fn step(step_s: f64) -> String {
+    let text = format!("{:.6}", step_s * 1e6);
+    format!("{} µs", text.trim_end_matches('0').trim_end_matches('.'))
+}
+
+/// A number in three digits, never with an exponent.
+pub(super) fn plain(x: f64) -> String {
+    if !(x.abs() > 0.0 && x.is_finite()) {
+        return format!("{x}");
+    }
+    let digits = (0..9)
+        .zip([100.0, 10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 1e-6])
+        .find(|(_, above)| x.abs() >= *above)
+        .map_or(9, |(digits, _)| digits);
+    format!("{x:.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(error(4.123e-5), "4.1e-5");
+        assert_eq!(with_unit(0.0, "s"), "0 s");
+        assert_eq!(error(f64::NAN), "–");
+        assert_eq!(step(5e-5), "50 µs");
+        assert_eq!(step(1.0 / 30_000.0), "33.333333 µs");
+        assert_eq!(plain(1234.5), "1234");
+        assert_eq!(plain(68.32), "68.3");
+        assert_eq!(plain(3.456), "3.46");
+        assert_eq!(plain(0.00683), "0.00683");
+        assert_eq!(plain(0.0), "0");
+    }
+}

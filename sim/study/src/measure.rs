@@ -1,0 +1,217 @@
+//! One rung at one step over a whole scene: its events and its torque against
+//! the reference's.
+
+use crate::event_errors::EventErrors;
+use crate::matching::match_events;
+use crate::reference_torque::ReferenceTorque;
+use crate::sampling::{CHUNK_STEPS, Sampling};
+use crate::scenes::StudyScene;
+use crate::true_events::TimedEvent;
+use crepitus_model::solver::{JointVisitor, Solver, with_joint};
+use crepitus_model::{Real, SettingsError, StickSlip};
+use crepitus_scene::scene::Precision;
+
+/// What the rungs of one scene at one step are measured against.
+#[derive(Clone, Copy, Debug)]
+pub struct Target<'a> {
+    /// The scene.
+    pub scene: &'a StudyScene,
+    /// Its motion, cut into steps.
+    pub sampling: &'a Sampling<'a>,
+    /// The reference's events up to the end of the last step.
+    pub events: &'a [TimedEvent],
+    /// The reference's torque at the ends of steps.
+    pub torque: &'a ReferenceTorque,
+}
+
+/// How accurate a rung is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Events found.
+    pub events: u64,
+    /// Interior events of either side without a partner.
+    pub unmatched: u64,
+    /// Errors of the matched events.
+    pub event_errors: EventErrors,
+    /// Root mean square torque error at the ends of steps, N·m.
+    pub rms_torque_error_nm: f64,
+    /// Largest torque error at the end of a step, N·m.
+    pub max_torque_error_nm: f64,
+}
+
+/// Runs a rung over the whole scene. A result that is not finite has all its
+/// events unmatched and no errors (NaN).
+///
+/// # Errors
+/// If the rung, the settings and the step cannot work together.
+pub fn measure(
+    target: &Target<'_>,
+    solver: Solver,
+    precision: Precision,
+) -> Result<Accuracy, SettingsError> {
+    let seen = match precision {
+        Precision::F32 => see::<f32>(target, solver),
+        Precision::F64 => see::<f64>(target, solver),
+    }?;
+    Ok(judge(target, &seen))
+}
+
+fn see<F: Real>(target: &Target<'_>, solver: Solver) -> Result<Seen, SettingsError> {
+    let Target {
+        scene, sampling, ..
+    } = target;
+    let omega = F::from_f64(scene.motion.at(0.0).omega_rad_s);
+    with_joint::<F, _>(
+        &scene.settings,
+        solver,
+        sampling.step_s(),
+        omega,
+        Look(target),
+    )
+}
+
+/// What was seen of a run.
+#[derive(Debug, Default)]
+struct Seen {
+    events: Vec<TimedEvent>,
+    /// Events beyond those that are kept.
+    more_events: u64,
+    /// Sum of squared torque errors, (N·m)².
+    squares: f64,
+    max_nm: f64,
+    finite: bool,
+}
+
+struct Look<'a>(&'a Target<'a>);
+
+impl<F: Real> JointVisitor<F> for Look<'_> {
+    type Output = Seen;
+
+    fn visit<J: StickSlip<F>>(self, mut joint: J) -> Seen {
+        let Target {
+            sampling,
+            events,
+            torque,
+            ..
+        } = self.0;
+        // A rung that chatters has lost already; its events need no memory.
+        let most = 4 * events.len() + 10_000;
+        let mut seen = Seen {
+            finite: true,
+            ..Seen::default()
+        };
+        let mut walk = sampling.walk_from(0);
+        let mut chunk = Vec::with_capacity(CHUNK_STEPS);
+        let (mut n, mut index, mut tie) = (0_u64, 0_usize, 0_usize);
+        loop {
+            walk.fill(&mut chunk, CHUNK_STEPS);
+            if chunk.is_empty() {
+                break;
+            }
+            for shaft in &chunk {
+                joint.step(shaft, |event| {
+                    if seen.events.len() < most {
+                        let time_s = sampling.time_s(n, event.fraction.to_f64());
+                        seen.events.push(TimedEvent::new(time_s, &event));
+                    } else {
+                        seen.more_events += 1;
+                    }
+                });
+                let error_nm = torque.error_nm::<F>(index, joint.torque_nm().to_f64(), &mut tie);
+                seen.squares += error_nm * error_nm;
+                seen.max_nm = error_nm.max(seen.max_nm);
+                n += 1;
+                index += 1;
+            }
+            // The torque of a slip is Tk whatever has become of the object.
+            seen.finite &= joint.theta_rad().is_finite()
+                && joint.theta_dot_rad_s().is_finite()
+                && seen.squares.is_finite();
+        }
+        seen.finite &= seen.events.iter().all(|e| e.time_s.is_finite());
+        seen
+    }
+}
+
+fn judge(target: &Target<'_>, seen: &Seen) -> Accuracy {
+    let Target {
+        sampling, events, ..
+    } = target;
+    let kept = u64::try_from(seen.events.len()).unwrap_or(u64::MAX);
+    let found = kept.saturating_add(seen.more_events);
+    if !seen.finite {
+        let all = u64::try_from(events.len()).unwrap_or(u64::MAX);
+        return Accuracy {
+            events: found,
+            unmatched: all.saturating_add(found).max(1),
+            event_errors: EventErrors::UNKNOWN,
+            rms_torque_error_nm: f64::NAN,
+            max_torque_error_nm: f64::NAN,
+        };
+    }
+    let matching = match_events(events, &seen.events, sampling.step_s(), sampling.end_s());
+    Accuracy {
+        events: found,
+        unmatched: matching.unmatched.saturating_add(seen.more_events),
+        event_errors: EventErrors::new(events, &seen.events, &matching),
+        rms_torque_error_nm: (seen.squares / f64::from_whole(sampling.steps())).sqrt(),
+        max_torque_error_nm: seen.max_nm,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::standard;
+    use crate::true_events::true_events;
+
+    /// 1 s of a standard scene.
+    fn accuracy(name: &str, convention: &str, solver: Solver, step_s: f64) -> Accuracy {
+        let scene = StudyScene {
+            duration_s: 1.0,
+            ..standard()
+                .unwrap()
+                .into_iter()
+                .find(|s| s.name == name && s.convention() == convention)
+                .unwrap()
+        };
+        let truth = true_events(&scene);
+        let sampling = Sampling::new(&scene.motion, scene.duration_s, step_s);
+        let torque = ReferenceTorque::new(&scene, &sampling, &truth);
+        let events: Vec<_> = truth.iter().map(|e| e.event).collect();
+        let target = Target {
+            scene: &scene,
+            sampling: &sampling,
+            events: &events,
+            torque: &torque,
+        };
+        measure(&target, solver, Precision::F64).unwrap()
+    }
+
+    #[test]
+    fn exact_events_are_exact() {
+        for (name, convention) in [
+            ("constant-0.5", "frozen"),
+            ("constant-0.988", "physical"),
+            ("constant-2", "physical"),
+        ] {
+            let a = accuracy(name, convention, Solver::ExactEvents, 2e-4);
+            assert_eq!(a.unmatched, 0);
+            assert!(a.events > 60, "{a:?}");
+            assert!(a.event_errors.max_s < 1e-12, "{a:?}");
+            assert!(a.max_torque_error_nm < 1e-9, "{a:?}");
+        }
+    }
+
+    #[test]
+    fn without_location_events_are_a_step_late_and_the_torque_jumps() {
+        let a = accuracy("constant-0.988", "physical", Solver::Exact, 5e-5);
+        assert_eq!(a.unmatched, 0);
+        assert!(
+            a.event_errors.max_s > 1e-5 && a.event_errors.max_s < 5e-3,
+            "{a:?}"
+        );
+        assert!(a.max_torque_error_nm > 0.1, "{a:?}");
+        assert!(a.rms_torque_error_nm < a.max_torque_error_nm / 5.0, "{a:?}");
+    }
+}

@@ -1,0 +1,456 @@
+//! The whole study: every rung × precision × step on every scene.
+
+use crate::measure::{Accuracy, Target, measure};
+use crate::orders::{Orders, orders};
+use crate::point::Point;
+use crate::reference_torque::ReferenceTorque;
+use crate::sampling::Sampling;
+use crate::scenes::StudyScene;
+use crate::timing::{Contestant, Cost, time};
+use crate::true_events::{TimedEvent, TrueEvent, true_events};
+use crepitus_model::solver::Solver;
+use crepitus_model::{Convention, Real, SettingsError};
+use crepitus_scene::scene::Precision;
+use serde::Serialize;
+use std::time::Instant;
+
+/// Steps of a full study, s.
+pub const FULL_STEPS_S: [f64; 9] = [1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6];
+
+/// Steps of a quick one, s.
+pub const QUICK_STEPS_S: [f64; 5] = [1e-3, 2e-4, 1e-4, 5e-5, 2e-5];
+
+/// Repeats of a timing in a full study.
+pub const FULL_REPEATS: usize = 7;
+
+/// Repeats of a timing in a quick one.
+pub const QUICK_REPEATS: usize = 5;
+
+/// The most steps of one run: the reference's torque at each is kept.
+const MOST_STEPS: u64 = 20_000_000;
+
+/// A step of the reference costs about as much as this many of a rung.
+const REFERENCE_WEIGHT: f64 = 10.0;
+
+/// What to study.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The scenes, each under its convention.
+    pub scenes: Vec<StudyScene>,
+    /// The steps, s.
+    pub steps_s: Vec<f64>,
+    /// The precisions.
+    pub precisions: Vec<Precision>,
+    /// Repeats of each timing.
+    pub repeats: usize,
+}
+
+/// Sees a study go by, and may end it.
+pub trait Watcher {
+    /// Why it ends early.
+    type Error;
+
+    /// Called often; `fraction` of the work is done.
+    ///
+    /// # Errors
+    /// Ends the study.
+    fn progress(&mut self, fraction: f64) -> Result<(), Self::Error>;
+}
+
+/// Why a study ended early.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StudyError<E> {
+    /// The watcher ended it.
+    #[error("ended early")]
+    Watcher(E),
+    /// Settings that do not go together.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+}
+
+/// A study's results.
+#[derive(Clone, Debug, Serialize)]
+pub struct Study {
+    /// What was studied.
+    pub scenes: Vec<StudiedScene>,
+    /// The steps, s.
+    pub steps_s: Vec<f64>,
+    /// Repeats of each timing.
+    pub timing_repeats: usize,
+    /// Rungs that have no meaning under a convention.
+    pub refused: Vec<Refused>,
+    /// Steps that a scene is too long or too short for.
+    pub skipped: Vec<Skipped>,
+    /// Measured orders of convergence.
+    pub orders: Vec<Orders>,
+    /// How long the study took, s.
+    pub wall_s: f64,
+    /// The points, by scene, convention, rung, precision and falling step.
+    #[serde(skip)]
+    pub points: Vec<Point>,
+}
+
+/// A scene of the study.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StudiedScene {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub title: String,
+    /// Its convention.
+    pub convention: &'static str,
+    /// Its duration, s.
+    pub duration_s: f64,
+    /// Events of the reference.
+    pub events_true: usize,
+}
+
+/// A rung that has no meaning under a convention.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Refused {
+    /// The rung.
+    pub solver: &'static str,
+    /// The convention.
+    pub convention: &'static str,
+    /// Why.
+    pub reason: &'static str,
+}
+
+/// A step at which a scene was not studied.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Skipped {
+    /// The scene.
+    pub scene: String,
+    /// Its convention.
+    pub convention: &'static str,
+    /// The step, s.
+    pub step_s: f64,
+    /// Why.
+    pub reason: &'static str,
+}
+
+/// Carries out a plan.
+///
+/// # Errors
+/// What the watcher returns, or settings that cannot work together.
+pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError<W::Error>> {
+    let begun = Instant::now();
+    let mut study = Study {
+        scenes: Vec::new(),
+        steps_s: plan.steps_s.clone(),
+        timing_repeats: plan.repeats,
+        refused: refused(&plan.scenes),
+        skipped: Vec::new(),
+        orders: Vec::new(),
+        wall_s: 0.0,
+        points: Vec::new(),
+    };
+    let mut work = Work {
+        watcher,
+        total: total_work(plan),
+        done: 0.0,
+    };
+    for scene in &plan.scenes {
+        let truth = true_events(scene);
+        let contestants = contestants(plan, scene.settings.convention);
+        study.scenes.push(StudiedScene {
+            name: scene.name.clone(),
+            title: scene.title.clone(),
+            convention: scene.convention(),
+            duration_s: scene.duration_s,
+            events_true: truth.len(),
+        });
+        // By contestant, so that a curve's points stand together.
+        let mut curves = vec![Vec::new(); contestants.len()];
+        for &step_s in &falling(&plan.steps_s) {
+            let sampling = Sampling::new(&scene.motion, scene.duration_s, step_s);
+            if let Some(reason) = not_studied(&sampling) {
+                study.skipped.push(Skipped {
+                    scene: scene.name.clone(),
+                    convention: scene.convention(),
+                    step_s,
+                    reason,
+                });
+                continue;
+            }
+            let points = at_step(scene, &truth, &sampling, &contestants, plan, &mut work)?;
+            for (curve, point) in curves.iter_mut().zip(points) {
+                curve.push(point);
+            }
+        }
+        study.points.extend(curves.into_iter().flatten());
+    }
+    study.orders = orders(&study.points);
+    study.wall_s = begun.elapsed().as_secs_f64();
+    Ok(study)
+}
+
+/// All contestants on one scene at one step, in their order.
+fn at_step<W: Watcher>(
+    scene: &StudyScene,
+    truth: &[TrueEvent],
+    sampling: &Sampling<'_>,
+    contestants: &[Contestant],
+    plan: &Plan,
+    work: &mut Work<'_, W>,
+) -> Result<Vec<Point>, StudyError<W::Error>> {
+    let steps = f64::from_whole(sampling.steps());
+    let torque = ReferenceTorque::new(scene, sampling, truth);
+    work.did(REFERENCE_WEIGHT * steps)?;
+    let end_s = sampling.end_s();
+    let events: Vec<TimedEvent> = truth
+        .iter()
+        .map(|e| e.event)
+        .filter(|e| e.time_s <= end_s)
+        .collect();
+    let target = Target {
+        scene,
+        sampling,
+        events: &events,
+        torque: &torque,
+    };
+    let mut accuracies = Vec::with_capacity(contestants.len());
+    for &(solver, precision) in contestants {
+        accuracies.push(measure(&target, solver, precision)?);
+        work.did(steps)?;
+    }
+    let turn = timed_work(sampling);
+    let costs = time(scene, sampling, contestants, plan.repeats, || {
+        work.did(turn)
+    })?;
+    let events_true = u64::try_from(events.len()).unwrap_or(u64::MAX);
+    Ok(contestants
+        .iter()
+        .zip(accuracies.into_iter().zip(costs))
+        .map(|(&contestant, (accuracy, cost))| {
+            point(
+                scene,
+                sampling.step_s(),
+                contestant,
+                &accuracy,
+                cost,
+                events_true,
+            )
+        })
+        .collect())
+}
+
+fn point(
+    scene: &StudyScene,
+    step_s: f64,
+    (solver, precision): Contestant,
+    accuracy: &Accuracy,
+    cost: Cost,
+    events_true: u64,
+) -> Point {
+    Point {
+        scene: scene.name.clone(),
+        convention: scene.convention(),
+        solver: solver.name(),
+        precision: precision.name(),
+        step_s,
+        events: accuracy.events,
+        events_true,
+        unmatched: accuracy.unmatched,
+        max_event_error_s: accuracy.event_errors.max_s,
+        rms_event_error_s: accuracy.event_errors.rms_s,
+        max_interval_error_s: accuracy.event_errors.max_interval_s,
+        frequency_error_rel: accuracy.event_errors.frequency_rel,
+        rms_torque_error_nm: accuracy.rms_torque_error_nm,
+        max_torque_error_nm: accuracy.max_torque_error_nm,
+        ns_per_step: cost.ns_per_step,
+        us_per_simulated_s: cost.ns_per_step * 1e-3 / step_s,
+        time_spread: cost.spread,
+    }
+}
+
+/// Longest first, none twice.
+fn falling(steps_s: &[f64]) -> Vec<f64> {
+    let mut steps_s = steps_s.to_vec();
+    steps_s.sort_by(|a, b| b.total_cmp(a));
+    steps_s.dedup();
+    steps_s
+}
+
+/// The rungs that have a meaning, in each precision.
+fn contestants(plan: &Plan, convention: Convention) -> Vec<Contestant> {
+    Solver::ALL
+        .into_iter()
+        .filter(|s| s.refusal(convention).is_none())
+        .flat_map(|solver| plan.precisions.iter().map(move |p| (solver, *p)))
+        .collect()
+}
+
+/// The rungs that have no meaning under one of the scenes' conventions.
+fn refused(scenes: &[StudyScene]) -> Vec<Refused> {
+    Convention::ALL
+        .into_iter()
+        .filter(|c| scenes.iter().any(|s| s.settings.convention == *c))
+        .flat_map(|convention| {
+            Solver::ALL.into_iter().filter_map(move |solver| {
+                Some(Refused {
+                    solver: solver.name(),
+                    convention: convention.name(),
+                    reason: solver.refusal(convention)?,
+                })
+            })
+        })
+        .collect()
+}
+
+/// Why a scene is not studied at a step.
+fn not_studied(sampling: &Sampling<'_>) -> Option<&'static str> {
+    if sampling.steps() == 0 {
+        Some("the step is longer than the scene")
+    } else if sampling.steps() > MOST_STEPS {
+        Some("the scene has more than 20 million steps of this length")
+    } else {
+        None
+    }
+}
+
+/// Work of one turn of a timing, in steps: the sampling of the motion is done
+/// once for all and hardly counts.
+fn timed_work(sampling: &Sampling<'_>) -> f64 {
+    f64::from_whole(sampling.steps().min(40_000))
+}
+
+/// All work of a plan, in steps of a rung.
+fn total_work(plan: &Plan) -> f64 {
+    let mut total = 0.0;
+    for scene in &plan.scenes {
+        let rungs = f64::from_whole(
+            u64::try_from(contestants(plan, scene.settings.convention).len()).unwrap_or(0),
+        );
+        let repeats = f64::from_whole(u64::try_from(plan.repeats).unwrap_or(0));
+        for &step_s in &falling(&plan.steps_s) {
+            let sampling = Sampling::new(&scene.motion, scene.duration_s, step_s);
+            if not_studied(&sampling).is_none() {
+                let steps = f64::from_whole(sampling.steps());
+                total +=
+                    REFERENCE_WEIGHT * steps + rungs * (steps + repeats * timed_work(&sampling));
+            }
+        }
+    }
+    total
+}
+
+/// Keeps the watcher informed.
+struct Work<'a, W> {
+    watcher: &'a mut W,
+    total: f64,
+    done: f64,
+}
+
+impl<W: Watcher> Work<'_, W> {
+    fn did(&mut self, amount: f64) -> Result<(), StudyError<W::Error>> {
+        self.done += amount;
+        self.watcher
+            .progress((self.done / self.total).min(1.0))
+            .map_err(StudyError::Watcher)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::standard;
+
+    /// Ends a study after this many calls.
+    struct Patience {
+        calls: u32,
+        most: u32,
+        last: f64,
+    }
+
+    impl Watcher for Patience {
+        type Error = ();
+
+        fn progress(&mut self, fraction: f64) -> Result<(), ()> {
+            assert!(fraction >= self.last && fraction <= 1.0);
+            self.last = fraction;
+            self.calls += 1;
+            if self.calls > self.most {
+                Err(())
+            } else {
+                Ok(())
+            }
+        }
+    }
+
+    fn plan() -> Plan {
+        Plan {
+            scenes: standard()
+                .unwrap()
+                .into_iter()
+                .filter(|s| s.name == "constant-2")
+                .map(|s| StudyScene {
+                    duration_s: 0.2,
+                    ..s
+                })
+                .collect(),
+            steps_s: vec![1e-4, 1.0, 1e-3, 1e-4],
+            precisions: vec![Precision::F32, Precision::F64],
+            repeats: 1,
+        }
+    }
+
+    fn patience(most: u32) -> Patience {
+        Patience {
+            calls: 0,
+            most,
+            last: 0.0,
+        }
+    }
+
+    #[test]
+    fn every_combination_has_a_point_in_order() {
+        let mut watcher = patience(u32::MAX);
+        let study = run(&plan(), &mut watcher).unwrap();
+        assert!((watcher.last - 1.0).abs() < 1e-12, "{}", watcher.last);
+        let mut expected = Vec::new();
+        for convention in [Convention::Frozen, Convention::Physical] {
+            for solver in Solver::ALL {
+                if solver.refusal(convention).is_none() {
+                    for precision in ["f32", "f64"] {
+                        for step_s in [1e-3, 1e-4] {
+                            expected.push((convention.name(), solver.name(), precision, step_s));
+                        }
+                    }
+                }
+            }
+        }
+        let got: Vec<_> = study
+            .points
+            .iter()
+            .map(|p| (p.convention, p.solver, p.precision, p.step_s))
+            .collect();
+        assert_eq!(got, expected);
+        assert_eq!(study.skipped.len(), 2);
+        assert!(study.skipped.iter().all(|s| s.step_s == 1.0));
+        let refusals = |c: Convention| {
+            Solver::ALL
+                .iter()
+                .filter(|s| s.refusal(c).is_some())
+                .count()
+        };
+        assert_eq!(
+            study.refused.len(),
+            refusals(Convention::Frozen) + refusals(Convention::Physical)
+        );
+        for p in study.points.iter().filter(|p| p.solver == "exact-events") {
+            assert_eq!((p.unmatched, p.events), (0, p.events_true), "{p:?}");
+        }
+    }
+
+    #[test]
+    fn a_watcher_ends_it_at_any_time() {
+        for most in [0, 3, 40] {
+            assert!(matches!(
+                run(&plan(), &mut patience(most)),
+                Err(StudyError::Watcher(()))
+            ));
+        }
+    }
+}

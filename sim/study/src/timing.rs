@@ -1,0 +1,201 @@
+//! What a step costs on the host.
+//!
+//! Only the stepping is timed: the step, its event closure, and the torque it
+//! leaves, which is what a tick of the device asks for. The motion is sampled
+//! beforehand, and a few thousand steps at a time are brought into the cache
+//! before the clock starts. All rungs of a scene and step take turns within
+//! each repeat, every second time in the opposite order, so that a machine
+//! that slows down or speeds up meanwhile does it to all alike.
+
+use crate::sampling::{CHUNK_STEPS, Sampling};
+use crate::scenes::StudyScene;
+use crepitus_model::solver::{JointVisitor, Solver, with_joint};
+use crepitus_model::{Real, SettingsError, ShaftStep, StickSlip};
+use crepitus_scene::scene::Precision;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+/// The most steps that one repeat times.
+const MOST_STEPS: u64 = 40_000;
+
+/// A short scene is run again until this many steps are timed.
+const LEAST_STEPS: u64 = 8_000;
+
+/// A rung in a precision.
+pub type Contestant = (Solver, Precision);
+
+/// Cost of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Median of the repeats, ns.
+    pub ns_per_step: f64,
+    /// (third quartile − first quartile)/median of the repeats.
+    pub spread: f64,
+}
+
+/// Times `contestants` in turns; `after_each` is called after every turn and
+/// may end it all.
+///
+/// # Errors
+/// What `after_each` returns, or `E` from settings that cannot work together.
+pub fn time<E: From<SettingsError>>(
+    scene: &StudyScene,
+    sampling: &Sampling<'_>,
+    contestants: &[Contestant],
+    repeats: usize,
+    mut after_each: impl FnMut() -> Result<(), E>,
+) -> Result<Vec<Cost>, E> {
+    let track = Track::new(scene, sampling);
+    let mut nanoseconds = vec![Vec::with_capacity(repeats); contestants.len()];
+    for repeat in 0..repeats {
+        for turn in 0..contestants.len() {
+            let index = if repeat.is_multiple_of(2) {
+                turn
+            } else {
+                contestants.len() - 1 - turn
+            };
+            if let (Some(&contestant), Some(times)) =
+                (contestants.get(index), nanoseconds.get_mut(index))
+            {
+                times.push(track.ns_per_step(contestant)?);
+            }
+            after_each()?;
+        }
+    }
+    Ok(nanoseconds.iter_mut().map(|times| cost(times)).collect())
+}
+
+/// The stretch of a scene that is timed, around the end of its first quarter:
+/// there the hand-like sine is fastest, and a short step does not see its rest
+/// only.
+struct Track<'a> {
+    scene: &'a StudyScene,
+    step_s: f64,
+    single: Vec<ShaftStep<f32>>,
+    double: Vec<ShaftStep<f64>>,
+}
+
+impl<'a> Track<'a> {
+    fn new(scene: &'a StudyScene, sampling: &Sampling<'_>) -> Self {
+        let length = sampling.steps().min(MOST_STEPS);
+        let start = (sampling.steps() / 4).saturating_sub(length / 2);
+        let most = usize::try_from(length).unwrap_or(usize::MAX);
+        let (mut single, mut double) = (Vec::new(), Vec::new());
+        sampling.walk_from(start).fill(&mut single, most);
+        sampling.walk_from(start).fill(&mut double, most);
+        Self {
+            scene,
+            step_s: sampling.step_s(),
+            single,
+            double,
+        }
+    }
+
+    fn ns_per_step(&self, (solver, precision): Contestant) -> Result<f64, SettingsError> {
+        match precision {
+            Precision::F32 => self.run(solver, &self.single),
+            Precision::F64 => self.run(solver, &self.double),
+        }
+    }
+
+    fn run<F: Real>(&self, solver: Solver, steps: &[ShaftStep<F>]) -> Result<f64, SettingsError> {
+        let omega = steps.first().map_or(F::ZERO, |s| s.omega_start_rad_s);
+        let (mut total, mut timed) = (Duration::ZERO, 0_u64);
+        let length = u64::try_from(steps.len()).unwrap_or(u64::MAX);
+        while timed < LEAST_STEPS.max(length) && length > 0 {
+            total += with_joint::<F, _>(
+                &self.scene.settings,
+                solver,
+                self.step_s,
+                omega,
+                Timed(steps),
+            )?;
+            timed += length;
+        }
+        Ok(total.as_secs_f64() * 1e9 / f64::from_whole(timed))
+    }
+}
+
+struct Timed<'a, F>(&'a [ShaftStep<F>]);
+
+impl<F: Real> JointVisitor<F> for Timed<'_, F> {
+    type Output = Duration;
+
+    fn visit<J: StickSlip<F>>(self, mut joint: J) -> Duration {
+        let mut total = Duration::ZERO;
+        let mut cached = Vec::with_capacity(CHUNK_STEPS);
+        for part in self.0.chunks(CHUNK_STEPS) {
+            cached.clear();
+            cached.extend_from_slice(part);
+            let steps = black_box(cached.as_slice());
+            let begun = Instant::now();
+            for shaft in steps {
+                joint.step(shaft, |event| {
+                    black_box(event);
+                });
+                black_box(joint.torque_nm());
+            }
+            total += begun.elapsed();
+        }
+        total
+    }
+}
+
+/// Median and spread.
+fn cost(times: &mut [f64]) -> Cost {
+    times.sort_by(f64::total_cmp);
+    let median = quantile(times, 0.5);
+    Cost {
+        ns_per_step: median,
+        spread: (quantile(times, 0.75) - quantile(times, 0.25)) / median,
+    }
+}
+
+/// A quantile of sorted numbers, linear between them; NaN if there are none.
+pub(crate) fn quantile(sorted: &[f64], q: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else {
+        return f64::NAN;
+    };
+    let place = q * f64::from(u32::try_from(last).unwrap_or(u32::MAX));
+    let at = |place: f64| {
+        let index = usize::try_from(place.whole()).unwrap_or(last);
+        sorted.get(index.min(last)).copied().unwrap_or(f64::NAN)
+    };
+    let (low, high) = (at(place.floor()), at(place.ceil()));
+    low + (high - low) * place.fract()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::standard;
+
+    #[test]
+    fn median_and_quartiles() {
+        let cost = cost(&mut [5.0, 1.0, 4.0, 2.0, 3.0]);
+        assert_eq!(cost.ns_per_step, 3.0);
+        assert!((cost.spread - 2.0 / 3.0).abs() < 1e-15);
+        assert_eq!(quantile(&[1.0, 2.0], 0.5), 1.5);
+        assert!(quantile(&[], 0.5).is_nan());
+    }
+
+    #[test]
+    fn every_turn_is_taken_and_any_can_be_the_last() {
+        let scenes = standard().unwrap();
+        let sampling = Sampling::new(&scenes[0].motion, 0.1, 1e-3);
+        let contestants = [
+            (Solver::Exact, Precision::F32),
+            (Solver::ExactEvents, Precision::F64),
+        ];
+        let mut turns = 0;
+        let costs = time::<SettingsError>(&scenes[0], &sampling, &contestants, 3, || {
+            turns += 1;
+            Ok(())
+        })
+        .unwrap();
+        assert_eq!((costs.len(), turns), (2, 6));
+        assert!(costs.iter().all(|c| c.ns_per_step > 0.0 && c.spread >= 0.0));
+        let stop = SettingsError::Step { step_s: 0.0 };
+        assert!(time(&scenes[0], &sampling, &contestants, 3, || Err(stop)).is_err());
+    }
+}
