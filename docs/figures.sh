@@ -10,3 +10,10 @@ figure() { # SCENE CHART PICTURE
 figure slow-examination zoom-1 stick-slip-cycles
 figure knee-pass-frozen torque knee-pass-frozen
 figure knee-pass-physical torque knee-pass-physical
+
+cargo run --release --quiet -- accuracy --pictures --out target/figures/accuracy >/dev/null
+for picture in frequency-f64 frequency-f32 torque-f32; do
+    measure=${picture%-*} precision=${picture#*-}
+    cp "target/figures/accuracy/$measure-constant-0-988-physical-$precision.svg" "docs/images/accuracy-$picture.svg"
+    echo "docs/images/accuracy-$picture.svg"
+done

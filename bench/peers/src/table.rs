@@ -94,9 +94,11 @@ fn task(task: Task) -> &'static str {
     }
 }
 
-/// Three digits.
+/// Two or three digits.
 fn digits(ms: f64) -> String {
-    if ms < 0.1 {
+    if ms < 0.01 {
+        format!("{ms:.5}")
+    } else if ms < 0.1 {
         format!("{ms:.4}")
     } else if ms < 1.0 {
         format!("{ms:.3}")

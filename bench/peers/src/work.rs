@@ -281,3 +281,41 @@ impl<'a> Sampler<'a> {
 /// # Errors
 /// What the solver says when it gives up.
 pub type Runner = Box<dyn FnMut(Task, &mut Delivery) -> Result<(), String>>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_closed_form_has_637_events_and_jumps_at_them() {
+        let work = Work::new();
+        let events = work.closed_form_events();
+        assert_eq!(events.len(), 637);
+        assert_eq!(events[0], 1e-3);
+        for (n, &event_s) in events.iter().enumerate() {
+            let torque = |time_s| work.closed_form_torque(time_s).unwrap();
+            assert_eq!(work.closed_form_torque(event_s), None);
+            let (before, after) = (torque(event_s - 2e-6), torque(event_s + 2e-6));
+            let (expected_before, expected_after) = if n % 2 == 0 {
+                (STATIC, KINETIC)
+            } else {
+                (KINETIC, 2.0 * KINETIC - STATIC)
+            };
+            assert!((before - expected_before).abs() < 1e-3, "{n}");
+            assert!((after - expected_after).abs() < 1e-3, "{n}");
+        }
+    }
+
+    #[test]
+    fn an_excursion_above_the_shaft_speed_is_longer_than_the_safe_step() {
+        let work = Work::new();
+        // v of a free swing from a break: Ω·cos − (Ts − Tk)/√(J·kr)·sin of ωn·t.
+        let v = |t: f64| {
+            let (sin, cos) = (work.natural * t).sin_cos();
+            OMEGA * cos - (STATIC - KINETIC) / (INERTIA * STIFFNESS).sqrt() * sin
+        };
+        assert!(v(work.slip_s + 1e-9) > OMEGA);
+        assert!(v(work.slip_s + work.safe_step_s()) > OMEGA);
+        assert!(v(work.slip_s + work.safe_step_s() / 0.98) < OMEGA);
+    }
+}

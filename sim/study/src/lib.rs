@@ -13,14 +13,15 @@
 //! | to find | look in |
 //! |---|---|
 //! | what is studied | [`scenes`] |
-//! | the whole study, its progress and its results | [`study`] |
+//! | the whole study, its progress and its results | [`study`], [`results`] |
 //! | one point of the diagram, and its file | [`point`], [`points_csv`] |
 //! | which event belongs to which, and what the errors are | [`matching`], [`event_errors`] |
 //! | the torque to compare with | [`reference_torque`] |
 //! | how a run is measured and how it is timed | [`measure`], [`timing`] |
 //! | orders of convergence | [`orders`] |
-//! | the cheapest rung that meets a need | [`need`] |
+//! | limits, and the cheapest rung that keeps them | [`need`], [`mod@answer`] |
 
+pub mod answer;
 pub mod event_errors;
 pub mod matching;
 pub mod measure;
@@ -29,13 +30,16 @@ pub mod orders;
 pub mod point;
 pub mod points_csv;
 pub mod reference_torque;
+pub mod results;
 pub mod sampling;
 pub mod scenes;
 pub mod study;
 pub mod timing;
 pub mod true_events;
 
-pub use need::{Need, Question, answer};
+pub use answer::{Question, answer};
+pub use need::Need;
 pub use point::Point;
+pub use results::Study;
 pub use scenes::StudyScene;
-pub use study::{Plan, Study, StudyError, Watcher, run};
+pub use study::{Plan, StudyError, Watcher, run};

@@ -1,0 +1,66 @@
+//! What a study found.
+
+use crate::orders::Orders;
+use crate::point::Point;
+use serde::Serialize;
+
+/// A study's results.
+#[derive(Clone, Debug, Serialize)]
+pub struct Study {
+    /// What was studied.
+    pub scenes: Vec<StudiedScene>,
+    /// The steps, s.
+    pub steps_s: Vec<f64>,
+    /// Repeats of each timing.
+    pub timing_repeats: usize,
+    /// Rungs that have no meaning under a convention.
+    pub refused: Vec<Refused>,
+    /// Steps that a scene is too long or too short for.
+    pub skipped: Vec<Skipped>,
+    /// Measured orders of convergence.
+    pub orders: Vec<Orders>,
+    /// How long the study took, s.
+    pub wall_s: f64,
+    /// The points, by scene, convention, rung, precision and falling step.
+    #[serde(skip)]
+    pub points: Vec<Point>,
+}
+
+/// A scene of the study.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StudiedScene {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub title: String,
+    /// Its convention.
+    pub convention: &'static str,
+    /// Its duration, s.
+    pub duration_s: f64,
+    /// Events of the reference.
+    pub events_true: usize,
+}
+
+/// A rung that has no meaning under a convention.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Refused {
+    /// The rung.
+    pub solver: &'static str,
+    /// The convention.
+    pub convention: &'static str,
+    /// Why.
+    pub reason: &'static str,
+}
+
+/// A step at which a scene was not studied.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Skipped {
+    /// The scene.
+    pub scene: String,
+    /// Its convention.
+    pub convention: &'static str,
+    /// The step, s.
+    pub step_s: f64,
+    /// Why.
+    pub reason: &'static str,
+}
