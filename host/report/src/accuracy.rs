@@ -26,7 +26,7 @@ mod pair;
 mod steps;
 mod tick_table;
 
-use crepitus_study::Point;
+use crepitus_study::accuracy::Point;
 
 use crate::picture::{Picture, document};
 use crate::{ReportError, Section};

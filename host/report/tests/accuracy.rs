@@ -14,7 +14,7 @@ use std::path::Path;
 
 use crepitus_report::Section;
 use crepitus_report::accuracy::{AccuracyText, html, pictures};
-use crepitus_study::Point;
+use crepitus_study::accuracy::Point;
 use markup::{assert_balanced, count};
 
 fn text(title: &str) -> AccuracyText {

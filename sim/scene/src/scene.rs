@@ -102,6 +102,9 @@ impl SolverChoice {
 const REFERENCE: &str = "reference";
 
 impl Precision {
+    /// Both precisions, the device's first.
+    pub const ALL: [Self; 2] = [Self::F32, Self::F64];
+
     /// Name in scene files.
     pub fn name(self) -> &'static str {
         match self {

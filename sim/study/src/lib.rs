@@ -1,45 +1,22 @@
 //! # Studies
 //!
-//! What accuracy costs in time: every rung of the solver ladder, in both
-//! precisions, over a range of steps, against the event-driven reference.
-//!
-//! ```text
-//! scenes ─┬─> reference: true events, true torque ─┐
-//!         └─> each rung × precision × step ────────┴─> errors ─┐
-//!             each rung × precision × step, interleaved ─> time ┴─> points ─┬─> points.csv, orders
-//!                                                                           └─> an answer to a need
-//! ```
+//! What a solver costs and what it stands, measured over every rung of the
+//! ladder, every convention and both precisions.
 //!
 //! | to find | look in |
 //! |---|---|
-//! | what is studied | [`scenes`] |
-//! | the whole study, its progress and its results | [`study`], [`results`] |
-//! | one point of the diagram, and its file | [`point`], [`points_csv`] |
-//! | which event belongs to which, and what the errors are | [`matching`], [`event_errors`] |
-//! | the torque to compare with | [`reference_torque`] |
-//! | how a run is measured and how it is timed | [`measure`], [`timing`] |
-//! | orders of convergence | [`orders`] |
-//! | limits, and the cheapest rung that keeps them | [`need`], [`mod@answer`] |
+//! | what accuracy costs in time | [`accuracy`] |
+//! | the hard cases, and what holds in them | [`stability`] |
+//! | a motion cut into steps | [`sampling`] |
+//! | the true events, which belongs to which, and the errors | [`true_events`], [`matching`], [`event_errors`] |
+//! | progress, and how a study ends early | [`watcher`] |
 
-pub mod answer;
+pub mod accuracy;
 pub mod event_errors;
 pub mod matching;
-pub mod measure;
-pub mod need;
-pub mod orders;
-pub mod point;
-pub mod points_csv;
-pub mod reference_torque;
-pub mod results;
 pub mod sampling;
-pub mod scenes;
-pub mod study;
-pub mod timing;
+pub mod stability;
 pub mod true_events;
+pub mod watcher;
 
-pub use answer::{Question, answer};
-pub use need::Need;
-pub use point::Point;
-pub use results::Study;
-pub use scenes::StudyScene;
-pub use study::{Plan, StudyError, Watcher, run};
+pub use watcher::{StudyError, Watcher};

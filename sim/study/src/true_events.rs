@@ -1,7 +1,7 @@
 //! Events with their times, and the true ones of a scene.
 
-use crate::scenes::StudyScene;
-use crepitus_model::{Event, EventKind, Phase, Real, Sense};
+use crepitus_model::{Event, EventKind, Phase, Real, Sense, Settings, Validated};
+use crepitus_plant::Motion;
 use crepitus_scene::reference::Reference;
 
 /// An event as it is compared: when, what, and which way.
@@ -47,10 +47,14 @@ pub struct TrueEvent {
     pub torque_after_nm: f64,
 }
 
-/// The events of the reference over the whole scene, in the order of time.
-pub fn true_events(scene: &StudyScene) -> Vec<TrueEvent> {
+/// The events of the reference within `duration_s`, in the order of time.
+pub fn true_events(
+    settings: &Validated<Settings>,
+    motion: &Motion,
+    duration_s: f64,
+) -> Vec<TrueEvent> {
     let mut events = Vec::new();
-    Reference::new(&scene.settings, &scene.motion).advance(scene.duration_s, |event| {
+    Reference::new(settings, motion).advance(duration_s, |event| {
         events.push(TrueEvent {
             // The reference has no step: its fraction is the time.
             event: TimedEvent::new(event.fraction, &event),

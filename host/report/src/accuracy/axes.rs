@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crepitus_study::Point;
+use crepitus_study::accuracy::Point;
 
 use super::curve::FLOOR;
 use super::measure::Measure;

@@ -1,6 +1,6 @@
 //! The curve of one rung: which points it may show, and in which pieces.
 
-use crepitus_study::Point;
+use crepitus_study::accuracy::Point;
 
 use super::measure::Measure;
 use super::pair::Pair;

@@ -1,7 +1,7 @@
 //! One work-precision diagram: the error of every rung against its cost, at
 //! one precision.
 
-use crepitus_study::Point;
+use crepitus_study::accuracy::Point;
 
 use super::axes::Axes;
 use super::curve::{Curve, FLOOR};

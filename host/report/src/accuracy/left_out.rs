@@ -1,6 +1,6 @@
 //! What no curve may show, listed: first of all wrong numbers of events.
 
-use crepitus_study::Point;
+use crepitus_study::accuracy::Point;
 use maud::{Markup, html};
 
 use super::curve::{Unfit, unfit};

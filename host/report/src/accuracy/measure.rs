@@ -1,6 +1,6 @@
 //! The three errors that diagrams show.
 
-use crepitus_study::Point;
+use crepitus_study::accuracy::Point;
 
 /// See the module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

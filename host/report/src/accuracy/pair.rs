@@ -1,7 +1,7 @@
 //! The points of a study in order: pairs of scene and convention, and what
 //! all diagrams share, so that a rung looks the same in every one.
 
-use crepitus_study::Point;
+use crepitus_study::accuracy::Point;
 
 /// The step of the device, s.
 pub(crate) const DEVICE_TICK_S: f64 = 5e-5;

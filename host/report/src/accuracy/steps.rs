@@ -1,7 +1,7 @@
 //! Steps along one curve: the longest, the device's and the shortest, where
 //! the least is in the way.
 
-use crepitus_study::Point;
+use crepitus_study::accuracy::Point;
 
 use super::axes::Axes;
 use super::curve::Curve;

@@ -1,6 +1,6 @@
 //! What every rung costs and gives at the device's tick, 50 µs.
 
-use crepitus_study::Point;
+use crepitus_study::accuracy::Point;
 use maud::{Markup, PreEscaped, html};
 
 use super::hand::Hand;

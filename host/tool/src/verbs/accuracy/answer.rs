@@ -3,8 +3,8 @@
 use super::plan::Studied;
 use super::words;
 use crate::failure::{Failure, print, print_json};
-use crepitus_study::answer::{Answer, Candidate, Mark};
-use crepitus_study::{Need, Question, Study, answer};
+use crepitus_study::accuracy::answer::{Answer, Candidate, Mark};
+use crepitus_study::accuracy::{Need, Question, Study, answer};
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;

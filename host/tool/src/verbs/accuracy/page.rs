@@ -5,8 +5,8 @@ use super::words;
 use crate::failure::Failure;
 use crepitus_report::Section;
 use crepitus_report::accuracy::{self, AccuracyText};
-use crepitus_study::orders::{Order, Orders};
-use crepitus_study::{Point, Study};
+use crepitus_study::accuracy::orders::{Order, Orders};
+use crepitus_study::accuracy::{Point, Study};
 
 /// The report, and each of its diagrams as an SVG of its own if asked for:
 /// names and contents of files.

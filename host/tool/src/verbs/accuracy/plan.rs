@@ -6,8 +6,8 @@ use crate::shipped;
 use crepitus_model::Convention;
 use crepitus_scene::Overrides;
 use crepitus_scene::scene::Precision;
-use crepitus_study::study::{FULL_REPEATS, FULL_STEPS_S, QUICK_REPEATS, QUICK_STEPS_S};
-use crepitus_study::{Plan, StudyScene, scenes};
+use crepitus_study::accuracy::study::{FULL_REPEATS, FULL_STEPS_S, QUICK_REPEATS, QUICK_STEPS_S};
+use crepitus_study::accuracy::{Plan, StudyScene, scenes};
 
 /// Rates that a device or a simulation may have, Hz.
 const RATES_HZ: std::ops::RangeInclusive<f64> = 10.0..=1e6;

@@ -1,7 +1,7 @@
 //! `summary.json` of a study.
 
 use super::plan::Studied;
-use crepitus_study::Study;
+use crepitus_study::accuracy::Study;
 use serde::Serialize;
 
 /// Version of this form.

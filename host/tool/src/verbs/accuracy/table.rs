@@ -1,7 +1,7 @@
 //! The study at the device's tick, as a table for the terminal.
 
 use super::words;
-use crepitus_study::{Point, Study};
+use crepitus_study::accuracy::{Point, Study};
 use std::fmt::Write;
 
 /// The device's tick, s.

@@ -1,7 +1,7 @@
 //! A need: limits that a solver's errors have to keep, and how they are
 //! written: `torque=5e-3,interval=5e-4`.
 
-use crate::point::Point;
+use crate::accuracy::point::Point;
 use serde::Serialize;
 use std::fmt;
 

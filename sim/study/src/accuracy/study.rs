@@ -1,16 +1,17 @@
 //! The whole study: every rung × precision × step on every scene.
 
-use crate::measure::{Accuracy, Target, measure};
-use crate::orders::orders;
-use crate::point::Point;
-use crate::reference_torque::ReferenceTorque;
-use crate::results::{Refused, Skipped, StudiedScene, Study};
+use crate::accuracy::measure::{Accuracy, Target, measure};
+use crate::accuracy::orders::orders;
+use crate::accuracy::point::Point;
+use crate::accuracy::reference_torque::ReferenceTorque;
+use crate::accuracy::results::{Refused, Skipped, StudiedScene, Study};
+use crate::accuracy::scenes::StudyScene;
+use crate::accuracy::timing::{Contestant, Cost, time};
 use crate::sampling::Sampling;
-use crate::scenes::StudyScene;
-use crate::timing::{Contestant, Cost, time};
-use crate::true_events::{TimedEvent, TrueEvent, true_events};
+use crate::true_events::{TimedEvent, TrueEvent};
+use crate::watcher::{StudyError, Watcher};
 use crepitus_model::solver::Solver;
-use crepitus_model::{Convention, Real, SettingsError};
+use crepitus_model::{Convention, Real};
 use crepitus_scene::scene::Precision;
 use std::time::Instant;
 
@@ -45,30 +46,6 @@ pub struct Plan {
     pub repeats: usize,
 }
 
-/// Sees a study go by, and may end it.
-pub trait Watcher {
-    /// Why it ends early.
-    type Error;
-
-    /// Called often; `fraction` of the work is done.
-    ///
-    /// # Errors
-    /// Ends the study.
-    fn progress(&mut self, fraction: f64) -> Result<(), Self::Error>;
-}
-
-/// Why a study ended early.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum StudyError<E> {
-    /// The watcher ended it.
-    #[error("ended early")]
-    Watcher(E),
-    /// Settings that do not go together.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-}
-
 /// Carries out a plan.
 ///
 /// # Errors
@@ -91,7 +68,7 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError
         done: 0.0,
     };
     for scene in &plan.scenes {
-        let truth = true_events(scene);
+        let truth = scene.true_events();
         let contestants = contestants(plan, scene.settings.convention);
         study.scenes.push(StudiedScene {
             name: scene.name.clone(),
@@ -294,7 +271,7 @@ impl<W: Watcher> Work<'_, W> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::standard;
+    use crate::accuracy::scenes::standard;
 
     /// Ends a study after this many calls.
     struct Patience {

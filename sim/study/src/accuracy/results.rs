@@ -1,7 +1,7 @@
 //! What a study found.
 
-use crate::orders::Orders;
-use crate::point::Point;
+use crate::accuracy::orders::Orders;
+use crate::accuracy::point::Point;
 use serde::Serialize;
 
 /// A study's results.

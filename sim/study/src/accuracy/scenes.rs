@@ -6,6 +6,7 @@
 //! device ticks; 0.12 and 0.988 are incommensurate with every step, so that no
 //! rung looks good by luck there.
 
+use crate::true_events::{TrueEvent, true_events};
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use crepitus_plant::Motion;
 use crepitus_scene::Scene;
@@ -44,6 +45,11 @@ pub struct StudyScene {
 }
 
 impl StudyScene {
+    /// The events of the reference, in the order of time.
+    pub fn true_events(&self) -> Vec<TrueEvent> {
+        true_events(&self.settings, &self.motion, self.duration_s)
+    }
+
     /// The convention's name.
     pub fn convention(&self) -> &'static str {
         self.settings.convention.name()

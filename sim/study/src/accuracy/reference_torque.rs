@@ -6,8 +6,8 @@
 //! nearer one counts. Within rounding means: within four roundings, relative
 //! to the length of the phase that ends with the event.
 
+use crate::accuracy::scenes::StudyScene;
 use crate::sampling::Sampling;
-use crate::scenes::StudyScene;
 use crate::true_events::TrueEvent;
 use crepitus_model::Real;
 use crepitus_scene::reference::Reference;
@@ -108,8 +108,7 @@ fn ties(sampling: &Sampling<'_>, events: &[TrueEvent]) -> Vec<Tie> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::standard;
-    use crate::true_events::true_events;
+    use crate::accuracy::scenes::standard;
 
     #[test]
     fn a_break_on_the_end_of_a_step_has_two_right_torques() {
@@ -118,7 +117,7 @@ mod tests {
             .into_iter()
             .find(|s| s.name == "constant-0.5")
             .unwrap();
-        let events = true_events(&scene);
+        let events = scene.true_events();
         let sampling = Sampling::new(&scene.motion, 0.1, 5e-5);
         let torque = ReferenceTorque::new(&scene, &sampling, &events);
         // The first break: after 40 ticks the torque is 0.4 or 0.2 N·m.

@@ -1,7 +1,7 @@
 //! `points.csv`: one row a point. Numbers read back to the same bits; what is
 //! not known is `nan`.
 
-use crate::point::Point;
+use crate::accuracy::point::Point;
 use std::fmt::Write;
 
 /// The header, in the order of the fields of [`Point`].
@@ -53,7 +53,7 @@ fn push_number(text: &mut String, x: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::point::tests::point;
+    use crate::accuracy::point::tests::point;
 
     #[test]
     fn rows_have_the_columns_and_read_back() {

@@ -6,9 +6,9 @@
 //! the same within the spread of their timings, the one that is furthest below
 //! the limits.
 
-use crate::need::{Criterion, Limit, Need};
-use crate::point::Point;
-use crate::timing::quantile;
+use crate::accuracy::need::{Criterion, Limit, Need};
+use crate::accuracy::point::Point;
+use crate::accuracy::timing::quantile;
 use serde::Serialize;
 
 /// Among which points a need is to be met.
@@ -324,7 +324,7 @@ fn nearest(candidates: &[Candidate]) -> Option<Candidate> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::point::tests::point;
+    use crate::accuracy::point::tests::point;
 
     /// A rung on two scenes: cost of a step, torque error, interval error.
     fn rung(solver: &'static str, step_s: f64, ns: f64, torque: f64, interval: f64) -> [Point; 2] {

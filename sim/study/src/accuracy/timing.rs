@@ -7,8 +7,8 @@
 //! each repeat, every second time in the opposite order, so that a machine
 //! that slows down or speeds up meanwhile does it to all alike.
 
+use crate::accuracy::scenes::StudyScene;
 use crate::sampling::{CHUNK_STEPS, Sampling};
-use crate::scenes::StudyScene;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{Real, SettingsError, ShaftStep, StickSlip};
 use crepitus_scene::scene::Precision;
@@ -168,7 +168,7 @@ pub(crate) fn quantile(sorted: &[f64], q: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::standard;
+    use crate::accuracy::scenes::standard;
 
     #[test]
     fn median_and_quartiles() {

@@ -1,11 +1,11 @@
 //! One rung at one step over a whole scene: its events and its torque against
 //! the reference's.
 
+use crate::accuracy::reference_torque::ReferenceTorque;
+use crate::accuracy::scenes::StudyScene;
 use crate::event_errors::EventErrors;
 use crate::matching::match_events;
-use crate::reference_torque::ReferenceTorque;
 use crate::sampling::{CHUNK_STEPS, Sampling};
-use crate::scenes::StudyScene;
 use crate::true_events::TimedEvent;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{Real, SettingsError, StickSlip};
@@ -162,8 +162,7 @@ fn judge(target: &Target<'_>, seen: &Seen) -> Accuracy {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::standard;
-    use crate::true_events::true_events;
+    use crate::accuracy::scenes::standard;
 
     /// 1 s of a standard scene.
     fn accuracy(name: &str, convention: &str, solver: Solver, step_s: f64) -> Accuracy {
@@ -175,7 +174,7 @@ mod tests {
                 .find(|s| s.name == name && s.convention() == convention)
                 .unwrap()
         };
-        let truth = true_events(&scene);
+        let truth = scene.true_events();
         let sampling = Sampling::new(&scene.motion, scene.duration_s, step_s);
         let torque = ReferenceTorque::new(&scene, &sampling, &truth);
         let events: Vec<_> = truth.iter().map(|e| e.event).collect();

@@ -4,7 +4,7 @@
 //! whose events all match. An error at the level of rounding says nothing
 //! about the method and is left out; where all are, the method is exact.
 
-use crate::point::Point;
+use crate::accuracy::point::Point;
 use serde::Serialize;
 
 /// The shortest step of a fit, s.
@@ -124,7 +124,7 @@ fn slope(points: &[(f64, f64)]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::point::tests::point;
+    use crate::accuracy::point::tests::point;
 
     const STEPS: [f64; 6] = [1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5];
 

@@ -1,0 +1,38 @@
+//! What accuracy costs in time: every rung of the solver ladder, in both
+//! precisions, over a range of steps, against the event-driven reference.
+//!
+//! ```text
+//! scenes ─┬─> reference: true events, true torque ─┐
+//!         └─> each rung × precision × step ────────┴─> errors ─┐
+//!             each rung × precision × step, interleaved ─> time ┴─> points ─┬─> points.csv, orders
+//!                                                                           └─> an answer to a need
+//! ```
+//!
+//! | to find | look in |
+//! |---|---|
+//! | what is studied | [`scenes`] |
+//! | the whole study and its results | [`study`], [`results`] |
+//! | one point of the diagram, and its file | [`point`], [`points_csv`] |
+//! | the torque to compare with | [`reference_torque`] |
+//! | how a run is measured and how it is timed | [`measure`], [`timing`] |
+//! | orders of convergence | [`orders`] |
+//! | limits, and the cheapest rung that keeps them | [`need`], [`mod@answer`] |
+
+pub mod answer;
+pub mod measure;
+pub mod need;
+pub mod orders;
+pub mod point;
+pub mod points_csv;
+pub mod reference_torque;
+pub mod results;
+pub mod scenes;
+pub mod study;
+pub mod timing;
+
+pub use answer::{Question, answer};
+pub use need::Need;
+pub use point::Point;
+pub use results::Study;
+pub use scenes::StudyScene;
+pub use study::{Plan, run};

@@ -1,0 +1,130 @@
+//! What came of a case.
+
+use std::fmt;
+
+/// A measured number held against its limit: it holds if it is not above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margin {
+    /// What was measured.
+    pub measured: f64,
+    /// What it may be at most.
+    pub limit: f64,
+    /// Unit of both; empty for counts and ratios.
+    pub unit: &'static str,
+}
+
+/// How a subject stood a case.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// Every criterion is met; the margin is the narrowest.
+    Holds(Margin),
+    /// The motion is right in kind, a number is not; `flagged` if the run says
+    /// so by itself ("step longer than a stick phase").
+    Degrades {
+        /// The worst number.
+        margin: Margin,
+        /// Whether the run itself gives the warning.
+        flagged: bool,
+    },
+    /// Something else than the joint was simulated: no number, another
+    /// sequence of events, a torque above its limit.
+    Fails {
+        /// What went wrong.
+        what: Failure,
+        /// Since the start of the trial, s; `None` where it has no time.
+        at_s: Option<f64>,
+        /// Whether the run itself gives the warning.
+        flagged: bool,
+    },
+}
+
+/// The ways to fail.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Failure {
+    /// A state or a torque is infinite or no number.
+    Overflow,
+    /// |T| > Ts, or a `frozen` object beyond Ts/kr.
+    AboveTheLimit,
+    /// Other events than the true ones, or in another order.
+    OtherEvents {
+        /// How many there are.
+        found: u64,
+        /// How many there should be.
+        expected: u64,
+    },
+    /// A criterion that has no number: which one.
+    Broken(&'static str),
+}
+
+impl Verdict {
+    /// Whether every criterion is met.
+    pub fn holds(&self) -> bool {
+        matches!(self, Self::Holds(_))
+    }
+}
+
+impl fmt::Display for Margin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sign = if self.measured <= self.limit {
+            "≤"
+        } else {
+            ">"
+        };
+        write!(f, "{} {sign} {}", Short(self.measured), Short(self.limit))?;
+        if self.unit.is_empty() {
+            Ok(())
+        } else {
+            write!(f, " {}", self.unit)
+        }
+    }
+}
+
+/// A number as a table shows it: two digits, whole numbers as they are.
+struct Short(f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let x = self.0;
+        if x == x.trunc() && x.abs() < 1e6 {
+            write!(f, "{x}")
+        } else if (1e-2..1e4).contains(&x.abs()) {
+            write!(f, "{x:.3}")
+        } else {
+            write!(f, "{x:.1e}")
+        }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let flag = |flagged: &bool| if *flagged { ", flagged" } else { "" };
+        match self {
+            Self::Holds(margin) => write!(f, "holds ({margin})"),
+            Self::Degrades { margin, flagged } => {
+                write!(f, "degrades{} ({margin})", flag(flagged))
+            }
+            Self::Fails {
+                what,
+                at_s,
+                flagged,
+            } => {
+                write!(f, "fails{}: {what}", flag(flagged))?;
+                at_s.map_or(Ok(()), |t| write!(f, " at t = {} s", Short(t)))
+            }
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Overflow => f.write_str("overflow"),
+            Self::AboveTheLimit => f.write_str("torque above its limit"),
+            Self::OtherEvents { found, expected } => {
+                write!(f, "{found} events instead of {expected}")
+            }
+            Self::Broken(what) => f.write_str(what),
+        }
+    }
+}
