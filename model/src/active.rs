@@ -3,6 +3,7 @@
 use crate::oscillator::Oscillator;
 use crate::real::Real;
 use crate::settings::{Restart, Settings, SettingsError, Validated};
+use crate::shaft::ShaftStep;
 use crate::ticks::Ticks;
 
 /// Settings turned into the numbers of one step length.
@@ -17,8 +18,6 @@ pub struct Active<F> {
     pub per_step: F,
     /// kr, N·m/rad.
     pub stiffness: F,
-    /// 1/kr, rad/(N·m).
-    pub compliance: F,
     /// J, kg·m².
     pub inertia: F,
     /// c, N·m·s/rad.
@@ -27,9 +26,13 @@ pub struct Active<F> {
     pub kinetic_nm: F,
     /// Ts, N·m.
     pub static_nm: F,
+    /// Torque with which a frozen stick begins: 2Tk − Ts, or Tk, N·m.
+    pub restart_nm: F,
     /// Tk/kr, rad: the angle about which the object swings in a slip.
     pub kinetic_angle_rad: F,
-    /// Angle at which a frozen slip ends: (2Tk − Ts)/kr, or Tk/kr, rad.
+    /// Ts/kr, rad: the angle at which a stick breaks.
+    pub static_angle_rad: F,
+    /// Angle at which a frozen slip ends, rad.
     pub restart_angle_rad: F,
     /// Ts − Tk, N·m.
     pub drop_nm: F,
@@ -43,6 +46,50 @@ pub struct Active<F> {
     pub oscillator: Oscillator<F>,
 }
 
+/// The numbers that all others of an [`Active`] follow from.
+struct Given<F> {
+    step_s: F,
+    stiffness: F,
+    inertia: F,
+    damping: F,
+    kinetic_nm: F,
+    static_nm: F,
+    restart_nm: F,
+}
+
+impl<F: Real> Given<F> {
+    fn active(self) -> Active<F> {
+        let Self {
+            step_s,
+            stiffness,
+            inertia,
+            damping,
+            kinetic_nm,
+            static_nm,
+            restart_nm,
+        } = self;
+        let radians_per_step = (stiffness / inertia).sqrt() * step_s;
+        Active {
+            step_s,
+            per_step: F::ONE / step_s,
+            stiffness,
+            inertia,
+            damping,
+            kinetic_nm,
+            static_nm,
+            restart_nm,
+            kinetic_angle_rad: kinetic_nm / stiffness,
+            static_angle_rad: static_nm / stiffness,
+            restart_angle_rad: restart_nm / stiffness,
+            drop_nm: static_nm - kinetic_nm,
+            impedance: (inertia * stiffness).sqrt(),
+            ticks_per_half_radian: F::TWO / radians_per_step,
+            period: Ticks::new(F::from_f64(core::f64::consts::TAU) / radians_per_step),
+            oscillator: Oscillator::new(stiffness, inertia, damping),
+        }
+    }
+}
+
 impl<F: Real> Active<F> {
     /// The numbers for a step of `step_s`.
     ///
@@ -54,30 +101,63 @@ impl<F: Real> Active<F> {
             return Err(SettingsError::Step { step_s });
         }
         let p = &settings.parameters;
+        let exact = Given {
+            step_s,
+            stiffness: p.stiffness_nm_per_rad,
+            inertia: p.inertia_kg_m2,
+            damping: p.damping_nms_per_rad,
+            kinetic_nm: p.kinetic_torque_nm,
+            static_nm: p.static_torque_nm,
+            restart_nm: match settings.restart {
+                Restart::Elastic => p.restart_torque_nm(),
+                Restart::FromKinetic => p.kinetic_torque_nm,
+            },
+        }
+        .active();
         let f = F::from_f64;
-        let kr = p.stiffness_nm_per_rad;
-        let restart_nm = match settings.restart {
-            Restart::Elastic => p.restart_torque_nm(),
-            Restart::FromKinetic => p.kinetic_torque_nm,
-        };
-        let radians_per_step = p.natural_rad_s() * step_s;
         Ok(Self {
-            step_s: f(step_s),
-            per_step: f(1.0 / step_s),
-            stiffness: f(kr),
-            compliance: f(1.0 / kr),
-            inertia: f(p.inertia_kg_m2),
-            damping: f(p.damping_nms_per_rad),
-            kinetic_nm: f(p.kinetic_torque_nm),
-            static_nm: f(p.static_torque_nm),
-            kinetic_angle_rad: f(p.kinetic_torque_nm / kr),
-            restart_angle_rad: f(restart_nm / kr),
-            drop_nm: f(p.static_torque_nm - p.kinetic_torque_nm),
-            impedance: f(p.impedance_nms_per_rad()),
-            ticks_per_half_radian: f(2.0 / radians_per_step),
-            period: Ticks::from_f64(core::f64::consts::TAU / radians_per_step),
-            oscillator: Oscillator::new(p),
+            step_s: f(exact.step_s),
+            per_step: f(exact.per_step),
+            stiffness: f(exact.stiffness),
+            inertia: f(exact.inertia),
+            damping: f(exact.damping),
+            kinetic_nm: f(exact.kinetic_nm),
+            static_nm: f(exact.static_nm),
+            restart_nm: f(exact.restart_nm),
+            kinetic_angle_rad: f(exact.kinetic_angle_rad),
+            static_angle_rad: f(exact.static_angle_rad),
+            restart_angle_rad: f(exact.restart_angle_rad),
+            drop_nm: f(exact.drop_nm),
+            impedance: f(exact.impedance),
+            ticks_per_half_radian: f(exact.ticks_per_half_radian),
+            period: Ticks::from_f64(exact.period.value()),
+            oscillator: Oscillator::of(p),
         })
+    }
+
+    /// The numbers on the way from these to `next`: friction torques and
+    /// damping move linearly, stiffness and inertia by the factors given.
+    ///
+    /// Both ends valid, every point between is: Tk ≤ Ts and |2Tk − Ts| ≤ Ts
+    /// hold along a line. In F, so cheap enough for a tick.
+    pub(crate) fn towards(
+        &self,
+        next: &Self,
+        fraction: F,
+        stiffness_factor: F,
+        inertia_factor: F,
+    ) -> Self {
+        let between = |a: F, b: F| a + (b - a) * fraction;
+        Given {
+            step_s: self.step_s,
+            stiffness: self.stiffness * stiffness_factor,
+            inertia: self.inertia * inertia_factor,
+            damping: between(self.damping, next.damping),
+            kinetic_nm: between(self.kinetic_nm, next.kinetic_nm),
+            static_nm: between(self.static_nm, next.static_nm),
+            restart_nm: between(self.restart_nm, next.restart_nm),
+        }
+        .active()
     }
 
     /// Duration of a frozen slip that begins while the shaft moves with
@@ -96,6 +176,14 @@ impl<F: Real> Active<F> {
     #[inline]
     pub fn touches(&self) -> bool {
         self.drop_nm <= F::LIMIT_SLACK * self.static_nm
+    }
+
+    /// Whether the shaft moves further in this step than a whole stick lasts,
+    /// 2(Ts − Tk)/kr: sticks may then begin and end within one step, and a
+    /// solver that looks only at its ends does not see them.
+    #[inline]
+    pub fn outlasts_a_stick(&self, shaft: &ShaftStep<F>) -> bool {
+        shaft.delta_phi_rad.abs() * self.stiffness > F::TWO * self.drop_nm && !self.touches()
     }
 
     /// `torque_nm` held within ±Ts.

@@ -144,6 +144,13 @@ impl<F: Real> EncoderReader<F> {
         })
     }
 
+    /// One tick without a count: the shaft is taken to move on as it did. The
+    /// next count brings the travel of both ticks, so no angle is lost.
+    #[inline]
+    pub fn miss(&mut self) {
+        self.lag_rad -= self.omega_rad_s * self.step_s;
+    }
+
     /// Takes in the next count.
     #[inline]
     pub fn read(&mut self, count: i32) -> ShaftStep<F> {

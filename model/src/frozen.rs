@@ -22,6 +22,10 @@ use crate::ticks::Ticks;
 #[derive(Clone, Debug)]
 pub struct Frozen<F, L> {
     active: Active<F>,
+    /// Whole ticks before the one in which a slip ends; 0 in stick. It stands
+    /// beside the state so that a step in a slip touches nothing else.
+    ticks_left: u64,
+    slip_number: u32,
     state: State<F>,
     omega_rad_s: F,
     locator: PhantomData<L>,
@@ -34,17 +38,19 @@ enum State<F> {
 }
 
 /// A slip on its way.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Slip<F> {
     sense: Sense,
-    /// From the start of the current step to the end of the slip.
-    end: Ticks<F>,
-    /// From its beginning to its end.
+    /// Where in its last tick it ends.
+    end_fraction: F,
+    /// From its anchor, where x and v are known, to its end.
     duration: Ticks<F>,
-    /// θ − s·Tk/kr at its beginning, rad.
+    /// θ − s·Tk/kr at the anchor, rad.
     x: F,
-    /// Velocity at its beginning, rad/s.
+    /// Velocity at the anchor, rad/s.
     v: F,
+    /// The largest |θ| it may end at, rad: what the spring held at its break.
+    limit_rad: F,
 }
 
 impl<F: Real, L: Locate<F>> Frozen<F, L> {
@@ -52,6 +58,8 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
     pub fn new(active: Active<F>, omega_rad_s: F) -> Self {
         Self {
             active,
+            ticks_left: 0,
+            slip_number: 0,
             state: State::Stick {
                 theta: Compensated::new(F::ZERO),
             },
@@ -60,16 +68,72 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
         }
     }
 
-    /// The slip that begins at `fraction` of this step in state (θ, Ω).
-    fn slip(&self, sense: Sense, fraction: F, theta: F, omega: F) -> Slip<F> {
+    /// How many slips have begun, modulo 2³². A slip that goes on because it
+    /// would break at once (Ts = Tk) counts anew.
+    #[inline]
+    pub fn slip_number(&self) -> u32 {
+        self.slip_number
+    }
+
+    /// Goes on with other numbers, between two steps.
+    ///
+    /// The energy that the object stores never rises: with
+    /// θ ← θ·min(1, kr/kr′) the spring's torque stays where the spring gets
+    /// stiffer and falls where it gets softer, and kr·θ²/2 falls in both. In
+    /// a slip θ̇ ← θ̇·min(1, √(J/J′)) does the same for J·θ̇²/2; the slip keeps
+    /// its end. In stick the object's speed is the hand's, and nothing of it
+    /// ever comes back: the torque of a frozen stick has no inertia in it.
+    pub fn adjust(&mut self, next: Active<F>) {
+        let scale = (self.active.stiffness / next.stiffness).at_most(F::ONE);
+        match &mut self.state {
+            State::Stick { theta } => {
+                // Untouched where nothing changes, to the last rounding error.
+                if scale < F::ONE {
+                    *theta = Compensated::new(theta.value() * scale);
+                }
+            }
+            State::Slip(slip) => {
+                let end = Ticks {
+                    whole: self.ticks_left,
+                    fraction: slip.end_fraction,
+                };
+                let (x, v) = slip.motion(&self.active, slip.duration.less(end));
+                let theta = x + slip.sense.of_signed(self.active.kinetic_angle_rad);
+                let slower = (self.active.inertia / next.inertia).at_most(F::ONE).sqrt();
+                *slip = Slip {
+                    duration: end,
+                    x: theta * scale - slip.sense.of_signed(next.kinetic_angle_rad),
+                    v: v * slower,
+                    limit_rad: slip.limit_rad * scale,
+                    ..*slip
+                };
+            }
+        }
+        self.active = next;
+    }
+
+    /// Begins the slip of `sense` at `fraction` of this step in state (θ, Ω).
+    fn begin_slip(&mut self, sense: Sense, fraction: F, theta: F, omega: F) {
         let duration = self.active.slip_time(sense.of_signed(omega));
-        Slip {
+        let end = duration.later_by(fraction);
+        self.slip_number = self.slip_number.wrapping_add(1);
+        self.ticks_left = end.whole;
+        self.state = State::Slip(Slip {
             sense,
-            end: duration.later_by(fraction),
+            end_fraction: end.fraction,
             duration,
             x: theta - sense.of_signed(self.active.kinetic_angle_rad),
             v: omega,
-        }
+            limit_rad: self.active.static_angle_rad,
+        });
+    }
+
+    /// The time since the anchor of a slip.
+    fn since_anchor(&self, slip: &Slip<F>) -> Ticks<F> {
+        slip.duration.less(Ticks {
+            whole: self.ticks_left,
+            fraction: slip.end_fraction,
+        })
     }
 
     /// Where and in which sense a stick at `theta` breaks after `from_s`.
@@ -112,7 +176,7 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                     from_s += after_s;
                     let omega = path.omega(from_s);
                     let fraction = (from_s * a.per_step).at_most(F::ONE);
-                    self.state = State::Slip(self.slip(sense, fraction, theta, omega));
+                    self.begin_slip(sense, fraction, theta, omega);
                     events += 1;
                     on_event(Event {
                         kind: EventKind::Break,
@@ -126,21 +190,23 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                         torque_after_nm: sense.of_signed(a.kinetic_nm),
                     });
                 }
-                State::Slip(slip) if slip.end.whole > 0 || events >= EVENTS_PER_STEP => {
-                    slip.end.whole = slip.end.whole.saturating_sub(1);
+                State::Slip(_) if self.ticks_left > 0 || events >= EVENTS_PER_STEP => {
+                    self.ticks_left = self.ticks_left.saturating_sub(1);
                     return;
                 }
                 State::Slip(slip) => {
-                    let (sense, fraction) = (slip.sense, slip.end.fraction);
+                    let (sense, fraction) = (slip.sense, slip.end_fraction);
                     from_s = fraction * a.step_s;
                     let omega = path.omega(from_s);
-                    let theta = sense.of_signed(a.restart_angle_rad);
+                    let limit = slip.limit_rad;
+                    let theta =
+                        sense.of_signed(a.restart_angle_rad.at_most(limit).at_least(-limit));
                     let torque = a.stiffness * theta;
                     events += 1;
                     // Ts = Tk: the stick would break where it begins. The slip
                     // goes on, and nothing is felt or reported.
                     if a.touches() && sense.of_signed(path.rate(from_s)) > F::ZERO {
-                        self.state = State::Slip(self.slip(sense, fraction, theta, omega));
+                        self.begin_slip(sense, fraction, theta, omega);
                         continue;
                     }
                     self.state = State::Stick {
@@ -176,11 +242,25 @@ impl<F: Real> Slip<F> {
 impl<F: Real, L: Locate<F>> StickSlip<F> for Frozen<F, L> {
     #[inline]
     fn step(&mut self, shaft: &ShaftStep<F>, on_event: impl FnMut(Event<F>)) {
-        match &mut self.state {
-            State::Slip(slip) if slip.end.whole > 0 => slip.end.whole -= 1,
-            _ => self.step_with_events(shaft, on_event),
+        if self.ticks_left > 0 {
+            self.ticks_left -= 1;
+        } else {
+            self.step_with_events(shaft, on_event);
         }
         self.omega_rad_s = shaft.omega_end_rad_s;
+    }
+
+    fn restart(&mut self, torque_nm: F, omega_rad_s: F) {
+        let theta = self.active.limited(torque_nm) / self.active.stiffness;
+        self.ticks_left = 0;
+        self.state = State::Stick {
+            theta: Compensated::new(theta),
+        };
+        self.omega_rad_s = omega_rad_s;
+    }
+
+    fn active(&self) -> &Active<F> {
+        &self.active
     }
 
     #[inline]
@@ -203,7 +283,7 @@ impl<F: Real, L: Locate<F>> StickSlip<F> for Frozen<F, L> {
         match &self.state {
             State::Stick { theta } => theta.value(),
             State::Slip(slip) => {
-                let (x, _) = slip.motion(&self.active, slip.duration.less(slip.end));
+                let (x, _) = slip.motion(&self.active, self.since_anchor(slip));
                 x + slip.sense.of_signed(self.active.kinetic_angle_rad)
             }
         }
@@ -212,7 +292,7 @@ impl<F: Real, L: Locate<F>> StickSlip<F> for Frozen<F, L> {
     fn theta_dot_rad_s(&self) -> F {
         match &self.state {
             State::Stick { .. } => self.omega_rad_s,
-            State::Slip(slip) => slip.motion(&self.active, slip.duration.less(slip.end)).1,
+            State::Slip(slip) => slip.motion(&self.active, self.since_anchor(slip)).1,
         }
     }
 }

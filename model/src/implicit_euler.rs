@@ -87,7 +87,7 @@ impl<F: Real> StickSlip<F> for ImplicitEuler<F> {
             Phase::Slip(sense) => {
                 self.torque_nm = sense.of_signed(a.kinetic_nm);
                 let push = self.inertia_per_step * self.v + self.torque_nm - a.stiffness * theta;
-                self.v = self.mobility * push;
+                self.v = (self.mobility * push).settled();
                 self.theta.add(a.step_s * self.v);
             }
         }
@@ -108,6 +108,19 @@ impl<F: Real> StickSlip<F> for ImplicitEuler<F> {
                 torque_after_nm: self.torque_nm,
             });
         }
+    }
+
+    fn restart(&mut self, torque_nm: F, omega_rad_s: F) {
+        let a = &self.active;
+        self.phase = Phase::Stick;
+        self.torque_nm = a.limited(torque_nm);
+        let theta = (self.torque_nm - a.damping * omega_rad_s) / a.stiffness;
+        self.theta = Compensated::new(theta);
+        self.v = omega_rad_s;
+    }
+
+    fn active(&self) -> &Active<F> {
+        &self.active
     }
 
     fn phase(&self) -> Phase {

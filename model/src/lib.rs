@@ -28,6 +28,7 @@
 //! | how a slip is carried forward | [`propagate`], [`oscillator`] |
 //! | how the end of a phase is found | [`locate`] |
 //! | which of these a scene or a firmware selects | [`solver`] |
+//! | what the device adds: no input poisons it, parameters change under way | [`renderer`], [`guarded`], [`ramp`], [`turn_back`] |
 //! | counts of the motor encoder to angle and speed | [`encoder`] |
 #![no_std]
 #![forbid(unsafe_code)]
@@ -58,6 +59,7 @@ pub mod compensated;
 pub mod encoder;
 mod event;
 pub mod frozen;
+pub mod guarded;
 pub mod implicit_euler;
 pub mod locate;
 pub mod oscillator;
@@ -65,20 +67,25 @@ pub mod parameters;
 mod phase;
 pub mod presets;
 pub mod propagate;
+pub mod ramp;
 pub mod real;
+pub mod renderer;
 pub mod settings;
 pub mod shaft;
 pub mod solver;
 pub mod stick_slip;
 pub mod ticks;
+pub mod turn_back;
 pub mod velocity_match;
 
 pub use active::Active;
 pub use event::{EVENTS_PER_STEP, Event};
 pub use frozen::Frozen;
+pub use guarded::{Guarded, Sample};
 pub use parameters::Parameters;
 pub use phase::{EventKind, Phase, Sense};
 pub use real::Real;
+pub use renderer::Renderer;
 pub use settings::{Convention, Restart, Settings, SettingsError, Validated};
 pub use shaft::ShaftStep;
 pub use stick_slip::StickSlip;

@@ -14,7 +14,9 @@
 //! damping below, at and above critical for the small angles inside a step.
 //!
 //! The motion depends on time alone, not on the shaft: for a fixed step C and
-//! S are constants, and an exact step costs four multiplications.
+//! S are constants, and an exact step costs four multiplications. What is kept
+//! is the *change* over the step, C − 1: for small steps C itself would round
+//! away most of what it says, and an f32 swing would gain or lose energy.
 
 use crate::parameters::Parameters;
 use crate::real::Real;
@@ -36,7 +38,8 @@ pub struct Oscillator<F> {
     jerk_factor: F,
 }
 
-/// The exact motion over one fixed time: (x, v) ↦ (xx·x + xv·v, vx·x + vv·v).
+/// The exact motion over one fixed time, as its change:
+/// (x, v) ↦ (x + xx·x + xv·v, v + vx·x + vv·v).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transition<F> {
     xx: F,
@@ -46,32 +49,49 @@ pub struct Transition<F> {
 }
 
 impl<F: Real> Oscillator<F> {
-    /// From parameters; computed in f64 and rounded once.
-    pub fn new(parameters: &Parameters) -> Self {
-        let omega_n_squared = parameters.stiffness_nm_per_rad / parameters.inertia_kg_m2;
-        let decay = parameters.damping_nms_per_rad / (2.0 * parameters.inertia_kg_m2);
+    /// From kr, J and c.
+    pub fn new(stiffness: F, inertia: F, damping: F) -> Self {
+        let omega_n_squared = stiffness / inertia;
+        let decay = F::HALF * damping / inertia;
         // (ωn − a)(ωn + a): no cancellation near critical damping.
-        let omega_n = libm::sqrt(omega_n_squared);
+        let omega_n = omega_n_squared.sqrt();
         let discriminant = (omega_n - decay) * (omega_n + decay);
-        let jerk_factor = libm::fabs(4.0 * decay * decay - omega_n_squared) + 2.0 * decay * omega_n;
+        let four_a_squared = F::TWO * decay * (F::TWO * decay);
         Self {
-            omega_n: F::from_f64(omega_n),
-            jerk_factor: F::from_f64(jerk_factor),
-            omega_n_squared: F::from_f64(omega_n_squared),
-            decay: F::from_f64(decay),
-            discriminant: F::from_f64(discriminant),
-            root: F::from_f64(libm::sqrt(libm::fabs(discriminant))),
+            omega_n,
+            omega_n_squared,
+            decay,
+            discriminant,
+            root: discriminant.abs().sqrt(),
+            jerk_factor: (four_a_squared - omega_n_squared).abs() + F::TWO * decay * omega_n,
+        }
+    }
+
+    /// From parameters; computed in f64 and rounded once.
+    pub fn of(parameters: &Parameters) -> Self {
+        let exact = Oscillator::<f64>::new(
+            parameters.stiffness_nm_per_rad,
+            parameters.inertia_kg_m2,
+            parameters.damping_nms_per_rad,
+        );
+        Self {
+            omega_n: F::from_f64(exact.omega_n),
+            omega_n_squared: F::from_f64(exact.omega_n_squared),
+            decay: F::from_f64(exact.decay),
+            discriminant: F::from_f64(exact.discriminant),
+            root: F::from_f64(exact.root),
+            jerk_factor: F::from_f64(exact.jerk_factor),
         }
     }
 
     /// The motion over `time_s` ≥ 0.
     pub fn transition(&self, time_s: F) -> Transition<F> {
-        let (c, s) = self.cosine_and_sine(time_s);
+        let (c_less_one, s) = self.cosine_less_one_and_sine(time_s);
         Transition {
-            xx: c + self.decay * s,
+            xx: c_less_one + self.decay * s,
             xv: s,
             vx: -(self.omega_n_squared * s),
-            vv: c - self.decay * s,
+            vv: c_less_one - self.decay * s,
         }
     }
 
@@ -101,21 +121,20 @@ impl<F: Real> Oscillator<F> {
         self.jerk_factor * self.speed_bound(x, v)
     }
 
-    /// (C, S) of the module's equations.
-    fn cosine_and_sine(&self, time_s: F) -> (F, F) {
+    /// (C − 1, S) of the module's equations.
+    fn cosine_less_one_and_sine(&self, time_s: F) -> (F, F) {
         // Within this angle eight terms of each series are exact in f64.
         const SERIES_ANGLE_SQUARED: f64 = 0.3;
         let z = self.discriminant * time_s * time_s;
         if z.abs() <= F::from_f64(SERIES_ANGLE_SQUARED) {
-            let damped = if self.decay > F::ZERO {
-                (-(self.decay * time_s)).exp()
-            } else {
-                F::ONE
-            };
-            return (
-                damped * cosine_of_root(z),
-                damped * time_s * sine_over_root(z),
-            );
+            let less_one = cosine_of_root_less_one(z);
+            let sine = time_s * sine_over_root(z);
+            if self.decay > F::ZERO {
+                let lost = exp_less_one(-(self.decay * time_s));
+                // E·cos − 1 = (E − 1) + E·(cos − 1)
+                return (lost + (F::ONE + lost) * less_one, (F::ONE + lost) * sine);
+            }
+            return (less_one, sine);
         }
         if z > F::ZERO {
             let damped = if self.decay > F::ZERO {
@@ -124,7 +143,7 @@ impl<F: Real> Oscillator<F> {
                 F::ONE
             };
             let (sin, cos) = (self.root * time_s).sin_cos();
-            (damped * cos, damped * sin / self.root)
+            (damped * cos - F::ONE, damped * sin / self.root)
         } else {
             // Two decaying exponentials: cosh and sinh alone would overflow.
             // The slow rate a − √−D is written without cancellation.
@@ -133,7 +152,7 @@ impl<F: Real> Oscillator<F> {
             let e_slow = (-(slow * time_s)).exp();
             let e_fast = (-(fast * time_s)).exp();
             (
-                F::HALF * (e_slow + e_fast),
+                F::HALF * (e_slow + e_fast) - F::ONE,
                 F::HALF * (e_slow - e_fast) / self.root,
             )
         }
@@ -144,20 +163,37 @@ impl<F: Real> Transition<F> {
     /// Moves (x, v).
     #[inline]
     pub fn apply(&self, x: F, v: F) -> (F, F) {
-        (self.xx * x + self.xv * v, self.vx * x + self.vv * v)
+        (
+            x + (self.xx * x + self.xv * v),
+            v + (self.vx * x + self.vv * v),
+        )
     }
 }
 
-/// cos √z = Σ (−z)ᵏ/(2k)!.
+/// cos √z − 1 = Σ (−z)ᵏ/(2k)! from k = 1 on.
 #[inline]
-fn cosine_of_root<F: Real>(z: F) -> F {
-    series(z, &[2.0, 12.0, 30.0, 56.0, 90.0, 132.0, 182.0])
+fn cosine_of_root_less_one<F: Real>(z: F) -> F {
+    -(F::HALF * z) * series(z, &[12.0, 30.0, 56.0, 90.0, 132.0, 182.0])
 }
 
 /// sin √z/√z = Σ (−z)ᵏ/(2k+1)!.
 #[inline]
 fn sine_over_root<F: Real>(z: F) -> F {
     series(z, &[6.0, 20.0, 42.0, 72.0, 110.0, 156.0, 210.0])
+}
+
+/// eˣ − 1; by its series where the difference would cancel.
+#[inline]
+fn exp_less_one<F: Real>(x: F) -> F {
+    if x.abs() > F::HALF {
+        return x.exp() - F::ONE;
+    }
+    x * series(
+        -x,
+        &[
+            2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0,
+        ],
+    )
 }
 
 /// 1 − z/r₁·(1 − z/r₂·(1 − …)).
@@ -175,7 +211,7 @@ mod tests {
     fn with(damping_ratio: f64) -> (Parameters, Oscillator<f64>) {
         let mut p = Parameters::default();
         p.damping_nms_per_rad = 2.0 * damping_ratio * p.impedance_nms_per_rad();
-        (p, Oscillator::new(&p))
+        (p, Oscillator::of(&p))
     }
 
     /// Classical Runge-Kutta with very small steps, as an independent check.
@@ -237,7 +273,7 @@ mod tests {
         let (a, b) = (o.transition(below), o.transition(above));
         assert!((a.xx - b.xx).abs() < 1e-6 && (a.xv - b.xv).abs() < 1e-8);
         let (s, c) = libm::sincos(below * 200.0);
-        assert!((a.xx - c).abs() < 3e-16 && (a.xv * 200.0 - s).abs() < 3e-16);
+        assert!((a.xx + 1.0 - c).abs() < 3e-16 && (a.xv * 200.0 - s).abs() < 3e-16);
     }
 
     #[test]

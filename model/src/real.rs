@@ -53,6 +53,10 @@ pub trait Real:
     /// Relative slack of a touch. With Ts = Tk the velocities meet without
     /// crossing, and such a time is known to the root of the rounding only.
     const TOUCH_SLACK: Self;
+    /// Below this a number is at rest. Far below anything that matters, and
+    /// far above the subnormal numbers that a decay would otherwise end in,
+    /// which some processors compute with slowly.
+    const AT_REST: Self;
     /// Name in scene files: `f32` or `f64`.
     const NAME: &'static str;
 
@@ -81,6 +85,17 @@ pub trait Real:
     fn atan2(self, x: Self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
+
+    /// The same number, or zero if it is at rest. A NaN stays one.
+    #[inline]
+    #[must_use]
+    fn settled(self) -> Self {
+        if self.abs() < Self::AT_REST {
+            Self::ZERO
+        } else {
+            self
+        }
+    }
 
     /// The larger of two; a NaN on the right is ignored.
     #[inline]

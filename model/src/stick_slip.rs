@@ -1,5 +1,6 @@
 //! The stick-slip object as everything else sees it.
 
+use crate::active::Active;
 use crate::event::Event;
 use crate::phase::Phase;
 use crate::real::Real;
@@ -13,6 +14,14 @@ pub trait StickSlip<F: Real> {
     /// Moves the object through one step. `on_event` is called at most
     /// [`EVENTS_PER_STEP`](crate::EVENTS_PER_STEP) times.
     fn step(&mut self, shaft: &ShaftStep<F>, on_event: impl FnMut(Event<F>));
+
+    /// Puts the object in stick where the shaft is, showing `torque_nm` (at
+    /// most ±Ts) while the shaft moves with `omega_rad_s`: how to go on when
+    /// the shaft has been out of sight.
+    fn restart(&mut self, torque_nm: F, omega_rad_s: F);
+
+    /// The numbers that its steps use.
+    fn active(&self) -> &Active<F>;
 
     /// What the object does now.
     fn phase(&self) -> Phase;

@@ -336,8 +336,11 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
                         None
                     };
                     let Some(after_s) = found else {
-                        let (x, v) = end;
-                        self.state = State::Slip { sense, x, v };
+                        self.state = State::Slip {
+                            sense,
+                            x: end.0.settled(),
+                            v: end.1.settled(),
+                        };
                         break;
                     };
                     let (x, _) = self.propagator.part(x, v, after_s);
@@ -348,6 +351,18 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
             changes += 1;
         }
         self.omega_rad_s = shaft.omega_end_rad_s;
+    }
+
+    fn restart(&mut self, torque_nm: F, omega_rad_s: F) {
+        let a = &self.active;
+        let inertial_nm = C::inertial(a, omega_rad_s, F::ZERO);
+        let theta = (a.limited(torque_nm) - inertial_nm) / a.stiffness;
+        self.state = self.stick(Compensated::new(theta), omega_rad_s, F::ZERO);
+        self.omega_rad_s = omega_rad_s;
+    }
+
+    fn active(&self) -> &Active<F> {
+        &self.active
     }
 
     fn phase(&self) -> Phase {

@@ -191,11 +191,14 @@ fn semi_implicit_euler_is_erratic() {
 }
 
 #[test]
-fn single_precision_gets_worse_below_20_microseconds() {
-    let error = |h| frequency_error(&run::<f32>(Solver::ExactEvents, OMEGA, h), OMEGA);
-    let (tick, short) = (error(5e-5), error(1e-6));
-    println!("exact-events in f32: {tick:.1e} at 50 µs, {short:.1e} at 1 µs");
-    assert!(tick < 1e-6 && short > 5.0 * tick && short < 1e-2);
+fn single_precision_keeps_its_digits_at_short_steps() {
+    // With C in place of C − 1 the swing would be off by 1e-5 at 1 µs, where
+    // C rounds to 1 (see `oscillator`).
+    for step_s in [5e-5, 2e-5, 5e-6, 1e-6] {
+        let error = frequency_error(&run::<f32>(Solver::ExactEvents, OMEGA, step_s), OMEGA);
+        println!("exact-events in f32: {error:.1e} at {step_s:e} s");
+        assert!(error < 1e-7, "{step_s}: {error:e}");
+    }
 }
 
 #[test]

@@ -10,6 +10,7 @@ impl Real for f64 {
     const EPSILON: Self = f64::EPSILON;
     const LIMIT_SLACK: Self = 1e-9;
     const TOUCH_SLACK: Self = 1e-6;
+    const AT_REST: Self = 1e-290;
     const NAME: &'static str = "f64";
 
     #[inline]

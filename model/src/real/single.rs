@@ -145,6 +145,7 @@ impl Real for f32 {
     const EPSILON: Self = f32::EPSILON;
     const LIMIT_SLACK: Self = 1e-5;
     const TOUCH_SLACK: Self = 3e-2;
+    const AT_REST: Self = 1e-30;
     const NAME: &'static str = "f32";
 
     #[inline]

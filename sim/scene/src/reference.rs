@@ -81,7 +81,7 @@ impl<'a> Reference<'a> {
         Self {
             motion,
             settings: **settings,
-            oscillator: Oscillator::new(p),
+            oscillator: Oscillator::of(p),
             kinetic_angle_rad: p.kinetic_torque_nm / p.stiffness_nm_per_rad,
             natural_rad_s: p.natural_rad_s(),
             impedance: p.impedance_nms_per_rad(),

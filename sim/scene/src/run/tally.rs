@@ -73,7 +73,7 @@ impl Tally {
     /// angles of the shaft count from here.
     pub(super) fn new(settings: Settings, omega_rad_s: f64) -> Self {
         Self {
-            oscillator: Oscillator::new(&settings.parameters),
+            oscillator: Oscillator::of(&settings.parameters),
             start: PhaseStart {
                 phase: Phase::Stick,
                 time_s: 0.0,

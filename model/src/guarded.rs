@@ -1,0 +1,250 @@
+//! A joint that no input can poison.
+//!
+//! Between the sensor and the joint stands a check. A sample that is no
+//! number, or that no shaft can make, never reaches the joint; neither does
+//! one that was not taken at all. Meanwhile the last torque is held for a
+//! bounded number of ticks and then let go of at a bounded rate. A few missing
+//! ticks are made up for when the shaft is seen again; after more, the joint
+//! goes on in a new stick that begins with the torque then shown.
+//!
+//! ```text
+//! torque ──────held──────╲ released          ╱ a new stick, from what is shown
+//!                          ╲____ 0 __________╱
+//!        └ hold_ticks ┘   slew            shaft seen again
+//! ```
+//!
+//! A tick costs at most `CATCH_UP_TICKS` + 1 steps of the joint, and each of
+//! these at most [`EVENTS_PER_STEP`](crate::EVENTS_PER_STEP) events.
+
+use crate::event::{EVENTS_PER_STEP, Event};
+use crate::real::Real;
+use crate::shaft::ShaftStep;
+use crate::stick_slip::StickSlip;
+
+/// The most missing ticks that are made up for, step by step.
+pub const CATCH_UP_TICKS: u32 = 3;
+
+/// What a tick brings from the sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sample<F> {
+    /// The shaft's motion since the last sample that was taken.
+    Taken(ShaftStep<F>),
+    /// Nothing.
+    Lost,
+}
+
+/// What is believed of a shaft, and how to go on without one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InputLimits<F> {
+    /// The fastest shaft that is believed, rad/s.
+    pub speed_rad_s: F,
+    /// The largest change of its velocity in one tick, rad/s.
+    pub jump_rad_s: F,
+    /// How many ticks the last torque is held.
+    pub hold_ticks: u32,
+    /// How far the torque falls in a tick after that, N·m.
+    pub release_nm: F,
+}
+
+impl<F: Real> InputLimits<F> {
+    /// The device's: seven times the fastest its motor can turn the joint
+    /// (420 deg/s), a millisecond of hold at 20 kHz, and release at
+    /// 100 N·m/s.
+    pub fn device(step_s: f64) -> Self {
+        Self {
+            speed_rad_s: F::from_f64(50.0),
+            jump_rad_s: F::from_f64(10.0),
+            hold_ticks: 20,
+            release_nm: F::from_f64(100.0 * step_s),
+        }
+    }
+}
+
+/// What has happened to a guarded joint; counters stop at their largest value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Samples that were not taken.
+    pub lost: u32,
+    /// Samples that were refused: no numbers, or no motion of a shaft.
+    pub refused: u32,
+    /// Gaps after which the joint went on in a new stick.
+    pub restarts: u32,
+    /// Steps in which the shaft moved further than a stick lasts, so that a
+    /// solver without located events may have missed one.
+    pub long_steps: u32,
+    /// Steps with as many events as a step may have: more may have followed.
+    pub crowded_steps: u32,
+}
+
+/// A joint behind a check of its input.
+#[derive(Clone, Debug)]
+pub struct Guarded<F, J> {
+    joint: J,
+    limits: InputLimits<F>,
+    counters: Counters,
+    /// Ticks since the last good sample.
+    missed: u32,
+    held_nm: F,
+    omega_rad_s: F,
+}
+
+impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
+    /// Guards a joint on a shaft that moves with `omega_rad_s`.
+    pub fn new(joint: J, limits: InputLimits<F>, omega_rad_s: F) -> Self {
+        Self {
+            held_nm: joint.torque_nm(),
+            joint,
+            limits,
+            counters: Counters::default(),
+            missed: 0,
+            omega_rad_s,
+        }
+    }
+
+    /// One tick. An event's fraction is that of the time since the last good
+    /// sample, which is one tick unless some are missing.
+    #[inline]
+    pub fn tick(&mut self, sample: &Sample<F>, on_event: impl FnMut(Event<F>)) {
+        match sample {
+            Sample::Taken(shaft) if self.believes(shaft) => self.advance(shaft, on_event),
+            Sample::Taken(_) => {
+                self.counters.refused = self.counters.refused.saturating_add(1);
+                self.hold();
+            }
+            Sample::Lost => {
+                self.counters.lost = self.counters.lost.saturating_add(1);
+                self.hold();
+            }
+        }
+    }
+
+    /// The torque shown: the joint's, or while the shaft is out of sight what
+    /// is left of its last, N·m.
+    #[inline]
+    pub fn torque_nm(&self) -> F {
+        if self.missed == 0 {
+            self.joint.torque_nm()
+        } else {
+            self.joint.active().limited(self.held_nm)
+        }
+    }
+
+    /// Whether the shaft is out of sight.
+    #[inline]
+    pub fn is_holding(&self) -> bool {
+        self.missed > 0
+    }
+
+    /// Lets go of a torque that is held.
+    pub fn let_go(&mut self) {
+        self.held_nm = F::ZERO;
+    }
+
+    /// What has happened so far.
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    /// The joint behind the check.
+    #[inline]
+    pub fn joint(&self) -> &J {
+        &self.joint
+    }
+
+    /// The joint, to be changed between two ticks.
+    #[inline]
+    pub fn joint_mut(&mut self) -> &mut J {
+        &mut self.joint
+    }
+
+    /// Whether a shaft can have made this step. A NaN passes no comparison.
+    fn believes(&self, shaft: &ShaftStep<F>) -> bool {
+        let l = &self.limits;
+        let ticks = F::from_whole(u64::from(self.missed).saturating_add(1));
+        // Twice: the speed within a gap may have been above that at its ends,
+        // and a count comes whole.
+        let reach = F::TWO * l.speed_rad_s * self.joint.active().step_s * ticks;
+        shaft.omega_start_rad_s.abs() <= l.speed_rad_s
+            && shaft.omega_end_rad_s.abs() <= l.speed_rad_s
+            && (shaft.omega_end_rad_s - shaft.omega_start_rad_s).abs() <= l.jump_rad_s
+            && shaft.delta_phi_rad.abs() <= reach
+    }
+
+    /// A tick without a shaft.
+    fn hold(&mut self) {
+        if self.missed == 0 {
+            self.held_nm = self.joint.torque_nm();
+        }
+        self.missed = self.missed.saturating_add(1);
+        if self.missed > self.limits.hold_ticks {
+            let less = self.limits.release_nm;
+            let left = F::ZERO.at_least(self.held_nm.abs() - less);
+            self.held_nm = if self.held_nm < F::ZERO { -left } else { left };
+        }
+    }
+
+    /// A tick with a shaft.
+    #[inline]
+    fn advance(&mut self, shaft: &ShaftStep<F>, on_event: impl FnMut(Event<F>)) {
+        if self.missed > 0 {
+            self.catch_up(shaft, on_event);
+        } else {
+            self.step(shaft, on_event);
+        }
+        self.missed = 0;
+        self.omega_rad_s = shaft.omega_end_rad_s;
+    }
+
+    /// One step of the joint.
+    #[inline]
+    fn step(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
+        let shaft = ShaftStep {
+            delta_phi_rad: shaft.delta_phi_rad.settled(),
+            omega_start_rad_s: shaft.omega_start_rad_s.settled(),
+            omega_end_rad_s: shaft.omega_end_rad_s.settled(),
+        };
+        if self.joint.active().outlasts_a_stick(&shaft) {
+            self.counters.long_steps = self.counters.long_steps.saturating_add(1);
+        }
+        let mut events = 0;
+        self.joint.step(&shaft, |event| {
+            events += 1;
+            on_event(event);
+        });
+        if events >= EVENTS_PER_STEP {
+            self.counters.crowded_steps = self.counters.crowded_steps.saturating_add(1);
+        }
+    }
+
+    /// The first good sample after missing ones.
+    fn catch_up(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
+        if self.missed > CATCH_UP_TICKS {
+            self.counters.restarts = self.counters.restarts.saturating_add(1);
+            self.joint.restart(self.held_nm, shaft.omega_end_rad_s);
+            return;
+        }
+        let ticks = self.missed + 1;
+        let part = F::ONE / F::from_whole(u64::from(ticks));
+        // Through the gap from where the shaft was last seen.
+        let rise = (shaft.omega_end_rad_s - self.omega_rad_s) * part;
+        for n in 0..ticks {
+            let passed = F::from_whole(u64::from(n));
+            let omega = self.omega_rad_s + rise * passed;
+            let piece = ShaftStep {
+                delta_phi_rad: shaft.delta_phi_rad * part,
+                omega_start_rad_s: omega,
+                omega_end_rad_s: if n + 1 == ticks {
+                    shaft.omega_end_rad_s
+                } else {
+                    omega + rise
+                },
+            };
+            self.step(&piece, |event| {
+                on_event(Event {
+                    fraction: (passed + event.fraction) * part,
+                    ..event
+                });
+            });
+        }
+    }
+}

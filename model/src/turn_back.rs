@@ -1,0 +1,124 @@
+//! No push from a slip whose hand has turned back.
+//!
+//! A frozen slip shows s·Tk until its time is over, whatever the hand does. If
+//! the hand turns back meanwhile, that torque no longer resists it but pushes
+//! it along, and would return energy that nobody has put in. So where the
+//! shaft has retreated inside a slip by more than two encoder counts, the
+//! torque shown is zero until the slip ends; the joint's own events stay what
+//! they are. (One count alone is noise: a resting hand must not switch the
+//! torque.)
+//!
+//! With it crepitus returns to the hand at most
+//!
+//! ```text
+//! E ≤ Ts²/2kr + (½ + d)·kr·h·∫Ω² dt
+//! ```
+//!
+//! over any time, with d the ticks between sample and torque and h the tick:
+//! what the spring holds, and what a sampled spring gives away. The two counts
+//! need no term of their own while they are below (Ts − Tk)/kr, since each
+//! slip first dissipates 2·Tk·(Ts − Tk)/kr; all presets keep that.
+
+use crate::phase::Phase;
+use crate::real::Real;
+
+/// Watches the shaft inside slips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurnBack<F> {
+    allowance_rad: F,
+    slip_number: u32,
+    /// How far the shaft is behind the foremost point of this slip, rad.
+    behind_rad: F,
+    turned: bool,
+}
+
+impl<F: Real> TurnBack<F> {
+    /// For an encoder with this angle of one count at the joint.
+    pub fn new(rad_per_count: F) -> Self {
+        Self {
+            allowance_rad: F::TWO * rad_per_count,
+            slip_number: 0,
+            behind_rad: F::ZERO,
+            turned: false,
+        }
+    }
+
+    /// Takes in a step of the shaft that has left the joint in `phase`, the
+    /// `slip_number`-th slip or after it.
+    #[inline]
+    pub fn moved(&mut self, delta_phi_rad: F, phase: Phase, slip_number: u32) {
+        let Phase::Slip(sense) = phase else {
+            self.turned = false;
+            return;
+        };
+        if slip_number != self.slip_number {
+            self.slip_number = slip_number;
+            self.behind_rad = F::ZERO;
+            self.turned = false;
+        }
+        let behind = self.behind_rad - sense.of_signed(delta_phi_rad);
+        self.behind_rad = F::ZERO.at_least(behind);
+        if self.behind_rad > self.allowance_rad {
+            self.turned = true;
+        }
+    }
+
+    /// Whether the hand has turned back: the torque to show is zero.
+    #[inline]
+    pub fn is_turned(&self) -> bool {
+        self.turned
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Sense;
+
+    const COUNT: f64 = 1e-5;
+
+    /// Where the torque is off, for moves of so many counts in one slip.
+    fn turned_after(sense: Sense, moves: &[f64]) -> std::vec::Vec<bool> {
+        let mut guard = TurnBack::new(COUNT);
+        moves
+            .iter()
+            .map(|counts| {
+                guard.moved(sense.of_signed(counts * COUNT), Phase::Slip(sense), 1);
+                guard.is_turned()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn more_than_two_counts_back_switch_the_torque_off_for_the_rest_of_the_slip() {
+        for sense in [Sense::Positive, Sense::Negative] {
+            assert_eq!(turned_after(sense, &[5.0, -1.0, -1.0]), [false; 3]);
+            assert_eq!(
+                turned_after(sense, &[5.0, -1.0, -1.5, 4.0, 9.0]),
+                [false, false, true, true, true]
+            );
+            // There and back again is no retreat: it counts from the foremost point.
+            assert_eq!(
+                turned_after(sense, &[3.0, -1.5, 1.0, -1.0, -0.4, -0.2]),
+                [false, false, false, false, false, true]
+            );
+            assert_eq!(turned_after(sense, &[-2.1]), [true]);
+        }
+    }
+
+    #[test]
+    fn a_stick_or_another_slip_begins_anew() {
+        let mut guard = TurnBack::new(COUNT);
+        let slip = Phase::Slip(Sense::Positive);
+        guard.moved(-3.0 * COUNT, slip, 1);
+        assert!(guard.is_turned());
+        guard.moved(-3.0 * COUNT, Phase::Stick, 1);
+        assert!(!guard.is_turned());
+        guard.moved(-COUNT, slip, 2);
+        assert!(!guard.is_turned());
+        guard.moved(-3.0 * COUNT, slip, 2);
+        assert!(guard.is_turned());
+        guard.moved(-COUNT, slip, 3);
+        assert!(!guard.is_turned());
+    }
+}

@@ -1,0 +1,205 @@
+//! The energy that rendered crepitus can return to the hand: with the
+//! turn-back guard it is at most
+//!
+//! ```text
+//! E ≤ Ts²/2kr + (½ + d)·kr·h·∫Ω² dt
+//! ```
+//!
+//! over any stretch of time, whatever the hand does. An encoder adds half a
+//! count at the limit, Ts·Δ/2: a staircase holds that much more than a slope.
+
+use crepitus_model::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::guarded::InputLimits;
+use crepitus_model::locate::ExactEvents;
+use crepitus_model::presets::PRESETS;
+use crepitus_model::{Active, Parameters, Renderer, Sample, Settings, ShaftStep};
+use proptest::prelude::*;
+
+const TICK_S: f64 = 5e-5;
+
+/// Keeps the books of the hand: the torque of a tick acts `delay` + 1 ticks
+/// later, and is held for one.
+struct Hand {
+    parameters: Parameters,
+    /// Torques on their way, the next to act first.
+    line: Vec<f64>,
+    /// Work put in, plus what sampling may give away: never falls by more than
+    /// the spring holds.
+    allowed_j: f64,
+    peak_j: f64,
+    worst: f64,
+}
+
+impl Hand {
+    fn new(parameters: Parameters, delay: usize) -> Self {
+        Self {
+            parameters,
+            line: vec![0.0; delay + 1],
+            allowed_j: 0.0,
+            peak_j: 0.0,
+            worst: 0.0,
+        }
+    }
+
+    /// The hand moves by `delta_phi`; then the torque of that tick is known.
+    fn tick(&mut self, delta_phi: f64, shown_nm: f64) {
+        let p = &self.parameters;
+        let delay = self.line.len() as f64 - 1.0;
+        let sampling = (0.5 + delay) * p.stiffness_nm_per_rad * delta_phi * delta_phi;
+        self.allowed_j += self.line.remove(0) * delta_phi + sampling;
+        self.line.push(shown_nm);
+        self.peak_j = self.peak_j.max(self.allowed_j);
+        let stored = p.static_torque_nm.powi(2) / (2.0 * p.stiffness_nm_per_rad);
+        self.worst = self.worst.max((self.peak_j - self.allowed_j) / stored);
+    }
+}
+
+/// What the joint knows of the shaft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Sight {
+    /// The true angle.
+    True,
+    /// The counts of the device's encoder, and the speed estimated from them.
+    Counts,
+}
+
+/// The largest energy returned over any stretch, as a part of the bound's
+/// first term, for a hand at these angles tick by tick.
+fn returned(parameters: Parameters, delay: usize, sight: Sight, angles_rad: &[f64]) -> f64 {
+    let (guarded, _) = books(parameters, delay, sight, angles_rad);
+    guarded
+}
+
+/// The same with the torque that is shown, and with the joint's own.
+fn books(parameters: Parameters, delay: usize, sight: Sight, angles_rad: &[f64]) -> (f64, f64) {
+    let encoder = EncoderSettings::default();
+    let settings = Settings {
+        parameters,
+        ..Settings::default()
+    };
+    let active = Active::<f32>::new(&settings.validate().unwrap(), TICK_S).unwrap();
+    let count = |phi: f64| (phi / encoder.rad_per_count()).floor() as i32;
+    let mut reader =
+        EncoderReader::<f32>::new(&encoder, TICK_S, count(angles_rad[0]), 0.0).unwrap();
+    let mut renderer = Renderer::<f32, ExactEvents>::new(
+        active,
+        InputLimits::device(TICK_S),
+        encoder.rad_per_count() as f32,
+        0.0,
+    );
+    let (mut hand, mut unguarded) = (Hand::new(parameters, delay), Hand::new(parameters, delay));
+    let mut omega = 0.0;
+    for pair in angles_rad.windows(2) {
+        let delta_phi = pair[1] - pair[0];
+        let shaft = match sight {
+            Sight::Counts => reader.read(count(pair[1])),
+            Sight::True => {
+                // The velocity at the end of a tick whose mean is known.
+                let end = 2.0 * delta_phi / TICK_S - omega;
+                ShaftStep {
+                    delta_phi_rad: delta_phi as f32,
+                    omega_start_rad_s: std::mem::replace(&mut omega, end) as f32,
+                    omega_end_rad_s: end as f32,
+                }
+            }
+        };
+        let shown = renderer.tick(&Sample::Taken(shaft), |_| {});
+        hand.tick(delta_phi, f64::from(shown.torque_nm));
+        unguarded.tick(delta_phi, f64::from(shown.model_torque_nm));
+    }
+    let counts = match sight {
+        Sight::True => 0.0,
+        Sight::Counts => {
+            encoder.rad_per_count() * parameters.stiffness_nm_per_rad / parameters.static_torque_nm
+        }
+    };
+    (
+        hand.worst / (1.0 + counts),
+        unguarded.worst / (1.0 + counts),
+    )
+}
+
+/// Minimum-jerk moves through these points, each of so many ticks.
+fn moves(points: &[(f64, u32)]) -> Vec<f64> {
+    let mut angles = vec![0.0];
+    let mut from = 0.0;
+    for &(to, ticks) in points {
+        for i in 1..=ticks {
+            let u = f64::from(i) / f64::from(ticks);
+            let s = u * u * u * (10.0 + u * (6.0 * u - 15.0));
+            angles.push(from + (to - from) * s);
+        }
+        from = to;
+    }
+    angles
+}
+
+fn sine(amplitude_rad: f64, frequency_hz: f64, seconds: f64) -> Vec<f64> {
+    let ticks = (seconds / TICK_S) as u32;
+    (0..=ticks)
+        .map(|i| {
+            let t = f64::from(i) * TICK_S;
+            amplitude_rad * (std::f64::consts::TAU * frequency_hz * t).sin()
+        })
+        .collect()
+}
+
+/// Every delay of the torque, in ticks, with both sights.
+const SIGHTS: [(usize, Sight); 6] = [
+    (0, Sight::True),
+    (1, Sight::True),
+    (2, Sight::True),
+    (0, Sight::Counts),
+    (1, Sight::Counts),
+    (2, Sight::Counts),
+];
+
+#[test]
+fn a_hand_that_shakes_gets_no_more_back_than_the_bound() {
+    let mut worst = 0.0_f64;
+    for preset in PRESETS {
+        let stroke = preset.parameters.static_torque_nm / preset.parameters.stiffness_nm_per_rad;
+        for (delay, sight) in SIGHTS {
+            for amplitude in [0.3, 0.51, 0.9, 0.99, 1.01, 1.2, 2.0, 5.0, 30.0] {
+                for frequency in [2.0, 7.0, 20.0, 50.0, 90.0] {
+                    let angles = sine(amplitude * stroke, frequency, 2.0);
+                    let part = returned(preset.parameters, delay, sight, &angles);
+                    println!(
+                        "{} {delay} {sight:?} {amplitude} {frequency}: {part:.3}",
+                        preset.name
+                    );
+                    worst = worst.max(part);
+                }
+            }
+        }
+    }
+    println!("worst: {worst:.3} of what the spring holds");
+    assert!(worst <= 1.0);
+}
+
+#[test]
+fn without_the_guard_a_hand_that_turns_back_in_slips_gets_many_times_the_bound() {
+    let p = PRESETS[0].parameters;
+    let angles = sine(5.0 * p.static_torque_nm / p.stiffness_nm_per_rad, 20.0, 2.0);
+    let (guarded, unguarded) = books(p, 0, Sight::True, &angles);
+    println!("with the guard {guarded:.2}, without {unguarded:.1} times what the spring holds");
+    assert!(guarded <= 1.0 && unguarded > 5.0);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn nor_does_any_other_hand(
+        preset in 0..PRESETS.len(),
+        sight in 0..SIGHTS.len(),
+        points in prop::collection::vec((-4.0..4.0_f64, 20..3000_u32), 2..40),
+    ) {
+        let p = PRESETS[preset].parameters;
+        let stroke = p.static_torque_nm / p.stiffness_nm_per_rad;
+        let points: Vec<_> = points.iter().map(|&(to, ticks)| (to * stroke, ticks)).collect();
+        let (delay, sight) = SIGHTS[sight];
+        let part = returned(p, delay, sight, &moves(&points));
+        prop_assert!(part <= 1.0, "{part}");
+    }
+}
