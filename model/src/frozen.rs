@@ -152,6 +152,7 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
         let a = self.active;
         let path = ShaftPath::new(shaft, &a);
         let mut from_s = F::ZERO;
+        let mut from_fraction = F::ZERO;
         let mut events = 0;
         loop {
             match &mut self.state {
@@ -175,7 +176,10 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                     let theta = theta_from + path.travel(from_s, from_s + after_s);
                     from_s += after_s;
                     let omega = path.omega(from_s);
-                    let fraction = (from_s * a.per_step).at_most(F::ONE);
+                    // Rounding must not put an event before the last one.
+                    let fraction = (from_s * a.per_step).at_least(from_fraction);
+                    let fraction = fraction.at_most(F::ONE);
+                    from_fraction = fraction;
                     self.begin_slip(sense, fraction, theta, omega);
                     events += 1;
                     on_event(Event {
@@ -197,6 +201,7 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                 State::Slip(slip) => {
                     let (sense, fraction) = (slip.sense, slip.end_fraction);
                     from_s = fraction * a.step_s;
+                    from_fraction = fraction;
                     let omega = path.omega(from_s);
                     let limit = slip.limit_rad;
                     let theta =

@@ -113,8 +113,13 @@ pub fn first_break<F: Real, L: Locate<F>>(
     length_s: F,
 ) -> Option<(F, Sense)> {
     let at = |sense| L::break_time(stick, sense, limit_nm, length_s).map(|t| (t, sense));
-    match (at(Sense::Positive), at(Sense::Negative)) {
-        (Some(p), Some(n)) => Some(if n.0 < p.0 { n } else { p }),
-        (p, n) => p.or(n),
+    earlier(at(Sense::Positive), at(Sense::Negative))
+}
+
+/// The earlier of two breaks, the first if they are at one time.
+pub fn earlier<F: Real>(a: Option<(F, Sense)>, b: Option<(F, Sense)>) -> Option<(F, Sense)> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if b.0 < a.0 { b } else { a }),
+        (a, b) => a.or(b),
     }
 }

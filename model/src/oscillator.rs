@@ -101,11 +101,6 @@ impl<F: Real> Oscillator<F> {
         -(self.omega_n_squared * x) - F::TWO * self.decay * v
     }
 
-    /// The time of a quarter radian of free swing, 1/(4·ωn), s.
-    pub fn quarter_radian_s(&self) -> F {
-        F::HALF * F::HALF / self.omega_n
-    }
-
     /// A bound of |v| that holds for the whole free motion from (x, v) on:
     /// |v| + ωn|x|, rad/s. It is at least √(v² + ωn²x²), the root of the
     /// object's energy, which free motion never raises.
@@ -119,6 +114,15 @@ impl<F: Real> Oscillator<F> {
     #[inline]
     pub fn jerk_bound(&self, x: F, v: F) -> F {
         self.jerk_factor * self.speed_bound(x, v)
+    }
+
+    /// A bound of |v⃛| that holds for the whole free motion from (x, v) on,
+    /// rad/s⁴: v⃛ = −ωn²·v̇ − 2a·v̈, and |v̇| is at most ωn + 2a times the speed
+    /// bound.
+    pub fn snap_bound(&self, x: F, v: F) -> F {
+        let two_a = F::TWO * self.decay;
+        self.omega_n_squared * (self.omega_n + two_a) * self.speed_bound(x, v)
+            + two_a * self.jerk_bound(x, v)
     }
 
     /// (C − 1, S) of the module's equations.
@@ -277,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn the_jerk_bound_bounds() {
+    fn the_bounds_bound() {
         for damping_ratio in [0.0, 0.3, 1.0, 2.0] {
             let (p, o) = with(damping_ratio);
             let bound = o.jerk_bound(3e-4, -0.2);
@@ -287,6 +291,10 @@ mod tests {
                 let jerk =
                     -(p.stiffness_nm_per_rad * v + p.damping_nms_per_rad * a) / p.inertia_kg_m2;
                 assert!(jerk.abs() <= bound * (1.0 + 1e-12));
+                let snap =
+                    -(p.stiffness_nm_per_rad * a + p.damping_nms_per_rad * jerk) / p.inertia_kg_m2;
+                assert!(snap.abs() <= o.snap_bound(3e-4, -0.2) * (1.0 + 1e-12));
+                assert!(v.abs() <= o.speed_bound(3e-4, -0.2) * (1.0 + 1e-12));
             }
         }
     }

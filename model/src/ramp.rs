@@ -62,7 +62,9 @@ impl<F: Real> Ramp<F> {
         let largest_nm = change(from.kinetic_nm, to.kinetic_nm)
             .at_least(change(from.static_nm, to.static_nm))
             .at_least(softer_nm);
-        let ticks = libm::ceil(largest_nm / (slew_nm_per_s * from.step_s.to_f64())).at_least(1.0);
+        let ticks = largest_nm / (slew_nm_per_s * from.step_s.to_f64());
+        // A tick rounded to f32 must not make a ramp one tick longer.
+        let ticks = libm::ceil(ticks * (1.0 - 1e-6)).at_least(1.0);
         let per_tick = 1.0 / ticks;
         Self {
             from,

@@ -11,7 +11,7 @@ use core::marker::PhantomData;
 use crate::active::Active;
 use crate::compensated::Compensated;
 use crate::event::{EVENTS_PER_STEP, Event};
-use crate::locate::{Locate, SlipPath, StickPath, first_break};
+use crate::locate::{Locate, SlipPath, StickPath, earlier, first_break};
 use crate::phase::{EventKind, Phase, Sense};
 use crate::propagate::Propagate;
 use crate::real::Real;
@@ -163,21 +163,51 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
 
     /// The first break in what is left of the step.
     fn find_break(&self, path: &ShaftPath<F>, theta: F, here: &Here<F>) -> Option<(F, Sense)> {
-        let a = &self.active;
         let stick = self.stick_path(path, theta, here);
-        let length_s = a.step_s - here.time_s;
-        let (after_s, sense) = first_break::<F, L>(&stick, a.static_nm, length_s)?;
+        let length_s = self.active.step_s - here.time_s;
+        let (after_s, sense) = first_break::<F, L>(&stick, self.active.static_nm, length_s)?;
         let omega = path.omega(here.time_s + after_s);
         if self.slips(sense, stick.at(after_s), omega, path.omega_dot) {
             return Some((after_s, sense));
         }
-        // Held at the limit: the slip begins when the true torque reaches Tk.
-        let mut later = stick.from(after_s);
-        later.torque_nm +=
-            Physical::inertial(a, omega, path.omega_dot) - C::inertial(a, omega, path.omega_dot);
-        later.rate += a.damping * path.omega_dot;
-        L::break_time(&later, sense, a.kinetic_nm, length_s - after_s)
-            .map(|more_s| (after_s + more_s, sense))
+        earlier(
+            self.held_break(Sense::Positive, &stick, path, here),
+            self.held_break(Sense::Negative, &stick, path, here),
+        )
+    }
+
+    /// The first break in `sense` of a stick that may have to be held: at its
+    /// limit it waits for the true torque to reach Tk, unless the spring comes
+    /// back below the limit first.
+    fn held_break(
+        &self,
+        sense: Sense,
+        stick: &StickPath<F>,
+        path: &ShaftPath<F>,
+        here: &Here<F>,
+    ) -> Option<(F, Sense)> {
+        // A parabola is above a limit in two stretches at most.
+        const STRETCHES: u32 = 2;
+        let a = &self.active;
+        let length_s = a.step_s - here.time_s;
+        let mut from_s = F::ZERO;
+        for _ in 0..STRETCHES {
+            let left_s = length_s - from_s;
+            from_s += L::break_time(&stick.from(from_s), sense, a.static_nm, left_s)?;
+            let omega = path.omega(here.time_s + from_s);
+            if self.slips(sense, stick.at(from_s), omega, path.omega_dot) {
+                return Some((from_s, sense));
+            }
+            let mut truth = stick.from(from_s);
+            truth.torque_nm += Physical::inertial(a, omega, path.omega_dot)
+                - C::inertial(a, omega, path.omega_dot);
+            truth.rate += a.damping * path.omega_dot;
+            from_s += L::break_time(&truth, sense, a.kinetic_nm, length_s - from_s)?;
+            if sense.of_signed(stick.at(from_s)) >= a.static_nm * (F::ONE - F::LIMIT_SLACK) {
+                return Some((from_s, sense));
+            }
+        }
+        None
     }
 
     /// A velocity jump of the shaft at the start of a step: what sticks is

@@ -8,6 +8,15 @@
 //! over any stretch of time, whatever the hand does. An encoder adds half a
 //! count at the limit, Ts·Δ/2: a staircase holds that much more than a slope.
 
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "small numbers, and f32 is what is tested"
+)]
+
+mod support;
+
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::guarded::InputLimits;
 use crepitus_model::locate::ExactEvents;
@@ -187,7 +196,7 @@ fn without_the_guard_a_hand_that_turns_back_in_slips_gets_many_times_the_bound()
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(support::cases(400))]
 
     #[test]
     fn nor_does_any_other_hand(

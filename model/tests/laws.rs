@@ -1,5 +1,7 @@
 //! Laws that hold for every motion and every valid parameter set.
 
+mod support;
+
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
     Convention, EVENTS_PER_STEP, Parameters, Phase, Real, Settings, ShaftStep, StickSlip,
@@ -134,7 +136,7 @@ fn check<F: Real>(settings: Settings, solver: Solver, steps: &[ShaftStep<f64>]) 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 5000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(support::cases(5000))]
 
     #[test]
     fn torque_is_bounded_events_are_ordered_and_the_mirror_is_exact(

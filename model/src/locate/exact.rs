@@ -75,22 +75,26 @@ fn search<F: Real, P: Propagate<F>>(slip: &SlipPath<'_, F, P>, length_s: F, boun
     let mut time_s = F::ZERO;
     let (mut x, mut v) = (slip.x, slip.v);
     for _ in 0..SEARCH_STEPS {
-        let omega = slip.omega + slip.omega_dot * time_s;
+        let gained = slip.omega_dot * time_s;
+        let omega = slip.omega + gained;
         let v_dot = slip.oscillator.acceleration(x, v);
         let g = slip.sense.of_signed(omega - v).at_least(F::ZERO);
         let g_dot = slip.sense.of_signed(slip.omega_dot - v_dot);
-        let noise = rounding * (omega.abs() + slip.oscillator.speed_bound(x, v));
+        // Ω may be the small difference of two large numbers.
+        let size = slip.omega.abs() + gained.abs() + slip.oscillator.speed_bound(x, v);
+        let noise = rounding * size;
         let advance = if g <= noise {
             if g_dot.abs() <= rounding * (slip.omega_dot.abs() + v_dot.abs()) {
                 // A touch: the velocities meet without crossing. Leave it, if
-                // they part again; a quarter radian of swing is surely apart.
+                // they part again: g ≥ g̈·d²/2 − |g⃛|·d³/6 stays above zero up
+                // to d = 3·g̈/|g⃛|.
                 let parting = slip
                     .sense
                     .of_signed(-slip.oscillator.acceleration(v, v_dot));
                 if parting <= F::ZERO {
                     return Some(time_s);
                 }
-                slip.oscillator.quarter_radian_s()
+                F::from_f64(3.0) * parting / slip.oscillator.snap_bound(x, v)
             } else if g_dot < F::ZERO {
                 return Some(time_s);
             } else {

@@ -286,6 +286,7 @@ impl<'a> Reference<'a> {
     fn slip(&mut self, sense: Sense, theta: f64, v: f64) -> Slip {
         let p = &self.settings.parameters;
         let drop = p.static_torque_nm - p.kinetic_torque_nm;
+        let x = theta - sense.of_signed(self.kinetic_angle_rad);
         let end_s = if self.settings.convention == Convention::Frozen {
             // Eqs. (10)–(11).
             let relative = sense.of_signed(v).max(0.0);
@@ -303,14 +304,25 @@ impl<'a> Reference<'a> {
             start_s: self.time_s,
             // A slip that begins with a touch does not end with it.
             apart_s: if self.touches() {
-                self.time_s + self.oscillator.quarter_radian_s()
+                self.apart_s(sense, x, v)
             } else {
                 self.time_s
             },
             end_s,
-            x: theta - sense.of_signed(self.kinetic_angle_rad),
+            x,
             v,
         }
+    }
+
+    /// Until when velocities that touch now without crossing are surely apart,
+    /// if they part: g ≥ g̈·d²/2 − |g⃛|·d³/6 is above zero up to 3·g̈/|g⃛|.
+    fn apart_s(&self, sense: Sense, x: f64, v: f64) -> f64 {
+        let shaft = self.shaft();
+        let v_dot = self.oscillator.acceleration(x, v);
+        let parting = sense.of_signed(shaft.omega_ddot - self.oscillator.acceleration(v, v_dot));
+        let bounds = self.piece.bounds(self.time_s, self.piece.end_s);
+        let snap = bounds.omega_dddot + self.oscillator.snap_bound(x, v);
+        self.time_s + (3.0 * parting / snap).max(0.0)
     }
 
     /// Ends a slip now: in stick, in slip of the other sense, or in a touch.
@@ -349,7 +361,7 @@ impl<'a> Reference<'a> {
             // and nothing is felt or reported.
             let slip = self.slip(sense, theta, shaft.omega_rad_s);
             self.state = State::Slip(Slip {
-                apart_s: self.time_s + self.oscillator.quarter_radian_s(),
+                apart_s: self.apart_s(sense, slip.x, slip.v),
                 ..slip
             });
             return;

@@ -2,7 +2,7 @@
 
 use super::first_root::{Sample, first_root};
 use super::{Reference, SLACK};
-use crepitus_model::locate::{ExactEvents, StickPath, first_break};
+use crepitus_model::locate::{ExactEvents, StickPath, earlier, first_break};
 use crepitus_model::{Convention, Sense};
 use crepitus_plant::ShaftState;
 
@@ -75,10 +75,7 @@ impl Reference<'_> {
             self.reaches(anchor, physical, (sense, limit), (from_s, to_s))
                 .map(|t| (t, sense))
         };
-        match (at(Sense::Positive), at(Sense::Negative)) {
-            (Some(p), Some(n)) => Some(if n.0 < p.0 { n } else { p }),
-            (p, n) => p.or(n),
-        }
+        earlier(at(Sense::Positive), at(Sense::Negative))
     }
 
     /// The next break of a stick up to `to_s`.
@@ -88,20 +85,38 @@ impl Reference<'_> {
         if self.settings.convention != Convention::Paper {
             return Some(first);
         }
-        let limit = self.settings.parameters.static_torque_nm;
-        // `paper`: a slip cannot begin while the shaft brakes too hard for it;
-        // until the true torque reaches Tk the stick is held at its limit.
-        let (mut time_s, sense) = first;
+        let shaft = self.piece.at(first.0);
+        if self.slips(theta, phi, &shaft, first.1) {
+            return Some(first);
+        }
+        earlier(
+            self.held_break(anchor, Sense::Positive, to_s),
+            self.held_break(anchor, Sense::Negative, to_s),
+        )
+    }
+
+    /// Whether the true torque of a stick is at least Tk in `sense`.
+    fn slips(&self, theta: f64, phi: f64, shaft: &ShaftState, sense: Sense) -> bool {
+        let (torque, _) = self.torque_and_rate((theta, phi), true, shaft);
         let kinetic = self.settings.parameters.kinetic_torque_nm;
+        sense.of_signed(torque) >= kinetic * (1.0 - SLACK)
+    }
+
+    /// The next break in `sense` of a `paper` stick: a slip cannot begin while
+    /// the shaft brakes too hard for it, and until the true torque reaches Tk
+    /// the stick is held at its limit.
+    fn held_break(&self, anchor: (f64, f64), sense: Sense, to_s: f64) -> Option<(f64, Sense)> {
+        let limit = self.settings.parameters.static_torque_nm;
+        let kinetic = self.settings.parameters.kinetic_torque_nm;
+        let mut time_s = self.time_s;
         loop {
-            let slips_s = self.reaches(anchor, true, (sense, kinetic), (time_s, to_s))?;
-            let shaft = self.piece.at(slips_s);
-            let torque = sense.of_signed(self.stick_torque(theta, phi, &shaft));
-            if torque >= limit * (1.0 - SLACK) {
-                return Some((slips_s, sense));
+            // At the limit, or below it again since the spring came back.
+            time_s = self.reaches(anchor, false, (sense, limit), (time_s, to_s))?;
+            time_s = self.reaches(anchor, true, (sense, kinetic), (time_s, to_s))?;
+            let (torque, _) = self.torque_and_rate(anchor, false, &self.piece.at(time_s));
+            if sense.of_signed(torque) >= limit * (1.0 - SLACK) {
+                return Some((time_s, sense));
             }
-            // Meanwhile the spring fell below the limit: look for it again.
-            time_s = self.reaches(anchor, false, (sense, limit), (slips_s, to_s))?;
         }
     }
 }

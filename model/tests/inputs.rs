@@ -1,0 +1,365 @@
+//! Inputs that are no input: whatever the sensor delivers, the joint stays
+//! valid, and its torque is held and then let go of.
+
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "small numbers, and f32 is what is tested"
+)]
+
+mod support;
+
+use crepitus_model::guarded::{CATCH_UP_TICKS, InputLimits};
+use crepitus_model::solver::{JointVisitor, Solver, with_joint};
+use crepitus_model::{
+    Convention, EVENTS_PER_STEP, Guarded, Phase, Real, Sample, Settings, ShaftStep, StickSlip,
+};
+use proptest::prelude::*;
+
+const TICK_S: f64 = 5e-5;
+const OMEGA: f64 = 0.9;
+
+fn step<F: Real>(delta_phi: f64, start: f64, end: f64) -> ShaftStep<F> {
+    ShaftStep {
+        delta_phi_rad: F::from_f64(delta_phi),
+        omega_start_rad_s: F::from_f64(start),
+        omega_end_rad_s: F::from_f64(end),
+    }
+}
+
+fn good<F: Real>() -> Sample<F> {
+    Sample::Taken(step(OMEGA * TICK_S, OMEGA, OMEGA))
+}
+
+/// What no shaft can have done.
+fn impossible<F: Real>() -> Vec<Sample<F>> {
+    let (nan, inf) = (f64::NAN, f64::INFINITY);
+    let d = OMEGA * TICK_S;
+    [
+        step(nan, OMEGA, OMEGA),
+        step(inf, OMEGA, OMEGA),
+        step(-inf, OMEGA, OMEGA),
+        step(d, nan, OMEGA),
+        step(d, OMEGA, nan),
+        step(d, inf, OMEGA),
+        step(d, OMEGA, -inf),
+        step(d, nan, nan),
+        // A radian, or 20,000 rad/s, in one tick.
+        step(1.0, OMEGA, OMEGA),
+        step(-1.0, OMEGA, OMEGA),
+        step(d, 60.0, 60.0),
+        step(d, OMEGA, -60.0),
+        step(d, OMEGA, OMEGA + 11.0),
+    ]
+    .map(Sample::Taken)
+    .to_vec()
+}
+
+/// Something to do with a guarded joint of every rung.
+trait Trial {
+    fn run<F: Real, J: StickSlip<F>>(&self, name: &str, joint: Guarded<F, J>);
+}
+
+struct Start<'a, T>(&'a T, String);
+
+impl<F: Real, T: Trial> JointVisitor<F> for Start<'_, T> {
+    type Output = ();
+
+    fn visit<J: StickSlip<F>>(self, joint: J) {
+        let guarded = Guarded::new(joint, InputLimits::device(TICK_S), F::from_f64(OMEGA));
+        self.0.run(&self.1, guarded);
+    }
+}
+
+fn on_every_rung(trial: &impl Trial) {
+    for convention in Convention::ALL {
+        for solver in Solver::ALL {
+            if solver.refusal(convention).is_some() {
+                continue;
+            }
+            let settings = Settings {
+                convention,
+                ..Settings::default()
+            };
+            let valid = settings.validate().unwrap();
+            let name = format!("{} {}", convention.name(), solver.name());
+            let (single, double) = (
+                Start(trial, format!("{name} f32")),
+                Start(trial, format!("{name} f64")),
+            );
+            with_joint::<f32, _>(&valid, solver, TICK_S, OMEGA as f32, single).unwrap();
+            with_joint::<f64, _>(&valid, solver, TICK_S, OMEGA, double).unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_bad_sample_is_counted_held_and_leaves_no_trace() {
+    struct OneBadSample;
+    impl Trial for OneBadSample {
+        fn run<F: Real, J: StickSlip<F>>(&self, name: &str, mut joint: Guarded<F, J>) {
+            for bad in impossible::<F>() {
+                // In stick, in slip, and near the events between them.
+                for _ in 0..7 {
+                    joint.tick(&good(), |_| {});
+                }
+                let before = joint.counters();
+                let (torque, theta) = (joint.torque_nm(), joint.joint().theta_rad());
+                joint.tick(&bad, |_| panic!("{name}: no event"));
+                assert_eq!(joint.torque_nm(), torque, "{name} {bad:?}");
+                assert_eq!(joint.joint().theta_rad(), theta, "{name} {bad:?}");
+                assert_eq!(joint.counters().refused, before.refused + 1, "{bad:?}");
+                assert!(joint.is_holding());
+            }
+            for _ in 0..50_000 {
+                joint.tick(&good(), |_| {});
+                assert!(joint.torque_nm().is_finite() && joint.joint().theta_rad().is_finite());
+            }
+            assert_eq!(joint.counters().lost, 0);
+            assert_eq!(joint.counters().restarts, 0);
+        }
+    }
+    on_every_rung(&OneBadSample);
+}
+
+#[test]
+fn without_a_shaft_the_torque_is_held_for_a_millisecond_and_then_let_go() {
+    struct Silence;
+    impl Trial for Silence {
+        fn run<F: Real, J: StickSlip<F>>(&self, name: &str, mut joint: Guarded<F, J>) {
+            for _ in 0..10 {
+                joint.tick(&good(), |_| {});
+            }
+            let held = joint.torque_nm().to_f64();
+            assert!(held > 0.05, "{name}: {held}");
+            for tick in 1..=200 {
+                joint.tick(&Sample::Lost, |_| {});
+                let expected = (held - 5e-3 * f64::from((tick - 20).max(0))).max(0.0);
+                let shown = joint.torque_nm().to_f64();
+                assert!(
+                    (shown - expected).abs() < 1e-6,
+                    "{name} tick {tick}: {shown}"
+                );
+            }
+            assert_eq!(joint.torque_nm(), F::ZERO);
+            assert_eq!(joint.counters().lost, 200);
+            // The shaft comes back far away: a new stick, from what is shown.
+            joint.tick(&good(), |_| {});
+            assert_eq!(joint.joint().phase(), Phase::Stick, "{name}");
+            assert!(joint.torque_nm().abs().to_f64() < 1e-6, "{name}");
+            assert_eq!(joint.counters().restarts, 1);
+            let mut last = joint.torque_nm().to_f64();
+            for _ in 0..5 {
+                joint.tick(&good(), |_| {});
+                let now = joint.torque_nm().to_f64();
+                assert!((now - last - 0.018).abs() < 2e-3, "{name}: {last} {now}");
+                last = now;
+            }
+        }
+    }
+    on_every_rung(&Silence);
+}
+
+struct Negative;
+impl JointVisitor<f32> for Negative {
+    type Output = ();
+    fn visit<J: StickSlip<f32>>(self, joint: J) {
+        let mut joint = Guarded::new(joint, InputLimits::device(TICK_S), -0.9);
+        for _ in 0..10 {
+            joint.tick(&Sample::Taken(step(-0.9 * TICK_S, -0.9, -0.9)), |_| {});
+        }
+        let held = joint.torque_nm();
+        for _ in 0..30 {
+            joint.tick(&Sample::Lost, |_| {});
+        }
+        assert!((joint.torque_nm() - (held + 0.05)).abs() < 1e-6);
+        joint.let_go();
+        assert_eq!(joint.torque_nm(), 0.0);
+    }
+}
+
+#[test]
+fn a_negative_torque_is_let_go_of_upwards() {
+    let valid = Settings::default().validate().unwrap();
+    with_joint::<f32, _>(&valid, Solver::ExactEvents, TICK_S, -0.9, Negative).unwrap();
+}
+
+#[test]
+fn a_few_missing_samples_are_made_up_for() {
+    // A lost sample is a step of double length: angle and time are exact.
+    struct Gaps {
+        missing: u32,
+    }
+    impl JointVisitor<f64> for Gaps {
+        type Output = Vec<f64>;
+        fn visit<J: StickSlip<f64>>(self, joint: J) -> Vec<f64> {
+            let mut joint = Guarded::new(joint, InputLimits::device(TICK_S), OMEGA);
+            let (mut times, mut seen) = (Vec::new(), 0_u32);
+            for tick in 1..=40_000_u32 {
+                if self.missing > 0 && tick % 7 < self.missing {
+                    joint.tick(&Sample::Lost, |_| panic!("no event without a shaft"));
+                    continue;
+                }
+                let ticks = f64::from(tick - seen);
+                let shaft = step(OMEGA * TICK_S * ticks, OMEGA, OMEGA);
+                joint.tick(&Sample::Taken(shaft), |event| {
+                    times.push((f64::from(seen) + event.fraction * ticks) * TICK_S);
+                });
+                seen = tick;
+            }
+            assert_eq!(joint.counters().restarts, 0);
+            times
+        }
+    }
+    for convention in Convention::ALL {
+        let settings = Settings {
+            convention,
+            ..Settings::default()
+        };
+        let valid = settings.validate().unwrap();
+        let run = |missing| {
+            with_joint::<f64, _>(&valid, Solver::ExactEvents, TICK_S, OMEGA, Gaps { missing })
+                .unwrap()
+        };
+        let whole = run(0);
+        assert!(whole.len() > 120);
+        for missing in 1..=CATCH_UP_TICKS {
+            let with_gaps = run(missing);
+            assert_eq!(with_gaps.len(), whole.len());
+            for (a, b) in with_gaps.iter().zip(&whole) {
+                assert!((a - b).abs() < 1e-12, "{convention:?} {missing}: {a} {b}");
+            }
+        }
+    }
+}
+
+struct Crowd;
+impl JointVisitor<f64> for Crowd {
+    type Output = u32;
+    fn visit<J: StickSlip<f64>>(self, joint: J) -> u32 {
+        let mut joint = Guarded::new(joint, InputLimits::device(TICK_S), 20.0);
+        for _ in 0..10 {
+            let mut events = 0;
+            let shaft = step(20.0 * TICK_S, 20.0, 20.0);
+            joint.tick(&Sample::Taken(shaft), |_| events += 1);
+            assert!(events <= EVENTS_PER_STEP);
+        }
+        joint.counters().crowded_steps
+    }
+}
+
+#[test]
+fn a_step_longer_than_a_stick_and_a_crowded_step_are_counted() {
+    struct Fast;
+    impl Trial for Fast {
+        fn run<F: Real, J: StickSlip<F>>(&self, name: &str, mut joint: Guarded<F, J>) {
+            // A stick lasts 1 mrad: 20 rad/s at this tick, and not 19.
+            let at = |omega: f64| Sample::Taken(step::<F>(omega * TICK_S, omega, omega));
+            joint.tick(&at(9.0), |_| {});
+            joint.tick(&at(18.9), |_| {});
+            assert_eq!(joint.counters().long_steps, 0, "{name}");
+            joint.tick(&at(20.1), |_| {});
+            assert_eq!(joint.counters().long_steps, 1, "{name}");
+            assert_eq!(joint.counters().crowded_steps, 0, "{name}");
+        }
+    }
+    on_every_rung(&Fast);
+
+    // A light, stiff object: more cycles in a tick than a step reports.
+    let mut settings = Settings::default();
+    settings.parameters.inertia_kg_m2 = 1e-9;
+    settings.parameters.stiffness_nm_per_rad = 4e5;
+    let valid = settings.validate().unwrap();
+    let crowded = with_joint::<f64, _>(&valid, Solver::ExactEvents, TICK_S, 20.0, Crowd);
+    assert_eq!(crowded.unwrap(), 10);
+}
+
+#[test]
+fn subnormal_numbers_are_rest() {
+    struct Subnormal;
+    impl Trial for Subnormal {
+        fn run<F: Real, J: StickSlip<F>>(&self, name: &str, mut joint: Guarded<F, J>) {
+            for _ in 0..20 {
+                joint.tick(&Sample::Taken(step(0.0, 0.0, 0.0)), |_| {});
+            }
+            let (torque, phase) = (joint.torque_nm(), joint.joint().phase());
+            let tiny = F::HALF * F::AT_REST;
+            let crawl = ShaftStep {
+                delta_phi_rad: tiny,
+                omega_start_rad_s: tiny,
+                omega_end_rad_s: -tiny,
+            };
+            for _ in 0..1000 {
+                joint.tick(&Sample::Taken(crawl), |_| {});
+            }
+            if phase == Phase::Stick {
+                assert_eq!(joint.torque_nm(), torque, "{name}");
+            }
+        }
+    }
+    on_every_rung(&Subnormal);
+}
+
+/// Any bit pattern, and shafts that are nearly possible.
+fn any_sample() -> impl Strategy<Value = Sample<f32>> {
+    let number = prop_oneof![
+        any::<u32>().prop_map(f32::from_bits),
+        -60.0..60.0_f32,
+        Just(-0.0),
+        Just(f32::MIN_POSITIVE / 4.0),
+    ];
+    let shaft = (number.clone(), number.clone(), number, any::<bool>());
+    prop_oneof![
+        1 => Just(Sample::Lost),
+        4 => shaft.prop_map(|(d, a, b, scale)| {
+            Sample::Taken(ShaftStep {
+                delta_phi_rad: if scale { d * TICK_S as f32 } else { d },
+                omega_start_rad_s: a,
+                omega_end_rad_s: b,
+            })
+        }),
+        4 => (-50.0..50.0_f32).prop_map(|w| {
+            Sample::Taken(ShaftStep {
+                delta_phi_rad: w * TICK_S as f32,
+                omega_start_rad_s: w,
+                omega_end_rad_s: w,
+            })
+        }),
+    ]
+}
+
+proptest! {
+    #![proptest_config(support::cases(500))]
+
+    #[test]
+    fn nothing_poisons_a_guarded_joint(samples in prop::collection::vec(any_sample(), 1..200)) {
+        struct Any<'a>(&'a [Sample<f32>]);
+        impl JointVisitor<f32> for Any<'_> {
+            type Output = ();
+            fn visit<J: StickSlip<f32>>(self, joint: J) {
+                let mut joint = Guarded::new(joint, InputLimits::device(TICK_S), 0.0);
+                for sample in self.0 {
+                    let mut events = 0;
+                    joint.tick(sample, |event| {
+                        events += 1;
+                        assert!((0.0..=1.0).contains(&event.fraction));
+                    });
+                    assert!(events <= EVENTS_PER_STEP * (CATCH_UP_TICKS as usize + 1));
+                    assert!(joint.torque_nm().abs() <= 0.4);
+                    assert!(joint.joint().theta_rad().is_finite());
+                    assert!(joint.joint().theta_dot_rad_s().is_finite());
+                }
+            }
+        }
+        for convention in Convention::ALL {
+            let settings = Settings { convention, ..Settings::default() };
+            let valid = settings.validate().unwrap();
+            for solver in Solver::ALL {
+                if solver.refusal(convention).is_none() {
+                    with_joint::<f32, _>(&valid, solver, TICK_S, 0.0, Any(&samples)).unwrap();
+                }
+            }
+        }
+    }
+}
