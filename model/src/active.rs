@@ -178,6 +178,14 @@ impl<F: Real> Active<F> {
         self.drop_nm <= F::LIMIT_SLACK * self.static_nm
     }
 
+    /// What a torque may miss the limit by where velocities touch, N·m: a
+    /// touch is known to the root of the rounding of the velocities only, and
+    /// √(J·kr)·Ω is what a velocity is worth.
+    #[inline]
+    pub fn touch_slack_nm(&self, omega_rad_s: F) -> F {
+        F::TOUCH_SLACK * (self.static_nm + self.impedance * omega_rad_s.abs())
+    }
+
     /// Whether the shaft moves further in this step than a whole stick lasts,
     /// 2(Ts − Tk)/kr: sticks may then begin and end within one step, and a
     /// solver that looks only at its ends does not see them.

@@ -51,7 +51,8 @@ pub trait Real:
     /// far above the rounding of one cycle and far below what a hand can feel.
     const LIMIT_SLACK: Self;
     /// Relative slack of a touch. With Ts = Tk the velocities meet without
-    /// crossing, and such a time is known to the root of the rounding only.
+    /// crossing, and such a time is known to the root of the rounding only:
+    /// see [`Active::touch_slack_nm`](crate::Active::touch_slack_nm).
     const TOUCH_SLACK: Self;
     /// Below this a number is at rest. Far below anything that matters, and
     /// far above the subnormal numbers that a decay would otherwise end in,

@@ -258,7 +258,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
         // With Ts = Tk the stick would break where it begins.
         let breaks_at_once = a.touches()
             && !beyond
-            && sense.of_signed(stick.torque_nm) >= limit * (F::ONE - F::TOUCH_SLACK)
+            && sense.of_signed(stick.torque_nm) >= limit - a.touch_slack_nm(here.omega)
             && sense.of_signed(stick.rate) >= F::ZERO;
         if slips.is_some() || breaks_at_once {
             // A touch: the velocities meet and part again. The slip goes on,

@@ -282,6 +282,12 @@ impl<'a> Reference<'a> {
         self.state = State::Slip(slip);
     }
 
+    /// As [`touch_slack_nm`](crepitus_model::Active::touch_slack_nm).
+    fn touch_slack_nm(&self, omega_rad_s: f64) -> f64 {
+        let limit = self.settings.parameters.static_torque_nm;
+        f64::TOUCH_SLACK * (limit + self.impedance * omega_rad_s.abs())
+    }
+
     /// A slip that begins now.
     fn slip(&mut self, sense: Sense, theta: f64, v: f64) -> Slip {
         let p = &self.settings.parameters;
@@ -354,7 +360,7 @@ impl<'a> Reference<'a> {
         // With Ts = Tk the stick would break where it begins.
         let breaks_at_once = self.touches()
             && !beyond
-            && sense.of_signed(required) >= limit * (1.0 - <f64 as Real>::TOUCH_SLACK)
+            && sense.of_signed(required) >= limit - self.touch_slack_nm(shaft.omega_rad_s)
             && sense.of_signed(shaft.omega_rad_s) > 0.0;
         if slips.is_some() || breaks_at_once {
             // A touch: the velocities meet and part again. The slip goes on,
