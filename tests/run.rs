@@ -147,6 +147,33 @@ fn options_change_the_scene() {
 }
 
 #[test]
+fn a_solver_that_diverges_is_exit_code_1_and_writes_nothing() {
+    let home = tempfile::tempdir().unwrap();
+    let out = home.path().join("out");
+    let output = crepitus(&[
+        "run",
+        "knee-pass-physical",
+        "--solver",
+        "euler",
+        "--step",
+        "5e-5",
+        "--set",
+        "effects.crepitus.inertia_kg_m2=1e-5",
+        "--set",
+        "effects.crepitus.stiffness_nm_per_rad=4e4",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(
+        said.contains("\"euler\" diverged") && said.contains("ωn·h = 3.162"),
+        "{said}"
+    );
+    assert!(!out.exists());
+}
+
+#[test]
 fn bad_input_is_exit_code_2_and_writes_nothing() {
     let home = tempfile::tempdir().unwrap();
     let bad = home.path().join("bad.toml");

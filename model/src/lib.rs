@@ -29,6 +29,7 @@
 //! | how the end of a phase is found | [`locate`] |
 //! | which of these a scene or a firmware selects | [`solver`] |
 //! | what the device adds: no input poisons it, parameters change under way | [`renderer`], [`guarded`], [`ramp`], [`turn_back`] |
+//! | what the hand gets back of its work | [`energy_observer`] |
 //! | counts of the motor encoder to angle and speed | [`encoder`] |
 #![no_std]
 #![forbid(unsafe_code)]
@@ -57,6 +58,7 @@ extern crate std;
 pub mod active;
 pub mod compensated;
 pub mod encoder;
+pub mod energy_observer;
 mod event;
 pub mod frozen;
 pub mod guarded;
@@ -79,6 +81,7 @@ pub mod turn_back;
 pub mod velocity_match;
 
 pub use active::Active;
+pub use energy_observer::EnergyObserver;
 pub use event::{EVENTS_PER_STEP, Event};
 pub use frozen::Frozen;
 pub use guarded::{Guarded, Sample};

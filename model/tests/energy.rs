@@ -21,47 +21,10 @@ use crepitus_model::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::guarded::InputLimits;
 use crepitus_model::locate::ExactEvents;
 use crepitus_model::presets::PRESETS;
-use crepitus_model::{Active, Parameters, Renderer, Sample, Settings, ShaftStep};
+use crepitus_model::{Active, EnergyObserver, Parameters, Renderer, Sample, Settings, ShaftStep};
 use proptest::prelude::*;
 
 const TICK_S: f64 = 5e-5;
-
-/// Keeps the books of the hand: the torque of a tick acts `delay` + 1 ticks
-/// later, and is held for one.
-struct Hand {
-    parameters: Parameters,
-    /// Torques on their way, the next to act first.
-    line: Vec<f64>,
-    /// Work put in, plus what sampling may give away: never falls by more than
-    /// the spring holds.
-    allowed_j: f64,
-    peak_j: f64,
-    worst: f64,
-}
-
-impl Hand {
-    fn new(parameters: Parameters, delay: usize) -> Self {
-        Self {
-            parameters,
-            line: vec![0.0; delay + 1],
-            allowed_j: 0.0,
-            peak_j: 0.0,
-            worst: 0.0,
-        }
-    }
-
-    /// The hand moves by `delta_phi`; then the torque of that tick is known.
-    fn tick(&mut self, delta_phi: f64, shown_nm: f64) {
-        let p = &self.parameters;
-        let delay = self.line.len() as f64 - 1.0;
-        let sampling = (0.5 + delay) * p.stiffness_nm_per_rad * delta_phi * delta_phi;
-        self.allowed_j += self.line.remove(0) * delta_phi + sampling;
-        self.line.push(shown_nm);
-        self.peak_j = self.peak_j.max(self.allowed_j);
-        let stored = p.static_torque_nm.powi(2) / (2.0 * p.stiffness_nm_per_rad);
-        self.worst = self.worst.max((self.peak_j - self.allowed_j) / stored);
-    }
-}
 
 /// What the joint knows of the shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,7 +59,9 @@ fn books(parameters: Parameters, delay: usize, sight: Sight, angles_rad: &[f64])
         encoder.rad_per_count() as f32,
         0.0,
     );
-    let (mut hand, mut unguarded) = (Hand::new(parameters, delay), Hand::new(parameters, delay));
+    let exact = Active::<f64>::new(&settings.validate().unwrap(), TICK_S).unwrap();
+    let mut hand = EnergyObserver::new(&exact, delay);
+    let mut unguarded = hand;
     let mut omega = 0.0;
     for pair in angles_rad.windows(2) {
         let delta_phi = pair[1] - pair[0];
@@ -123,8 +88,8 @@ fn books(parameters: Parameters, delay: usize, sight: Sight, angles_rad: &[f64])
         }
     };
     (
-        hand.worst / (1.0 + counts),
-        unguarded.worst / (1.0 + counts),
+        hand.share() / (1.0 + counts),
+        unguarded.share() / (1.0 + counts),
     )
 }
 

@@ -73,6 +73,25 @@ pub enum RunError<E> {
     /// Settings that do not go together.
     #[error(transparent)]
     Settings(#[from] SettingsError),
+    /// The solver is not stable with this step.
+    #[error(transparent)]
+    Diverged(#[from] Diverged),
+}
+
+/// The object's state is no number any more: the solver is not stable with
+/// this step.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "solver \"{solver}\" diverged: by t = {by_s} s the object's state is no number. ωn·h = {radians_per_step:.3} \
+     with this step; choose a shorter one, or a solver that propagates exactly"
+)]
+pub struct Diverged {
+    /// Which one.
+    pub solver: &'static str,
+    /// When it was noticed, s.
+    pub by_s: f64,
+    /// ωn·h, what decides on its stability.
+    pub radians_per_step: f64,
 }
 
 /// The totals of a run before they are put into words.

@@ -79,7 +79,10 @@ fn simulate(
         RunError::Observer(WatchError::Interrupted) => {
             Failure::Work("interrupted: nothing was written".to_owned())
         }
-        other => Failure::Work(format!("{}: {other:?}", scene.file.display())),
+        RunError::Settings(e) => Failure::Input(format!("{}: {e}", scene.file.display())),
+        RunError::Diverged(e) => Failure::Work(format!("{}: {e}", scene.file.display())),
+        // A kind of error that did not exist when this was written.
+        _ => Failure::Work(format!("{}: the run failed", scene.file.display())),
     })?;
     runner::measure_costs(scene, &mut summary);
     let figures = watch

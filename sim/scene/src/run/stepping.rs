@@ -2,7 +2,7 @@
 
 use super::sensor::{Encoded, Ideal, Sensor, Shaft};
 use super::tally::{StickEnd, Tally};
-use super::{Clock, Observer, RunError, Totals, steps};
+use super::{Clock, Diverged, Observer, RunError, Totals, steps};
 use crate::scene::Scene;
 use crate::trace::EventRecord;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
@@ -11,6 +11,9 @@ use crepitus_plant::{Motion, Piece};
 
 /// How many steps go by between two reports of progress.
 const PROGRESS_STEPS: u64 = 1 << 16;
+
+/// How many steps go by between two looks at the state.
+const CHECK_STEPS: u64 = 1 << 10;
 
 /// Chooses the types that the scene calls for, and runs.
 pub(super) fn simulate<F: Real, O: Observer>(
@@ -169,6 +172,15 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
                 ]);
                 sensor.write(&mut row);
                 observer.row(&row).map_err(RunError::Observer)?;
+            }
+            if (walk.n.is_multiple_of(CHECK_STEPS) || walk.n == steps)
+                && !(joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite())
+            {
+                return Err(RunError::Diverged(Diverged {
+                    solver: scene.solver.name(),
+                    by_s: walk.time_s,
+                    radians_per_step: settings.parameters.natural_rad_s() * step_s,
+                }));
             }
             if walk.n.is_multiple_of(PROGRESS_STEPS) {
                 observer.progress(walk.time_s).map_err(RunError::Observer)?;
