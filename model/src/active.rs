@@ -6,6 +6,9 @@ use crate::settings::{Restart, Settings, SettingsError, Validated};
 use crate::shaft::ShaftStep;
 use crate::ticks::Ticks;
 
+/// The longest step, s.
+pub const LONGEST_STEP_S: f64 = 1.0;
+
 /// Settings turned into the numbers of one step length.
 ///
 /// Everything is computed in f64 and rounded once, so an f32 joint starts
@@ -94,10 +97,10 @@ impl<F: Real> Active<F> {
     /// The numbers for a step of `step_s`.
     ///
     /// # Errors
-    /// [`SettingsError::Step`] if the step is not positive and finite, or
-    /// above 1000 s.
+    /// [`SettingsError::Step`] if the step is not positive, or above
+    /// [`LONGEST_STEP_S`].
     pub fn new(settings: &Validated<Settings>, step_s: f64) -> Result<Self, SettingsError> {
-        if !(step_s > 0.0 && step_s <= 1e3) {
+        if !(step_s > 0.0 && step_s <= LONGEST_STEP_S) {
             return Err(SettingsError::Step { step_s });
         }
         let p = &settings.parameters;
@@ -178,6 +181,13 @@ impl<F: Real> Active<F> {
         self.drop_nm <= F::LIMIT_SLACK * self.static_nm
     }
 
+    /// What a torque may be beyond the limit and still count as at it, N·m.
+    /// The spring of a slip swings by √(J·kr)·Ω, and so does its rounding.
+    #[inline]
+    pub fn limit_slack_nm(&self, omega_rad_s: F) -> F {
+        F::LIMIT_SLACK * (self.static_nm + self.impedance * omega_rad_s.abs())
+    }
+
     /// What a torque may miss the limit by where velocities touch, N·m: a
     /// touch is known to the root of the rounding of the velocities only, and
     /// √(J·kr)·Ω is what a velocity is worth.
@@ -238,7 +248,7 @@ mod tests {
     #[test]
     fn steps_that_are_no_step_are_refused() {
         let settings = Settings::default().validate().unwrap();
-        for step_s in [0.0, -1e-3, f64::NAN, f64::INFINITY, 1e4] {
+        for step_s in [0.0, -1e-3, f64::NAN, f64::INFINITY, 1.1] {
             assert!(Active::<f32>::new(&settings, step_s).is_err());
         }
     }

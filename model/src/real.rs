@@ -43,8 +43,9 @@ pub trait Real:
     const TWO: Self;
     /// Distance from 1 to the next larger number.
     const EPSILON: Self;
-    /// Relative slack of the static limit: a required torque within
-    /// `Ts·(1 ± LIMIT_SLACK)` counts as *at* the limit.
+    /// Relative slack of the static limit: a required torque that little
+    /// beyond it counts as *at* the limit, see
+    /// [`Active::limit_slack_nm`](crate::Active::limit_slack_nm).
     ///
     /// Some parameter sets re-stick exactly on the limit (Tk = 0 ends every
     /// slip at −Ts), where rounding decides which side one sees. The slack is

@@ -1,5 +1,6 @@
 //! What people set, and the check that nothing else gets past.
 
+use crate::active::LONGEST_STEP_S;
 use crate::parameters::{PARAMETERS, ParameterSpec, Parameters};
 use core::fmt;
 
@@ -156,7 +157,7 @@ impl fmt::Display for SettingsError {
             Self::Step { step_s } => {
                 write!(
                     f,
-                    "a step of {step_s} s is not allowed: it must be above 0 and at most 1000 s"
+                    "a step of {step_s} s is not allowed: it must be above 0 and at most {LONGEST_STEP_S} s"
                 )
             }
         }

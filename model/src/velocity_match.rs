@@ -245,7 +245,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
         let theta = x + sense.of_signed(a.kinetic_angle_rad);
         let stick = self.stick_path(path, theta, here);
         let limit = a.static_nm;
-        let beyond = stick.torque_nm.abs() > limit * (F::ONE + F::LIMIT_SLACK);
+        let beyond = stick.torque_nm.abs() > limit + a.limit_slack_nm(here.omega);
         // The sense in which it slips on, if stick cannot hold it.
         let slips = Sense::of(stick.torque_nm)
             .filter(|s| beyond && self.slips(*s, stick.torque_nm, here.omega, path.omega_dot));
@@ -281,6 +281,13 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
             torque_before_nm: sense.of_signed(a.kinetic_nm),
             torque_after_nm: a.limited(stick.torque_nm),
         });
+        // Beyond the limit by rounding only: at it, so as not to break at once.
+        let excess = stick.torque_nm - a.limited(stick.torque_nm);
+        let theta = if beyond {
+            theta
+        } else {
+            theta - excess / a.stiffness
+        };
         self.state = self.stick(Compensated::new(theta), here.omega, path.omega_dot);
     }
 

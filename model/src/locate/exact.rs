@@ -96,7 +96,8 @@ fn search<F: Real, P: Propagate<F>>(slip: &SlipPath<'_, F, P>, length_s: F, boun
                 }
                 F::from_f64(3.0) * parting / slip.oscillator.snap_bound(x, v)
             } else if g_dot < F::ZERO {
-                return Some(time_s);
+                // What rounding hides of the way is a straight line.
+                return Some((time_s - g / g_dot).at_most(length_s));
             } else {
                 // A slip that has just begun.
                 F::TWO * g_dot / bound
