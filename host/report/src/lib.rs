@@ -13,7 +13,8 @@
 //! is. What a scene does not have is not drawn.
 //!
 //! [`accuracy`] is the report of the study: work-precision diagrams from its
-//! points.
+//! points. [`stability`] is that of the hard cases: a heat map of the matrix,
+//! and the stories that [`story`] draws.
 
 // Counts become numbers to be drawn; none comes near 2^53.
 #![allow(clippy::cast_precision_loss)]
@@ -43,6 +44,8 @@ mod palette;
 mod picture;
 mod simplify;
 mod spectrum;
+pub mod stability;
+pub mod story;
 mod text;
 mod thinned;
 mod window;

@@ -33,6 +33,8 @@ pub(crate) enum Verb {
     Run(RunArguments),
     /// Show what accuracy costs in time: every solver against the reference.
     Accuracy(AccuracyArguments),
+    /// Try the hard cases on every solver: what holds, and by what margin.
+    Stability(StabilityArguments),
     /// List the scenes that ship, with what each shows.
     Scenes(ScenesArguments),
     /// List the parameter presets, with what each feels like and its source.
@@ -159,6 +161,48 @@ pub(crate) struct AccuracyArguments {
     /// Other steps, in seconds.
     #[arg(long, value_name = "SECONDS,…", value_delimiter = ',', hide = true)]
     pub(crate) steps: Vec<f64>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus stability
+  crepitus stability --case sudden-stop
+  crepitus stability --case H10 --case H16 --solver exact-events --solver rk4
+  crepitus stability --long --out /tmp/stability
+
+Every hard case is put to every solver under every convention, in f32 and f64. A cell of the \
+matrix holds, with the margin that was measured; or degrades: right in kind, a number is above \
+its limit; or fails: something else than the joint was simulated. Some cells must hold; if one \
+does not, the exit code is 1. With one --case, everything about it is printed.")]
+pub(crate) struct StabilityArguments {
+    /// Only this case, by number or name: H05, reversal-in-stick. May be given again.
+    #[arg(long = "case", value_name = "NAME")]
+    pub(crate) cases: Vec<String>,
+
+    /// Only this solver: exact, exact-events, rk4, … May be given again.
+    #[arg(long = "solver", value_name = "KIND")]
+    pub(crate) solvers: Vec<String>,
+
+    /// Only this convention: frozen, paper or physical. May be given again.
+    #[arg(long = "convention", value_name = "CONVENTION")]
+    pub(crate) conventions: Vec<String>,
+
+    /// Only this precision: the device computes in f32.
+    #[arg(long, value_name = "PRECISION", value_parser = ["f32", "f64"])]
+    pub(crate) precision: Option<String>,
+
+    /// Also the cases of hours of simulated time.
+    #[arg(long)]
+    pub(crate) long: bool,
+
+    /// Folder for cases.csv, summary.json and report.html [default: out/stability].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Write the matrix and each picture of the report as an SVG file of its own, too.
+    #[arg(long)]
+    pub(crate) pictures: bool,
 }
 
 #[derive(Debug, Args)]

@@ -16,6 +16,7 @@ fn main() -> ExitCode {
     let result = match &cli.verb {
         Verb::Run(arguments) => verbs::run::run(arguments, cli.json),
         Verb::Accuracy(arguments) => verbs::accuracy::accuracy(arguments, cli.json),
+        Verb::Stability(arguments) => verbs::stability::stability(arguments, cli.json),
         Verb::Scenes(arguments) => verbs::scenes::scenes(arguments, cli.json),
         Verb::Presets => verbs::presets::presets(cli.json),
         Verb::Completions { shell } => verbs::completions::completions(*shell),

@@ -5,3 +5,4 @@ pub(crate) mod completions;
 pub(crate) mod presets;
 pub(crate) mod run;
 pub(crate) mod scenes;
+pub(crate) mod stability;

@@ -9,17 +9,33 @@
 //!
 //! | to find | look in |
 //! |---|---|
-//! | the cases | [`catalogue`] |
+//! | the cases | [`catalogue`], and what they are made of: [`case`], [`input`], [`criterion`] |
 //! | who is put to the test | [`subject`] |
+//! | how a case is run and judged | `source`, `observe`, `books`, `judge` |
 //! | what came of it | [`verdict`], [`matrix`] |
+//! | the file of it | [`cases_csv`] |
+//! | pictures that explain a case | [`story`] |
 
+mod books;
 pub mod case;
+pub mod cases_csv;
 pub mod catalogue;
+pub mod criterion;
+pub mod input;
+mod judge;
 pub mod matrix;
+mod observation;
+mod observe;
+mod random;
+mod source;
+pub mod story;
 pub mod subject;
+mod text;
 pub mod verdict;
 
-pub use case::Case;
-pub use matrix::{Cell, Matrix, Row};
+pub use case::{Case, Trial};
+pub use criterion::Criterion;
+pub use input::Input;
+pub use matrix::{Cell, Matrix, Plan, Row, run};
 pub use subject::Subject;
 pub use verdict::{Failure, Margin, Verdict};

@@ -1,6 +1,13 @@
 //! A hard case: what makes it hard, its exact inputs, and what must hold.
 
+use super::criterion::Criterion;
+use super::input::Input;
 use super::subject::Subject;
+use super::text::Plain;
+use crepitus_model::parameters::PARAMETERS;
+use crepitus_model::solver::Solver;
+use crepitus_model::{Convention, Parameters, Settings};
+use std::fmt::Write;
 
 /// A hard case.
 #[derive(Clone, Debug)]
@@ -19,4 +26,70 @@ pub struct Case {
     pub long: bool,
     /// Which subjects must hold; what the others do is shown.
     pub must: fn(Subject) -> bool,
+    /// What a subject is put through; nothing where the case says nothing
+    /// about it.
+    pub trials: fn(Subject) -> Vec<Trial>,
+}
+
+/// One run of a case and what must hold in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// The joint.
+    pub settings: Settings,
+    /// What drives it.
+    pub input: Input,
+    /// What must hold beside the common bounds.
+    pub criteria: Vec<Criterion>,
+}
+
+impl Trial {
+    /// The joint and its input in words; the joint only where it differs from
+    /// the paper's.
+    pub fn describe(&self) -> String {
+        let p = &self.settings.parameters;
+        let paper = Parameters::default();
+        let mut text = String::new();
+        for ((spec, value), default) in PARAMETERS.iter().zip(p.values()).zip(paper.values()) {
+            if value != default {
+                let value = Plain(value);
+                // Writing to a string cannot fail.
+                let _ = write!(text, "{} = {value} {}, ", spec.symbol, spec.unit);
+            }
+        }
+        text + &self.input.to_string()
+    }
+}
+
+impl Case {
+    /// What goes in, in words: every trial of every subject, none twice.
+    pub fn inputs(&self) -> Vec<String> {
+        self.collect(|trial| vec![trial.describe()])
+    }
+
+    /// What must hold, in words, none twice.
+    pub fn criteria(&self) -> Vec<String> {
+        self.collect(|trial| trial.criteria.iter().map(ToString::to_string).collect())
+    }
+
+    fn collect(&self, texts: impl Fn(&Trial) -> Vec<String>) -> Vec<String> {
+        let mut all = Vec::new();
+        for subject in Subject::all() {
+            for text in (self.trials)(subject).iter().flat_map(&texts) {
+                if !all.contains(&text) {
+                    all.push(text);
+                }
+            }
+        }
+        all
+    }
+}
+
+/// Who must hold unless a case says otherwise: `exact-events` everywhere, and
+/// under `frozen` also `exact-break`, which is the same there.
+pub fn located(subject: Subject) -> bool {
+    match subject.solver {
+        Solver::ExactEvents => true,
+        Solver::ExactBreak => subject.convention == Convention::Frozen,
+        _ => false,
+    }
 }

@@ -1,1 +1,122 @@
-//! The catalogue of hard cases.
+//! The catalogue of hard cases: all of them, as data, in the order of their
+//! numbers.
+//!
+//! H01 to H36 have the numbers of the report on numerics that the design rests
+//! on. A case that ends in `L` is the long sibling of the one before it: hours
+//! of simulated time. To add a case, write a function like its neighbours in
+//! the file of its theme and give it a line in [`all`]; tests, matrix and
+//! report follow.
+
+mod arithmetic;
+mod damping;
+mod encoder;
+mod extremes;
+mod motions;
+mod refusals;
+mod reversals;
+mod steady;
+mod ties;
+mod time;
+mod tools;
+
+use super::case::Case;
+
+/// All cases.
+pub fn all() -> Vec<Case> {
+    vec![
+        steady::constant_speed(),
+        steady::mirror(),
+        steady::rest(),
+        steady::rest_long(),
+        reversals::dwell(),
+        reversals::reversal_in_stick(),
+        reversals::velocity_jumps(),
+        reversals::through_zero(),
+        steady::equal_torques(),
+        steady::nearly_equal_torques(),
+        steady::no_kinetic_friction(),
+        damping::near_critical_damping(),
+        damping::strong_damping(),
+        damping::strong_damping_long(),
+        extremes::stiff(),
+        extremes::light(),
+        extremes::soft_and_strong(),
+        reversals::fast_swing(),
+        reversals::sudden_stop(),
+        reversals::hard_braking(),
+        time::step_length(),
+        refusals::steps(),
+        refusals::parameters(),
+        time::a_day_short(),
+        time::a_day(),
+        time::no_clock(),
+        encoder::counter_wrap(),
+        encoder::quantised_velocity(),
+        encoder::sampling_jitter(),
+        ties::grazing(),
+        ties::simultaneous(),
+        extremes::storm(),
+        extremes::storm_long(),
+        extremes::high_speed(),
+        encoder::hand(),
+        arithmetic::precisions(),
+        arithmetic::golden(),
+    ]
+}
+
+/// Finds a case by its number or its name.
+///
+/// # Errors
+/// Names that look like `wanted`, the likeliest first; all if none does.
+pub fn find(wanted: &str) -> Result<Case, Vec<&'static str>> {
+    let all = all();
+    let wanted = wanted.to_lowercase();
+    if let Some(case) = all
+        .iter()
+        .find(|case| case.name == wanted || case.id.to_lowercase() == wanted)
+    {
+        return Ok(case.clone());
+    }
+    let mut near: Vec<(usize, &'static str)> = all
+        .iter()
+        .map(|case| (distance(case.name, &wanted), case.name))
+        .filter(|(distance, name)| 2 * distance <= name.len() || name.contains(&wanted))
+        .collect();
+    near.sort_unstable();
+    Err(if near.is_empty() {
+        all.iter().map(|case| case.name).collect()
+    } else {
+        near.into_iter().map(|(_, name)| name).collect()
+    })
+}
+
+/// Letters to insert, delete or change to make `a` of `b` (Levenshtein).
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, letter) in a.chars().enumerate() {
+        let mut next = vec![i + 1];
+        for ((&other, &diagonal), &above) in b.iter().zip(&row).zip(row.iter().skip(1)) {
+            let left = next.last().copied().unwrap_or(0);
+            let changed = diagonal + usize::from(letter != other);
+            next.push(changed.min(left + 1).min(above + 1));
+        }
+        row = next;
+    }
+    row.last().copied().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cases_are_found_by_number_and_name_and_slips_of_the_pen_lead_there() {
+        assert_eq!(find("h01").unwrap().name, "constant-speed");
+        assert_eq!(find("constant-speed").unwrap().id, "H01");
+        assert_eq!(find("constant-sped").unwrap_err()[0], "constant-speed");
+        assert!(find("encoder").unwrap_err().len() > 1);
+        assert_eq!(find("xyzzy").unwrap_err().len(), all().len());
+        assert_eq!(distance("kitten", "sitting"), 3);
+    }
+}

@@ -1,8 +1,28 @@
 //! The matrix of cases and subjects.
 
-use super::case::Case;
+use super::case::{Case, Trial};
+use super::criterion::Criterion;
+use super::input::Input;
+use super::judge::{Evidence, common, judge, remark};
+use super::observation::Observation;
+use super::observe::observe;
 use super::subject::Subject;
-use super::verdict::Verdict;
+use super::verdict::{Failure, Margin, Verdict};
+use crate::sampling::Sampling;
+use crate::true_events::{TrueEvent, true_events};
+use crate::watcher::{StudyError, Watcher};
+use crepitus_model::{Real, Settings, SettingsError};
+use std::rc::Rc;
+use std::time::Instant;
+
+/// What to run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The cases.
+    pub cases: Vec<Case>,
+    /// Who is put to them.
+    pub subjects: Vec<Subject>,
+}
 
 /// One subject in one case.
 #[derive(Clone, Debug)]
@@ -45,4 +65,225 @@ impl Matrix {
                 .map(|cell| (&row.case, cell))
         })
     }
+}
+
+/// Carries out a plan.
+///
+/// # Errors
+/// What the watcher returns, or a trial whose settings are refused.
+pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Matrix, StudyError<W::Error>> {
+    let begun = Instant::now();
+    let mut work = Work {
+        watcher,
+        total: total_work(plan),
+        done: 0.0,
+    };
+    let mut matrix = Matrix::default();
+    for case in &plan.cases {
+        let mut truths = Truths::default();
+        let mut cells = Vec::new();
+        for &subject in &plan.subjects {
+            let trials = (case.trials)(subject);
+            if trials.is_empty() {
+                continue;
+            }
+            let (verdict, detail) = stand(subject, &trials, &mut truths, &mut work)?;
+            cells.push(Cell {
+                subject,
+                must_hold: (case.must)(subject),
+                verdict,
+                detail,
+            });
+        }
+        matrix.rows.push(Row {
+            case: case.clone(),
+            cells,
+        });
+    }
+    matrix.wall_s = begun.elapsed().as_secs_f64();
+    Ok(matrix)
+}
+
+/// How a subject stands the worst of some trials, and which that was.
+fn stand<W: Watcher>(
+    subject: Subject,
+    trials: &[Trial],
+    truths: &mut Truths,
+    work: &mut Work<'_, W>,
+) -> Result<(Verdict, String), StudyError<W::Error>> {
+    let mut worst: Option<(Verdict, String)> = None;
+    let mut add = |verdict: Verdict, detail: String| {
+        if worst.as_ref().is_none_or(|(w, _)| rank(&verdict) > rank(w)) {
+            worst = Some((verdict, detail));
+        }
+    };
+    for trial in trials {
+        let seen = work.observe(subject, &trial.settings, &trial.input, late_s(trial))?;
+        let truth = truths.of(trial)?;
+        let flagged = seen.is_flagged();
+        let evidence = Evidence {
+            subject,
+            seen: &seen,
+            truth: &truth,
+            twin: None,
+        };
+        if let Some(finding) = common(&evidence) {
+            let detail = format!("{}: the common bounds", trial.describe());
+            add(finding.verdict(flagged), detail);
+        }
+        for criterion in &trial.criteria {
+            let twin = match criterion.twin() {
+                Some(input) => Some(work.observe(subject, &trial.settings, input, 0.0)?),
+                None => None,
+            };
+            let evidence = Evidence {
+                twin: twin.as_ref(),
+                ..evidence
+            };
+            let remark = remark(criterion, &seen);
+            let detail = format!("{}: {criterion}{remark}", trial.describe());
+            add(judge(criterion, &evidence).verdict(flagged), detail);
+        }
+    }
+    Ok(worst.unwrap_or((
+        Verdict::Holds(Margin {
+            measured: 0.0,
+            limit: 0.0,
+            unit: "",
+        }),
+        String::new(),
+    )))
+}
+
+/// From when on a trial looks at the torque, s.
+fn late_s(trial: &Trial) -> f64 {
+    trial
+        .criteria
+        .iter()
+        .find_map(|criterion| match criterion {
+            Criterion::TorqueWithin { from_s, .. } => Some(*from_s),
+            _ => None,
+        })
+        .unwrap_or(0.0)
+}
+
+/// The worse, the larger: first by kind, then by how much of the limit is
+/// used.
+fn rank(verdict: &Verdict) -> (u8, f64) {
+    let used = |margin: &Margin| {
+        if margin.measured.is_nan() {
+            f64::INFINITY
+        } else if margin.measured == 0.0 {
+            0.0
+        } else {
+            margin.measured / margin.limit
+        }
+    };
+    match verdict {
+        Verdict::Holds(margin) => (0, used(margin)),
+        Verdict::Degrades { margin, .. } => (1, used(margin)),
+        Verdict::Fails { what, .. } => match *what {
+            Failure::OtherEvents { found, expected } => (2, off(found, expected)),
+            Failure::Broken(_) => (2, 0.0),
+            Failure::AboveTheLimit => (3, 0.0),
+            Failure::Overflow => (4, 0.0),
+        },
+    }
+}
+
+/// Relative difference of two counts, from 0 to 1.
+fn off(found: u64, expected: u64) -> f64 {
+    f64::from_whole(found.abs_diff(expected)) / f64::from_whole(found.max(expected).max(1))
+}
+
+/// The true events of a case's trials: many subjects share them.
+#[derive(Debug, Default)]
+struct Truths(Vec<(Settings, Input, Rc<Vec<TrueEvent>>)>);
+
+impl Truths {
+    fn of(&mut self, trial: &Trial) -> Result<Rc<Vec<TrueEvent>>, SettingsError> {
+        let wanted = trial
+            .criteria
+            .iter()
+            .any(|c| matches!(c, Criterion::Events { .. } | Criterion::EventTorques { .. }));
+        let Input::Sampled {
+            shaft,
+            duration_s,
+            step_s,
+        } = &trial.input
+        else {
+            return Ok(Rc::default());
+        };
+        if !wanted {
+            return Ok(Rc::default());
+        }
+        let known = self
+            .0
+            .iter()
+            .find(|(settings, input, _)| *settings == trial.settings && *input == trial.input);
+        if let Some((_, _, events)) = known {
+            return Ok(events.clone());
+        }
+        let motion = shaft.motion();
+        let end_s = Sampling::new(&motion, *duration_s, *step_s).end_s();
+        let events = Rc::new(true_events(&trial.settings.validate()?, &motion, end_s));
+        self.0
+            .push((trial.settings, trial.input.clone(), events.clone()));
+        Ok(events)
+    }
+}
+
+/// Keeps the watcher informed.
+struct Work<'a, W: Watcher> {
+    watcher: &'a mut W,
+    total: f64,
+    done: f64,
+}
+
+impl<W: Watcher> Work<'_, W> {
+    fn observe(
+        &mut self,
+        subject: Subject,
+        settings: &Settings,
+        input: &Input,
+        late_s: f64,
+    ) -> Result<Observation, StudyError<W::Error>> {
+        // A run that overflows ends early: its work is done all the same.
+        let after = self.done + work_of(input);
+        let seen = observe(subject, settings, input, late_s, &mut |steps| {
+            self.done += steps;
+            self.tell()
+        })?;
+        self.done = after;
+        self.tell().map_err(StudyError::Watcher)?;
+        Ok(seen)
+    }
+
+    fn tell(&mut self) -> Result<(), W::Error> {
+        self.watcher.progress((self.done / self.total).min(1.0))
+    }
+}
+
+/// Work of one run, in steps; building a joint counts a little too.
+fn work_of(input: &Input) -> f64 {
+    input.steps() + 100.0
+}
+
+/// All work of a plan, in steps.
+fn total_work(plan: &Plan) -> f64 {
+    let mut total = 0.0;
+    for case in &plan.cases {
+        for &subject in &plan.subjects {
+            for trial in (case.trials)(subject) {
+                total += work_of(&trial.input);
+                total += trial
+                    .criteria
+                    .iter()
+                    .filter_map(Criterion::twin)
+                    .map(work_of)
+                    .sum::<f64>();
+            }
+        }
+    }
+    total
 }

@@ -62,6 +62,37 @@ impl Verdict {
     pub fn holds(&self) -> bool {
         matches!(self, Self::Holds(_))
     }
+
+    /// The name in files: `holds`, `degrades`, `fails`.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Holds(_) => "holds",
+            Self::Degrades { .. } => "degrades",
+            Self::Fails { .. } => "fails",
+        }
+    }
+
+    /// Whether the run itself gives a warning.
+    pub fn is_flagged(&self) -> bool {
+        match self {
+            Self::Holds(_) => false,
+            Self::Degrades { flagged, .. } | Self::Fails { flagged, .. } => *flagged,
+        }
+    }
+}
+
+impl Margin {
+    /// How much of the limit is used: at most 1 where it holds. Nothing of
+    /// nothing is nothing; what is no number is beyond every limit.
+    pub fn share(&self) -> f64 {
+        if self.measured == 0.0 {
+            0.0
+        } else if self.measured.is_nan() {
+            f64::INFINITY
+        } else {
+            self.measured / self.limit
+        }
+    }
 }
 
 impl fmt::Display for Margin {

@@ -1,0 +1,129 @@
+//! What a verdict looks like: its colour, a sign that says the same without
+//! colour, a short number, and all of it in words.
+
+use crepitus_study::stability::{Cell, Failure, Verdict};
+
+use super::scale::{self, Tone};
+
+/// Before the number of a cell that degrades.
+pub(super) const DEGRADES: &str = "↓";
+/// Before what is told of a cell that fails.
+pub(super) const FAILS: &str = "✗";
+/// After what the run warns of by itself.
+pub(super) const FLAG: &str = "⚑";
+
+/// See the module.
+#[derive(Debug)]
+pub(super) struct Look {
+    pub(super) tone: Tone,
+    /// Sign and number.
+    pub(super) short: String,
+    pub(super) flagged: bool,
+    pub(super) must_hold: bool,
+    /// It must hold and does not.
+    pub(super) broken: bool,
+}
+
+impl Look {
+    pub(super) fn of(cell: &Cell) -> Self {
+        let (tone, short, flagged) = match &cell.verdict {
+            Verdict::Holds(margin) => (scale::holds(margin.share()), short(margin.measured), false),
+            Verdict::Degrades { margin, flagged } => (
+                scale::DEGRADES,
+                format!("{DEGRADES}{}", short(margin.measured)),
+                *flagged,
+            ),
+            Verdict::Fails { what, flagged, .. } => {
+                (scale::FAILS, format!("{FAILS}{}", failure(*what)), *flagged)
+            }
+        };
+        Self {
+            tone,
+            short,
+            flagged,
+            must_hold: cell.must_hold,
+            broken: cell.must_hold && !cell.verdict.holds(),
+        }
+    }
+}
+
+/// A cell in words, without the case.
+pub(super) fn words(cell: &Cell) -> String {
+    let subject = cell.subject;
+    let must = if cell.must_hold { ", must hold" } else { "" };
+    let mut words = format!(
+        "{}, {}, {}{must}: {}",
+        subject.solver.name(),
+        subject.convention.name(),
+        subject.precision.name(),
+        cell.verdict
+    );
+    if !cell.detail.is_empty() {
+        words.push_str("; ");
+        words.push_str(&cell.detail);
+    }
+    words
+}
+
+fn failure(what: Failure) -> String {
+    match what {
+        Failure::Overflow => "∞".to_owned(),
+        Failure::AboveTheLimit => "Ts".to_owned(),
+        Failure::OtherEvents { found, .. } => short_count(found),
+        _ => String::new(),
+    }
+}
+
+fn short_count(count: u64) -> String {
+    if count < 10_000 {
+        format!("{count}")
+    } else {
+        short(count as f64)
+    }
+}
+
+/// At most five letters: `2e-13`, `0.37`, `1002`.
+fn short(x: f64) -> String {
+    let size = x.abs();
+    if x == x.trunc() && size < 10_000.0 {
+        format!("{x}")
+    } else if (10.0..10_000.0).contains(&size) {
+        format!("{x:.0}")
+    } else if (1.0..10.0).contains(&size) {
+        format!("{x:.1}")
+    } else if (0.01..1.0).contains(&size) {
+        // What rounds to one is not below it.
+        format!("{x:.2}")
+    } else if x.is_nan() {
+        "–".to_owned()
+    } else if x.is_infinite() {
+        "∞".to_owned()
+    } else {
+        format!("{x:.0e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_fit_a_cell() {
+        for (x, text) in [
+            (0.0, "0"),
+            (2.1e-13, "2e-13"),
+            (637.0, "637"),
+            (0.372, "0.37"),
+            (3.21, "3.2"),
+            (28.11, "28"),
+            (5e-5, "5e-5"),
+            (1.2e9, "1e9"),
+            (f64::NAN, "–"),
+            (f64::INFINITY, "∞"),
+        ] {
+            assert_eq!(short(x), text);
+        }
+        assert_eq!(short_count(636), "636");
+        assert_eq!(short_count(134_398), "1e5");
+    }
+}

@@ -1,0 +1,184 @@
+//! `crepitus stability`: which hard cases hold on which solver, and by what
+//! margin.
+
+mod case_text;
+mod page;
+mod plan;
+mod summary;
+mod table;
+
+use crate::cli::StabilityArguments;
+use crate::failure::{Failure, print, print_json};
+use crate::interrupt;
+use crate::progress::Progress;
+use crepitus_scene::output::Folder;
+use crepitus_study::stability::story::{self, Story};
+use crepitus_study::stability::{Matrix, Plan, matrix};
+use crepitus_study::{StudyError, Watcher};
+use serde_json::json;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use summary::Summary;
+
+/// Runs the cases, writes the files, says what holds.
+pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result<(), Failure> {
+    let plan = plan::plan(arguments)?;
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("out/stability"));
+    // A folder that cannot be written is better known before the work.
+    let folder = Folder::create(&out).map_err(|e| Failure::at(&out, "cannot be written", &e))?;
+    interrupt::listen();
+    let matrix = carry_out(&plan)?;
+    let summary = Summary::new(&plan, &matrix);
+    let stories = stories(arguments)?;
+    write(
+        folder,
+        &out,
+        page::files(&matrix, &stories, &summary, arguments.pictures)?,
+    )?;
+    if as_json {
+        print_json(&json!({ "out": out, "summary": summary }))?;
+        // Its cells are in the summary.
+        return if matrix.broken().next().is_some() {
+            Err(Failure::Negative)
+        } else {
+            Ok(())
+        };
+    }
+    let told = match (matrix.rows.as_slice(), arguments.cases.is_empty()) {
+        ([row], false) => case_text::case(row),
+        _ => table::table(&matrix, &summary),
+    };
+    print(&format!(
+        "{told}{}\nreport: {}\n",
+        table::broken(&matrix),
+        out.join("report.html").display()
+    ))?;
+    judge(&matrix)
+}
+
+fn carry_out(plan: &Plan) -> Result<Matrix, Failure> {
+    let mut watch = Watch(Progress::of_study());
+    matrix::run(plan, &mut watch).map_err(|e| match e {
+        StudyError::Watcher(Interrupted) => {
+            Failure::Work("interrupted: nothing was written".to_owned())
+        }
+        other => Failure::Work(format!("the study failed: {other}")),
+    })
+}
+
+/// Moves the progress bar, and stops when asked.
+struct Watch(Progress);
+
+/// Ctrl-C.
+#[derive(Debug)]
+struct Interrupted;
+
+impl Watcher for Watch {
+    type Error = Interrupted;
+
+    fn progress(&mut self, fraction: f64) -> Result<(), Interrupted> {
+        self.0.reached(fraction);
+        if interrupt::asked() {
+            return Err(Interrupted);
+        }
+        Ok(())
+    }
+}
+
+/// The stories belong to the whole catalogue; beside single cases they come
+/// only where pictures are asked for.
+fn stories(arguments: &StabilityArguments) -> Result<Vec<Story>, Failure> {
+    if arguments.cases.is_empty() || arguments.pictures {
+        story::all().map_err(|e| Failure::Work(format!("a story cannot be computed: {e}")))
+    } else {
+        Ok(Vec::new())
+    }
+}
+
+/// Writes the files, whole or not at all.
+fn write(folder: Folder, out: &Path, files: Vec<(String, String)>) -> Result<(), Failure> {
+    for (name, content) in files {
+        folder
+            .file(&name)
+            .and_then(|mut file| {
+                file.write_all(content.as_bytes())?;
+                Folder::finish(file)
+            })
+            .map_err(|e| Failure::at(out, "writing the results", &e))?;
+    }
+    folder
+        .commit()
+        .map_err(|e| Failure::at(out, "moving the results into place", &e))
+}
+
+/// Fails if a cell that must hold does not.
+fn judge(matrix: &Matrix) -> Result<(), Failure> {
+    let broken: Vec<String> = matrix
+        .broken()
+        .map(|(case, cell)| {
+            format!(
+                "{} {} on {}",
+                case.id,
+                case.name,
+                table::subject(cell.subject)
+            )
+        })
+        .collect();
+    match broken.as_slice() {
+        [] => Ok(()),
+        [only] => Err(Failure::Work(format!("{only} must hold and does not"))),
+        several => Err(Failure::Work(format!(
+            "{} cells that must hold do not: {}",
+            several.len(),
+            several.join("; ")
+        ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_study::stability::{Cell, Failure as Broken, Row, Subject, Verdict, catalogue};
+
+    /// One case in which the first of two subjects overflows.
+    fn overflow(must_hold: bool) -> Matrix {
+        let cells = Subject::all().into_iter().take(2).map(|subject| Cell {
+            subject,
+            must_hold,
+            verdict: Verdict::Fails {
+                what: Broken::Overflow,
+                at_s: Some(0.25),
+                flagged: false,
+            },
+            detail: "the first trial".to_owned(),
+        });
+        Matrix {
+            rows: vec![Row {
+                case: catalogue::find("H01").unwrap(),
+                cells: cells.collect(),
+            }],
+            wall_s: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_cell_that_must_hold_decides_the_exit_code_and_is_named() {
+        assert!(judge(&overflow(false)).is_ok());
+        assert_eq!(table::broken(&overflow(false)), "");
+        let matrix = overflow(true);
+        let Err(Failure::Work(message)) = judge(&matrix) else {
+            panic!("must fail");
+        };
+        assert!(message.starts_with("2 cells"), "{message}");
+        assert!(
+            message.contains("H01 constant-speed on exact, frozen, f32"),
+            "{message}"
+        );
+        let told = table::broken(&matrix);
+        assert!(told.contains("overflow at t = 0.250 s"), "{told}");
+        assert!(told.contains("the first trial"), "{told}");
+    }
+}

@@ -1,0 +1,116 @@
+//! All about one case, on a terminal.
+
+use crepitus_study::stability::Row;
+use std::fmt::Write;
+
+/// Columns of a terminal that text fills.
+const WIDTH: usize = 100;
+/// Where it begins.
+const INDENT: usize = 16;
+
+/// The case in words, then all its cells, each with the trial and the
+/// criterion that its verdict is about.
+pub(super) fn case(row: &Row) -> String {
+    let case = &row.case;
+    let mut text = format!("{} {}: {}\n\n", case.id, case.name, case.title);
+    entry(&mut text, "why it is hard", &[case.hard.to_owned()]);
+    entry(&mut text, "input", &case.inputs());
+    entry(&mut text, "criterion", &case.criteria());
+    entry(&mut text, "source", &[case.source.to_owned()]);
+    let mut notes: Vec<&str> = Vec::new();
+    let mut convention = "";
+    for cell in &row.cells {
+        let subject = cell.subject;
+        // Writing to a String cannot fail.
+        if subject.convention.name() != convention {
+            convention = subject.convention.name();
+            let _ = write!(text, "\n{convention}:\n");
+        }
+        let _ = writeln!(
+            text,
+            "  {:20} {} {:4}  {}{}",
+            subject.solver.name(),
+            subject.precision.name(),
+            if cell.must_hold { "must" } else { "" },
+            cell.verdict,
+            note(&mut notes, &cell.detail)
+        );
+    }
+    text.push('\n');
+    for (i, note) in notes.iter().enumerate() {
+        entry(&mut text, &format!("[{}]", i + 1), &[(*note).to_owned()]);
+    }
+    text
+}
+
+/// The number under which a detail is noted below: many cells share one.
+fn note<'d>(notes: &mut Vec<&'d str>, detail: &'d str) -> String {
+    if detail.is_empty() {
+        return String::new();
+    }
+    let place = notes.iter().position(|note| *note == detail);
+    let place = place.unwrap_or_else(|| {
+        notes.push(detail);
+        notes.len() - 1
+    });
+    format!("  [{}]", place + 1)
+}
+
+fn entry(text: &mut String, name: &str, paragraphs: &[String]) {
+    let mut name = name;
+    for paragraph in paragraphs {
+        for line in wrapped(paragraph) {
+            let _ = writeln!(text, "{name:INDENT$}{line}");
+            name = "";
+        }
+    }
+}
+
+/// The words in lines that fit.
+fn wrapped(paragraph: &str) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in paragraph.split_whitespace() {
+        let room = WIDTH - INDENT;
+        if let Some(line) = lines.last_mut() {
+            let length = line.chars().count();
+            if length == 0 {
+                line.push_str(word);
+            } else if length + 1 + word.chars().count() <= room {
+                line.push(' ');
+                line.push_str(word);
+            } else {
+                lines.push(word.to_owned());
+            }
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cells_share_is_noted_once() {
+        let mut notes = Vec::new();
+        assert_eq!(note(&mut notes, "slow"), "  [1]");
+        assert_eq!(note(&mut notes, "fast"), "  [2]");
+        assert_eq!(note(&mut notes, "slow"), "  [1]");
+        assert_eq!(note(&mut notes, ""), "");
+        assert_eq!(notes, ["slow", "fast"]);
+    }
+
+    #[test]
+    fn lines_fit_and_lose_no_word() {
+        let words = "ωn·h ".repeat(60);
+        let lines = wrapped(&words);
+        assert!(lines.len() > 2);
+        assert!(
+            lines
+                .iter()
+                .all(|line| line.chars().count() <= WIDTH - INDENT)
+        );
+        assert_eq!(lines.join(" "), words.trim_end());
+        assert_eq!(wrapped(""), [""]);
+    }
+}

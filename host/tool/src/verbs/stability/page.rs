@@ -1,0 +1,90 @@
+//! The files of the matrix: names and contents.
+
+use super::summary::Summary;
+use crate::failure::Failure;
+use crepitus_report::Section;
+use crepitus_report::stability::{self, StabilityText};
+use crepitus_study::stability::story::Story;
+use crepitus_study::stability::{Matrix, cases_csv};
+
+/// The report, the cells and the summary; the matrix and each story as an SVG
+/// of its own if asked for.
+pub(super) fn files(
+    matrix: &Matrix,
+    stories: &[Story],
+    summary: &Summary,
+    pictures: bool,
+) -> Result<Vec<(String, String)>, Failure> {
+    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
+    let json = serde_json::to_string_pretty(summary)
+        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
+    let page = stability::html(matrix, stories, &text(matrix, summary)).map_err(undrawn)?;
+    let mut files = vec![
+        ("report.html".to_owned(), page),
+        ("cases.csv".to_owned(), cases_csv::cases_csv(matrix)),
+        ("summary.json".to_owned(), json + "\n"),
+    ];
+    if pictures {
+        let pictures = stability::pictures(matrix, stories).map_err(undrawn)?;
+        files.extend(
+            pictures
+                .into_iter()
+                .map(|p| (format!("{}.svg", p.name), p.svg)),
+        );
+    }
+    Ok(files)
+}
+
+fn text(matrix: &Matrix, summary: &Summary) -> StabilityText {
+    let counts = &summary.counts;
+    let row = |name: &str, value: String| (name.to_owned(), value);
+    StabilityText {
+        title: match matrix.rows.as_slice() {
+            [only] => only.case.title.to_owned(),
+            _ => "Which hard cases hold".to_owned(),
+        },
+        intro: format!(
+            "Inputs that break simulations of friction, put to every solver under every convention, in single and \
+             double precision. {} of {} cells hold; of the {} that must hold {}.",
+            counts.holds,
+            summary.cells,
+            counts.must_hold,
+            match counts.broken {
+                0 => "all do".to_owned(),
+                1 => "one does not".to_owned(),
+                n => format!("{n} do not"),
+            }
+        ),
+        tables: vec![Section {
+            title: "The study".to_owned(),
+            rows: vec![
+                row("cases", summary.cases.len().to_string()),
+                row(
+                    "solvers under conventions, in precisions",
+                    summary.subjects.to_string(),
+                ),
+                row("cells that hold", counts.holds.to_string()),
+                row("cells that degrade", counts.degrades.to_string()),
+                row("cells that fail", counts.fails.to_string()),
+                row(
+                    "cells that must hold",
+                    format!("{}, {} broken", counts.must_hold, counts.broken),
+                ),
+                row(
+                    "hours of simulated time",
+                    if summary.long {
+                        "included"
+                    } else {
+                        "left out: --long runs them"
+                    }
+                    .to_owned(),
+                ),
+                row("the study took", format!("{:.1} s", summary.wall_s)),
+            ],
+        }],
+        footer: format!(
+            "crepitus {} · research and education prototype, not a medical device",
+            summary.crepitus_version
+        ),
+    }
+}

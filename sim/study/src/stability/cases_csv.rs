@@ -1,0 +1,222 @@
+//! `cases.csv`: one row a cell of the matrix. Numbers read back to the same
+//! bits; a column that a verdict has nothing for is empty.
+
+use super::case::Case;
+use super::matrix::{Cell, Matrix};
+use super::verdict::{Failure, Margin, Verdict};
+use crepitus_model::Real;
+use std::fmt::Write;
+
+/// The header. `measured` and `limit` are in `unit`; of other events than the
+/// true ones they are the counts.
+pub const HEADER: &str = "case,name,convention,solver,precision,must_hold,verdict,flagged,measured,\
+limit,unit,at_s,detail";
+
+/// The file.
+pub fn cases_csv(matrix: &Matrix) -> String {
+    let mut text = format!("{HEADER}\n");
+    for row in &matrix.rows {
+        for cell in &row.cells {
+            push_cell(&mut text, &row.case, cell);
+        }
+    }
+    text
+}
+
+fn push_cell(text: &mut String, case: &Case, cell: &Cell) {
+    let subject = cell.subject;
+    push_text(text, case.id);
+    text.push(',');
+    push_text(text, case.name);
+    // Writing to a String cannot fail.
+    let _ = write!(
+        text,
+        ",{},{},{},{},{},{},",
+        subject.convention.name(),
+        subject.solver.name(),
+        subject.precision.name(),
+        cell.must_hold,
+        cell.verdict.name(),
+        cell.verdict.is_flagged()
+    );
+    match number(&cell.verdict) {
+        Some(margin) => {
+            push_number(text, margin.measured);
+            text.push(',');
+            push_number(text, margin.limit);
+            text.push(',');
+            push_text(text, margin.unit);
+        }
+        None => text.push_str(",,"),
+    }
+    text.push(',');
+    let mut detail = cell.detail.clone();
+    if let Verdict::Fails { what, at_s, .. } = &cell.verdict {
+        if let Some(time_s) = at_s {
+            push_number(text, *time_s);
+        }
+        detail = if detail.is_empty() {
+            what.to_string()
+        } else {
+            format!("{what}: {detail}")
+        };
+    }
+    text.push(',');
+    push_text(text, &detail);
+    text.push('\n');
+}
+
+/// The number of a verdict and what it is held against.
+fn number(verdict: &Verdict) -> Option<Margin> {
+    match *verdict {
+        Verdict::Holds(margin) | Verdict::Degrades { margin, .. } => Some(margin),
+        Verdict::Fails {
+            what: Failure::OtherEvents { found, expected },
+            ..
+        } => Some(Margin {
+            measured: f64::from_whole(found),
+            limit: f64::from_whole(expected),
+            unit: "events",
+        }),
+        Verdict::Fails { .. } => None,
+    }
+}
+
+fn push_number(text: &mut String, x: f64) {
+    if x.is_finite() {
+        text.push_str(ryu::Buffer::new().format_finite(x));
+    } else if x.is_nan() {
+        text.push_str("nan");
+    } else {
+        text.push_str(if x > 0.0 { "inf" } else { "-inf" });
+    }
+}
+
+/// In quotes where it needs them (RFC 4180).
+fn push_text(text: &mut String, value: &str) {
+    if value.contains([',', '"', '\n', '\r']) {
+        text.push('"');
+        text.push_str(&value.replace('"', "\"\""));
+        text.push('"');
+    } else {
+        text.push_str(value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stability::{Row, Subject, catalogue};
+
+    /// The matrix of one case in which the first subjects stand like this.
+    fn matrix(verdicts: &[(Verdict, &str)]) -> Matrix {
+        let case = catalogue::find("H01").unwrap();
+        let cells = Subject::all().into_iter().zip(verdicts);
+        let cells = cells.map(|(subject, (verdict, detail))| Cell {
+            subject,
+            must_hold: verdict.holds(),
+            verdict: *verdict,
+            detail: (*detail).to_owned(),
+        });
+        let cells = cells.collect();
+        Matrix {
+            rows: vec![Row { case, cells }],
+            wall_s: 0.0,
+        }
+    }
+
+    /// The fields of the lines, unquoted.
+    fn read(text: &str) -> Vec<Vec<String>> {
+        let mut reader = text.chars().peekable();
+        let (mut lines, mut line, mut field) = (Vec::new(), Vec::new(), String::new());
+        let mut quoted = false;
+        while let Some(c) = reader.next() {
+            match c {
+                '"' if quoted && reader.peek() == Some(&'"') => {
+                    reader.next();
+                    field.push('"');
+                }
+                '"' => quoted = !quoted,
+                ',' if !quoted => line.push(std::mem::take(&mut field)),
+                '\n' if !quoted => {
+                    line.push(std::mem::take(&mut field));
+                    lines.push(std::mem::take(&mut line));
+                }
+                c => field.push(c),
+            }
+        }
+        assert!(!quoted && field.is_empty() && line.is_empty());
+        lines
+    }
+
+    #[test]
+    fn rows_have_the_columns_and_read_back() {
+        let third = 1.0 / 3.0;
+        let margin = |measured, limit, unit| Margin {
+            measured,
+            limit,
+            unit,
+        };
+        let fails = |what, at_s| Verdict::Fails {
+            what,
+            at_s,
+            flagged: true,
+        };
+        let lines = read(&cases_csv(&matrix(&[
+            (
+                Verdict::Holds(margin(third, 1e-12, "N·m")),
+                "at 1 rad/s, \"slow\"",
+            ),
+            (
+                Verdict::Degrades {
+                    margin: margin(f64::NAN, 0.5, ""),
+                    flagged: false,
+                },
+                "two\nlines",
+            ),
+            (
+                fails(
+                    Failure::OtherEvents {
+                        found: 1,
+                        expected: 637,
+                    },
+                    None,
+                ),
+                "",
+            ),
+            (fails(Failure::Overflow, Some(third)), "the second trial"),
+        ])));
+        assert_eq!(lines.len(), 5);
+        let column = |name| lines[0].iter().position(|h| h == name).unwrap();
+        let of = |line: usize, name| lines[line][column(name)].as_str();
+        for line in &lines {
+            assert_eq!(line.len(), 13);
+        }
+        assert_eq!(
+            lines[1][..7],
+            [
+                "H01",
+                "constant-speed",
+                "frozen",
+                "exact",
+                "f32",
+                "true",
+                "holds"
+            ]
+        );
+        assert_eq!(of(1, "measured").parse(), Ok(third));
+        assert_eq!(of(1, "limit").parse(), Ok(1e-12));
+        assert_eq!(of(1, "unit"), "N·m");
+        assert_eq!(of(1, "detail"), "at 1 rad/s, \"slow\"");
+        assert_eq!(lines[2][4..9], ["f64", "false", "degrades", "false", "nan"]);
+        assert_eq!(of(2, "detail"), "two\nlines");
+        assert_eq!(
+            lines[3][6..12],
+            ["fails", "true", "1.0", "637.0", "events", ""]
+        );
+        assert_eq!(of(3, "detail"), "1 events instead of 637");
+        assert_eq!(lines[4][8..11], ["", "", ""]);
+        assert_eq!(of(4, "at_s").parse(), Ok(third));
+        assert_eq!(of(4, "detail"), "overflow: the second trial");
+    }
+}

@@ -1,0 +1,199 @@
+//! A shaft that is seen through an encoder, and one that a hand holds.
+
+use super::tools::{cycle_hz, most_hz, paper_joint, trial};
+use crate::stability::case::{Case, Trial, located};
+use crate::stability::criterion::{Criterion, Limits};
+use crate::stability::input::{Input, Shaft};
+use crate::stability::subject::Subject;
+use crepitus_model::{Convention, Parameters};
+
+const NUMERICS: &str = "numerics report, section 2";
+
+/// Counts of 10⁴ turns of the joint: 86 motor turns each of 4 · 512.
+const TEN_THOUSAND_TURNS: i32 = 10_000 * 86 * 2048;
+
+/// `frozen` has to hold behind an encoder, the others are shown.
+fn frozen_located(subject: Subject) -> bool {
+    located(subject) && subject.convention == Convention::Frozen
+}
+
+pub(super) fn counter_wrap() -> Case {
+    const TEN_THOUSAND: &[(f64, f64, f64)] = &[
+        (0.0, 1000.0, 1000.0),
+        (62.85, 1000.0, 1000.0),
+        (63.0, 1.0, 1.0),
+        (65.0, 1.0, 1.0),
+    ];
+    Case {
+        id: "H25",
+        name: "counter-wrap",
+        title: "The counter wraps, and the joint has made ten thousand turns",
+        hard: "An angle of 10⁴ turns has steps of 4 mrad in f32, four times the whole travel of a stick: angles may \
+               only travel as differences of counts, and those must survive the wrap of the counter.",
+        source: NUMERICS,
+        long: false,
+        must: located,
+        trials: |subject| {
+            let from = |shaft: &Shaft, rate_hz, duration_s, first_count| Input::Encoder {
+                shaft: shaft.clone(),
+                duration_s,
+                rate_hz,
+                lines: 512.0,
+                jitter: 0.0,
+                first_count,
+            };
+            let settings = paper_joint(subject.convention);
+            let same = |shaft: &Shaft, rate_hz, duration_s, first_count| {
+                let plain = from(shaft, rate_hz, duration_s, 0);
+                trial(
+                    settings,
+                    from(shaft, rate_hz, duration_s, first_count),
+                    [Criterion::SameAs(plain)],
+                )
+            };
+            let (up, down) = (Shaft::Constant(1.0), Shaft::Constant(-1.0));
+            let mut trials = vec![
+                same(&up, 2e4, 1.0, i32::MAX - 1000),
+                same(&down, 2e4, 1.0, i32::MIN + 1000),
+                same(&up, 2e4, 1.0, TEN_THOUSAND_TURNS),
+            ];
+            if subject.convention == Convention::Frozen {
+                trials.push(same(
+                    &Shaft::Knots(TEN_THOUSAND),
+                    1e3,
+                    65.0,
+                    i32::MAX - 1000,
+                ));
+            }
+            trials
+        },
+    }
+}
+
+/// What is asked of a joint behind an encoder at a steady speed.
+fn behind_encoder(subject: Subject, omega_rad_s: f64, input: Input) -> Trial {
+    let settings = paper_joint(subject.convention);
+    let p = &settings.parameters;
+    let mut criteria = vec![
+        Criterion::CycleRate {
+            hz: cycle_hz(p, omega_rad_s),
+            within: Limits::both(1e-2),
+        },
+        Criterion::IntervalVariation { most: 3e-2 },
+    ];
+    if subject.convention != Convention::Frozen {
+        // At most 2·f_max cycles of two events each.
+        criteria.push(Criterion::EventsPerSecond {
+            most: 4.0 * most_hz(p),
+        });
+    }
+    Trial {
+        settings,
+        input,
+        criteria,
+    }
+}
+
+pub(super) fn quantised_velocity() -> Case {
+    Case {
+        id: "H26",
+        name: "quantised-velocity",
+        title: "Ω from an encoder of 512 to 2000 lines at 1 and 20 kHz",
+        hard: "One count is 36 µrad, and between two samples at 20 kHz there is mostly none: the velocity is an \
+               estimate, and its slope at every count is steeper than (Ts − Tk)/J. Frozen looks at Ω once a cycle. \
+               Under paper and physical a slip ends where the noise meets the object's velocity, and the overlap \
+               to meet in is 0.5 % at 1 rad/s: these are shown, and not required to hold.",
+        source: "numerics report, section 2; the estimator that ships, bandwidth 50 Hz",
+        long: false,
+        must: frozen_located,
+        trials: |subject| {
+            let mut trials = Vec::new();
+            for lines in [512.0, 1000.0, 2000.0] {
+                for rate_hz in [1e3, 2e4] {
+                    for omega in [0.1, 1.0, 3.0] {
+                        let input = Input::Encoder {
+                            shaft: Shaft::Constant(omega),
+                            duration_s: 4.0,
+                            rate_hz,
+                            lines,
+                            jitter: 0.0,
+                            first_count: 0,
+                        };
+                        trials.push(behind_encoder(subject, omega, input));
+                    }
+                }
+            }
+            trials
+        },
+    }
+}
+
+pub(super) fn sampling_jitter() -> Case {
+    Case {
+        id: "H27",
+        name: "sampling-jitter",
+        title: "The counter is read up to a tenth of a period early or late",
+        hard: "The model believes that every step is equally long. What comes late in one step comes early in the \
+               next: the angle stays exact, the velocity gets noise that grows with the speed.",
+        source: NUMERICS,
+        long: false,
+        must: frozen_located,
+        trials: |subject| {
+            let mut trials = Vec::new();
+            for lines in [512.0, 2000.0] {
+                for rate_hz in [1e3, 2e4] {
+                    let input = Input::Encoder {
+                        shaft: Shaft::Constant(1.0),
+                        duration_s: 4.0,
+                        rate_hz,
+                        lines,
+                        jitter: 0.1,
+                        first_count: 0,
+                    };
+                    trials.push(behind_encoder(subject, 1.0, input));
+                }
+            }
+            trials
+        },
+    }
+}
+
+pub(super) fn hand() -> Case {
+    Case {
+        id: "H34",
+        name: "sampled-spring",
+        title: "A hand on the sampled spring, damped just below and above b = K·T/2",
+        hard: "A spring that is sampled and held gives back more than it took, K·T/2 worth of negative damping. \
+               This is no fault of the joint but of sampling, and the run must show it as theory has it: below the \
+               limit of Colgate and Schenkel the swing grows, above it decays. Physical adds the object's inertia \
+               to the loop and is left out.",
+        source: "numerics report, sections 2 (×1.28 and ×0.78) and 2.1; numbers from the eigenvalues of the exact \
+                 discrete loop, over 2.5 s",
+        long: false,
+        must: located,
+        trials: |subject| {
+            if subject.convention == Convention::Physical {
+                return Vec::new();
+            }
+            let stiffness = Parameters::default().stiffness_nm_per_rad;
+            [(0.95, 1.2775), (1.05, 0.7777)]
+                .map(|(share, theory)| {
+                    let step_s = 1e-3;
+                    let input = Input::Hand {
+                        inertia_kg_m2: 0.0503,
+                        damping_nms_per_rad: share * stiffness * step_s / 2.0,
+                        // 0.56 mrad of swing: well within a stick of 1 mrad.
+                        omega_rad_s: 0.05,
+                        duration_s: 3.0,
+                        step_s,
+                    };
+                    let criteria = [Criterion::SwingRatio {
+                        theory,
+                        within: 0.01,
+                    }];
+                    trial(paper_joint(subject.convention), input, criteria)
+                })
+                .to_vec()
+        },
+    }
+}

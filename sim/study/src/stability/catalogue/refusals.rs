@@ -1,0 +1,83 @@
+//! Steps and parameters that must be refused.
+
+use super::tools::{TICK_S, joint, paper_joint, trial};
+use crate::stability::case::{Case, located};
+use crate::stability::criterion::Criterion;
+use crate::stability::input::{Attempt, Input};
+use crepitus_model::Settings;
+
+pub(super) fn steps() -> Case {
+    Case {
+        id: "H20",
+        name: "bad-steps",
+        title: "Steps of no length, of negative length, of no number",
+        hard: "A step of zero divides by zero, a negative one runs time backwards, and NaN passes every comparison \
+               that is written the wrong way round. After 1000 s a joint of the paper has seen 31,831 cycles in one step.",
+        source: "numerics report, section 2",
+        long: false,
+        must: located,
+        trials: |subject| {
+            let settings = paper_joint(subject.convention);
+            let attempt = |(what, step_s)| Attempt {
+                what,
+                settings,
+                step_s,
+            };
+            let attempts = [
+                ("a step of 0 s", 0.0),
+                ("a step of −0 s", -0.0),
+                ("a step of −50 µs", -TICK_S),
+                ("a step of 1000 s", 1e3),
+                ("a step without end", f64::INFINITY),
+                ("a step of NaN s", f64::NAN),
+            ];
+            vec![trial(
+                settings,
+                Input::Refusals(attempts.map(attempt).to_vec()),
+                [Criterion::Refused],
+            )]
+        },
+    }
+}
+
+pub(super) fn parameters() -> Case {
+    Case {
+        id: "H22",
+        name: "bad-parameters",
+        title: "Parameters that make no joint",
+        hard: "A spring or an inertia of zero divides by zero, Tk above Ts turns the drop into a push, negative \
+               damping feeds the swing, and NaN slips through a check that asks whether a value is too large.",
+        source: "numerics report, section 2",
+        long: false,
+        must: located,
+        trials: |subject| {
+            let attempt = |(what, values): (&'static str, [f64; 5])| Attempt {
+                what,
+                settings: joint(subject.convention, values),
+                step_s: TICK_S,
+            };
+            let nan = f64::NAN;
+            let attempts = [
+                ("kr = 0", [0.01, 0.0, 0.0, 0.2, 0.4]),
+                ("kr = −400", [0.01, -400.0, 0.0, 0.2, 0.4]),
+                ("kr = NaN", [0.01, nan, 0.0, 0.2, 0.4]),
+                ("kr = ∞", [0.01, f64::INFINITY, 0.0, 0.2, 0.4]),
+                ("J = 0", [0.0, 400.0, 0.0, 0.2, 0.4]),
+                ("J = −0.01", [-0.01, 400.0, 0.0, 0.2, 0.4]),
+                ("J = NaN", [nan, 400.0, 0.0, 0.2, 0.4]),
+                ("c = −0.1", [0.01, 400.0, -0.1, 0.2, 0.4]),
+                ("c = NaN", [0.01, 400.0, nan, 0.2, 0.4]),
+                ("Tk = −0.1", [0.01, 400.0, 0.0, -0.1, 0.4]),
+                ("Tk = NaN", [0.01, 400.0, 0.0, nan, 0.4]),
+                ("Ts below Tk", [0.01, 400.0, 0.0, 0.2, 0.19]),
+                ("Ts = NaN", [0.01, 400.0, 0.0, 0.2, nan]),
+                ("Ts = ∞", [0.01, 400.0, 0.0, 0.2, f64::INFINITY]),
+            ];
+            vec![trial(
+                Settings::default(),
+                Input::Refusals(attempts.map(attempt).to_vec()),
+                [Criterion::Refused],
+            )]
+        },
+    }
+}

@@ -1,0 +1,221 @@
+//! What must hold in a trial, with its number.
+
+mod words;
+
+use super::input::Input;
+use crepitus_scene::scene::Precision;
+
+/// What holds in every trial beside its own criteria: nothing is infinite or
+/// no number, and no torque is above Ts by more than this share; under
+/// `frozen` no angle of a stick is above Ts/kr by more.
+pub const BOUND_SLACK: f64 = 1e-5;
+
+/// How much of (work + stored energy) may be missing under `physical` with
+/// both events located.
+pub const BALANCE: Limits = Limits {
+    f64: 1e-10,
+    f32: 1e-4,
+};
+
+/// The common bounds in words.
+pub fn common_bounds() -> [String; 3] {
+    [
+        format!(
+            "finite, and |T| ≤ Ts · (1 + {BOUND_SLACK:e}), after every step and at every event"
+        ),
+        format!("frozen: |θ| ≤ Ts/kr · (1 + {BOUND_SLACK:e}) in every stick"),
+        format!(
+            "physical, exact-events: |work − stored − dissipated| within {} of the largest |work| + stored so far, \
+             which is at least Ts²/2kr",
+            words::Number(&BALANCE, "")
+        ),
+    ]
+}
+
+/// A limit in each precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// In f64.
+    pub f64: f64,
+    /// In f32.
+    pub f32: f64,
+}
+
+impl Limits {
+    /// The same in both.
+    pub const fn both(limit: f64) -> Self {
+        Self {
+            f64: limit,
+            f32: limit,
+        }
+    }
+
+    /// In `precision`.
+    pub fn of(&self, precision: Precision) -> f64 {
+        match precision {
+            Precision::F32 => self.f32,
+            Precision::F64 => self.f64,
+        }
+    }
+}
+
+/// Which events are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Counted {
+    /// All.
+    Events,
+    /// Breaks.
+    Breaks,
+    /// Reverses.
+    Reverses,
+}
+
+/// What must hold.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Criterion {
+    /// The common bounds, and nothing else.
+    Survives,
+    /// The true events in their order, each this near.
+    Events {
+        /// Seconds.
+        within_s: Limits,
+    },
+    /// The torque just after each event is the true one.
+    EventTorques {
+        /// N·m.
+        within_nm: Limits,
+    },
+    /// So many events.
+    Count {
+        /// Of what.
+        what: Counted,
+        /// At least.
+        least: u64,
+        /// At most.
+        most: u64,
+    },
+    /// No step has more events.
+    EventsPerStep {
+        /// At most.
+        most: u32,
+    },
+    /// Events per second, over the whole run.
+    EventsPerSecond {
+        /// At most.
+        most: f64,
+    },
+    /// From break to break the closed form's frequency.
+    CycleRate {
+        /// The closed form, Hz.
+        hz: f64,
+        /// Relative.
+        within: Limits,
+    },
+    /// Standard deviation of the time from break to break, relative to its
+    /// mean.
+    IntervalVariation {
+        /// At most.
+        most: f64,
+    },
+    /// Every slip lasts this long.
+    SlipTime {
+        /// Seconds.
+        slip_s: f64,
+        /// Relative.
+        within: Limits,
+    },
+    /// No event after this time.
+    SilentAfter {
+        /// Seconds.
+        time_s: f64,
+    },
+    /// From `from_s` on the torque stays in a band.
+    TorqueWithin {
+        /// From when, s.
+        from_s: f64,
+        /// N·m.
+        low_nm: f64,
+        /// N·m.
+        high_nm: f64,
+        /// How far outside, N·m.
+        slack_nm: f64,
+    },
+    /// From `from_s` on every torque is the same, bit for bit.
+    TorqueStays {
+        /// From when, s.
+        from_s: f64,
+    },
+    /// The last torque is the first.
+    TorqueReturns {
+        /// N·m.
+        within_nm: Limits,
+    },
+    /// |∮ T dφ| over the run.
+    LoopArea {
+        /// J.
+        most_j: Limits,
+    },
+    /// No stick breaks while the shaft is at rest.
+    NoBreakAtRest,
+    /// In a slip the shaft leads the object in the slip's sense, so the torque
+    /// changes sign only when the relative velocity does.
+    SlipsWithShaft {
+        /// How far it may lag at the end of a step, rad/s.
+        within_rad_s: Limits,
+    },
+    /// The torque is that of another input with the sign changed, bit for bit.
+    MirrorOf(Input),
+    /// The torque is that of another input, bit for bit.
+    SameAs(Input),
+    /// The hash of all torque bits.
+    TorqueBits(u64),
+    /// The hand's largest swing in the last half second over that in the first.
+    SwingRatio {
+        /// Theory.
+        theory: f64,
+        /// Relative.
+        within: f64,
+    },
+    /// So few steps end with a velocity below the smallest normal number.
+    Subnormals {
+        /// At most.
+        most: u64,
+    },
+    /// Every attempt is refused.
+    Refused,
+}
+
+impl Criterion {
+    /// The other input that a criterion compares with.
+    pub fn twin(&self) -> Option<&Input> {
+        match self {
+            Self::MirrorOf(input) | Self::SameAs(input) => Some(input),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_and_number_are_one() {
+        let within_s = Limits {
+            f64: 1e-12,
+            f32: 5e-6,
+        };
+        assert_eq!(
+            Criterion::Events { within_s }.to_string(),
+            "same events as the reference, each within 1e-12 s (f64), 5e-6 s (f32)"
+        );
+        let three = Criterion::Count {
+            what: Counted::Breaks,
+            least: 3,
+            most: 3,
+        };
+        assert_eq!(three.to_string(), "3 breaks");
+        assert!(common_bounds()[2].contains("1e-10 (f64), 1e-4 (f32)"));
+    }
+}

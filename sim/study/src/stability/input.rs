@@ -1,0 +1,287 @@
+//! What a joint is driven with in a trial: the exact input, as data.
+
+use super::text::{Plain, Time};
+use crepitus_model::Settings;
+use crepitus_plant::Motion;
+use crepitus_plant::motion::VelocityKnot;
+use std::fmt;
+
+/// A prescribed motion of the shaft.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shaft {
+    /// φ = Ω·t, Ω in rad/s.
+    Constant(f64),
+    /// φ = A·sin(2π·f·t + phase).
+    Sine {
+        /// A, rad.
+        amplitude_rad: f64,
+        /// f, Hz.
+        frequency_hz: f64,
+        /// Phase at the start, degrees.
+        phase_deg: f64,
+    },
+    /// Velocity linear between knots: time s, Ω just before and just after it,
+    /// rad/s.
+    Knots(&'static [(f64, f64, f64)]),
+}
+
+/// What a joint is driven with.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Input {
+    /// A motion cut into steps; the true events are known.
+    Sampled {
+        /// The motion.
+        shaft: Shaft,
+        /// How long, s.
+        duration_s: f64,
+        /// The step, s.
+        step_s: f64,
+    },
+    /// The same step again and again, for runs too long to cut up.
+    Repeated {
+        /// Ω, rad/s.
+        omega_rad_s: f64,
+        /// How long, s.
+        duration_s: f64,
+        /// The step, s.
+        step_s: f64,
+    },
+    /// A motion seen through the encoder at the motor and the estimator that
+    /// ships.
+    Encoder {
+        /// The motion.
+        shaft: Shaft,
+        /// How long, s.
+        duration_s: f64,
+        /// How often the counter is read, Hz.
+        rate_hz: f64,
+        /// Lines of the encoder's disc.
+        lines: f64,
+        /// How far a reading is early or late at most, in periods.
+        jitter: f64,
+        /// Counter at the start; it wraps as a 32-bit timer does.
+        first_count: i32,
+    },
+    /// Velocities without memory: every step ends at a random one, and every
+    /// fourth begins with a jump to one.
+    White {
+        /// The largest speed, rad/s.
+        most_rad_s: f64,
+        /// Seed of the random numbers.
+        seed: u64,
+        /// How long, s.
+        duration_s: f64,
+        /// The step, s.
+        step_s: f64,
+    },
+    /// A hand of inertia I with damping b on the joint, which it turns and
+    /// whose torque it gets, held over each step: I·Ω̇ = −T − b·Ω.
+    Hand {
+        /// I, kg·m².
+        inertia_kg_m2: f64,
+        /// b, N·m·s/rad.
+        damping_nms_per_rad: f64,
+        /// Velocity at the start, rad/s.
+        omega_rad_s: f64,
+        /// How long, s.
+        duration_s: f64,
+        /// The step, s.
+        step_s: f64,
+    },
+    /// Settings and steps that must be refused.
+    Refusals(Vec<Attempt>),
+}
+
+/// Something to be refused.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attempt {
+    /// What is wrong with it.
+    pub what: &'static str,
+    /// The settings.
+    pub settings: Settings,
+    /// The step, s.
+    pub step_s: f64,
+}
+
+impl Shaft {
+    /// The motion itself.
+    pub fn motion(&self) -> Motion {
+        match self {
+            Self::Constant(omega_rad_s) => Motion::constant(*omega_rad_s),
+            Self::Sine {
+                amplitude_rad,
+                frequency_hz,
+                phase_deg,
+            } => Motion::sine(*amplitude_rad, *frequency_hz, *phase_deg),
+            Self::Knots(knots) => {
+                let knots: Vec<_> = knots
+                    .iter()
+                    .map(
+                        |&(time_s, omega_left_rad_s, omega_right_rad_s)| VelocityKnot {
+                            time_s,
+                            omega_left_rad_s,
+                            omega_right_rad_s,
+                        },
+                    )
+                    .collect();
+                Motion::velocity_knots(&knots)
+            }
+        }
+    }
+}
+
+impl Input {
+    /// Duration and step, s; `None` where nothing runs.
+    pub fn duration_and_step_s(&self) -> Option<(f64, f64)> {
+        match *self {
+            Self::Sampled {
+                duration_s, step_s, ..
+            }
+            | Self::Repeated {
+                duration_s, step_s, ..
+            }
+            | Self::White {
+                duration_s, step_s, ..
+            }
+            | Self::Hand {
+                duration_s, step_s, ..
+            } => Some((duration_s, step_s)),
+            Self::Encoder {
+                duration_s,
+                rate_hz,
+                ..
+            } => Some((duration_s, 1.0 / rate_hz)),
+            Self::Refusals(_) => None,
+        }
+    }
+
+    /// Steps of a run; 0 where nothing runs.
+    pub fn steps(&self) -> f64 {
+        self.duration_and_step_s()
+            .map_or(0.0, |(duration_s, step_s)| (duration_s / step_s).round())
+    }
+}
+
+impl fmt::Display for Shaft {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Constant(omega) => write!(f, "Ω = {} rad/s", Plain(*omega)),
+            Self::Sine {
+                amplitude_rad,
+                frequency_hz,
+                phase_deg,
+            } => {
+                write!(
+                    f,
+                    "φ = {} rad · sin(2π · {} Hz · t",
+                    Plain(*amplitude_rad),
+                    Plain(*frequency_hz)
+                )?;
+                if *phase_deg == 0.0 {
+                    f.write_str(")")
+                } else {
+                    write!(f, " {phase_deg:+}°)")
+                }
+            }
+            Self::Knots(knots) => {
+                f.write_str("Ω linear between (t s: Ω rad/s)")?;
+                for (i, &(time_s, left, right)) in knots.iter().enumerate() {
+                    let comma = if i == 0 { "" } else { "," };
+                    write!(f, "{comma} {}: {}", Plain(time_s), Plain(left))?;
+                    if left != right {
+                        write!(f, "|{}", Plain(right))?;
+                    }
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+impl fmt::Display for Input {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sampled { shaft, .. } => write!(f, "{shaft}")?,
+            Self::Repeated { omega_rad_s, .. } => {
+                write!(
+                    f,
+                    "one and the same step of Ω = {} rad/s",
+                    Plain(*omega_rad_s)
+                )?;
+            }
+            Self::Encoder {
+                shaft,
+                lines,
+                rate_hz,
+                jitter,
+                first_count,
+                ..
+            } => {
+                write!(f, "{shaft}, encoder of {lines} lines read at {rate_hz} Hz")?;
+                if *jitter > 0.0 {
+                    write!(f, " ± {} % of a period", Plain(100.0 * jitter))?;
+                }
+                if *first_count != 0 {
+                    write!(f, ", counter from {first_count}")?;
+                }
+            }
+            Self::White {
+                most_rad_s, seed, ..
+            } => write!(
+                f,
+                "white velocity within ±{} rad/s, every fourth step a jump (seed {seed})",
+                Plain(*most_rad_s)
+            )?,
+            Self::Hand {
+                inertia_kg_m2,
+                damping_nms_per_rad,
+                omega_rad_s,
+                ..
+            } => write!(
+                f,
+                "a hand of {} kg·m² and {} N·m·s/rad that starts with {} rad/s, moved by the torque shown",
+                Plain(*inertia_kg_m2),
+                Plain(*damping_nms_per_rad),
+                Plain(*omega_rad_s)
+            )?,
+            Self::Refusals(attempts) => {
+                for (i, attempt) in attempts.iter().enumerate() {
+                    let comma = if i == 0 { "" } else { ", " };
+                    write!(f, "{comma}{}", attempt.what)?;
+                }
+            }
+        }
+        match self.duration_and_step_s() {
+            Some((duration_s, step_s)) => {
+                write!(f, ", {} in steps of {}", Time(duration_s), Time(step_s))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_holds_every_number() {
+        let input = Input::Sampled {
+            shaft: Shaft::Knots(&[(0.0, 1.0, 1.0), (0.5, 1.0, -0.25)]),
+            duration_s: 2.0,
+            step_s: 5e-5,
+        };
+        assert_eq!(
+            input.to_string(),
+            "Ω linear between (t s: Ω rad/s) 0: 1, 0.5: 1|-0.25, 2 s in steps of 50 µs"
+        );
+        assert_eq!(input.steps(), 40_000.0);
+        let sine = Shaft::Sine {
+            amplitude_rad: 0.003,
+            frequency_hz: 1.0,
+            phase_deg: -90.0,
+        };
+        assert_eq!(sine.to_string(), "φ = 0.003 rad · sin(2π · 1 Hz · t -90°)");
+    }
+}

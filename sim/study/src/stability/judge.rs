@@ -1,0 +1,282 @@
+//! Holds a criterion against what was seen.
+
+use super::criterion::{BALANCE, BOUND_SLACK, Counted, Criterion};
+use super::observation::Observation;
+use super::subject::Subject;
+use super::verdict::{Failure, Margin, Verdict};
+use crate::event_errors::EventErrors;
+use crate::matching::match_events;
+use crate::true_events::{TimedEvent, TrueEvent};
+use crepitus_model::Real;
+use crepitus_model::solver::Solver;
+use crepitus_scene::scene::Precision;
+
+/// A cycle rate off by more than this factor is another motion.
+const ANOTHER_MOTION: f64 = 2.0;
+
+/// What a criterion is held against.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Evidence<'a> {
+    pub(super) subject: Subject,
+    pub(super) seen: &'a Observation,
+    /// The true events, where the input has some.
+    pub(super) truth: &'a [TrueEvent],
+    /// What was seen with the input that the criterion compares with.
+    pub(super) twin: Option<&'a Observation>,
+}
+
+/// What came of a criterion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Finding {
+    /// Met or missed, by its number.
+    Number(Margin),
+    /// Something else than the joint was simulated.
+    Failed(Failure, Option<f64>),
+}
+
+impl Finding {
+    /// As a verdict.
+    pub(super) fn verdict(self, flagged: bool) -> Verdict {
+        match self {
+            Self::Number(margin) if margin.measured <= margin.limit => Verdict::Holds(margin),
+            Self::Number(margin) => Verdict::Degrades { margin, flagged },
+            Self::Failed(what, at_s) => Verdict::Fails {
+                what,
+                at_s,
+                flagged,
+            },
+        }
+    }
+}
+
+/// The common bounds: what is broken of them, if anything.
+pub(super) fn common(evidence: &Evidence<'_>) -> Option<Finding> {
+    let seen = evidence.seen;
+    if seen.overflow_s.is_some() {
+        return Some(Finding::Failed(Failure::Overflow, seen.overflow_s));
+    }
+    if seen.above_s.is_some() {
+        return Some(Finding::Failed(Failure::AboveTheLimit, seen.above_s));
+    }
+    let limit = BALANCE.of(evidence.subject.precision);
+    let missing = seen
+        .imbalance
+        .filter(|_| evidence.subject.solver == Solver::ExactEvents)?;
+    (missing.is_nan() || missing > limit).then_some(number(missing, limit, ""))
+}
+
+/// Holds `criterion` against the evidence.
+pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
+    let Evidence { subject, seen, .. } = *evidence;
+    let tally = &seen.tally;
+    let precision = subject.precision;
+    match criterion {
+        Criterion::Survives => number(seen.peak, 1.0 + BOUND_SLACK, ""),
+        Criterion::Events { within_s } => events(evidence, within_s.of(precision)),
+        Criterion::EventTorques { within_nm } => event_torques(evidence, within_nm.of(precision)),
+        Criterion::Count { what, least, most } => {
+            let found = match what {
+                Counted::Events => tally.events(),
+                Counted::Breaks => tally.breaks,
+                Counted::Reverses => tally.reverses,
+            };
+            if (*least..=*most).contains(&found) {
+                number(0.0, 0.0, "")
+            } else {
+                let expected = if found < *least { *least } else { *most };
+                Finding::Failed(Failure::OtherEvents { found, expected }, None)
+            }
+        }
+        Criterion::EventsPerStep { most } => match tally.most_in_step {
+            found if found > *most => {
+                Finding::Failed(Failure::Broken("chatter within a step"), None)
+            }
+            found => number(f64::from(found), f64::from(*most), "events"),
+        },
+        Criterion::EventsPerSecond { most } => {
+            let duration_s = seen.duration_s();
+            let rate = f64::from_whole(tally.events()) / duration_s;
+            if rate > *most {
+                let failure = Failure::OtherEvents {
+                    found: tally.events(),
+                    expected: nearest(most * duration_s),
+                };
+                return Finding::Failed(failure, None);
+            }
+            number(rate, *most, "events/s")
+        }
+        Criterion::CycleRate { hz, within } => cycle_rate(seen, *hz, within.of(precision)),
+        Criterion::IntervalVariation { most } => match tally.cycles.variation() {
+            Some(variation) => number(variation, *most, ""),
+            None => Finding::Failed(Failure::Broken("no cycles"), None),
+        },
+        Criterion::SlipTime { slip_s, within } => {
+            if tally.sticks == 0 {
+                return Finding::Failed(Failure::Broken("no slip ends"), None);
+            }
+            let off_s = (tally.slips.high - slip_s).max(slip_s - tally.slips.low);
+            number(off_s / slip_s, within.of(precision), "")
+        }
+        Criterion::SilentAfter { time_s } => number(tally.last_s.unwrap_or(0.0), *time_s, "s"),
+        Criterion::TorqueWithin { .. }
+        | Criterion::TorqueStays { .. }
+        | Criterion::TorqueReturns { .. }
+        | Criterion::LoopArea { .. } => torques(criterion, seen, precision),
+        Criterion::NoBreakAtRest => {
+            if tally.breaks_at_rest > 0 {
+                Finding::Failed(Failure::Broken("breaks while the shaft is at rest"), None)
+            } else {
+                number(0.0, 0.0, "")
+            }
+        }
+        Criterion::SlipsWithShaft { within_rad_s } => {
+            number(seen.lag_rad_s, within_rad_s.of(precision), "rad/s")
+        }
+        Criterion::MirrorOf(_) => {
+            same(evidence.twin.map(|twin| twin.mirrored_bits) == Some(seen.torque_bits))
+        }
+        Criterion::SameAs(_) => {
+            same(evidence.twin.map(|twin| twin.torque_bits) == Some(seen.torque_bits))
+        }
+        Criterion::TorqueBits(hash) => same(seen.torque_bits.0 == *hash),
+        Criterion::SwingRatio { theory, within } => match seen.swing_rad {
+            Some((first, last)) => number((last / first / theory - 1.0).abs(), *within, ""),
+            None => Finding::Failed(Failure::Broken("no hand"), None),
+        },
+        Criterion::Subnormals { most } => number(
+            f64::from_whole(seen.subnormals),
+            f64::from_whole(*most),
+            "steps",
+        ),
+        Criterion::Refused => match seen.accepted.first() {
+            Some(what) => Finding::Failed(Failure::Broken(what), None),
+            None => number(0.0, 0.0, ""),
+        },
+    }
+}
+
+/// Holds a criterion of the torque's course against what was seen.
+fn torques(criterion: &Criterion, seen: &Observation, precision: Precision) -> Finding {
+    match criterion {
+        Criterion::TorqueWithin {
+            low_nm,
+            high_nm,
+            slack_nm,
+            ..
+        } => {
+            let range = seen.late_torque;
+            let outside = (range.high - high_nm).max(low_nm - range.low).max(0.0);
+            number(outside, *slack_nm, "N·m")
+        }
+        Criterion::TorqueStays { from_s } => {
+            // The step that ends at `from_s` may still change it.
+            let changed_s = f64::from_whole(seen.last_change.saturating_sub(1)) * seen.step_s;
+            if seen.last_change > 0 && changed_s >= *from_s {
+                Finding::Failed(Failure::Broken("the torque changes"), Some(changed_s))
+            } else {
+                number(0.0, 0.0, "")
+            }
+        }
+        Criterion::TorqueReturns { within_nm } => number(
+            (seen.last_torque_nm - seen.first_torque_nm).abs(),
+            within_nm.of(precision),
+            "N·m",
+        ),
+        Criterion::LoopArea { most_j } => number(seen.work_j.abs(), most_j.of(precision), "J"),
+        _ => Finding::Failed(Failure::Broken("no criterion of the torque"), None),
+    }
+}
+
+/// What a criterion found that a verdict has no place for.
+pub(super) fn remark(criterion: &Criterion, seen: &Observation) -> String {
+    match criterion {
+        Criterion::TorqueBits(hash) if seen.torque_bits.0 != *hash => {
+            format!("; found {:#018x}", seen.torque_bits.0)
+        }
+        _ => String::new(),
+    }
+}
+
+/// A number against its limit.
+fn number(measured: f64, limit: f64, unit: &'static str) -> Finding {
+    Finding::Number(Margin {
+        measured,
+        limit,
+        unit,
+    })
+}
+
+fn same(are: bool) -> Finding {
+    if are {
+        number(0.0, 0.0, "")
+    } else {
+        Finding::Failed(Failure::Broken("other torque bits"), None)
+    }
+}
+
+/// The same events, and how far off they are.
+fn events(evidence: &Evidence<'_>, within_s: f64) -> Finding {
+    let Evidence { seen, truth, .. } = evidence;
+    let true_events: Vec<TimedEvent> = truth.iter().map(|t| t.event).collect();
+    let end_s = seen.duration_s();
+    let matching = match_events(&true_events, &seen.events, seen.step_s, end_s);
+    let found = seen.tally.events();
+    let kept_all = u64::try_from(seen.events.len()) == Ok(found);
+    if matching.unmatched > 0 || !kept_all {
+        let expected = u64::try_from(truth.len()).unwrap_or(u64::MAX);
+        let failure = if found == expected {
+            Failure::Broken("other events in the same number")
+        } else {
+            Failure::OtherEvents { found, expected }
+        };
+        return Finding::Failed(failure, None);
+    }
+    if matching.pairs.is_empty() {
+        return number(0.0, within_s, "s");
+    }
+    let errors = EventErrors::new(&true_events, &seen.events, &matching);
+    number(errors.max_s, within_s, "s")
+}
+
+/// How far off the torque after matched events is.
+fn event_torques(evidence: &Evidence<'_>, within_nm: f64) -> Finding {
+    let Evidence { seen, truth, .. } = evidence;
+    let true_events: Vec<TimedEvent> = truth.iter().map(|t| t.event).collect();
+    let matching = match_events(&true_events, &seen.events, seen.step_s, seen.duration_s());
+    let worst = matching
+        .pairs
+        .iter()
+        .filter_map(|&(i, j)| {
+            let torque = seen.torques_after_nm.get(j)?;
+            Some((torque - truth.get(i)?.torque_after_nm).abs())
+        })
+        .fold(0.0, f64::max);
+    number(worst, within_nm, "N·m")
+}
+
+fn cycle_rate(seen: &Observation, hz: f64, within: f64) -> Finding {
+    let expected = hz * seen.duration_s();
+    let other = Finding::Failed(
+        Failure::OtherEvents {
+            found: seen.tally.events(),
+            expected: nearest(2.0 * expected),
+        },
+        None,
+    );
+    // With few cycles a count says too little.
+    let share = seen.tally.cycles.count() / (expected - 1.0).max(1.0);
+    match seen.tally.cycles.mean() {
+        Some(mean_s) if share * ANOTHER_MOTION >= 1.0 && share <= ANOTHER_MOTION => {
+            number((1.0 / (mean_s * hz) - 1.0).abs(), within, "")
+        }
+        _ => other,
+    }
+}
+
+/// The nearest count; negative and NaN give 0.
+fn nearest(count: f64) -> u64 {
+    (count + 0.5).whole()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,216 @@
+//! What is seen of a run.
+
+use crate::true_events::TimedEvent;
+use crepitus_model::{EventKind, Real, Sense};
+
+/// The most events that are kept; the rest is counted.
+pub(super) const MOST_KEPT: usize = 200_000;
+
+/// What is seen of a run.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Observation {
+    /// Steps made and their length, s.
+    pub(super) steps: u64,
+    pub(super) step_s: f64,
+    /// The first events, and the torque just after each, N·m.
+    pub(super) events: Vec<TimedEvent>,
+    pub(super) torques_after_nm: Vec<f64>,
+    pub(super) tally: Tally,
+    /// When something was infinite or no number first, s.
+    pub(super) overflow_s: Option<f64>,
+    /// When the torque or a stick's angle was above its limit first, s.
+    pub(super) above_s: Option<f64>,
+    /// Largest |T|/Ts.
+    pub(super) peak: f64,
+    pub(super) torque: Range,
+    /// From the time on that the trial asks for.
+    pub(super) late_torque: Range,
+    pub(super) first_torque_nm: f64,
+    pub(super) last_torque_nm: f64,
+    /// The last step after which the torque was another than before it.
+    pub(super) last_change: u64,
+    /// Steps whose travel outlasts a stick: kr·|Δφ| > 2(Ts − Tk).
+    pub(super) unresolved_steps: u64,
+    /// Hash of the bits of T, and of −T.
+    pub(super) torque_bits: Hash,
+    pub(super) mirrored_bits: Hash,
+    /// ∫T dφ, J.
+    pub(super) work_j: f64,
+    /// Worst s·(v − Ω) at the end of a step in a slip, rad/s.
+    pub(super) lag_rad_s: f64,
+    /// Steps that end with a subnormal velocity.
+    pub(super) subnormals: u64,
+    /// Worst share of missing energy, where books are kept.
+    pub(super) imbalance: Option<f64>,
+    /// First and last swing of the hand, rad.
+    pub(super) swing_rad: Option<(f64, f64)>,
+    /// What should have been refused and was not.
+    pub(super) accepted: Vec<&'static str>,
+}
+
+impl Observation {
+    /// Simulated time, s.
+    pub(super) fn duration_s(&self) -> f64 {
+        f64::from_whole(self.steps) * self.step_s
+    }
+
+    /// Whether the run can see by itself that its step is too long.
+    pub(super) fn is_flagged(&self) -> bool {
+        self.unresolved_steps > 0
+    }
+}
+
+/// Smallest and largest of a number.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Range {
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+impl Range {
+    #[inline]
+    pub(super) fn add(&mut self, x: f64) {
+        self.low = self.low.min(x);
+        self.high = self.high.max(x);
+    }
+}
+
+impl Default for Range {
+    fn default() -> Self {
+        Self {
+            low: f64::INFINITY,
+            high: f64::NEG_INFINITY,
+        }
+    }
+}
+
+/// FNV-1a of 64 bits, one round for each torque, whose bits are taken as one
+/// word: two runs whose torques are the same to the bit have the same hash.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Hash(pub(super) u64);
+
+impl Hash {
+    #[inline]
+    pub(super) fn add(&mut self, bits: u64) {
+        self.0 = (self.0 ^ bits).wrapping_mul(0x0000_0100_0000_01b3);
+    }
+}
+
+impl Default for Hash {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+/// Statistics of all events, kept or not.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tally {
+    pub(super) breaks: u64,
+    pub(super) sticks: u64,
+    pub(super) reverses: u64,
+    pub(super) most_in_step: u32,
+    pub(super) last_s: Option<f64>,
+    pub(super) breaks_at_rest: u64,
+    /// From break to break in one sense, s.
+    pub(super) cycles: Spread,
+    /// From break to stick, s.
+    pub(super) slips: Range,
+    last_break: Option<(f64, Sense)>,
+    slip_began_s: Option<f64>,
+}
+
+impl Tally {
+    pub(super) fn events(&self) -> u64 {
+        self.breaks + self.sticks + self.reverses
+    }
+
+    pub(super) fn add(&mut self, event: &TimedEvent) {
+        let now_s = event.time_s;
+        self.last_s = Some(now_s);
+        match event.kind {
+            EventKind::Break => {
+                self.breaks += 1;
+                if let Some((before_s, sense)) = self.last_break
+                    && sense == event.sense
+                {
+                    self.cycles.add(now_s - before_s);
+                }
+                self.last_break = Some((now_s, event.sense));
+                self.slip_began_s = Some(now_s);
+            }
+            EventKind::Stick => {
+                self.sticks += 1;
+                if let Some(began_s) = self.slip_began_s.take() {
+                    self.slips.add(now_s - began_s);
+                }
+            }
+            EventKind::Reverse => {
+                self.reverses += 1;
+                self.slip_began_s = None;
+                self.last_break = None;
+            }
+        }
+    }
+}
+
+/// Mean and variance as they come in (Welford).
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Spread {
+    count: f64,
+    mean: f64,
+    squares: f64,
+}
+
+impl Spread {
+    fn add(&mut self, x: f64) {
+        self.count += 1.0;
+        let off = x - self.mean;
+        self.mean += off / self.count;
+        self.squares += off * (x - self.mean);
+    }
+
+    /// How many.
+    pub(super) fn count(&self) -> f64 {
+        self.count
+    }
+
+    /// The mean; `None` of nothing.
+    pub(super) fn mean(&self) -> Option<f64> {
+        (self.count > 0.0).then_some(self.mean)
+    }
+
+    /// Standard deviation over mean; `None` of fewer than two.
+    pub(super) fn variation(&self) -> Option<f64> {
+        (self.count > 1.0).then(|| (self.squares / self.count).sqrt() / self.mean)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cycles_and_slips_are_told_apart() {
+        let mut tally = Tally::default();
+        let mut add = |time_s, kind, sense| {
+            tally.add(&TimedEvent {
+                time_s,
+                kind,
+                sense,
+            });
+        };
+        let up = Sense::Positive;
+        add(1.0, EventKind::Break, up);
+        add(1.75, EventKind::Stick, up);
+        add(2.0, EventKind::Break, up);
+        add(2.75, EventKind::Stick, up);
+        add(4.0, EventKind::Break, up);
+        add(5.0, EventKind::Reverse, Sense::Negative);
+        add(5.5, EventKind::Stick, Sense::Negative);
+        add(7.0, EventKind::Break, up);
+        assert_eq!((tally.breaks, tally.sticks, tally.reverses), (4, 3, 1));
+        assert_eq!(tally.cycles.mean(), Some(1.5));
+        assert!((tally.cycles.variation().unwrap() - 1.0 / 3.0).abs() < 1e-15);
+        assert_eq!((tally.slips.low, tally.slips.high), (0.75, 0.75));
+    }
+}

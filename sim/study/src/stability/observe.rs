@@ -1,0 +1,287 @@
+//! Runs a subject through an input and notes what is to be seen.
+
+use super::books::Books;
+use super::criterion::BOUND_SLACK;
+use super::input::{Attempt, Input};
+use super::observation::{MOST_KEPT, Observation};
+use super::source::{Source, first_omega_rad_s, motion, source};
+use super::subject::Subject;
+use crate::sampling::{CHUNK_STEPS, Sampling};
+use crate::true_events::TimedEvent;
+use crate::watcher::StudyError;
+use crepitus_model::solver::{JointVisitor, with_joint};
+use crepitus_model::{
+    Convention, Event, EventKind, Parameters, Phase, Real, Settings, ShaftStep, StickSlip,
+};
+use crepitus_scene::scene::Precision;
+
+/// Between two looks at whoever watches, in steps.
+const STEPS_A_LOOK: u64 = 65_536;
+
+/// Up to this ωn·h the books follow damping well enough.
+const BOOKED_RADIANS: f64 = 0.05;
+
+/// Runs `subject` with `settings` through `input`; the late torque is that
+/// after `late_s`. `go_on` hears of the steps made since it was last called,
+/// and may end the run.
+pub(super) fn observe<E>(
+    subject: Subject,
+    settings: &Settings,
+    input: &Input,
+    late_s: f64,
+    go_on: &mut dyn FnMut(f64) -> Result<(), E>,
+) -> Result<Observation, StudyError<E>> {
+    if let Input::Refusals(attempts) = input {
+        return Ok(attempt(subject, attempts));
+    }
+    match subject.precision {
+        Precision::F32 => run::<f32, E>(subject, settings, input, late_s, go_on),
+        Precision::F64 => run::<f64, E>(subject, settings, input, late_s, go_on),
+    }
+}
+
+fn run<F: Real, E>(
+    subject: Subject,
+    settings: &Settings,
+    input: &Input,
+    late_s: f64,
+    go_on: &mut dyn FnMut(f64) -> Result<(), E>,
+) -> Result<Observation, StudyError<E>> {
+    let settings = settings.validate()?;
+    let (duration_s, step_s) = input.duration_and_step_s().unwrap_or((0.0, 1.0));
+    let motion = motion(input);
+    let sampling = Sampling::new(&motion, duration_s, step_s);
+    let omega_rad_s = first_omega_rad_s(input, &motion);
+    let p = settings.parameters;
+    let booked = subject.convention == Convention::Physical
+        && (p.damping_nms_per_rad == 0.0 || p.natural_rad_s() * step_s <= BOOKED_RADIANS);
+    let look = Look {
+        source: source::<F>(input, &sampling, &motion)?,
+        sampling,
+        parameters: p,
+        frozen: subject.convention == Convention::Frozen,
+        books: booked.then(|| Books::new(p, step_s, F::from_f64(omega_rad_s).to_f64())),
+        late_step: (late_s / step_s).ceil(),
+        go_on,
+    };
+    let omega = F::from_f64(omega_rad_s);
+    with_joint::<F, _>(&settings, subject.solver, step_s, omega, look)?.map_err(StudyError::Watcher)
+}
+
+/// Tries to build each joint.
+fn attempt(subject: Subject, attempts: &[Attempt]) -> Observation {
+    struct Built;
+    impl<F: Real> JointVisitor<F> for Built {
+        type Output = ();
+        fn visit<J: StickSlip<F>>(self, _: J) {}
+    }
+    let accepts = |attempt: &&Attempt| {
+        attempt.settings.validate().is_ok_and(|settings| {
+            let (solver, step_s) = (subject.solver, attempt.step_s);
+            match subject.precision {
+                Precision::F32 => {
+                    with_joint::<f32, _>(&settings, solver, step_s, 1.0, Built).is_ok()
+                }
+                Precision::F64 => {
+                    with_joint::<f64, _>(&settings, solver, step_s, 1.0, Built).is_ok()
+                }
+            }
+        })
+    };
+    Observation {
+        accepted: attempts.iter().filter(accepts).map(|a| a.what).collect(),
+        ..Observation::default()
+    }
+}
+
+/// Looks at a joint after every step.
+struct Look<'a, F, E> {
+    source: Box<dyn Source<F> + 'a>,
+    sampling: Sampling<'a>,
+    parameters: Parameters,
+    frozen: bool,
+    books: Option<Books>,
+    /// From which step on the late torque counts.
+    late_step: f64,
+    go_on: &'a mut dyn FnMut(f64) -> Result<(), E>,
+}
+
+impl<F: Real, E> JointVisitor<F> for Look<'_, F, E> {
+    type Output = Result<Observation, E>;
+
+    fn visit<J: StickSlip<F>>(mut self, mut joint: J) -> Result<Observation, E> {
+        let first_torque_nm = joint.torque_nm().to_f64();
+        let mut seen = Observation {
+            step_s: self.sampling.step_s(),
+            first_torque_nm,
+            last_torque_nm: first_torque_nm,
+            ..Observation::default()
+        };
+        let late_step = self.late_step.whole();
+        let mut chunk = Vec::with_capacity(CHUNK_STEPS);
+        let mut unseen = 0_u64;
+        loop {
+            self.source.fill(&mut chunk, joint.torque_nm());
+            if chunk.is_empty() {
+                break;
+            }
+            for shaft in &chunk {
+                self.step(&mut joint, shaft, &mut seen);
+                if seen.steps > late_step {
+                    seen.late_torque.add(seen.last_torque_nm);
+                }
+                if seen.overflow_s.is_some() {
+                    return Ok(seen);
+                }
+            }
+            // In a frozen slip these are trigonometry: now and then will do,
+            // as nothing is computed from them.
+            let finite = joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite();
+            if !finite {
+                seen.overflow_s = Some(self.sampling.time_s(seen.steps, 0.0));
+                return Ok(seen);
+            }
+            unseen += u64::try_from(chunk.len()).unwrap_or(0);
+            if unseen >= STEPS_A_LOOK {
+                (self.go_on)(f64::from_whole(unseen))?;
+                unseen = 0;
+            }
+        }
+        seen.imbalance = self.books.as_ref().map(Books::worst);
+        if let Some(books) = &self.books {
+            seen.work_j = books.work_j();
+        }
+        seen.swing_rad = self.source.swing_rad();
+        (self.go_on)(f64::from_whole(unseen))?;
+        Ok(seen)
+    }
+}
+
+impl<F: Real, E> Look<'_, F, E> {
+    #[inline]
+    fn step<J: StickSlip<F>>(
+        &mut self,
+        joint: &mut J,
+        shaft: &ShaftStep<F>,
+        seen: &mut Observation,
+    ) {
+        let Parameters {
+            static_torque_nm,
+            kinetic_torque_nm,
+            stiffness_nm_per_rad,
+            ..
+        } = self.parameters;
+        let limit_nm = static_torque_nm * (1.0 + BOUND_SLACK);
+        let mut in_step = 0;
+        joint.step(shaft, |event| {
+            in_step += 1;
+            if let Some(books) = &mut self.books {
+                books.event(shaft, &event);
+            }
+            note(seen, &self.sampling, shaft, &event, limit_nm);
+        });
+        seen.tally.most_in_step = seen.tally.most_in_step.max(in_step);
+        seen.steps += 1;
+        let before_nm = seen.last_torque_nm;
+        let torque = joint.torque_nm();
+        let torque_nm = torque.to_f64();
+        let travel_rad = shaft.delta_phi_rad.to_f64();
+        seen.last_torque_nm = torque_nm;
+        seen.torque.add(torque_nm);
+        seen.torque_bits.add(bits::<F>(torque_nm));
+        seen.mirrored_bits.add(bits::<F>(-torque_nm));
+        if torque_nm.to_bits() != before_nm.to_bits() {
+            seen.last_change = seen.steps;
+        }
+        if stiffness_nm_per_rad * travel_rad.abs() > 2.0 * (static_torque_nm - kinetic_torque_nm) {
+            seen.unresolved_steps += 1;
+        }
+        let mut finite = torque_nm.is_finite();
+        let mut above = torque_nm.abs() > limit_nm;
+        let stick = joint.phase() == Phase::Stick;
+        if !self.frozen || stick {
+            let (theta, v) = (joint.theta_rad().to_f64(), joint.theta_dot_rad_s().to_f64());
+            finite &= theta.is_finite() && v.is_finite();
+            above |= self.frozen && stiffness_nm_per_rad * theta.abs() > limit_nm;
+            if v != 0.0 && v.abs() < smallest_normal::<F>() {
+                seen.subnormals += 1;
+            }
+            if let Phase::Slip(sense) = joint.phase() {
+                let lag = sense.of_signed(v - shaft.omega_end_rad_s.to_f64());
+                seen.lag_rad_s = seen.lag_rad_s.max(lag);
+            }
+            if let Some(books) = &mut self.books {
+                books.end_of_step(shaft, theta, v);
+            }
+        }
+        if self.books.is_none() {
+            seen.work_j += 0.5 * (before_nm + torque_nm) * travel_rad;
+        }
+        if !finite && seen.overflow_s.is_none() {
+            seen.overflow_s = Some(self.sampling.time_s(seen.steps, 0.0));
+        }
+        if above && seen.above_s.is_none() {
+            seen.above_s = Some(self.sampling.time_s(seen.steps, 0.0));
+        }
+        if static_torque_nm > 0.0 {
+            seen.peak = seen.peak.max(torque_nm.abs() / static_torque_nm);
+        }
+    }
+}
+
+/// Notes an event of the step after those that are counted.
+fn note<F: Real>(
+    seen: &mut Observation,
+    sampling: &Sampling<'_>,
+    shaft: &ShaftStep<F>,
+    event: &Event<F>,
+    limit_nm: f64,
+) {
+    let time_s = sampling.time_s(seen.steps, event.fraction.to_f64());
+    let timed = TimedEvent::new(time_s, event);
+    let after_nm = event.torque_after_nm.to_f64();
+    let torques = [event.torque_before_nm.to_f64(), after_nm];
+    let finite = event.theta_rad.is_finite()
+        && event.theta_dot_rad_s.is_finite()
+        && time_s.is_finite()
+        && torques.iter().all(|t| t.is_finite());
+    if !finite && seen.overflow_s.is_none() {
+        seen.overflow_s = Some(sampling.time_s(seen.steps, 0.0));
+    }
+    if torques.iter().any(|t| t.abs() > limit_nm) && seen.above_s.is_none() {
+        seen.above_s = Some(time_s);
+    }
+    let at_rest = shaft.omega_start_rad_s == F::ZERO
+        && shaft.omega_end_rad_s == F::ZERO
+        && shaft.delta_phi_rad == F::ZERO;
+    if at_rest && event.kind == EventKind::Break {
+        seen.tally.breaks_at_rest += 1;
+    }
+    seen.tally.add(&timed);
+    if seen.events.len() < MOST_KEPT {
+        seen.events.push(timed);
+        seen.torques_after_nm.push(after_nm);
+    }
+}
+
+/// The bits of a torque in the precision it was computed in; −0 and 0 are one
+/// torque.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "it was an f32")]
+fn bits<F: Real>(torque_nm: f64) -> u64 {
+    let torque_nm = torque_nm + 0.0;
+    if F::NAME == <f32 as Real>::NAME {
+        u64::from((torque_nm as f32).to_bits())
+    } else {
+        torque_nm.to_bits()
+    }
+}
+
+/// The smallest number with all its digits.
+fn smallest_normal<F: Real>() -> f64 {
+    if F::NAME == <f32 as Real>::NAME {
+        f64::from(f32::MIN_POSITIVE)
+    } else {
+        f64::MIN_POSITIVE
+    }
+}

@@ -1,0 +1,245 @@
+//! The steps of an input, made as the joint takes them.
+
+use super::input::{Input, Shaft};
+use super::random::Random;
+use crate::sampling::{CHUNK_STEPS, Sampling, Walk};
+use crepitus_model::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::{Real, SettingsError, ShaftStep};
+use crepitus_plant::Motion;
+use crepitus_plant::encoder::Encoder;
+
+/// Where steps come from.
+pub(super) trait Source<F> {
+    /// Replaces `chunk` by the next steps, at most [`CHUNK_STEPS`]; empty at
+    /// the end. The joint shows `torque_nm` now.
+    fn fill(&mut self, chunk: &mut Vec<ShaftStep<F>>, torque_nm: F);
+
+    /// How far the hand swings at first and at last, rad, if there is one.
+    fn swing_rad(&self) -> Option<(f64, f64)> {
+        None
+    }
+}
+
+/// The motion behind an input, if it has one: kept by the caller, because
+/// sources borrow it.
+pub(super) fn motion(input: &Input) -> Motion {
+    match input {
+        Input::Sampled { shaft, .. } | Input::Encoder { shaft, .. } => shaft.motion(),
+        Input::Repeated { omega_rad_s, .. } => Shaft::Constant(*omega_rad_s).motion(),
+        Input::White { .. } | Input::Hand { .. } | Input::Refusals(_) => Motion::constant(0.0),
+    }
+}
+
+/// Velocity of the shaft as the run starts, rad/s.
+pub(super) fn first_omega_rad_s(input: &Input, motion: &Motion) -> f64 {
+    match input {
+        Input::Hand { omega_rad_s, .. } => *omega_rad_s,
+        _ => motion.at(0.0).omega_rad_s,
+    }
+}
+
+/// The steps of `input`; `motion` is [`motion`] of it.
+pub(super) fn source<'a, F: Real>(
+    input: &Input,
+    sampling: &Sampling<'a>,
+    motion: &'a Motion,
+) -> Result<Box<dyn Source<F> + 'a>, SettingsError> {
+    let steps = sampling.steps();
+    Ok(match *input {
+        Input::Sampled { .. } => Box::new(Cut(sampling.walk_from(0))),
+        Input::Repeated {
+            omega_rad_s,
+            step_s,
+            ..
+        } => Box::new(Same {
+            step: straight(omega_rad_s * step_s, omega_rad_s, omega_rad_s),
+            left: steps,
+        }),
+        Input::Encoder {
+            lines,
+            rate_hz,
+            jitter,
+            first_count,
+            ..
+        } => {
+            let settings = EncoderSettings {
+                lines,
+                ..EncoderSettings::default()
+            };
+            let encoder = Encoder::new(&settings);
+            let start = motion.at(0.0);
+            let zero = encoder.count(start.phi_rad);
+            let omega = F::from_f64(start.omega_rad_s);
+            Box::new(Counted {
+                sampling: *sampling,
+                motion,
+                offset: first_count.wrapping_sub(zero),
+                encoder,
+                reader: EncoderReader::new(&settings, 1.0 / rate_hz, first_count, omega)?,
+                jitter,
+                random: Random::new(1),
+                n: 0,
+            })
+        }
+        Input::White {
+            most_rad_s,
+            seed,
+            step_s,
+            ..
+        } => Box::new(White {
+            most_rad_s,
+            step_s,
+            random: Random::new(seed),
+            omega_rad_s: 0.0,
+            n: 0,
+            steps,
+        }),
+        Input::Hand {
+            inertia_kg_m2,
+            damping_nms_per_rad,
+            omega_rad_s,
+            step_s,
+            ..
+        } => Box::new(Hand {
+            inertia_kg_m2,
+            damping_nms_per_rad,
+            step_s,
+            phi_rad: 0.0,
+            omega_rad_s,
+            first_rad: 0.0,
+            last_rad: 0.0,
+            n: 0,
+            steps,
+        }),
+        Input::Refusals(_) => Box::new(Same {
+            step: ShaftStep::default(),
+            left: 0,
+        }),
+    })
+}
+
+fn straight<F: Real>(delta_phi_rad: f64, from_rad_s: f64, to_rad_s: f64) -> ShaftStep<F> {
+    ShaftStep {
+        delta_phi_rad: F::from_f64(delta_phi_rad),
+        omega_start_rad_s: F::from_f64(from_rad_s),
+        omega_end_rad_s: F::from_f64(to_rad_s),
+    }
+}
+
+struct Cut<'a>(Walk<'a>);
+
+impl<F: Real> Source<F> for Cut<'_> {
+    fn fill(&mut self, chunk: &mut Vec<ShaftStep<F>>, _: F) {
+        self.0.fill(chunk, CHUNK_STEPS);
+    }
+}
+
+struct Same<F> {
+    step: ShaftStep<F>,
+    left: u64,
+}
+
+impl<F: Real> Source<F> for Same<F> {
+    fn fill(&mut self, chunk: &mut Vec<ShaftStep<F>>, _: F) {
+        let full = u64::try_from(CHUNK_STEPS).unwrap_or(u64::MAX);
+        let now = self.left.min(full);
+        self.left -= now;
+        chunk.resize(usize::try_from(now).unwrap_or(CHUNK_STEPS), self.step);
+    }
+}
+
+struct Counted<'a, F> {
+    sampling: Sampling<'a>,
+    motion: &'a Motion,
+    encoder: Encoder,
+    reader: EncoderReader<F>,
+    offset: i32,
+    jitter: f64,
+    random: Random,
+    n: u64,
+}
+
+impl<F: Real> Source<F> for Counted<'_, F> {
+    fn fill(&mut self, chunk: &mut Vec<ShaftStep<F>>, _: F) {
+        chunk.clear();
+        while chunk.len() < CHUNK_STEPS && self.n < self.sampling.steps() {
+            self.n += 1;
+            let late = if self.jitter > 0.0 {
+                self.jitter * self.random.signed()
+            } else {
+                0.0
+            };
+            let phi_rad = self.motion.at(self.sampling.time_s(self.n, late)).phi_rad;
+            let count = self.encoder.count(phi_rad).wrapping_add(self.offset);
+            chunk.push(self.reader.read(count));
+        }
+    }
+}
+
+struct White {
+    most_rad_s: f64,
+    step_s: f64,
+    random: Random,
+    omega_rad_s: f64,
+    n: u64,
+    steps: u64,
+}
+
+impl<F: Real> Source<F> for White {
+    fn fill(&mut self, chunk: &mut Vec<ShaftStep<F>>, _: F) {
+        chunk.clear();
+        while chunk.len() < CHUNK_STEPS && self.n < self.steps {
+            self.n += 1;
+            if self.n.is_multiple_of(4) {
+                self.omega_rad_s = self.most_rad_s * self.random.signed();
+            }
+            let from = self.omega_rad_s;
+            self.omega_rad_s = self.most_rad_s * self.random.signed();
+            let travel = 0.5 * (from + self.omega_rad_s) * self.step_s;
+            chunk.push(straight(travel, from, self.omega_rad_s));
+        }
+    }
+}
+
+/// The hand's motion under a held torque is a closed form.
+struct Hand {
+    inertia_kg_m2: f64,
+    damping_nms_per_rad: f64,
+    step_s: f64,
+    phi_rad: f64,
+    omega_rad_s: f64,
+    /// Largest |φ| within the first and the last half second, rad.
+    first_rad: f64,
+    last_rad: f64,
+    n: u64,
+    steps: u64,
+}
+
+impl<F: Real> Source<F> for Hand {
+    fn fill(&mut self, chunk: &mut Vec<ShaftStep<F>>, torque_nm: F) {
+        chunk.clear();
+        if self.n == self.steps {
+            return;
+        }
+        self.n += 1;
+        let rate = self.damping_nms_per_rad / self.inertia_kg_m2;
+        let drift = -torque_nm.to_f64() / self.damping_nms_per_rad;
+        let decay = -(-rate * self.step_s).exp_m1();
+        let from = self.omega_rad_s;
+        self.omega_rad_s = from - (from - drift) * decay;
+        let travel = drift * self.step_s + (from - drift) * decay / rate;
+        self.phi_rad += travel;
+        let window = (0.5 / self.step_s).whole();
+        if self.n <= window {
+            self.first_rad = self.first_rad.max(self.phi_rad.abs());
+        }
+        if self.n + window > self.steps {
+            self.last_rad = self.last_rad.max(self.phi_rad.abs());
+        }
+        chunk.push(straight(travel, from, self.omega_rad_s));
+    }
+
+    fn swing_rad(&self) -> Option<(f64, f64)> {
+        Some((self.first_rad, self.last_rad))
+    }
+}

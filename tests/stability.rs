@@ -1,0 +1,231 @@
+//! `crepitus stability` as a person or a script uses it.
+
+mod support;
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+use support::{crepitus, names, number, run, stderr, stdout, summary};
+
+fn stability(out: &Path, arguments: &[&str]) -> Output {
+    let out = ["--out", out.to_str().unwrap()];
+    run(&[&["stability"], arguments, &out[..]].concat())
+}
+
+/// The header and the rows of `cases.csv`; texts may be in quotes.
+fn cells(folder: &Path) -> (Vec<String>, Vec<Vec<String>>) {
+    let text = fs::read_to_string(folder.join("cases.csv")).expect("cases");
+    let mut lines = text.lines().map(|line| {
+        let mut fields = vec![String::new()];
+        let mut quoted = false;
+        for c in line.chars() {
+            match c {
+                '"' => quoted = !quoted,
+                ',' if !quoted => fields.push(String::new()),
+                c => fields.last_mut().unwrap().push(c),
+            }
+        }
+        fields
+    });
+    let header = lines.next().expect("a header");
+    (header, lines.collect())
+}
+
+#[test]
+fn one_case_is_told_in_full_and_becomes_three_files() {
+    let home = tempfile::tempdir().unwrap();
+    let out = home.path().join("one");
+    let output = stability(&out, &["--case", "reversal-in-stick"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(names(&out), ["cases.csv", "report.html", "summary.json"]);
+    let text = stdout(&output);
+    for part in [
+        "H05 reversal-in-stick: ",
+        "why it is hard",
+        "input",
+        "criterion",
+        "source",
+        "frozen:",
+        "physical:",
+        "report: ",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+
+    let (header, rows) = cells(&out);
+    assert_eq!(
+        header.join(","),
+        "case,name,convention,solver,precision,must_hold,verdict,flagged,measured,limit,unit,at_s,\
+         detail"
+    );
+    let told = text.lines().filter(|line| {
+        [" holds (", " degrades", " fails"]
+            .iter()
+            .any(|verdict| line.contains(verdict))
+    });
+    assert_eq!(told.count(), rows.len());
+    for row in &rows {
+        assert_eq!(row.len(), header.len(), "{row:?}");
+        assert_eq!(row[..2], ["H05", "reversal-in-stick"]);
+        match row[6].as_str() {
+            "holds" => assert!(number(&row[8]) <= number(&row[9]), "{row:?}"),
+            // A number above its limit, or none at all.
+            "degrades" => assert!(
+                number(&row[8]).is_nan() || number(&row[8]) > number(&row[9]),
+                "{row:?}"
+            ),
+            "fails" => assert!(!row[12].is_empty(), "{row:?}"),
+            other => panic!("{other} is no verdict"),
+        }
+        assert!(row[5] == "false" || row[6] == "holds", "{row:?}");
+    }
+
+    let summary = summary(&out);
+    let counts = &summary["counts"];
+    let of = |verdict: &str| rows.iter().filter(|row| row[6] == verdict).count();
+    for verdict in ["holds", "degrades", "fails"] {
+        assert_eq!(counts[verdict], of(verdict), "{verdict}");
+    }
+    assert_eq!(summary["cells"], rows.len());
+    assert_eq!(summary["broken"], Value::Array(Vec::new()));
+    let narrowest = &summary["cases"][0]["narrowest"];
+    let margin = |name: &str| narrowest[name].as_f64().expect("a number");
+    assert!(margin("measured") <= margin("limit"));
+
+    let report = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report.contains("id=\"H05\""));
+    assert!(!report.contains("http://") && !report.contains("https://"));
+}
+
+#[test]
+fn parts_of_the_matrix_can_be_asked_for() {
+    let home = tempfile::tempdir().unwrap();
+    let output = stability(
+        home.path(),
+        &[
+            "--json",
+            "--pictures",
+            "--case",
+            "h02",
+            "--case",
+            "H05",
+            "--case",
+            "H05",
+            "--solver",
+            "exact-events",
+            "--solver",
+            "rk4",
+            "--convention",
+            "physical",
+            "--precision",
+            "f32",
+        ],
+    );
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let told: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    let cases = told["summary"]["cases"].as_array().unwrap();
+    let ids: Vec<_> = cases.iter().map(|c| c["case"].as_str().unwrap()).collect();
+    assert_eq!(ids, ["H02", "H05"]);
+    assert_eq!(told["summary"]["subjects"], 2);
+    let (_, rows) = cells(home.path());
+    assert!(!rows.is_empty());
+    for row in &rows {
+        assert_eq!((row[2].as_str(), row[4].as_str()), ("physical", "f32"));
+        assert!(row[3] == "exact-events" || row[3] == "rk4", "{row:?}");
+    }
+    let files = names(home.path());
+    for picture in ["matrix.svg", "implicit-euler.svg", "restick-rules.svg"] {
+        assert!(files.iter().any(|name| name == picture), "{files:?}");
+    }
+    let matrix = fs::read_to_string(home.path().join("matrix.svg")).unwrap();
+    assert!(matrix.contains("xmlns=") && matrix.contains("H02"));
+}
+
+#[test]
+fn the_files_of_two_runs_are_the_same() {
+    let home = tempfile::tempdir().unwrap();
+    let once = |name: &str| {
+        let out = home.path().join(name);
+        let output = stability(&out, &["--case", "H05", "--precision", "f64"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        fs::read_to_string(out.join("cases.csv")).unwrap()
+    };
+    assert_eq!(once("first"), once("second"));
+}
+
+#[test]
+fn what_cannot_be_is_refused_and_touches_nothing() {
+    let home = tempfile::tempdir().unwrap();
+    fs::write(home.path().join("report.html"), "mine").unwrap();
+    for (arguments, words) in [
+        (
+            &["--case", "reversal-in-stik"][..],
+            &["reversal-in-stik", "reversal-in-stick"][..],
+        ),
+        (&["--solver", "exakt"], &["exakt", "exact-events"]),
+        (&["--convention", "ice"], &["ice", "frozen"]),
+        (
+            &["--solver", "rk4", "--convention", "frozen"],
+            &["rk4", "frozen", "not integrated"],
+        ),
+        (&["--precision", "f16"], &["f16", "f32"]),
+    ] {
+        let output = stability(home.path(), arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        for word in words {
+            assert!(stderr(&output).contains(word), "{}", stderr(&output));
+        }
+        assert!(stdout(&output).is_empty());
+    }
+    let output = stability(home.path(), &["--json", "--case", "nothing-like-it"]);
+    assert_eq!(output.status.code(), Some(2));
+    let told: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    assert_eq!(told["error"]["exit_code"], 2);
+    assert_eq!(names(home.path()), ["report.html"]);
+    let kept = fs::read_to_string(home.path().join("report.html")).unwrap();
+    assert_eq!(kept, "mine");
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_known_before_the_work() {
+    let home = tempfile::tempdir().unwrap();
+    let out = home.path().join("file");
+    fs::write(&out, "mine").unwrap();
+    let output = stability(&out, &[]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("file"), "{}", stderr(&output));
+    assert_eq!(fs::read_to_string(&out).unwrap(), "mine");
+}
+
+#[test]
+fn an_interrupt_leaves_nothing() {
+    let home = tempfile::tempdir().unwrap();
+    let child = crepitus()
+        .args(["stability", "--long", "--out"])
+        .arg(home.path().join("out"))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    // Under way as soon as there is a folder to prepare the files in.
+    while names(home.path()).is_empty() {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    std::thread::sleep(Duration::from_millis(100));
+    let interrupted = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .expect("kill");
+    assert!(interrupted.success());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr(&output).contains("nothing was written"),
+        "{}",
+        stderr(&output)
+    );
+    // Neither the folder nor what was being prepared for it.
+    assert!(names(home.path()).is_empty(), "{:?}", names(home.path()));
+}
