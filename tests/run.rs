@@ -150,7 +150,7 @@ fn options_change_the_scene() {
 fn a_solver_that_diverges_is_exit_code_1_and_writes_nothing() {
     let home = tempfile::tempdir().unwrap();
     let out = home.path().join("out");
-    let output = crepitus(&[
+    let output = run(&[
         "run",
         "knee-pass-physical",
         "--solver",

@@ -182,10 +182,17 @@ impl<F: Real> Active<F> {
     }
 
     /// What a torque may be beyond the limit and still count as at it, N·m.
-    /// The spring of a slip swings by √(J·kr)·Ω, and so does its rounding.
+    ///
+    /// Velocities are rounded by a share ε of Ω. They meet with the relative
+    /// acceleration (Ts − Tk)/J, so the match is known to ε·Ω·J/(Ts − Tk), in
+    /// which the spring moves by ε·(√(J·kr)·Ω)²/(Ts − Tk); where they only
+    /// touch, the slack of a touch is the larger one and enough.
     #[inline]
     pub fn limit_slack_nm(&self, omega_rad_s: F) -> F {
-        F::LIMIT_SLACK * (self.static_nm + self.impedance * omega_rad_s.abs())
+        let swing_nm = self.impedance * omega_rad_s;
+        let slack_nm = F::LIMIT_SLACK * (self.static_nm + swing_nm * swing_nm / self.drop_nm);
+        // (0/0, at rest with Ts = Tk, passes no comparison.)
+        self.touch_slack_nm(omega_rad_s).at_most(slack_nm)
     }
 
     /// What a torque may miss the limit by where velocities touch, N·m: a

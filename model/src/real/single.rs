@@ -144,7 +144,7 @@ impl Real for f32 {
     const TWO: Self = 2.0;
     const EPSILON: Self = f32::EPSILON;
     const LIMIT_SLACK: Self = 1e-5;
-    const TOUCH_SLACK: Self = 5e-3;
+    const TOUCH_SLACK: Self = 1e-2;
     const AT_REST: Self = 1e-30;
     const NAME: &'static str = "f32";
 

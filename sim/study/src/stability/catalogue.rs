@@ -9,6 +9,7 @@
 
 mod arithmetic;
 mod damping;
+mod device;
 mod encoder;
 mod extremes;
 mod motions;
@@ -46,13 +47,16 @@ pub fn all() -> Vec<Case> {
         reversals::hard_braking(),
         time::step_length(),
         refusals::steps(),
+        device::impossible_samples(),
         refusals::parameters(),
         time::a_day_short(),
         time::a_day(),
         time::no_clock(),
         encoder::counter_wrap(),
         encoder::quantised_velocity(),
-        encoder::sampling_jitter(),
+        encoder::jitter_and_loss(),
+        device::gap(),
+        device::parameter_changes(),
         ties::grazing(),
         ties::simultaneous(),
         extremes::storm(),
@@ -61,6 +65,7 @@ pub fn all() -> Vec<Case> {
         encoder::hand(),
         arithmetic::precisions(),
         arithmetic::golden(),
+        device::shaking_hand(),
     ]
 }
 

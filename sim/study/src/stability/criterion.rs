@@ -182,6 +182,28 @@ pub enum Criterion {
         /// At most.
         most: u64,
     },
+    /// From one step to the next the torque moves by no more.
+    TorqueStep {
+        /// N·m.
+        most_nm: f64,
+    },
+    /// No adjustment of parameters raises the energy stored in the object.
+    EnergyRise {
+        /// Relative: rounding only.
+        most: Limits,
+    },
+    /// Between events no torque moves faster than the slew limit, beyond what
+    /// the shaft's travel explains.
+    Slew {
+        /// Share of the limit beyond it: rounding only.
+        beyond: Limits,
+    },
+    /// Energy that the hand gets back over any time, as a share of the bound
+    /// Ts²/2kr, sampling's (½ + d)·kr·h·∫Ω²dt being granted.
+    Returned {
+        /// At most.
+        most: f64,
+    },
     /// Every attempt is refused.
     Refused,
 }

@@ -1,7 +1,8 @@
 //! What a joint is driven with in a trial: the exact input, as data.
 
 use super::text::{Plain, Time};
-use crepitus_model::Settings;
+use crepitus_model::parameters::PARAMETERS;
+use crepitus_model::{Parameters, Settings};
 use crepitus_plant::Motion;
 use crepitus_plant::motion::VelocityKnot;
 use std::fmt;
@@ -60,6 +61,8 @@ pub enum Input {
         lines: f64,
         /// How far a reading is early or late at most, in periods.
         jitter: f64,
+        /// The share of readings that are lost.
+        lost: f64,
         /// Counter at the start; it wraps as a 32-bit timer does.
         first_count: i32,
     },
@@ -89,8 +92,85 @@ pub enum Input {
         /// The step, s.
         step_s: f64,
     },
+    /// A motion that is not always seen as it is.
+    Faulty {
+        /// The motion.
+        shaft: Shaft,
+        /// What goes wrong.
+        fault: Fault,
+        /// How long, s.
+        duration_s: f64,
+        /// The step, s.
+        step_s: f64,
+    },
+    /// A frozen joint whose parameters change under way, ramped as the device
+    /// does it.
+    Changed {
+        /// The motion.
+        shaft: Shaft,
+        /// When, and to what.
+        changes: Vec<Change>,
+        /// How long, s.
+        duration_s: f64,
+        /// The step, s.
+        step_s: f64,
+    },
+    /// A hand that shakes a joint as the device renders it.
+    Shaken {
+        /// How.
+        shake: Shake,
+        /// How long, s.
+        duration_s: f64,
+        /// The step, s.
+        step_s: f64,
+    },
     /// Settings and steps that must be refused.
     Refusals(Vec<Attempt>),
+}
+
+/// What goes wrong with samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fault {
+    /// Every so many samples one is no number, infinite, or what no shaft can
+    /// do: each kind in turn.
+    Impossible {
+        /// Steps from one to the next.
+        every: u64,
+    },
+    /// None is a number from this time on.
+    Blind {
+        /// Since the start, s.
+        from_s: f64,
+    },
+    /// None is taken between two times.
+    Gap {
+        /// From, s.
+        from_s: f64,
+        /// To, s.
+        to_s: f64,
+    },
+}
+
+/// New parameters at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change {
+    /// When, s.
+    pub at_s: f64,
+    /// To what.
+    pub parameters: Parameters,
+}
+
+/// φ = A·sin(2π·f·t), by a hand that feels the torque late.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shake {
+    /// A, rad.
+    pub amplitude_rad: f64,
+    /// f, Hz.
+    pub frequency_hz: f64,
+    /// Ticks between a sample and its torque.
+    pub delay_ticks: usize,
+    /// Whether the joint sees counts of the device's encoder, or the truth.
+    pub counts: bool,
 }
 
 /// Something to be refused.
@@ -146,6 +226,15 @@ impl Input {
             }
             | Self::Hand {
                 duration_s, step_s, ..
+            }
+            | Self::Faulty {
+                duration_s, step_s, ..
+            }
+            | Self::Changed {
+                duration_s, step_s, ..
+            }
+            | Self::Shaken {
+                duration_s, step_s, ..
             } => Some((duration_s, step_s)),
             Self::Encoder {
                 duration_s,
@@ -153,6 +242,15 @@ impl Input {
                 ..
             } => Some((duration_s, 1.0 / rate_hz)),
             Self::Refusals(_) => None,
+        }
+    }
+
+    /// Whether the joint needs the check of its input that the device has.
+    pub(super) fn needs_guard(&self) -> bool {
+        match self {
+            Self::Faulty { .. } => true,
+            Self::Encoder { lost, .. } => *lost > 0.0,
+            _ => false,
         }
     }
 
@@ -215,12 +313,16 @@ impl fmt::Display for Input {
                 lines,
                 rate_hz,
                 jitter,
+                lost,
                 first_count,
                 ..
             } => {
                 write!(f, "{shaft}, encoder of {lines} lines read at {rate_hz} Hz")?;
                 if *jitter > 0.0 {
                     write!(f, " ± {} % of a period", Plain(100.0 * jitter))?;
+                }
+                if *lost > 0.0 {
+                    write!(f, ", {} % of the readings lost", Plain(100.0 * lost))?;
                 }
                 if *first_count != 0 {
                     write!(f, ", counter from {first_count}")?;
@@ -245,6 +347,14 @@ impl fmt::Display for Input {
                 Plain(*damping_nms_per_rad),
                 Plain(*omega_rad_s)
             )?,
+            Self::Faulty { shaft, fault, .. } => write!(f, "{shaft}, {fault}")?,
+            Self::Changed { shaft, changes, .. } => {
+                write!(f, "{shaft}")?;
+                for change in changes {
+                    write!(f, ", {change}")?;
+                }
+            }
+            Self::Shaken { shake, .. } => write!(f, "{shake}")?,
             Self::Refusals(attempts) => {
                 for (i, attempt) in attempts.iter().enumerate() {
                     let comma = if i == 0 { "" } else { ", " };
@@ -258,6 +368,54 @@ impl fmt::Display for Input {
             }
             None => Ok(()),
         }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Impossible { every } => write!(
+                f,
+                "every {every}th sample no number, infinite, 1 rad or 60 rad/s off, in turn"
+            ),
+            Self::Blind { from_s } => write!(f, "no number from {} on", Time(from_s)),
+            Self::Gap { from_s, to_s } => {
+                write!(f, "no sample from {} to {}", Time(from_s), Time(to_s))
+            }
+        }
+    }
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "at {}", Time(self.at_s))?;
+        let (old, new) = (Parameters::default(), &self.parameters);
+        for ((spec, value), paper) in PARAMETERS.iter().zip(new.values()).zip(old.values()) {
+            if value != paper {
+                write!(f, " {} = {} {}", spec.symbol, Plain(value), spec.unit)?;
+            }
+        }
+        if *new == old {
+            f.write_str(" the paper's")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Shake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "φ = {} rad · sin(2π · {} Hz · t), the torque {} ticks late, seen {}",
+            Plain(self.amplitude_rad),
+            Plain(self.frequency_hz),
+            self.delay_ticks,
+            if self.counts {
+                "through the encoder"
+            } else {
+                "as it is"
+            }
+        )
     }
 }
 

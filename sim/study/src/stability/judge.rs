@@ -148,6 +148,10 @@ pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
             f64::from_whole(*most),
             "steps",
         ),
+        Criterion::TorqueStep { most_nm } => number(seen.largest_step_nm, *most_nm, "N·m"),
+        Criterion::EnergyRise { most } => number(seen.energy_rise, most.of(precision), ""),
+        Criterion::Slew { beyond } => number(seen.slew, 1.0 + beyond.of(precision), ""),
+        Criterion::Returned { most } => number(seen.returned, *most, ""),
         Criterion::Refused => match seen.accepted.first() {
             Some(what) => Finding::Failed(Failure::Broken(what), None),
             None => number(0.0, 0.0, ""),

@@ -170,18 +170,9 @@ fn late_s(trial: &Trial) -> f64 {
 /// The worse, the larger: first by kind, then by how much of the limit is
 /// used.
 fn rank(verdict: &Verdict) -> (u8, f64) {
-    let used = |margin: &Margin| {
-        if margin.measured.is_nan() {
-            f64::INFINITY
-        } else if margin.measured == 0.0 {
-            0.0
-        } else {
-            margin.measured / margin.limit
-        }
-    };
     match verdict {
-        Verdict::Holds(margin) => (0, used(margin)),
-        Verdict::Degrades { margin, .. } => (1, used(margin)),
+        Verdict::Holds(margin) => (0, margin.share()),
+        Verdict::Degrades { margin, .. } => (1, margin.share()),
         Verdict::Fails { what, .. } => match *what {
             Failure::OtherEvents { found, expected } => (2, off(found, expected)),
             Failure::Broken(_) => (2, 0.0),

@@ -44,6 +44,14 @@ pub(super) struct Observation {
     pub(super) imbalance: Option<f64>,
     /// First and last swing of the hand, rad.
     pub(super) swing_rad: Option<(f64, f64)>,
+    /// Largest change of torque from one step to the next, N·m.
+    pub(super) largest_step_nm: f64,
+    /// Largest relative rise of the stored energy in an adjustment.
+    pub(super) energy_rise: f64,
+    /// Fastest torque without an event, as a share of the slew limit.
+    pub(super) slew: f64,
+    /// Largest energy returned to the hand, as a share of the bound.
+    pub(super) returned: f64,
     /// What should have been refused and was not.
     pub(super) accepted: Vec<&'static str>,
 }

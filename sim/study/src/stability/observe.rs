@@ -1,9 +1,12 @@
 //! Runs a subject through an input and notes what is to be seen.
 
 use super::books::Books;
+use super::changed::Changed;
 use super::criterion::BOUND_SLACK;
 use super::input::{Attempt, Input};
 use super::observation::{MOST_KEPT, Observation};
+use super::shaken::Shaken;
+use super::sighted::Sighted;
 use super::source::{Source, first_omega_rad_s, motion, source};
 use super::subject::Subject;
 use crate::sampling::{CHUNK_STEPS, Sampling};
@@ -51,9 +54,31 @@ fn run<F: Real, E>(
     let (duration_s, step_s) = input.duration_and_step_s().unwrap_or((0.0, 1.0));
     let motion = motion(input);
     let sampling = Sampling::new(&motion, duration_s, step_s);
+    match input {
+        Input::Changed { changes, .. } => {
+            let changed = Changed {
+                settings,
+                sampling,
+                changes,
+            };
+            return Ok(changed.observe::<F>(subject)?);
+        }
+        Input::Shaken { shake, .. } => {
+            let shaken = Shaken {
+                settings,
+                shake,
+                step_s,
+                steps: sampling.steps(),
+            };
+            return Ok(shaken.observe::<F>(subject)?);
+        }
+        _ => {}
+    }
     let omega_rad_s = first_omega_rad_s(input, &motion);
     let p = settings.parameters;
+    // Nobody knows what a shaft did that was out of sight.
     let booked = subject.convention == Convention::Physical
+        && !input.needs_guard()
         && (p.damping_nms_per_rad == 0.0 || p.natural_rad_s() * step_s <= BOOKED_RADIANS);
     let look = Look {
         source: source::<F>(input, &sampling, &motion)?,
@@ -62,6 +87,7 @@ fn run<F: Real, E>(
         frozen: subject.convention == Convention::Frozen,
         books: booked.then(|| Books::new(p, step_s, F::from_f64(omega_rad_s).to_f64())),
         late_step: (late_s / step_s).ceil(),
+        guard_from_rad_s: input.needs_guard().then(|| F::from_f64(omega_rad_s)),
         go_on,
     };
     let omega = F::from_f64(omega_rad_s);
@@ -103,13 +129,27 @@ struct Look<'a, F, E> {
     books: Option<Books>,
     /// From which step on the late torque counts.
     late_step: f64,
+    /// Velocity at the start, rad/s, if the input goes through the check.
+    guard_from_rad_s: Option<F>,
     go_on: &'a mut dyn FnMut(f64) -> Result<(), E>,
 }
 
 impl<F: Real, E> JointVisitor<F> for Look<'_, F, E> {
     type Output = Result<Observation, E>;
 
-    fn visit<J: StickSlip<F>>(mut self, mut joint: J) -> Result<Observation, E> {
+    fn visit<J: StickSlip<F>>(self, joint: J) -> Self::Output {
+        match self.guard_from_rad_s {
+            Some(omega_rad_s) => {
+                let step_s = self.sampling.step_s();
+                self.look(Sighted::new(joint, step_s, omega_rad_s))
+            }
+            None => self.look(joint),
+        }
+    }
+}
+
+impl<F: Real, E> Look<'_, F, E> {
+    fn look<J: StickSlip<F>>(mut self, mut joint: J) -> Result<Observation, E> {
         let first_torque_nm = joint.torque_nm().to_f64();
         let mut seen = Observation {
             step_s: self.sampling.step_s(),
@@ -155,9 +195,7 @@ impl<F: Real, E> JointVisitor<F> for Look<'_, F, E> {
         (self.go_on)(f64::from_whole(unseen))?;
         Ok(seen)
     }
-}
 
-impl<F: Real, E> Look<'_, F, E> {
     #[inline]
     fn step<J: StickSlip<F>>(
         &mut self,
@@ -185,11 +223,15 @@ impl<F: Real, E> Look<'_, F, E> {
         let before_nm = seen.last_torque_nm;
         let torque = joint.torque_nm();
         let torque_nm = torque.to_f64();
-        let travel_rad = shaft.delta_phi_rad.to_f64();
+        // A sample that was not taken has no travel.
+        let travel_rad = Some(shaft.delta_phi_rad.to_f64())
+            .filter(|travel| travel.is_finite())
+            .unwrap_or(0.0);
         seen.last_torque_nm = torque_nm;
         seen.torque.add(torque_nm);
         seen.torque_bits.add(bits::<F>(torque_nm));
         seen.mirrored_bits.add(bits::<F>(-torque_nm));
+        seen.largest_step_nm = seen.largest_step_nm.max((torque_nm - before_nm).abs());
         if torque_nm.to_bits() != before_nm.to_bits() {
             seen.last_change = seen.steps;
         }

@@ -1,7 +1,8 @@
 //! The steps of an input, made as the joint takes them.
 
-use super::input::{Input, Shaft};
+use super::input::{Fault, Input, Shaft};
 use super::random::Random;
+use super::sighted::lost;
 use crate::sampling::{CHUNK_STEPS, Sampling, Walk};
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::{Real, SettingsError, ShaftStep};
@@ -24,9 +25,14 @@ pub(super) trait Source<F> {
 /// sources borrow it.
 pub(super) fn motion(input: &Input) -> Motion {
     match input {
-        Input::Sampled { shaft, .. } | Input::Encoder { shaft, .. } => shaft.motion(),
+        Input::Sampled { shaft, .. }
+        | Input::Encoder { shaft, .. }
+        | Input::Faulty { shaft, .. }
+        | Input::Changed { shaft, .. } => shaft.motion(),
         Input::Repeated { omega_rad_s, .. } => Shaft::Constant(*omega_rad_s).motion(),
-        Input::White { .. } | Input::Hand { .. } | Input::Refusals(_) => Motion::constant(0.0),
+        Input::White { .. } | Input::Hand { .. } | Input::Shaken { .. } | Input::Refusals(_) => {
+            Motion::constant(0.0)
+        }
     }
 }
 
@@ -59,6 +65,7 @@ pub(super) fn source<'a, F: Real>(
             lines,
             rate_hz,
             jitter,
+            lost,
             first_count,
             ..
         } => {
@@ -77,6 +84,7 @@ pub(super) fn source<'a, F: Real>(
                 encoder,
                 reader: EncoderReader::new(&settings, 1.0 / rate_hz, first_count, omega)?,
                 jitter,
+                lost,
                 random: Random::new(1),
                 n: 0,
             })
@@ -111,7 +119,15 @@ pub(super) fn source<'a, F: Real>(
             n: 0,
             steps,
         }),
-        Input::Refusals(_) => Box::new(Same {
+        Input::Faulty { fault, .. } => Box::new(Faulty {
+            walk: sampling.walk_from(0),
+            fault,
+            step_s: sampling.step_s(),
+            n: 0,
+            travel: F::ZERO,
+        }),
+        // These have runs of their own.
+        Input::Changed { .. } | Input::Shaken { .. } | Input::Refusals(_) => Box::new(Same {
             step: ShaftStep::default(),
             left: 0,
         }),
@@ -155,6 +171,7 @@ struct Counted<'a, F> {
     reader: EncoderReader<F>,
     offset: i32,
     jitter: f64,
+    lost: f64,
     random: Random,
     n: u64,
 }
@@ -171,7 +188,69 @@ impl<F: Real> Source<F> for Counted<'_, F> {
             };
             let phi_rad = self.motion.at(self.sampling.time_s(self.n, late)).phi_rad;
             let count = self.encoder.count(phi_rad).wrapping_add(self.offset);
-            chunk.push(self.reader.read(count));
+            if self.lost > 0.0 && 0.5 * (1.0 + self.random.signed()) < self.lost {
+                self.reader.miss();
+                chunk.push(lost());
+            } else {
+                chunk.push(self.reader.read(count));
+            }
+        }
+    }
+}
+
+/// A motion whose samples go wrong now and then.
+struct Faulty<'a, F> {
+    walk: Walk<'a>,
+    fault: Fault,
+    step_s: f64,
+    n: u64,
+    /// Of the steps since the last sample that was taken, rad.
+    travel: F,
+}
+
+impl<F: Real> Faulty<'_, F> {
+    /// What arrives in place of the sample of `shaft`, if it goes wrong.
+    fn wrong(&self, shaft: &ShaftStep<F>) -> Option<ShaftStep<F>> {
+        let now_s = f64::from_whole(self.n) * self.step_s;
+        match self.fault {
+            Fault::Impossible { every } => self
+                .n
+                .is_multiple_of(every)
+                .then(|| impossible(shaft, self.n / every)),
+            Fault::Blind { from_s } => (now_s >= from_s).then(lost),
+            Fault::Gap { from_s, to_s } => (from_s..to_s).contains(&now_s).then(lost),
+        }
+    }
+}
+
+/// What no shaft can have done, a kind for each `n`.
+fn impossible<F: Real>(shaft: &ShaftStep<F>, n: u64) -> ShaftStep<F> {
+    let (nan, inf) = (F::from_f64(f64::NAN), F::from_f64(f64::INFINITY));
+    let mut wrong = *shaft;
+    match n % 6 {
+        0 => wrong.delta_phi_rad = nan,
+        1 => wrong.omega_end_rad_s = nan,
+        2 => wrong.delta_phi_rad = -inf,
+        3 => wrong.omega_start_rad_s = inf,
+        4 => wrong.delta_phi_rad = F::ONE,
+        _ => wrong.omega_end_rad_s = F::from_f64(60.0),
+    }
+    wrong
+}
+
+impl<F: Real> Source<F> for Faulty<'_, F> {
+    fn fill(&mut self, chunk: &mut Vec<ShaftStep<F>>, _: F) {
+        self.walk.fill(chunk, CHUNK_STEPS);
+        for shaft in chunk {
+            self.n += 1;
+            self.travel += shaft.delta_phi_rad;
+            *shaft = match self.wrong(shaft) {
+                Some(wrong) => wrong,
+                None => ShaftStep {
+                    delta_phi_rad: std::mem::take(&mut self.travel),
+                    ..*shaft
+                },
+            };
         }
     }
 }

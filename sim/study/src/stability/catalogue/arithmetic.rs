@@ -117,6 +117,7 @@ pub(super) fn golden() -> Case {
                 rate_hz: 1.0 / TICK_S,
                 lines: 512.0,
                 jitter,
+                lost: 0.0,
                 first_count: 0,
             };
             let runs = [

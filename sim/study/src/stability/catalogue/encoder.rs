@@ -40,6 +40,7 @@ pub(super) fn counter_wrap() -> Case {
                 rate_hz,
                 lines: 512.0,
                 jitter: 0.0,
+                lost: 0.0,
                 first_count,
             };
             let settings = paper_joint(subject.convention);
@@ -117,6 +118,7 @@ pub(super) fn quantised_velocity() -> Case {
                             rate_hz,
                             lines,
                             jitter: 0.0,
+                            lost: 0.0,
                             first_count: 0,
                         };
                         trials.push(behind_encoder(subject, omega, input));
@@ -128,13 +130,15 @@ pub(super) fn quantised_velocity() -> Case {
     }
 }
 
-pub(super) fn sampling_jitter() -> Case {
+pub(super) fn jitter_and_loss() -> Case {
     Case {
         id: "H27",
-        name: "sampling-jitter",
-        title: "The counter is read up to a tenth of a period early or late",
+        name: "jitter-and-loss",
+        title: "Readings up to a tenth of a period early or late, and one in twenty lost",
         hard: "The model believes that every step is equally long. What comes late in one step comes early in the \
-               next: the angle stays exact, the velocity gets noise that grows with the speed.",
+               next: the angle stays exact, the velocity gets noise that grows with the speed. A lost reading is \
+               made up for by the next one, which has travelled twice as far: angle and time stay exact, and only \
+               the torque stands still for a tick.",
         source: NUMERICS,
         long: false,
         must: frozen_located,
@@ -142,15 +146,18 @@ pub(super) fn sampling_jitter() -> Case {
             let mut trials = Vec::new();
             for lines in [512.0, 2000.0] {
                 for rate_hz in [1e3, 2e4] {
-                    let input = Input::Encoder {
-                        shaft: Shaft::Constant(1.0),
-                        duration_s: 4.0,
-                        rate_hz,
-                        lines,
-                        jitter: 0.1,
-                        first_count: 0,
-                    };
-                    trials.push(behind_encoder(subject, 1.0, input));
+                    for (jitter, lost) in [(0.1, 0.0), (0.0, 0.05), (0.1, 0.05)] {
+                        let input = Input::Encoder {
+                            shaft: Shaft::Constant(1.0),
+                            duration_s: 4.0,
+                            rate_hz,
+                            lines,
+                            jitter,
+                            lost,
+                            first_count: 0,
+                        };
+                        trials.push(behind_encoder(subject, 1.0, input));
+                    }
                 }
             }
             trials

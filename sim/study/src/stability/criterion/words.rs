@@ -1,6 +1,7 @@
 //! Criteria as people read them: text and number stand once.
 
 use super::{Counted, Criterion, Limits};
+use crate::stability::changed::SLEW_NM_PER_S;
 use crate::stability::text::{Plain, Time};
 use std::fmt;
 
@@ -117,6 +118,34 @@ impl fmt::Display for Criterion {
                 write!(f, "at most {most} steps end with a subnormal velocity")
             }
             Self::Refused => f.write_str("all refused with a reason, none panics"),
+            other => of_a_device(other, f),
         }
+    }
+}
+
+/// What is asked of a joint in a device.
+fn of_a_device(criterion: &Criterion, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    match criterion {
+        Criterion::TorqueStep { most_nm } => write!(
+            f,
+            "torque moves by at most {} N·m from one step to the next",
+            Plain(*most_nm)
+        ),
+        Criterion::EnergyRise { most } => write!(
+            f,
+            "no adjustment raises the stored energy by more than {} of it",
+            Number(most, "")
+        ),
+        Criterion::Slew { beyond } => write!(
+            f,
+            "between events no torque faster than {} N·m/s by more than {} of it",
+            Plain(SLEW_NM_PER_S),
+            Number(beyond, "")
+        ),
+        Criterion::Returned { most } => write!(
+            f,
+            "the hand gets back at most {most:.4} Ts²/2kr + (½ + d) kr h ∫Ω² dt"
+        ),
+        _ => f.write_str("nothing"),
     }
 }

@@ -1,0 +1,124 @@
+//! A frozen joint whose parameters change under way: each commit is one ramp,
+//! and every adjustment is watched.
+
+use super::input::Change;
+use super::locators::{WithLocator, with_locator};
+use super::observation::Observation;
+use super::subject::Subject;
+use crate::sampling::Sampling;
+use crate::true_events::TimedEvent;
+use crepitus_model::locate::Locate;
+use crepitus_model::ramp::Ramp;
+use crepitus_model::{
+    Active, Frozen, Phase, Real, Settings, SettingsError, ShaftStep, StickSlip, Validated,
+};
+
+/// The device's slew limit, N·m/s.
+pub(super) const SLEW_NM_PER_S: f64 = 100.0;
+
+/// A joint and the changes that it meets.
+pub(super) struct Changed<'a> {
+    pub(super) settings: Validated<Settings>,
+    pub(super) sampling: Sampling<'a>,
+    pub(super) changes: &'a [Change],
+}
+
+impl Changed<'_> {
+    pub(super) fn observe<F: Real>(self, subject: Subject) -> Result<Observation, SettingsError> {
+        with_locator::<F, _>(subject.solver, self)
+    }
+}
+
+/// The energy that a frozen object stores: its spring's, and in a slip, where
+/// it moves by itself, its motion's, J.
+pub(super) fn stored_j<F: Real, L: Locate<F>>(joint: &Frozen<F, L>) -> f64 {
+    let (a, theta) = (joint.active(), joint.theta_rad().to_f64());
+    let spring = 0.5 * a.stiffness.to_f64() * theta * theta;
+    match joint.phase() {
+        Phase::Stick => spring,
+        Phase::Slip(_) => {
+            spring + 0.5 * a.inertia.to_f64() * joint.theta_dot_rad_s().to_f64().powi(2)
+        }
+    }
+}
+
+impl<F: Real> WithLocator<F> for Changed<'_> {
+    type Output = Result<Observation, SettingsError>;
+
+    fn run<L: Locate<F>>(self) -> Self::Output {
+        let step_s = self.sampling.step_s();
+        let active = Active::<F>::new(&self.settings, step_s)?;
+        let mut joint = Frozen::<F, L>::new(active, F::ZERO);
+        let mut ramp = Ramp::at(active);
+        let mut seen = Observation {
+            step_s,
+            ..Observation::default()
+        };
+        let mut changes = self.changes.iter().peekable();
+        let mut walk = self.sampling.walk_from(0);
+        let mut chunk = Vec::new();
+        loop {
+            walk.fill(&mut chunk, 1);
+            let Some(shaft) = chunk.first() else {
+                return Ok(seen);
+            };
+            let now_s = self.sampling.time_s(seen.steps, 0.0);
+            while let Some(change) = changes.next_if(|c| c.at_s <= now_s) {
+                let next = Settings {
+                    parameters: change.parameters,
+                    ..*self.settings
+                };
+                let next = Active::new(&next.validate()?, step_s)?;
+                ramp = Ramp::new(*joint.active(), next, SLEW_NM_PER_S);
+            }
+            tick(&mut joint, &mut ramp, shaft, now_s, &mut seen);
+        }
+    }
+}
+
+/// One tick: the adjustment that is due, and the step.
+fn tick<F: Real, L: Locate<F>>(
+    joint: &mut Frozen<F, L>,
+    ramp: &mut Ramp<F>,
+    shaft: &ShaftStep<F>,
+    now_s: f64,
+    seen: &mut Observation,
+) {
+    let before_nm = joint.torque_nm().to_f64();
+    if let Some(next) = ramp.advance() {
+        let before_j = stored_j(joint);
+        joint.adjust(next);
+        let rise = (stored_j(joint) - before_j) / before_j.max(f64::MIN_POSITIVE);
+        seen.energy_rise = seen.energy_rise.max(rise);
+    }
+    let step_s = seen.step_s;
+    let mut events = 0;
+    joint.step(shaft, |event| {
+        events += 1;
+        seen.tally.add(&TimedEvent::new(
+            now_s + event.fraction.to_f64() * step_s,
+            &event,
+        ));
+    });
+    seen.steps += 1;
+    let a = joint.active();
+    let torque_nm = joint.torque_nm().to_f64();
+    seen.last_torque_nm = torque_nm;
+    let limit_nm = a.static_nm.to_f64();
+    if !torque_nm.is_finite() {
+        seen.overflow_s.get_or_insert(now_s);
+    }
+    if torque_nm.abs() > limit_nm {
+        seen.above_s.get_or_insert(now_s);
+    }
+    seen.peak = seen.peak.max(torque_nm.abs() / limit_nm);
+    if events == 0 {
+        // What the shaft's travel does to a stick's torque is no slew.
+        let wound_nm = match joint.phase() {
+            Phase::Stick => (a.stiffness * shaft.delta_phi_rad).abs().to_f64(),
+            Phase::Slip(_) => 0.0,
+        };
+        let moved_nm = (torque_nm - before_nm).abs() - wound_nm;
+        seen.slew = seen.slew.max(moved_nm / (SLEW_NM_PER_S * step_s));
+    }
+}

@@ -1,0 +1,58 @@
+//! A joint behind the check of its input, stepped like any other: a step that
+//! is no number is a sample that was not taken.
+
+use crepitus_model::guarded::{InputLimits, Sample};
+use crepitus_model::{Active, Event, Guarded, Phase, Real, ShaftStep, StickSlip};
+
+/// The step of a sample that was not taken.
+pub(super) fn lost<F: Real>() -> ShaftStep<F> {
+    let none = F::from_f64(f64::NAN);
+    ShaftStep {
+        delta_phi_rad: none,
+        omega_start_rad_s: none,
+        omega_end_rad_s: none,
+    }
+}
+
+/// A guarded joint with the limits of the device.
+pub(super) struct Sighted<F, J>(Guarded<F, J>);
+
+impl<F: Real, J: StickSlip<F>> Sighted<F, J> {
+    pub(super) fn new(joint: J, step_s: f64, omega_rad_s: F) -> Self {
+        Self(Guarded::new(
+            joint,
+            InputLimits::device(step_s),
+            omega_rad_s,
+        ))
+    }
+}
+
+impl<F: Real, J: StickSlip<F>> StickSlip<F> for Sighted<F, J> {
+    fn step(&mut self, shaft: &ShaftStep<F>, on_event: impl FnMut(Event<F>)) {
+        self.0.tick(&Sample::Taken(*shaft), on_event);
+    }
+
+    fn restart(&mut self, torque_nm: F, omega_rad_s: F) {
+        self.0.joint_mut().restart(torque_nm, omega_rad_s);
+    }
+
+    fn active(&self) -> &Active<F> {
+        self.0.joint().active()
+    }
+
+    fn phase(&self) -> Phase {
+        self.0.joint().phase()
+    }
+
+    fn torque_nm(&self) -> F {
+        self.0.torque_nm()
+    }
+
+    fn theta_rad(&self) -> F {
+        self.0.joint().theta_rad()
+    }
+
+    fn theta_dot_rad_s(&self) -> F {
+        self.0.joint().theta_dot_rad_s()
+    }
+}
