@@ -18,6 +18,12 @@ pub struct Sampling<'a> {
     steps: u64,
 }
 
+/// Whole steps of `step_s` in `duration_s`. Written in decimals, a duration may
+/// miss a whole number of steps by rounding.
+pub fn steps(duration_s: f64, step_s: f64) -> u64 {
+    (duration_s / step_s * (1.0 + 1e-12) + 1e-9).whole()
+}
+
 impl<'a> Sampling<'a> {
     /// Whole steps of `step_s` in `duration_s`.
     pub fn new(motion: &'a Motion, duration_s: f64, step_s: f64) -> Self {
@@ -27,9 +33,7 @@ impl<'a> Sampling<'a> {
             motion,
             step_s,
             rate_hz: whole.then_some(rate.round()),
-            // Written in decimals, a duration may miss a whole number of steps
-            // by rounding.
-            steps: (duration_s / step_s * (1.0 + 1e-12) + 1e-9).whole(),
+            steps: steps(duration_s, step_s),
         }
     }
 

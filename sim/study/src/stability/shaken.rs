@@ -24,7 +24,6 @@ pub(super) struct Shaken<'a> {
 
 /// What a tick shows to whoever draws it.
 pub(super) struct Tick {
-    pub(super) angle_rad: f64,
     pub(super) shown_nm: f64,
     pub(super) model_nm: f64,
     /// Work of the hand, J: against the torque shown, and against the joint's.
@@ -122,7 +121,6 @@ impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
             hand.tick(to - from, shown_nm);
             unguarded.tick(to - from, model_nm);
             on_tick(&Tick {
-                angle_rad: to,
                 shown_nm,
                 model_nm,
                 work_j: hand.work_j(),

@@ -5,8 +5,10 @@
 //! line in [`all`].
 
 mod implicit_euler;
+mod parameter_change;
 mod restick_rules;
 mod trace;
+mod turn_back;
 
 use crepitus_model::SettingsError;
 
@@ -121,6 +123,8 @@ pub fn all() -> Result<Vec<Story>, SettingsError> {
     Ok(vec![
         implicit_euler::implicit_euler()?,
         restick_rules::restick_rules()?,
+        parameter_change::parameter_change()?,
+        turn_back::turn_back()?,
     ])
 }
 
