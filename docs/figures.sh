@@ -17,3 +17,13 @@ for picture in frequency-f64 frequency-f32 torque-f32; do
     cp "target/figures/accuracy/$measure-constant-0-988-physical-$precision.svg" "docs/images/accuracy-$picture.svg"
     echo "docs/images/accuracy-$picture.svg"
 done
+
+cargo run --release --quiet -- stability --pictures --out target/figures/stability >/dev/null
+cp target/figures/stability/matrix.svg docs/images/stability-matrix.svg
+echo docs/images/stability-matrix.svg
+for story in implicit-euler restick-rules parameter-change turn-back-guard; do
+    cp "target/figures/stability/$story.svg" "docs/images/$story.svg"
+    echo "docs/images/$story.svg"
+done
+cargo run --release --quiet -- stability --list --long >docs/hard-cases.md
+echo docs/hard-cases.md

@@ -151,13 +151,15 @@ impl<F: Real> Active<F> {
         inertia_factor: F,
     ) -> Self {
         let between = |a: F, b: F| a + (b - a) * fraction;
+        let static_nm = between(self.static_nm, next.static_nm);
         Given {
             step_s: self.step_s,
             stiffness: self.stiffness * stiffness_factor,
             inertia: self.inertia * inertia_factor,
             damping: between(self.damping, next.damping),
-            kinetic_nm: between(self.kinetic_nm, next.kinetic_nm),
-            static_nm: between(self.static_nm, next.static_nm),
+            // Rounding must not lift it above.
+            kinetic_nm: between(self.kinetic_nm, next.kinetic_nm).at_most(static_nm),
+            static_nm,
             restart_nm: between(self.restart_nm, next.restart_nm),
         }
         .active()

@@ -291,8 +291,10 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
         self.state = self.stick(Compensated::new(theta), here.omega, path.omega_dot);
     }
 
-    /// The place `time_s` into the step.
+    /// The place `time_s` into the step, which rounding may have put beyond its
+    /// end.
     fn at(&self, path: &ShaftPath<F>, time_s: F) -> Here<F> {
+        let time_s = time_s.at_most(self.active.step_s);
         Here {
             time_s,
             omega: path.omega(time_s),

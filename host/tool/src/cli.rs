@@ -196,6 +196,10 @@ pub(crate) struct StabilityArguments {
     #[arg(long)]
     pub(crate) long: bool,
 
+    /// List the cases, with inputs, criteria and sources, and run none.
+    #[arg(long)]
+    pub(crate) list: bool,
+
     /// Folder for cases.csv, summary.json and report.html [default: out/stability].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

@@ -19,8 +19,15 @@ const FRAC_PI_2_LO: f32 = 7.549_79e-8;
 const LN_2_HI: f32 = 0.693_359_4;
 const LN_2_LO: f32 = -2.121_944_4e-4;
 
-/// (sin x, cos x) within 2e-7 for |x| ≤ 6,000 rad.
+/// (sin x, cos x) within 2e-7 for |x| ≤ 6,000 rad; beyond, the sine and cosine of
+/// an angle that has lost its phase. NaN for a number that is not finite.
 pub fn sin_cos(x: f32) -> (f32, f32) {
+    // Beyond, the phase is lost, but a sine stays one.
+    let x = if Real::abs(x) > 6000.0 {
+        libm::fmodf(x, core::f32::consts::TAU)
+    } else {
+        x
+    };
     let quarter_turns = nearest(x * FRAC_2_PI);
     #[expect(clippy::cast_precision_loss, reason = "exact below 2^24")]
     let k = quarter_turns as f32;

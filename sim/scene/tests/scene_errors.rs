@@ -67,6 +67,24 @@ fn every_error_names_line_key_and_what_is_allowed() {
             ["line 6", "`motion.kind`", "did you mean constant"],
         ),
         (
+            refused(
+                "kind = \"constant\"\nvelocity_rad_s = 1.0",
+                "kind = \"strokes\"\nfrom_deg = 0\nto_deg = 1e-12\npeak_speed_deg_s = 1e6\npause_s = 0",
+            ),
+            [
+                "line 9",
+                "`motion.peak_speed_deg_s`",
+                "between 1e-3 and 1e7 s",
+            ],
+        ),
+        (
+            refused(
+                "kind = \"constant\"\nvelocity_rad_s = 1.0",
+                "kind = \"velocity-knots\"\nknots = [{ t_s = 0, omega_rad_s = 1 }, { t_s = 1e-12, omega_rad_s = 2 }]",
+            ),
+            ["line 7", "t_s`", "by at least 1e-9 s"],
+        ),
+        (
             refused("velocity_rad_s", "velocity_deg_s"),
             ["line 5", "`motion.velocity_rad_s`", "missing"],
         ),

@@ -2,6 +2,7 @@
 //! margin.
 
 mod case_text;
+mod list;
 mod page;
 mod plan;
 mod summary;
@@ -23,6 +24,13 @@ use summary::Summary;
 /// Runs the cases, writes the files, says what holds.
 pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result<(), Failure> {
     let plan = plan::plan(arguments)?;
+    if arguments.list {
+        return if as_json {
+            print_json(&list::value(&plan.cases))
+        } else {
+            print(&list::markdown(&plan.cases))
+        };
+    }
     let out = arguments
         .out
         .clone()

@@ -103,6 +103,13 @@ fn seed(section: &Section<'_>) -> Result<Option<u64>, SceneError> {
     }
 }
 
+/// How long a stroke may take, s: neither a jump nor for ever.
+const STROKE_S: std::ops::RangeInclusive<f64> = 1e-3..=1e7;
+
+/// The shortest time between two knots, s: within less an acceleration is no
+/// number any more.
+const LEAST_KNOT_S: f64 = 1e-9;
+
 fn sine(section: &Section<'_>) -> Result<Motion, SceneError> {
     let rad = section.optional_number("amplitude_rad", ANY_RAD)?;
     let deg = section.optional_number("amplitude_deg", ANY_DEG)?;
@@ -148,11 +155,11 @@ fn velocity_knots(section: &Section<'_>) -> Result<Motion, SceneError> {
             None if time_s != 0.0 => {
                 return Err(item.key_error("t_s", "the first knot must be at t_s = 0"));
             }
-            Some(before) if time_s <= before.time_s => {
+            Some(before) if time_s - before.time_s < LEAST_KNOT_S => {
                 return Err(item.key_error(
                     "t_s",
                     format!(
-                        "{time_s} is not after the knot before it, at {}",
+                        "{time_s} is not after the knot before it, at {}, by at least {LEAST_KNOT_S:e} s",
                         before.time_s
                     ),
                 ));
@@ -179,12 +186,24 @@ fn strokes(section: &Section<'_>) -> Result<Motion, SceneError> {
     }
     let peak_deg_s = section.number("peak_speed_deg_s", Range::above(0.0, 1e6))?;
     let pause_s = section.number("pause_s", Range::closed(0.0, 1e6))?;
-    Ok(Motion::Strokes(Strokes {
+    let strokes = Strokes {
         from_rad: from_deg.to_radians(),
         to_rad: to_deg.to_radians(),
         peak_speed_rad_s: peak_deg_s.to_radians(),
         pause_s,
-    }))
+    };
+    let stroke_s = strokes.stroke_s();
+    if !STROKE_S.contains(&stroke_s) {
+        return Err(section.key_error(
+            "peak_speed_deg_s",
+            format!(
+                "a stroke would take {stroke_s:e} s: between {:e} and {:e} s are allowed",
+                STROKE_S.start(),
+                STROKE_S.end()
+            ),
+        ));
+    }
+    Ok(Motion::Strokes(strokes))
 }
 
 /// The motion of a recording and the largest change of its acceleration.

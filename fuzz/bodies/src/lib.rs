@@ -1,0 +1,40 @@
+//! # What no bytes may break
+//!
+//! One file a fuzz target. Each has a `body` that turns any bytes into inputs
+//! and panics when a law is broken; the law stands at the head of its file.
+//! `cargo fuzz` searches with them on the nightly toolchain, and
+//! `tests/bounded.rs` replays the corpus and its near neighbours on stable.
+//!
+//! | target | what the bytes become |
+//! |---|---|
+//! | [`step`] | settings, a solver, and steps of the shaft, raw or smooth |
+//! | [`guarded`] | the same with samples that are lost or no numbers at all |
+//! | [`renderer`] | samples, and changes of parameters under way |
+//! | [`encoder`] | counts, and ticks without one |
+//! | [`scene`] | the text of a scene file |
+//! | [`recording`] | the text of a recording |
+
+mod bytes;
+pub mod encoder;
+pub mod guarded;
+mod laws;
+pub mod recording;
+pub mod renderer;
+mod rung;
+pub mod scene;
+mod shaft;
+pub mod step;
+
+/// Turns bytes into inputs, and panics where a law is broken.
+pub type Body = fn(&[u8]);
+
+/// All targets: the name of each, which is also its folder in the corpus, and
+/// its body.
+pub const TARGETS: [(&str, Body); 6] = [
+    ("encoder", encoder::body),
+    ("guarded", guarded::body),
+    ("recording", recording::body),
+    ("renderer", renderer::body),
+    ("scene", scene::body),
+    ("step", step::body),
+];

@@ -1,0 +1,148 @@
+//! The joint as the device renders it, with any samples and with other valid
+//! settings committed at any tick. After every tick:
+//!
+//! - what is shown is finite and at most the Ts then in force, and so are the
+//!   joint's own torque and its events; its state is finite;
+//! - where the hand has turned back inside a slip, nothing is shown;
+//! - a change of parameters alone, seen in ticks without a shaft, never raises
+//!   the energy stored in the object, moves no torque faster than the slew
+//!   limit, and raises no stick's but with the Ts that limits it.
+
+use crate::bytes::Bytes;
+use crate::guarded::{MOST_EVENTS, next_samples, sample};
+use crate::laws::{self, Events};
+use crate::rung;
+use crate::shaft::Shaft;
+use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::guarded::InputLimits;
+use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
+use crepitus_model::{Active, Convention, Frozen, Phase, Real, Renderer, ShaftStep, StickSlip};
+
+const SLEW_NM_PER_S: f64 = 100.0;
+
+/// The most ticks of one input.
+const MOST_TICKS: usize = 2048;
+
+/// The longest tick: a device has a control loop, not a calendar.
+const LONGEST_TICK_S: f64 = 0.1;
+
+/// Checks the laws.
+///
+/// # Panics
+/// Where one is broken.
+pub fn body(data: &[u8]) {
+    let mut bytes = Bytes::new(data);
+    match bytes.byte() % 5 {
+        0 => run::<f64, ExactEvents>(bytes),
+        1 => run::<f32, EndOfStep>(bytes),
+        2 => run::<f32, ExactBreak>(bytes),
+        3 => run::<f32, Interpolated>(bytes),
+        _ => run::<f32, ExactEvents>(bytes),
+    }
+}
+
+fn run<F: Real, L: Locate<F>>(mut bytes: Bytes<'_>) {
+    let step_s = bytes.between(1e-6, LONGEST_TICK_S);
+    let active = |bytes: &mut Bytes<'_>| {
+        let settings = rung::settings(bytes, Convention::Frozen);
+        Active::<F>::new(&settings, step_s).expect("a valid step")
+    };
+    let count_rad = F::from_f64(EncoderSettings::default().rad_per_count());
+    let limits = InputLimits::device(step_s);
+    let first = active(&mut bytes);
+    let mut renderer = Renderer::<F, L>::new(first, limits, count_rad, F::ZERO);
+    let mut shaft = Shaft::default();
+    let mut ticks = 0;
+    while !bytes.is_empty() && ticks < MOST_TICKS {
+        if bytes.byte().is_multiple_of(8) {
+            let next = active(&mut bytes);
+            renderer.commit(next, SLEW_NM_PER_S);
+        }
+        for step in next_samples(&mut bytes, &mut shaft, step_s) {
+            tick(&mut renderer, step.as_ref());
+            ticks += 1;
+        }
+    }
+}
+
+/// One tick.
+fn tick<F: Real, L: Locate<F>>(renderer: &mut Renderer<F, L>, step: Option<&ShaftStep<f64>>) {
+    let before = Stored::of(renderer.joint());
+    let counters = renderer.counters();
+    let mut events = Events::from(renderer.joint().phase());
+    let shown = renderer.tick(&sample(step), |event| events.see(&event));
+
+    let joint = renderer.joint();
+    let limit = joint.active().static_nm;
+    laws::torque(joint);
+    laws::state(joint);
+    assert!(shown.torque_nm.abs() <= limit, "{shown:?}, Ts {limit:?}");
+    assert_eq!(shown.model_torque_nm, joint.torque_nm());
+    assert!(!shown.turned_back || shown.torque_nm == F::ZERO);
+    events.within(limit);
+    if renderer.counters().restarts == counters.restarts {
+        events.end(joint, MOST_EVENTS);
+    }
+    if step.is_none() {
+        before.check(joint);
+    }
+}
+
+/// What an object stores.
+#[derive(Debug)]
+struct Stored {
+    energy_j: f64,
+    torque_nm: f64,
+    /// The static torque, N·m, and the energy of its spring, J: what rounding
+    /// is measured against.
+    static_nm: f64,
+    static_j: f64,
+}
+
+impl Stored {
+    fn of<F: Real, L: Locate<F>>(joint: &Frozen<F, L>) -> Self {
+        let a = joint.active();
+        let theta = joint.theta_rad().to_f64();
+        let spring_j = 0.5 * a.stiffness.to_f64() * theta * theta;
+        let motion_j = match joint.phase() {
+            // The hand moves it, and none of that ever comes back.
+            Phase::Stick => 0.0,
+            Phase::Slip(_) => 0.5 * a.inertia.to_f64() * joint.theta_dot_rad_s().to_f64().powi(2),
+        };
+        let static_nm = a.static_nm.to_f64();
+        Self {
+            energy_j: spring_j + motion_j,
+            torque_nm: joint.torque_nm().to_f64(),
+            static_nm,
+            static_j: static_nm * static_nm / a.stiffness.to_f64(),
+        }
+    }
+
+    /// The laws of an adjustment, `joint` being what it has become.
+    fn check<F: Real, L: Locate<F>>(&self, joint: &Frozen<F, L>) {
+        let after = Self::of(joint);
+        let eps = F::EPSILON.to_f64();
+        let scale_j = self.energy_j + self.static_j.max(after.static_j);
+        assert!(
+            after.energy_j <= self.energy_j + 64.0 * eps * scale_j,
+            "an adjustment stores energy: {self:?} {after:?}"
+        );
+        let slew_nm = SLEW_NM_PER_S * joint.active().step_s.to_f64();
+        #[expect(clippy::cast_precision_loss, reason = "a small number")]
+        let rounding_nm = self.static_nm.max(after.static_nm) * eps * (MOST_TICKS + 8) as f64;
+        let most_nm = slew_nm * (1.0 + 1.1e-6) + rounding_nm;
+        let moved_nm = (after.torque_nm - self.torque_nm).abs();
+        assert!(
+            moved_nm <= most_nm,
+            "{moved_nm} N·m in a tick: {self:?} {after:?}"
+        );
+        // In a slip the torque is ±Tk, which may be set higher; and a stick that
+        // was left beyond its limit in a crowded step shows ±Ts.
+        if joint.phase() == Phase::Stick && self.torque_nm.abs() < self.static_nm {
+            assert!(
+                after.torque_nm.abs() <= self.torque_nm.abs() + rounding_nm,
+                "an adjustment raises a stick's torque: {self:?} {after:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Bytes to what a joint is made of: valid settings, a solver, a step.
+
+use crate::bytes::Bytes;
+use crepitus_model::active::LONGEST_STEP_S;
+use crepitus_model::parameters::{DAMPING, INERTIA, STATIC_TORQUE, STIFFNESS};
+use crepitus_model::solver::Solver;
+use crepitus_model::{Convention, Parameters, Restart, Settings, Validated};
+
+/// What a joint is made of.
+pub(crate) struct Rung {
+    pub(crate) settings: Validated<Settings>,
+    pub(crate) solver: Solver,
+    pub(crate) step_s: f64,
+    /// Double precision, not single.
+    pub(crate) double: bool,
+}
+
+impl Rung {
+    /// Any rung of the ladder with any settings in range, their ends included.
+    pub(crate) fn of(bytes: &mut Bytes<'_>) -> Self {
+        let convention = bytes.choice(&Convention::ALL);
+        let solvers = Solver::ALL.into_iter();
+        let solvers: Vec<_> = solvers
+            .filter(|s| s.refusal(convention).is_none())
+            .collect();
+        Self {
+            solver: bytes.choice(&solvers),
+            double: bytes.choice(&[false, true]),
+            step_s: step_s(bytes),
+            settings: settings(bytes, convention),
+        }
+    }
+
+    /// Whether the method has laws with this step: explicit methods have none
+    /// beyond their limit of stability.
+    pub(crate) fn is_lawful(&self) -> bool {
+        let p = &self.settings.parameters;
+        let radians = p.natural_rad_s() * self.step_s;
+        let damped = p.damping_nms_per_rad / p.inertia_kg_m2 * self.step_s;
+        let explicit = matches!(
+            self.solver,
+            Solver::Euler
+                | Solver::SemiImplicitEuler
+                | Solver::Verlet
+                | Solver::Rk4
+                | Solver::Rk4Events
+        );
+        !(explicit && (radians > 0.5 || damped > 0.5))
+    }
+}
+
+/// A step from a nanosecond to the longest that is allowed.
+pub(crate) fn step_s(bytes: &mut Bytes<'_>) -> f64 {
+    bytes.between(1e-9, LONGEST_STEP_S)
+}
+
+/// Settings that are valid under `convention`.
+pub(crate) fn settings(bytes: &mut Bytes<'_>, convention: Convention) -> Validated<Settings> {
+    let frozen = convention == Convention::Frozen;
+    let restart = bytes.choice(&Restart::ALL);
+    let inertia_kg_m2 = bytes.between(INERTIA.min, INERTIA.max);
+    let stiffness_nm_per_rad = bytes.between(STIFFNESS.min, STIFFNESS.max);
+    let damping_nms_per_rad = bytes.between(DAMPING.min, DAMPING.max);
+    let static_torque_nm = bytes.between(STATIC_TORQUE.min, STATIC_TORQUE.max);
+    let settings = Settings {
+        parameters: Parameters {
+            inertia_kg_m2,
+            stiffness_nm_per_rad,
+            damping_nms_per_rad: if frozen { 0.0 } else { damping_nms_per_rad },
+            kinetic_torque_nm: static_torque_nm * bytes.part(),
+            static_torque_nm,
+        },
+        convention,
+        restart: if frozen { restart } else { Restart::Elastic },
+    };
+    settings.validate().expect("settings made to be valid")
+}

@@ -1,0 +1,147 @@
+//! The reader of scene files, for any text, and the run of what it accepts:
+//!
+//! - neither panics;
+//! - an error has a message, and names a line within the text, or an override
+//!   as it was given;
+//! - an accepted scene has finite times and settings that are valid, and if it
+//!   is short it runs: rows are finite and in the order of time, the end is reached. Only an
+//!   explicit solver beyond its limit of stability may diverge.
+//!
+//! A line `#set PATH=VALUE` is a comment to the scene, and an override to this
+//! target, as `--set PATH=VALUE` is on the command line.
+
+use crepitus_model::solver::Solver;
+use crepitus_scene::error::Origin;
+use crepitus_scene::run::{RunError, rows};
+use crepitus_scene::scene::{MotionKind, SolverChoice};
+use crepitus_scene::trace::EventRecord;
+use crepitus_scene::{Observer, Overrides, Scene, SceneError, run};
+use std::convert::Infallible;
+use std::path::Path;
+
+/// The most steps of a scene that is run, and the most swings of its object.
+const MOST_STEPS: f64 = 2000.0;
+
+/// Checks the laws.
+///
+/// # Panics
+/// Where one is broken.
+pub fn body(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else {
+        return;
+    };
+    let set = text.lines().filter_map(|line| {
+        let (path, value) = line.strip_prefix("#set ")?.split_once('=')?;
+        Some((path.to_owned(), value.to_owned()))
+    });
+    let overrides = Overrides {
+        set: set.collect(),
+        ..Overrides::default()
+    };
+    match Scene::parse(Path::new("no-such-folder/scene.toml"), text, &overrides) {
+        Err(error) => refused(&error, text, &overrides),
+        Ok(scene) => accepted(&scene),
+    }
+}
+
+fn refused(error: &SceneError, text: &str, overrides: &Overrides) {
+    assert!(!error.message.trim().is_empty(), "no message: {error:?}");
+    let lines = text.matches('\n').count() + 1;
+    match &error.origin {
+        None => {}
+        Some(Origin::Line(line)) => assert!((1..=lines).contains(line), "{error:?}"),
+        Some(Origin::Override(flag)) => {
+            let mut flags = overrides.set.iter().map(|(p, v)| format!("--set {p}={v}"));
+            assert!(flags.any(|f| f == *flag), "{error:?}");
+        }
+    }
+}
+
+fn accepted(scene: &Scene) {
+    let time = |s: f64| s.is_finite() && s > 0.0;
+    assert!(time(scene.duration_s), "duration {}", scene.duration_s);
+    assert!(time(scene.trace_step_s), "rows {}", scene.trace_step_s);
+    if let SolverChoice::Ladder { step_s, .. } = scene.solver {
+        assert!(time(step_s), "step {step_s}");
+    }
+    if let Some(crepitus) = &scene.crepitus {
+        assert!(crepitus.settings.validate().is_ok());
+    }
+    if !is_short(scene) {
+        return;
+    }
+    let mut rows_seen = Rows::default();
+    match run(scene, &mut rows_seen) {
+        Ok(summary) => {
+            assert_eq!(rows_seen.count, rows(scene));
+            assert!(summary.simulated_s.is_finite());
+        }
+        Err(RunError::Diverged(diverged)) => assert!(
+            may_diverge(scene),
+            "{diverged}, and its method has no limit of stability"
+        ),
+        Err(other) => panic!("a scene that was accepted does not run: {other}"),
+    }
+}
+
+/// Short enough to be run: few steps, few swings.
+fn is_short(scene: &Scene) -> bool {
+    let step_s = match scene.solver {
+        SolverChoice::Reference => scene.trace_step_s,
+        SolverChoice::Ladder { step_s, .. } => step_s,
+    };
+    let swings = scene.crepitus.map_or(0.0, |c| {
+        c.settings.parameters.natural_rad_s() * scene.duration_s
+    });
+    scene.motion_kind != MotionKind::Recording
+        && scene.duration_s / step_s <= MOST_STEPS
+        && swings <= MOST_STEPS
+}
+
+/// Whether a run may end in numbers that are none.
+fn may_diverge(scene: &Scene) -> bool {
+    matches!(
+        scene.solver,
+        SolverChoice::Ladder {
+            solver: Solver::Euler
+                | Solver::SemiImplicitEuler
+                | Solver::Verlet
+                | Solver::Rk4
+                | Solver::Rk4Events,
+            ..
+        }
+    )
+}
+
+/// Watches the rows.
+#[derive(Default)]
+struct Rows {
+    count: u64,
+    last_s: f64,
+}
+
+impl Observer for Rows {
+    type Error = Infallible;
+
+    fn row(&mut self, values: &[f64]) -> Result<(), Infallible> {
+        let time_s = values.first().copied().unwrap_or(f64::NAN);
+        assert!(
+            time_s >= self.last_s,
+            "a row of {time_s} s after {} s",
+            self.last_s
+        );
+        assert!(values.iter().all(|x| x.is_finite()), "{values:?}");
+        self.last_s = time_s;
+        self.count += 1;
+        Ok(())
+    }
+
+    fn event(&mut self, event: &EventRecord) -> Result<(), Infallible> {
+        assert!(event.time_s >= self.last_s, "{event:?} after its row");
+        Ok(())
+    }
+
+    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
