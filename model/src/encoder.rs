@@ -211,4 +211,49 @@ mod tests {
         let (angle, _) = run(2.0, 77, 2.0);
         assert!((angle - 4.0).abs() < 40e-6, "{angle}");
     }
+
+    #[test]
+    fn settings_are_their_table_and_are_held_to_it() {
+        let mut settings = EncoderSettings::default();
+        assert_eq!(settings.values(), [512.0, 86.0, 50.0]);
+        assert!((settings.rad_per_count() - 35.674e-6).abs() < 1e-9);
+        assert_eq!(settings.validate(), Ok(()));
+        for (i, spec) in ENCODER_PARAMETERS.iter().enumerate() {
+            for (bad, good) in [
+                (f64::NAN, spec.default),
+                (spec.min * 0.99, spec.min),
+                (spec.max * 1.01, spec.max),
+            ] {
+                *settings.values_mut()[i] = bad;
+                let refused = settings.validate();
+                assert!(
+                    matches!(refused, Err(SettingsError::OutOfRange { parameter, .. }) if parameter.key == spec.key)
+                );
+                *settings.values_mut()[i] = good;
+                assert_eq!(settings.validate(), Ok(()), "{good}");
+            }
+            *settings.values_mut()[i] = spec.default;
+        }
+    }
+
+    #[test]
+    fn a_missed_count_costs_no_angle_and_hardly_any_speed() {
+        let (settings, step_s) = (EncoderSettings::default(), 5e-5);
+        let omega = 2.0;
+        let mut reader = EncoderReader::<f64>::new(&settings, step_s, 0, omega).unwrap();
+        let (mut angle, mut worst) = (0.0, 0.0_f64);
+        for i in 1..=20_000_i32 {
+            if i % 3 == 0 {
+                reader.miss();
+                continue;
+            }
+            let counts = libm::floor(omega * f64::from(i) * step_s / settings.rad_per_count());
+            #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
+            let step = reader.read(counts as i32);
+            angle += step.delta_phi_rad;
+            worst = worst.max((step.omega_end_rad_s - omega).abs());
+        }
+        assert!((angle - omega).abs() < 40e-6, "{angle}");
+        assert!(worst < 0.02, "{worst}");
+    }
 }

@@ -90,7 +90,7 @@ pub(super) fn parameter_change() -> Result<Story, SettingsError> {
                 bounds: marks(["kr 10 → 400", "kr 400 → 10"]),
             },
             Panel {
-                heading: "The same, near the friction's own torques".to_owned(),
+                heading: "The same, near Ts and Tk".to_owned(),
                 x: time(),
                 y: Scale::linear("Torque (N·m)").within(-0.05, 0.45),
                 series: vec![Series::line(COMMITTED, committed.torque_nm)],
