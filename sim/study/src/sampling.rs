@@ -18,12 +18,6 @@ pub struct Sampling<'a> {
     steps: u64,
 }
 
-/// Whole steps of `step_s` in `duration_s`. Written in decimals, a duration may
-/// miss a whole number of steps by rounding.
-pub fn steps(duration_s: f64, step_s: f64) -> u64 {
-    (duration_s / step_s * (1.0 + 1e-12) + 1e-9).whole()
-}
-
 impl<'a> Sampling<'a> {
     /// Whole steps of `step_s` in `duration_s`.
     pub fn new(motion: &'a Motion, duration_s: f64, step_s: f64) -> Self {
@@ -33,7 +27,9 @@ impl<'a> Sampling<'a> {
             motion,
             step_s,
             rate_hz: whole.then_some(rate.round()),
-            steps: steps(duration_s, step_s),
+            // Written in decimals, a duration may miss a whole number of steps
+            // by rounding.
+            steps: (duration_s / step_s * (1.0 + 1e-12) + 1e-9).whole(),
         }
     }
 
@@ -86,6 +82,11 @@ pub struct Walk<'a> {
 }
 
 impl Walk<'_> {
+    /// Angle and velocity as the next step starts, rad and rad/s.
+    pub fn now(&self) -> (f64, f64) {
+        self.now
+    }
+
     /// Replaces `chunk` by the next steps, at most `most`; empty at the end.
     pub fn fill<F: Real>(&mut self, chunk: &mut Vec<ShaftStep<F>>, most: usize) {
         chunk.clear();

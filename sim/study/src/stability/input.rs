@@ -184,6 +184,13 @@ pub struct Attempt {
     pub step_s: f64,
 }
 
+impl Shake {
+    /// The motion of the hand.
+    pub fn motion(&self) -> Motion {
+        Motion::sine(self.amplitude_rad, self.frequency_hz, 0.0)
+    }
+}
+
 impl Shaft {
     /// The motion itself.
     pub fn motion(&self) -> Motion {

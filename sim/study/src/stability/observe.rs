@@ -66,9 +66,9 @@ fn run<F: Real, E>(
         Input::Shaken { shake, .. } => {
             let shaken = Shaken {
                 settings,
-                shake,
-                step_s,
-                steps: sampling.steps(),
+                sampling,
+                delay_ticks: shake.delay_ticks,
+                counts: shake.counts,
             };
             return Ok(shaken.observe::<F>(subject)?);
         }

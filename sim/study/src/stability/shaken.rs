@@ -2,24 +2,26 @@
 //! much energy it gets back.
 
 use super::criterion::BOUND_SLACK;
-use super::input::Shake;
 use super::locators::{WithLocator, with_locator};
 use super::observation::Observation;
 use super::subject::Subject;
+use crate::sampling::Sampling;
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::guarded::InputLimits;
 use crepitus_model::locate::Locate;
 use crepitus_model::{
-    Active, EnergyObserver, Real, Renderer, Sample, Settings, SettingsError, ShaftStep, Validated,
+    Active, EnergyObserver, Real, Renderer, Sample, Settings, SettingsError, Validated,
 };
 use crepitus_plant::encoder::Encoder;
 
 /// A joint and the hand that shakes it.
 pub(super) struct Shaken<'a> {
     pub(super) settings: Validated<Settings>,
-    pub(super) shake: &'a Shake,
-    pub(super) step_s: f64,
-    pub(super) steps: u64,
+    pub(super) sampling: Sampling<'a>,
+    /// Ticks between a sample and its torque.
+    pub(super) delay_ticks: usize,
+    /// Whether the joint sees counts of the device's encoder, or the truth.
+    pub(super) counts: bool,
 }
 
 /// What a tick shows to whoever draws it.
@@ -42,7 +44,7 @@ pub(super) struct Returned {
 
 impl Shaken<'_> {
     pub(super) fn observe<F: Real>(self, subject: Subject) -> Result<Observation, SettingsError> {
-        let (step_s, steps) = (self.step_s, self.steps);
+        let (step_s, steps) = (self.sampling.step_s(), self.sampling.steps());
         let mut peak = 0.0_f64;
         let limit_nm = self.settings.parameters.static_torque_nm;
         let returned = self.run::<F>(subject, |tick| {
@@ -75,51 +77,38 @@ impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
 
     fn run<L: Locate<F>>(self) -> Self::Output {
         let Self(shaken, mut on_tick) = self;
-        let Shake {
-            amplitude_rad,
-            frequency_hz,
-            delay_ticks,
-            counts,
-        } = *shaken.shake;
-        let active = Active::<F>::new(&shaken.settings, shaken.step_s)?;
+        let step_s = shaken.sampling.step_s();
+        let active = Active::<F>::new(&shaken.settings, step_s)?;
         let settings = EncoderSettings::default();
         let encoder = Encoder::new(&settings);
-        let turns_per_s = std::f64::consts::TAU * frequency_hz;
-        let at = |n: u64| {
-            let angle = turns_per_s * f64::from_whole(n) * shaken.step_s;
-            (
-                amplitude_rad * angle.sin(),
-                amplitude_rad * turns_per_s * angle.cos(),
-            )
-        };
-        let omega = F::from_f64(at(0).1);
-        let mut reader = EncoderReader::<F>::new(&settings, shaken.step_s, 0, omega)?;
+        let mut walk = shaken.sampling.walk_from(0);
+        let (mut angle_rad, omega_rad_s) = walk.now();
+        let omega = F::from_f64(omega_rad_s);
+        let first = encoder.count(angle_rad);
+        let mut reader = EncoderReader::<F>::new(&settings, step_s, first, omega)?;
         let mut renderer = Renderer::<F, L>::new(
             active,
-            InputLimits::device(shaken.step_s),
+            InputLimits::device(step_s),
             F::from_f64(settings.rad_per_count()),
             omega,
         );
-        let mut hand = EnergyObserver::new(
-            &Active::<f64>::new(&shaken.settings, shaken.step_s)?,
-            delay_ticks,
-        );
+        let exact = Active::<f64>::new(&shaken.settings, step_s)?;
+        let mut hand = EnergyObserver::new(&exact, shaken.delay_ticks);
         let mut unguarded = hand;
-        for n in 0..shaken.steps {
-            let ((from, omega_from), (to, omega_to)) = (at(n), at(n + 1));
-            let shaft = if counts {
-                reader.read(encoder.count(to))
-            } else {
-                ShaftStep {
-                    delta_phi_rad: F::from_f64(to - from),
-                    omega_start_rad_s: F::from_f64(omega_from),
-                    omega_end_rad_s: F::from_f64(omega_to),
-                }
+        let mut chunk = Vec::new();
+        for _ in 0..shaken.sampling.steps() {
+            walk.fill(&mut chunk, 1);
+            let travel_rad = walk.now().0 - angle_rad;
+            angle_rad = walk.now().0;
+            let shaft = match chunk.first() {
+                Some(_) if shaken.counts => reader.read(encoder.count(angle_rad)),
+                Some(shaft) => *shaft,
+                None => break,
             };
             let shown = renderer.tick(&Sample::Taken(shaft), |_| {});
             let (shown_nm, model_nm) = (shown.torque_nm.to_f64(), shown.model_torque_nm.to_f64());
-            hand.tick(to - from, shown_nm);
-            unguarded.tick(to - from, model_nm);
+            hand.tick(travel_rad, shown_nm);
+            unguarded.tick(travel_rad, model_nm);
             on_tick(&Tick {
                 shown_nm,
                 model_nm,
@@ -131,5 +120,83 @@ impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
             guarded: hand.share(),
             unguarded: unguarded.share(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_model::presets::PRESETS;
+    use crepitus_plant::Motion;
+    use crepitus_plant::recording::{AngleUnit, Source, read, smooth};
+    use crepitus_scene::scene::Precision;
+    use std::path::Path;
+
+    /// Recorded knees, where they stand beside the repository.
+    fn recordings() -> Vec<(String, Motion, f64)> {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+        let Ok(files) = std::fs::read_dir(&folder) else {
+            eprintln!("left out: no recordings beside the repository");
+            return Vec::new();
+        };
+        let mut all = Vec::new();
+        for file in files.flatten().map(|file| file.path()) {
+            let source = Source {
+                path: &file,
+                time_column: "time_s",
+                angle_column: "knee_flexion_deg",
+                unit: AngleUnit::Deg,
+            };
+            if let Ok(samples) = read(&source) {
+                let motion = Motion::recording(&smooth(&samples, 6.0).unwrap());
+                let name = file.file_name().unwrap_or_default();
+                all.push((name.display().to_string(), motion, samples.duration_s()));
+            }
+        }
+        assert!(all.len() > 2, "of {}", folder.display());
+        all
+    }
+
+    #[test]
+    fn recorded_knees_get_no_more_back_than_the_bound() {
+        let firmware = Subject::all()
+            .into_iter()
+            .find(|s| s.is_firmware())
+            .unwrap();
+        assert_eq!(firmware.precision, Precision::F32);
+        let count_rad = EncoderSettings::default().rad_per_count();
+        for (name, motion, duration_s) in recordings() {
+            for preset in PRESETS {
+                let p = preset.parameters;
+                let settings = Settings {
+                    parameters: p,
+                    ..Settings::default()
+                };
+                for (delay_ticks, counts) in [(0, false), (2, true)] {
+                    let shaken = Shaken {
+                        settings: settings.validate().unwrap(),
+                        sampling: Sampling::new(&motion, duration_s, 5e-5),
+                        delay_ticks,
+                        counts,
+                    };
+                    let returned = shaken.run::<f32>(firmware, |_| {}).unwrap();
+                    let stroke_rad = p.static_torque_nm / p.stiffness_nm_per_rad;
+                    let most = if counts {
+                        1.0 + count_rad / stroke_rad
+                    } else {
+                        1.0
+                    };
+                    println!(
+                        "{name} {} {delay_ticks} {counts}: {returned:?}",
+                        preset.name
+                    );
+                    assert!(
+                        returned.guarded <= most,
+                        "{name} {}: {returned:?}",
+                        preset.name
+                    );
+                }
+            }
+        }
     }
 }

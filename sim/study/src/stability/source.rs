@@ -30,9 +30,8 @@ pub(super) fn motion(input: &Input) -> Motion {
         | Input::Faulty { shaft, .. }
         | Input::Changed { shaft, .. } => shaft.motion(),
         Input::Repeated { omega_rad_s, .. } => Shaft::Constant(*omega_rad_s).motion(),
-        Input::White { .. } | Input::Hand { .. } | Input::Shaken { .. } | Input::Refusals(_) => {
-            Motion::constant(0.0)
-        }
+        Input::Shaken { shake, .. } => shake.motion(),
+        Input::White { .. } | Input::Hand { .. } | Input::Refusals(_) => Motion::constant(0.0),
     }
 }
 

@@ -2,6 +2,7 @@
 //! guard and without it, and how close the worst comes to the bound.
 
 use super::{Mark, Panel, Scale, Series, Story};
+use crate::sampling::Sampling;
 use crate::stability::input::Shake;
 use crate::stability::shaken::{Returned, Shaken, Tick};
 use crate::stability::subject::Subject;
@@ -115,11 +116,12 @@ fn shake(
     duration_s: f64,
     on_tick: impl FnMut(&Tick),
 ) -> Result<Returned, SettingsError> {
+    let motion = shake.motion();
     let shaken = Shaken {
         settings: Settings::default().validate()?,
-        shake: &shake,
-        step_s: STEP_S,
-        steps: crate::sampling::steps(duration_s, STEP_S),
+        sampling: Sampling::new(&motion, duration_s, STEP_S),
+        delay_ticks: shake.delay_ticks,
+        counts: shake.counts,
     };
     shaken.run::<f32>(DEVICE, on_tick)
 }
