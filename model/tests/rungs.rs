@@ -89,7 +89,7 @@ fn steps_off(solver: Solver) -> f64 {
     match solver {
         // Their damping, or its opposite, shifts every match.
         Solver::Euler | Solver::ImplicitEuler => 300.0,
-        Solver::ExactEvents | Solver::ExactBreak => 1.0 + 1e-9,
+        Solver::ExactEvents | Solver::ExactBreak => 1.1,
         Solver::ExactInterpolated => 1e-2,
         Solver::Rk4Events => 1e-6,
         _ => 40.0,
