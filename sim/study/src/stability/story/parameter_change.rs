@@ -3,7 +3,7 @@
 
 use super::{Mark, Panel, Scale, Series, Story};
 use crate::sampling::Sampling;
-use crate::stability::changed::{SLEW_NM_PER_S, stored_j};
+use crate::stability::changed::SLEW_NM_PER_S;
 use crepitus_model::locate::ExactEvents;
 use crepitus_model::oscillator::Oscillator;
 use crepitus_model::ramp::Ramp;
@@ -22,7 +22,7 @@ const SOFTER_S: f64 = 0.09;
 /// How long the run is, s.
 const SHOWN_S: f64 = 0.13;
 /// The smallest energy that is drawn, J.
-const LEAST_J: f64 = 1e-6;
+const LEAST_J: f64 = 3e-4;
 
 const COMMITTED: &str = "committed and ramped";
 const NAIVE: &str = "replaced as they are";
@@ -49,12 +49,14 @@ pub(super) fn parameter_change() -> Result<Story, SettingsError> {
         ..stiff
     };
     let committed = committed(&valid(soft)?, &valid(stiff)?)?;
-    let naive = naive(&soft, &stiff);
+    let naive = naive(&soft, &stiff)?;
     let at_change = |lines: &[(f64, f64)], after_s: f64| {
         let next = lines.iter().find(|(t, _)| *t > after_s);
         next.map_or(0.0, |(_, y)| *y)
     };
-    let before_j = at_change(&committed.stored_j, STIFFER_S - 2.0 * STEP_S);
+    // Just before and just after, whatever rounding makes of the time.
+    let (before_s, after_s) = (STIFFER_S - 1.5 * STEP_S, STIFFER_S + 0.5 * STEP_S);
+    let before_j = at_change(&committed.stored_j, before_s);
     let time = || Scale::linear("Time (s)").within(0.0, SHOWN_S);
     // Named in the first panel, where there is room.
     let marks = |names: [&str; 2]| {
@@ -68,14 +70,14 @@ pub(super) fn parameter_change() -> Result<Story, SettingsError> {
         title: "A stiffer spring, and no energy from nowhere",
         caption: format!(
             "A hand has wound a spring of 10 N·m/rad to {:.2} N·m when its stiffness is set to 400 N·m/rad. Replaced as \
-             it is, the spring holds {:.2} J instead of {:.1} mJ, shows {:.1} N·m for a moment, and goes on swinging. \
-             Committed as the device does it, θ is scaled so that torque goes on and stored energy falls to {:.2} mJ. \
+             it is, spring and object hold {:.2} J instead of {:.1} mJ, show {:.1} N·m for a moment, and go on swinging. \
+             Committed as the device does it, θ is scaled so that the torque goes on and the energy falls to {:.1} mJ. \
              Back to the soft spring the torque may only fall at {SLEW_NM_PER_S} N·m/s, so the stiffness takes its time.",
-            at_change(&committed.torque_nm, STIFFER_S - 2.0 * STEP_S),
-            at_change(&naive.stored_j, STIFFER_S),
+            at_change(&committed.torque_nm, before_s),
+            at_change(&naive.stored_j, after_s),
             before_j * 1e3,
-            at_change(&naive.torque_nm, STIFFER_S),
-            at_change(&committed.stored_j, STIFFER_S) * 1e3,
+            at_change(&naive.torque_nm, after_s),
+            at_change(&committed.stored_j, after_s) * 1e3,
         ),
         panels: vec![
             Panel {
@@ -101,7 +103,7 @@ pub(super) fn parameter_change() -> Result<Story, SettingsError> {
                 bounds: marks(["", ""]),
             },
             Panel {
-                heading: "Energy stored in the object".to_owned(),
+                heading: "Energy of spring and object".to_owned(),
                 x: time(),
                 y: Scale {
                     logarithmic: true,
@@ -124,6 +126,11 @@ fn valid(parameters: Parameters) -> Result<Validated<Settings>, SettingsError> {
         ..Settings::default()
     }
     .validate()
+}
+
+/// Energy of spring and motion, J.
+fn energy_j(a: &Active<f64>, theta: f64, theta_dot: f64) -> f64 {
+    0.5 * a.stiffness * theta * theta + 0.5 * a.inertia * theta_dot * theta_dot
 }
 
 /// The real joint, with the device's commits.
@@ -157,7 +164,7 @@ fn committed(
         lines.add(
             sampling.time_s(n + 1, 0.0),
             joint.torque_nm(),
-            stored_j(&joint),
+            energy_j(joint.active(), joint.theta_rad(), joint.theta_dot_rad_s()),
         );
     }
     Ok(lines)
@@ -165,38 +172,28 @@ fn committed(
 
 /// What the equations say if the numbers are replaced and the state is not
 /// looked at: the stick's angle goes on, and the far too strong spring swings.
-fn naive(soft: &Parameters, stiff: &Parameters) -> Lines {
-    let mut lines = Lines::default();
-    let kinetic_rad = stiff.kinetic_torque_nm / stiff.stiffness_nm_per_rad;
-    let theta = OMEGA_RAD_S * STIFFER_S;
+fn naive(soft: &Parameters, stiff: &Parameters) -> Result<Lines, SettingsError> {
     let swing = Oscillator::<f64>::of(stiff).transition(STEP_S);
-    let (mut x, mut v) = (theta - kinetic_rad, OMEGA_RAD_S);
-    let stored = |p: &Parameters, theta: f64, v: f64| {
-        0.5 * p.stiffness_nm_per_rad * theta * theta + 0.5 * p.inertia_kg_m2 * v * v
-    };
+    let soft: Active<f64> = Active::new(&valid(*soft)?, STEP_S)?;
+    let stiff = Active::new(&valid(*stiff)?, STEP_S)?;
+    let mut lines = Lines::default();
     let mut time_s = 0.0;
     while time_s < STIFFER_S - 0.5 * STEP_S {
         time_s += STEP_S;
         let theta = OMEGA_RAD_S * time_s;
-        lines.add(
-            time_s,
-            soft.stiffness_nm_per_rad * theta,
-            stored(soft, theta, 0.0),
-        );
+        let energy = energy_j(&soft, theta, OMEGA_RAD_S);
+        lines.add(time_s, soft.stiffness * theta, energy);
     }
-    lines.add(
-        time_s + STEP_S,
-        stiff.stiffness_nm_per_rad * theta,
-        stored(stiff, theta, v),
-    );
+    let theta = OMEGA_RAD_S * time_s;
+    let (mut x, mut v) = (theta - stiff.kinetic_angle_rad, OMEGA_RAD_S);
+    time_s += STEP_S;
+    let energy = energy_j(&stiff, theta, v);
+    lines.add(time_s, stiff.stiffness * theta, energy);
     while time_s < SOFTER_S {
         time_s += STEP_S;
         (x, v) = swing.apply(x, v);
-        lines.add(
-            time_s + STEP_S,
-            stiff.kinetic_torque_nm,
-            stored(stiff, x + kinetic_rad, v),
-        );
+        let energy = energy_j(&stiff, x + stiff.kinetic_angle_rad, v);
+        lines.add(time_s, stiff.kinetic_nm, energy);
     }
-    lines
+    Ok(lines)
 }

@@ -63,8 +63,8 @@ pub(super) fn turn_back() -> Result<Story, SettingsError> {
         title: "A hand that turns back gets no more than the spring held",
         caption: format!(
             "A hand that shakes by ±5 mrad at 20 Hz turns back inside every slip. A frozen slip shows Tk until its time is \
-             over: without the guard it pushes the hand along, which after {SHOWN_S} s has put in {:.2} mJ, with the guard \
-             {:.2} mJ. Below, for amplitudes from 0.3 to 3 strokes of a stick at {SWEPT_HZ} Hz, the most that is returned over \
+             over: without the guard it pushes the hand along, so that the work put in after {SHOWN_S} s is {:.2} mJ, with the \
+             guard {:.2} mJ. Below, for amplitudes from 0.3 to 3 strokes of a stick at {SWEPT_HZ} Hz, the most that is returned over \
              any stretch of {SWEPT_S} s, as a share of the {:.1} mJ that the spring holds, what sampling gives away being \
              granted: the worst with the guard is {:.3}, without it {:.0}.",
             ends_mj(&unguarded),
