@@ -5,6 +5,7 @@ mod failure;
 mod interrupt;
 mod progress;
 mod shipped;
+mod studying;
 mod verbs;
 
 use clap::Parser;

@@ -10,15 +10,11 @@ mod words;
 
 use crate::cli::AccuracyArguments;
 use crate::failure::{Failure, print, print_json};
-use crate::interrupt;
-use crate::progress::Progress;
+use crate::studying::{self, Watch};
 use crepitus_scene::output::Folder;
 use crepitus_study::accuracy::{Need, Study, points_csv, study};
-use crepitus_study::{StudyError, Watcher};
-use plan::Studied;
 use serde_json::json;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use summary::Summary;
 
 /// Studies, and writes the files or answers the need.
@@ -40,11 +36,10 @@ pub(crate) fn accuracy(arguments: &AccuracyArguments, as_json: bool) -> Result<(
         .as_deref()
         .map(|out| Folder::create(out).map_err(|e| Failure::at(out, "cannot be written", &e)))
         .transpose()?;
-    interrupt::listen();
-    let study = carry_out(&studied)?;
+    let study = study::run(&studied.plan, &mut Watch::new()).map_err(studying::failed)?;
     let summary = Summary::new(arguments.quick, &studied, &study);
     if let (Some(folder), Some(out)) = (folder, &out) {
-        write(folder, out, arguments.pictures, &study, &summary)?;
+        studying::write(folder, out, files(&study, &summary, arguments.pictures)?)?;
     }
     match &need {
         Some(need) => answer::tell(need, &studied, &study, out.as_deref(), as_json),
@@ -60,43 +55,12 @@ pub(crate) fn accuracy(arguments: &AccuracyArguments, as_json: bool) -> Result<(
     }
 }
 
-fn carry_out(studied: &Studied) -> Result<Study, Failure> {
-    let mut watch = Watch(Progress::of_study());
-    study::run(&studied.plan, &mut watch).map_err(|e| match e {
-        StudyError::Watcher(Interrupted) => {
-            Failure::Work("interrupted: nothing was written".to_owned())
-        }
-        other => Failure::Work(format!("the study failed: {other}")),
-    })
-}
-
-/// Moves the progress bar, and stops when asked.
-struct Watch(Progress);
-
-/// Ctrl-C.
-#[derive(Debug)]
-struct Interrupted;
-
-impl Watcher for Watch {
-    type Error = Interrupted;
-
-    fn progress(&mut self, fraction: f64) -> Result<(), Interrupted> {
-        self.0.reached(fraction);
-        if interrupt::asked() {
-            return Err(Interrupted);
-        }
-        Ok(())
-    }
-}
-
-/// Writes the files, whole or not at all.
-fn write(
-    folder: Folder,
-    out: &Path,
-    pictures: bool,
+/// The report, the points and the summary, and the pictures if asked for.
+fn files(
     study: &Study,
     summary: &Summary<'_>,
-) -> Result<(), Failure> {
+    pictures: bool,
+) -> Result<Vec<(String, String)>, Failure> {
     let json = serde_json::to_string_pretty(summary)
         .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
     let mut files = page::files(study, summary, pictures)?;
@@ -105,16 +69,5 @@ fn write(
         points_csv::points_csv(&study.points),
     ));
     files.push(("summary.json".to_owned(), json + "\n"));
-    for (name, content) in files {
-        folder
-            .file(&name)
-            .and_then(|mut file| {
-                file.write_all(content.as_bytes())?;
-                Folder::finish(file)
-            })
-            .map_err(|e| Failure::at(out, "writing the results", &e))?;
-    }
-    folder
-        .commit()
-        .map_err(|e| Failure::at(out, "moving the results into place", &e))
+    Ok(files)
 }

@@ -10,15 +10,12 @@ mod table;
 
 use crate::cli::StabilityArguments;
 use crate::failure::{Failure, print, print_json};
-use crate::interrupt;
-use crate::progress::Progress;
+use crate::studying::{self, Watch};
 use crepitus_scene::output::Folder;
 use crepitus_study::stability::story::{self, Story};
-use crepitus_study::stability::{Matrix, Plan, matrix};
-use crepitus_study::{StudyError, Watcher};
+use crepitus_study::stability::{Matrix, matrix};
 use serde_json::json;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use summary::Summary;
 
 /// Runs the cases, writes the files, says what holds.
@@ -37,11 +34,10 @@ pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result
         .unwrap_or_else(|| PathBuf::from("out/stability"));
     // A folder that cannot be written is better known before the work.
     let folder = Folder::create(&out).map_err(|e| Failure::at(&out, "cannot be written", &e))?;
-    interrupt::listen();
-    let matrix = carry_out(&plan)?;
+    let matrix = matrix::run(&plan, &mut Watch::new()).map_err(studying::failed)?;
     let summary = Summary::new(&plan, &matrix);
     let stories = stories(arguments)?;
-    write(
+    studying::write(
         folder,
         &out,
         page::files(&matrix, &stories, &summary, arguments.pictures)?,
@@ -67,35 +63,6 @@ pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result
     judge(&matrix)
 }
 
-fn carry_out(plan: &Plan) -> Result<Matrix, Failure> {
-    let mut watch = Watch(Progress::of_study());
-    matrix::run(plan, &mut watch).map_err(|e| match e {
-        StudyError::Watcher(Interrupted) => {
-            Failure::Work("interrupted: nothing was written".to_owned())
-        }
-        other => Failure::Work(format!("the study failed: {other}")),
-    })
-}
-
-/// Moves the progress bar, and stops when asked.
-struct Watch(Progress);
-
-/// Ctrl-C.
-#[derive(Debug)]
-struct Interrupted;
-
-impl Watcher for Watch {
-    type Error = Interrupted;
-
-    fn progress(&mut self, fraction: f64) -> Result<(), Interrupted> {
-        self.0.reached(fraction);
-        if interrupt::asked() {
-            return Err(Interrupted);
-        }
-        Ok(())
-    }
-}
-
 /// The stories belong to the whole catalogue; beside single cases they come
 /// only where pictures are asked for.
 fn stories(arguments: &StabilityArguments) -> Result<Vec<Story>, Failure> {
@@ -104,22 +71,6 @@ fn stories(arguments: &StabilityArguments) -> Result<Vec<Story>, Failure> {
     } else {
         Ok(Vec::new())
     }
-}
-
-/// Writes the files, whole or not at all.
-fn write(folder: Folder, out: &Path, files: Vec<(String, String)>) -> Result<(), Failure> {
-    for (name, content) in files {
-        folder
-            .file(&name)
-            .and_then(|mut file| {
-                file.write_all(content.as_bytes())?;
-                Folder::finish(file)
-            })
-            .map_err(|e| Failure::at(out, "writing the results", &e))?;
-    }
-    folder
-        .commit()
-        .map_err(|e| Failure::at(out, "moving the results into place", &e))
 }
 
 /// Fails if a cell that must hold does not.
