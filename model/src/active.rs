@@ -261,4 +261,39 @@ mod tests {
             assert!(Active::<f32>::new(&settings, step_s).is_err());
         }
     }
+
+    #[test]
+    fn slacks_follow_the_swing_of_the_spring() {
+        let a = active::<f64>();
+        // √(J·kr) = 2, Ts = 0.4, Ts − Tk = 0.2.
+        assert!((a.touch_slack_nm(-3.0) - 1e-6 * 6.4).abs() < 1e-18);
+        assert!((a.limit_slack_nm(3.0) - 1e-9 * (0.4 + 36.0 / 0.2)).abs() < 1e-20);
+        assert!(!a.touches());
+        // Where velocities only touch, the slack of a touch is enough.
+        let mut settings = Settings::default();
+        settings.parameters.kinetic_torque_nm = 0.4 * (1.0 - 1e-10);
+        let a = Active::<f64>::new(&settings.validate().unwrap(), 5e-5).unwrap();
+        assert_eq!(a.limit_slack_nm(3.0), a.touch_slack_nm(3.0));
+        assert!(a.touches());
+        settings.parameters.kinetic_torque_nm = 0.4 * (1.0 - 1e-8);
+        let a = Active::<f64>::new(&settings.validate().unwrap(), 5e-5).unwrap();
+        assert!(!a.touches());
+    }
+
+    #[test]
+    fn a_step_outlasts_a_stick_beyond_its_travel() {
+        let a = active::<f64>();
+        let travel = |delta_phi_rad| ShaftStep {
+            delta_phi_rad,
+            ..ShaftStep::default()
+        };
+        assert!(!a.outlasts_a_stick(&travel(0.999e-3)));
+        assert!(a.outlasts_a_stick(&travel(1.001e-3)));
+        assert!(a.outlasts_a_stick(&travel(-1.001e-3)));
+        // With Ts = Tk there is no stick to outlast.
+        let mut settings = Settings::default();
+        settings.parameters.kinetic_torque_nm = 0.4;
+        let a = Active::<f64>::new(&settings.validate().unwrap(), 5e-5).unwrap();
+        assert!(!a.outlasts_a_stick(&travel(1.0)));
+    }
 }

@@ -113,3 +113,55 @@ pub trait Real:
         if high < self { high } else { self }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn operations<F: Real>() {
+        let f = F::from_f64;
+        let (nan, inf) = (f(f64::NAN), f(f64::INFINITY));
+        assert!(f(-2.5).is_finite() && !nan.is_finite() && !inf.is_finite());
+        assert!(!(-inf).is_finite());
+        assert_eq!(f(-2.5).abs(), f(2.5));
+        assert_eq!(f(2.5).to_f64(), 2.5);
+        for (x, n) in [(7.9, 7), (0.0, 0), (-3.0, 0), (f64::NAN, 0)] {
+            assert_eq!(f(x).whole(), n, "{x}");
+        }
+        assert_eq!(inf.whole(), u64::MAX);
+        assert_eq!(F::from_whole(20), f(20.0));
+        assert_eq!(F::from_count(-7), f(-7.0));
+        assert_eq!((f(9.0).sqrt(), f(0.0).exp()), (f(3.0), F::ONE));
+        assert_eq!(F::ZERO.sin_cos(), (F::ZERO, F::ONE));
+        assert_eq!(F::ONE.at_least(F::TWO), F::TWO);
+        assert_eq!(F::TWO.at_least(F::ONE), F::TWO);
+        assert_eq!(F::ONE.at_most(F::TWO), F::ONE);
+        assert_eq!(F::TWO.at_most(F::ONE), F::ONE);
+        // A NaN on the right is ignored.
+        assert_eq!((F::ONE.at_least(nan), F::ONE.at_most(nan)), (F::ONE, F::ONE));
+        assert_eq!(F::ONE + F::EPSILON * F::HALF, F::ONE);
+        assert!(F::ONE + F::EPSILON > F::ONE);
+        assert_eq!((F::AT_REST * F::HALF).settled(), F::ZERO);
+        assert_eq!((-F::AT_REST * F::HALF).settled(), F::ZERO);
+        assert_eq!((-F::AT_REST).settled(), -F::AT_REST);
+        assert!(nan.settled() != nan.settled());
+    }
+
+    #[test]
+    fn both_precisions_do_what_they_say() {
+        operations::<f32>();
+        operations::<f64>();
+    }
+
+    #[test]
+    fn elementary_functions_are_those_of_a_circle() {
+        for i in -200..200 {
+            let x = f64::from(i) * 0.07;
+            let (sin, cos) = Real::sin_cos(x);
+            assert!((sin - libm::sin(x)).abs() < 1e-15 && (cos - libm::cos(x)).abs() < 1e-15);
+            assert!((Real::exp(x) / libm::exp(x) - 1.0).abs() < 1e-14);
+            let angle = Real::atan2(sin, cos);
+            assert!((angle - libm::atan2(sin, cos)).abs() < 1e-15);
+        }
+    }
+}

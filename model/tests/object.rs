@@ -98,6 +98,45 @@ fn the_same_numbers_change_nothing() {
 }
 
 #[test]
+fn a_ramp_that_goes_nowhere_loses_no_rounding_error() {
+    // A stick carries the error of its sum: a second of small steps in f32.
+    let numbers = Active::<f32>::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
+    let step = ShaftStep {
+        delta_phi_rad: 1.37e-8,
+        omega_start_rad_s: 2.7e-4,
+        omega_end_rad_s: 2.7e-4,
+    };
+    let mut plain = Frozen::<f32, ExactEvents>::new(numbers, 2.7e-4);
+    let mut adjusted = plain.clone();
+    for _ in 0..20_000 {
+        plain.step(&step, |_| {});
+        adjusted.adjust(numbers);
+        adjusted.step(&step, |_| {});
+    }
+    assert_eq!(plain.torque_nm(), adjusted.torque_nm());
+}
+
+#[test]
+fn a_break_is_reported_with_all_that_is_known() {
+    for (omega, s) in [(0.97, 1.0), (-0.97, -1.0)] {
+        let mut joint = Joint::new(active(paper()), omega);
+        let mut seen = Vec::new();
+        for _ in 0..700 {
+            joint.step(&steady(omega), |e| seen.push(e));
+        }
+        let [b, e, ..] = seen[..] else {
+            panic!("{seen:?}")
+        };
+        assert!((b.torque_before_nm - s * 0.4).abs() < 1e-15);
+        assert!((b.theta_rad - s * 1e-3).abs() < 1e-18);
+        assert_eq!((b.torque_after_nm, e.torque_before_nm), (s * 0.2, s * 0.2));
+        assert_eq!((b.theta_dot_rad_s, b.omega_rad_s), (omega, omega));
+        assert!(e.torque_after_nm.abs() < 1e-15 && e.theta_rad.abs() < 1e-18);
+        assert_eq!((e.theta_dot_rad_s, e.omega_rad_s), (omega, omega));
+    }
+}
+
+#[test]
 fn in_stick_a_stiffer_spring_keeps_its_torque_and_a_softer_one_its_angle() {
     let with = |stiffness_nm_per_rad| {
         active(Parameters {

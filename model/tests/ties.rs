@@ -109,3 +109,34 @@ fn with_equal_torques_one_break_and_then_nothing() {
         }
     }
 }
+
+/// The phase after a movement of a second and a rest of another.
+struct Stop;
+
+impl<F: Real> JointVisitor<F> for Stop {
+    type Output = i8;
+
+    fn visit<J: StickSlip<F>>(self, mut joint: J) -> i8 {
+        for n in 0..40_000 {
+            let omega = if n < 20_000 { 1.0 } else { 0.0 };
+            let omega = F::from_f64(omega);
+            let step = ShaftStep {
+                delta_phi_rad: omega * F::from_f64(TICK_S),
+                omega_start_rad_s: omega,
+                omega_end_rad_s: omega,
+            };
+            joint.step(&step, |_| {});
+        }
+        joint.phase().sign()
+    }
+}
+
+#[test]
+fn with_equal_torques_a_hand_that_stops_comes_to_rest() {
+    let mut settings = Settings::default();
+    settings.parameters.kinetic_torque_nm = settings.parameters.static_torque_nm;
+    let valid = settings.validate().unwrap();
+    let single = with_joint::<f32, _>(&valid, Solver::ExactEvents, TICK_S, 1.0, Stop);
+    let double = with_joint::<f64, _>(&valid, Solver::ExactEvents, TICK_S, 1.0, Stop);
+    assert_eq!((single.unwrap(), double.unwrap()), (0, 0));
+}
