@@ -138,7 +138,10 @@ mod tests {
         assert_eq!(F::ONE.at_most(F::TWO), F::ONE);
         assert_eq!(F::TWO.at_most(F::ONE), F::ONE);
         // A NaN on the right is ignored.
-        assert_eq!((F::ONE.at_least(nan), F::ONE.at_most(nan)), (F::ONE, F::ONE));
+        assert_eq!(
+            (F::ONE.at_least(nan), F::ONE.at_most(nan)),
+            (F::ONE, F::ONE)
+        );
         assert_eq!(F::ONE + F::EPSILON * F::HALF, F::ONE);
         assert!(F::ONE + F::EPSILON > F::ONE);
         assert_eq!((F::AT_REST * F::HALF).settled(), F::ZERO);
