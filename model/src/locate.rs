@@ -123,3 +123,36 @@ pub fn earlier<F: Real>(a: Option<(F, Sense)>, b: Option<(F, Sense)>) -> Option<
         (a, b) => a.or(b),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_earlier_of_two_breaks_wins() {
+        let (p, n) = (Sense::Positive, Sense::Negative);
+        let at = |time_s: f64, sense| Some((time_s, sense));
+        assert_eq!(earlier(at(1.0, p), at(2.0, n)), at(1.0, p));
+        assert_eq!(earlier(at(2.0, p), at(1.0, n)), at(1.0, n));
+        assert_eq!(earlier(at(1.0, p), at(1.0, n)), at(1.0, p));
+        assert_eq!(earlier(None, at(1.0, n)), at(1.0, n));
+        assert_eq!(earlier(at(1.0, p), None), at(1.0, p));
+        assert_eq!(earlier::<f64>(None, None), None);
+    }
+
+    #[test]
+    fn a_torque_is_a_parabola_wherever_one_begins() {
+        let path = StickPath {
+            torque_nm: 0.1,
+            rate: -2.0,
+            curvature: 8.0,
+        };
+        assert_eq!(path.at(0.5), 0.1 - 1.0 + 1.0);
+        let later = path.from(0.5);
+        assert_eq!(
+            (later.torque_nm, later.rate, later.curvature),
+            (path.at(0.5), 2.0, 8.0)
+        );
+        assert!((later.at(0.25) - path.at(0.75)).abs() < 1e-15);
+    }
+}

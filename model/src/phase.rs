@@ -105,3 +105,29 @@ impl EventKind {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_signs_are_those_of_the_files() {
+        let phases = [
+            (Phase::Slip(Sense::Negative), -1, "slip-"),
+            (Phase::Stick, 0, "stick"),
+            (Phase::Slip(Sense::Positive), 1, "slip+"),
+        ];
+        for (phase, sign, name) in phases {
+            assert_eq!((phase.sign(), phase.name()), (sign, name));
+            assert_eq!(Phase::from_sign(sign), phase);
+        }
+        assert_eq!(Phase::from_sign(7), Phase::Stick);
+        let kinds = [EventKind::Break, EventKind::Stick, EventKind::Reverse];
+        assert_eq!(kinds.map(EventKind::name), ["break", "stick", "reverse"]);
+        assert_eq!(Sense::of(2.0), Some(Sense::Positive));
+        assert_eq!(Sense::of(-2.0_f32), Some(Sense::Negative));
+        assert_eq!((Sense::of(0.0), Sense::of(f64::NAN)), (None, None));
+        assert_eq!(Sense::Positive.opposite(), Sense::Negative);
+        assert_eq!(Sense::Negative.opposite().of_signed(3.0), 3.0);
+    }
+}

@@ -268,4 +268,37 @@ mod tests {
             assert_eq!(discriminant(&got), discriminant(&expected), "{got}");
         }
     }
+
+    #[test]
+    fn a_refusal_says_what_was_wrong_and_what_is_allowed() {
+        use std::string::ToString;
+        for (error, parts) in [
+            (
+                refused(|s| s.parameters.inertia_kg_m2 = -1.0),
+                ["inertia_kg_m2 = -1", "between 1e-12 and 1e3 kg·m²"],
+            ),
+            (
+                refused(|s| s.parameters.kinetic_torque_nm = 0.5),
+                ["kinetic_torque_nm = 0.5", "Tk ≤ Ts"],
+            ),
+            (
+                refused(|s| s.parameters.damping_nms_per_rad = 1e-3),
+                ["damping_nms_per_rad = 0.001", "\"physical\""],
+            ),
+            (
+                SettingsError::Step { step_s: 2.0 },
+                ["a step of 2 s", "at most 1 s"],
+            ),
+            (
+                SettingsError::Solver {
+                    solver: "rk4",
+                    reason: "because",
+                },
+                ["\"rk4\"", "because"],
+            ),
+        ] {
+            let text = error.to_string();
+            assert!(parts.iter().all(|part| text.contains(part)), "{text}");
+        }
+    }
 }

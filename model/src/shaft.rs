@@ -70,3 +70,32 @@ impl<F: Real> ShaftPath<F> {
         (to_s - from_s) * (self.rate + F::HALF * self.omega_dot * (from_s + to_s))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Settings;
+
+    #[test]
+    fn the_path_ends_where_the_sensor_says_and_bends_as_the_velocity_does() {
+        let step = ShaftStep {
+            delta_phi_rad: 3e-3,
+            omega_start_rad_s: 1.0,
+            omega_end_rad_s: 4.0,
+        };
+        let active = Active::new(&Settings::default().validate().unwrap(), 1e-3).unwrap();
+        let path = ShaftPath::<f64>::new(&step, &active);
+        assert!((path.omega_dot - 3000.0).abs() < 1e-9);
+        assert!((path.omega(5e-4) - 2.5).abs() < 1e-12);
+        // The mean rate is Δφ/h = 3 rad/s, half a radian above that of Ω.
+        assert!((path.rate(0.0) - 1.5).abs() < 1e-12 && (path.rate(1e-3) - 4.5).abs() < 1e-12);
+        assert!((path.travel(0.0, 1e-3) - 3e-3).abs() < 1e-15);
+        for fraction in [0.0, 0.25, 0.5, 1.0] {
+            let to_s = fraction * 1e-3;
+            let travel = 1.5 * to_s + 1500.0 * to_s * to_s;
+            assert!((path.travel(0.0, to_s) - travel).abs() < 1e-15);
+            assert!((step.travel(fraction, 1e-3) - travel).abs() < 1e-15);
+            assert!((path.travel(to_s, 1e-3) - (3e-3 - travel)).abs() < 1e-15);
+        }
+    }
+}

@@ -301,6 +301,28 @@ fn subnormal_numbers_are_rest() {
     on_every_rung(&Subnormal);
 }
 
+#[test]
+fn every_rung_can_be_put_down_anew() {
+    struct PutDown;
+    impl Trial for PutDown {
+        fn run<F: Real, J: StickSlip<F>>(&self, name: &str, mut joint: Guarded<F, J>) {
+            for _ in 0..100 {
+                joint.tick(&good(), |_| {});
+            }
+            joint
+                .joint_mut()
+                .restart(F::from_f64(0.15), F::from_f64(0.3));
+            let joint = joint.joint();
+            assert_eq!(joint.phase(), Phase::Stick, "{name}");
+            assert_eq!(joint.theta_dot_rad_s(), F::from_f64(0.3), "{name}");
+            let (torque, theta) = (joint.torque_nm().to_f64(), joint.theta_rad().to_f64());
+            assert!((torque - 0.15).abs() < 1e-7, "{name}: {torque}");
+            assert!((theta - 0.15 / 400.0).abs() < 1e-10, "{name}: {theta}");
+        }
+    }
+    on_every_rung(&PutDown);
+}
+
 /// Any bit pattern, and shafts that are nearly possible.
 fn any_sample() -> impl Strategy<Value = Sample<f32>> {
     let number = prop_oneof![
