@@ -14,7 +14,7 @@
 //! ```
 //!
 //! A tick costs at most `CATCH_UP_TICKS` + 1 steps of the joint, and each of
-//! these at most [`EVENTS_PER_STEP`](crate::EVENTS_PER_STEP) events.
+//! these at most [`EVENTS_PER_STEP`] events.
 
 use crate::event::{EVENTS_PER_STEP, Event};
 use crate::real::Real;
