@@ -165,6 +165,107 @@ proptest! {
     }
 }
 
+/// J, kr, Tk, Ts.
+fn found(convention: Convention, [j, kr, tk, ts]: [f64; 4]) -> Validated<Settings> {
+    Settings {
+        parameters: Parameters {
+            inertia_kg_m2: j,
+            stiffness_nm_per_rad: kr,
+            damping_nms_per_rad: 0.0,
+            kinetic_torque_nm: tk,
+            static_torque_nm: ts,
+        },
+        convention,
+        ..Settings::default()
+    }
+    .validate()
+    .unwrap()
+}
+
+#[test]
+fn what_random_motions_have_found_stays_found() {
+    // A stick held at its limit by hard braking, which breaks the other way
+    // within the same step.
+    let held = (
+        found(
+            Convention::Paper,
+            [0.1, 1_060.322_033_439_598, 0.0, 0.074_636_858_272_875_01],
+        ),
+        vec![4.703_119_172_053_8, 0.0, -7.492_559_924_997_178],
+    );
+    // A match where the shaft's velocity is the small difference of two large
+    // ones.
+    let through_zero = (
+        found(
+            Convention::Physical,
+            [
+                0.003_883_513_421_084_801,
+                60.997_453_511_421_76,
+                0.070_854_902_279_200_37,
+                0.217_763_090_958_308_8,
+            ],
+        ),
+        vec![
+            0.373_179_878_013_262_36,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            3.746_893_506_263_741,
+            -0.944_878_336_790_270_6,
+            5.408_821_061_100_674,
+            -5.853_509_795_356_688,
+            0.0,
+            -1.830_416_136_617_120_5,
+            1.932_740_425_778_591_6,
+            4.882_613_517_377_967,
+            -7.719_953_526_006_988_5,
+            -1.274_678_022_165_786,
+            6.640_296_805_153_033,
+            -7.390_989_281_886_267,
+        ],
+    );
+    // A match soon after a slip that began without relative acceleration.
+    let touch = (
+        found(
+            Convention::Paper,
+            [
+                0.000_547_687_392_378_403_7,
+                1_835.059_038_387_849_8,
+                0.012_793_380_822_306_502,
+                0.033_641_039_952_803_445,
+            ],
+        ),
+        vec![
+            5.015_864_687_484_201,
+            -7.562_768_377_573_861,
+            0.047_103_171_072_371_33,
+            7.216_582_485_415_388,
+            0.0,
+            -1.468_880_445_545_090_1,
+            0.0,
+            -2.843_622_718_732_403_2,
+            5.047_445_017_779_298,
+        ],
+    );
+    for (settings, knots) in [held, through_zero, touch] {
+        let events = |units| run::<f64>(&settings, Solver::ExactEvents, &knots, units, 0).0;
+        let fine = events(1);
+        assert!(!fine.is_empty());
+        for units in [60, 20, 15, 10, 5] {
+            let coarse = events(units);
+            assert_eq!(coarse.len(), fine.len(), "{units} units");
+            for (a, b) in coarse.iter().zip(&fine) {
+                assert_eq!((a.1, a.2), (b.1, b.2), "{units} units");
+                assert!((a.0 - b.0).abs() < 1e-10, "{units} units: {a:?} {b:?}");
+            }
+        }
+    }
+}
+
 /// Ten million steps of a shaft that jumps anywhere within ±50 rad/s.
 struct White {
     steps: u32,
