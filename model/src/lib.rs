@@ -31,6 +31,8 @@
 //! | what the device adds: no input poisons it, parameters change under way | [`renderer`], [`guarded`], [`ramp`], [`turn_back`] |
 //! | what the hand gets back of its work | [`energy_observer`] |
 //! | counts of the motor encoder to angle and speed | [`encoder`] |
+//! | what the drive adds to that torque: part of the gear's friction, the ringing of a bone | [`friction_compensation`], [`bone_shaping`] |
+//! | how the motor's current follows | [`current_loop`] |
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(
@@ -56,10 +58,13 @@
 extern crate std;
 
 pub mod active;
+pub mod bone_shaping;
 pub mod compensated;
+pub mod current_loop;
 pub mod encoder;
 pub mod energy_observer;
 mod event;
+pub mod friction_compensation;
 pub mod frozen;
 pub mod guarded;
 pub mod implicit_euler;
@@ -81,11 +86,14 @@ pub mod turn_back;
 pub mod velocity_match;
 
 pub use active::Active;
+pub use bone_shaping::BoneShaping;
+pub use current_loop::CurrentLoop;
 pub use energy_observer::EnergyObserver;
 pub use event::{EVENTS_PER_STEP, Event};
+pub use friction_compensation::FrictionCompensation;
 pub use frozen::Frozen;
 pub use guarded::{Guarded, Sample};
-pub use parameters::Parameters;
+pub use parameters::{Parameters, Tabled};
 pub use phase::{EventKind, Phase, Sense};
 pub use real::Real;
 pub use renderer::Renderer;

@@ -95,7 +95,7 @@ impl<F: Real, P: Propagate<F>> SlipPath<'_, F, P> {
 }
 
 /// Finds the end of a phase.
-pub trait Locate<F: Real> {
+pub trait Locate<F: Real>: 'static {
     /// The first time in [0, `length_s`] at which s·T reaches `limit_nm`
     /// outwards; 0 if it is beyond the limit from the start.
     fn break_time(path: &StickPath<F>, sense: Sense, limit_nm: F, length_s: F) -> Option<F>;

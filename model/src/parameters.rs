@@ -1,5 +1,8 @@
 //! The parameters of the imaginary object: the one table that scene files,
-//! the command line, the device's wire and the documents read.
+//! the command line, the device's wire and the documents read; and what all
+//! such tables have in common, [`Tabled`].
+
+use crate::settings::SettingsError;
 
 /// What is known about one parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +21,38 @@ pub struct ParameterSpec {
     pub default: f64,
     /// What it means.
     pub meaning: &'static str,
+}
+
+/// Settings that are the numbers of one table.
+pub trait Tabled<const N: usize>: Copy {
+    /// One entry a number: key with unit, range, default, meaning.
+    const TABLE: &'static [ParameterSpec; N];
+
+    /// The numbers in the order of the table.
+    fn values(&self) -> [f64; N];
+
+    /// From numbers in the order of the table; not checked.
+    fn of(values: [f64; N]) -> Self;
+
+    /// The table's defaults.
+    fn defaults() -> Self {
+        Self::of(Self::TABLE.map(|parameter| parameter.default))
+    }
+
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`SettingsError::OutOfRange`] for the first number that is outside, or
+    /// no number at all.
+    fn validate(&self) -> Result<(), SettingsError> {
+        for (parameter, value) in Self::TABLE.iter().zip(self.values()) {
+            // Written so that NaN fails.
+            if !(value >= parameter.min && value <= parameter.max) {
+                return Err(SettingsError::OutOfRange { parameter, value });
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The parameters of the stick-slip object, in SI units.
@@ -138,6 +173,47 @@ impl Default for Parameters {
             damping_nms_per_rad: DAMPING.default,
             kinetic_torque_nm: KINETIC_TORQUE.default,
             static_torque_nm: STATIC_TORQUE.default,
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// What holds for the table of any settings.
+    pub(crate) fn is_its_table_and_is_held_to_it<const N: usize, T: Tabled<N>>() {
+        let defaults = T::defaults().values();
+        assert_eq!(T::defaults().validate(), Ok(()));
+        // Each number is its own: none is lost or changes place.
+        let numbers = core::array::from_fn(|i| 1.0 + f64::from(u8::try_from(i).unwrap()));
+        assert_eq!(T::of(numbers).values(), numbers);
+        for (i, spec) in T::TABLE.iter().enumerate() {
+            assert_eq!(defaults[i], spec.default);
+            assert!(T::TABLE.iter().filter(|s| s.key == spec.key).count() == 1);
+            let with = |value| {
+                let mut values = defaults;
+                values[i] = value;
+                T::of(values).validate()
+            };
+            let beyond = |edge: f64| edge.abs() * 0.01 + 1e-9;
+            for good in [spec.min, spec.max] {
+                assert_eq!(with(good), Ok(()), "{} = {good}", spec.key);
+            }
+            for bad in [
+                f64::NAN,
+                f64::INFINITY,
+                f64::NEG_INFINITY,
+                spec.min - beyond(spec.min),
+                spec.max + beyond(spec.max),
+            ] {
+                let refused = with(bad);
+                assert!(
+                    matches!(refused, Err(SettingsError::OutOfRange { parameter, .. }) if parameter == spec),
+                    "{} = {bad}: {refused:?}",
+                    spec.key
+                );
+            }
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::shaft::ShaftStep;
 ///
 /// A joint starts in stick with θ = 0. Between steps it answers what it shows;
 /// a step moves it and reports its events in the order of time.
-pub trait StickSlip<F: Real> {
+pub trait StickSlip<F: Real>: 'static {
     /// Moves the object through one step. `on_event` is called at most
     /// [`EVENTS_PER_STEP`](crate::EVENTS_PER_STEP) times.
     fn step(&mut self, shaft: &ShaftStep<F>, on_event: impl FnMut(Event<F>));

@@ -19,7 +19,7 @@ use crate::shaft::{ShaftPath, ShaftStep};
 use crate::stick_slip::StickSlip;
 
 /// What the torque of a stick contains beside the spring's.
-pub trait StickTorque<F: Real> {
+pub trait StickTorque<F: Real>: 'static {
     /// The part that comes from the object's own motion, N·m.
     fn inertial(active: &Active<F>, omega: F, omega_dot: F) -> F;
 }

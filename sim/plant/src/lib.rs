@@ -1,7 +1,8 @@
 //! # What the joint is attached to
 //!
-//! The motion of the shaft, prescribed as a function of time, and the sensors
-//! that see it.
+//! The motion that somebody makes, the sensors that see the shaft, and what
+//! stands between the motor and the hand: effects that a scene lists one by
+//! one.
 //!
 //! | to find | look in |
 //! |---|---|
@@ -9,11 +10,24 @@
 //! | the smooth pieces that every motion is made of | [`piece`] |
 //! | a motion from a file | [`recording`] |
 //! | counts of the encoder at the motor | [`encoder`] |
+//! | what an effect is, and the table of them | [`effect`], [`effects`] |
+//! | how listed effects become a plant | [`assembly`] |
+//! | how a plant is stepped | [`plant`], [`chain`], [`actuator`], [`holder`] |
+//! | where its energy is | [`ledger`] |
 
+pub mod actuator;
+pub mod assembly;
+pub mod chain;
+pub mod effect;
+pub mod effects;
 pub mod encoder;
+pub mod holder;
+pub mod ledger;
 pub mod motion;
 pub mod piece;
+pub mod plant;
 pub mod recording;
 
 pub use motion::Motion;
 pub use piece::{Piece, ShaftState};
+pub use plant::Plant;

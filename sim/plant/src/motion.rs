@@ -57,6 +57,16 @@ impl Motion {
         })
     }
 
+    /// φ stays where it is.
+    pub fn rest(angle_rad: f64) -> Self {
+        Self::Single(Piece {
+            start_s: 0.0,
+            end_s: f64::INFINITY,
+            jump: false,
+            curve: Curve::Polynomial([angle_rad, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        })
+    }
+
     /// φ = A·sin(2π·f·t + phase).
     pub fn sine(amplitude_rad: f64, frequency_hz: f64, phase_deg: f64) -> Self {
         Self::Single(Piece {

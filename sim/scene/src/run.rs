@@ -5,6 +5,8 @@
 //! out. What is observed on the way goes to an [`Observer`]; nothing of a run
 //! is kept in memory but its totals.
 
+mod coupled;
+mod device;
 mod energy;
 mod event_driven;
 mod probe;
@@ -20,7 +22,9 @@ pub use summary::{
 
 use crate::scene::{Precision, Scene, SolverChoice};
 use crate::trace::{Column, ColumnKind, EventRecord};
-use crepitus_model::SettingsError;
+use crepitus_model::solver::Solver;
+use crepitus_model::{Real, SettingsError};
+use crepitus_plant::assembly::Assembled;
 use std::convert::Infallible;
 use std::time::Instant;
 
@@ -100,6 +104,7 @@ pub(crate) struct Totals {
     end_s: f64,
     tally: Option<tally::Tally>,
     fastest_rad_s: f64,
+    plant: Option<coupled::PlantTotals>,
 }
 
 /// The columns that the trace of a scene has.
@@ -118,6 +123,15 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
     }
     if scene.encoder.is_some() {
         columns.extend(<sensor::Encoded<f64> as sensor::Sensor<f64>>::COLUMNS);
+    }
+    if scene.is_coupled()
+        && let Ok(Assembled { plant, stages }) = scene.assemble()
+    {
+        columns.extend(stages.iter().map(|s| number(s.column)));
+        columns.extend(plant.columns().into_iter().map(number));
+        if scene.is_held() {
+            columns.push(number(coupled::FELT_COLUMN));
+        }
     }
     columns
 }
@@ -161,9 +175,22 @@ fn simulate<O: Observer>(scene: &Scene, observer: &mut O) -> Result<Totals, RunE
             step_s,
             precision,
         } => match precision {
-            Precision::F32 => stepping::simulate::<f32, O>(scene, solver, step_s, observer),
-            Precision::F64 => stepping::simulate::<f64, O>(scene, solver, step_s, observer),
+            Precision::F32 => step_through::<f32, O>(scene, solver, step_s, observer),
+            Precision::F64 => step_through::<f64, O>(scene, solver, step_s, observer),
         },
+    }
+}
+
+fn step_through<F: Real, O: Observer>(
+    scene: &Scene,
+    solver: Solver,
+    step_s: f64,
+    observer: &mut O,
+) -> Result<Totals, RunError<O::Error>> {
+    if scene.is_coupled() {
+        coupled::simulate::<F, O>(scene, solver, observer)
+    } else {
+        stepping::simulate::<F, O>(scene, solver, step_s, observer)
     }
 }
 
@@ -177,7 +204,7 @@ fn steps(scene: &Scene) -> (u64, u64) {
 }
 
 /// The step of the solver; of `reference`, the time between rows.
-fn step_s(scene: &Scene) -> f64 {
+pub(crate) fn step_s(scene: &Scene) -> f64 {
     match scene.solver {
         SolverChoice::Reference => scene.trace_step_s,
         SolverChoice::Ladder { step_s, .. } => step_s,

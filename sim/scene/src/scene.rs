@@ -3,15 +3,18 @@
 mod effects;
 mod motion;
 
-pub use effects::EFFECTS;
 pub use motion::MotionKind;
 
 use crate::document::{Document, Range, Section};
 use crate::error::SceneError;
 use crepitus_model::encoder::EncoderSettings;
 use crepitus_model::solver::Solver;
-use crepitus_model::{Convention, Settings, Validated};
+use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use crepitus_plant::Motion;
+use crepitus_plant::assembly::{Assembled, Listed, assemble};
+use crepitus_plant::chain::Body;
+use crepitus_plant::effect::{Context, Effect, Given, Part};
+use crepitus_plant::effects::EFFECTS;
 use std::path::{Path, PathBuf};
 
 /// The only version of scene files so far.
@@ -43,6 +46,10 @@ pub struct Scene {
     pub crepitus: Option<Crepitus>,
     /// The encoder, if the scene calls for it.
     pub encoder: Option<EncoderSettings>,
+    /// All other effects that it calls for, in the order of the table.
+    pub listed: Vec<Listed>,
+    /// Steps of the plant in one of the solver.
+    pub substeps: u32,
     /// Time between rows of the trace, s.
     pub trace_step_s: f64,
     /// What was odd but not wrong.
@@ -169,19 +176,21 @@ impl Scene {
         let duration_s = root.number("duration_s", Range::above(0.0, 1e7))?;
         let motion = motion::read(&root.section("motion")?, duration_s)?;
         let solver_section = root.section("solver")?;
-        let solver = read_solver(&solver_section)?;
+        let (solver, substeps) = read_solver(&solver_section)?;
         let effects = effects::read(root.optional_section("effects")?.as_ref())?;
         let output = root.optional_section("output")?;
         let trace_step_s = read_trace_step(output.as_ref(), &solver_section, solver, duration_s)?;
         root.finish()?;
 
-        if solver == SolverChoice::Reference && effects.encoder.is_some() {
+        let stepless = effects.encoder.is_some() || !effects.listed.is_empty();
+        if solver == SolverChoice::Reference && stepless {
             return Err(solver_section.key_error(
                 "kind",
-                "\"reference\" has no step at which an encoder could be read: choose another solver, \
-                 or leave [effects.encoder] out",
+                "\"reference\" knows the stick-slip object alone: choose another solver, or leave all other \
+                 effects out",
             ));
         }
+        check_released(&root, motion.kind, &effects.listed)?;
         if let (Some(crepitus), SolverChoice::Ladder { solver, .. }) = (&effects.crepitus, solver)
             && let Some(reason) = solver.refusal(crepitus.settings.convention)
         {
@@ -190,11 +199,17 @@ impl Scene {
                 format!("\"{}\" is refused: {reason}", solver.name()),
             ));
         }
+        if substeps > 1 && effects.listed.is_empty() {
+            return Err(solver_section.key_error(
+                "substeps",
+                "there is no plant to step: leave it out, or add an effect of the plant",
+            ));
+        }
         let mut warnings = motion.warnings;
         if let Some(crepitus) = &effects.crepitus {
             warnings.extend(sampled_motion_warning(crepitus, motion.ripple_rad_s2));
         }
-        Ok(Self {
+        let scene = Self {
             file: file.to_owned(),
             title,
             description,
@@ -205,26 +220,148 @@ impl Scene {
             solver,
             crepitus: effects.crepitus,
             encoder: effects.encoder,
+            listed: effects.listed,
+            substeps,
             trace_step_s,
             warnings,
-        })
+        };
+        scene.assemble().map_err(|e| root.error(e.to_string()))?;
+        Ok(scene)
     }
 
-    /// Takes an effect out of the scene, by its name.
-    pub fn leave_out(&mut self, effect: &str) {
-        if effect == effects::CREPITUS.name {
-            self.crepitus = None;
-        } else if effect == effects::ENCODER.name {
-            self.encoder = None;
+    /// The plant and the device's stages.
+    ///
+    /// # Errors
+    /// [`SettingsError`] if a number of the device does not go with the step.
+    pub fn assemble(&self) -> Result<Assembled, SettingsError> {
+        let (angle_rad, omega_rad_s) = self.motion.piece(0.0).angle_and_velocity(0.0);
+        let context = Context {
+            tick_s: crate::run::step_s(self),
+            single: matches!(
+                self.solver,
+                SolverChoice::Ladder {
+                    precision: Precision::F32,
+                    ..
+                }
+            ),
+            start: Body {
+                angle_rad,
+                omega_rad_s,
+            },
+        };
+        assemble(&self.listed, &context, !self.is_held())
+    }
+
+    /// Whether it has a plant, so that the shaft does what comes of it;
+    /// otherwise the motion prescribes it.
+    pub fn is_coupled(&self) -> bool {
+        !self.listed.is_empty()
+    }
+
+    /// Whether the motion, or a hand after it, holds the leg.
+    pub fn is_held(&self) -> bool {
+        self.motion_kind != MotionKind::Released
+    }
+
+    /// The effects that the scene calls for, in the order of the table.
+    pub fn effects(&self) -> Vec<&'static Effect> {
+        EFFECTS
+            .iter()
+            .copied()
+            .filter(|e| self.has(e.name))
+            .collect()
+    }
+
+    /// Whether it calls for an effect.
+    pub fn has(&self, effect: &str) -> bool {
+        EFFECTS
+            .iter()
+            .find(|e| e.name == effect)
+            .is_some_and(|e| match e.part {
+                Part::Joint => self.crepitus.is_some(),
+                Part::Sensor => self.encoder.is_some(),
+                _ => self.listed.iter().any(|l| l.effect.name == effect),
+            })
+    }
+
+    /// The scene without an effect and without those that need it; none if
+    /// its motion needs the effect.
+    pub fn without(&self, effect: &Effect) -> Option<Self> {
+        if effect.name == "limb" && self.motion_kind == MotionKind::Released {
+            return None;
+        }
+        let mut scene = self.clone();
+        match effect.part {
+            Part::Joint => scene.crepitus = None,
+            Part::Sensor => scene.encoder = None,
+            _ => scene.listed.retain(|l| l.effect.name != effect.name),
+        }
+        scene.warnings.clear();
+        if scene.listed.is_empty() {
+            scene.substeps = 1;
+        }
+        let dependent = scene
+            .effects()
+            .into_iter()
+            .find(|other| other.needs.iter().any(|n| n.effect == effect.name));
+        match dependent {
+            None => Some(scene),
+            Some(other) => scene.without(other)?.without(effect),
         }
     }
 
-    /// Names of the effects that the scene calls for.
-    pub fn effects(&self) -> Vec<&'static str> {
-        let crepitus = self.crepitus.is_some().then_some(effects::CREPITUS.name);
-        let encoder = self.encoder.is_some().then_some(effects::ENCODER.name);
-        crepitus.into_iter().chain(encoder).collect()
+    /// The scene with an effect at its defaults, and with those that it needs;
+    /// none if the motion or the solver does not allow it.
+    pub fn with(&self, effect: &'static Effect) -> Option<Self> {
+        if self.has(effect.name) {
+            return Some(self.clone());
+        }
+        if self.solver == SolverChoice::Reference || (!self.is_held() && effect.name == "hand") {
+            return None;
+        }
+        let mut scene = self.clone();
+        for need in effect.needs {
+            scene = scene.with(crepitus_plant::effects::find(need.effect)?)?;
+        }
+        match effect.part {
+            Part::Joint => {
+                scene.crepitus = Some(Crepitus {
+                    preset: None,
+                    settings: Settings::default().validate().ok()?,
+                });
+            }
+            Part::Sensor => scene.encoder = Some(EncoderSettings::default()),
+            _ => {
+                scene.listed.push(Listed {
+                    effect,
+                    given: Given::defaults(effect),
+                });
+                let place = |name| EFFECTS.iter().position(|e| e.name == name);
+                scene.listed.sort_by_key(|l| place(l.effect.name));
+            }
+        }
+        scene.assemble().is_ok().then_some(scene)
     }
+}
+
+/// A leg that nobody holds has to be there, and not to be held.
+fn check_released(
+    root: &Section<'_>,
+    kind: MotionKind,
+    listed: &[Listed],
+) -> Result<(), SceneError> {
+    let has = |name: &str| listed.iter().any(|l| l.effect.name == name);
+    if kind != MotionKind::Released {
+        return Ok(());
+    }
+    let refuse = |message: &str| Err(root.section("motion")?.key_error("kind", message));
+    if !has("limb") {
+        return refuse("\"released\" needs [effects.limb]: there is no leg to fall");
+    }
+    if has("hand") {
+        return refuse("\"released\" means that nobody holds the leg: leave [effects.hand] out");
+    }
+    Ok(())
 }
 
 impl Overrides {
@@ -252,15 +389,16 @@ impl Overrides {
     }
 }
 
-fn read_solver(section: &Section<'_>) -> Result<SolverChoice, SceneError> {
+fn read_solver(section: &Section<'_>) -> Result<(SolverChoice, u32), SceneError> {
     let ladder = Solver::ALL.map(|s| (s.name(), Some(s)));
     let names: Vec<_> = ladder.into_iter().chain([(REFERENCE, None)]).collect();
     let kind = section.choice("kind", &names)?;
     let step_s = section.optional_number("step_s", Range::above(0.0, 1.0))?;
     let precisions = [Precision::F32, Precision::F64].map(|p| (p.name(), p));
     let precision = section.optional_choice("precision", &precisions)?;
+    let substeps = read_substeps(section)?;
     section.finish()?;
-    match kind {
+    let choice = match kind {
         None => {
             if step_s.is_some() {
                 return Err(section.key_error("step_s", "\"reference\" has no step: leave it out"));
@@ -268,9 +406,9 @@ fn read_solver(section: &Section<'_>) -> Result<SolverChoice, SceneError> {
             if precision == Some(Precision::F32) {
                 return Err(section.key_error("precision", "\"reference\" computes in f64 only"));
             }
-            Ok(SolverChoice::Reference)
+            SolverChoice::Reference
         }
-        Some(solver) => Ok(SolverChoice::Ladder {
+        Some(solver) => SolverChoice::Ladder {
             solver,
             step_s: step_s.ok_or_else(|| {
                 section.key_error(
@@ -282,7 +420,23 @@ fn read_solver(section: &Section<'_>) -> Result<SolverChoice, SceneError> {
                 )
             })?,
             precision: precision.unwrap_or(Precision::F64),
-        }),
+        },
+    };
+    Ok((choice, substeps))
+}
+
+/// Steps of the plant in one of the solver: the device's tick stays what it
+/// is.
+fn read_substeps(section: &Section<'_>) -> Result<u32, SceneError> {
+    match section.optional_number("substeps", Range::closed(1.0, 1000.0))? {
+        None => Ok(1),
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole and in range"
+        )]
+        Some(x) if x.fract() == 0.0 => Ok(x as u32),
+        Some(x) => Err(section.key_error("substeps", format!("{x} is not a whole number"))),
     }
 }
 

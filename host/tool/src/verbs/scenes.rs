@@ -35,7 +35,7 @@ pub(crate) fn scenes(arguments: &ScenesArguments, as_json: bool) -> Result<(), F
             "duration_s": scene.duration_s,
             "motion": scene.motion_kind.name(),
             "solver": scene.solver.name(),
-            "effects": scene.effects(),
+            "effects": scene.effects().iter().map(|e| e.name).collect::<Vec<_>>(),
         }));
     }
     if as_json {

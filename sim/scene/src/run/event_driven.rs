@@ -86,6 +86,7 @@ pub(super) fn simulate<O: Observer>(
         end_s,
         tally,
         fastest_rad_s,
+        plant: None,
     })
 }
 

@@ -24,23 +24,28 @@ pub(super) fn costs(scene: &Scene) -> Vec<Cost> {
     };
     let mut short = scene.clone();
     short.duration_s = scene.duration_s.min(STEPS * step_s);
-    let whole = || short.clone();
     scene
         .effects()
         .into_iter()
-        .map(|effect| {
-            let mut without = whole();
-            without.leave_out(effect);
+        .filter_map(|effect| {
+            // An effect's cost is that on top of all that stand without it.
+            let mut with = short.clone();
+            for other in short.effects() {
+                if with.has(other.name) && other.needs.iter().any(|n| n.effect == effect.name) {
+                    with = with.without(other)?;
+                }
+            }
+            let without = with.without(effect)?;
             let (mut with_ns, mut without_ns) = (f64::INFINITY, f64::INFINITY);
             // In turn, so that a drift of the machine's speed hits both alike.
             for _ in 0..REPEATS {
-                with_ns = with_ns.min(ns_per_step(&short));
+                with_ns = with_ns.min(ns_per_step(&with));
                 without_ns = without_ns.min(ns_per_step(&without));
             }
-            Cost {
-                effect,
+            Some(Cost {
+                effect: effect.name,
                 ns_per_step: (with_ns - without_ns).max(0.0),
-            }
+            })
         })
         .collect()
 }

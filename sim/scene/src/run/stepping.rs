@@ -10,10 +10,10 @@ use crepitus_model::{Event, Phase, Real, Settings, ShaftStep, StickSlip};
 use crepitus_plant::{Motion, Piece};
 
 /// How many steps go by between two reports of progress.
-const PROGRESS_STEPS: u64 = 1 << 16;
+pub(super) const PROGRESS_STEPS: u64 = 1 << 16;
 
 /// How many steps go by between two looks at the state.
-const CHECK_STEPS: u64 = 1 << 10;
+pub(super) const CHECK_STEPS: u64 = 1 << 10;
 
 /// Chooses the types that the scene calls for, and runs.
 pub(super) fn simulate<F: Real, O: Observer>(
@@ -53,32 +53,36 @@ fn with_sensor<F: Real, O: Observer, S: Sensor<F>>(
 }
 
 /// The true motion, step by step.
-struct Walk<'a> {
+pub(super) struct Walk<'a> {
     motion: &'a Motion,
     piece: Piece,
-    clock: Clock,
+    pub(super) clock: Clock,
     n: u64,
-    time_s: f64,
-    /// The shaft at the last step's end, as the next step starts.
-    now: Shaft,
+    pub(super) time_s: f64,
+    /// The motion just before the last step's end.
+    pub(super) end: Shaft,
+    /// The motion as the next step starts.
+    pub(super) now: Shaft,
 }
 
 impl<'a> Walk<'a> {
-    fn new(motion: &'a Motion, step_s: f64) -> Self {
+    pub(super) fn new(motion: &'a Motion, step_s: f64) -> Self {
         let piece = motion.piece(0.0);
+        let now = Shaft::of(&piece, 0.0);
         Self {
             motion,
             piece,
             clock: Clock::new(step_s),
             n: 0,
             time_s: 0.0,
-            now: Shaft::of(&piece, 0.0),
+            end: now,
+            now,
         }
     }
 
-    /// The shaft at both ends of the next step, just inside it.
+    /// The motion at both ends of the next step, just inside it.
     #[inline]
-    fn step(&mut self) -> (Shaft, Shaft) {
+    pub(super) fn step(&mut self) -> (Shaft, Shaft) {
         self.n += 1;
         self.time_s = self.clock.time_s(self.n);
         let from = self.now;
@@ -86,7 +90,7 @@ impl<'a> Walk<'a> {
             self.piece = self.motion.piece(self.piece.end_s);
         }
         let to = Shaft::of(&self.piece, self.time_s);
-        self.now = to;
+        (self.end, self.now) = (to, to);
         if self.piece.end_s == self.time_s {
             self.piece = self.motion.piece(self.time_s);
             // Without a jump both sides are one velocity, to the bit.
@@ -130,6 +134,7 @@ fn bare<F: Real, O: Observer, S: Sensor<F>>(
         end_s: walk.time_s,
         tally: None,
         fastest_rad_s,
+        plant: None,
     })
 }
 
@@ -216,24 +221,25 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
             end_s: walk.time_s,
             tally: Some(books.tally),
             fastest_rad_s,
+            plant: None,
         })
     }
 }
 
 /// Keeps the tally of a stepping run: where in the step it is, and what the
 /// joint has seen of the shaft.
-struct Books {
-    tally: Tally,
+pub(super) struct Books {
+    pub(super) tally: Tally,
     step_s: f64,
     /// Angle of the shaft as the joint has seen it, at the start of the step.
-    phi_rad: f64,
+    pub(super) phi_rad: f64,
     /// The last point of the step that is booked, as a fraction of it.
     booked: f64,
     stick: StickEnd,
 }
 
 impl Books {
-    fn new(settings: Settings, step_s: f64, omega_rad_s: f64) -> Self {
+    pub(super) fn new(settings: Settings, step_s: f64, omega_rad_s: f64) -> Self {
         Self {
             tally: Tally::new(settings, omega_rad_s),
             step_s,
@@ -248,7 +254,7 @@ impl Books {
     }
 
     /// Books the events of a step in the order of time.
-    fn event<F: Real>(
+    pub(super) fn event<F: Real>(
         &mut self,
         start_s: f64,
         seen: &ShaftStep<F>,
@@ -268,7 +274,7 @@ impl Books {
 
     /// Books the rest of a step.
     #[inline]
-    fn end_step<F: Real>(
+    pub(super) fn end_step<F: Real>(
         &mut self,
         seen: &ShaftStep<F>,
         phase: Phase,

@@ -1,11 +1,11 @@
 //! The summary of a run: what `summary.json` holds.
 
+use super::coupled::PlantTotals;
 use super::tally::Tally;
 use super::{Totals, step_s};
-use crate::scene::{Crepitus, EFFECTS, SCENE_VERSION, Scene, SolverChoice};
+use crate::scene::{Crepitus, SCENE_VERSION, Scene, SolverChoice};
 use crepitus_model::Parameters;
-use crepitus_model::encoder::ENCODER_PARAMETERS;
-use crepitus_model::parameters::PARAMETERS;
+use crepitus_plant::effect::{Effect, Part};
 use serde::Serialize;
 
 /// Version of the form of `summary.json`.
@@ -54,8 +54,14 @@ pub struct Summary {
     pub cycles: Option<CycleSummary>,
     /// The torque shown.
     pub torque: Option<TorqueSummary>,
-    /// The energy balance.
+    /// The energy balance of the object.
     pub energy: Option<EnergySummary>,
+    /// What the hand feels, if there is a plant and a hand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hand_torque: Option<TorqueSummary>,
+    /// The energy balance of the plant, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plant_energy: Option<PlantEnergySummary>,
     /// Time that the run took, with its outputs, s.
     pub wall_s: f64,
     /// Simulated time over that.
@@ -75,6 +81,18 @@ pub struct EffectSummary {
     pub ns_per_step: Option<f64>,
     /// Its parameters.
     pub parameters: Vec<ParameterValue>,
+    /// Its choices by name.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub choices: Vec<ChoiceValue>,
+}
+
+/// A choice in force.
+#[derive(Clone, Debug, Serialize)]
+pub struct ChoiceValue {
+    /// Name, as in scene files.
+    pub key: &'static str,
+    /// What was chosen.
+    pub value: &'static str,
 }
 
 /// A parameter in force.
@@ -148,6 +166,59 @@ pub struct EnergySummary {
     pub residual_relative: f64,
 }
 
+/// The energy balance of a plant, J:
+/// sum of what was given = sum of what is stored, lost and rendered + residual.
+#[derive(Clone, Debug, Serialize)]
+pub struct PlantEnergySummary {
+    /// Its terms, from the hand to the motor.
+    pub terms: Vec<EnergyTerm>,
+    /// What the terms leave over.
+    pub residual_j: f64,
+    /// That, as a share of the sum of all terms' magnitudes.
+    pub residual_relative: f64,
+    /// Work that the actuator took out of the mechanics, and where it comes
+    /// from: it is the sum of the others.
+    pub rendering: RenderingSummary,
+}
+
+/// One term of a plant's balance.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct EnergyTerm {
+    /// The effect that it belongs to.
+    pub effect: &'static str,
+    /// What it is.
+    pub what: &'static str,
+    /// `given`, `stored`, `lost` or `rendered`.
+    pub account: &'static str,
+    /// J.
+    pub joule: f64,
+}
+
+/// The work of the rendered torque, J.
+#[derive(Clone, Debug, Serialize)]
+pub struct RenderingSummary {
+    /// Of the model's torque, as its own balance has it.
+    pub model_j: f64,
+    /// Of holding that torque over each tick, and of what the sensor does not
+    /// see.
+    pub sampling_j: f64,
+    /// Of what each stage of the device adds.
+    pub stages: Vec<StageWork>,
+    /// Of the difference between the torque commanded and that of the motor.
+    pub actuator_j: f64,
+    /// Of the torque that there was.
+    pub absorbed_j: f64,
+}
+
+/// Work of one stage of the device.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct StageWork {
+    /// The effect that it belongs to.
+    pub effect: &'static str,
+    /// J.
+    pub joule: f64,
+}
+
 /// Puts the totals of a run into words.
 pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64) -> Summary {
     let tally = totals.tally.as_ref();
@@ -199,9 +270,54 @@ pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64) -> Summary 
             residual_j: t.energy.residual_j(),
             residual_relative: t.energy.relative_residual(),
         }),
+        hand_torque: totals.plant.as_ref().and_then(|p| hand_torque(p, totals)),
+        plant_energy: totals.plant.as_ref().map(|p| plant_energy(p, tally)),
         wall_s,
         real_time_factor: totals.end_s / wall_s,
         warnings,
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "below 2^53")]
+fn hand_torque(plant: &PlantTotals, totals: &Totals) -> Option<TorqueSummary> {
+    let ticks = totals.steps as f64;
+    plant.felt.map(|felt| TorqueSummary {
+        min_nm: felt.min_nm,
+        mean_nm: felt.sum / ticks,
+        max_nm: felt.max_nm,
+        rms_nm: (felt.squares / ticks).sqrt(),
+    })
+}
+
+fn plant_energy(plant: &PlantTotals, tally: Option<&Tally>) -> PlantEnergySummary {
+    let balance = &plant.balance;
+    let rendering = &plant.rendering;
+    let model_j = tally.map_or(0.0, |t| t.energy.work_in_j);
+    let stages_j: f64 = rendering.stages_j.iter().map(|s| s.1).sum();
+    PlantEnergySummary {
+        terms: balance
+            .terms()
+            .iter()
+            .map(|t| EnergyTerm {
+                effect: t.effect,
+                what: t.what,
+                account: t.account.name(),
+                joule: t.joule,
+            })
+            .collect(),
+        residual_j: balance.residual_j(),
+        residual_relative: balance.relative_residual(),
+        rendering: RenderingSummary {
+            model_j,
+            sampling_j: rendering.held_j - model_j,
+            stages: rendering
+                .stages_j
+                .iter()
+                .map(|&(effect, joule)| StageWork { effect, joule })
+                .collect(),
+            actuator_j: rendering.absorbed_j - rendering.held_j - stages_j,
+            absorbed_j: rendering.absorbed_j,
+        },
     }
 }
 
@@ -219,42 +335,73 @@ fn cycles(tally: &Tally) -> CycleSummary {
 }
 
 fn effects(scene: &Scene) -> Vec<EffectSummary> {
-    let values = |keys: Vec<&'static str>, values: Vec<f64>| {
-        keys.into_iter()
-            .zip(values)
-            .map(|(key, value)| ParameterValue { key, value })
-            .collect::<Vec<_>>()
-    };
-    EFFECTS
-        .iter()
-        .filter_map(|effect| {
-            let parameters = match effect.name {
-                "crepitus" => scene.crepitus.map(|c| {
-                    values(
-                        PARAMETERS.iter().map(|p| p.key).collect(),
-                        c.settings.parameters.values().to_vec(),
-                    )
-                }),
-                _ => scene.encoder.map(|e| {
-                    values(
-                        ENCODER_PARAMETERS.iter().map(|p| p.key).collect(),
-                        e.values().to_vec(),
-                    )
-                }),
-            }?;
-            Some(EffectSummary {
+    scene
+        .effects()
+        .into_iter()
+        .map(|effect| {
+            let (values, choices) = in_force(scene, effect);
+            EffectSummary {
                 name: effect.name,
                 states: effect.states,
                 ns_per_step: None,
-                parameters,
-            })
+                parameters: effect
+                    .parameters
+                    .iter()
+                    .zip(values)
+                    .map(|(parameter, value)| ParameterValue {
+                        key: parameter.key,
+                        value,
+                    })
+                    .collect(),
+                choices,
+            }
         })
         .collect()
 }
 
+/// An effect's numbers and choices in a scene.
+fn in_force(scene: &Scene, effect: &Effect) -> (Vec<f64>, Vec<ChoiceValue>) {
+    match effect.part {
+        Part::Joint => (
+            scene
+                .crepitus
+                .map(|c| c.settings.parameters.values().to_vec())
+                .unwrap_or_default(),
+            Vec::new(),
+        ),
+        Part::Sensor => (
+            scene
+                .encoder
+                .map(|e| e.values().to_vec())
+                .unwrap_or_default(),
+            Vec::new(),
+        ),
+        _ => scene
+            .listed
+            .iter()
+            .find(|l| l.effect.name == effect.name)
+            .map(|l| {
+                let chosen = effect
+                    .choices
+                    .iter()
+                    .zip(&l.given.choices)
+                    .map(|(choice, &place)| ChoiceValue {
+                        key: choice.key,
+                        value: choice.names[place],
+                    });
+                (l.given.numbers.clone(), chosen.collect())
+            })
+            .unwrap_or_default(),
+    }
+}
+
 /// What is odd about how the scene ran.
 fn run_warnings(scene: &Scene, totals: &Totals) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let mut warnings = totals
+        .plant
+        .as_ref()
+        .map(|p| p.warnings.clone())
+        .unwrap_or_default();
     let missed_s = scene.duration_s - totals.end_s;
     if missed_s > 1e-9 * scene.duration_s {
         warnings.push(format!(

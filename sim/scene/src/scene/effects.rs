@@ -1,68 +1,61 @@
-//! The effects that a scene can call for. What it does not list is not built,
-//! not stepped, and absent from the outputs.
+//! The `[effects]` table. What it does not list is not built, not stepped, and
+//! absent from the outputs.
 
 use super::Crepitus;
 use crate::document::{Range, Section};
 use crate::error::SceneError;
-use crepitus_model::encoder::{ENCODER_PARAMETERS, EncoderSettings};
-use crepitus_model::parameters::{PARAMETERS, ParameterSpec};
+use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::parameters::ParameterSpec;
 use crepitus_model::presets::{PRESETS, Preset};
 use crepitus_model::{Convention, Restart, Settings};
-
-/// An effect as lists and summaries name it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Effect {
-    /// Name in scene files: the table `[effects.NAME]`.
-    pub name: &'static str,
-    /// Its state variables.
-    pub states: &'static [&'static str],
-    /// What it adds.
-    pub adds: &'static str,
-}
-
-/// The stick-slip object.
-pub(super) const CREPITUS: Effect = Effect {
-    name: "crepitus",
-    states: &["theta_rad", "theta_dot_rad_s"],
-    adds: "the torque of the stick-slip object",
-};
-
-/// The motor's encoder.
-pub(super) const ENCODER: Effect = Effect {
-    name: "encoder",
-    states: &["velocity estimate", "tracking lag"],
-    adds: "whole counts instead of the true angle, and a velocity estimated from them",
-};
-
-/// All effects.
-pub const EFFECTS: [Effect; 2] = [CREPITUS, ENCODER];
+use crepitus_plant::assembly::Listed;
+use crepitus_plant::effect::{Effect, Given, Part};
+use crepitus_plant::effects::EFFECTS;
 
 /// The effects of one scene.
 #[derive(Default)]
 pub(super) struct Effects {
     pub(super) crepitus: Option<Crepitus>,
     pub(super) encoder: Option<EncoderSettings>,
+    /// All others, in the order of the table.
+    pub(super) listed: Vec<Listed>,
 }
 
 pub(super) fn read(section: Option<&Section<'_>>) -> Result<Effects, SceneError> {
+    let mut effects = Effects::default();
     let Some(section) = section else {
-        return Ok(Effects::default());
+        return Ok(effects);
     };
-    let effects = Effects {
-        crepitus: section
-            .optional_section(CREPITUS.name)?
-            .map(|s| crepitus(&s))
-            .transpose()?,
-        encoder: section
-            .optional_section(ENCODER.name)?
-            .map(|s| encoder(&s))
-            .transpose()?,
-    };
+    let mut present = Vec::new();
+    for effect in EFFECTS {
+        let Some(own) = section.optional_section(effect.name)? else {
+            continue;
+        };
+        match effect.part {
+            Part::Joint => effects.crepitus = Some(crepitus(&own, effect)?),
+            Part::Sensor => effects.encoder = Some(encoder(&own, effect)?),
+            _ => effects.listed.push(Listed {
+                effect,
+                given: given(&own, effect)?,
+            }),
+        }
+        present.push((effect, own));
+    }
     section.finish()?;
+    for (effect, own) in &present {
+        for need in effect.needs {
+            if !present.iter().any(|(other, _)| other.name == need.effect) {
+                return Err(own.error(format!(
+                    "\"{}\" needs [effects.{}] too: {}",
+                    effect.name, need.effect, need.why
+                )));
+            }
+        }
+    }
     Ok(effects)
 }
 
-fn crepitus(section: &Section<'_>) -> Result<Crepitus, SceneError> {
+fn crepitus(section: &Section<'_>, effect: &Effect) -> Result<Crepitus, SceneError> {
     let presets: Vec<(&str, &'static Preset)> = PRESETS.iter().map(|p| (p.name, p)).collect();
     let preset = section.optional_choice("preset", &presets)?;
     let conventions = Convention::ALL.map(|c| (c.name(), c));
@@ -76,7 +69,7 @@ fn crepitus(section: &Section<'_>) -> Result<Crepitus, SceneError> {
             .optional_choice("restart", &restarts)?
             .unwrap_or_default(),
     };
-    numbers(section, &PARAMETERS, settings.parameters.values_mut())?;
+    numbers(section, effect.parameters, settings.parameters.values_mut())?;
     section.finish()?;
     Ok(Crepitus {
         preset: preset.map(|p| p.name),
@@ -86,18 +79,32 @@ fn crepitus(section: &Section<'_>) -> Result<Crepitus, SceneError> {
     })
 }
 
-fn encoder(section: &Section<'_>) -> Result<EncoderSettings, SceneError> {
+fn encoder(section: &Section<'_>, effect: &Effect) -> Result<EncoderSettings, SceneError> {
     let mut settings = EncoderSettings::default();
-    numbers(section, &ENCODER_PARAMETERS, settings.values_mut())?;
+    numbers(section, effect.parameters, settings.values_mut())?;
     section.finish()?;
     Ok(settings)
 }
 
+/// The numbers and choices of any effect.
+fn given(section: &Section<'_>, effect: &Effect) -> Result<Given, SceneError> {
+    let mut given = Given::defaults(effect);
+    numbers(section, effect.parameters, &mut given.numbers)?;
+    for (choice, chosen) in effect.choices.iter().zip(&mut given.choices) {
+        let names: Vec<(&str, usize)> = choice.names.iter().copied().zip(0..).collect();
+        if let Some(place) = section.optional_choice(choice.key, &names)? {
+            *chosen = place;
+        }
+    }
+    section.finish()?;
+    Ok(given)
+}
+
 /// Reads every number of a parameter table that the section gives.
-fn numbers<const N: usize>(
+fn numbers<'a>(
     section: &Section<'_>,
-    table: &[ParameterSpec; N],
-    values: [&mut f64; N],
+    table: &[ParameterSpec],
+    values: impl IntoIterator<Item = &'a mut f64>,
 ) -> Result<(), SceneError> {
     for (parameter, value) in table.iter().zip(values) {
         let range = Range::closed(parameter.min, parameter.max);

@@ -27,16 +27,19 @@ pub enum MotionKind {
     Strokes,
     /// A recording.
     Recording,
+    /// A leg that is let go of.
+    Released,
 }
 
 impl MotionKind {
     /// All kinds.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Constant,
         Self::Sine,
         Self::VelocityKnots,
         Self::Strokes,
         Self::Recording,
+        Self::Released,
     ];
 
     /// Name in scene files.
@@ -47,6 +50,7 @@ impl MotionKind {
             Self::VelocityKnots => "velocity-knots",
             Self::Strokes => "strokes",
             Self::Recording => "recording",
+            Self::Released => "released",
         }
     }
 }
@@ -75,6 +79,7 @@ pub(super) fn read(section: &Section<'_>, duration_s: f64) -> Result<ReadMotion,
             ripple_rad_s2 = Some(ripple);
             motion
         }
+        MotionKind::Released => Motion::rest(section.number("from_deg", ANY_DEG)?.to_radians()),
     };
     let seed = seed(section)?;
     section.finish()?;

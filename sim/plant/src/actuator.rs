@@ -1,0 +1,88 @@
+//! What makes a torque out of the device's command.
+
+use crate::chain::Push;
+use crate::ledger::{Account, Ledger};
+
+/// Drives the shaft.
+pub trait Actuator {
+    /// A new tick, with the torque that the device wants to show, N·m: T > 0
+    /// opposes growing angle.
+    fn command(&mut self, torque_nm: f64);
+
+    /// The middle of the tick, where the device samples the current and sets
+    /// the voltage; called only if [`Actuator::PARTS`](Actuator::parts) is 2.
+    fn mid_tick(&mut self);
+
+    /// Into how many parts of equal length a tick has to be cut at least.
+    fn parts(&self) -> u32;
+
+    /// What it does to the shaft over a step of `length_s`.
+    fn fold(&mut self, length_s: f64) -> Push;
+
+    /// Torque that goes through the gear as the step begins, N·m.
+    fn load_nm(&self) -> f64;
+
+    /// Makes the step in which the shaft turned with `mean_rad_s`.
+    fn settle(&mut self, length_s: f64, mean_rad_s: f64);
+
+    /// Work that its torque has taken out of the mechanics so far, J.
+    fn absorbed_j(&self) -> f64;
+
+    /// Books where that work is.
+    fn book(&self, ledger: &mut Ledger);
+
+    /// Names of the columns in a trace.
+    fn columns(&self) -> &'static [&'static str];
+
+    /// Writes them.
+    fn write(&self, row: &mut Vec<f64>);
+}
+
+/// An actuator that does what it is told, at once.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Ideal {
+    torque_nm: f64,
+    absorbed_j: f64,
+}
+
+impl Actuator for Ideal {
+    fn command(&mut self, torque_nm: f64) {
+        self.torque_nm = torque_nm;
+    }
+
+    fn mid_tick(&mut self) {}
+
+    fn parts(&self) -> u32 {
+        1
+    }
+
+    fn fold(&mut self, _: f64) -> Push {
+        Push {
+            torque_nm: -self.torque_nm,
+            slope_nms: 0.0,
+            held_by_nm: None,
+        }
+    }
+
+    fn load_nm(&self) -> f64 {
+        self.torque_nm
+    }
+
+    fn settle(&mut self, length_s: f64, mean_rad_s: f64) {
+        self.absorbed_j += self.torque_nm * length_s * mean_rad_s;
+    }
+
+    fn absorbed_j(&self) -> f64 {
+        self.absorbed_j
+    }
+
+    fn book(&self, ledger: &mut Ledger) {
+        ledger.book("actuator", "torque", Account::Rendered, self.absorbed_j);
+    }
+
+    fn columns(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn write(&self, _: &mut Vec<f64>) {}
+}

@@ -1,0 +1,75 @@
+//! A plant and the device's stages from the effects that a scene lists.
+//!
+//! Everything is decided here, once: what is not listed leaves no part behind.
+
+use crate::actuator::{Actuator, Ideal};
+use crate::chain::{Chain, Shaft};
+use crate::effect::{Context, Effect, Given, Part, Stage};
+use crate::holder::{Holder, Prescribed, Released};
+use crate::plant::Plant;
+use crepitus_model::SettingsError;
+
+/// An effect as a scene lists it.
+#[derive(Clone, Debug)]
+pub struct Listed {
+    /// Which one.
+    pub effect: &'static Effect,
+    /// Its numbers and choices.
+    pub given: Given,
+}
+
+/// A stage of the device.
+pub struct NamedStage {
+    /// The effect that it belongs to.
+    pub effect: &'static str,
+    /// Its column in a trace.
+    pub column: &'static str,
+    /// The stage.
+    pub stage: Box<dyn Stage>,
+}
+
+/// What the effects of a scene make.
+pub struct Assembled {
+    /// The plant.
+    pub plant: Plant,
+    /// What the device adds to the model's torque, in this order.
+    pub stages: Vec<NamedStage>,
+}
+
+/// Assembles `listed`, which stand in the order of
+/// [`EFFECTS`](crate::effects::EFFECTS). Nobody holds a leg that is
+/// `released`.
+///
+/// # Errors
+/// [`SettingsError`] if a number of the device is out of its range.
+pub fn assemble(
+    listed: &[Listed],
+    context: &Context,
+    released: bool,
+) -> Result<Assembled, SettingsError> {
+    let mut actuator: Box<dyn Actuator> = Box::new(Ideal::default());
+    let mut chain: Box<dyn Chain> = Box::new(Shaft);
+    let mut holder: Box<dyn Holder> = if released {
+        Box::new(Released)
+    } else {
+        Box::new(Prescribed::new(context.start))
+    };
+    let mut stages = Vec::new();
+    for Listed { effect, given } in listed {
+        match effect.part {
+            Part::Joint | Part::Sensor => {}
+            Part::Stage(make, column) => stages.push(NamedStage {
+                effect: effect.name,
+                column,
+                stage: make(given, context)?,
+            }),
+            Part::Actuator(make) => actuator = make(given, context)?,
+            Part::Link(make) => chain = make(given, context, chain),
+            Part::Holder(make) => holder = make(given, context, chain.as_ref()),
+        }
+    }
+    Ok(Assembled {
+        plant: Plant::new(actuator, chain, holder, context.start),
+        stages,
+    })
+}

@@ -1,0 +1,251 @@
+//! The mechanics between motor and hand: a chain of bodies, one effect a part.
+//!
+//! ```text
+//! actuator ─> shaft ─ drivetrain ─ backlash ─ cuff ─ limb ─> holder
+//!              └──────────── chain, left to right ───────┘
+//! ```
+//!
+//! Each step is the implicit midpoint rule: with w the mean velocity of a body
+//! over a step of length h,
+//!
+//! ```text
+//! 2J/h·(w − v) = torque at mid-step,   v ← 2w − v,   φ ← φ + h·w
+//! ```
+//!
+//! It is stable for any stiffness and damps nothing of its own: kinetic and
+//! elastic energy change by exactly the work of the torques that it used, so
+//! what an effect stores and loses is known to rounding. (Implicit Euler would
+//! be as stable, and add damping ωn·h/2: see the book on what that does to a
+//! grating joint.)
+//!
+//! What stands left of a point of the chain acts on what stands right of it
+//! with a torque that is affine in the mean velocity there, a − b·w. So each
+//! part *folds* what is left of it into two numbers, the holder at the right
+//! end solves one equation, and the parts *settle* with the answer. Parts that
+//! a scene leaves out are not in the chain.
+//!
+//! Dry friction and contact switch between smooth modes. A part looks at each
+//! solution with [`Chain::check`]: a mode that does not hold is changed and the
+//! step folded again; an end of a mode inside the step is located there, the
+//! step cut in two.
+
+use crate::ledger::Ledger;
+use crepitus_model::Sense;
+
+/// A body of the chain, all referred to the joint.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Body {
+    /// Angle, rad.
+    pub angle_rad: f64,
+    /// Velocity, rad/s.
+    pub omega_rad_s: f64,
+}
+
+impl Body {
+    /// The body after a step of `length_s` with mean velocity `mean_rad_s`.
+    #[inline]
+    #[must_use]
+    pub fn after(&self, length_s: f64, mean_rad_s: f64) -> Self {
+        Self {
+            angle_rad: self.angle_rad + length_s * mean_rad_s,
+            omega_rad_s: 2.0 * mean_rad_s - self.omega_rad_s,
+        }
+    }
+}
+
+/// A mean torque over a step as a function of the mean velocity w of the body
+/// that it acts on: `torque_nm − slope_nms·w`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Push {
+    /// At w = 0, N·m, in the direction of growing angle.
+    pub torque_nm: f64,
+    /// How fast it falls with w, N·m·s/rad.
+    pub slope_nms: f64,
+    /// The body is held by dry friction of up to this torque, N·m; the other
+    /// numbers leave that friction out.
+    pub held_by_nm: Option<f64>,
+}
+
+impl Push {
+    /// The torque at mean velocity `w`, N·m.
+    #[inline]
+    pub fn at(&self, w: f64) -> f64 {
+        self.torque_nm - self.slope_nms * w
+    }
+
+    /// This push and the inertia of `inertia_kg_m2` on the same body.
+    #[inline]
+    #[must_use]
+    pub fn with_inertia(mut self, inertia_kg_m2: f64, step: &Step, body: &Body) -> Self {
+        let slope = step.inertial_slope(inertia_kg_m2);
+        self.torque_nm += slope * body.omega_rad_s;
+        self.slope_nms += slope;
+        self
+    }
+}
+
+/// What all parts know of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Step {
+    /// Length, s.
+    pub length_s: f64,
+    /// What the actuator does to the shaft.
+    pub drive: Push,
+    /// Torque that goes through the gear, N·m.
+    pub load_nm: f64,
+}
+
+impl Step {
+    /// 2J/h, N·m·s/rad.
+    #[inline]
+    pub fn inertial_slope(&self, inertia_kg_m2: f64) -> f64 {
+        2.0 * inertia_kg_m2 / self.length_s
+    }
+}
+
+/// The solution of a step at one point of the chain.
+#[derive(Clone, Copy, Debug)]
+pub struct Flow {
+    /// Mean velocity of the body, rad/s.
+    pub omega_rad_s: f64,
+    /// Mean torque of what is left of the point on what is right of it, N·m.
+    pub torque_nm: f64,
+}
+
+/// What a part says of a solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// It holds.
+    Holds,
+    /// A mode did not hold and is another now: fold again.
+    Again,
+    /// A mode ends after this fraction of the step.
+    EndsAt(f64),
+}
+
+impl Verdict {
+    /// The more urgent of two: what changes a mode, or ends earlier.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Again, _) | (_, Self::Again) => Self::Again,
+            (Self::EndsAt(a), Self::EndsAt(b)) => Self::EndsAt(a.min(b)),
+            (Self::Holds, other) => other,
+            (this, Self::Holds) => this,
+        }
+    }
+}
+
+/// What a settled step leaves for the parts further right.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Settled {
+    /// Mean velocity of the motor's shaft, rad/s.
+    pub shaft_rad_s: f64,
+    /// Impulse of an impact on a body whose velocity is prescribed, N·m·s.
+    pub impulse_nms: f64,
+}
+
+/// The sense of a number that is not zero.
+pub(crate) fn sense_of(x: f64) -> Sense {
+    Sense::of(x).unwrap_or(Sense::Positive)
+}
+
+/// The chain up to one of its parts. `body` is the body at its right end; a
+/// part that separates bodies owns the one left of it.
+pub trait Chain {
+    /// What this and all left of it do to what is right of it.
+    fn fold(&mut self, step: &Step, body: &Body) -> Push;
+
+    /// Looks at a solution; see [`Verdict`].
+    fn check(&mut self, step: &Step, body: &Body, flow: Flow) -> Verdict;
+
+    /// Makes the step. `next` is the body after it, and may be changed by an
+    /// impact or a stop; `ends_at` is the verdict that the step was cut for.
+    fn settle(
+        &mut self,
+        step: &Step,
+        body: &Body,
+        next: &mut Body,
+        flow: Flow,
+        ends_at: Option<f64>,
+    ) -> Settled;
+
+    /// The motor's shaft.
+    fn shaft(&self, body: &Body) -> Body;
+
+    /// Whether shaft and right end are one body, always.
+    fn is_rigid(&self) -> bool;
+
+    /// Inertia that moves rigidly with the right end now, kg·m².
+    fn inertia_kg_m2(&self) -> f64;
+
+    /// Told once, before the first step: the inertia right of this part that
+    /// moves rigidly with it; infinite where the motion is prescribed.
+    fn attach(&mut self, right_kg_m2: f64);
+
+    /// The torque that the chain's own weight and the like exert on its right
+    /// end at rest, as a function of the angle; none if there is no such part.
+    fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>>;
+
+    /// Books what each part stores now and has lost so far.
+    fn book(&self, body: &Body, ledger: &mut Ledger);
+
+    /// Names of the columns in a trace.
+    fn columns(&self, names: &mut Vec<&'static str>);
+
+    /// Writes them.
+    fn write(&self, body: &Body, row: &mut Vec<f64>);
+
+    /// What was odd.
+    fn warnings(&self, warnings: &mut Vec<String>);
+}
+
+/// The left end: the motor's shaft, on which the actuator acts.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Shaft;
+
+impl Chain for Shaft {
+    #[inline]
+    fn fold(&mut self, step: &Step, _: &Body) -> Push {
+        step.drive
+    }
+
+    #[inline]
+    fn check(&mut self, _: &Step, _: &Body, _: Flow) -> Verdict {
+        Verdict::Holds
+    }
+
+    #[inline]
+    fn settle(&mut self, _: &Step, _: &Body, _: &mut Body, flow: Flow, _: Option<f64>) -> Settled {
+        Settled {
+            shaft_rad_s: flow.omega_rad_s,
+            impulse_nms: 0.0,
+        }
+    }
+
+    fn shaft(&self, body: &Body) -> Body {
+        *body
+    }
+
+    fn is_rigid(&self) -> bool {
+        true
+    }
+
+    fn inertia_kg_m2(&self) -> f64 {
+        0.0
+    }
+
+    fn attach(&mut self, _: f64) {}
+
+    fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
+        None
+    }
+
+    fn book(&self, _: &Body, _: &mut Ledger) {}
+
+    fn columns(&self, _: &mut Vec<&'static str>) {}
+
+    fn write(&self, _: &Body, _: &mut Vec<f64>) {}
+
+    fn warnings(&self, _: &mut Vec<String>) {}
+}

@@ -1,0 +1,131 @@
+//! What an effect is: a name, its numbers, and how it joins a plant.
+
+use crate::actuator::Actuator;
+use crate::chain::{Body, Chain};
+use crate::holder::Holder;
+use crepitus_model::SettingsError;
+use crepitus_model::parameters::ParameterSpec;
+
+/// An effect that a scene can call for.
+#[derive(Clone, Copy, Debug)]
+pub struct Effect {
+    /// Name in scene files: the table `[effects.NAME]`.
+    pub name: &'static str,
+    /// What it adds.
+    pub adds: &'static str,
+    /// Its state variables.
+    pub states: &'static [&'static str],
+    /// Its numbers.
+    pub parameters: &'static [ParameterSpec],
+    /// Its choices by name.
+    pub choices: &'static [ChoiceSpec],
+    /// Effects without which it has no meaning.
+    pub needs: &'static [Need],
+    /// Where it joins.
+    pub part: Part,
+}
+
+/// A choice by name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChoiceSpec {
+    /// Name in scene files.
+    pub key: &'static str,
+    /// What can be chosen; the first is the default.
+    pub names: &'static [&'static str],
+    /// What it means.
+    pub meaning: &'static str,
+}
+
+/// An effect that another one needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Need {
+    /// Its name.
+    pub effect: &'static str,
+    /// Why.
+    pub why: &'static str,
+}
+
+/// What a scene gives for an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Given {
+    /// A number for each of its parameters.
+    pub numbers: Vec<f64>,
+    /// For each of its choices the place of the chosen name.
+    pub choices: Vec<usize>,
+}
+
+impl Given {
+    /// An effect's defaults.
+    pub fn defaults(effect: &Effect) -> Self {
+        Self {
+            numbers: effect.parameters.iter().map(|p| p.default).collect(),
+            choices: vec![0; effect.choices.len()],
+        }
+    }
+}
+
+/// What all parts are told when they are built.
+#[derive(Clone, Copy, Debug)]
+pub struct Context {
+    /// Tick of the device, s.
+    pub tick_s: f64,
+    /// The device computes in f32.
+    pub single: bool,
+    /// How the motion begins.
+    pub start: Body,
+}
+
+/// Adds to the torque that the device commands, once a tick.
+pub trait Stage {
+    /// What to add to the command, N·m.
+    fn tick(&mut self, seen: &Seen) -> f64;
+}
+
+/// What a stage of the device knows at a tick.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seen {
+    /// Velocity of the shaft, rad/s.
+    pub omega_rad_s: f64,
+    /// Angle that it has turned since the last tick, rad.
+    pub delta_phi_rad: f64,
+    /// Sum of the jumps of the model's torque since then, N·m.
+    pub jump_nm: f64,
+}
+
+/// Makes a stage of the device.
+pub type MakeStage = fn(&Given, &Context) -> Result<Box<dyn Stage>, SettingsError>;
+/// Makes an actuator.
+pub type MakeActuator = fn(&Given, &Context) -> Result<Box<dyn Actuator>, SettingsError>;
+/// Lengthens the chain.
+pub type MakeLink = fn(&Given, &Context, Box<dyn Chain>) -> Box<dyn Chain>;
+/// Makes what holds the chain's right end.
+pub type MakeHolder = fn(&Given, &Context, &dyn Chain) -> Box<dyn Holder>;
+
+/// Where an effect joins.
+#[derive(Clone, Copy, Debug)]
+pub enum Part {
+    /// The stick-slip object, which the scene's solver renders.
+    Joint,
+    /// What the device knows of the shaft.
+    Sensor,
+    /// A stage of the device after the model; its column in a trace.
+    Stage(MakeStage, &'static str),
+    /// What turns the command into torque.
+    Actuator(MakeActuator),
+    /// A part of the chain, right of those before it in the table.
+    Link(MakeLink),
+    /// What holds the right end.
+    Holder(MakeHolder),
+}
+
+/// The numbers of an effect whose table has `N`.
+///
+/// # Panics
+/// If it has not: a mistake in the effect's own file.
+pub fn numbers<const N: usize>(given: &Given) -> [f64; N] {
+    given
+        .numbers
+        .as_slice()
+        .try_into()
+        .expect("as many numbers as the effect's table has")
+}

@@ -1,0 +1,250 @@
+//! `backlash`: the lost motion of the gear.
+//!
+//! Rotor and joint touch on one side of a gap, on the other, or not at all:
+//!
+//! ```text
+//! g = φ_rotor − φ_joint,   −β/2 ≤ g ≤ β/2
+//! ```
+//!
+//! In contact they are one body as long as they press; in between the rotor is
+//! on its own. When the gap closes the two go on together: a plastic impact,
+//! whose energy ½·J₁J₂/(J₁+J₂)·ġ² is lost. The moment is located inside the
+//! step. (Gear teeth ring at kilohertz, which neither the cuff nor a hand lets
+//! through.)
+//!
+//! β is 1.0°: average no-load backlash of the GP 32 A.
+
+use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, sense_of};
+use crate::effect::{Effect, Need, Part, numbers};
+use crate::ledger::{Account, Ledger};
+use crepitus_model::Sense;
+use crepitus_model::parameters::ParameterSpec;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: NAME,
+    adds: "the gear's lost motion: at each reversal the rotor first crosses a gap",
+    states: &["gap_rad", "gap rate"],
+    parameters: &[ParameterSpec {
+        key: "gap_deg",
+        symbol: "β",
+        unit: "°",
+        min: 1e-6,
+        max: 90.0,
+        default: 1.0,
+        meaning: "lost motion between rotor and joint, at the joint",
+    }],
+    choices: &[],
+    needs: &[Need {
+        effect: "drivetrain",
+        why: "what crosses the gap is the rotor's inertia",
+    }],
+    part: Part::Link(|given, context, left| {
+        let [gap_deg] = numbers(given);
+        let half_rad = gap_deg.to_radians() / 2.0;
+        let omega = context.start.omega_rad_s;
+        // A joint that moves drags the rotor along.
+        let (contact, gap_rad) = if omega == 0.0 {
+            (None, 0.0)
+        } else {
+            let sense = sense_of(-omega);
+            (Some(sense), sense.of_signed(half_rad))
+        };
+        Box::new(Backlash {
+            left,
+            half_rad,
+            right_kg_m2: 0.0,
+            contact,
+            gap_rad,
+            rotor_rad_s: omega,
+            rotor_mean_rad_s: 0.0,
+            found: None,
+            lost_j: 0.0,
+        })
+    }),
+};
+
+const NAME: &str = "backlash";
+
+struct Backlash {
+    left: Box<dyn Chain>,
+    half_rad: f64,
+    right_kg_m2: f64,
+    /// Which way the rotor presses on the joint, if they touch.
+    contact: Option<Sense>,
+    gap_rad: f64,
+    /// Velocity of a rotor on its own.
+    rotor_rad_s: f64,
+    rotor_mean_rad_s: f64,
+    found: Option<f64>,
+    lost_j: f64,
+}
+
+impl Backlash {
+    fn rotor(&self, joint: &Body) -> Body {
+        Body {
+            angle_rad: joint.angle_rad + self.gap_rad,
+            omega_rad_s: match self.contact {
+                Some(_) => joint.omega_rad_s,
+                None => self.rotor_rad_s,
+            },
+        }
+    }
+
+    /// Where in the step an open gap closes, as a fraction of it.
+    fn closes(&self, step: &Step, rotor: &Body, joint: &Body, joint_mean: f64) -> Option<f64> {
+        let mean = self.rotor_mean_rad_s - joint_mean;
+        let after = self.gap_rad + step.length_s * mean;
+        if after.abs() <= self.half_rad {
+            return None;
+        }
+        let sense = sense_of(after);
+        let room = self.half_rad - sense.of_signed(self.gap_rad);
+        let start = sense.of_signed(rotor.omega_rad_s - joint.omega_rad_s);
+        let bend = sense.of_signed(mean) - start;
+        // The gap is a parabola over the step: h·bend·f² + h·start·f = room.
+        let root = (start * start + 4.0 * bend * room / step.length_s)
+            .max(0.0)
+            .sqrt();
+        let fraction = 2.0 * room / (step.length_s * (start + root));
+        Some(if fraction.is_finite() {
+            fraction.clamp(0.0, 1.0)
+        } else {
+            0.0
+        })
+    }
+
+    /// The gap is closed: rotor and joint go on with one velocity. Returns
+    /// the impulse on a joint that does not give way.
+    fn impact(&mut self, sense: Sense, rotor_rad_s: f64, joint: &mut Body) -> f64 {
+        let rotor_kg_m2 = self.left.inertia_kg_m2();
+        let slip = rotor_rad_s - joint.omega_rad_s;
+        self.gap_rad = sense.of_signed(self.half_rad);
+        self.contact = Some(sense);
+        if self.right_kg_m2.is_finite() {
+            let sum = rotor_kg_m2 + self.right_kg_m2;
+            self.lost_j += 0.5 * rotor_kg_m2 * self.right_kg_m2 / sum * slip * slip;
+            joint.omega_rad_s += rotor_kg_m2 / sum * slip;
+            0.0
+        } else {
+            self.lost_j += 0.5 * rotor_kg_m2 * slip * slip;
+            rotor_kg_m2 * slip
+        }
+    }
+}
+
+impl Chain for Backlash {
+    fn fold(&mut self, step: &Step, body: &Body) -> Push {
+        let rotor = self.rotor(body);
+        let push = self.left.fold(step, &rotor);
+        if self.contact.is_some() {
+            return push;
+        }
+        self.rotor_mean_rad_s = match push.held_by_nm {
+            Some(_) => 0.0,
+            None => push.torque_nm / push.slope_nms,
+        };
+        Push::default()
+    }
+
+    fn check(&mut self, step: &Step, body: &Body, flow: Flow) -> Verdict {
+        let rotor = self.rotor(body);
+        self.found = None;
+        match self.contact {
+            Some(sense) => {
+                let left = self.left.check(step, &rotor, flow);
+                if left != Verdict::Again && sense.of_signed(flow.torque_nm) < 0.0 {
+                    // Teeth cannot pull.
+                    self.contact = None;
+                    self.rotor_rad_s = body.omega_rad_s;
+                    return Verdict::Again;
+                }
+                left
+            }
+            None => {
+                let alone = Flow {
+                    omega_rad_s: self.rotor_mean_rad_s,
+                    torque_nm: 0.0,
+                };
+                let left = self.left.check(step, &rotor, alone);
+                self.found = self.closes(step, &rotor, body, flow.omega_rad_s);
+                left.and(self.found.map_or(Verdict::Holds, Verdict::EndsAt))
+            }
+        }
+    }
+
+    fn settle(
+        &mut self,
+        step: &Step,
+        body: &Body,
+        next: &mut Body,
+        flow: Flow,
+        ends_at: Option<f64>,
+    ) -> Settled {
+        let rotor = self.rotor(body);
+        if self.contact.is_some() {
+            let settled = self.left.settle(step, &rotor, next, flow, ends_at);
+            self.rotor_rad_s = next.omega_rad_s;
+            return settled;
+        }
+        let alone = Flow {
+            omega_rad_s: self.rotor_mean_rad_s,
+            torque_nm: 0.0,
+        };
+        let mut rotor_next = rotor.after(step.length_s, self.rotor_mean_rad_s);
+        let mut settled = self
+            .left
+            .settle(step, &rotor, &mut rotor_next, alone, ends_at);
+        self.gap_rad += step.length_s * (self.rotor_mean_rad_s - flow.omega_rad_s);
+        self.rotor_rad_s = rotor_next.omega_rad_s;
+        let closed = ends_at.is_some() && ends_at == self.found;
+        if closed || self.gap_rad.abs() > self.half_rad {
+            let sense = sense_of(self.gap_rad);
+            settled.impulse_nms += self.impact(sense, rotor_next.omega_rad_s, next);
+        }
+        settled
+    }
+
+    fn shaft(&self, body: &Body) -> Body {
+        self.left.shaft(&self.rotor(body))
+    }
+
+    fn is_rigid(&self) -> bool {
+        false
+    }
+
+    fn inertia_kg_m2(&self) -> f64 {
+        match self.contact {
+            Some(_) => self.left.inertia_kg_m2(),
+            None => 0.0,
+        }
+    }
+
+    fn attach(&mut self, right_kg_m2: f64) {
+        self.right_kg_m2 = right_kg_m2;
+        self.left.attach(0.0);
+    }
+
+    fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
+        self.left.weight()
+    }
+
+    fn book(&self, body: &Body, ledger: &mut Ledger) {
+        self.left.book(&self.rotor(body), ledger);
+        ledger.book(NAME, "impacts", Account::Lost, self.lost_j);
+    }
+
+    fn columns(&self, names: &mut Vec<&'static str>) {
+        self.left.columns(names);
+        names.push("gap_rad");
+    }
+
+    fn write(&self, body: &Body, row: &mut Vec<f64>) {
+        self.left.write(&self.rotor(body), row);
+        row.push(self.gap_rad);
+    }
+
+    fn warnings(&self, warnings: &mut Vec<String>) {
+        self.left.warnings(warnings);
+    }
+}

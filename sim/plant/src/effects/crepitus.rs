@@ -1,0 +1,16 @@
+//! `crepitus`: the stick-slip object. The scene's solver renders it; its
+//! equations, numbers and conventions are those of `crepitus_model`.
+
+use crate::effect::{Effect, Part};
+use crepitus_model::parameters::PARAMETERS;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: "crepitus",
+    adds: "the torque of the stick-slip object",
+    states: &["theta_rad", "theta_dot_rad_s"],
+    parameters: &PARAMETERS,
+    choices: &[],
+    needs: &[],
+    part: Part::Joint,
+};

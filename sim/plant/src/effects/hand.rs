@@ -1,0 +1,261 @@
+//! `hand`: the trainee's arm, which drives the leg toward the motion.
+//!
+//! The scene's motion is what the trainee intends; the arm is a mass on a
+//! spring and a damper toward it, at a lever from the knee's axis:
+//!
+//! ```text
+//! M·r²·Ω̇ = K·r²·(φ_intended − φ) + B·r²·(Ω_intended − Ω) + weight of the leg − what the leg does
+//! ```
+//!
+//! | number | default | source |
+//! |---|---|---|
+//! | mass, damping, stiffness | 0.554 kg, 6.45 N·s/m, 135 N/m | endpoint impedance of an arm, one trial (Sci. Rep. srep18004, fig. 3) |
+//! | lever | 0.35 m | estimate: a hand near the ankle |
+//!
+//! Who lifts a leg knows its weight: if the scene has a `limb`, the hand adds
+//! the torque that holds it at the intended angle, so the leg does not sag.
+
+use crate::chain::{Body, Flow, Push, Settled};
+use crate::effect::{Effect, Part, numbers};
+use crate::holder::{Holder, MotionStep, Stretch};
+use crate::ledger::{Account, Ledger};
+use crepitus_model::parameters::ParameterSpec;
+
+/// The effect.
+pub const EFFECT: Effect = Effect {
+    name: NAME,
+    adds: "the trainee's arm: the motion becomes what it intends, and the leg does what comes of it",
+    states: &["leg angle", "leg velocity"],
+    parameters: &[
+        ParameterSpec {
+            key: "mass_kg",
+            symbol: "M",
+            unit: "kg",
+            min: 1e-3,
+            max: 100.0,
+            default: 0.554,
+            meaning: "mass of the arm at the hand",
+        },
+        ParameterSpec {
+            key: "damping_ns_per_m",
+            symbol: "B",
+            unit: "N·s/m",
+            min: 0.0,
+            max: 1e4,
+            default: 6.45,
+            meaning: "damping of the arm at the hand",
+        },
+        ParameterSpec {
+            key: "stiffness_n_per_m",
+            symbol: "K",
+            unit: "N/m",
+            min: 0.0,
+            max: 1e6,
+            default: 135.0,
+            meaning: "stiffness of the arm at the hand",
+        },
+        ParameterSpec {
+            key: "lever_m",
+            symbol: "r",
+            unit: "m",
+            min: 0.01,
+            max: 2.0,
+            default: 0.35,
+            meaning: "distance of the hand from the knee's axis",
+        },
+    ],
+    choices: &[],
+    needs: &[],
+    part: Part::Holder(|given, context, chain| {
+        let [mass, damping, stiffness, lever] = numbers(given);
+        let square = lever * lever;
+        let arm = Arm {
+            inertia_kg_m2: mass * square,
+            damping: damping * square,
+            stiffness: stiffness * square,
+            motion: MotionStep {
+                length_s: 1.0,
+                from: context.start,
+                to: context.start,
+            },
+            intended: context.start,
+            felt_nms: 0.0,
+            given_j: 0.0,
+            lost_j: 0.0,
+        };
+        match chain.weight() {
+            None => Box::new(Hand { arm, lift: () }),
+            Some(weight) => Box::new(Hand { arm, lift: Lifts { weight, given_j: 0.0 } }),
+        }
+    }),
+};
+
+const NAME: &str = "hand";
+
+/// The arm's impedance.
+struct Arm {
+    inertia_kg_m2: f64,
+    damping: f64,
+    stiffness: f64,
+    motion: MotionStep,
+    intended: Body,
+    felt_nms: f64,
+    given_j: f64,
+    lost_j: f64,
+}
+
+/// What a hand does about the leg's weight.
+trait Lift {
+    /// Torque that holds the leg at an angle, N·m.
+    fn torque_nm(&self, angle_rad: f64) -> f64;
+    /// Notes work done.
+    fn did(&mut self, joule: f64);
+    /// Books it.
+    fn book(&self, ledger: &mut Ledger);
+}
+
+/// There is no leg.
+impl Lift for () {
+    fn torque_nm(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    fn did(&mut self, _: f64) {}
+
+    fn book(&self, _: &mut Ledger) {}
+}
+
+/// Lifts it.
+struct Lifts {
+    weight: Box<dyn Fn(f64) -> f64>,
+    given_j: f64,
+}
+
+impl Lift for Lifts {
+    fn torque_nm(&self, angle_rad: f64) -> f64 {
+        -(self.weight)(angle_rad)
+    }
+
+    fn did(&mut self, joule: f64) {
+        self.given_j += joule;
+    }
+
+    fn book(&self, ledger: &mut Ledger) {
+        ledger.book(NAME, "lifting", Account::Given, self.given_j);
+    }
+}
+
+struct Hand<L> {
+    arm: Arm,
+    lift: L,
+}
+
+/// The arm in one stretch: mean of the intended angle, of the intended
+/// velocity, and the torque that lifts the leg.
+struct Intent {
+    angle_rad: f64,
+    omega_rad_s: f64,
+    lift_nm: f64,
+}
+
+impl<L: Lift> Hand<L> {
+    fn intent(&self, stretch: &Stretch) -> Intent {
+        let motion = &self.arm.motion;
+        let (a, b) = (motion.angle_rad(stretch.from), motion.angle_rad(stretch.to));
+        let angle_rad = f64::midpoint(a, b);
+        Intent {
+            angle_rad,
+            omega_rad_s: (b - a) / stretch.length_s,
+            lift_nm: self.lift.torque_nm(angle_rad),
+        }
+    }
+}
+
+impl<L: Lift> Holder for Hand<L> {
+    fn jump(&mut self, _: f64, _: &mut Body, _: f64) {}
+
+    fn begin(&mut self, motion: &MotionStep) {
+        self.arm.motion = *motion;
+        self.arm.intended = motion.to;
+    }
+
+    fn solve(&mut self, stretch: &Stretch, body: &Body, push: Push) -> Flow {
+        let arm = &self.arm;
+        let intent = self.intent(stretch);
+        let inertial = 2.0 * arm.inertia_kg_m2 / stretch.length_s;
+        let torque = inertial * body.omega_rad_s
+            + arm.stiffness * (intent.angle_rad - body.angle_rad)
+            + arm.damping * intent.omega_rad_s
+            + intent.lift_nm;
+        let slope = inertial + 0.5 * arm.stiffness * stretch.length_s + arm.damping;
+        let omega_rad_s = match push.held_by_nm {
+            Some(_) => 0.0,
+            None => (push.torque_nm + torque) / (push.slope_nms + slope),
+        };
+        Flow {
+            omega_rad_s,
+            torque_nm: slope * omega_rad_s - torque,
+        }
+    }
+
+    fn settle(
+        &mut self,
+        stretch: &Stretch,
+        body: &mut Body,
+        next: Body,
+        flow: Flow,
+        _: &Settled,
+        _: f64,
+    ) {
+        let intent = self.intent(stretch);
+        let (h, w) = (stretch.length_s, flow.omega_rad_s);
+        let arm = &mut self.arm;
+        let behind = intent.angle_rad - body.angle_rad - 0.5 * h * w;
+        let slip = intent.omega_rad_s - w;
+        let pull = arm.stiffness * behind + arm.damping * slip;
+        arm.given_j += pull * intent.omega_rad_s * h;
+        arm.lost_j += arm.damping * slip * slip * h;
+        // With the jump of an impact, which the mean of the step has not.
+        arm.felt_nms += (pull + intent.lift_nm) * h
+            - arm.inertia_kg_m2 * (next.omega_rad_s - body.omega_rad_s);
+        self.lift.did(intent.lift_nm * w * h);
+        *body = next;
+    }
+
+    fn felt_nms(&self) -> f64 {
+        self.arm.felt_nms
+    }
+
+    fn inertia_kg_m2(&self) -> f64 {
+        self.arm.inertia_kg_m2
+    }
+
+    fn book(&self, body: &Body, ledger: &mut Ledger) {
+        let arm = &self.arm;
+        let behind = arm.intended.angle_rad - body.angle_rad;
+        let speed = body.omega_rad_s;
+        ledger.book(NAME, "work", Account::Given, arm.given_j);
+        self.lift.book(ledger);
+        ledger.book(
+            NAME,
+            "arm",
+            Account::Stored,
+            0.5 * arm.inertia_kg_m2 * speed * speed,
+        );
+        ledger.book(
+            NAME,
+            "elastic",
+            Account::Stored,
+            0.5 * arm.stiffness * behind * behind,
+        );
+        ledger.book(NAME, "damping", Account::Lost, arm.lost_j);
+    }
+
+    fn columns(&self) -> &'static [&'static str] {
+        &["intended_angle_rad"]
+    }
+
+    fn write(&self, row: &mut Vec<f64>) {
+        row.push(self.arm.intended.angle_rad);
+    }
+}

@@ -1,0 +1,117 @@
+//! Where the energy of a plant is: what each part was given, stores, and has
+//! lost.
+
+/// What a term counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Account {
+    /// Work done on the plant from outside.
+    Given,
+    /// Energy that a part holds.
+    Stored,
+    /// Energy that has become heat.
+    Lost,
+    /// Work that the rendered torque has taken out of the mechanics.
+    Rendered,
+}
+
+impl Account {
+    /// Name in outputs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Given => "given",
+            Self::Stored => "stored",
+            Self::Lost => "lost",
+            Self::Rendered => "rendered",
+        }
+    }
+}
+
+/// One term of the balance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Term {
+    /// The effect that it belongs to; `motion` for what is prescribed.
+    pub effect: &'static str,
+    /// What it is.
+    pub what: &'static str,
+    /// Where it counts.
+    pub account: Account,
+    /// Energy, J.
+    pub joule: f64,
+}
+
+/// The terms at one time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ledger {
+    terms: Vec<Term>,
+}
+
+impl Ledger {
+    /// Books a term.
+    pub fn book(&mut self, effect: &'static str, what: &'static str, account: Account, joule: f64) {
+        self.terms.push(Term {
+            effect,
+            what,
+            account,
+            joule,
+        });
+    }
+
+    /// The terms since `start`, which the same plant has booked.
+    #[must_use]
+    pub fn since(mut self, start: &Self) -> Self {
+        for (now, then) in self.terms.iter_mut().zip(&start.terms) {
+            now.joule -= then.joule;
+        }
+        self
+    }
+
+    /// The terms.
+    pub fn terms(&self) -> &[Term] {
+        &self.terms
+    }
+
+    /// What the balance leaves over, J: zero but for numerical error.
+    pub fn residual_j(&self) -> f64 {
+        self.terms
+            .iter()
+            .map(|t| match t.account {
+                Account::Given => t.joule,
+                Account::Stored | Account::Lost | Account::Rendered => -t.joule,
+            })
+            .sum()
+    }
+
+    /// The residual as a share of all the energy that moved.
+    pub fn relative_residual(&self) -> f64 {
+        let through: f64 = self.terms.iter().map(|t| t.joule.abs()).sum();
+        if through > 0.0 {
+            self.residual_j() / through
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ledger(given: f64, stored: f64, lost: f64) -> Ledger {
+        let mut ledger = Ledger::default();
+        ledger.book("hand", "work", Account::Given, given);
+        ledger.book("limb", "kinetic", Account::Stored, stored);
+        ledger.book("cuff", "damper", Account::Lost, lost);
+        ledger
+    }
+
+    #[test]
+    fn what_is_given_is_stored_or_lost() {
+        let balance = ledger(5.0, 3.5, 2.0).since(&ledger(0.0, 0.5, 0.0));
+        assert_eq!(balance.residual_j(), 0.0);
+        assert_eq!(balance.relative_residual(), 0.0);
+        let open = ledger(5.0, 3.0, 1.0);
+        assert_eq!(open.residual_j(), 1.0);
+        assert!((open.relative_residual() - 1.0 / 9.0).abs() < 1e-15);
+        assert_eq!(Ledger::default().relative_residual(), 0.0);
+    }
+}

@@ -1,0 +1,198 @@
+//! A plant: actuator, chain and holder, stepped together.
+
+use crate::actuator::Actuator;
+use crate::chain::{Body, Chain, Step, Verdict};
+use crate::holder::{Holder, MotionStep, Stretch};
+use crate::ledger::Ledger;
+
+/// Ends of modes that are located within one step. What would follow is
+/// carried to the step's end in the mode then in force.
+const ENDS_PER_STEP: u32 = 8;
+
+/// How often a step is folded again because a mode did not hold. A chain has
+/// at most a friction and a contact, with three modes each.
+const CHANGES_PER_FOLD: u32 = 6;
+
+/// The shortest part of a step that an end of a mode can cut off.
+const SHORTEST: f64 = 1e-6;
+
+/// A coupled plant.
+pub struct Plant {
+    actuator: Box<dyn Actuator>,
+    chain: Box<dyn Chain>,
+    holder: Box<dyn Holder>,
+    /// The body at the right end of the chain.
+    body: Body,
+    start: Ledger,
+}
+
+impl Plant {
+    /// Couples the parts; the right end begins at `start`.
+    pub fn new(
+        actuator: Box<dyn Actuator>,
+        mut chain: Box<dyn Chain>,
+        holder: Box<dyn Holder>,
+        start: Body,
+    ) -> Self {
+        chain.attach(holder.inertia_kg_m2());
+        let mut plant = Self {
+            actuator,
+            chain,
+            holder,
+            body: start,
+            start: Ledger::default(),
+        };
+        plant.start = plant.booked();
+        plant
+    }
+
+    /// Into how many parts of equal length a tick has to be cut at least.
+    pub fn parts(&self) -> u32 {
+        self.actuator.parts()
+    }
+
+    /// A new tick, with the torque that the device wants to show, N·m.
+    pub fn command(&mut self, torque_nm: f64) {
+        self.actuator.command(torque_nm);
+    }
+
+    /// The middle of the tick.
+    pub fn mid_tick(&mut self) {
+        self.actuator.mid_tick();
+    }
+
+    /// Between two steps the motion's velocity jumps.
+    pub fn jump(&mut self, omega_rad_s: f64) {
+        let rigid = self.chain.inertia_kg_m2();
+        self.holder.jump(omega_rad_s, &mut self.body, rigid);
+    }
+
+    /// One step, in which the scene's motion goes like this.
+    pub fn advance(&mut self, motion: &MotionStep) {
+        self.holder.begin(motion);
+        let mut from = 0.0;
+        for ends in 0..=ENDS_PER_STEP {
+            let stretch = |to: f64| Stretch {
+                from,
+                to,
+                length_s: (to - from) * motion.length_s,
+            };
+            let whole = stretch(1.0);
+            match self.look(&whole) {
+                Some(fraction) if ends < ENDS_PER_STEP => {
+                    let to = from + fraction.max(SHORTEST) * (1.0 - from);
+                    self.go(&stretch(to), Some(fraction));
+                    from = to;
+                    if 1.0 - from < SHORTEST {
+                        return;
+                    }
+                }
+                _ => {
+                    self.go(&whole, None);
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Brings the modes in order, and finds the first that ends within.
+    fn look(&mut self, stretch: &Stretch) -> Option<f64> {
+        for _ in 0..CHANGES_PER_FOLD {
+            let step = self.step(stretch);
+            let push = self.chain.fold(&step, &self.body);
+            let flow = self.holder.solve(stretch, &self.body, push);
+            match self.chain.check(&step, &self.body, flow) {
+                Verdict::Holds => return None,
+                Verdict::EndsAt(fraction) => return Some(fraction),
+                Verdict::Again => {}
+            }
+        }
+        None
+    }
+
+    /// Goes through a stretch.
+    fn go(&mut self, stretch: &Stretch, ends_at: Option<f64>) {
+        let step = self.step(stretch);
+        let push = self.chain.fold(&step, &self.body);
+        let flow = self.holder.solve(stretch, &self.body, push);
+        let mut next = self.body.after(stretch.length_s, flow.omega_rad_s);
+        let settled = self
+            .chain
+            .settle(&step, &self.body, &mut next, flow, ends_at);
+        let rigid = self.chain.inertia_kg_m2();
+        self.holder
+            .settle(stretch, &mut self.body, next, flow, &settled, rigid);
+        self.actuator.settle(stretch.length_s, settled.shaft_rad_s);
+    }
+
+    fn step(&mut self, stretch: &Stretch) -> Step {
+        Step {
+            length_s: stretch.length_s,
+            drive: self.actuator.fold(stretch.length_s),
+            load_nm: self.actuator.load_nm(),
+        }
+    }
+
+    /// The motor's shaft, referred to the joint: where the encoder sits and
+    /// the torque is rendered.
+    pub fn shaft(&self) -> Body {
+        self.chain.shaft(&self.body)
+    }
+
+    /// The right end of the chain: the leg, where the hand is.
+    pub fn leg(&self) -> Body {
+        self.body
+    }
+
+    /// Impulse that the hand has felt so far, N·m·s; see
+    /// [`Holder::felt_nms`].
+    pub fn felt_nms(&self) -> f64 {
+        self.holder.felt_nms()
+    }
+
+    /// Work that the actuator has taken out of the mechanics so far, J.
+    pub fn absorbed_j(&self) -> f64 {
+        self.actuator.absorbed_j()
+    }
+
+    /// The energy balance since the start.
+    pub fn balance(&self) -> Ledger {
+        self.booked().since(&self.start)
+    }
+
+    fn booked(&self) -> Ledger {
+        let mut ledger = Ledger::default();
+        self.holder.book(&self.body, &mut ledger);
+        self.actuator.book(&mut ledger);
+        self.chain.book(&self.body, &mut ledger);
+        ledger
+    }
+
+    /// Names of the columns that its parts have in a trace.
+    pub fn columns(&self) -> Vec<&'static str> {
+        let mut names = self.actuator.columns().to_vec();
+        self.chain.columns(&mut names);
+        if !self.chain.is_rigid() {
+            names.extend(["leg_angle_rad", "leg_omega_rad_s"]);
+        }
+        names.extend(self.holder.columns());
+        names
+    }
+
+    /// Writes them.
+    pub fn write(&self, row: &mut Vec<f64>) {
+        self.actuator.write(row);
+        self.chain.write(&self.body, row);
+        if !self.chain.is_rigid() {
+            row.extend([self.body.angle_rad, self.body.omega_rad_s]);
+        }
+        self.holder.write(row);
+    }
+
+    /// What was odd.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        self.chain.warnings(&mut warnings);
+        warnings
+    }
+}

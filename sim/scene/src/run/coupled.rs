@@ -1,0 +1,275 @@
+//! A run with a plant: device → actuator → chain → holder, tick by tick. The
+//! shaft does what comes of it.
+
+use super::device::{Device, device};
+use super::sensor::Shaft;
+use super::stepping::{CHECK_STEPS, PROGRESS_STEPS, Walk};
+use super::{Diverged, Observer, RunError, Totals, step_s, steps};
+use crate::scene::Scene;
+use crate::trace::EventRecord;
+use crepitus_model::Real;
+use crepitus_model::solver::Solver;
+use crepitus_plant::Plant;
+use crepitus_plant::assembly::{Assembled, NamedStage};
+use crepitus_plant::chain::Body;
+use crepitus_plant::holder::MotionStep;
+use crepitus_plant::ledger::Ledger;
+
+/// The totals of a plant.
+pub(super) struct PlantTotals {
+    /// The balance of its mechanics and its motor.
+    pub(super) balance: Ledger,
+    /// Where the work of the rendered torque comes from.
+    pub(super) rendering: Rendering,
+    /// What the hand felt; none if nobody holds the leg.
+    pub(super) felt: Option<Felt>,
+    pub(super) warnings: Vec<String>,
+}
+
+/// The work that the actuator takes out of the mechanics, and its parts.
+pub(super) struct Rendering {
+    /// Of the model's torque, held over each tick.
+    pub(super) held_j: f64,
+    /// Of what each stage adds.
+    pub(super) stages_j: Vec<(&'static str, f64)>,
+    /// Of the torque that there was.
+    pub(super) absorbed_j: f64,
+}
+
+/// The torque that the hand feels, mean of each tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Felt {
+    pub(super) min_nm: f64,
+    pub(super) max_nm: f64,
+    pub(super) sum: f64,
+    pub(super) squares: f64,
+}
+
+impl Felt {
+    fn new() -> Self {
+        Self {
+            min_nm: f64::INFINITY,
+            max_nm: f64::NEG_INFINITY,
+            sum: 0.0,
+            squares: 0.0,
+        }
+    }
+
+    fn note(&mut self, torque_nm: f64) {
+        self.min_nm = self.min_nm.min(torque_nm);
+        self.max_nm = self.max_nm.max(torque_nm);
+        self.sum += torque_nm;
+        self.squares += torque_nm * torque_nm;
+    }
+}
+
+/// The name of the column of what the hand feels.
+pub(super) const FELT_COLUMN: &str = "hand_torque_nm";
+
+/// A stage, what it adds now, and the work of that.
+struct Stage {
+    named: NamedStage,
+    added_nm: f64,
+    work_j: f64,
+}
+
+/// Runs a scene with a plant.
+pub(super) fn simulate<F: Real, O: Observer>(
+    scene: &Scene,
+    solver: Solver,
+    observer: &mut O,
+) -> Result<Totals, RunError<O::Error>> {
+    let tick_s = step_s(scene);
+    let Assembled { plant, stages } = scene.assemble()?;
+    let shaft = shaft(&plant);
+    let run = Run {
+        first_felt_nm: first_felt_nm(scene)?,
+        device: device::<F>(scene, solver, tick_s, &shaft)?,
+        plant,
+        stages: stages
+            .into_iter()
+            .map(|named| Stage {
+                named,
+                added_nm: 0.0,
+                work_j: 0.0,
+            })
+            .collect(),
+        tick_s,
+    };
+    run.go(scene, observer)
+}
+
+fn shaft(plant: &Plant) -> Shaft {
+    let body = plant.shaft();
+    Shaft {
+        phi_rad: body.angle_rad,
+        omega_rad_s: body.omega_rad_s,
+    }
+}
+
+fn body(shaft: &Shaft) -> Body {
+    Body {
+        angle_rad: shaft.phi_rad,
+        omega_rad_s: shaft.omega_rad_s,
+    }
+}
+
+struct Run {
+    device: Box<dyn Device>,
+    plant: Plant,
+    stages: Vec<Stage>,
+    tick_s: f64,
+    /// What the hand feels in the first tick stands in the first row, too.
+    first_felt_nm: f64,
+}
+
+impl Run {
+    fn go<O: Observer>(
+        mut self,
+        scene: &Scene,
+        observer: &mut O,
+    ) -> Result<Totals, RunError<O::Error>> {
+        let (steps, every) = steps(scene);
+        let parts = self.plant.parts() * scene.substeps;
+        let mut walk = Walk::new(&scene.motion, self.tick_s / f64::from(parts));
+        let held = scene.is_held();
+        let mut felt = Felt::new();
+        let mut felt_nm = self.first_felt_nm;
+        let mut held_j = 0.0;
+        let mut fastest_rad_s: f64 = 0.0;
+        let mut row = Vec::new();
+        let mut n = 0;
+        let mut time_s = 0.0;
+        loop {
+            let before = shaft(&self.plant);
+            fastest_rad_s = fastest_rad_s.max(before.omega_rad_s.abs());
+            if O::WANTS_ROWS && n % every == 0 {
+                row.clear();
+                row.extend([time_s, before.phi_rad, before.omega_rad_s]);
+                self.device.write(&mut row);
+                row.extend(self.stages.iter().map(|s| s.added_nm));
+                self.plant.write(&mut row);
+                if held {
+                    row.push(felt_nm);
+                }
+                observer.row(&row).map_err(RunError::Observer)?;
+            }
+            if (n % CHECK_STEPS == 0 || n == steps)
+                && !(self.device.is_finite() && before.phi_rad.is_finite())
+            {
+                return Err(RunError::Diverged(diverged(scene, time_s)));
+            }
+            if n % PROGRESS_STEPS == 0 {
+                observer.progress(time_s).map_err(RunError::Observer)?;
+            }
+            if n == steps {
+                break;
+            }
+            n += 1;
+            let model_nm = self.device.torque_nm();
+            self.command(model_nm);
+            let felt_before = self.plant.felt_nms();
+            self.advance(&mut walk, parts);
+            felt_nm = (self.plant.felt_nms() - felt_before) / self.tick_s;
+            felt.note(felt_nm);
+            let after = shaft(&self.plant);
+            let turned = after.phi_rad - before.phi_rad;
+            held_j += model_nm * turned;
+            for stage in &mut self.stages {
+                stage.work_j += stage.added_nm * turned;
+            }
+            let mut result = Ok(());
+            self.device
+                .tick(time_s, &before, &after, &mut |event: &EventRecord| {
+                    if result.is_ok() {
+                        result = observer.event(event);
+                    }
+                });
+            result.map_err(RunError::Observer)?;
+            if walk.now.omega_rad_s != walk.end.omega_rad_s {
+                self.plant.jump(walk.now.omega_rad_s);
+            }
+            time_s = walk.time_s;
+        }
+        Ok(Totals {
+            steps,
+            end_s: time_s,
+            tally: self.device.finish(time_s),
+            fastest_rad_s,
+            plant: Some(PlantTotals {
+                balance: self.plant.balance(),
+                rendering: Rendering {
+                    held_j,
+                    stages_j: self
+                        .stages
+                        .iter()
+                        .map(|s| (s.named.effect, s.work_j))
+                        .collect(),
+                    absorbed_j: self.plant.absorbed_j(),
+                },
+                felt: held.then_some(felt),
+                warnings: self.plant.warnings(),
+            }),
+        })
+    }
+
+    /// What the device wants to show in the next tick.
+    #[inline]
+    fn command(&mut self, model_nm: f64) {
+        let mut command_nm = model_nm;
+        if !self.stages.is_empty() {
+            let seen = self.device.seen();
+            for stage in &mut self.stages {
+                stage.added_nm = stage.named.stage.tick(&seen);
+                command_nm += stage.added_nm;
+            }
+        }
+        self.plant.command(command_nm);
+    }
+
+    /// The plant through one tick.
+    #[inline]
+    fn advance(&mut self, walk: &mut Walk<'_>, parts: u32) {
+        for part in 0..parts {
+            if 2 * part == parts {
+                self.plant.mid_tick();
+            }
+            let (from, to) = walk.step();
+            self.plant.advance(&MotionStep {
+                length_s: walk.clock.step_s,
+                from: body(&from),
+                to: body(&to),
+            });
+        }
+    }
+}
+
+/// What the hand feels in the first tick: a plant that is thrown away goes
+/// through it.
+fn first_felt_nm(scene: &Scene) -> Result<f64, crepitus_model::SettingsError> {
+    let mut plant = scene.assemble()?.plant;
+    let parts = plant.parts();
+    let tick_s = step_s(scene);
+    let mut walk = Walk::new(&scene.motion, tick_s / f64::from(parts));
+    plant.command(0.0);
+    for _ in 0..parts {
+        let (from, to) = walk.step();
+        plant.advance(&MotionStep {
+            length_s: walk.clock.step_s,
+            from: body(&from),
+            to: body(&to),
+        });
+    }
+    Ok(plant.felt_nms() / tick_s)
+}
+
+fn diverged(scene: &Scene, by_s: f64) -> Diverged {
+    let swing = scene
+        .crepitus
+        .map_or(0.0, |c| c.settings.parameters.natural_rad_s());
+    Diverged {
+        solver: scene.solver.name(),
+        by_s,
+        radians_per_step: swing * step_s(scene),
+    }
+}
