@@ -9,13 +9,6 @@ pub trait Actuator {
     /// opposes growing angle.
     fn command(&mut self, torque_nm: f64);
 
-    /// The middle of the tick, where the device samples the current and sets
-    /// the voltage; called only if [`Actuator::PARTS`](Actuator::parts) is 2.
-    fn mid_tick(&mut self);
-
-    /// Into how many parts of equal length a tick has to be cut at least.
-    fn parts(&self) -> u32;
-
     /// What it does to the shaft over a step of `length_s`.
     fn fold(&mut self, length_s: f64) -> Push;
 
@@ -48,12 +41,6 @@ pub struct Ideal {
 impl Actuator for Ideal {
     fn command(&mut self, torque_nm: f64) {
         self.torque_nm = torque_nm;
-    }
-
-    fn mid_tick(&mut self) {}
-
-    fn parts(&self) -> u32 {
-        1
     }
 
     fn fold(&mut self, _: f64) -> Push {

@@ -93,6 +93,8 @@ pub struct Step {
     pub drive: Push,
     /// Torque that goes through the gear, N·m.
     pub load_nm: f64,
+    /// It goes on from an end of a mode.
+    pub cut: bool,
 }
 
 impl Step {
@@ -182,6 +184,10 @@ pub trait Chain {
     /// Told once, before the first step: the inertia right of this part that
     /// moves rigidly with it; infinite where the motion is prescribed.
     fn attach(&mut self, right_kg_m2: f64);
+
+    /// Told before the velocity of the right end changes at once: what cannot
+    /// be pulled stays behind.
+    fn jerk(&mut self, _body: &Body, _change_rad_s: f64) {}
 
     /// The torque that the chain's own weight and the like exert on its right
     /// end at rest, as a function of the angle; none if there is no such part.

@@ -1,7 +1,7 @@
 //! What holds the right end of the chain: the scene's motion, a hand that
 //! follows it, or nobody.
 
-use crate::chain::{Body, Flow, Push, Settled};
+use crate::chain::{Body, Chain, Flow, Push, Settled};
 use crate::ledger::{Account, Ledger};
 
 /// The scene's motion over one step of the plant, from its value just after
@@ -40,8 +40,8 @@ pub struct Stretch {
 
 /// Holds the right end.
 pub trait Holder {
-    /// The motion's velocity jumps, and moves what is rigid with it.
-    fn jump(&mut self, omega_rad_s: f64, body: &mut Body, rigid_kg_m2: f64);
+    /// The motion's velocity jumps, and takes along what it can of the chain.
+    fn jump(&mut self, omega_rad_s: f64, body: &mut Body, chain: &mut dyn Chain);
 
     /// A step begins.
     fn begin(&mut self, motion: &MotionStep);
@@ -112,8 +112,9 @@ impl Prescribed {
 }
 
 impl Holder for Prescribed {
-    fn jump(&mut self, omega_rad_s: f64, body: &mut Body, rigid_kg_m2: f64) {
-        self.carry(body, omega_rad_s, rigid_kg_m2);
+    fn jump(&mut self, omega_rad_s: f64, body: &mut Body, chain: &mut dyn Chain) {
+        chain.jerk(body, omega_rad_s - body.omega_rad_s);
+        self.carry(body, omega_rad_s, chain.inertia_kg_m2());
     }
 
     fn begin(&mut self, motion: &MotionStep) {
@@ -177,7 +178,7 @@ impl Holder for Prescribed {
 pub struct Released;
 
 impl Holder for Released {
-    fn jump(&mut self, _: f64, _: &mut Body, _: f64) {}
+    fn jump(&mut self, _: f64, _: &mut Body, _: &mut dyn Chain) {}
 
     fn begin(&mut self, _: &MotionStep) {}
 

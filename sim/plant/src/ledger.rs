@@ -43,6 +43,8 @@ pub struct Term {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
     terms: Vec<Term>,
+    /// What was stored where a balance begins, J.
+    held_j: f64,
 }
 
 impl Ledger {
@@ -59,6 +61,8 @@ impl Ledger {
     /// The terms since `start`, which the same plant has booked.
     #[must_use]
     pub fn since(mut self, start: &Self) -> Self {
+        let stored = start.terms.iter().filter(|t| t.account == Account::Stored);
+        self.held_j = stored.map(|t| t.joule.abs()).sum();
         for (now, then) in self.terms.iter_mut().zip(&start.terms) {
             now.joule -= then.joule;
         }
@@ -81,11 +85,17 @@ impl Ledger {
             .sum()
     }
 
-    /// The residual as a share of all the energy that moved.
+    /// All the energy that there was and that moved, J.
+    pub fn turnover_j(&self) -> f64 {
+        let moved: f64 = self.terms.iter().map(|t| t.joule.abs()).sum();
+        self.held_j + moved
+    }
+
+    /// The residual as a share of that.
     pub fn relative_residual(&self) -> f64 {
-        let through: f64 = self.terms.iter().map(|t| t.joule.abs()).sum();
-        if through > 0.0 {
-            self.residual_j() / through
+        let turnover = self.turnover_j();
+        if turnover > 0.0 {
+            self.residual_j() / turnover
         } else {
             0.0
         }
@@ -111,7 +121,7 @@ mod tests {
         assert_eq!(balance.relative_residual(), 0.0);
         let open = ledger(5.0, 3.0, 1.0);
         assert_eq!(open.residual_j(), 1.0);
-        assert!((open.relative_residual() - 1.0 / 9.0).abs() < 1e-15);
+        assert!((open.relative_residual() - 1.0 / 9.5).abs() < 1e-15);
         assert_eq!(Ledger::default().relative_residual(), 0.0);
     }
 }

@@ -1,7 +1,7 @@
 //! A plant: actuator, chain and holder, stepped together.
 
 use crate::actuator::Actuator;
-use crate::chain::{Body, Chain, Step, Verdict};
+use crate::chain::{Body, Chain, Flow, Step, Verdict};
 use crate::holder::{Holder, MotionStep, Stretch};
 use crate::ledger::Ledger;
 
@@ -12,6 +12,9 @@ const ENDS_PER_STEP: u32 = 8;
 /// How often a step is folded again because a mode did not hold. A chain has
 /// at most a friction and a contact, with three modes each.
 const CHANGES_PER_FOLD: u32 = 6;
+
+/// How often an end is looked for on a stretch that is cut about there.
+const LOOKS_PER_END: u32 = 6;
 
 /// The shortest part of a step that an end of a mode can cut off.
 const SHORTEST: f64 = 1e-6;
@@ -24,6 +27,13 @@ pub struct Plant {
     /// The body at the right end of the chain.
     body: Body,
     start: Ledger,
+}
+
+/// A stretch solved.
+#[derive(Clone, Copy)]
+struct Solution {
+    step: Step,
+    flow: Flow,
 }
 
 impl Plant {
@@ -46,25 +56,15 @@ impl Plant {
         plant
     }
 
-    /// Into how many parts of equal length a tick has to be cut at least.
-    pub fn parts(&self) -> u32 {
-        self.actuator.parts()
-    }
-
     /// A new tick, with the torque that the device wants to show, N·m.
     pub fn command(&mut self, torque_nm: f64) {
         self.actuator.command(torque_nm);
     }
 
-    /// The middle of the tick.
-    pub fn mid_tick(&mut self) {
-        self.actuator.mid_tick();
-    }
-
     /// Between two steps the motion's velocity jumps.
     pub fn jump(&mut self, omega_rad_s: f64) {
-        let rigid = self.chain.inertia_kg_m2();
-        self.holder.jump(omega_rad_s, &mut self.body, rigid);
+        self.holder
+            .jump(omega_rad_s, &mut self.body, self.chain.as_mut());
     }
 
     /// One step, in which the scene's motion goes like this.
@@ -77,44 +77,82 @@ impl Plant {
                 to,
                 length_s: (to - from) * motion.length_s,
             };
-            let whole = stretch(1.0);
-            match self.look(&whole) {
-                Some(fraction) if ends < ENDS_PER_STEP => {
-                    let to = from + fraction.max(SHORTEST) * (1.0 - from);
-                    self.go(&stretch(to), Some(fraction));
-                    from = to;
-                    if 1.0 - from < SHORTEST {
-                        return;
-                    }
-                }
-                _ => {
-                    self.go(&whole, None);
-                    return;
-                }
+            let (part, solution, end) = if ends < ENDS_PER_STEP {
+                self.first_end(from, stretch)
+            } else {
+                let whole = stretch(1.0);
+                (whole, self.look(&whole).0, None)
+            };
+            self.go(&part, solution, end);
+            if part.to >= 1.0 {
+                return;
             }
+            from = part.to;
         }
     }
 
-    /// Brings the modes in order, and finds the first that ends within.
-    fn look(&mut self, stretch: &Stretch) -> Option<f64> {
-        for _ in 0..CHANGES_PER_FOLD {
-            let step = self.step(stretch);
-            let push = self.chain.fold(&step, &self.body);
-            let flow = self.holder.solve(stretch, &self.body, push);
-            match self.chain.check(&step, &self.body, flow) {
-                Verdict::Holds => return None,
-                Verdict::EndsAt(fraction) => return Some(fraction),
+    /// What is left of a step up to the first end of a mode, if there is one.
+    ///
+    /// Found on a stretch that goes beyond it, an end is a little elsewhere on
+    /// the stretch up to it, and so may be the modes: it is looked for again.
+    fn first_end(
+        &mut self,
+        from: f64,
+        stretch: impl Fn(f64) -> Stretch,
+    ) -> (Stretch, Solution, Option<f64>) {
+        let mut part = stretch(1.0);
+        let (mut solution, mut end) = self.look(&part);
+        // Up to here there was none.
+        let mut none = from;
+        for _ in 0..LOOKS_PER_END {
+            let Some(fraction) = end else { break };
+            let mut to = from + fraction.max(SHORTEST) * (part.to - from);
+            if to <= none {
+                to = f64::midpoint(none, part.to).min(2.0 * none - from);
+            }
+            if part.to - to < SHORTEST {
+                break;
+            }
+            let shorter = stretch(to);
+            match self.look(&shorter) {
+                (_, None) => {
+                    none = to;
+                    (solution, end) = self.look(&part);
+                }
+                (found, ends) => (part, solution, end) = (shorter, found, ends),
+            }
+        }
+        (part, solution, end)
+    }
+
+    /// Brings the modes in order, solves the stretch in them, and finds the
+    /// first mode that ends within.
+    fn look(&mut self, stretch: &Stretch) -> (Solution, Option<f64>) {
+        for _ in 1..CHANGES_PER_FOLD {
+            let solution = self.solve(stretch);
+            match self.chain.check(&solution.step, &self.body, solution.flow) {
+                Verdict::Holds => return (solution, None),
+                Verdict::EndsAt(fraction) => return (solution, Some(fraction)),
                 Verdict::Again => {}
             }
         }
-        None
+        (self.solve(stretch), None)
+    }
+
+    fn solve(&mut self, stretch: &Stretch) -> Solution {
+        let step = Step {
+            length_s: stretch.length_s,
+            drive: self.actuator.fold(stretch.length_s),
+            load_nm: self.actuator.load_nm(),
+            cut: stretch.from > 0.0,
+        };
+        let push = self.chain.fold(&step, &self.body);
+        let flow = self.holder.solve(stretch, &self.body, push);
+        Solution { step, flow }
     }
 
     /// Goes through a stretch.
-    fn go(&mut self, stretch: &Stretch, ends_at: Option<f64>) {
-        let step = self.step(stretch);
-        let push = self.chain.fold(&step, &self.body);
-        let flow = self.holder.solve(stretch, &self.body, push);
+    fn go(&mut self, stretch: &Stretch, Solution { step, flow }: Solution, ends_at: Option<f64>) {
         let mut next = self.body.after(stretch.length_s, flow.omega_rad_s);
         let settled = self
             .chain
@@ -123,14 +161,6 @@ impl Plant {
         self.holder
             .settle(stretch, &mut self.body, next, flow, &settled, rigid);
         self.actuator.settle(stretch.length_s, settled.shaft_rad_s);
-    }
-
-    fn step(&mut self, stretch: &Stretch) -> Step {
-        Step {
-            length_s: stretch.length_s,
-            drive: self.actuator.fold(stretch.length_s),
-            load_nm: self.actuator.load_nm(),
-        }
     }
 
     /// The motor's shaft, referred to the joint: where the encoder sits and

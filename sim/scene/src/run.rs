@@ -15,6 +15,8 @@ mod stepping;
 mod summary;
 mod tally;
 
+pub use coupled::FELT_COLUMN;
+pub use probe::{TIMINGS, ns_per_step};
 pub use summary::{
     CycleSummary, EffectSummary, EnergySummary, EventCounts, ParameterValue, SUMMARY_VERSION,
     Summary, TorqueSummary,
@@ -136,6 +138,11 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
     columns
 }
 
+/// How many steps a scene has; of `reference`, rows.
+pub fn step_count(scene: &Scene) -> u64 {
+    steps(scene).0
+}
+
 /// How many rows the trace of a scene has.
 pub fn rows(scene: &Scene) -> u64 {
     let (steps, every) = steps(scene);
@@ -204,7 +211,7 @@ fn steps(scene: &Scene) -> (u64, u64) {
 }
 
 /// The step of the solver; of `reference`, the time between rows.
-pub(crate) fn step_s(scene: &Scene) -> f64 {
+pub fn step_s(scene: &Scene) -> f64 {
     match scene.solver {
         SolverChoice::Reference => scene.trace_step_s,
         SolverChoice::Ladder { step_s, .. } => step_s,

@@ -58,6 +58,7 @@ pub const EFFECT: Effect = Effect {
             gap_rad,
             rotor_rad_s: omega,
             rotor_mean_rad_s: 0.0,
+            closed: false,
             found: None,
             lost_j: 0.0,
         })
@@ -65,6 +66,9 @@ pub const EFFECT: Effect = Effect {
 };
 
 const NAME: &str = "backlash";
+
+/// A gap that is open to this share is closed.
+const NEARLY: f64 = 1.0 - 1e-9;
 
 struct Backlash {
     left: Box<dyn Chain>,
@@ -76,6 +80,9 @@ struct Backlash {
     /// Velocity of a rotor on its own.
     rotor_rad_s: f64,
     rotor_mean_rad_s: f64,
+    /// The gap closed in this step; what would open it at once waits for the
+    /// next, or a torque that passes zero would open and close it for ever.
+    closed: bool,
     found: Option<f64>,
     lost_j: f64,
 }
@@ -95,10 +102,10 @@ impl Backlash {
     fn closes(&self, step: &Step, rotor: &Body, joint: &Body, joint_mean: f64) -> Option<f64> {
         let mean = self.rotor_mean_rad_s - joint_mean;
         let after = self.gap_rad + step.length_s * mean;
-        if after.abs() <= self.half_rad {
+        let sense = sense_of(after);
+        if after.abs() < NEARLY * self.half_rad || sense.of_signed(mean) <= 0.0 {
             return None;
         }
-        let sense = sense_of(after);
         let room = self.half_rad - sense.of_signed(self.gap_rad);
         let start = sense.of_signed(rotor.omega_rad_s - joint.omega_rad_s);
         let bend = sense.of_signed(mean) - start;
@@ -106,7 +113,12 @@ impl Backlash {
         let root = (start * start + 4.0 * bend * room / step.length_s)
             .max(0.0)
             .sqrt();
-        let fraction = 2.0 * room / (step.length_s * (start + root));
+        let fraction = if start < 0.0 {
+            // First away from that side, then back to it.
+            (root - start) / (2.0 * bend)
+        } else {
+            2.0 * room / (step.length_s * (start + root))
+        };
         Some(if fraction.is_finite() {
             fraction.clamp(0.0, 1.0)
         } else {
@@ -121,6 +133,7 @@ impl Backlash {
         let slip = rotor_rad_s - joint.omega_rad_s;
         self.gap_rad = sense.of_signed(self.half_rad);
         self.contact = Some(sense);
+        self.closed = true;
         if self.right_kg_m2.is_finite() {
             let sum = rotor_kg_m2 + self.right_kg_m2;
             self.lost_j += 0.5 * rotor_kg_m2 * self.right_kg_m2 / sum * slip * slip;
@@ -150,27 +163,25 @@ impl Chain for Backlash {
     fn check(&mut self, step: &Step, body: &Body, flow: Flow) -> Verdict {
         let rotor = self.rotor(body);
         self.found = None;
-        match self.contact {
-            Some(sense) => {
-                let left = self.left.check(step, &rotor, flow);
-                if left != Verdict::Again && sense.of_signed(flow.torque_nm) < 0.0 {
-                    // Teeth cannot pull.
-                    self.contact = None;
-                    self.rotor_rad_s = body.omega_rad_s;
-                    return Verdict::Again;
-                }
-                left
+        if let Some(sense) = self.contact {
+            let left = self.left.check(step, &rotor, flow);
+            self.closed &= step.cut;
+            let pulls = sense.of_signed(flow.torque_nm) < 0.0;
+            if left != Verdict::Again && pulls && !self.closed {
+                // Teeth cannot pull.
+                self.contact = None;
+                self.rotor_rad_s = body.omega_rad_s;
+                return Verdict::Again;
             }
-            None => {
-                let alone = Flow {
-                    omega_rad_s: self.rotor_mean_rad_s,
-                    torque_nm: 0.0,
-                };
-                let left = self.left.check(step, &rotor, alone);
-                self.found = self.closes(step, &rotor, body, flow.omega_rad_s);
-                left.and(self.found.map_or(Verdict::Holds, Verdict::EndsAt))
-            }
+            return left;
         }
+        let alone = Flow {
+            omega_rad_s: self.rotor_mean_rad_s,
+            torque_nm: 0.0,
+        };
+        let left = self.left.check(step, &rotor, alone);
+        self.found = self.closes(step, &rotor, body, flow.omega_rad_s);
+        left.and(self.found.map_or(Verdict::Holds, Verdict::EndsAt))
     }
 
     fn settle(
@@ -223,6 +234,16 @@ impl Chain for Backlash {
     fn attach(&mut self, right_kg_m2: f64) {
         self.right_kg_m2 = right_kg_m2;
         self.left.attach(0.0);
+    }
+
+    fn jerk(&mut self, body: &Body, change_rad_s: f64) {
+        if self
+            .contact
+            .is_some_and(|sense| sense.of_signed(change_rad_s) > 0.0)
+        {
+            self.contact = None;
+            self.rotor_rad_s = body.omega_rad_s;
+        }
     }
 
     fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {

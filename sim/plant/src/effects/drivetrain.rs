@@ -74,6 +74,9 @@ pub const EFFECT: Effect = Effect {
 
 const NAME: &str = "drivetrain";
 
+/// A speed that falls to this share of itself is none.
+const NEARLY: f64 = 1e-6;
+
 /// Whether the friction holds the rotor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mode {
@@ -144,7 +147,9 @@ impl Drivetrain {
             Mode::Sliding(sense) => {
                 let (v, end) = (sense.of_signed(v), sense.of_signed(2.0 * w - v));
                 if v > 0.0 {
-                    Ok((end < 0.0).then(|| v / (v - end)))
+                    // Nothing happens where there is no friction.
+                    let stops = end <= NEARLY * v && self.limit_nm(step) > 0.0;
+                    Ok(stops.then(|| (v / (v - end)).min(1.0)))
                 } else if v < 0.0 {
                     Err(Mode::Sliding(sense.opposite()))
                 } else if sense.of_signed(w) > 0.0 {

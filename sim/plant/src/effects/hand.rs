@@ -15,7 +15,7 @@
 //! Who lifts a leg knows its weight: if the scene has a `limb`, the hand adds
 //! the torque that holds it at the intended angle, so the leg does not sag.
 
-use crate::chain::{Body, Flow, Push, Settled};
+use crate::chain::{Body, Chain, Flow, Push, Settled};
 use crate::effect::{Effect, Part, numbers};
 use crate::holder::{Holder, MotionStep, Stretch};
 use crate::ledger::{Account, Ledger};
@@ -172,7 +172,7 @@ impl<L: Lift> Hand<L> {
 }
 
 impl<L: Lift> Holder for Hand<L> {
-    fn jump(&mut self, _: f64, _: &mut Body, _: f64) {}
+    fn jump(&mut self, _: f64, _: &mut Body, _: &mut dyn Chain) {}
 
     fn begin(&mut self, motion: &MotionStep) {
         self.arm.motion = *motion;

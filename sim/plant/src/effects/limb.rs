@@ -100,6 +100,7 @@ pub const EFFECT: Effect = Effect {
             damping,
             lost_j: 0.0,
             outside: false,
+            pull: Push::default(),
             mean_nm: 0.0,
         };
         match given.choices[1] {
@@ -267,7 +268,9 @@ struct Own {
     lost_j: f64,
     /// The knee has been where nothing is known of it.
     outside: bool,
-    /// Torque of weight, passive moment and damping in the last step.
+    /// What weight, passive moment and damping do, as last folded.
+    pull: Push,
+    /// Their torque in the last step.
     mean_nm: f64,
 }
 
@@ -290,7 +293,8 @@ impl<T: AngleTorque> Limb<T> {
 
     fn left_flow(&self, step: &Step, body: &Body, flow: Flow) -> Flow {
         let own = self
-            .pull(step, body)
+            .own
+            .pull
             .with_inertia(self.own.inertia_kg_m2, step, body);
         Flow {
             torque_nm: flow.torque_nm - own.at(flow.omega_rad_s),
@@ -302,8 +306,10 @@ impl<T: AngleTorque> Limb<T> {
 impl<T: AngleTorque> Chain for Limb<T> {
     fn fold(&mut self, step: &Step, body: &Body) -> Push {
         let left = self.left.fold(step, body);
+        self.own.pull = self.pull(step, body);
         let own = self
-            .pull(step, body)
+            .own
+            .pull
             .with_inertia(self.own.inertia_kg_m2, step, body);
         Push {
             torque_nm: left.torque_nm + own.torque_nm,
@@ -326,7 +332,7 @@ impl<T: AngleTorque> Chain for Limb<T> {
         ends_at: Option<f64>,
     ) -> Settled {
         let w = flow.omega_rad_s;
-        self.own.mean_nm = self.pull(step, body).at(w);
+        self.own.mean_nm = self.own.pull.at(w);
         self.own.lost_j += self.own.damping * w * w * step.length_s;
         let (low, high) = self.torque.range_rad();
         self.own.outside |= !(low..=high).contains(&next.angle_rad);
@@ -348,6 +354,10 @@ impl<T: AngleTorque> Chain for Limb<T> {
 
     fn attach(&mut self, right_kg_m2: f64) {
         self.left.attach(right_kg_m2 + self.own.inertia_kg_m2);
+    }
+
+    fn jerk(&mut self, body: &Body, change_rad_s: f64) {
+        self.left.jerk(body, change_rad_s);
     }
 
     fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {

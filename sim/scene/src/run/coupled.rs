@@ -63,8 +63,9 @@ impl Felt {
     }
 }
 
-/// The name of the column of what the hand feels.
-pub(super) const FELT_COLUMN: &str = "hand_torque_nm";
+/// The name of the column of what the hand feels: a scene with a plant has it
+/// unless nobody holds the leg.
+pub const FELT_COLUMN: &str = "hand_torque_nm";
 
 /// A stage, what it adds now, and the work of that.
 struct Stage {
@@ -130,7 +131,7 @@ impl Run {
         observer: &mut O,
     ) -> Result<Totals, RunError<O::Error>> {
         let (steps, every) = steps(scene);
-        let parts = self.plant.parts() * scene.substeps;
+        let parts = scene.substeps;
         let mut walk = Walk::new(&scene.motion, self.tick_s / f64::from(parts));
         let held = scene.is_held();
         let mut felt = Felt::new();
@@ -230,10 +231,7 @@ impl Run {
     /// The plant through one tick.
     #[inline]
     fn advance(&mut self, walk: &mut Walk<'_>, parts: u32) {
-        for part in 0..parts {
-            if 2 * part == parts {
-                self.plant.mid_tick();
-            }
+        for _ in 0..parts {
             let (from, to) = walk.step();
             self.plant.advance(&MotionStep {
                 length_s: walk.clock.step_s,
@@ -248,18 +246,15 @@ impl Run {
 /// through it.
 fn first_felt_nm(scene: &Scene) -> Result<f64, crepitus_model::SettingsError> {
     let mut plant = scene.assemble()?.plant;
-    let parts = plant.parts();
     let tick_s = step_s(scene);
-    let mut walk = Walk::new(&scene.motion, tick_s / f64::from(parts));
+    let mut walk = Walk::new(&scene.motion, tick_s);
     plant.command(0.0);
-    for _ in 0..parts {
-        let (from, to) = walk.step();
-        plant.advance(&MotionStep {
-            length_s: walk.clock.step_s,
-            from: body(&from),
-            to: body(&to),
-        });
-    }
+    let (from, to) = walk.step();
+    plant.advance(&MotionStep {
+        length_s: tick_s,
+        from: body(&from),
+        to: body(&to),
+    });
     Ok(plant.felt_nms() / tick_s)
 }
 

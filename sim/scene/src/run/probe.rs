@@ -1,14 +1,17 @@
-//! What each effect costs: the scene's first steps with the effect and
-//! without it, timed a few times in turn.
+//! What a step of a scene costs: its first steps, timed a few times. What
+//! is compared takes turns, so that a drift of the machine's speed hits all
+//! alike.
 
-use super::{Blind, simulate};
+use super::{Blind, simulate, step_s};
 use crate::scene::{Scene, SolverChoice};
+use std::convert::Infallible;
 use std::time::Instant;
 
-/// Steps of one timing: a few tenths of a millisecond.
+/// The most steps of one timing: a few tenths of a millisecond of a joint
+/// alone.
 const STEPS: f64 = 20_000.0;
 /// Timings of which the fastest counts.
-const REPEATS: u32 = 5;
+pub const TIMINGS: u32 = 5;
 
 /// Cost of one effect, ns per step.
 pub(super) struct Cost {
@@ -16,46 +19,62 @@ pub(super) struct Cost {
     pub(super) ns_per_step: f64,
 }
 
+/// The time of a step of each scene, ns, without outputs: the fastest of
+/// [`TIMINGS`] in which the scenes take turns, infinite for one that cannot
+/// run. `after_each` is called after each timing and may end it all.
+///
+/// # Errors
+/// What `after_each` returns.
+pub fn ns_per_step<E>(
+    scenes: &[Scene],
+    mut after_each: impl FnMut() -> Result<(), E>,
+) -> Result<Vec<f64>, E> {
+    let mut short = scenes.to_vec();
+    for scene in &mut short {
+        scene.duration_s = scene.duration_s.min(STEPS * step_s(scene));
+    }
+    let mut fastest = vec![f64::INFINITY; short.len()];
+    for _ in 0..TIMINGS {
+        for (scene, fastest) in short.iter().zip(&mut fastest) {
+            *fastest = fastest.min(time(scene));
+            after_each()?;
+        }
+    }
+    Ok(fastest)
+}
+
 /// The costs of the scene's effects in the order of its list; of `reference`,
 /// which has no step, none.
 pub(super) fn costs(scene: &Scene) -> Vec<Cost> {
-    let SolverChoice::Ladder { step_s, .. } = scene.solver else {
+    if scene.solver == SolverChoice::Reference {
         return Vec::new();
-    };
-    let mut short = scene.clone();
-    short.duration_s = scene.duration_s.min(STEPS * step_s);
+    }
     scene
         .effects()
         .into_iter()
         .filter_map(|effect| {
             // An effect's cost is that on top of all that stand without it.
-            let mut with = short.clone();
-            for other in short.effects() {
+            let mut with = scene.clone();
+            for other in scene.effects() {
                 if with.has(other.name) && other.needs.iter().any(|n| n.effect == effect.name) {
                     with = with.without(other)?;
                 }
             }
             let without = with.without(effect)?;
-            let (mut with_ns, mut without_ns) = (f64::INFINITY, f64::INFINITY);
-            // In turn, so that a drift of the machine's speed hits both alike.
-            for _ in 0..REPEATS {
-                with_ns = with_ns.min(ns_per_step(&with));
-                without_ns = without_ns.min(ns_per_step(&without));
-            }
+            let Ok(times) = ns_per_step(&[with, without], || Ok::<(), Infallible>(()));
             Some(Cost {
                 effect: effect.name,
-                ns_per_step: (with_ns - without_ns).max(0.0),
+                ns_per_step: (times[0] - times[1]).max(0.0),
             })
         })
         .collect()
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a few thousand")]
-fn ns_per_step(scene: &Scene) -> f64 {
+fn time(scene: &Scene) -> f64 {
     let begun = Instant::now();
     let steps = match simulate(scene, &mut Blind) {
         Ok(totals) => totals.steps,
-        // The scene has just run with these settings.
         Err(_) => return f64::INFINITY,
     };
     begun.elapsed().as_secs_f64() * 1e9 / steps as f64

@@ -1,0 +1,238 @@
+//! What effects cost in instructions, counted by valgrind: an effect that a
+//! scene leaves out executes nothing, and the costs of those that it lists add
+//! up to that of the scene.
+//!
+//! Counts are those of this build's profile; only their ratios mean something.
+//! Without valgrind nothing is counted and the test says so, unless
+//! `CREPITUS_NEEDS_VALGRIND` is set.
+
+use crepitus_plant::effect::Effect;
+use crepitus_plant::effects::EFFECTS;
+use crepitus_scene::run::Blind;
+use crepitus_scene::{Overrides, Scene, run};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Set for the process that is counted: the scene's file.
+const SCENE_VARIABLE: &str = "CREPITUS_COUNTED_SCENE";
+/// Set where a machine without valgrind is an error.
+const NEEDED_VARIABLE: &str = "CREPITUS_NEEDS_VALGRIND";
+
+/// A walk of a quarter second, or half of one.
+const STEPS: u32 = 5_000;
+
+fn scene_text(effects: &[&Effect], steps: u32) -> String {
+    use std::fmt::Write;
+    let mut text = format!(
+        "version = 1\ntitle = \"counted\"\nduration_s = {}\n\
+         [motion]\nkind = \"sine\"\namplitude_deg = 30\nfrequency_hz = 1.0\n\
+         [solver]\nkind = \"exact-events\"\nstep_s = 5e-5\nprecision = \"f32\"\n",
+        f64::from(steps) * 5e-5
+    );
+    for effect in effects {
+        let _ = writeln!(text, "[effects.{}]", effect.name);
+    }
+    text
+}
+
+/// The process that is counted: does nothing unless it is told a scene.
+#[test]
+fn counted_process() {
+    let Some(file) = std::env::var_os(SCENE_VARIABLE) else {
+        return;
+    };
+    let scene = Scene::read(Path::new(&file), &Overrides::default()).unwrap();
+    run(&scene, &mut Blind).unwrap();
+}
+
+/// Instructions by function.
+type Profile = BTreeMap<String, u64>;
+
+/// Counts a run of so many steps.
+fn count(folder: &Path, effects: &[&Effect], steps: u32) -> Profile {
+    let scene = folder.join("scene.toml");
+    let out = folder.join("callgrind.out");
+    std::fs::write(&scene, scene_text(effects, steps)).unwrap();
+    let ran = Command::new("valgrind")
+        .args([
+            "--tool=callgrind",
+            "--compress-strings=no",
+            "--compress-pos=no",
+        ])
+        .arg(format!("--callgrind-out-file={}", out.display()))
+        .arg(std::env::current_exe().unwrap())
+        .args(["--exact", "counted_process", "--test-threads=1"])
+        .env(SCENE_VARIABLE, &scene)
+        .output()
+        .unwrap();
+    assert!(
+        ran.status.success(),
+        "{}",
+        String::from_utf8_lossy(&ran.stderr)
+    );
+    parse(&std::fs::read_to_string(&out).unwrap())
+}
+
+/// Own instructions of each function in a callgrind file: lines "fn=NAME",
+/// then "line count"; the line after a "calls=" is that of the callee.
+fn parse(text: &str) -> Profile {
+    let mut profile = Profile::new();
+    let (mut function, mut called) = (String::new(), false);
+    for line in text.lines() {
+        if let Some(name) = line.strip_prefix("fn=") {
+            name.clone_into(&mut function);
+        } else if line.starts_with("calls=") {
+            called = true;
+        } else if let Some((_, count)) = line.split_once(' ')
+            && line.starts_with(|c: char| c.is_ascii_digit() || "+-*".contains(c))
+            && let Ok(count) = count.parse::<u64>()
+        {
+            if !called {
+                *profile.entry(function.clone()).or_default() += count;
+            }
+            called = false;
+        }
+    }
+    profile
+}
+
+/// Instructions for each step: what twice the steps need more.
+fn per_step(folder: &Path, effects: &[&Effect]) -> f64 {
+    let total = |steps| count(folder, effects, steps).values().sum::<u64>();
+    #[expect(clippy::cast_precision_loss, reason = "far below 2^53")]
+    let more = (total(2 * STEPS) - total(STEPS)) as f64;
+    more / f64::from(STEPS)
+}
+
+fn valgrind() -> bool {
+    let there = Command::new("valgrind").arg("--version").output().is_ok();
+    let needed = std::env::var_os(NEEDED_VARIABLE).is_some();
+    assert!(
+        there || !needed,
+        "{NEEDED_VARIABLE} is set, and there is no valgrind"
+    );
+    if !there {
+        eprintln!("left out: there is no valgrind, so nothing was counted");
+    }
+    there
+}
+
+/// All effects but one and those that need it, directly or not.
+fn without(name: &str, effects: &[&'static Effect]) -> Vec<&'static Effect> {
+    let mut left: Vec<_> = effects.iter().copied().filter(|e| e.name != name).collect();
+    while let Some(place) = left.iter().position(|e| {
+        e.needs
+            .iter()
+            .any(|n| !left.iter().any(|o| o.name == n.effect))
+    }) {
+        left.remove(place);
+    }
+    left
+}
+
+fn folder(name: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::Builder::new().prefix(name).tempdir().unwrap();
+    let path = folder.path().to_owned();
+    (folder, path)
+}
+
+/// The functions of an effect's own file, or of the model's that it runs.
+fn is_of(effect: &Effect, function: &str) -> bool {
+    let file = effect.name.replace('-', "_");
+    let model = match effect.name {
+        "crepitus" => "crepitus_model::frozen",
+        "encoder" => "crepitus_model::encoder",
+        "motor" => "crepitus_model::current_loop",
+        "friction-compensation" => "crepitus_model::friction_compensation",
+        "bone-shaping" => "crepitus_model::bone_shaping",
+        _ => "no such function",
+    };
+    function.contains(&format!("crepitus_plant::effects::{file}::")) || function.contains(model)
+}
+
+#[test]
+fn an_absent_effect_executes_nothing() {
+    if !valgrind() {
+        return;
+    }
+    let (_keep, folder) = folder("absent");
+    let whole = count(&folder, EFFECTS, STEPS);
+    for effect in EFFECTS {
+        let own = |profile: &Profile| -> u64 {
+            profile
+                .iter()
+                .filter(|(function, _)| is_of(effect, function))
+                .map(|(_, count)| count)
+                .sum()
+        };
+        if effect.name != "encoder" {
+            assert!(
+                own(&whole) > u64::from(STEPS),
+                "{} is not seen",
+                effect.name
+            );
+        }
+        let absent = count(&folder, &without(effect.name, EFFECTS), STEPS);
+        assert_eq!(own(&absent), 0, "{}", effect.name);
+    }
+}
+
+#[test]
+fn a_scene_without_a_plant_executes_none_of_it() {
+    if !valgrind() {
+        return;
+    }
+    let (_keep, folder) = folder("bare");
+    let joint: Vec<_> = EFFECTS.iter().copied().take(2).collect();
+    for (function, count) in count(&folder, &joint, STEPS) {
+        for of_plants in [
+            "crepitus_plant::chain",
+            "crepitus_plant::plant",
+            "run::coupled",
+        ] {
+            // Once, when the scene is checked, is not a step.
+            let each_step = count >= u64::from(STEPS);
+            assert!(
+                !(each_step && function.contains(of_plants)),
+                "{function} {count}"
+            );
+        }
+    }
+}
+
+#[test]
+fn costs_add_up() {
+    if !valgrind() {
+        return;
+    }
+    let (_keep, folder) = folder("sum");
+    let whole = per_step(&folder, EFFECTS);
+    // The loop itself, with the least plant.
+    let base = per_step(&folder, &[]);
+    println!("{:24} {whole:8.1} instructions a step", "all effects");
+    println!("{:24} {base:8.1}", "none");
+    let mut sum = base;
+    for effect in EFFECTS {
+        let needed_by: Vec<_> = EFFECTS
+            .iter()
+            .copied()
+            .filter(|e| {
+                e.name == effect.name
+                    || without(effect.name, EFFECTS)
+                        .iter()
+                        .any(|o| o.name == e.name)
+            })
+            .collect();
+        let cost =
+            per_step(&folder, &needed_by) - per_step(&folder, &without(effect.name, EFFECTS));
+        println!("{:24} {cost:8.1}", effect.name);
+        sum += cost;
+    }
+    println!(
+        "{:24} {sum:8.1}, {:.1} % of the whole",
+        "sum",
+        100.0 * sum / whole
+    );
+    assert!((sum / whole - 1.0).abs() <= 0.15);
+}
