@@ -49,22 +49,22 @@ pub struct VelocityKnot {
 impl Motion {
     /// φ = Ω·t.
     pub fn constant(velocity_rad_s: f64) -> Self {
+        Self::constant_from(0.0, velocity_rad_s)
+    }
+
+    /// φ = φ₀ + Ω·t.
+    pub fn constant_from(angle_rad: f64, velocity_rad_s: f64) -> Self {
         Self::Single(Piece {
             start_s: 0.0,
             end_s: f64::INFINITY,
             jump: false,
-            curve: Curve::Polynomial([0.0, velocity_rad_s, 0.0, 0.0, 0.0, 0.0]),
+            curve: Curve::Polynomial([angle_rad, velocity_rad_s, 0.0, 0.0, 0.0, 0.0]),
         })
     }
 
     /// φ stays where it is.
     pub fn rest(angle_rad: f64) -> Self {
-        Self::Single(Piece {
-            start_s: 0.0,
-            end_s: f64::INFINITY,
-            jump: false,
-            curve: Curve::Polynomial([angle_rad, 0.0, 0.0, 0.0, 0.0, 0.0]),
-        })
+        Self::constant_from(angle_rad, 0.0)
     }
 
     /// φ = A·sin(2π·f·t + phase).

@@ -14,7 +14,7 @@ const ENDS_PER_STEP: u32 = 8;
 const CHANGES_PER_FOLD: u32 = 6;
 
 /// How often an end is looked for on a stretch that is cut about there.
-const LOOKS_PER_END: u32 = 6;
+const LOOKS_PER_END: u32 = 8;
 
 /// The shortest part of a step that an end of a mode can cut off.
 const SHORTEST: f64 = 1e-6;
@@ -105,13 +105,15 @@ impl Plant {
         // Up to here there was none.
         let mut none = from;
         for _ in 0..LOOKS_PER_END {
-            let Some(fraction) = end else { break };
+            let Some(fraction) = end else {
+                return (part, solution, None);
+            };
             let mut to = from + fraction.max(SHORTEST) * (part.to - from);
             if to <= none {
                 to = f64::midpoint(none, part.to).min(2.0 * none - from);
             }
             if part.to - to < SHORTEST {
-                break;
+                return (part, solution, end);
             }
             let shorter = stretch(to);
             match self.look(&shorter) {
@@ -121,6 +123,10 @@ impl Plant {
                 }
                 (found, ends) => (part, solution, end) = (shorter, found, ends),
             }
+        }
+        if none > from {
+            part = stretch(none);
+            (solution, end) = self.look(&part);
         }
         (part, solution, end)
     }

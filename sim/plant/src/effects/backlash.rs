@@ -68,7 +68,7 @@ pub const EFFECT: Effect = Effect {
 const NAME: &str = "backlash";
 
 /// A gap that is open to this share is closed.
-const NEARLY: f64 = 1.0 - 1e-9;
+const NEARLY: f64 = 1.0 - 1e-7;
 
 struct Backlash {
     left: Box<dyn Chain>,

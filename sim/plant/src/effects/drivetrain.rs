@@ -75,7 +75,7 @@ pub const EFFECT: Effect = Effect {
 const NAME: &str = "drivetrain";
 
 /// A speed that falls to this share of itself is none.
-const NEARLY: f64 = 1e-6;
+const NEARLY: f64 = 1e-5;
 
 /// Whether the friction holds the rotor.
 #[derive(Clone, Copy, Debug, PartialEq)]

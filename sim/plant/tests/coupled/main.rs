@@ -1,0 +1,15 @@
+//! The coupled plant against what is known without it: closed forms, textbook
+//! results and conservation laws. `-- --nocapture` prints the numbers found.
+
+mod backlash;
+mod convergence;
+mod cuff;
+mod drivetrain;
+mod energy;
+mod hand;
+mod hard;
+mod limb;
+mod mirror;
+mod motor;
+mod random;
+mod support;
