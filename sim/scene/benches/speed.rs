@@ -4,6 +4,7 @@
 //! `cargo bench -p crepitus-scene` counts simulated seconds as items: read
 //! "item/s" as simulated seconds per second.
 
+use crepitus_plant::effects::EFFECTS;
 use crepitus_scene::reference::Reference;
 use crepitus_scene::run::Blind;
 use crepitus_scene::{Overrides, Scene, run};
@@ -59,6 +60,16 @@ fn frozen_motions(bencher: Bencher, motion: (&str, &str)) {
 fn frozen_with_encoder(bencher: Bencher) {
     let effects = "[effects.crepitus]\n[effects.encoder]";
     bench(bencher, &scene(STROKES, "exact-events", "f32", effects));
+}
+
+/// Every effect, through a hand.
+#[divan::bench]
+fn everything(bencher: Bencher) {
+    let effects: String = EFFECTS
+        .iter()
+        .map(|e| format!("[effects.{}]\n", e.name))
+        .collect();
+    bench(bencher, &scene(STROKES, "exact-events", "f32", &effects));
 }
 
 #[divan::bench]

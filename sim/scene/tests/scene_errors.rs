@@ -262,3 +262,69 @@ fn overrides_are_checked_and_named() {
     });
     assert_eq!(reference.solver.name(), "reference");
 }
+
+/// An error of the good scene with these effects and this motion.
+fn refused_plant(effects: &str, motion: &str) -> String {
+    let text = GOOD.replace("kind = \"constant\"\nvelocity_rad_s = 1.0", motion);
+    error_of(&format!("{text}\n{effects}\n"), &Overrides::default())
+}
+
+#[test]
+fn effects_that_do_not_go_together_are_refused() {
+    let steady = "kind = \"constant\"\nvelocity_rad_s = 1.0";
+    let released = "kind = \"released\"\nfrom_deg = 30";
+    for (effects, motion, wanted) in [
+        ("[effects.backlash]", steady, "needs [effects.drivetrain]"),
+        (
+            "[effects.friction-compensation]",
+            steady,
+            "no friction to compensate",
+        ),
+        ("[effects.cuff]", released, "there is no leg to fall"),
+        (
+            "[effects.limb]\n[effects.hand]",
+            released,
+            "nobody holds the leg",
+        ),
+        (
+            "[effects.limb]\nposture = \"lying\"",
+            steady,
+            "allowed are sitting, standing, prone and supine",
+        ),
+        (
+            "[effects.cuff]\nstiffness_nm_per_rad = -1",
+            steady,
+            "from 0.1 up to 1e6",
+        ),
+        ("[effects.cuf]", steady, "did you mean cuff?"),
+        ("[effects.motor]\nvolts = 24", steady, "no such key"),
+    ] {
+        let error = refused_plant(effects, motion);
+        assert!(error.contains(wanted), "{error}");
+    }
+    let alone = refused(
+        "[effects.crepitus]\npreset = \"coarse\"",
+        "[effects.bone-shaping]",
+    );
+    assert!(alone.contains("needs [effects.crepitus]"), "{alone}");
+    for (from, to, wanted) in [
+        (
+            "step_s = 5e-5",
+            "step_s = 5e-5\nsubsteps = 4",
+            "there is no plant to step",
+        ),
+        (
+            "step_s = 5e-5",
+            "step_s = 5e-5\nsubsteps = 1.5",
+            "not a whole number",
+        ),
+        (
+            "kind = \"exact-events\"\nstep_s = 5e-5",
+            "kind = \"reference\"\n[effects.motor]",
+            "the stick-slip object alone",
+        ),
+    ] {
+        let error = refused(from, to);
+        assert!(error.contains(wanted), "{error}");
+    }
+}

@@ -187,9 +187,6 @@ impl Run {
                     }
                 });
             result.map_err(RunError::Observer)?;
-            if walk.now.omega_rad_s != walk.end.omega_rad_s {
-                self.plant.jump(walk.now.omega_rad_s);
-            }
             time_s = walk.time_s;
         }
         Ok(Totals {
@@ -238,6 +235,9 @@ impl Run {
                 from: body(&from),
                 to: body(&to),
             });
+            if walk.now.omega_rad_s != to.omega_rad_s {
+                self.plant.jump(walk.now.omega_rad_s);
+            }
         }
     }
 }

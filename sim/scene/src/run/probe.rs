@@ -10,8 +10,8 @@ use std::time::Instant;
 /// The most steps of one timing: a few tenths of a millisecond of a joint
 /// alone.
 const STEPS: f64 = 20_000.0;
-/// Timings of which the fastest counts.
-pub const TIMINGS: u32 = 5;
+/// Timings of which the fastest counts, for the summary of a run.
+const TIMINGS: u32 = 5;
 
 /// Cost of one effect, ns per step.
 pub(super) struct Cost {
@@ -19,14 +19,15 @@ pub(super) struct Cost {
     pub(super) ns_per_step: f64,
 }
 
-/// The time of a step of each scene, ns, without outputs: the fastest of
-/// [`TIMINGS`] in which the scenes take turns, infinite for one that cannot
+/// The time of a step of each scene, ns, without outputs: the fastest of so
+/// many `timings` in which the scenes take turns, infinite for one that cannot
 /// run. `after_each` is called after each timing and may end it all.
 ///
 /// # Errors
 /// What `after_each` returns.
 pub fn ns_per_step<E>(
     scenes: &[Scene],
+    timings: u32,
     mut after_each: impl FnMut() -> Result<(), E>,
 ) -> Result<Vec<f64>, E> {
     let mut short = scenes.to_vec();
@@ -34,7 +35,7 @@ pub fn ns_per_step<E>(
         scene.duration_s = scene.duration_s.min(STEPS * step_s(scene));
     }
     let mut fastest = vec![f64::INFINITY; short.len()];
-    for _ in 0..TIMINGS {
+    for _ in 0..timings {
         for (scene, fastest) in short.iter().zip(&mut fastest) {
             *fastest = fastest.min(time(scene));
             after_each()?;
@@ -61,7 +62,7 @@ pub(super) fn costs(scene: &Scene) -> Vec<Cost> {
                 }
             }
             let without = with.without(effect)?;
-            let Ok(times) = ns_per_step(&[with, without], || Ok::<(), Infallible>(()));
+            let Ok(times) = ns_per_step(&[with, without], TIMINGS, || Ok::<(), Infallible>(()));
             Some(Cost {
                 effect: effect.name,
                 ns_per_step: (times[0] - times[1]).max(0.0),

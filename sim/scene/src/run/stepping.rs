@@ -59,8 +59,6 @@ pub(super) struct Walk<'a> {
     pub(super) clock: Clock,
     n: u64,
     pub(super) time_s: f64,
-    /// The motion just before the last step's end.
-    pub(super) end: Shaft,
     /// The motion as the next step starts.
     pub(super) now: Shaft,
 }
@@ -75,7 +73,6 @@ impl<'a> Walk<'a> {
             clock: Clock::new(step_s),
             n: 0,
             time_s: 0.0,
-            end: now,
             now,
         }
     }
@@ -90,7 +87,7 @@ impl<'a> Walk<'a> {
             self.piece = self.motion.piece(self.piece.end_s);
         }
         let to = Shaft::of(&self.piece, self.time_s);
-        (self.end, self.now) = (to, to);
+        self.now = to;
         if self.piece.end_s == self.time_s {
             self.piece = self.motion.piece(self.time_s);
             // Without a jump both sides are one velocity, to the bit.

@@ -70,7 +70,11 @@ pub(super) fn read(section: &Section<'_>, duration_s: f64) -> Result<ReadMotion,
     let mut warnings = Vec::new();
     let mut ripple_rad_s2 = None;
     let motion = match kind {
-        MotionKind::Constant => Motion::constant(section.number("velocity_rad_s", ANY_RAD)?),
+        MotionKind::Constant => {
+            let velocity_rad_s = section.number("velocity_rad_s", ANY_RAD)?;
+            let from_deg = section.optional_number("from_deg", ANY_DEG)?.unwrap_or(0.0);
+            Motion::constant_from(from_deg.to_radians(), velocity_rad_s)
+        }
         MotionKind::Sine => sine(section)?,
         MotionKind::VelocityKnots => velocity_knots(section)?,
         MotionKind::Strokes => strokes(section)?,
