@@ -187,7 +187,7 @@ pub trait Chain {
 
     /// Told before the velocity of the right end changes at once: what cannot
     /// be pulled stays behind.
-    fn jerk(&mut self, _body: &Body, _change_rad_s: f64) {}
+    fn jerk(&mut self, body: &Body, change_rad_s: f64);
 
     /// The torque that the chain's own weight and the like exert on its right
     /// end at rest, as a function of the angle; none if there is no such part.
@@ -242,6 +242,8 @@ impl Chain for Shaft {
     }
 
     fn attach(&mut self, _: f64) {}
+
+    fn jerk(&mut self, _: &Body, _: f64) {}
 
     fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
         None

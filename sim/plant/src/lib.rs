@@ -12,7 +12,7 @@
 //! | counts of the encoder at the motor | [`encoder`] |
 //! | what an effect is, and the table of them | [`effect`], [`effects`] |
 //! | how listed effects become a plant | [`assembly`] |
-//! | how a plant is stepped | [`plant`], [`chain`], [`actuator`], [`holder`] |
+//! | how a plant is stepped | [`plant`], [`chain`], [`load`], [`actuator`], [`holder`] |
 //! | where its energy is | [`ledger`] |
 
 pub mod actuator;
@@ -23,6 +23,7 @@ pub mod effects;
 pub mod encoder;
 pub mod holder;
 pub mod ledger;
+pub mod load;
 pub mod motion;
 pub mod piece;
 pub mod plant;

@@ -65,10 +65,11 @@ fn frozen_with_encoder(bencher: Bencher) {
 /// Every effect, through a hand.
 #[divan::bench]
 fn everything(bencher: Bencher) {
-    let effects: String = EFFECTS
+    let tables: Vec<_> = EFFECTS
         .iter()
-        .map(|e| format!("[effects.{}]\n", e.name))
+        .map(|e| format!("[effects.{}]", e.name))
         .collect();
+    let effects = tables.join("\n");
     bench(bencher, &scene(STROKES, "exact-events", "f32", &effects));
 }
 

@@ -16,7 +16,7 @@ mod summary;
 mod tally;
 
 pub use coupled::FELT_COLUMN;
-pub use probe::ns_per_step;
+pub use probe::{StepTime, step_times};
 pub use summary::{
     CycleSummary, EffectSummary, EnergySummary, EventCounts, ParameterValue, SUMMARY_VERSION,
     Summary, TorqueSummary,

@@ -182,12 +182,19 @@ impl Scene {
         let trace_step_s = read_trace_step(output.as_ref(), &solver_section, solver, duration_s)?;
         root.finish()?;
 
-        let stepless = effects.encoder.is_some() || !effects.listed.is_empty();
-        if solver == SolverChoice::Reference && stepless {
+        let mut stepped: Vec<_> = effects.listed.iter().map(|l| l.effect.name).collect();
+        if effects.encoder.is_some() {
+            stepped.push("encoder");
+        }
+        if solver == SolverChoice::Reference && !stepped.is_empty() {
+            let tables: Vec<_> = stepped.iter().map(|n| format!("[effects.{n}]")).collect();
             return Err(solver_section.key_error(
                 "kind",
-                "\"reference\" knows the stick-slip object alone: choose another solver, or leave all other \
-                 effects out",
+                format!(
+                    "\"reference\" has no step, and knows the stick-slip object alone: choose another solver, or \
+                     leave out {}",
+                    tables.join(", ")
+                ),
             ));
         }
         check_released(&root, motion.kind, &effects.listed)?;
@@ -282,6 +289,17 @@ impl Scene {
                 Part::Sensor => self.encoder.is_some(),
                 _ => self.listed.iter().any(|l| l.effect.name == effect),
             })
+    }
+
+    /// The scene with only the first `count` effects of its plant, which need
+    /// none of the later ones.
+    pub fn first(&self, count: usize) -> Self {
+        let mut scene = self.clone();
+        scene.listed.truncate(count);
+        if scene.listed.is_empty() {
+            scene.substeps = 1;
+        }
+        scene
     }
 
     /// The scene without an effect and without those that need it; none if

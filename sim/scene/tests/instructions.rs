@@ -19,8 +19,8 @@ const SCENE_VARIABLE: &str = "CREPITUS_COUNTED_SCENE";
 /// Set where a machine without valgrind is an error.
 const NEEDED_VARIABLE: &str = "CREPITUS_NEEDS_VALGRIND";
 
-/// A walk of a quarter second, or half of one.
-const STEPS: u32 = 5_000;
+/// A tenth of a second, or a fifth.
+const STEPS: u32 = 2_000;
 
 fn scene_text(effects: &[&Effect], steps: u32) -> String {
     use std::fmt::Write;

@@ -1,5 +1,6 @@
 //! `crepitus run SCENE`: simulate, write the four files, say what happened.
 
+mod plant;
 mod tables;
 mod watch;
 
@@ -85,14 +86,18 @@ fn simulate(
         _ => Failure::Work(format!("{}: the run failed", scene.file.display())),
     })?;
     runner::measure_costs(scene, &mut summary);
-    let figures = watch
+    let mut figures = watch
         .finish()
         .map_err(|e| failed("writing the results", &e))?;
+    if let Some(balance) = plant::balance(&summary) {
+        figures.set_balance(balance);
+    }
+    let specs: Vec<_> = scene.effects().iter().map(|e| e.parameters).collect();
     let text = Text {
         title: scene.title.clone(),
         description: scene.description.clone(),
         warnings: summary.warnings.clone(),
-        sections: tables::sections(&summary),
+        sections: tables::sections(&summary, &specs),
         footer: format!(
             "crepitus {} · research and education prototype, not a medical device",
             summary.crepitus_version

@@ -184,6 +184,8 @@ impl Chain for Cuff {
         self.left.attach(self.inertia_kg_m2);
     }
 
+    fn jerk(&mut self, _: &Body, _: f64) {}
+
     fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
         self.left.weight()
     }

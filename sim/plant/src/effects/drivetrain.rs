@@ -228,6 +228,10 @@ impl Chain for Drivetrain {
         self.left.attach(right_kg_m2 + self.inertia_kg_m2);
     }
 
+    fn jerk(&mut self, body: &Body, change_rad_s: f64) {
+        self.left.jerk(body, change_rad_s);
+    }
+
     fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
         self.left.weight()
     }

@@ -35,9 +35,14 @@
 //! its start, the third with the velocity there: what a step gets wrong in
 //! energy is of the fourth order of its length.
 
-use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict};
+mod passive;
+
+pub use passive::Passive;
+
+use crate::chain::{Body, Push, Step};
 use crate::effect::{ChoiceSpec, Effect, Part, numbers};
 use crate::ledger::{Account, Ledger};
+use crate::load::{Load, Loaded};
 use crepitus_model::parameters::ParameterSpec;
 
 /// The effect.
@@ -96,25 +101,19 @@ pub const EFFECT: Effect = Effect {
             weight_nm: mass_kg * STANDARD_GRAVITY * 0.606 * shank_m,
             turned_rad: posture(given.choices[0]).0.to_radians(),
         };
-        let own = Own {
+        let limb = Limb {
             inertia_kg_m2: mass_kg * radius_m * radius_m,
             damping,
+            torque: pendulum,
             lost_j: 0.0,
             outside: false,
-            pull: Push::default(),
-            mean_nm: 0.0,
         };
         match given.choices[1] {
-            0 => Box::new(Limb {
-                left,
-                own,
-                torque: (pendulum, Passive::for_hip_deg(posture(given.choices[0]).1)),
-            }),
-            _ => Box::new(Limb {
-                left,
-                own,
-                torque: pendulum,
-            }),
+            0 => {
+                let passive = Passive::for_hip_deg(posture(given.choices[0]).1);
+                Loaded::on(left, limb.and(passive))
+            }
+            _ => Loaded::on(left, limb),
         }
     }),
 };
@@ -169,86 +168,6 @@ impl AngleTorque for Pendulum {
     }
 }
 
-/// The passive moment.
-#[derive(Clone, Copy, Debug)]
-pub struct Passive {
-    /// N·m at 0°, and growth per degree, of the three exponentials.
-    terms: [(f64, f64); 3],
-}
-
-impl Passive {
-    /// Riener's and Edrich's constant term, N·m.
-    const CONSTANT_NM: f64 = -4.820;
-    /// Where it ends, deg.
-    const RANGE_DEG: (f64, f64) = (-20.0, 160.0);
-
-    /// For a hip bent by so much, and the ankle at 0°.
-    pub fn for_hip_deg(hip_deg: f64) -> Self {
-        Self {
-            terms: [
-                ((1.800 + 0.0217 * hip_deg).exp(), -0.0352),
-                (-(-3.971 - 0.0128 * hip_deg).exp(), 0.0495),
-                (2.220_f64.exp(), -0.150),
-            ],
-        }
-    }
-
-    /// The moment, N·m, at a flexion of the knee.
-    pub fn moment_nm(&self, angle_rad: f64) -> f64 {
-        self.expand(angle_rad)[0]
-    }
-
-    /// The energy that it stores, J, against that at 0°.
-    pub fn stored_j(&self, angle_rad: f64) -> f64 {
-        let (low, high) = Self::RANGE_DEG;
-        let within_rad = angle_rad.clamp(low.to_radians(), high.to_radians());
-        let deg = within_rad.to_degrees();
-        let mut stored = -Self::CONSTANT_NM * within_rad;
-        for (at_zero, growth) in self.terms {
-            stored -= at_zero * (growth * deg).exp_m1() / growth.to_degrees();
-        }
-        let [moment, slope, _] = self.expand(within_rad);
-        let beyond = angle_rad - within_rad;
-        stored - moment * beyond - 0.5 * slope * beyond * beyond
-    }
-}
-
-impl AngleTorque for Passive {
-    #[inline]
-    fn expand(&self, angle_rad: f64) -> [f64; 3] {
-        let (low, high) = Self::RANGE_DEG;
-        let deg = angle_rad.to_degrees();
-        let within = deg.clamp(low, high);
-        let (mut moment, mut slope, mut bend) = (Self::CONSTANT_NM, 0.0, 0.0);
-        for (at_zero, growth) in self.terms {
-            let term = at_zero * (growth * within).exp();
-            moment += term;
-            slope += growth * term;
-            bend += growth * growth * term;
-        }
-        let per_rad = 1.0_f64.to_degrees();
-        let beyond = deg - within;
-        [
-            moment + slope * beyond,
-            slope * per_rad,
-            if beyond == 0.0 {
-                bend * per_rad * per_rad
-            } else {
-                0.0
-            },
-        ]
-    }
-
-    fn book(&self, angle_rad: f64, ledger: &mut Ledger) {
-        ledger.book(NAME, "passive", Account::Stored, self.stored_j(angle_rad));
-    }
-
-    fn range_rad(&self) -> (f64, f64) {
-        let (low, high) = Self::RANGE_DEG;
-        (low.to_radians(), high.to_radians())
-    }
-}
-
 impl<A: AngleTorque, B: AngleTorque> AngleTorque for (A, B) {
     #[inline]
     fn expand(&self, angle_rad: f64) -> [f64; 3] {
@@ -267,143 +186,65 @@ impl<A: AngleTorque, B: AngleTorque> AngleTorque for (A, B) {
     }
 }
 
-/// What a limb has whatever pulls at it.
-struct Own {
+/// Leg and foot, with what pulls at them.
+struct Limb<T> {
     inertia_kg_m2: f64,
     damping: f64,
+    torque: T,
     lost_j: f64,
     /// The knee has been where nothing is known of it.
     outside: bool,
-    /// What weight, passive moment and damping do, as last folded.
-    pull: Push,
-    /// Their torque in the last step.
-    mean_nm: f64,
 }
 
-struct Limb<T> {
-    left: Box<dyn Chain>,
-    own: Own,
-    torque: T,
+impl<T> Limb<T> {
+    /// With another torque.
+    fn and<U>(self, torque: U) -> Limb<(T, U)> {
+        Limb {
+            inertia_kg_m2: self.inertia_kg_m2,
+            damping: self.damping,
+            torque: (self.torque, torque),
+            lost_j: self.lost_j,
+            outside: self.outside,
+        }
+    }
 }
 
-impl<T: AngleTorque> Limb<T> {
-    /// What weight, passive moment and damping do in a step.
+impl<T: AngleTorque> Load for Limb<T> {
+    const NAME: &'static str = NAME;
+    const COLUMN: &'static str = "limb_torque_nm";
+
+    fn inertia_kg_m2(&self) -> f64 {
+        self.inertia_kg_m2
+    }
+
     fn pull(&self, step: &Step, body: &Body) -> Push {
         let [torque, slope, bend] = self.torque.expand(body.angle_rad);
         let way_rad = step.length_s * body.omega_rad_s;
         Push {
             torque_nm: torque + bend * way_rad * way_rad / 6.0,
-            slope_nms: self.own.damping - 0.5 * step.length_s * slope,
+            slope_nms: self.damping - 0.5 * step.length_s * slope,
             held_by_nm: None,
         }
     }
 
-    fn left_flow(&self, step: &Step, body: &Body, flow: Flow) -> Flow {
-        let own = self
-            .own
-            .pull
-            .with_inertia(self.own.inertia_kg_m2, step, body);
-        Flow {
-            torque_nm: flow.torque_nm - own.at(flow.omega_rad_s),
-            ..flow
-        }
-    }
-}
-
-impl<T: AngleTorque> Chain for Limb<T> {
-    fn fold(&mut self, step: &Step, body: &Body) -> Push {
-        let left = self.left.fold(step, body);
-        self.own.pull = self.pull(step, body);
-        let own = self
-            .own
-            .pull
-            .with_inertia(self.own.inertia_kg_m2, step, body);
-        Push {
-            torque_nm: left.torque_nm + own.torque_nm,
-            slope_nms: left.slope_nms + own.slope_nms,
-            held_by_nm: left.held_by_nm,
-        }
-    }
-
-    fn check(&mut self, step: &Step, body: &Body, flow: Flow) -> Verdict {
-        let left = self.left_flow(step, body, flow);
-        self.left.check(step, body, left)
-    }
-
-    fn settle(
-        &mut self,
-        step: &Step,
-        body: &Body,
-        next: &mut Body,
-        flow: Flow,
-        ends_at: Option<f64>,
-    ) -> Settled {
-        let w = flow.omega_rad_s;
-        self.own.mean_nm = self.own.pull.at(w);
-        self.own.lost_j += self.own.damping * w * w * step.length_s;
+    fn moved(&mut self, step: &Step, next: &Body, mean_rad_s: f64) {
+        self.lost_j += self.damping * mean_rad_s * mean_rad_s * step.length_s;
         let (low, high) = self.torque.range_rad();
-        self.own.outside |= !(low..=high).contains(&next.angle_rad);
-        let left = self.left_flow(step, body, flow);
-        self.left.settle(step, body, next, left, ends_at)
-    }
-
-    fn shaft(&self, body: &Body) -> Body {
-        self.left.shaft(body)
-    }
-
-    fn is_rigid(&self) -> bool {
-        self.left.is_rigid()
-    }
-
-    fn inertia_kg_m2(&self) -> f64 {
-        self.own.inertia_kg_m2 + self.left.inertia_kg_m2()
-    }
-
-    fn attach(&mut self, right_kg_m2: f64) {
-        self.left.attach(right_kg_m2 + self.own.inertia_kg_m2);
-    }
-
-    fn jerk(&mut self, body: &Body, change_rad_s: f64) {
-        self.left.jerk(body, change_rad_s);
+        self.outside |= !(low..=high).contains(&next.angle_rad);
     }
 
     fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
         let torque = self.torque;
-        match self.left.weight() {
-            None => Some(Box::new(move |angle| torque.expand(angle)[0])),
-            Some(left) => Some(Box::new(move |angle| {
-                left(angle) + torque.expand(angle)[0]
-            })),
-        }
+        Some(Box::new(move |angle| torque.expand(angle)[0]))
     }
 
     fn book(&self, body: &Body, ledger: &mut Ledger) {
-        self.left.book(body, ledger);
-        let speed = body.omega_rad_s;
-        ledger.book(
-            NAME,
-            "kinetic",
-            Account::Stored,
-            0.5 * self.own.inertia_kg_m2 * speed * speed,
-        );
         self.torque.book(body.angle_rad, ledger);
-        ledger.book(NAME, "damping", Account::Lost, self.own.lost_j);
-    }
-
-    fn columns(&self, names: &mut Vec<&'static str>) {
-        self.left.columns(names);
-        names.push("limb_torque_nm");
-    }
-
-    fn write(&self, body: &Body, row: &mut Vec<f64>) {
-        self.left.write(body, row);
-        // As everywhere in a trace, what opposes growing angle is positive.
-        row.push(-self.own.mean_nm);
+        ledger.book(NAME, "damping", Account::Lost, self.lost_j);
     }
 
     fn warnings(&self, warnings: &mut Vec<String>) {
-        self.left.warnings(warnings);
-        if self.own.outside {
+        if self.outside {
             let (low, high) = Passive::RANGE_DEG;
             warnings.push(format!(
                 "the knee leaves {low}° to {high}°, beyond which nothing is known of its passive moment: \
@@ -416,51 +257,6 @@ impl<T: AngleTorque> Chain for Limb<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The table of the domain report: hip, and the moment at seven flexions.
-    #[test]
-    fn the_passive_moment_is_that_of_riener_and_edrich() {
-        const KNEE_DEG: [f64; 8] = [0.0, 10.0, 20.0, 40.0, 60.0, 90.0, 120.0, 140.0];
-        for (hip, moments) in [
-            (0.0, [10.4, 1.5, -1.4, -3.5, -4.5, -6.2, -11.9, -24.1]),
-            (30.0, [16.0, 5.4, 1.3, -2.1, -3.7, -5.4, -9.5, -17.9]),
-            (90.0, [47.0, 27.2, 16.7, 5.6, 0.2, -3.5, -6.5, -10.6]),
-        ] {
-            let passive = Passive::for_hip_deg(hip);
-            for (knee, moment) in KNEE_DEG.into_iter().zip(moments) {
-                let found = passive.moment_nm(knee.to_radians());
-                assert!((found - moment).abs() < 0.051, "{found} at {knee}, hip {hip}");
-            }
-        }
-        for (hip, zero) in [(0.0_f64, 13.9_f64), (30.0, 25.8), (90.0, 61.2)] {
-            let passive = Passive::for_hip_deg(hip);
-            let at = |deg: f64| passive.moment_nm(deg.to_radians());
-            assert!(at(zero - 0.1) > 0.0 && at(zero + 0.1) < 0.0, "hip {hip}");
-        }
-    }
-
-    #[test]
-    fn what_the_passive_moment_stores_is_its_integral() {
-        let passive = Passive::for_hip_deg(30.0);
-        let mut integral = 0.0;
-        let (from, to, n) = (-0.8_f64, 3.2_f64, 40_000);
-        let h = (to - from) / f64::from(n);
-        for i in 0..n {
-            let at = from + (f64::from(i) + 0.5) * h;
-            integral -= h * passive.moment_nm(at);
-            let (low, high) = (at - 1e-6, at + 1e-6);
-            let (low, high, [_, slope, bend]) =
-                (passive.expand(low), passive.expand(high), passive.expand(at));
-            let differs = |i: usize, known: f64| {
-                let found = (high[i] - low[i]) / 2e-6;
-                (found - known).abs() > 1e-3 * (1.0 + known.abs())
-            };
-            assert!(!differs(0, slope) && !differs(1, bend), "at {at}");
-        }
-        let stored = passive.stored_j(to) - passive.stored_j(from);
-        assert!((stored - integral).abs() < 1e-5 * integral.abs(), "{stored} {integral}");
-        assert_eq!(passive.stored_j(0.0), 0.0);
-    }
 
     #[test]
     fn the_segment_table_is_that_of_winter() {

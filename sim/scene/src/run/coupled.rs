@@ -26,14 +26,14 @@ pub(super) struct PlantTotals {
     pub(super) warnings: Vec<String>,
 }
 
-/// The work that the actuator takes out of the mechanics, and its parts.
+/// The work that the actuator takes out of the mechanics, and its parts, J.
 pub(super) struct Rendering {
     /// Of the model's torque, held over each tick.
-    pub(super) held_j: f64,
+    pub(super) held: f64,
     /// Of what each stage adds.
-    pub(super) stages_j: Vec<(&'static str, f64)>,
+    pub(super) stages: Vec<(&'static str, f64)>,
     /// Of the torque that there was.
-    pub(super) absorbed_j: f64,
+    pub(super) absorbed: f64,
 }
 
 /// The torque that the hand feels, mean of each tick.
@@ -133,10 +133,10 @@ impl Run {
         let (steps, every) = steps(scene);
         let parts = scene.substeps;
         let mut walk = Walk::new(&scene.motion, self.tick_s / f64::from(parts));
-        let held = scene.is_held();
+        let is_felt = scene.is_held();
         let mut felt = Felt::new();
         let mut felt_nm = self.first_felt_nm;
-        let mut held_j = 0.0;
+        let mut held = 0.0;
         let mut fastest_rad_s: f64 = 0.0;
         let mut row = Vec::new();
         let mut n = 0;
@@ -150,7 +150,7 @@ impl Run {
                 self.device.write(&mut row);
                 row.extend(self.stages.iter().map(|s| s.added_nm));
                 self.plant.write(&mut row);
-                if held {
+                if is_felt {
                     row.push(felt_nm);
                 }
                 observer.row(&row).map_err(RunError::Observer)?;
@@ -175,7 +175,7 @@ impl Run {
             felt.note(felt_nm);
             let after = shaft(&self.plant);
             let turned = after.phi_rad - before.phi_rad;
-            held_j += model_nm * turned;
+            held += model_nm * turned;
             for stage in &mut self.stages {
                 stage.work_j += stage.added_nm * turned;
             }
@@ -197,15 +197,15 @@ impl Run {
             plant: Some(PlantTotals {
                 balance: self.plant.balance(),
                 rendering: Rendering {
-                    held_j,
-                    stages_j: self
+                    held,
+                    stages: self
                         .stages
                         .iter()
                         .map(|s| (s.named.effect, s.work_j))
                         .collect(),
-                    absorbed_j: self.plant.absorbed_j(),
+                    absorbed: self.plant.absorbed_j(),
                 },
-                felt: held.then_some(felt),
+                felt: is_felt.then_some(felt),
                 warnings: self.plant.warnings(),
             }),
         })

@@ -19,29 +19,51 @@ pub(super) struct Cost {
     pub(super) ns_per_step: f64,
 }
 
-/// The time of a step of each scene, ns, without outputs: the fastest of so
-/// many `timings` in which the scenes take turns, infinite for one that cannot
-/// run. `after_each` is called after each timing and may end it all.
+/// The time of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepTime {
+    /// Of the fastest timing, ns; infinite for a scene that cannot run.
+    pub ns: f64,
+    /// How much longer the median took, as a share of that: large where the
+    /// machine was busy.
+    pub spread: f64,
+}
+
+/// The time of a step of each scene, without outputs, from so many `timings`
+/// in which the scenes take turns. `after_each` is called after each timing and
+/// may end it all.
 ///
 /// # Errors
 /// What `after_each` returns.
-pub fn ns_per_step<E>(
+pub fn step_times<E>(
     scenes: &[Scene],
     timings: u32,
     mut after_each: impl FnMut() -> Result<(), E>,
-) -> Result<Vec<f64>, E> {
+) -> Result<Vec<StepTime>, E> {
     let mut short = scenes.to_vec();
     for scene in &mut short {
         scene.duration_s = scene.duration_s.min(STEPS * step_s(scene));
     }
-    let mut fastest = vec![f64::INFINITY; short.len()];
+    let mut times = vec![Vec::new(); short.len()];
     for _ in 0..timings {
-        for (scene, fastest) in short.iter().zip(&mut fastest) {
-            *fastest = fastest.min(time(scene));
+        for (scene, times) in short.iter().zip(&mut times) {
+            times.push(time(scene));
             after_each()?;
         }
     }
-    Ok(fastest)
+    Ok(times.into_iter().map(StepTime::of).collect())
+}
+
+impl StepTime {
+    fn of(mut times: Vec<f64>) -> Self {
+        times.sort_by(f64::total_cmp);
+        let ns = times.first().copied().unwrap_or(f64::INFINITY);
+        let median = times.get(times.len() / 2).copied().unwrap_or(ns);
+        Self {
+            ns,
+            spread: median / ns - 1.0,
+        }
+    }
 }
 
 /// The costs of the scene's effects in the order of its list; of `reference`,
@@ -62,10 +84,10 @@ pub(super) fn costs(scene: &Scene) -> Vec<Cost> {
                 }
             }
             let without = with.without(effect)?;
-            let Ok(times) = ns_per_step(&[with, without], TIMINGS, || Ok::<(), Infallible>(()));
+            let Ok(times) = step_times(&[with, without], TIMINGS, || Ok::<(), Infallible>(()));
             Some(Cost {
                 effect: effect.name,
-                ns_per_step: (times[0] - times[1]).max(0.0),
+                ns_per_step: (times[0].ns - times[1].ns).max(0.0),
             })
         })
         .collect()

@@ -293,7 +293,7 @@ fn plant_energy(plant: &PlantTotals, tally: Option<&Tally>) -> PlantEnergySummar
     let balance = &plant.balance;
     let rendering = &plant.rendering;
     let model_j = tally.map_or(0.0, |t| t.energy.work_in_j);
-    let stages_j: f64 = rendering.stages_j.iter().map(|s| s.1).sum();
+    let stages_j: f64 = rendering.stages.iter().map(|s| s.1).sum();
     PlantEnergySummary {
         terms: balance
             .terms()
@@ -309,14 +309,14 @@ fn plant_energy(plant: &PlantTotals, tally: Option<&Tally>) -> PlantEnergySummar
         residual_relative: balance.relative_residual(),
         rendering: RenderingSummary {
             model_j,
-            sampling_j: rendering.held_j - model_j,
+            sampling_j: rendering.held - model_j,
             stages: rendering
-                .stages_j
+                .stages
                 .iter()
                 .map(|&(effect, joule)| StageWork { effect, joule })
                 .collect(),
-            actuator_j: rendering.absorbed_j - rendering.held_j - stages_j,
-            absorbed_j: rendering.absorbed_j,
+            actuator_j: rendering.absorbed - rendering.held - stages_j,
+            absorbed_j: rendering.absorbed,
         },
     }
 }

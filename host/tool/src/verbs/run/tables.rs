@@ -1,13 +1,13 @@
 //! A run's summary as a person reads it: a few lines on the terminal, tables
 //! in the report.
 
-use crepitus_model::encoder::ENCODER_PARAMETERS;
-use crepitus_model::parameters::{PARAMETERS, ParameterSpec};
+use super::plant;
+use crepitus_model::parameters::ParameterSpec;
 use crepitus_report::Section;
 use crepitus_scene::Summary;
-use crepitus_scene::run::EffectSummary;
+use crepitus_scene::run::{EffectSummary, TorqueSummary};
 
-/// What happened, in three lines.
+/// What happened, in a few lines.
 pub(super) fn in_brief(s: &Summary) -> String {
     let mut lines = Vec::new();
     if let Some(e) = &s.events {
@@ -28,6 +28,7 @@ pub(super) fn in_brief(s: &Summary) -> String {
             nm(t.mean_nm)
         ));
     }
+    lines.extend(plant::in_brief(s));
     lines.push(format!(
         "  {} s simulated by {} in {:.2} s, {:.0} times real time with all outputs",
         s.simulated_s, s.solver, s.wall_s, s.real_time_factor
@@ -35,19 +36,22 @@ pub(super) fn in_brief(s: &Summary) -> String {
     lines.join("\n")
 }
 
-/// The tables of the report.
-pub(super) fn sections(s: &Summary) -> Vec<Section> {
+/// The tables of the report; `specs` are the parameters of each effect.
+pub(super) fn sections(s: &Summary, specs: &[&[ParameterSpec]]) -> Vec<Section> {
+    let coupled = s.plant_energy.is_some();
     let mut sections = vec![run_section(s)];
     if let Some(t) = &s.torque {
-        sections.push(section(
-            "Torque over time",
-            [
-                ("smallest", nm(t.min_nm)),
-                ("mean", nm(t.mean_nm)),
-                ("largest", nm(t.max_nm)),
-                ("root mean square", nm(t.rms_nm)),
-            ],
+        sections.push(torque_section(
+            if coupled {
+                "Torque of the model over time"
+            } else {
+                "Torque over time"
+            },
+            t,
         ));
+    }
+    if let Some(t) = &s.hand_torque {
+        sections.push(torque_section("Torque at the hand over time", t));
     }
     if let Some(c) = &s.cycles {
         let time = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.4} ms", x * 1e3));
@@ -66,9 +70,20 @@ pub(super) fn sections(s: &Summary) -> Vec<Section> {
     }
     if let Some(e) = &s.energy {
         sections.push(section(
-            "Energy",
+            if coupled {
+                "Energy of the imaginary object"
+            } else {
+                "Energy"
+            },
             [
-                ("work of the hand", millijoule(e.work_in_j)),
+                (
+                    if coupled {
+                        "work of the shaft"
+                    } else {
+                        "work of the hand"
+                    },
+                    millijoule(e.work_in_j),
+                ),
                 (
                     "given by the convention, without a torque",
                     millijoule(e.convention_j),
@@ -84,8 +99,26 @@ pub(super) fn sections(s: &Summary) -> Vec<Section> {
             ],
         ));
     }
-    sections.extend(s.effects.iter().map(effect_section));
+    sections.extend(plant::rendered_section(s));
+    sections.extend(
+        s.effects
+            .iter()
+            .zip(specs)
+            .map(|(effect, specs)| effect_section(effect, specs)),
+    );
     sections
+}
+
+fn torque_section(title: &str, t: &TorqueSummary) -> Section {
+    section(
+        title,
+        [
+            ("smallest", nm(t.min_nm)),
+            ("mean", nm(t.mean_nm)),
+            ("largest", nm(t.max_nm)),
+            ("root mean square", nm(t.rms_nm)),
+        ],
+    )
 }
 
 fn run_section(s: &Summary) -> Section {
@@ -122,23 +155,33 @@ fn run_section(s: &Summary) -> Section {
     section("Run", rows)
 }
 
-fn effect_section(effect: &EffectSummary) -> Section {
-    let specs: &[&[ParameterSpec]] = &[&PARAMETERS, &ENCODER_PARAMETERS];
+fn effect_section(effect: &EffectSummary, specs: &[ParameterSpec]) -> Section {
     let mut rows: Vec<(String, String)> = effect
         .parameters
         .iter()
-        .map(|p| {
-            let spec = specs.iter().flat_map(|t| t.iter()).find(|s| s.key == p.key);
-            match spec {
-                Some(s) => (
-                    format!("{} ({})", s.symbol, s.key),
-                    format!("{} {}", p.value, s.unit),
-                ),
-                None => (p.key.to_owned(), p.value.to_string()),
-            }
+        .map(|p| match specs.iter().find(|s| s.key == p.key) {
+            Some(s) if s.unit == "1" => (format!("{} ({})", s.symbol, s.key), p.value.to_string()),
+            Some(s) => (
+                format!("{} ({})", s.symbol, s.key),
+                format!("{} {}", p.value, s.unit),
+            ),
+            None => (p.key.to_owned(), p.value.to_string()),
         })
         .collect();
-    rows.push(("states".to_owned(), effect.states.join(", ")));
+    rows.extend(
+        effect
+            .choices
+            .iter()
+            .map(|c| (c.key.to_owned(), c.value.to_owned())),
+    );
+    rows.push((
+        "states".to_owned(),
+        if effect.states.is_empty() {
+            "none".to_owned()
+        } else {
+            effect.states.join(", ")
+        },
+    ));
     if let Some(ns) = effect.ns_per_step {
         rows.push(("cost".to_owned(), format!("{ns:.1} ns per step")));
     }
@@ -148,18 +191,21 @@ fn effect_section(effect: &EffectSummary) -> Section {
     }
 }
 
-fn section<'a>(title: &str, rows: impl IntoIterator<Item = (&'a str, String)>) -> Section {
+pub(super) fn section<'a>(
+    title: &str,
+    rows: impl IntoIterator<Item = (&'a str, String)>,
+) -> Section {
     Section {
         title: title.to_owned(),
         rows: rows.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
     }
 }
 
-fn nm(x: f64) -> String {
+pub(super) fn nm(x: f64) -> String {
     format!("{:.5} N·m", rounded(x))
 }
 
-fn millijoule(x: f64) -> String {
+pub(super) fn millijoule(x: f64) -> String {
     format!("{:.5} mJ", rounded(x * 1e3))
 }
 

@@ -1,0 +1,228 @@
+//! What a plant adds to the figures: the leg, the hand, and the columns of
+//! its effects. A scene without a plant has none of this.
+
+use crepitus_scene::trace::Column;
+
+use crate::channels::{Channels, Sample, Setup};
+use crate::course::Course;
+use crate::palette::{CURVES, Ink};
+use crate::spectrum::{Spectrum, Welch};
+use crate::thinned::Thinned;
+
+/// The side of the leg: its motion, and the torque at the hand. `green` in
+/// the style sheet.
+pub(crate) const LEG: Ink = CURVES[2];
+
+/// A column that gets a small chart of its own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shown {
+    column: &'static str,
+    /// What it is.
+    pub(crate) title: &'static str,
+    /// Its axis, with the unit.
+    pub(crate) axis: &'static str,
+    /// From the column's unit to that of the axis.
+    scale: f64,
+    /// Not referred to the joint.
+    pub(crate) of_motor: bool,
+    /// Added to the model's torque before it is commanded.
+    pub(crate) is_stage: bool,
+}
+
+const fn shown(column: &'static str, title: &'static str, axis: &'static str) -> Shown {
+    Shown {
+        column,
+        title,
+        axis,
+        scale: 1.0,
+        of_motor: false,
+        is_stage: false,
+    }
+}
+
+const fn stage(column: &'static str, title: &'static str) -> Shown {
+    Shown {
+        is_stage: true,
+        ..shown(column, title, "Torque (N·m)")
+    }
+}
+
+const fn of_motor(column: &'static str, title: &'static str, axis: &'static str) -> Shown {
+    Shown {
+        of_motor: true,
+        ..shown(column, title, axis)
+    }
+}
+
+const SHOWN: [Shown; 9] = [
+    stage(
+        "compensation_nm",
+        "Friction compensation, added to the model’s torque",
+    ),
+    stage("shaping_nm", "Bone shaping, added to the model’s torque"),
+    of_motor("motor_current_a", "Motor current", "Current (A)"),
+    of_motor("motor_voltage_v", "Motor voltage", "Voltage (V)"),
+    shown(
+        "motor_torque_nm",
+        "Motor torque, at the joint",
+        "Torque (N·m)",
+    ),
+    shown("gear_friction_nm", "Friction of the gear", "Torque (N·m)"),
+    Shown {
+        scale: 180.0 / std::f64::consts::PI,
+        ..shown("gap_rad", "Backlash: rotor ahead of the joint", "Angle (°)")
+    },
+    shown(
+        "cuff_torque_nm",
+        "Cuff: torque of the brace on the leg",
+        "Torque (N·m)",
+    ),
+    shown(
+        "limb_torque_nm",
+        "Leg: weight and passive moment",
+        "Torque (N·m)",
+    ),
+];
+
+/// What is collected while the run streams by.
+#[derive(Debug)]
+pub(crate) struct PlantCollector {
+    hand_welch: Option<Welch>,
+    /// The last time and intended angle, for the intended speed.
+    last_intended: (f64, f64),
+    plant: Plant,
+    columns: Vec<(usize, Shown)>,
+}
+
+/// What is left of it when the run is over.
+#[derive(Debug)]
+pub(crate) struct Plant {
+    pub(crate) leg: Follower,
+    pub(crate) intended: Follower,
+    pub(crate) hand: Course,
+    /// Without its slow part.
+    pub(crate) fast: Course,
+    /// The time that the slow part is a mean over, s.
+    pub(crate) mean_s: f64,
+    pub(crate) hand_spectrum: Option<Spectrum>,
+    /// The columns of effects, in their order in a row.
+    pub(crate) columns: Vec<(Shown, Course)>,
+}
+
+/// What moves beside the shaft.
+#[derive(Debug)]
+pub(crate) struct Follower {
+    pub(crate) angle: Thinned,
+    pub(crate) omega: Thinned,
+    /// How far its angle is ahead of the shaft's.
+    pub(crate) ahead: Thinned,
+}
+
+impl Plant {
+    /// Whether something is added to the model's torque.
+    pub(crate) fn has_stages(&self) -> bool {
+        self.columns.iter().any(|(shown, _)| shown.is_stage)
+    }
+}
+
+impl Follower {
+    fn new() -> Self {
+        Self {
+            angle: Thinned::new(Course::LINE),
+            omega: Thinned::new(Course::LINE),
+            ahead: Thinned::new(Course::LINE),
+        }
+    }
+
+    fn push(&mut self, time: f64, angle: f64, omega: f64, shaft: f64) {
+        self.angle.push(time, angle);
+        self.omega.push(time, omega);
+        self.ahead.push(time, angle - shaft);
+    }
+}
+
+impl PlantCollector {
+    /// Ready for the first row; none if there are no columns of a plant.
+    pub(crate) fn new(channels: &Channels, setup: &Setup, mean_s: f64) -> Option<Self> {
+        let columns = columns(setup.columns);
+        if columns.is_empty() && !channels.has_hand() && !channels.has_leg() {
+            return None;
+        }
+        let course = || Course::new(setup.rows_expected);
+        Some(Self {
+            hand_welch: channels
+                .has_hand()
+                .then(|| Welch::differencing(setup.row_step_s, setup.rows_expected))
+                .flatten(),
+            last_intended: (f64::NAN, f64::NAN),
+            plant: Plant {
+                leg: Follower::new(),
+                intended: Follower::new(),
+                hand: course(),
+                fast: course(),
+                mean_s,
+                hand_spectrum: None,
+                columns: columns
+                    .iter()
+                    .map(|(_, shown)| (*shown, course()))
+                    .collect(),
+            },
+            columns,
+        })
+    }
+
+    /// Takes a row, of which the sample is a part.
+    pub(crate) fn row(&mut self, sample: &Sample, values: &[f64]) {
+        let time = sample.time;
+        let plant = &mut self.plant;
+        plant
+            .leg
+            .push(time, sample.leg_angle, sample.leg_omega, sample.angle);
+        let (last_time, last_angle) = self.last_intended;
+        let speed = (sample.intended_angle - last_angle) / (time - last_time);
+        self.last_intended = (time, sample.intended_angle);
+        plant
+            .intended
+            .push(time, sample.intended_angle, speed, sample.angle);
+        for ((at, _), (shown, course)) in self.columns.iter().zip(&mut plant.columns) {
+            let value = values.get(*at).copied().unwrap_or(f64::NAN);
+            course.push(time, shown.scale * value);
+        }
+        if let Some(welch) = &mut self.hand_welch {
+            welch.push(sample.hand_torque);
+        }
+    }
+
+    /// Takes a row again when the fast part of its hand torque is known.
+    pub(crate) fn hand(&mut self, sample: &Sample) {
+        self.plant.hand.push(sample.time, sample.hand_torque);
+        self.plant.fast.push(sample.time, sample.hand_fast);
+    }
+
+    pub(crate) fn finish(self) -> Plant {
+        let plant = self.plant;
+        Plant {
+            hand: plant.hand.finish(),
+            fast: plant.fast.finish(),
+            hand_spectrum: self.hand_welch.and_then(Welch::finish),
+            columns: plant
+                .columns
+                .into_iter()
+                .map(|(shown, course)| (shown, course.finish()))
+                .collect(),
+            ..plant
+        }
+    }
+}
+
+/// Those of the columns that get a chart, and where they stand in a row.
+fn columns(columns: &[Column]) -> Vec<(usize, Shown)> {
+    columns
+        .iter()
+        .enumerate()
+        .filter_map(|(at, column)| {
+            let shown = SHOWN.iter().find(|shown| shown.column == column.name)?;
+            Some((at, *shown))
+        })
+        .collect()
+}

@@ -1,0 +1,149 @@
+//! What the summary of a run says of a plant: where its energy went, and what
+//! the rendered torque did.
+
+use super::tables::{millijoule, nm, section};
+use crepitus_report::{Account, Balance, EnergyTerm, Section};
+use crepitus_scene::Summary;
+
+/// A line on the hand and one on the balance, as far as there are any.
+pub(super) fn in_brief(s: &Summary) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some(t) = &s.hand_torque {
+        lines.push(format!(
+            "  torque at the hand {} to {}, mean {}",
+            nm(t.min_nm),
+            nm(t.max_nm),
+            nm(t.mean_nm)
+        ));
+    }
+    if let Some(e) = &s.plant_energy {
+        lines.push(format!(
+            "  energy of the plant balances to {}",
+            match e.residual_relative.abs() {
+                0.0 => "the last bit".to_owned(),
+                share => format!("{share:.0e} of all that moved"),
+            }
+        ));
+    }
+    lines
+}
+
+/// The energy balance, for the report to draw.
+pub(super) fn balance(s: &Summary) -> Option<Balance> {
+    let energy = s.plant_energy.as_ref()?;
+    Some(Balance {
+        terms: energy
+            .terms
+            .iter()
+            .map(|t| EnergyTerm {
+                effect: t.effect.to_owned(),
+                what: t.what.to_owned(),
+                account: match t.account {
+                    "given" => Account::Given,
+                    "stored" => Account::Stored,
+                    "lost" => Account::Lost,
+                    _ => Account::Rendered,
+                },
+                joule: t.joule,
+            })
+            .collect(),
+        residual_j: energy.residual_j,
+        residual_relative: energy.residual_relative,
+    })
+}
+
+/// Where the work of the rendered torque comes from, in words. None if there
+/// is nothing to render.
+pub(super) fn rendered_section(s: &Summary) -> Option<Section> {
+    let rendering = &s.plant_energy.as_ref()?.rendering;
+    let mut rows: Vec<(&str, String)> = Vec::new();
+    if s.energy.is_some() {
+        rows.push(("the model’s torque took", millijoule(rendering.model_j)));
+        rows.push((
+            "holding it over each tick, and what the sensor does not see, added",
+            millijoule(rendering.sampling_j),
+        ));
+    }
+    for stage in &rendering.stages {
+        rows.push((
+            match stage.effect {
+                "friction-compensation" => "friction compensation added",
+                "bone-shaping" => "bone shaping added",
+                other => other,
+            },
+            millijoule(stage.joule),
+        ));
+    }
+    if rows.is_empty() && rendering.absorbed_j == 0.0 {
+        return None;
+    }
+    if s.effects.iter().any(|e| e.name == "motor") {
+        rows.push((
+            "the motor added, where its torque was not the one commanded",
+            millijoule(rendering.actuator_j),
+        ));
+    }
+    rows.push((
+        "in all: taken out of the mechanics",
+        millijoule(rendering.absorbed_j),
+    ));
+    Some(section("Work of the rendered torque", rows))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_scene::run::Blind;
+    use crepitus_scene::{Overrides, Scene};
+    use std::path::Path;
+
+    /// The summary of a short run.
+    fn summary(motion: &str, effects: &str) -> Summary {
+        let text = format!(
+            "version = 1\ntitle = \"short\"\nduration_s = 0.05\n[motion]\n{motion}\n\
+             [solver]\nkind = \"exact-events\"\nstep_s = 5e-5\n{effects}"
+        );
+        let scene = Scene::parse(Path::new("short.toml"), &text, &Overrides::default());
+        let scene = scene.expect("a scene");
+        crepitus_scene::run(&scene, &mut Blind).expect("it runs")
+    }
+
+    const STEADY: &str = "kind = \"constant\"\nvelocity_rad_s = 1.0";
+
+    fn names(section: Option<Section>) -> Vec<String> {
+        let rows = section.map(|s| s.rows).unwrap_or_default();
+        rows.into_iter().map(|(name, _)| name).collect()
+    }
+
+    #[test]
+    fn a_joint_alone_has_none_of_this() {
+        let s = summary(STEADY, "[effects.crepitus]\n");
+        assert!(in_brief(&s).is_empty());
+        assert!(balance(&s).is_none() && rendered_section(&s).is_none());
+    }
+
+    #[test]
+    fn a_plant_has_a_hand_and_a_balance() {
+        let s = summary(
+            STEADY,
+            "[effects.crepitus]\n[effects.motor]\n[effects.friction-compensation]\n\
+             [effects.drivetrain]\n",
+        );
+        let lines = in_brief(&s);
+        assert!(lines[0].contains("torque at the hand"), "{lines:?}");
+        assert!(lines[1].contains("balances to"), "{lines:?}");
+        let balance = balance(&s).expect("there is a plant");
+        let given = |t: &EnergyTerm| t.effect == "motor" && t.account == Account::Given;
+        assert!(balance.terms.iter().any(given));
+        let names = names(rendered_section(&s));
+        assert!(names.iter().any(|n| n == "friction compensation added"));
+        assert!(names.iter().any(|n| n.starts_with("the motor added")));
+    }
+
+    #[test]
+    fn a_released_leg_renders_nothing() {
+        let s = summary("kind = \"released\"\nfrom_deg = 20", "[effects.limb]\n");
+        assert_eq!(in_brief(&s).len(), 1);
+        assert!(balance(&s).is_some() && rendered_section(&s).is_none());
+    }
+}
