@@ -27,3 +27,10 @@ for story in implicit-euler restick-rules parameter-change turn-back-guard; do
 done
 cargo run --release --quiet -- stability --list --long >docs/hard-cases.md
 echo docs/hard-cases.md
+
+# The numbers of the page about effects are what these print.
+for scene in fig8-5-hand fig9-low-speed; do
+    cargo run --release --quiet -- effects "$scene" --pictures --out "target/figures/effects-$scene"
+    cp "target/figures/effects-$scene/build-up.svg" "docs/images/build-up-${scene%%-*}.svg"
+    echo "docs/images/build-up-${scene%%-*}.svg"
+done

@@ -296,4 +296,34 @@ mod tests {
         let a = Active::<f64>::new(&settings.validate().unwrap(), 5e-5).unwrap();
         assert!(!a.outlasts_a_stick(&travel(1.0)));
     }
+
+    #[test]
+    fn equal_is_a_matter_of_proportion() {
+        // The same object in units a thousand times larger or smaller.
+        for ts in [1e-4, 0.4, 1e3] {
+            for (gap, touches) in [(1e-10, true), (1e-8, false)] {
+                let mut settings = Settings::default();
+                settings.parameters.static_torque_nm = ts;
+                settings.parameters.kinetic_torque_nm = ts * (1.0 - gap);
+                let a = Active::<f64>::new(&settings.validate().unwrap(), 5e-5).unwrap();
+                assert_eq!(a.touches(), touches, "{ts} {gap}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_as_long_as_a_stick_does_not_outlast_it() {
+        // 2(Ts − Tk)/kr = 2^−9 rad, to the bit.
+        let mut settings = Settings::default();
+        settings.parameters.stiffness_nm_per_rad = 512.0;
+        settings.parameters.static_torque_nm = 0.75;
+        settings.parameters.kinetic_torque_nm = 0.25;
+        let a = Active::<f32>::new(&settings.validate().unwrap(), 5e-5).unwrap();
+        let travel = |delta_phi_rad| ShaftStep {
+            delta_phi_rad,
+            ..ShaftStep::default()
+        };
+        assert!(!a.outlasts_a_stick(&travel(1.0 / 512.0)));
+        assert!(a.outlasts_a_stick(&travel(1.000_001 / 512.0)));
+    }
 }

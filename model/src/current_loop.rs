@@ -497,4 +497,20 @@ mod tests {
         run(&mut winding, &mut regulator, 20_000, 0.0, |_| 0.0);
         assert_eq!(regulator.explained_v, 0.0);
     }
+
+    #[test]
+    fn a_shaft_that_already_turns_is_not_jolted() {
+        for emf_v in [5.0, -5.0] {
+            let (mut winding, mut regulator) = (Winding::believed(0), default_loop::<f64>());
+            regulator.start(emf_v);
+            let currents = run(&mut winding, &mut regulator, 50, 0.0, |_| emf_v);
+            assert!(currents.iter().all(|i| i.abs() < 1e-12));
+        }
+        // There is no more than the supply to take over.
+        for beyond in [1e3, -1e3] {
+            let mut regulator = default_loop::<f64>();
+            regulator.start(beyond);
+            assert_eq!(regulator.tick(0.0, 0.0), beyond.signum() * 24.0);
+        }
+    }
 }

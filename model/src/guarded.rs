@@ -248,3 +248,107 @@ impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Active, Phase, Settings};
+    use std::vec::Vec;
+
+    const TICK_S: f64 = 5e-5;
+
+    /// A joint that does nothing but remember its steps.
+    struct Remembers {
+        active: Active<f32>,
+        steps: Vec<ShaftStep<f32>>,
+    }
+
+    impl StickSlip<f32> for Remembers {
+        fn step(&mut self, shaft: &ShaftStep<f32>, _: impl FnMut(Event<f32>)) {
+            self.steps.push(*shaft);
+        }
+
+        fn restart(&mut self, _: f32, _: f32) {
+            panic!("gaps here are short");
+        }
+
+        fn active(&self) -> &Active<f32> {
+            &self.active
+        }
+
+        fn phase(&self) -> Phase {
+            Phase::Stick
+        }
+
+        fn torque_nm(&self) -> f32 {
+            0.0
+        }
+
+        fn theta_rad(&self) -> f32 {
+            0.0
+        }
+
+        fn theta_dot_rad_s(&self) -> f32 {
+            0.0
+        }
+    }
+
+    fn guarded(omega: f32) -> Guarded<f32, Remembers> {
+        let active = Active::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
+        let steps = Vec::new();
+        Guarded::new(
+            Remembers { active, steps },
+            InputLimits::device(TICK_S),
+            omega,
+        )
+    }
+
+    #[test]
+    fn without_a_gap_a_joint_gets_the_steps_as_they_are() {
+        // Also one whose velocity jumps at its start.
+        let mut joint = guarded(1.0);
+        let steps = [(1.0, 1.1), (1.1, 0.7), (-2.0, -1.0), (3.0, 3.0)].map(|(a, b)| ShaftStep {
+            delta_phi_rad: 3e-5,
+            omega_start_rad_s: a,
+            omega_end_rad_s: b,
+        });
+        for step in steps {
+            joint.tick(&Sample::Taken(step), |_| {});
+        }
+        assert_eq!(joint.joint().steps, steps);
+    }
+
+    #[test]
+    fn a_gap_is_crossed_on_a_straight_line_that_meets_both_its_ends() {
+        for missing in 1..=CATCH_UP_TICKS {
+            for n in 0..200_u16 {
+                let (from, to) = (f32::from(n) * 0.037 - 3.0, 4.1 - f32::from(n) * 0.043);
+                let mut joint = guarded(from);
+                for _ in 0..missing {
+                    joint.tick(&Sample::Lost, |_| {});
+                }
+                let seen = ShaftStep {
+                    delta_phi_rad: 2e-4,
+                    omega_start_rad_s: from,
+                    omega_end_rad_s: to,
+                };
+                joint.tick(&Sample::Taken(seen), |_| {});
+                let steps = &joint.joint().steps;
+                assert_eq!(steps.len(), missing as usize + 1);
+                // To the bit at both ends: a rounding error would be a jump.
+                assert_eq!(steps[0].omega_start_rad_s, from);
+                assert_eq!(steps.last().unwrap().omega_end_rad_s, to);
+                let rise = (to - from) / f32::from(u8::try_from(missing + 1).unwrap());
+                for step in steps {
+                    let own = step.omega_end_rad_s - step.omega_start_rad_s;
+                    assert!((own - rise).abs() < 2e-6, "{own} {rise}");
+                }
+                for pair in steps.windows(2) {
+                    assert!((pair[1].omega_start_rad_s - pair[0].omega_end_rad_s).abs() < 2e-6);
+                }
+                let travel: f32 = steps.iter().map(|s| s.delta_phi_rad).sum();
+                assert!((travel - 2e-4).abs() < 1e-10);
+            }
+        }
+    }
+}

@@ -139,3 +139,83 @@ impl<F: Real> StickSlip<F> for ImplicitEuler<F> {
         self.v
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Convention, Settings};
+    use std::vec::Vec;
+
+    const TICK_S: f64 = 5e-5;
+
+    fn joint(kinetic_nm: f64) -> ImplicitEuler<f64> {
+        let mut settings = Settings {
+            convention: Convention::Physical,
+            ..Settings::default()
+        };
+        settings.parameters.kinetic_torque_nm = kinetic_nm;
+        settings.parameters.damping_nms_per_rad = 0.0;
+        ImplicitEuler::new(
+            Active::new(&settings.validate().unwrap(), TICK_S).unwrap(),
+            1.0,
+        )
+    }
+
+    /// The step on which stick would need `torque_nm` at the object's own
+    /// velocity.
+    fn asks_for(joint: &ImplicitEuler<f64>, torque_nm: f64) -> ShaftStep<f64> {
+        let v = joint.theta_dot_rad_s();
+        ShaftStep {
+            delta_phi_rad: torque_nm / joint.active().stiffness - joint.theta_rad(),
+            omega_start_rad_s: v,
+            omega_end_rad_s: v,
+        }
+    }
+
+    #[test]
+    fn where_stick_and_slip_are_both_consistent_the_phase_stays() {
+        // Tk = 0.2, Ts = 0.4.
+        for s in [1.0, -1.0] {
+            for (torque, from_stick, from_slip) in [
+                (0.1, Phase::Stick, Phase::Stick),
+                (0.3, Phase::Stick, SLIPS),
+                (0.5, SLIPS, SLIPS),
+                (-0.3, Phase::Stick, Phase::Stick),
+            ] {
+                let mirrored = |phase| match phase {
+                    Phase::Slip(sense) if s < 0.0 => Phase::Slip(Sense::opposite(sense)),
+                    phase => phase,
+                };
+                let mut stick = joint(0.2);
+                let step = asks_for(&stick, s * torque);
+                stick.step(&step, |_| {});
+                assert_eq!(stick.phase(), mirrored(from_stick), "stick, {torque}");
+                let mut slip = joint(0.2);
+                let step = asks_for(&slip, s * 0.5);
+                slip.step(&step, |_| {});
+                assert_eq!(slip.phase(), mirrored(SLIPS));
+                let step = asks_for(&slip, s * torque);
+                slip.step(&step, |_| {});
+                assert_eq!(slip.phase(), mirrored(from_slip), "slip, {torque}");
+            }
+        }
+    }
+
+    const SLIPS: Phase = Phase::Slip(Sense::Positive);
+
+    #[test]
+    fn what_needs_no_torque_sticks_without_friction_too() {
+        let mut joint = joint(0.0);
+        let step = asks_for(&joint, 0.5);
+        joint.step(&step, |_| {});
+        assert_eq!(joint.phase(), SLIPS);
+        let step = asks_for(&joint, 0.0);
+        let mut kinds = Vec::new();
+        joint.step(&step, |e| kinds.push(e.kind));
+        assert_eq!(
+            (joint.phase(), &kinds[..]),
+            (Phase::Stick, &[EventKind::Stick][..])
+        );
+        assert_eq!(joint.torque_nm(), 0.0);
+    }
+}

@@ -155,4 +155,60 @@ mod tests {
         );
         assert!((later.at(0.25) - path.at(0.75)).abs() < 1e-15);
     }
+
+    /// A stretch on which the shaft keeps `omega` and the object goes from `v`
+    /// to `v_end`: has it been fallen back to?
+    fn met(omega: f64, v: f64, v_end: f64) -> [bool; 2] {
+        let parameters = crate::Parameters::default();
+        let oscillator = Oscillator::of(&parameters);
+        [Sense::Positive, Sense::Negative].map(|sense| {
+            let slip = SlipPath {
+                propagator: &NoMotion,
+                oscillator: &oscillator,
+                sense,
+                x: 0.0,
+                v: sense.of_signed(v),
+                omega: sense.of_signed(omega),
+                omega_dot: 0.0,
+            };
+            slip.has_met(1e-3, sense.of_signed(v_end))
+        })
+    }
+
+    struct NoMotion;
+    impl Propagate<f64> for NoMotion {
+        fn new(_: &crate::Active<f64>) -> Self {
+            Self
+        }
+        fn step(&self, x: f64, v: f64) -> (f64, f64) {
+            (x, v)
+        }
+        fn part(&self, x: f64, v: f64, _: f64) -> (f64, f64) {
+            (x, v)
+        }
+    }
+
+    #[test]
+    fn a_lead_that_is_gone_is_met() {
+        assert_eq!(met(1.0, 0.5, 0.9), [false; 2]);
+        // Equal is met, however close, and beyond is.
+        for v_end in [1.0, 1.0 + f64::EPSILON, 1.5] {
+            assert_eq!(met(1.0, 0.5, v_end), [true; 2], "{v_end}");
+        }
+    }
+
+    #[test]
+    fn a_lead_that_never_was_is_not_lost_by_rounding() {
+        for scale in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
+            let beyond = |parts: f64| met(scale, scale, scale * (1.0 + parts * f64::EPSILON));
+            for rounding in [-1.0, 0.0, 1.0, 4.0] {
+                assert_eq!(beyond(rounding), [false; 2], "{scale} {rounding}");
+            }
+            // More than rounding: the object has been ahead from the start.
+            for more in [64.0, 1e6] {
+                assert_eq!(beyond(more), [true; 2], "{scale} {more}");
+            }
+        }
+        assert_eq!(met(0.0, 0.0, 0.0), [false; 2]);
+    }
 }

@@ -284,17 +284,19 @@ mod tests {
     fn the_bounds_bound() {
         for damping_ratio in [0.0, 0.3, 1.0, 2.0] {
             let (p, o) = with(damping_ratio);
-            let bound = o.jerk_bound(3e-4, -0.2);
-            for i in 0..1000 {
-                let (x, v) = o.transition(f64::from(i) * 5e-5).apply(3e-4, -0.2);
-                let a = o.acceleration(x, v);
-                let jerk =
-                    -(p.stiffness_nm_per_rad * v + p.damping_nms_per_rad * a) / p.inertia_kg_m2;
-                assert!(jerk.abs() <= bound * (1.0 + 1e-12));
-                let snap =
-                    -(p.stiffness_nm_per_rad * a + p.damping_nms_per_rad * jerk) / p.inertia_kg_m2;
-                assert!(snap.abs() <= o.snap_bound(3e-4, -0.2) * (1.0 + 1e-12));
-                assert!(v.abs() <= o.speed_bound(3e-4, -0.2) * (1.0 + 1e-12));
+            for (x0, v0) in [(3e-4, -0.2), (1e-3, 0.0), (0.0, 0.2), (1e-3, 0.1)] {
+                let bound = o.jerk_bound(x0, v0);
+                for i in 0..1000 {
+                    let (x, v) = o.transition(f64::from(i) * 5e-5).apply(x0, v0);
+                    let a = o.acceleration(x, v);
+                    let jerk =
+                        -(p.stiffness_nm_per_rad * v + p.damping_nms_per_rad * a) / p.inertia_kg_m2;
+                    assert!(jerk.abs() <= bound * (1.0 + 1e-12));
+                    let snap = -(p.stiffness_nm_per_rad * a + p.damping_nms_per_rad * jerk)
+                        / p.inertia_kg_m2;
+                    assert!(snap.abs() <= o.snap_bound(x0, v0) * (1.0 + 1e-12));
+                    assert!(v.abs() <= o.speed_bound(x0, v0) * (1.0 + 1e-12));
+                }
             }
         }
     }

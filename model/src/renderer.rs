@@ -106,3 +106,108 @@ impl<F: Real, L: Locate<F>> Renderer<F, L> {
         self.object.counters()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::locate::ExactEvents;
+    use crate::{Phase, Settings, ShaftStep};
+
+    const TICK_S: f64 = 5e-5;
+    const COUNT_RAD: f32 = 3.6e-5;
+
+    fn moved(delta_phi_rad: f32) -> Sample<f32> {
+        Sample::Taken(ShaftStep {
+            delta_phi_rad,
+            omega_start_rad_s: 1.0,
+            omega_end_rad_s: 1.0,
+        })
+    }
+
+    /// One that has gone on for so many ticks of 50 µrad: 10 are a stick at
+    /// 0.2 N·m, 40 the middle of a slip.
+    fn after(ticks: u32) -> Renderer<f32, ExactEvents> {
+        let active = Active::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
+        let limits = InputLimits::device(TICK_S);
+        let mut renderer = Renderer::new(active, limits, COUNT_RAD, 1.0);
+        for _ in 0..ticks {
+            renderer.tick(&moved(5e-5), |_| {});
+        }
+        renderer
+    }
+
+    #[test]
+    fn a_shaft_out_of_sight_is_said_to_be_and_its_torque_held() {
+        let mut renderer = after(10);
+        let shown = renderer.tick(&Sample::Lost, |_| {});
+        assert!(shown.holding && !shown.turned_back && !shown.settling);
+        assert!((shown.torque_nm - 0.2).abs() < 1e-6);
+        assert_eq!(shown.torque_nm, shown.model_torque_nm);
+        let shown = renderer.tick(&moved(1e-4), |_| {});
+        assert!(!shown.holding);
+        assert!((shown.torque_nm - 0.24).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_sample_that_is_refused_is_no_turning_back() {
+        let mut renderer = after(40);
+        assert_eq!(renderer.joint().phase().sign(), 1);
+        // Three counts back: but no shaft has this speed.
+        let refused = Sample::Taken(ShaftStep {
+            delta_phi_rad: -3.0 * COUNT_RAD,
+            omega_start_rad_s: 1.0,
+            omega_end_rad_s: 60.0,
+        });
+        for sample in [refused, moved(-1.0), moved(f32::NAN)] {
+            let shown = renderer.tick(&sample, |_| {});
+            assert!(shown.holding && !shown.turned_back, "{sample:?}");
+            assert_eq!(shown.torque_nm, 0.2);
+        }
+        // Seen to be that far back, it has turned.
+        let shown = renderer.tick(&moved(-3.0 * COUNT_RAD), |_| {});
+        assert!(shown.turned_back && !shown.holding);
+        assert_eq!((shown.torque_nm, shown.model_torque_nm), (0.0, 0.2));
+        // Out of sight then, what was shown is held: nothing.
+        let shown = renderer.tick(&Sample::Lost, |_| {});
+        assert!(shown.turned_back && shown.holding);
+        assert_eq!(shown.torque_nm, 0.0);
+        let stick = (0..2000).find(|_| {
+            renderer.tick(&moved(5e-5), |_| {});
+            renderer.joint().phase() == Phase::Stick
+        });
+        assert!(stick.is_some());
+        assert!(!renderer.tick(&moved(5e-5), |_| {}).turned_back);
+    }
+
+    #[test]
+    fn what_happens_is_counted() {
+        let mut renderer = after(10);
+        assert_eq!(renderer.counters(), Counters::default());
+        for sample in [Sample::Lost, Sample::Lost, moved(f32::NAN)] {
+            renderer.tick(&sample, |_| {});
+        }
+        for _ in 0..3 {
+            renderer.tick(&Sample::Lost, |_| {});
+        }
+        renderer.tick(&moved(5e-5), |_| {});
+        // 30 rad/s: further than the millirad of a stick.
+        let fast = |start, end| {
+            Sample::Taken(ShaftStep {
+                delta_phi_rad: 1.5e-3,
+                omega_start_rad_s: start,
+                omega_end_rad_s: end,
+            })
+        };
+        renderer.tick(&fast(1.0, 9.0), |_| {});
+        assert_eq!(
+            renderer.counters(),
+            Counters {
+                lost: 5,
+                refused: 1,
+                restarts: 1,
+                long_steps: 1,
+                crowded_steps: 0,
+            }
+        );
+    }
+}

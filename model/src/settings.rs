@@ -301,4 +301,13 @@ mod tests {
             assert!(parts.iter().all(|part| text.contains(part)), "{text}");
         }
     }
+
+    #[test]
+    fn names_are_those_of_the_files() {
+        assert_eq!(
+            Convention::ALL.map(Convention::name),
+            ["frozen", "paper", "physical"]
+        );
+        assert_eq!(Restart::ALL.map(Restart::name), ["elastic", "from-kinetic"]);
+    }
 }

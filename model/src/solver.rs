@@ -186,3 +186,42 @@ impl<F: Real> Start<F> {
         ))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_the_files() {
+        assert_eq!(
+            Solver::ALL.map(Solver::name),
+            [
+                "euler",
+                "semi-implicit-euler",
+                "verlet",
+                "rk4",
+                "implicit-euler",
+                "exact",
+                "exact-break",
+                "exact-interpolated",
+                "exact-events",
+                "rk4-events",
+            ]
+        );
+    }
+
+    #[test]
+    fn a_rung_is_refused_where_it_has_no_meaning() {
+        let refused = |convention| {
+            Solver::ALL.map(|solver| {
+                let reason = solver.refusal(convention);
+                assert!(reason.is_none_or(|why| !why.is_empty()));
+                u8::from(reason.is_some())
+            })
+        };
+        // `frozen` integrates nothing, `paper` leaves out the inertia.
+        assert_eq!(refused(Convention::Frozen), [1, 1, 1, 1, 1, 0, 0, 0, 0, 1]);
+        assert_eq!(refused(Convention::Paper), [0, 0, 0, 0, 1, 0, 0, 0, 0, 0]);
+        assert_eq!(refused(Convention::Physical), [0; 10]);
+    }
+}

@@ -282,3 +282,63 @@ fn the_mirrored_motion_gives_the_mirrored_torque_to_the_bit() {
     check::<f64>();
     check::<f32>();
 }
+
+/// Slips that begin and end within one step, of a light object and of one that
+/// is as heavy as allowed: 16 µs in 50 µs, 0.3 s in 1 s.
+#[test]
+fn slips_shorter_than_a_step_are_found() {
+    // Ts − Tk = Tk = 0.2 N·m, λ = 100 and 20.
+    for (inertia, stiffness, omega, step_s, lambda) in [
+        (1e-8, 400.0, 1.0, 5e-5, 100.0_f64),
+        (100.0, 1e4, 1e-5, 1.0, 20.0),
+    ] {
+        let slip_s = 2.0 * (std::f64::consts::PI - lambda.atan()) * f64::sqrt(inertia / stiffness);
+        let stick_s = 0.4 / (stiffness * omega);
+        for convention in Convention::ALL {
+            let mut settings = Settings {
+                convention,
+                ..Settings::default()
+            };
+            settings.parameters.inertia_kg_m2 = inertia;
+            settings.parameters.stiffness_nm_per_rad = stiffness;
+            let valid = settings.validate().unwrap();
+            for sign in [1.0, -1.0] {
+                let run = |solver| {
+                    let steady = ConstantSpeed {
+                        omega: sign * omega,
+                        step_s,
+                        steps: 1000,
+                    };
+                    with_joint::<f64, _>(&valid, solver, step_s, sign * omega, steady).unwrap()
+                };
+                let events = run(Solver::ExactEvents);
+                assert!(events.len() > 80, "{convention:?}: {}", events.len());
+                let mut within_a_step = 0;
+                let mut expected = stick_s;
+                for pair in events.chunks_exact(2) {
+                    let (begins, ends) = (pair[0].0, pair[1].0);
+                    assert!(
+                        (begins - expected).abs() < 1e-9 * step_s,
+                        "{convention:?}: {begins}"
+                    );
+                    assert!(
+                        (ends - begins - slip_s).abs() < 1e-9 * step_s,
+                        "{convention:?}: {ends}"
+                    );
+                    within_a_step +=
+                        u32::from((begins / step_s).floor() == (ends / step_s).floor());
+                    expected = ends + stick_s;
+                }
+                assert!(within_a_step > 20);
+                // With one chord a step, such a slip lasts to the end of its step.
+                let events = run(Solver::ExactInterpolated);
+                assert!(events.len() > 80, "{convention:?}: {}", events.len());
+                assert!(
+                    events
+                        .windows(2)
+                        .all(|e| e[1].0 > e[0].0 && e[1].1 != e[0].1)
+                );
+            }
+        }
+    }
+}

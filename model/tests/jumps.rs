@@ -2,7 +2,9 @@
 //! `physical` the object keeps its own.
 
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
-use crepitus_model::{Convention, Event, EventKind, Phase, Sense, Settings, ShaftStep, StickSlip};
+use crepitus_model::{
+    Convention, Event, EventKind, Parameters, Phase, Sense, Settings, ShaftStep, StickSlip,
+};
 
 const TICK_S: f64 = 5e-5;
 
@@ -32,7 +34,19 @@ impl JointVisitor<f64> for Stretches {
 }
 
 fn events(convention: Convention, stretches: &'static [(f64, u32)]) -> Vec<(f64, Event<f64>)> {
+    damped_events(convention, 0.0, stretches)
+}
+
+fn damped_events(
+    convention: Convention,
+    damping_nms_per_rad: f64,
+    stretches: &'static [(f64, u32)],
+) -> Vec<(f64, Event<f64>)> {
     let settings = Settings {
+        parameters: Parameters {
+            damping_nms_per_rad,
+            ..Parameters::default()
+        },
         convention,
         ..Settings::default()
     };
@@ -54,6 +68,8 @@ fn a_jump_tears_a_stick_loose_in_its_sense() {
         for (stretches, sense) in [
             (&[(0.1, 10), (0.6, 10)][..], Sense::Positive),
             (&[(0.1, 10), (-0.4, 10)][..], Sense::Negative),
+            // Slower in the same direction: the object overtakes.
+            (&[(0.1, 10), (0.04, 10)][..], Sense::Negative),
         ] {
             let events = events(convention, stretches);
             let (time_s, e) = events[0];
@@ -92,4 +108,17 @@ fn a_jump_past_the_object_turns_a_slip_round_and_one_towards_it_does_not() {
 fn a_frozen_joint_does_not_notice_a_jump() {
     let events = events(Convention::Frozen, &[(0.1, 10), (0.6, 10)]);
     assert!(events.is_empty(), "{events:?}");
+}
+
+#[test]
+fn a_jump_reports_the_torque_that_was_shown_with_all_that_is_in_it() {
+    // kr·θ, and under `physical` c·Ω.
+    for (convention, shown) in [(Convention::Paper, 0.02), (Convention::Physical, 0.03)] {
+        for stretches in [&[(0.1, 10), (0.6, 1)][..], &[(-0.1, 10), (-0.6, 1)][..]] {
+            let (_, e) = damped_events(convention, 0.1, stretches)[0];
+            assert_eq!(e.kind, EventKind::Break);
+            let expected = stretches[0].0.signum() * shown;
+            assert!((e.torque_before_nm - expected).abs() < 1e-12, "{e:?}");
+        }
+    }
 }

@@ -4,7 +4,7 @@ mod support;
 
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
-    Convention, EVENTS_PER_STEP, Parameters, Phase, Real, Settings, ShaftStep, StickSlip,
+    Convention, EVENTS_PER_STEP, EventKind, Parameters, Phase, Real, Settings, ShaftStep, StickSlip,
 };
 use proptest::prelude::*;
 
@@ -96,6 +96,12 @@ impl<F: Real> JointVisitor<F> for Check<'_> {
                     e.from == phase && e.to != e.from,
                     "phases follow each other"
                 );
+                let kind = match (e.from, e.to) {
+                    (Phase::Stick, _) => EventKind::Break,
+                    (_, Phase::Stick) => EventKind::Stick,
+                    _ => EventKind::Reverse,
+                };
+                assert_eq!(e.kind, kind, "an event is called what it is");
                 assert!(e.torque_before_nm.abs() <= limit && e.torque_after_nm.abs() <= limit);
                 (last, phase) = (e.fraction, e.to);
             });

@@ -137,6 +137,23 @@ fn a_break_is_reported_with_all_that_is_known() {
 }
 
 #[test]
+fn a_soft_spring_breaks_at_the_same_torque() {
+    // Ts/kr = 4 rad, in one step of 5 rad.
+    let soft = Parameters {
+        stiffness_nm_per_rad: 0.1,
+        ..paper()
+    };
+    for s in [1.0, -1.0] {
+        let mut joint = Joint::new(active(soft), s * 1e5);
+        let mut seen = Vec::new();
+        joint.step(&steady(s * 1e5), |e| seen.push(e));
+        assert_eq!(seen.len(), 1);
+        assert!((seen[0].theta_rad - s * 4.0).abs() < 1e-14);
+        assert!((seen[0].torque_before_nm - s * 0.4).abs() < 1e-15);
+    }
+}
+
+#[test]
 fn in_stick_a_stiffer_spring_keeps_its_torque_and_a_softer_one_its_angle() {
     let with = |stiffness_nm_per_rad| {
         active(Parameters {

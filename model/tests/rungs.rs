@@ -6,7 +6,7 @@
 
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
-    Convention, Parameters, Phase, Real, Settings, ShaftStep, StickSlip, Validated,
+    Convention, EventKind, Parameters, Phase, Real, Settings, ShaftStep, StickSlip, Validated,
 };
 
 const STEP_S: f64 = 1e-5;
@@ -62,6 +62,12 @@ impl<F: Real> JointVisitor<F> for Run {
             joint.step(&step, |e| {
                 let time_s = from_s + e.fraction.to_f64() * STEP_S;
                 seen.events.push((time_s, e.from.sign(), e.to.sign()));
+                let kind = match (e.from, e.to) {
+                    (Phase::Stick, _) => EventKind::Break,
+                    (_, Phase::Stick) => EventKind::Stick,
+                    _ => EventKind::Reverse,
+                };
+                assert_eq!(e.kind, kind);
                 // An event's own torques are those of the phases beside it.
                 let kinetic = |phase: Phase| f64::from(phase.sign()) * 0.2;
                 if e.to != Phase::Stick {

@@ -133,10 +133,16 @@ impl<F: Real> JointVisitor<F> for Stop {
 
 #[test]
 fn with_equal_torques_a_hand_that_stops_comes_to_rest() {
-    let mut settings = Settings::default();
-    settings.parameters.kinetic_torque_nm = settings.parameters.static_torque_nm;
-    let valid = settings.validate().unwrap();
-    let single = with_joint::<f32, _>(&valid, Solver::ExactEvents, TICK_S, 1.0, Stop);
-    let double = with_joint::<f64, _>(&valid, Solver::ExactEvents, TICK_S, 1.0, Stop);
-    assert_eq!((single.unwrap(), double.unwrap()), (0, 0));
+    for convention in Convention::ALL {
+        let mut settings = Settings {
+            convention,
+            ..Settings::default()
+        };
+        settings.parameters.kinetic_torque_nm = settings.parameters.static_torque_nm;
+        let valid = settings.validate().unwrap();
+        let single = with_joint::<f32, _>(&valid, Solver::ExactEvents, TICK_S, 1.0, Stop);
+        let double = with_joint::<f64, _>(&valid, Solver::ExactEvents, TICK_S, 1.0, Stop);
+        let phases = (single.unwrap(), double.unwrap());
+        assert_eq!(phases, (0, 0), "{convention:?}");
+    }
 }

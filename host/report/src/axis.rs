@@ -88,6 +88,11 @@ impl Axis {
         }
     }
 
+    /// The values at the ticks.
+    pub(crate) fn marks(&self) -> &[f64] {
+        &self.ticks
+    }
+
     pub(crate) fn low(&self) -> f64 {
         self.low
     }

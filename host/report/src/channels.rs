@@ -4,6 +4,7 @@
 //! every [`Sample`], and NaN is not drawn.
 
 use crepitus_model::Phase;
+use crepitus_scene::run::FELT_COLUMN;
 use crepitus_scene::trace::Column;
 
 /// What the report must know before the first row.
@@ -55,6 +56,21 @@ pub(crate) struct Sample {
     pub(crate) theta: f64,
     pub(crate) theta_dot: f64,
     pub(crate) torque: f64,
+    pub(crate) motor_torque: f64,
+    pub(crate) leg_angle: f64,
+    pub(crate) leg_omega: f64,
+    pub(crate) intended_angle: f64,
+    pub(crate) hand_torque: f64,
+    /// The hand torque without its slow part, once that is known.
+    pub(crate) hand_fast: f64,
+}
+
+#[cfg(test)]
+impl Sample {
+    /// A row without any column.
+    pub(crate) fn nothing() -> Self {
+        Channels::find(&[]).sample(&[])
+    }
 }
 
 /// Where in a row each value stands.
@@ -68,6 +84,11 @@ pub(crate) struct Channels {
     theta: Option<usize>,
     theta_dot: Option<usize>,
     torque: Option<usize>,
+    motor_torque: Option<usize>,
+    leg_angle: Option<usize>,
+    leg_omega: Option<usize>,
+    intended_angle: Option<usize>,
+    hand_torque: Option<usize>,
 }
 
 impl Channels {
@@ -82,6 +103,11 @@ impl Channels {
             theta: at("theta_rad"),
             theta_dot: at("theta_dot_rad_s"),
             torque: at("torque_nm"),
+            motor_torque: at("motor_torque_nm"),
+            leg_angle: at("leg_angle_rad"),
+            leg_omega: at("leg_omega_rad_s"),
+            intended_angle: at("intended_angle_rad"),
+            hand_torque: at(FELT_COLUMN),
         }
     }
 
@@ -101,11 +127,29 @@ impl Channels {
             theta: value(self.theta),
             theta_dot: value(self.theta_dot),
             torque: value(self.torque),
+            motor_torque: value(self.motor_torque),
+            leg_angle: value(self.leg_angle),
+            leg_omega: value(self.leg_omega),
+            intended_angle: value(self.intended_angle),
+            hand_torque: value(self.hand_torque),
+            hand_fast: f64::NAN,
         }
     }
 
     pub(crate) fn has_torque(&self) -> bool {
         self.torque.is_some()
+    }
+
+    pub(crate) fn has_encoder(&self) -> bool {
+        self.encoder_omega.is_some()
+    }
+
+    pub(crate) fn has_hand(&self) -> bool {
+        self.hand_torque.is_some()
+    }
+
+    pub(crate) fn has_leg(&self) -> bool {
+        self.leg_angle.is_some() || self.intended_angle.is_some()
     }
 
     pub(crate) fn has_object(&self) -> bool {

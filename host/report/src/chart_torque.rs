@@ -88,7 +88,11 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
     }
     Ok(Some(Figure {
         name: "torque",
-        title: "Torque",
+        title: if figures.plant.is_some() {
+            "Torque of the model"
+        } else {
+            "Torque"
+        },
         legend,
         charts: vec![Chart {
             heading: None,

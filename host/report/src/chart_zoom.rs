@@ -1,5 +1,6 @@
-//! A few cycles from near: torque, phases, events, and below them the
-//! velocities of shaft and object, which meet where the object sticks.
+//! A few cycles from near: torque, phases, events, what the hand feels of it,
+//! and below them the velocities of shaft and object, which meet where the
+//! object sticks.
 
 use crepitus_model::EventKind;
 
@@ -12,12 +13,17 @@ use crate::collector::Figures;
 use crate::figure::{Chart, Figure, Key, Sign, Titled, phase_keys};
 use crate::levels;
 use crate::number::rounded;
-use crate::palette::{OBJECT, SHAFT, TORQUE};
+use crate::palette::{CURVES, Ink, OBJECT, SHAFT, TORQUE};
+use crate::plant::{LEG, Plant};
 use crate::thinned::Point;
 use crate::window::Window;
 
 const TORQUE_HEIGHT: u32 = 290;
+const HAND_HEIGHT: u32 = 150;
 const VELOCITY_HEIGHT: u32 = 235;
+
+/// The torque of the motor: `purple` in the style sheet.
+const MOTOR: Ink = CURVES[3];
 
 const MARK_KEYS: [Key; 3] = [
     Key::new(Sign::Mark("▲"), "break"),
@@ -65,12 +71,13 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
     }
     let mut charts = Vec::new();
     for Titled { title, window } in &windows {
-        let height = TORQUE_HEIGHT
-            + if figures.has_object {
-                VELOCITY_HEIGHT
-            } else {
-                0
-            };
+        let mut height = TORQUE_HEIGHT;
+        if feels(window) {
+            height += HAND_HEIGHT;
+        }
+        if figures.has_object {
+            height += VELOCITY_HEIGHT;
+        }
         let svg = svg((960, height), &format!("A few cycles: {title}"), |area| {
             draw(area, figures, window)
         })?;
@@ -81,7 +88,18 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         });
     }
     let happened = figures.onset.is_some();
-    let mut legend = vec![Key::new(Sign::Line("torque"), "torque")];
+    let mut legend = if figures.plant.is_some() {
+        vec![Key::new(Sign::Line("torque"), "torque of the model")]
+    } else {
+        vec![Key::new(Sign::Line("torque"), "torque")]
+    };
+    let any = |is: fn(&Window) -> bool| windows.iter().any(|titled| is(titled.window));
+    if any(|window| !window.motor.is_empty()) {
+        legend.push(Key::new(Sign::Line("purple"), "torque of the motor"));
+    }
+    if any(feels) {
+        legend.push(Key::new(Sign::Line("green"), "hand torque, fast part"));
+    }
     if figures.has_object {
         legend.push(Key::new(Sign::Line("shaft"), "shaft velocity Ω"));
         legend.push(Key::new(Sign::Line("object"), "object velocity θ̇"));
@@ -90,7 +108,7 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
             titled.window.spans(from, to).into_iter().map(|s| s.phase)
         })));
     }
-    let caption = if happened {
+    let mut caption = if happened {
         legend.extend(MARK_KEYS.into_iter().filter(|key| {
             // Reversals are rare: no key without one.
             key.text != "reverse"
@@ -108,7 +126,23 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
     } else {
         "The object never broke loose: the torque stayed within ±Ts and the object moved with \
          the shaft all the time, like a spring."
-    };
+    }
+    .to_owned();
+    if any(|window| !window.motor.is_empty())
+        && figures.plant.as_ref().is_some_and(Plant::has_stages)
+    {
+        caption.push_str(
+            " The motor's torque follows what is commanded: that of the model and what friction \
+             compensation and bone shaping add.",
+        );
+    }
+    if any(feels) {
+        caption.push_str(
+            " The fast part of the hand torque, the slow part taken away as above, is on an axis \
+             of its own: it may be a small part of what the model renders, or more, where \
+             something else strikes.",
+        );
+    }
     Ok(Some(Figure {
         name: "zoom",
         title: if happened {
@@ -118,8 +152,13 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         },
         legend,
         charts,
-        caption: caption.to_owned(),
+        caption,
     }))
+}
+
+/// Whether it is known what the hand feels of the cycles.
+fn feels(window: &Window) -> bool {
+    !window.hand_fast.is_empty()
 }
 
 /// The part of a line inside a window's view.
@@ -133,6 +172,7 @@ fn inside(points: Vec<Point>, (from, to): (f64, f64)) -> Vec<Point> {
 fn draw(area: &Area, figures: &Figures, window: &Window) -> Drawn {
     let view = window.view();
     let torque = inside(window.torque.points(), view);
+    let motor = inside(window.motor.points(), view);
     let levels = levels::levels_in(figures.levels, &torque);
     let spans = window.spans(view.0, view.1);
     let room = 0.015 * (view.1 - view.0);
@@ -141,8 +181,8 @@ fn draw(area: &Area, figures: &Figures, window: &Window) -> Drawn {
 
     let mut plot = Panel {
         x: time.clone(),
-        y: levels::torque_axis(&torque, &levels),
-        x_title: (!figures.has_object).then_some("Time (s)"),
+        y: levels::torque_axis(&[torque.as_slice(), &motor].concat(), &levels),
+        x_title: (!figures.has_object && !feels(window)).then_some("Time (s)"),
         y_title: "Torque (N·m)",
         right: levels::ROOM,
     }
@@ -150,6 +190,7 @@ fn draw(area: &Area, figures: &Figures, window: &Window) -> Drawn {
     shade(&mut plot, &spans)?;
     plot.grid()?;
     levels::draw(&mut plot, &levels, TORQUE_HEIGHT)?;
+    plot.line(&motor, MOTOR, 6)?;
     plot.line(&torque, TORQUE, 7)?;
     for event in window.events() {
         // A break is marked where it happens, the others where they lead to.
@@ -161,6 +202,24 @@ fn draw(area: &Area, figures: &Figures, window: &Window) -> Drawn {
             plot.mark((event.time_s, torque), event.kind, TORQUE)?;
         }
     }
+    let below = if feels(window) {
+        let (middle, below) = below.split_vertically(px(HAND_HEIGHT));
+        let fast = inside(window.hand_fast.points(), view);
+        let mut plot = Panel {
+            x: time.clone(),
+            y: Axis::covering(fast.iter().map(|p| p.y), 3),
+            x_title: (!figures.has_object).then_some("Time (s)"),
+            y_title: "Hand (N·m)",
+            right: levels::ROOM,
+        }
+        .on(&middle)?;
+        shade(&mut plot, &spans)?;
+        plot.grid()?;
+        plot.line(&fast, LEG, 6)?;
+        below
+    } else {
+        below
+    };
     if !figures.has_object {
         return Ok(());
     }

@@ -5,10 +5,13 @@
 
 use crepitus_scene::trace::EventRecord;
 
-use crate::channels::{Channels, Setup, TorqueLevels};
+use crate::balance::Balance;
+use crate::channels::{Channels, Sample, Setup, TorqueLevels};
 use crate::choice::Choice;
 use crate::envelope::Envelope;
+use crate::fast_part::{FastPart, Seen};
 use crate::hysteresis::Hysteresis;
+use crate::plant::{Plant, PlantCollector};
 use crate::spectrum::{Spectrum, Welch};
 use crate::thinned::Thinned;
 use crate::window::Window;
@@ -33,6 +36,9 @@ pub struct Collector {
     choice: Choice,
     hysteresis: Hysteresis,
     welch: Option<Welch>,
+    plant: Option<PlantCollector>,
+    /// Only where there is a hand.
+    fast: Option<FastPart>,
 }
 
 /// What is left of a run when it is over: enough to draw it.
@@ -54,12 +60,40 @@ pub struct Figures {
     pub(crate) fastest: Option<Window>,
     pub(crate) hysteresis: Hysteresis,
     pub(crate) spectrum: Option<Spectrum>,
+    pub(crate) plant: Option<Plant>,
+    pub(crate) balance: Option<Balance>,
+}
+
+impl Figures {
+    /// Adds where the energy of the plant came from and went.
+    pub fn set_balance(&mut self, balance: Balance) {
+        self.balance = Some(balance);
+    }
+
+    /// How many bins of a [`Course`](crate::course::Course) to draw as one,
+    /// if there are too many cycles to draw lines.
+    pub(crate) fn bins(&self) -> Option<usize> {
+        self.whole
+            .overflowed()
+            .then(|| self.envelope.bins_for_cycles())
+    }
 }
 
 impl Collector {
     /// Ready for the first row.
     pub fn new(setup: &Setup) -> Self {
         let channels = Channels::find(setup.columns);
+        let fast = channels
+            .has_hand()
+            .then(|| FastPart::new(setup.row_step_s))
+            .flatten();
+        let mean_s = fast.as_ref().map_or(f64::NAN, FastPart::mean_s);
+        let plant = PlantCollector::new(&channels, setup, mean_s);
+        let welch = if plant.is_some() {
+            Welch::differencing
+        } else {
+            Welch::new
+        };
         Self {
             channels,
             levels: setup.levels.filter(|levels| {
@@ -78,8 +112,10 @@ impl Collector {
             hysteresis: Hysteresis::new(),
             welch: channels
                 .has_torque()
-                .then(|| Welch::new(setup.row_step_s, setup.rows_expected))
+                .then(|| welch(setup.row_step_s, setup.rows_expected))
                 .flatten(),
+            plant,
+            fast,
         }
     }
 
@@ -97,10 +133,48 @@ impl Collector {
         self.angle.push(sample.time, sample.angle);
         self.omega.push(sample.time, sample.omega);
         self.encoder_omega.push(sample.time, sample.encoder_omega);
+        if let Some(plant) = &mut self.plant {
+            plant.row(&sample, values);
+        }
+        if let Some(fast) = &mut self.fast {
+            fast.row(sample);
+            self.take_what_is_due();
+        } else {
+            self.take_row(&sample);
+        }
+    }
+
+    /// Takes one event.
+    pub fn event(&mut self, event: &EventRecord) {
+        if self.channels.has_torque() && event.time_s.is_finite() {
+            if let Some(fast) = &mut self.fast {
+                fast.event(*event);
+            } else {
+                self.take_event(event);
+            }
+        }
+    }
+
+    /// The rows and events of which the fast part is known now.
+    fn take_what_is_due(&mut self) {
+        while let Some(seen) = self.fast.as_mut().and_then(FastPart::next) {
+            match seen {
+                Seen::Row(sample) => self.take_row(&sample),
+                Seen::Event(event) => self.take_event(&event),
+            }
+        }
+    }
+
+    fn take_row(&mut self, sample: &Sample) {
+        if self.channels.has_hand()
+            && let Some(plant) = &mut self.plant
+        {
+            plant.hand(sample);
+        }
         if self.channels.has_torque() {
             self.envelope.row(sample.time, sample.torque, sample.phase);
-            self.whole.row(&sample);
-            self.choice.row(&sample);
+            self.whole.row(sample);
+            self.choice.row(sample);
             self.hysteresis
                 .row(sample.angle, sample.omega, sample.theta);
             if let Some(welch) = &mut self.welch {
@@ -109,17 +183,24 @@ impl Collector {
         }
     }
 
-    /// Takes one event.
-    pub fn event(&mut self, event: &EventRecord) {
-        if self.channels.has_torque() && event.time_s.is_finite() {
-            self.envelope.event(event);
-            self.whole.event(event);
-            self.choice.event(event);
+    fn take_event(&mut self, event: &EventRecord) {
+        let mut event = *event;
+        if self.plant.is_some() && self.channels.has_encoder() {
+            // The device's estimate; the rows have the shaft's own velocity.
+            event.omega_rad_s = f64::NAN;
         }
+        let event = &event;
+        self.envelope.event(event);
+        self.whole.event(event);
+        self.choice.event(event);
     }
 
     /// The run is over.
-    pub fn finish(self) -> Figures {
+    pub fn finish(mut self) -> Figures {
+        if let Some(fast) = &mut self.fast {
+            fast.end();
+        }
+        self.take_what_is_due();
         let (onset, fastest) = self.choice.finish();
         Figures {
             levels: self.levels,
@@ -136,6 +217,8 @@ impl Collector {
             fastest,
             hysteresis: self.hysteresis,
             spectrum: self.welch.and_then(Welch::finish),
+            plant: self.plant.map(PlantCollector::finish),
+            balance: None,
         }
     }
 }
@@ -176,6 +259,39 @@ mod tests {
         }
         assert!(figures.hysteresis.stored() <= 2002);
         assert!(figures.spectrum.expect("long enough").points.len() <= 32_769);
+    }
+
+    #[test]
+    fn nor_with_that_of_a_plant() {
+        use crate::fixture::plant as made;
+        let columns = made::columns(Run::columns(true, false), &made::ALL);
+        let collector = RefCell::new(Collector::new(&Setup {
+            columns: &columns,
+            rows_expected: 1000,
+            row_step_s: 1e-3,
+            levels: None,
+        }));
+        Run::new(Motion::Constant { speed: 1.0 }, 300.0, 1e-3).play(
+            |row| {
+                let row = made::row(row, row[6], &made::ALL);
+                collector.borrow_mut().row(&row);
+            },
+            |event| collector.borrow_mut().event(event),
+        );
+        let figures = collector.into_inner().finish();
+        // Rows that were held back have come.
+        assert_eq!(figures.rows, 300_001);
+        assert!(figures.envelope.breaks() > 9000);
+        let plant = figures.plant.expect("it has columns");
+        assert_eq!(plant.columns.len(), 9);
+        let courses = plant.columns.iter().map(|(_, course)| course);
+        for course in courses.chain([&plant.hand, &plant.fast]) {
+            assert!(!course.is_empty());
+            assert!(course.stored() <= LINE + Envelope::CAPACITY + 1);
+        }
+        assert!(plant.leg.ahead.stored() <= LINE && plant.intended.omega.stored() <= LINE);
+        let (low, high) = plant.fast.extent();
+        assert!(high - low < 0.5, "the weight is gone: {low} to {high}");
     }
 
     #[test]

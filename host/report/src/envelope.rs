@@ -1,5 +1,5 @@
-//! The torque of a whole run: per stretch of time its lowest, highest and
-//! mean value, and how long the object spent in each phase.
+//! The torque of a whole run, or another column: per stretch of time its
+//! lowest, highest and mean value, and how long the object spent in each phase.
 //!
 //! Times in a phase come from the events, not from the rows: a stick shorter
 //! than a row counts in full.
@@ -217,15 +217,22 @@ impl Envelope {
     /// Bins so wide that each holds a few whole cycles on average: narrower
     /// ones would show the beat of bins against cycles, not the torque.
     pub(crate) fn cycle_bins(&self) -> Vec<Bin> {
+        self.wide_bins(self.bins_for_cycles())
+    }
+
+    /// Bins of this many.
+    pub(crate) fn wide_bins(&self, count: usize) -> Vec<Bin> {
+        merged(&self.bins, count.max(1))
+    }
+
+    /// How many bins a few whole cycles take on average.
+    pub(crate) fn bins_for_cycles(&self) -> usize {
         const CYCLES: u64 = 3;
         const FEWEST_BINS: usize = 60;
         let active = self.bins.iter().filter(|bin| bin.is_active()).count() as u64;
         let wanted = (CYCLES * active).checked_div(self.breaks()).unwrap_or(1);
         let at_most = (self.bins.len() / FEWEST_BINS).max(1);
-        merged(
-            &self.bins,
-            usize::try_from(wanted).map_or(at_most, |n| n.clamp(1, at_most)),
-        )
+        usize::try_from(wanted).map_or(at_most, |n| n.clamp(1, at_most))
     }
 }
 

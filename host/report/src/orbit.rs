@@ -152,11 +152,11 @@ mod tests {
             time,
             angle: time,
             omega: 1.0,
-            encoder_omega: f64::NAN,
             phase: Some(Phase::Stick),
             theta,
             theta_dot: 1.0,
             torque: 0.0,
+            ..Sample::nothing()
         }
     }
 

@@ -6,7 +6,11 @@ use crate::ReportError;
 use crate::collector::Figures;
 use crate::figure::Figure;
 use crate::text::Text;
-use crate::{chart_motion, chart_orbit, chart_spectrum, chart_torque, chart_zoom, frame};
+use crate::{balance_table, frame};
+use crate::{
+    chart_energy, chart_hand, chart_motion, chart_orbit, chart_plant, chart_spectrum, chart_torque,
+    chart_zoom,
+};
 
 /// The report as one HTML page, complete in itself.
 ///
@@ -14,6 +18,12 @@ use crate::{chart_motion, chart_orbit, chart_spectrum, chart_torque, chart_zoom,
 /// [`ReportError::Draw`] if the drawing library refuses a chart.
 pub fn html(text: &Text, figures: &Figures) -> Result<String, ReportError> {
     let drawn = draw(figures)?;
+    let balance = figures.balance.as_ref().and_then(balance_table::table);
+    let style = if balance.is_some() {
+        balance_table::STYLE
+    } else {
+        ""
+    };
     let body = html! {
         header {
             p.kicker { "Crepitus · report of a run" }
@@ -29,11 +39,12 @@ pub fn html(text: &Text, figures: &Figures) -> Result<String, ReportError> {
             }
             @for drawn in &drawn { (frame::figure(drawn)) }
             (left_out(figures))
+            @if let Some(table) = &balance { (table) }
             (frame::tables(&text.sections))
         }
         (frame::footer(&text.footer))
     };
-    Ok(frame::document(&text.title, "", &body))
+    Ok(frame::document(&text.title, style, &body))
 }
 
 /// The figures that these data make.
@@ -45,9 +56,12 @@ pub(crate) fn draw(figures: &Figures) -> Result<Vec<Figure>, ReportError> {
     let drawn = [
         chart_motion::figure(figures)?,
         chart_torque::figure(figures)?,
+        chart_hand::figure(figures)?,
         chart_zoom::figure(figures)?,
         chart_orbit::figure(figures)?,
         chart_spectrum::figure(figures)?,
+        chart_plant::figure(figures)?,
+        chart_energy::figure(figures)?,
     ];
     Ok(drawn.into_iter().flatten().collect())
 }

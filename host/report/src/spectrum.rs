@@ -1,138 +1,119 @@
-//! The amplitude spectrum of the torque, by Welch's method while rows stream
-//! by: Hann windows that overlap by half, their powers averaged.
+//! The amplitude spectrum of a torque as points to draw; how it comes about
+//! is in [`crepitus_study::spectrum`].
 //!
-//! The scale is that of a sine: a steady sine of 1 mN·m shows as 1 mN·m at
-//! its frequency (up to 15 % less between two bins).
+//! Where there is a plant the torque at the hand holds the weight of a leg,
+//! thousands of times what crepitus vibrates, which would leak from below into
+//! all the rest. So there the spectrum is that of the second difference, and
+//! what differencing does to each frequency is undone.
 
-use std::fmt;
-use std::sync::Arc;
-
-use realfft::num_complex::Complex;
-use realfft::{RealFftPlanner, RealToComplex};
+use crepitus_study::spectrum;
 
 use crate::thinned::Point;
 
-/// What is known of the spectrum at the end of a run.
+/// What is known of a spectrum at the end of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Spectrum {
     /// Frequency, Hz, and amplitude, in the unit of the samples.
     pub(crate) points: Vec<Point>,
     pub(crate) resolution_hz: f64,
     pub(crate) segments: u64,
+    whole: spectrum::Spectrum,
+    gain: Gain,
 }
 
-/// See the module.
-pub(crate) struct Welch {
-    rate: f64,
-    fft: Arc<dyn RealToComplex<f64>>,
-    hann: Vec<f64>,
-    segment: Vec<f64>,
-    work: Vec<f64>,
-    scratch: Vec<Complex<f64>>,
-    transform: Vec<Complex<f64>>,
-    power: Vec<f64>,
-    segments: u64,
-    last: f64,
-}
-
-impl fmt::Debug for Welch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Welch")
-            .field("rate", &self.rate)
-            .field("length", &self.hann.len())
-            .field("segments", &self.segments)
-            .finish_non_exhaustive()
+impl Spectrum {
+    /// Root mean square of what vibrates between two frequencies, in the unit
+    /// of the samples; NaN where the samples are too few, or too far apart, to
+    /// tell.
+    pub(crate) fn rms(&self, low_hz: f64, high_hz: f64) -> f64 {
+        self.whole.rms(low_hz, high_hz, |hz| self.gain.at(hz))
     }
 }
 
-impl Welch {
-    /// Fewer samples than this make no spectrum worth looking at.
-    pub(crate) const SHORTEST: usize = 1024;
-    const LONGEST: usize = 65_536;
+/// What the samples went through before.
+#[derive(Clone, Copy, Debug)]
+enum Gain {
+    /// Nothing.
+    One,
+    /// Second differences over this step, s.
+    Difference(f64),
+}
 
-    /// A resolution of about 1 Hz, coarser if so few samples are expected
-    /// that not one segment would fill; 0 means unknown.
+impl Gain {
+    fn at(self, hz: f64) -> f64 {
+        match self {
+            Self::One => 1.0,
+            Self::Difference(step_s) => (2.0 * (std::f64::consts::PI * step_s * hz).sin()).powi(2),
+        }
+    }
+}
+
+/// See [`spectrum::Welch`].
+#[derive(Debug)]
+pub(crate) struct Welch {
+    of: spectrum::Welch,
+    gain: Gain,
+    /// The last two samples.
+    last: [Option<f64>; 2],
+}
+
+impl Welch {
+    pub(crate) const SHORTEST: usize = spectrum::Welch::SHORTEST;
+
     pub(crate) fn new(step_s: f64, expected: u64) -> Option<Self> {
-        let rate = 1.0 / step_s;
-        if !(rate.is_finite() && rate > 0.0) {
-            return None;
-        }
-        let mut length = Self::SHORTEST;
-        while length < Self::LONGEST && (length as f64) * std::f64::consts::SQRT_2 < rate {
-            length *= 2;
-        }
-        while length > Self::SHORTEST && expected != 0 && expected < length as u64 {
-            length /= 2;
-        }
-        let fft = RealFftPlanner::new().plan_fft_forward(length);
-        let turn = std::f64::consts::TAU / length as f64;
-        Some(Self {
-            rate,
-            hann: (0..length)
-                .map(|i| 0.5 - 0.5 * (turn * i as f64).cos())
-                .collect(),
-            segment: Vec::with_capacity(length),
-            work: fft.make_input_vec(),
-            scratch: fft.make_scratch_vec(),
-            transform: fft.make_output_vec(),
-            power: vec![0.0; length / 2 + 1],
-            fft,
-            segments: 0,
-            last: 0.0,
+        Self::with(step_s, expected, Gain::One)
+    }
+
+    /// By second differences, see the module.
+    pub(crate) fn differencing(step_s: f64, expected: u64) -> Option<Self> {
+        Self::with(step_s, expected.saturating_sub(2), Gain::Difference(step_s))
+    }
+
+    fn with(step_s: f64, expected: u64, gain: Gain) -> Option<Self> {
+        spectrum::Welch::new(step_s, expected).map(|of| Self {
+            of,
+            gain,
+            last: [None; 2],
         })
     }
 
     /// The next sample. One that is not finite repeats the one before.
     pub(crate) fn push(&mut self, value: f64) {
-        if value.is_finite() {
-            self.last = value;
+        let Gain::Difference(_) = self.gain else {
+            self.of.push(value);
+            return;
+        };
+        let value = if value.is_finite() {
+            value
+        } else {
+            self.last[1].unwrap_or(0.0)
+        };
+        if let [Some(a), Some(b)] = self.last {
+            self.of.push(value - 2.0 * b + a);
         }
-        self.segment.push(self.last);
-        let length = self.hann.len();
-        if self.segment.len() == length {
-            self.add_segment();
-            self.segment.drain(..length / 2);
-        }
+        self.last = [self.last[1], Some(value)];
     }
 
-    fn add_segment(&mut self) {
-        // The mean is not vibration, and would leak into the lowest bins.
-        let mean = self.segment.iter().sum::<f64>() / self.segment.len() as f64;
-        for ((out, value), weight) in self.work.iter_mut().zip(&self.segment).zip(&self.hann) {
-            *out = (value - mean) * weight;
-        }
-        let done =
-            self.fft
-                .process_with_scratch(&mut self.work, &mut self.transform, &mut self.scratch);
-        // The lengths are those that the plan itself made: it cannot fail.
-        if done.is_ok() {
-            for (power, bin) in self.power.iter_mut().zip(&self.transform) {
-                *power += bin.norm_sqr();
-            }
-            self.segments += 1;
-        }
-    }
-
-    /// The spectrum, or `None` if not one segment filled.
     pub(crate) fn finish(self) -> Option<Spectrum> {
-        if self.segments == 0 {
-            return None;
-        }
-        let resolution_hz = self.rate / self.hann.len() as f64;
-        let scale = 2.0 / self.hann.iter().sum::<f64>();
-        let points = self
-            .power
+        let whole = self.of.finish()?;
+        let points = whole
+            .amplitudes
             .iter()
             .enumerate()
-            .map(|(i, power)| {
-                let amplitude = (power / self.segments as f64).sqrt() * scale;
-                Point::new(i as f64 * resolution_hz, amplitude)
+            .map(|(i, amplitude)| {
+                let hz = i as f64 * whole.resolution_hz;
+                let gain = self.gain.at(hz);
+                // Of a mean, second differences say nothing.
+                let amplitude = if gain > 0.0 { amplitude / gain } else { 0.0 };
+                Point::new(hz, amplitude)
             })
             .collect();
         Some(Spectrum {
             points,
-            resolution_hz,
-            segments: self.segments,
+            resolution_hz: whole.resolution_hz,
+            segments: whole.segments,
+            whole,
+            gain: self.gain,
         })
     }
 }
@@ -140,42 +121,29 @@ impl Welch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     #[test]
-    fn a_sine_shows_its_amplitude_at_its_frequency() {
-        let rate = 20_000.0;
-        let mut welch = Welch::new(1.0 / rate, 0).expect("valid step");
-        let resolution = rate / welch.hann.len() as f64;
-        assert!((0.7..1.5).contains(&resolution));
-        let frequency = 93.0 * resolution;
-        for i in 0..200_000_u32 {
-            let angle = std::f64::consts::TAU * frequency * f64::from(i) / rate;
-            welch.push(if i == 777 {
-                f64::NAN
-            } else {
-                3.0 + 0.25 * angle.sin()
-            });
-        }
-        let spectrum = welch.finish().expect("segments");
-        assert!(spectrum.segments > 20);
-        let peak = spectrum
-            .points
-            .iter()
-            .max_by(|a, b| a.y.total_cmp(&b.y))
-            .expect("points");
-        assert!((peak.x - frequency).abs() < 1e-9);
-        assert!((peak.y - 0.25).abs() < 1e-4);
-        assert!(spectrum.points[0].y < 1e-3);
-    }
-
-    #[test]
-    fn too_few_samples_make_no_spectrum() {
-        let mut welch = Welch::new(1e-3, 500).expect("valid step");
-        for _ in 0..500 {
-            welch.push(1.0);
-        }
-        assert!(welch.finish().is_none());
-        assert!(Welch::new(0.0, 5).is_none());
-        assert!(Welch::new(f64::NAN, 5).is_none());
+    fn the_weight_of_a_leg_does_not_leak_into_the_bands() {
+        let torque = |t: f64| {
+            let weight = -20.0 + 7.0 * (TAU * 0.31 * t).cos() - 4.0 * (TAU * 0.57 * t).sin();
+            weight + 0.002 * (TAU * 100.0 * t).sin()
+        };
+        let bands = |mut welch: Welch| {
+            for i in 0..80_000_u32 {
+                welch.push(if i == 7 {
+                    f64::NAN
+                } else {
+                    torque(f64::from(i) * 5e-5)
+                });
+            }
+            let spectrum = welch.finish().expect("enough samples");
+            [(10.0, 50.0), (50.0, 250.0)].map(|(low, high)| spectrum.rms(low, high))
+        };
+        let [low, high] = bands(Welch::differencing(5e-5, 80_000).expect("a step"));
+        assert!(low < 1e-4, "{low}");
+        assert!((high - 0.002 / 2_f64.sqrt()).abs() < 1e-5, "{high}");
+        let [leaked, _] = bands(Welch::new(5e-5, 80_000).expect("a step"));
+        assert!(leaked > 10.0 * low, "{leaked}");
     }
 }

@@ -22,6 +22,8 @@ pub(crate) struct Window {
     pub(crate) torque: Thinned,
     pub(crate) omega: Thinned,
     pub(crate) theta_dot: Thinned,
+    pub(crate) motor: Thinned,
+    pub(crate) hand_fast: Thinned,
     pub(crate) orbit: Orbit,
     pub(crate) start: f64,
     pub(crate) end: f64,
@@ -43,6 +45,8 @@ impl Window {
             torque: Thinned::new(Self::LINE),
             omega: Thinned::new(Self::LINE),
             theta_dot: Thinned::new(Self::LINE),
+            motor: Thinned::new(Self::LINE),
+            hand_fast: Thinned::new(Self::LINE),
             orbit: Orbit::new(),
             start: f64::INFINITY,
             end: f64::NEG_INFINITY,
@@ -63,6 +67,8 @@ impl Window {
         }
         self.omega.push(sample.time, sample.omega);
         self.theta_dot.push(sample.time, sample.theta_dot);
+        self.motor.push(sample.time, sample.motor_torque);
+        self.hand_fast.push(sample.time, sample.hand_fast);
         self.orbit.row(sample);
         // Where there are events they alone say when a phase ends.
         if self.events.is_empty()

@@ -35,6 +35,8 @@ pub(crate) enum Verb {
     Accuracy(AccuracyArguments),
     /// Try the hard cases on every solver: what holds, and by what margin.
     Stability(StabilityArguments),
+    /// List the effects; or show what each effect of a scene does and costs.
+    Effects(EffectsArguments),
     /// List the scenes that ship, with what each shows.
     Scenes(ScenesArguments),
     /// List the parameter presets, with what each feels like and its source.
@@ -206,6 +208,43 @@ pub(crate) struct StabilityArguments {
 
     /// Write the matrix and each picture of the report as an SVG file of its own, too.
     #[arg(long)]
+    pub(crate) pictures: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus effects
+  crepitus effects slow-examination
+  crepitus effects my-scene.toml --tolerance torque=5e-3
+  crepitus effects my-scene.toml --tolerance torque=0.02,events=0.01 --set duration_s=2
+
+Without a SCENE all effects are listed, with their parameters. With one, each of its effects is \
+left out in turn and each absent one added: how much that changes the torque at the hand (RMS, \
+peak, three bands of frequency, number of events), and what it costs (time of a step, states).
+
+A TOLERANCE is a list of limits: torque (rms difference of the torque at the hand, N·m), peak \
+(largest difference, N·m), events (relative difference of the number of events). The answer is \
+the smallest set of the scene's effects that stays within all of them; all sets are tried, the \
+small ones first.")]
+pub(crate) struct EffectsArguments {
+    /// Scene file, or name of a scene that ships.
+    pub(crate) scene: Option<PathBuf>,
+
+    /// Folder for effects.csv, summary.json and report.html [default: out/SCENE-effects].
+    #[arg(long, value_name = "DIR", requires = "scene")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Which effects are enough to stay this near to the whole scene? For example torque=5e-3.
+    #[arg(long, value_name = "TOLERANCE", requires = "scene")]
+    pub(crate) tolerance: Option<String>,
+
+    /// Set a key of the scene.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value, requires = "scene")]
+    pub(crate) set: Vec<(String, String)>,
+
+    /// Write each figure of the report as an SVG file of its own, too.
+    #[arg(long, requires = "scene")]
     pub(crate) pictures: bool,
 }
 

@@ -18,6 +18,7 @@ fn main() -> ExitCode {
         Verb::Run(arguments) => verbs::run::run(arguments, cli.json),
         Verb::Accuracy(arguments) => verbs::accuracy::accuracy(arguments, cli.json),
         Verb::Stability(arguments) => verbs::stability::stability(arguments, cli.json),
+        Verb::Effects(arguments) => verbs::effects::effects(arguments, cli.json),
         Verb::Scenes(arguments) => verbs::scenes::scenes(arguments, cli.json),
         Verb::Presets => verbs::presets::presets(cli.json),
         Verb::Completions { shell } => verbs::completions::completions(*shell),

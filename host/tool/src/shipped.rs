@@ -38,6 +38,18 @@ shipped![
     "preset-fine",
     "preset-bone-on-bone",
     "encoder",
+    "fig8-1-motor",
+    "fig8-2-drivetrain",
+    "fig8-3-cuff",
+    "fig8-4-limb",
+    "fig8-5-hand",
+    "fig9-low-speed",
+    "gear-friction",
+    "backlash-reversal",
+    "cuff-transmission",
+    "bone-shaping",
+    "pendulum-test",
+    "everything",
 ];
 
 impl Shipped {

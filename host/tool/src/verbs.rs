@@ -2,6 +2,7 @@
 
 pub(crate) mod accuracy;
 pub(crate) mod completions;
+pub(crate) mod effects;
 pub(crate) mod presets;
 pub(crate) mod run;
 pub(crate) mod scenes;

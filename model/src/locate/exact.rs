@@ -119,3 +119,129 @@ fn search<F: Real, P: Propagate<F>>(slip: &SlipPath<'_, F, P>, length_s: F, boun
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::propagate::Exact;
+    use crate::{Active, Settings};
+
+    /// When T(u) = torque + rate·u + curvature·u²/2 reaches 0.5 N·m within a
+    /// second, and its mirror image −0.5 N·m.
+    fn reaches([torque_nm, rate, curvature]: [f64; 3], limit: f64) -> Option<f64> {
+        let path = |s: f64| StickPath {
+            torque_nm: s * torque_nm,
+            rate: s * rate,
+            curvature: s * curvature,
+        };
+        let found = ExactEvents::break_time(&path(1.0), Sense::Positive, limit, 1.0);
+        let mirrored = ExactEvents::break_time(&path(-1.0), Sense::Negative, limit, 1.0);
+        assert_eq!(found, mirrored);
+        found
+    }
+
+    #[test]
+    fn a_break_is_the_first_root_of_the_parabola() {
+        for (path, expected) in [
+            // A straight line that gets there, just gets there, does not.
+            ([0.25, 1.0, 0.0], Some(0.25)),
+            ([-0.5, 1.0, 0.0], Some(1.0)),
+            ([-0.5, 0.999, 0.0], None),
+            ([0.25, -1.0, 0.0], None),
+            ([0.25, 0.0, 0.0], None),
+            // 0.5 = 3u + 4u² and 0.5 = −3u + 4u²/2.
+            ([0.0, 3.0, 8.0], Some((17.0_f64.sqrt() - 3.0) / 8.0)),
+            ([0.0, 0.0, 4.0], Some(0.5)),
+            ([0.0, -1.0, 6.0], Some((1.0 + 7.0_f64.sqrt()) / 6.0)),
+            // Over the top at 0.5 s: beyond the limit, just at it, below.
+            ([0.0, 3.0, -6.0], Some((3.0 - 3.0_f64.sqrt()) / 6.0)),
+            ([0.0, 2.0, -4.0], Some(0.5)),
+            ([0.0, 1.9, -4.0], None),
+            // Falling faster and faster.
+            ([0.0, -1.0, -1.0], None),
+        ] {
+            let found = reaches(path, 0.5);
+            assert_eq!(found.is_some(), expected.is_some(), "{path:?}: {found:?}");
+            if let (Some(found), Some(expected)) = (found, expected) {
+                assert!((found - expected).abs() < 1e-15, "{path:?}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn at_the_limit_it_is_the_way_out_that_counts() {
+        for (rate, curvature, expected) in [
+            (2.0, 0.0, Some(0.0)),
+            (2.0, -8.0, Some(0.0)),
+            (0.0, 0.0, None),
+            (0.0, -1.0, None),
+            (-2.0, 0.0, None),
+            (-2.0, -8.0, None),
+            // First inwards and then out again: 3u = 8u²/2.
+            (-3.0, 8.0, Some(0.75)),
+            (-5.0, 8.0, None),
+        ] {
+            for torque in [0.5, 0.5 + 1e-11] {
+                let found = reaches([torque, rate, curvature], 0.5);
+                assert_eq!(found, expected, "{torque}, {rate}, {curvature}");
+            }
+        }
+        // Without any limit, nothing is beyond it.
+        assert_eq!(reaches([0.0, -1.0, 0.0], 0.0), None);
+    }
+
+    #[test]
+    fn beyond_the_limit_by_more_than_its_slack_it_breaks_at_once() {
+        for limit in [1e-3, 0.5, 1e3] {
+            let beyond = |parts: f64| reaches([limit * (1.0 + parts), -limit, 0.0], limit);
+            assert_eq!(beyond(1e-10), None, "{limit}");
+            assert_eq!(beyond(1e-8), Some(0.0), "{limit}");
+        }
+    }
+
+    /// The paper's object through x = 0 with v = 1 rad/s, and the shaft ahead
+    /// by `lead`, falling back by `rate` at first.
+    fn meets(lead: f64, rate: f64, length_s: f64) -> Option<f64> {
+        let active = Active::new(&Settings::default().validate().unwrap(), 1e-3).unwrap();
+        let propagator = Exact::new(&active);
+        let slip = SlipPath {
+            propagator: &propagator,
+            oscillator: &active.oscillator,
+            sense: Sense::Positive,
+            x: 0.0,
+            v: 1.0,
+            omega: 1.0 + lead,
+            omega_dot: rate,
+        };
+        let (_, v_end) = propagator.part(0.0, 1.0, length_s);
+        ExactEvents::match_time(&slip, length_s, v_end)
+    }
+
+    #[test]
+    fn velocities_that_meet_and_part_again_within_a_step_have_met() {
+        // lead + rate·u + 1 − cos ωn·u at ωn = 200 rad/s: about 2e4·u² with
+        // its lowest point at rate/4e4.
+        for (length_s, rate, lead) in [
+            (1e-3, -8.0, 4e-4),
+            (1e-3, -8.0, 7e-4),
+            (1e-4, -0.8, 4e-6),
+            (1e-4, -0.8, 7.9e-6),
+        ] {
+            let g = |u: f64| lead + rate * u + 2.0 * libm::pow(libm::sin(100.0 * u), 2.0);
+            let (mut low, mut high) = (0.0, -rate / 4e4);
+            assert!(g(high) < 0.0 && g(length_s) > 0.0);
+            for _ in 0..100 {
+                let middle = 0.5 * (low + high);
+                *(if g(middle) > 0.0 { &mut low } else { &mut high }) = middle;
+            }
+            let found = meets(lead, rate, length_s);
+            assert!(
+                found.is_some_and(|u| (u - low).abs() < 1e-9 * length_s),
+                "{lead}: {found:?}, not {low}"
+            );
+        }
+        // A near miss is a miss.
+        assert_eq!(meets(8.1e-4, -8.0, 1e-3), None);
+        assert_eq!(meets(8.1e-6, -0.8, 1e-4), None);
+    }
+}

@@ -282,4 +282,19 @@ mod tests {
             assert_eq!(atan2(-x, 1.5).to_bits(), (-atan2(x, 1.5)).to_bits());
         }
     }
+
+    #[test]
+    fn in_the_first_octant_every_term_of_a_series_counts() {
+        // An error of a unit in the last place is 6e-8 above a half.
+        assert!(worst(0.0, FRAC_PI_4, |x| sin_cos(x).0, libm::sin) < 7e-8);
+        assert!(worst(0.0, FRAC_PI_4, |x| sin_cos(x).1, libm::cos) < 7e-8);
+        assert!(worst(0.0, 1.0, |t| atan2(t, 1.0), libm::atan) < 1.1e-7);
+    }
+
+    #[test]
+    fn the_exponential_ends_where_it_says() {
+        let near = |x: f32| (f64::from(exp(x)) / libm::exp(f64::from(x)) - 1.0).abs() < 3e-7;
+        assert!(near(-87.0) && near(88.0));
+        assert_eq!((exp(-87.000_01), exp(88.000_01)), (0.0, f32::INFINITY));
+    }
 }

@@ -90,6 +90,23 @@ impl Overlay {
         );
     }
 
+    /// An arrow to the left, from a sign at the left edge of a diagram.
+    pub(crate) fn arrow_left(&mut self, (x, y): (i32, i32), ink: Ink) {
+        let _ = write!(
+            self.out,
+            "<path d=\"M{} {y}H{}M{} {}L{} {y}L{} {}\" fill=\"none\" stroke=\"{}\" \
+             stroke-width=\"6\"/>",
+            x - 18,
+            x - 52,
+            x - 38,
+            y - 11,
+            x - 52,
+            x - 38,
+            y + 11,
+            ink.hex()
+        );
+    }
+
     /// A label, on a rim of paper so that it reads over lines.
     pub(crate) fn text(&mut self, (x, y): (i32, i32), anchor: Anchor, ink: Ink, text: &str) {
         let anchor = match anchor {

@@ -24,8 +24,8 @@ pub(super) struct Cost {
 pub struct StepTime {
     /// Of the fastest timing, ns; infinite for a scene that cannot run.
     pub ns: f64,
-    /// How much longer the median took, as a share of that: large where the
-    /// machine was busy.
+    /// How much longer a quarter of the timings took at most, the fastest
+    /// quarter, as a share of that: large where the machine was busy.
     pub spread: f64,
 }
 
@@ -58,10 +58,10 @@ impl StepTime {
     fn of(mut times: Vec<f64>) -> Self {
         times.sort_by(f64::total_cmp);
         let ns = times.first().copied().unwrap_or(f64::INFINITY);
-        let median = times.get(times.len() / 2).copied().unwrap_or(ns);
+        let quartile = times.get(times.len() / 4).copied().unwrap_or(ns);
         Self {
             ns,
-            spread: median / ns - 1.0,
+            spread: quartile / ns - 1.0,
         }
     }
 }

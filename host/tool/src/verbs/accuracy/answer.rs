@@ -5,6 +5,7 @@ use super::words;
 use crate::failure::{Failure, print, print_json};
 use crepitus_study::accuracy::answer::{Answer, Candidate, Mark};
 use crepitus_study::accuracy::{Need, Question, Study, answer};
+use crepitus_study::limits::Limited;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;

@@ -1,0 +1,87 @@
+//! The files of a study, and the words of its report.
+
+use super::summary::Summary;
+use crate::failure::Failure;
+use crepitus_report::Section;
+use crepitus_report::effects::{self, EffectsText};
+use crepitus_study::effects::EffectsStudy;
+use crepitus_study::effects::effects_csv::effects_csv;
+
+/// Names and contents of the files; each figure as an SVG of its own if asked
+/// for.
+pub(super) fn files(
+    study: &EffectsStudy,
+    summary: &Summary<'_>,
+    pictures: bool,
+) -> Result<Vec<(String, String)>, Failure> {
+    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
+    let page = effects::html(study, &text(study, summary)).map_err(undrawn)?;
+    let json = serde_json::to_string_pretty(summary)
+        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
+    let mut files = vec![
+        ("report.html".to_owned(), page),
+        ("effects.csv".to_owned(), effects_csv(study)),
+        ("summary.json".to_owned(), json + "\n"),
+    ];
+    if pictures {
+        let pictures = effects::pictures(study).map_err(undrawn)?;
+        files.extend(
+            pictures
+                .into_iter()
+                .map(|p| (format!("{}.svg", p.name), p.svg)),
+        );
+    }
+    Ok(files)
+}
+
+fn text(study: &EffectsStudy, summary: &Summary<'_>) -> EffectsText {
+    let row = |name: &str, value: String| (name.to_owned(), value);
+    let effects = if study.effects.is_empty() {
+        "none".to_owned()
+    } else {
+        study.effects.join(", ")
+    };
+    EffectsText {
+        title: format!("What each effect does and costs: {}", study.title),
+        intro: format!(
+            "Each effect of the scene is left out in turn, and each absent one added.\n{}",
+            summary.conclusion
+        ),
+        notes: notes(study),
+        tables: vec![Section {
+            title: "What was studied".to_owned(),
+            rows: vec![
+                row("scene", study.scene.clone()),
+                row("its effects", effects),
+                row(
+                    "ticks",
+                    format!("{} of {:.6} µs", study.ticks, study.tick_s * 1e6)
+                        .replace(".000000", ""),
+                ),
+                row("measured on", summary.measured_on()),
+                row("the study took", format!("{:.1} s", study.wall_s)),
+            ],
+        }],
+        footer: format!(
+            "crepitus {} · research and education prototype, not a medical device",
+            summary.crepitus_version
+        ),
+    }
+}
+
+fn notes(study: &EffectsStudy) -> Vec<String> {
+    let mut notes: Vec<String> = [
+        "The torque at the hand is what a force sensor between leg and hand would show, as the mean of each tick. \
+         Without any effect of the plant the hand holds the joint itself, and feels the torque that the model has at \
+         the end of the tick; with a plant, a tick passes between what the model says and what the motor does.",
+        "A difference is taken tick by tick. Two gratings that run a hair apart in time differ as much as if one \
+         were missing: where an effect shifts the events, the bands and the number of events tell whether the \
+         grating itself is another.",
+        "An added effect has its default numbers.",
+        "Influences do not add up: two effects may hide, or undo, each other.",
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    notes.extend(super::summary::unsteady(study));
+    notes
+}

@@ -1,0 +1,127 @@
+//! `summary.json` of a study of effects, and its conclusion in a sentence or
+//! two.
+
+use super::table::torque;
+use crepitus_study::effects::variant::Change;
+use crepitus_study::effects::{EffectsStudy, Row};
+use serde::Serialize;
+
+/// Version of this form.
+const SUMMARY_VERSION: u32 = 1;
+
+/// From here on a difference of the torque is worth having, N·m.
+pub(super) const WORTH_HAVING_NM: f64 = 5e-3;
+
+/// A study with what it comes to.
+#[derive(Serialize)]
+pub(super) struct Summary<'a> {
+    #[serde(rename = "summary_version")]
+    version: u32,
+    pub(super) crepitus_version: &'static str,
+    /// Where the times were measured.
+    host: String,
+    pub(super) conclusion: String,
+    #[serde(flatten)]
+    study: &'a EffectsStudy,
+}
+
+impl<'a> Summary<'a> {
+    pub(super) fn new(study: &'a EffectsStudy) -> Self {
+        Self {
+            version: SUMMARY_VERSION,
+            crepitus_version: env!("CARGO_PKG_VERSION"),
+            host: format!("{} {}", std::env::consts::ARCH, std::env::consts::OS),
+            conclusion: conclusion(study),
+            study,
+        }
+    }
+
+    /// What the times were measured on, and in which build.
+    pub(super) fn measured_on(&self) -> String {
+        let build = if cfg!(debug_assertions) {
+            "a debug build: times mean little"
+        } else {
+            "a release build"
+        };
+        format!("one core, {}, {build}", self.host)
+    }
+}
+
+/// What matters, what does not, and what is missing.
+fn conclusion(study: &EffectsStudy) -> String {
+    let rows = study.by_influence();
+    let of = |change| rows.iter().filter(move |row| row.change == change);
+    let mut sentences = Vec::new();
+    let nm = |row: &Row| torque(row.added().map_or(f64::NAN, |a| a.rms_nm));
+    let left_out: Vec<&&Row> = of(Change::Without).collect();
+    match left_out.as_slice() {
+        [] => {}
+        [only] => sentences.push(format!("{} makes {} RMS at the hand.", only.effect, nm(only))),
+        [most, .., least] => sentences.push(format!(
+            "Of the scene's effects {} changes the torque at the hand most, by {} RMS, and {} least, by {}.",
+            most.effect,
+            nm(most),
+            least.effect,
+            nm(least)
+        )),
+    }
+    let small = |row: &&&Row| row.added().is_some_and(|a| a.rms_nm < WORTH_HAVING_NM);
+    let below: Vec<&str> = left_out
+        .iter()
+        .copied()
+        .filter(small)
+        .map(|row| row.effect)
+        .collect();
+    if !below.is_empty() {
+        sentences.push(format!(
+            "Below the {} worth having: {}.",
+            torque(WORTH_HAVING_NM),
+            below.join(", ")
+        ));
+    }
+    if let Some(most) = of(Change::With).next() {
+        sentences.push(format!(
+            "Of those that it leaves out {} would change it most, by {}.",
+            most.effect,
+            nm(most)
+        ));
+    }
+    if let Some(dearest) = dearest(&rows) {
+        sentences.push(dearest);
+    }
+    if sentences.is_empty() {
+        "No variant of the scene runs.".to_owned()
+    } else {
+        sentences.join(" ")
+    }
+}
+
+/// The effect of the scene that takes the most time.
+fn dearest(rows: &[&Row]) -> Option<String> {
+    let cost = |row: &Row| row.added().map_or(f64::NEG_INFINITY, |a| a.ns_per_step);
+    let dearest = rows
+        .iter()
+        .filter(|row| row.change == Change::Without && cost(row).is_finite())
+        .max_by(|a, b| cost(a).total_cmp(&cost(b)))?;
+    let added = dearest.added()?;
+    Some(format!(
+        "The dearest is {}: {:.0} of {:.0} ns a step here.",
+        dearest.effect,
+        added.ns_per_step,
+        added.ns_per_step + dearest.ns_per_step
+    ))
+}
+
+/// A word of caution where the machine was busy.
+pub(super) fn unsteady(study: &EffectsStudy) -> Option<String> {
+    /// From here on small costs cannot be told from none.
+    const UNSTEADY: f64 = 0.1;
+    let spread = study.time_spread();
+    (spread > UNSTEADY).then(|| {
+        format!(
+            "The machine was busy: three quarters of the timings took over {:.0} % longer than the fastest, so a cost below \
+             that share of a step may be none.",
+            100.0 * spread
+        )
+    })
+}

@@ -1,0 +1,45 @@
+//! What each effect of a scene does to the torque at the hand, and what it
+//! costs: each is left out in turn, and each absent one added.
+//!
+//! ```text
+//! scene ─────> torque at the hand, tick by tick ─┐
+//! variants ──> torque at the hand ───────────────┴─> influence ─┐
+//! scene and variants in turn ──> time of a step ────────────────┴─> rows ─┬─> effects.csv
+//!                                                                         └─> a story
+//! sets of effects, growing ──> the smallest one within a tolerance ─────────> answer
+//! ```
+//!
+//! What the hand feels is `hand_torque_nm`, the mean of the tick that ended;
+//! without a plant it is the joint's own `torque_nm`, and without a joint
+//! nothing. The first row, before the first tick, does not count.
+//!
+//! | to find | look in |
+//! |---|---|
+//! | which scenes cannot be studied | [`mod@refusal`] |
+//! | which variants a scene has | [`variant`] |
+//! | a run as the hand feels it | [`hand`] |
+//! | RMS, peak, bands, differences | [`influence`] |
+//! | the whole study, its results, their file | [`study`], [`results`], [`effects_csv`] |
+//! | limits, and the smallest set of effects within | [`tolerance`], [`smallest`], [`mod@answer`] |
+//! | the stretch of time that the report shows | [`window`] |
+//! | runs on all cores | [`parallel`] |
+
+pub mod answer;
+pub mod build_up;
+pub mod effects_csv;
+mod hand;
+pub mod influence;
+mod parallel;
+pub mod refusal;
+pub mod results;
+mod smallest;
+pub mod study;
+pub mod tolerance;
+pub mod variant;
+mod window;
+
+pub use answer::Answer;
+pub use refusal::{Refusal, refusal};
+pub use results::{EffectsStudy, Row};
+pub use study::{EffectsError, Plan, run};
+pub use tolerance::Tolerance;

@@ -1,0 +1,273 @@
+//! The smallest set of a scene's effects that stays within a tolerance, what
+//! was dropped, and why the rest is kept.
+
+use super::hand::{Ended, events, feel};
+use super::influence::{Difference, Size, relative};
+use super::parallel::{Meter, each};
+use super::smallest::{Set, sets, smallest, without};
+use super::study::{Felt, TIMINGS};
+use super::tolerance::{Criterion, Tolerance};
+use super::variant::states;
+use crate::watcher::Watcher;
+use crepitus_model::Real;
+use crepitus_plant::effect::Effect;
+use crepitus_scene::Scene;
+use crepitus_scene::run::step_times;
+use serde::Serialize;
+
+/// Costs that differ by less than this are the same.
+const SAME_COST: f64 = 0.05;
+
+/// The smallest set of effects.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Answer {
+    /// What it has to keep.
+    pub tolerance: Tolerance,
+    /// The set.
+    pub chosen: Subset,
+    /// Effects that it has, and what would come of dropping each one, too.
+    pub kept: Vec<Dropped>,
+    /// Effects that it has not, and what comes of dropping each one alone.
+    pub dropped: Vec<Dropped>,
+    /// Other sets of this size that stay within, dearer or further off.
+    pub others: Vec<Subset>,
+    /// Time of a step of the whole scene, ns, in the same timings.
+    pub scene_ns_per_step: f64,
+    /// State variables of the whole scene.
+    pub scene_states: usize,
+    /// Sets that were tried.
+    pub tried: usize,
+    /// Sets that there are.
+    pub sets: usize,
+}
+
+/// Some of a scene's effects.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Subset {
+    /// Their names.
+    pub effects: Vec<&'static str>,
+    /// How far the torque is from that of the whole scene.
+    pub difference: Difference,
+    /// State variables.
+    pub states: usize,
+    /// Time of a step, ns.
+    pub ns_per_step: f64,
+}
+
+/// What comes of dropping an effect.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Dropped {
+    /// The effect.
+    pub effect: &'static str,
+    /// Those that leave with it because they need it.
+    pub along: Vec<&'static str>,
+    /// How far the torque then is from that of the whole scene; none if
+    /// nothing comes of it.
+    pub difference: Option<Difference>,
+    /// Why nothing comes of it.
+    pub failure: Option<String>,
+}
+
+/// What the answer starts from.
+pub(super) struct Question<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) whole: &'a Felt,
+    pub(super) tolerance: &'a Tolerance,
+}
+
+/// Number of sets that a scene's effects make.
+pub(super) fn set_count(scene: &Scene) -> usize {
+    sets(&needs(&scene.effects())).count()
+}
+
+/// For each effect the places of those that it needs.
+fn needs(effects: &[&'static Effect]) -> Vec<Set> {
+    effects
+        .iter()
+        .map(|effect| {
+            effects
+                .iter()
+                .enumerate()
+                .filter(|(_, other)| effect.needs.iter().any(|n| n.effect == other.name))
+                .fold(0, |set, (i, _)| set | (1 << i))
+        })
+        .collect()
+}
+
+/// The answer; none if not even the whole scene is within, which only a scene
+/// that does not repeat itself could do.
+pub(super) fn answer<W: Watcher>(
+    question: &Question<'_>,
+    meter: &Meter,
+    watcher: &mut W,
+) -> Result<Option<Answer>, W::Error> {
+    let Question {
+        scene, tolerance, ..
+    } = *question;
+    let effects = scene.effects();
+    let needs = needs(&effects);
+    let everything = (1 << effects.len()) - 1;
+    let found = smallest(&needs, |sets| {
+        each(sets, meter, watcher, |set| {
+            let tried = part(scene, &effects, *set)?;
+            let difference = question.difference(&tried, meter, true).ok()?;
+            tolerance.holds(&difference).then_some(difference)
+        })
+    })?;
+    let subsets = question.timed(&effects, &found.sets, meter, watcher)?;
+    let Some((scene_ns_per_step, mut subsets)) = subsets else {
+        return Ok(None);
+    };
+    let (chosen_set, chosen) = subsets.remove(cheapest(&subsets));
+    // Each effect is dropped: what is kept from the chosen set, the others
+    // from the whole.
+    let places: Vec<usize> = (0..effects.len()).collect();
+    let dropped = each(&places, meter, watcher, |place| {
+        let from = if chosen_set & (1 << place) == 0 {
+            everything
+        } else {
+            chosen_set
+        };
+        question.dropped(&effects, from, without(from, *place, &needs), *place, meter)
+    })?;
+    let (kept, dropped) = dropped
+        .into_iter()
+        .partition(|d| chosen.effects.contains(&d.effect));
+    Ok(Some(Answer {
+        tolerance: tolerance.clone(),
+        chosen,
+        kept,
+        dropped,
+        others: subsets.into_iter().map(|(_, subset)| subset).collect(),
+        scene_ns_per_step,
+        scene_states: states(scene),
+        tried: found.tried,
+        sets: sets(&needs).count(),
+    }))
+}
+
+/// The cheapest, of equally cheap ones the nearest to the scene.
+fn cheapest(subsets: &[(Set, Subset)]) -> usize {
+    let least = subsets
+        .iter()
+        .map(|(_, s)| s.ns_per_step)
+        .fold(f64::INFINITY, f64::min);
+    subsets
+        .iter()
+        .enumerate()
+        .filter(|(_, (_, s))| s.ns_per_step <= least * (1.0 + SAME_COST))
+        .min_by(|(_, (_, a)), (_, (_, b))| a.difference.rms_nm.total_cmp(&b.difference.rms_nm))
+        .map_or(0, |(place, _)| place)
+}
+
+/// The scene with these of its effects.
+fn part(scene: &Scene, effects: &[&'static Effect], set: Set) -> Option<Scene> {
+    effects
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| set & (1 << i) == 0)
+        .try_fold(scene.clone(), |scene, (_, effect)| scene.without(effect))
+}
+
+fn names(effects: &[&'static Effect], set: Set) -> Vec<&'static str> {
+    effects
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| set & (1 << i) != 0)
+        .map(|(_, effect)| effect.name)
+        .collect()
+}
+
+impl Question<'_> {
+    /// How far a scene's torque is from that of the whole one. If `hurried`,
+    /// it is only followed until it cannot stay within any more.
+    fn difference(&self, scene: &Scene, meter: &Meter, hurried: bool) -> Result<Difference, Ended> {
+        let limit = |criterion| {
+            if hurried {
+                self.tolerance.at_most(criterion)
+            } else {
+                f64::INFINITY
+            }
+        };
+        let (rms_nm, peak_nm) = (limit(Criterion::Torque), limit(Criterion::Peak));
+        let ticks = f64::from_whole(crepitus_scene::run::step_count(scene));
+        // With some room for rounding; in the end the limits themselves count.
+        let most = rms_nm * rms_nm * ticks * (1.0 + 1e-9);
+        let mut size = Size::default();
+        let mut whole = self.whole.signal.iter();
+        let summary = feel(scene, meter, |torque_nm| {
+            size.push(torque_nm - whole.next().copied().unwrap_or(f64::NAN));
+            size.squares <= most && size.peak <= peak_nm
+        })?;
+        Ok(Difference {
+            rms_nm: size.rms(),
+            peak_nm: size.peak,
+            events_relative: relative(events(&summary), self.whole.events),
+        })
+    }
+
+    /// The time of a step of the scene, and the sets with theirs; none if
+    /// there are no sets.
+    #[expect(clippy::type_complexity, reason = "used once")]
+    fn timed<W: Watcher>(
+        &self,
+        effects: &[&'static Effect],
+        found: &[(Set, Difference)],
+        meter: &Meter,
+        watcher: &mut W,
+    ) -> Result<Option<(f64, Vec<(Set, Subset)>)>, W::Error> {
+        let mut scenes = vec![self.scene.clone()];
+        scenes.extend(
+            found
+                .iter()
+                .filter_map(|(set, _)| part(self.scene, effects, *set)),
+        );
+        let times = step_times(&scenes, TIMINGS, || meter.tell(watcher))?;
+        let mut timed = scenes.iter().zip(times);
+        let Some((_, whole)) = timed.next() else {
+            return Ok(None);
+        };
+        let subsets: Vec<_> = found
+            .iter()
+            .zip(timed)
+            .map(|((set, difference), (scene, time))| {
+                let subset = Subset {
+                    effects: names(effects, *set),
+                    difference: *difference,
+                    states: states(scene),
+                    ns_per_step: time.ns,
+                };
+                (*set, subset)
+            })
+            .collect();
+        Ok((!subsets.is_empty()).then_some((whole.ns, subsets)))
+    }
+
+    /// What comes of `left`, which is `from` without the effect at `place`.
+    fn dropped(
+        &self,
+        effects: &[&'static Effect],
+        from: Set,
+        left: Set,
+        place: usize,
+        meter: &Meter,
+    ) -> Dropped {
+        let effect = effects.get(place).map_or("", |e| e.name);
+        let along = names(effects, from & !left & !(1 << place));
+        let felt = match part(self.scene, effects, left) {
+            Some(scene) => self.difference(&scene, meter, false),
+            None => Err(Ended::Failed("the motion needs it".to_owned())),
+        };
+        let (difference, failure) = match felt {
+            Ok(difference) => (Some(difference), None),
+            Err(Ended::Failed(why)) => (None, Some(why)),
+            Err(_) => (None, None),
+        };
+        Dropped {
+            effect,
+            along,
+            difference,
+            failure,
+        }
+    }
+}

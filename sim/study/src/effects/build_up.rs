@@ -1,0 +1,202 @@
+//! The effects of a scene one after the other, in the order of the table:
+//! from the joint alone to what the hand feels.
+//!
+//! All measures are of the second half of a run, when it has swung in.
+
+mod signals;
+
+use super::parallel::{Meter, each};
+use crate::stability::story::{Panel, Scale, Series, Story};
+use crate::watcher::Watcher;
+use crepitus_plant::effect::{Effect, Part};
+use crepitus_scene::Scene;
+use serde::Serialize;
+use signals::Signals;
+
+/// The end of each run that is shown, s.
+const SHOWN_S: f64 = 0.2;
+
+/// Names of the two lines of the picture.
+const MODEL: &str = "torque of the model";
+const HAND: &str = "torque at the hand";
+
+/// What one effect after the other makes of the joint.
+#[derive(Clone, Debug)]
+pub struct BuildUp {
+    /// The joint with its sensor, then with one effect more each.
+    pub rungs: Vec<Rung>,
+    /// The torques at the end of each run.
+    pub story: Story,
+}
+
+/// One set of effects.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Rung {
+    /// What came last; empty for the joint alone.
+    pub added: &'static str,
+    /// What came of it.
+    #[serde(flatten)]
+    pub measured: Option<Measured>,
+    /// Why nothing did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
+}
+
+/// Measures of one run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Measured {
+    /// From the least to the largest of the fast part of the torque at the
+    /// hand, N·m. Fast is what is left of its mean over 0.1 s around.
+    pub ripple_nm: f64,
+    /// Root mean square of that, N·m.
+    pub ripple_rms_nm: f64,
+    /// How far it is behind that of the model's torque, s: where the two
+    /// correlate best.
+    pub lag_s: f64,
+    /// Mean length of a stick, s; none if there was none.
+    pub stick_s: Option<f64>,
+    /// Shortest time from break to break, s.
+    pub shortest_s: Option<f64>,
+    /// Longest time from break to break, s.
+    pub longest_s: Option<f64>,
+    /// Lowest speed of the shaft, rad/s.
+    pub slowest_rad_s: f64,
+    /// Highest speed of the shaft, rad/s.
+    pub fastest_rad_s: f64,
+}
+
+/// Builds `scene` up; none if it has no joint or no plant.
+///
+/// # Errors
+/// What the watcher returns.
+pub(super) fn build_up<W: Watcher>(
+    scene: &Scene,
+    meter: &Meter,
+    watcher: &mut W,
+) -> Result<Option<BuildUp>, W::Error> {
+    if scene.crepitus.is_none() || !scene.is_coupled() {
+        return Ok(None);
+    }
+    let scenes = prefixes(scene);
+    let heard = each(&scenes, meter, watcher, |(_, scene)| {
+        Signals::of(scene, meter)
+    })?;
+    let mut rungs = Vec::new();
+    let mut panels = Vec::new();
+    for ((added, _), signals) in scenes.iter().zip(heard) {
+        let (measured, failure) = match signals {
+            Ok(signals) => {
+                panels.push(panel(added, &signals));
+                (Some(signals.measure()), None)
+            }
+            Err(failure) => (None, Some(failure)),
+        };
+        rungs.push(Rung {
+            added,
+            measured,
+            failure,
+        });
+    }
+    Ok(Some(BuildUp {
+        rungs,
+        story: Story {
+            name: "build-up",
+            title: "From the joint to the hand, one effect at a time",
+            caption: "The end of each run: the model's torque, and what a force sensor between leg and hand shows, \
+                      both without their slow part. Each panel has one effect more than the one above it."
+                .to_owned(),
+            panels,
+        },
+    }))
+}
+
+/// How many runs it takes.
+pub(super) fn runs(scene: &Scene) -> usize {
+    1 + scene.listed.len()
+}
+
+/// The joint with its sensor, and with one effect more each. What an effect
+/// needs stands before it in the table.
+fn prefixes(scene: &Scene) -> Vec<(&'static str, Scene)> {
+    let is_plant = |e: &Effect| !matches!(e.part, Part::Joint | Part::Sensor);
+    let last: Vec<&'static Effect> = scene
+        .effects()
+        .into_iter()
+        .filter(|e| is_plant(e))
+        .collect();
+    let mut prefixes = vec![("", scene.first(0))];
+    prefixes.extend(
+        last.iter()
+            .enumerate()
+            .map(|(i, e)| (e.name, scene.first(i + 1))),
+    );
+    prefixes
+}
+
+fn panel(added: &'static str, signals: &Signals) -> Panel {
+    let (model, hand) = signals.last(SHOWN_S);
+    let (from, to) = (
+        model.first().map_or(0.0, |p| p.0),
+        model.last().map_or(1.0, |p| p.0),
+    );
+    Panel {
+        heading: if added.is_empty() {
+            "the joint alone".to_owned()
+        } else {
+            format!("and {added}")
+        },
+        x: Scale::linear("Time (s)").within(from, to),
+        y: Scale::linear("Torque less trend (N·m)").within(-0.32, 0.32),
+        series: vec![Series::line(MODEL, model), Series::line(HAND, hand)],
+        ..Panel::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_scene::Overrides;
+    use std::path::Path;
+
+    struct Patient;
+
+    impl Watcher for Patient {
+        type Error = std::convert::Infallible;
+
+        fn progress(&mut self, _: f64) -> Result<(), Self::Error> {
+            Ok(())
+        }
+    }
+
+    fn built(effects: &[&str]) -> Option<BuildUp> {
+        let mut text =
+            "version = 1\ntitle = \"steady\"\nduration_s = 0.8\n[motion]\nkind = \"constant\"\n\
+                        velocity_rad_s = 0.5\n[solver]\nkind = \"exact-events\"\nstep_s = 5e-5\n"
+                .to_owned();
+        text.extend(effects.iter().map(|e| format!("[effects.{e}]\n")));
+        let scene = Scene::parse(Path::new("steady.toml"), &text, &Overrides::default()).unwrap();
+        let Ok(built) = build_up(&scene, &Meter::new(1.0), &mut Patient);
+        built
+    }
+
+    #[test]
+    fn each_rung_has_one_effect_more() {
+        let built = built(&["crepitus", "encoder", "motor", "drivetrain", "cuff"]).unwrap();
+        let added: Vec<_> = built.rungs.iter().map(|r| r.added).collect();
+        assert_eq!(added, ["", "motor", "drivetrain", "cuff"]);
+        assert_eq!(built.story.panels.len(), 4);
+        let of = |i: usize| built.rungs[i].measured.unwrap();
+        // Alone, the hand feels what the model shows.
+        assert_eq!(of(0).lag_s, 0.0);
+        assert!(of(0).stick_s.is_some());
+        assert!(of(1).lag_s > 0.0 && of(1).ripple_nm < of(0).ripple_nm);
+        assert!(of(3).ripple_nm < 0.2 * of(2).ripple_nm);
+        assert!(of(3).lag_s > of(2).lag_s);
+    }
+
+    #[test]
+    fn there_is_nothing_to_build_up_without_a_joint_or_a_plant() {
+        assert!(built(&["drivetrain", "cuff"]).is_none());
+        assert!(built(&["crepitus", "encoder"]).is_none());
+    }
+}

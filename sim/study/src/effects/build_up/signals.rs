@@ -1,0 +1,215 @@
+//! The signals of a run's second half, and their measures.
+
+use super::super::parallel::Meter;
+use super::Measured;
+use crepitus_model::Real;
+use crepitus_scene::Scene;
+use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns, step_count, step_s};
+use crepitus_scene::trace::{EventKind, EventRecord};
+
+/// Half of the stretch whose mean is taken away, s.
+const TREND_S: f64 = 0.05;
+
+/// The largest lag that is looked for, s.
+const MOST_LAG_S: f64 = 0.04;
+
+/// A peak of the correlation is as good as the best from this share of it.
+const GOOD_PEAK: f64 = 0.9;
+
+/// Ticks that the lag is found from, at most.
+const LAG_TICKS: usize = 20_000;
+
+/// What a run showed in its second half, tick by tick.
+pub(super) struct Signals {
+    tick_s: f64,
+    from_s: f64,
+    model_nm: Vec<f64>,
+    hand_nm: Vec<f64>,
+    slowest_rad_s: f64,
+    fastest_rad_s: f64,
+    breaks_s: Vec<f64>,
+    sticks_s: Vec<f64>,
+    last_stick_s: Option<f64>,
+    places: Places,
+}
+
+/// Where a row has what is kept.
+struct Places {
+    omega: usize,
+    model: usize,
+    hand: usize,
+}
+
+/// The study has been stopped.
+#[derive(Debug, thiserror::Error)]
+#[error("ended early")]
+struct Stopped;
+
+struct Ear<'a> {
+    signals: Signals,
+    meter: &'a Meter,
+}
+
+impl Observer for Ear<'_> {
+    type Error = Stopped;
+
+    fn row(&mut self, values: &[f64]) -> Result<(), Stopped> {
+        let s = &mut self.signals;
+        if values[0] >= s.from_s {
+            s.model_nm.push(values[s.places.model]);
+            s.hand_nm.push(values[s.places.hand]);
+            let omega = values[s.places.omega];
+            s.slowest_rad_s = s.slowest_rad_s.min(omega);
+            s.fastest_rad_s = s.fastest_rad_s.max(omega);
+        }
+        Ok(())
+    }
+
+    fn event(&mut self, event: &EventRecord) -> Result<(), Stopped> {
+        let s = &mut self.signals;
+        match event.kind {
+            EventKind::Stick => s.last_stick_s = Some(event.time_s),
+            EventKind::Break if event.time_s >= s.from_s => {
+                s.breaks_s.push(event.time_s);
+                s.sticks_s
+                    .extend(s.last_stick_s.map(|began| event.time_s - began));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn progress(&mut self, _: f64) -> Result<(), Stopped> {
+        if self.meter.is_stopped() {
+            return Err(Stopped);
+        }
+        Ok(())
+    }
+}
+
+impl Signals {
+    /// Runs `scene` and listens.
+    pub(super) fn of(scene: &Scene, meter: &Meter) -> Result<Self, String> {
+        let mut scene = scene.clone();
+        scene.trace_step_s = step_s(&scene);
+        let names: Vec<_> = columns(&scene).iter().map(|c| c.name).collect();
+        let place = |name: &str| names.iter().position(|n| *n == name);
+        let model = place("torque_nm").ok_or("the scene has no joint")?;
+        let mut ear = Ear {
+            signals: Self {
+                tick_s: step_s(&scene),
+                from_s: scene.duration_s / 2.0,
+                model_nm: Vec::new(),
+                hand_nm: Vec::new(),
+                slowest_rad_s: f64::INFINITY,
+                fastest_rad_s: f64::NEG_INFINITY,
+                breaks_s: Vec::new(),
+                sticks_s: Vec::new(),
+                last_stick_s: None,
+                places: Places {
+                    omega: place("omega_rad_s").unwrap_or(2),
+                    model,
+                    hand: place(FELT_COLUMN).unwrap_or(model),
+                },
+            },
+            meter,
+        };
+        let ran = run::run(&scene, &mut ear);
+        meter.did(step_count(&scene));
+        ran.map(|_| ear.signals).map_err(|e| e.to_string())
+    }
+
+    /// The measures.
+    pub(super) fn measure(&self) -> Measured {
+        let (hand, model) = (self.fast(&self.hand_nm), self.fast(&self.model_nm));
+        let (low, high) = extent(&hand);
+        let between: Vec<f64> = self.breaks_s.windows(2).map(|w| w[1] - w[0]).collect();
+        let found = !between.is_empty();
+        let (shortest_s, longest_s) = extent(&between);
+        Measured {
+            ripple_nm: high - low,
+            ripple_rms_nm: mean(hand.iter().map(|x| x * x)).sqrt(),
+            lag_s: self.tick_s * whole(self.lag_ticks(&model, &hand)),
+            stick_s: (!self.sticks_s.is_empty()).then(|| mean(self.sticks_s.iter().copied())),
+            shortest_s: found.then_some(shortest_s),
+            longest_s: found.then_some(longest_s),
+            slowest_rad_s: self.slowest_rad_s,
+            fastest_rad_s: self.fastest_rad_s,
+        }
+    }
+
+    /// The fast parts of both torques over the last `stretch_s`, against time.
+    pub(super) fn last(&self, stretch_s: f64) -> (Points, Points) {
+        let reach = self.ticks(TREND_S);
+        let points = |values: &[f64]| {
+            let fast = self.fast(values);
+            let skipped = fast.len().saturating_sub(self.ticks(stretch_s));
+            let times = (reach..).map(|i| self.from_s + self.tick_s * whole(i));
+            times.zip(fast).skip(skipped).collect()
+        };
+        (points(&self.model_nm), points(&self.hand_nm))
+    }
+
+    fn ticks(&self, stretch_s: f64) -> usize {
+        usize::try_from((stretch_s / self.tick_s).whole()).unwrap_or(0)
+    }
+
+    /// Values less their mean over 0.1 s around, where there is so much around
+    /// them.
+    fn fast(&self, values: &[f64]) -> Vec<f64> {
+        let reach = self.ticks(TREND_S);
+        let window = 2 * reach + 1;
+        let mut sum: f64 = values.iter().take(window).sum();
+        let mut fast = Vec::new();
+        for (i, around) in values.windows(window).enumerate() {
+            if i > 0 {
+                sum += around[window - 1] - values[i - 1];
+            }
+            fast.push(around[reach] - sum / whole(window));
+        }
+        fast
+    }
+
+    /// How many ticks `late` is behind `early`: where they correlate best.
+    fn lag_ticks(&self, early: &[f64], late: &[f64]) -> usize {
+        let most = self.ticks(MOST_LAG_S);
+        let length = early.len().saturating_sub(most).min(LAG_TICKS);
+        let from = early.len().saturating_sub(length + most);
+        let correlation = |lag: usize| -> f64 {
+            early[from..from + length]
+                .iter()
+                .zip(&late[from + lag..])
+                .map(|(a, b)| a * b)
+                .sum()
+        };
+        let last = most.min(early.len().saturating_sub(from + length));
+        let found: Vec<f64> = (0..=last).map(correlation).collect();
+        // A grating repeats itself: the first peak counts that is as good as
+        // the best.
+        let good = GOOD_PEAK * found.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let at = |lag: usize| found.get(lag).copied().unwrap_or(f64::NEG_INFINITY);
+        (0..=last)
+            .find(|&lag| at(lag) >= good && at(lag) >= at(lag + 1))
+            .unwrap_or(0)
+    }
+}
+
+/// Points of a line.
+type Points = Vec<(f64, f64)>;
+
+fn whole(n: usize) -> f64 {
+    f64::from_whole(u64::try_from(n).unwrap_or(u64::MAX))
+}
+
+fn extent(values: &[f64]) -> (f64, f64) {
+    values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
+            (low.min(x), high.max(x))
+        })
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, n) = values.fold((0.0, 0), |(sum, n), x| (sum + x, n + 1));
+    sum / whole(n)
+}

@@ -1,0 +1,142 @@
+//! Work on all cores, watched from one thread.
+
+use crate::watcher::Watcher;
+use crepitus_model::Real;
+use std::num::NonZero;
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+/// How often the watcher is asked while nothing ends.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// How much is done, and whether it goes on.
+#[derive(Debug)]
+pub(super) struct Meter {
+    total: f64,
+    done: AtomicU64,
+    stopped: AtomicBool,
+}
+
+impl Meter {
+    /// Of so much work.
+    pub(super) fn new(total: f64) -> Self {
+        Self {
+            total: total.max(1.0),
+            done: AtomicU64::new(0),
+            stopped: AtomicBool::new(false),
+        }
+    }
+
+    /// So much more is done.
+    pub(super) fn did(&self, amount: u64) {
+        self.done.fetch_add(amount, Ordering::Relaxed);
+    }
+
+    /// Whether the watcher has ended it all.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
+    /// Tells the watcher how far it is.
+    pub(super) fn tell<W: Watcher>(&self, watcher: &mut W) -> Result<(), W::Error> {
+        let done = f64::from_whole(self.done.load(Ordering::Relaxed));
+        watcher
+            .progress((done / self.total).min(1.0))
+            .inspect_err(|_| self.stopped.store(true, Ordering::Relaxed))
+    }
+}
+
+/// `work` on each of `items`, on as many cores as there are; results in the
+/// order of the items.
+pub(super) fn each<T: Sync, R: Send, W: Watcher>(
+    items: &[T],
+    meter: &Meter,
+    watcher: &mut W,
+    work: impl Fn(&T) -> R + Sync,
+) -> Result<Vec<R>, W::Error> {
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    let next = AtomicUsize::new(0);
+    thread::scope(|scope| {
+        let (sender, receiver) = mpsc::channel();
+        for _ in 0..cores.min(items.len()) {
+            let (sender, next, work) = (sender.clone(), &next, &work);
+            scope.spawn(move || {
+                loop {
+                    let place = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(item) = items.get(place) else { break };
+                    if meter.is_stopped() || sender.send((place, work(item))).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        let mut results: Vec<(usize, R)> = Vec::with_capacity(items.len());
+        let mut told = Ok(());
+        loop {
+            match receiver.recv_timeout(LOOK) {
+                Ok(result) => results.push(result),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+            if told.is_ok() {
+                told = meter.tell(watcher);
+            }
+        }
+        told?;
+        results.sort_by_key(|(place, _)| *place);
+        Ok(results.into_iter().map(|(_, result)| result).collect())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Patience(u32);
+
+    impl Watcher for Patience {
+        type Error = ();
+
+        fn progress(&mut self, fraction: f64) -> Result<(), ()> {
+            assert!((0.0..=1.0).contains(&fraction));
+            self.0 = self.0.checked_sub(1).ok_or(())?;
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn results_stand_in_the_order_of_the_items() {
+        let items: Vec<u64> = (0..100).collect();
+        let meter = Meter::new(100.0);
+        let squares = each(&items, &meter, &mut Patience(u32::MAX), |x| {
+            thread::sleep(Duration::from_micros(u64::from(x % 3 == 0) * 200));
+            meter.did(1);
+            x * x
+        })
+        .unwrap();
+        assert_eq!(squares, items.iter().map(|x| x * x).collect::<Vec<_>>());
+        assert_eq!(meter.done.into_inner(), 100);
+        let none: Vec<u64> = Vec::new();
+        let meter = Meter::new(0.0);
+        assert_eq!(
+            each(&none, &meter, &mut Patience(1), |x| *x),
+            Ok(Vec::new())
+        );
+    }
+
+    #[test]
+    fn a_watcher_ends_it() {
+        let items: Vec<u64> = (0..1000).collect();
+        let meter = Meter::new(1000.0);
+        let done = AtomicU64::new(0);
+        let ended = each(&items, &meter, &mut Patience(5), |_| {
+            thread::sleep(Duration::from_millis(1));
+            done.fetch_add(1, Ordering::Relaxed);
+        });
+        assert_eq!(ended, Err(()));
+        assert!(meter.is_stopped() && done.into_inner() < 1000);
+    }
+}

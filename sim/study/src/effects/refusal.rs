@@ -1,0 +1,87 @@
+//! Scenes that cannot be studied.
+
+use crepitus_scene::Scene;
+use crepitus_scene::run::step_count;
+use crepitus_scene::scene::SolverChoice;
+use std::fmt;
+
+/// The most ticks of a scene: the torque at each is kept, 8 bytes a tick.
+pub const MOST_TICKS: u64 = 40_000_000;
+
+/// Why a scene cannot be studied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// Nobody holds the leg.
+    Released,
+    /// Its solver has no step.
+    Reference,
+    /// It has too many ticks.
+    TooLong {
+        /// How many.
+        ticks: u64,
+    },
+}
+
+impl Refusal {
+    /// The key of the scene that is in the way.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Released => "motion.kind",
+            Self::Reference => "solver.kind",
+            Self::TooLong { .. } => "duration_s",
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Released => f.write_str(
+                "\"released\" means that nobody holds the leg: there is no torque at the hand to compare",
+            ),
+            Self::Reference => f.write_str(
+                "\"reference\" has no step, so its cost has no measure, and it knows the stick-slip object alone: \
+                 choose another solver",
+            ),
+            Self::TooLong { ticks } => write!(
+                f,
+                "the scene has {ticks} ticks, and the torque of each is kept for the comparison: up to {MOST_TICKS} \
+                 are allowed; a shorter scene shows as much"
+            ),
+        }
+    }
+}
+
+/// Why a scene cannot be studied, if it cannot.
+pub fn refusal(scene: &Scene) -> Option<Refusal> {
+    let ticks = step_count(scene);
+    if scene.solver == SolverChoice::Reference {
+        Some(Refusal::Reference)
+    } else if !scene.is_held() {
+        Some(Refusal::Released)
+    } else if ticks > MOST_TICKS {
+        Some(Refusal::TooLong { ticks })
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::study::tests::scene;
+    use super::*;
+
+    #[test]
+    fn what_has_no_hand_no_step_or_no_end_is_refused_with_its_key() {
+        let mut long = scene(&["crepitus"], 1.0);
+        assert_eq!(refusal(&long), None);
+        long.duration_s = 2500.0;
+        let refused = refusal(&long).unwrap();
+        assert_eq!(refused, Refusal::TooLong { ticks: 50_000_000 });
+        assert!(refused.to_string().contains("50000000 ticks"));
+        assert_eq!(refused.key(), "duration_s");
+        long.solver = SolverChoice::Reference;
+        assert_eq!(refusal(&long), Some(Refusal::Reference));
+    }
+}

@@ -1,0 +1,327 @@
+//! The whole study: the scene, its variants, their times, the answer.
+
+use super::answer::{Answer, Question, answer, set_count};
+use super::build_up::build_up;
+use super::hand::{Ended, events, feel, ticks};
+use super::influence::{Listener, Size};
+use super::parallel::{Meter, each};
+use super::refusal::{Refusal, refusal};
+use super::results::{Added, EffectsStudy, Outcome, Ran, Row};
+use super::tolerance::Tolerance;
+use super::variant::{Change, Variant, states, variants};
+use super::window::{Candidate, Profile, SHOWN, story};
+use crate::watcher::Watcher;
+use crepitus_model::Real;
+use crepitus_scene::Scene;
+use crepitus_scene::run::{StepTime, step_count, step_s, step_times};
+use std::time::Instant;
+
+/// Timings of which the fastest counts: enough that a busy machine is quiet
+/// in one of them.
+pub(super) const TIMINGS: u32 = 25;
+
+/// What to study.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The scene.
+    pub scene: Scene,
+    /// How far its torque may change, if the smallest set is wanted.
+    pub tolerance: Option<Tolerance>,
+}
+
+/// Why a study has no result.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EffectsError<E> {
+    /// The watcher ended it.
+    #[error("ended early")]
+    Watcher(E),
+    /// The scene cannot be studied.
+    #[error("{0}")]
+    Refused(Refusal),
+    /// The scene itself does not run.
+    #[error("{0}")]
+    Scene(String),
+}
+
+/// The scene's torque at the hand and its events.
+pub(super) struct Felt {
+    pub(super) signal: Vec<f64>,
+    pub(super) events: u64,
+}
+
+/// Carries out a plan.
+///
+/// # Errors
+/// What the watcher returns, or why the scene cannot be studied. A variant
+/// that fails is a row that says why.
+pub fn run<W: Watcher>(
+    plan: &Plan,
+    watcher: &mut W,
+) -> Result<EffectsStudy, EffectsError<W::Error>> {
+    let begun = Instant::now();
+    let scene = &plan.scene;
+    if let Some(refusal) = refusal(scene) {
+        return Err(EffectsError::Refused(refusal));
+    }
+    let variants = variants(scene);
+    let meter = Meter::new(work(plan, variants.len()));
+    let (whole, own, warnings) = whole(scene, &meter, watcher)?;
+    let heard = each(&variants, &meter, watcher, |variant| {
+        hear(variant, &whole, &meter)
+    })
+    .map_err(EffectsError::Watcher)?;
+    let (scene_time, times) =
+        times(scene, &variants, &meter, watcher).map_err(EffectsError::Watcher)?;
+    let mut rows = vec![Row {
+        change: Change::Scene,
+        effect: "",
+        along: Vec::new(),
+        states: states(scene),
+        ns_per_step: scene_time.ns,
+        time_spread: scene_time.spread,
+        outcome: Outcome::Ran(own),
+    }];
+    for ((variant, heard), time) in variants.iter().zip(&heard).zip(times) {
+        rows.push(row(variant, heard, time, &whole, &rows[0]));
+    }
+    let answer = find(plan, &whole, &meter, watcher).map_err(EffectsError::Watcher)?;
+    let candidates = candidates(&variants, &heard, &rows[1..]);
+    let story = story(&whole, scene, candidates, &meter, watcher).map_err(EffectsError::Watcher)?;
+    let built = build_up(scene, &meter, watcher).map_err(EffectsError::Watcher)?;
+    let (build_up, build_up_story) =
+        built.map_or_else(Default::default, |b| (b.rungs, Some(b.story)));
+    Ok(EffectsStudy {
+        scene: scene.file.display().to_string(),
+        title: scene.title.clone(),
+        effects: scene.effects().iter().map(|e| e.name).collect(),
+        tick_s: step_s(scene),
+        ticks: step_count(scene),
+        warnings,
+        rows,
+        timings: TIMINGS,
+        answer,
+        build_up,
+        build_up_story,
+        wall_s: begun.elapsed().as_secs_f64(),
+        story,
+    })
+}
+
+/// All work, in ticks. Of the sets of effects a search may try few.
+fn work(plan: &Plan, variants: usize) -> f64 {
+    let sets = if plan.tolerance.is_some() {
+        set_count(&plan.scene) + plan.scene.effects().len()
+    } else {
+        0
+    };
+    let runs = 1 + variants + sets + SHOWN + super::build_up::runs(&plan.scene);
+    ticks(&plan.scene) * f64::from_whole(u64::try_from(runs).unwrap_or(u64::MAX))
+}
+
+/// The scene's own run.
+fn whole<W: Watcher>(
+    scene: &Scene,
+    meter: &Meter,
+    watcher: &mut W,
+) -> Result<(Felt, Ran, Vec<String>), EffectsError<W::Error>> {
+    let felt = each(std::slice::from_ref(scene), meter, watcher, |scene| {
+        let count = step_count(scene);
+        let mut signal = Vec::with_capacity(usize::try_from(count).unwrap_or(0));
+        let mut listener = Listener::new(step_s(scene), count);
+        let summary = feel(scene, meter, |torque_nm| {
+            signal.push(torque_nm);
+            listener.push(torque_nm);
+            true
+        })?;
+        Ok((signal, listener.finish(), summary))
+    })
+    .map_err(EffectsError::Watcher)?;
+    match felt.into_iter().next() {
+        Some(Ok((signal, torque, summary))) => {
+            let events = events(&summary);
+            let ran = Ran {
+                torque,
+                events,
+                added: None,
+            };
+            Ok((Felt { signal, events }, ran, summary.warnings))
+        }
+        Some(Err(Ended::Failed(why))) => Err(EffectsError::Scene(why)),
+        _ => Err(EffectsError::Scene("the run ended early".to_owned())),
+    }
+}
+
+/// A variant that ran.
+struct Heard {
+    ran: Ran,
+    difference: Size,
+    profile: Profile,
+}
+
+fn hear(variant: &Variant, whole: &Felt, meter: &Meter) -> Result<Heard, String> {
+    let Some(scene) = &variant.scene else {
+        return Err(match variant.change {
+            Change::With => "the scene's motion, solver or step does not allow it".to_owned(),
+            _ => "the scene's motion needs it".to_owned(),
+        });
+    };
+    let count = step_count(scene);
+    let mut listener = Listener::new(step_s(scene), count);
+    let mut difference = Size::default();
+    let mut profile = Profile::new(count);
+    let mut own = whole.signal.iter();
+    let summary = feel(scene, meter, |torque_nm| {
+        let apart = torque_nm - own.next().copied().unwrap_or(f64::NAN);
+        listener.push(torque_nm);
+        difference.push(apart);
+        profile.push(apart);
+        true
+    })
+    .map_err(|ended| ended.to_string())?;
+    Ok(Heard {
+        ran: Ran {
+            torque: listener.finish(),
+            events: events(&summary),
+            added: None,
+        },
+        difference,
+        profile,
+    })
+}
+
+/// The time of a step that nobody knows.
+const UNKNOWN: StepTime = StepTime {
+    ns: f64::NAN,
+    spread: f64::NAN,
+};
+
+/// The times of the scene and of its variants; unknown for one that there is
+/// not.
+fn times<W: Watcher>(
+    scene: &Scene,
+    variants: &[Variant],
+    meter: &Meter,
+    watcher: &mut W,
+) -> Result<(StepTime, Vec<StepTime>), W::Error> {
+    let mut scenes = vec![scene.clone()];
+    scenes.extend(variants.iter().filter_map(|v| v.scene.clone()));
+    let mut times = step_times(&scenes, TIMINGS, || meter.tell(watcher))?.into_iter();
+    let scene = times.next().unwrap_or(UNKNOWN);
+    let variants = variants
+        .iter()
+        .map(|v| v.scene.as_ref().and_then(|_| times.next()))
+        .map(|time| time.unwrap_or(UNKNOWN))
+        .collect();
+    Ok((scene, variants))
+}
+
+fn row(
+    variant: &Variant,
+    heard: &Result<Heard, String>,
+    time: StepTime,
+    whole: &Felt,
+    scene: &Row,
+) -> Row {
+    let time = if heard.is_ok() { time } else { UNKNOWN };
+    let states = variant.scene.as_ref().map_or(0, states);
+    // With the effect less without it.
+    let (sign, factor) = if variant.change == Change::With {
+        (1, 1.0)
+    } else {
+        (-1, -1.0)
+    };
+    let outcome = match heard {
+        Ok(heard) => Outcome::Ran(Ran {
+            added: Some(Added {
+                rms_nm: heard.difference.rms(),
+                peak_nm: heard.difference.peak,
+                events: sign * signed(heard.ran.events, whole.events),
+                states: sign * signed(count(states), count(scene.states)),
+                ns_per_step: factor * (time.ns - scene.ns_per_step),
+            }),
+            ..heard.ran
+        }),
+        Err(failure) => Outcome::Failed {
+            failure: failure.clone(),
+        },
+    };
+    Row {
+        change: variant.change,
+        effect: variant.effect,
+        along: variant.along.clone(),
+        states,
+        ns_per_step: time.ns,
+        time_spread: time.spread,
+        outcome,
+    }
+}
+
+fn count(n: usize) -> u64 {
+    u64::try_from(n).unwrap_or(u64::MAX)
+}
+
+/// `a` − `b`.
+fn signed(a: u64, b: u64) -> i64 {
+    let size = i64::try_from(a.abs_diff(b)).unwrap_or(i64::MAX);
+    if a < b { -size } else { size }
+}
+
+fn find<W: Watcher>(
+    plan: &Plan,
+    whole: &Felt,
+    meter: &Meter,
+    watcher: &mut W,
+) -> Result<Option<Answer>, W::Error> {
+    match &plan.tolerance {
+        None => Ok(None),
+        Some(tolerance) => answer(
+            &Question {
+                scene: &plan.scene,
+                whole,
+                tolerance,
+            },
+            meter,
+            watcher,
+        ),
+    }
+}
+
+fn candidates<'a>(
+    variants: &'a [Variant],
+    heard: &'a [Result<Heard, String>],
+    rows: &[Row],
+) -> Vec<Candidate<'a>> {
+    variants
+        .iter()
+        .zip(heard)
+        .zip(rows)
+        .filter_map(|((variant, heard), row)| {
+            let heard = heard.as_ref().ok()?;
+            Some(Candidate {
+                scene: variant.scene.as_ref()?,
+                change: variant.change,
+                name: row.name(),
+                rms_nm: heard.difference.rms(),
+                profile: &heard.profile,
+            })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crepitus_scene::Overrides;
+    use std::path::Path;
+
+    /// A scene of strokes with these effects at their defaults.
+    pub(in super::super) fn scene(effects: &[&str], duration_s: f64) -> Scene {
+        let mut text = format!(
+            "version = 1\ntitle = \"small\"\nduration_s = {duration_s:?}\n[motion]\nkind = \"sine\"\n\
+             amplitude_deg = 20\nfrequency_hz = 0.7\n[solver]\nkind = \"exact-events\"\nstep_s = 5e-5\n"
+        );
+        text.extend(effects.iter().map(|e| format!("[effects.{e}]\n")));
+        Scene::parse(Path::new("small.toml"), &text, &Overrides::default()).unwrap()
+    }
+}

@@ -1,0 +1,123 @@
+//! A tolerance: how far the torque at the hand, and the events, may be from
+//! those of the whole scene, written `torque=5e-3,events=0.01`.
+
+use super::influence::Difference;
+use crate::limits::{self, Limited};
+use serde::Serialize;
+
+/// Limits that what is left of a scene has to keep.
+pub type Tolerance = limits::Limits<Criterion>;
+
+/// One of them.
+pub type Limit = limits::Limit<Criterion>;
+
+/// What can be limited.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Criterion {
+    /// Root mean square of the torque's difference.
+    Torque,
+    /// Its largest magnitude.
+    Peak,
+    /// Relative difference of the numbers of events.
+    Events,
+}
+
+impl Limited for Criterion {
+    const ALL: &'static [Self] = &[Self::Torque, Self::Peak, Self::Events];
+    const LIMITS: &'static str = "tolerance";
+    const EXAMPLE: &'static str = "torque=5e-3,events=0.01";
+
+    fn key(self) -> &'static str {
+        match self {
+            Self::Torque => "torque",
+            Self::Peak => "peak",
+            Self::Events => "events",
+        }
+    }
+
+    fn meaning(self) -> &'static str {
+        match self {
+            Self::Torque => "rms difference of the torque at the hand",
+            Self::Peak => "largest difference of the torque at the hand",
+            Self::Events => "relative difference of the number of events",
+        }
+    }
+
+    fn unit(self) -> &'static str {
+        match self {
+            Self::Torque | Self::Peak => "N·m",
+            Self::Events => "",
+        }
+    }
+}
+
+impl Criterion {
+    /// Its value in a difference.
+    pub fn of(self, difference: &Difference) -> f64 {
+        match self {
+            Self::Torque => difference.rms_nm,
+            Self::Peak => difference.peak_nm,
+            Self::Events => difference.events_relative,
+        }
+    }
+}
+
+impl Tolerance {
+    /// Whether a difference keeps every limit.
+    pub fn holds(&self, difference: &Difference) -> bool {
+        self.limits()
+            .iter()
+            .all(|limit| limit.criterion.of(difference) <= limit.at_most)
+    }
+
+    /// The limit of a criterion; infinite if there is none.
+    pub fn at_most(&self, criterion: Criterion) -> f64 {
+        self.limits()
+            .iter()
+            .find(|limit| limit.criterion == criterion)
+            .map_or(f64::INFINITY, |limit| limit.at_most)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_are_read_and_held() {
+        let tolerance: Tolerance = "torque=5e-3, events=0.1".parse().unwrap();
+        let difference = Difference {
+            rms_nm: 5e-3,
+            peak_nm: 9.0,
+            events_relative: 0.1,
+        };
+        assert!(tolerance.holds(&difference));
+        assert!(!tolerance.holds(&Difference {
+            events_relative: f64::INFINITY,
+            ..difference
+        }));
+        assert!(!tolerance.holds(&Difference {
+            rms_nm: f64::NAN,
+            ..difference
+        }));
+        assert_eq!(tolerance.at_most(Criterion::Peak), f64::INFINITY);
+    }
+
+    #[test]
+    fn bad_tolerances_are_refused_with_what_is_allowed() {
+        for (text, part) in [
+            ("", "the tolerance is empty"),
+            (
+                "speed=1",
+                "peak (largest difference of the torque at the hand, N·m)",
+            ),
+            ("torque=0", "above 0, in N·m"),
+            ("events=-1", "must be a number above 0"),
+            ("torque", "torque=5e-3,events=0.01"),
+        ] {
+            let error = text.parse::<Tolerance>().unwrap_err().to_string();
+            assert!(error.contains(part), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! The variants of a scene: each effect left out, each absent one added.
+
+use crepitus_plant::effect::Effect;
+use crepitus_plant::effects::EFFECTS;
+use crepitus_scene::Scene;
+use serde::Serialize;
+
+/// How a variant differs from the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Change {
+    /// It is the scene.
+    Scene,
+    /// An effect is left out.
+    Without,
+    /// An effect is added, at its defaults.
+    With,
+}
+
+impl Change {
+    /// Name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Scene => "scene",
+            Self::Without => "without",
+            Self::With => "with",
+        }
+    }
+}
+
+/// A variant of a scene.
+#[derive(Clone, Debug)]
+pub struct Variant {
+    /// What is done to the scene.
+    pub change: Change,
+    /// With which effect.
+    pub effect: &'static str,
+    /// Effects that leave with it because they need it, or come with it
+    /// because it needs them.
+    pub along: Vec<&'static str>,
+    /// What comes of it; none if the scene does not allow it.
+    pub scene: Option<Scene>,
+}
+
+/// All variants of a scene: first what it has and can be left out, then what
+/// it has not and can be added, each in the order of the table.
+pub fn variants(scene: &Scene) -> Vec<Variant> {
+    let present = scene.effects().into_iter().map(|effect| {
+        let left = scene.without(effect);
+        Variant {
+            change: Change::Without,
+            effect: effect.name,
+            along: left
+                .as_ref()
+                .map_or_else(Vec::new, |left| more(scene, left, effect)),
+            scene: left,
+        }
+    });
+    let absent = EFFECTS.iter().filter(|e| !scene.has(e.name)).map(|effect| {
+        let grown = scene.with(effect);
+        Variant {
+            change: Change::With,
+            effect: effect.name,
+            along: grown
+                .as_ref()
+                .map_or_else(Vec::new, |grown| more(grown, scene, effect)),
+            scene: grown,
+        }
+    });
+    present.chain(absent).collect()
+}
+
+/// Effects of `large` that `small` has not, but for `effect`.
+fn more(large: &Scene, small: &Scene, effect: &Effect) -> Vec<&'static str> {
+    large
+        .effects()
+        .into_iter()
+        .map(|e| e.name)
+        .filter(|name| *name != effect.name && !small.has(name))
+        .collect()
+}
+
+/// State variables of a scene; one that two effects share counts once.
+pub fn states(scene: &Scene) -> usize {
+    let mut names: Vec<_> = scene.effects().into_iter().flat_map(|e| e.states).collect();
+    names.sort_unstable();
+    names.dedup();
+    names.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::study::tests::scene;
+    use super::*;
+
+    fn told(effects: &[&str]) -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
+        variants(&scene(effects, 0.1))
+            .into_iter()
+            .map(|v| (v.change.name(), v.effect, v.along))
+            .collect()
+    }
+
+    #[test]
+    fn what_needs_an_effect_leaves_with_it_and_what_it_needs_comes_with_it() {
+        let told = told(&["crepitus", "drivetrain", "friction-compensation"]);
+        assert_eq!(told.len(), EFFECTS.len());
+        assert_eq!(
+            told[..4],
+            [
+                ("without", "crepitus", vec![]),
+                ("without", "drivetrain", vec!["friction-compensation"]),
+                ("without", "friction-compensation", vec![]),
+                ("with", "encoder", vec![]),
+            ]
+        );
+        let alone = self::told(&[]);
+        assert!(alone.contains(&("with", "backlash", vec!["drivetrain"])));
+        assert!(alone.contains(&("with", "bone-shaping", vec!["crepitus"])));
+    }
+
+    #[test]
+    fn a_shared_state_counts_once() {
+        let (limb, hand) = (
+            states(&scene(&["limb"], 0.1)),
+            states(&scene(&["hand"], 0.1)),
+        );
+        assert_eq!((limb, hand), (2, 2));
+        assert_eq!(states(&scene(&["limb", "hand"], 0.1)), 2);
+        assert_eq!(states(&scene(&[], 0.1)), 0);
+    }
+}

@@ -1,0 +1,206 @@
+//! The torque at the hand in a short window, where the variants that differ
+//! most differ most: of each with and without its effect.
+
+mod panel;
+mod profile;
+mod trend;
+
+pub(super) use profile::Profile;
+
+use super::hand::feel;
+use super::parallel::{Meter, each};
+use super::study::Felt;
+use super::variant::Change;
+use crate::stability::story::{Panel, Scale, Series, Story};
+use crate::watcher::Watcher;
+use crepitus_model::Real;
+use crepitus_scene::Scene;
+use crepitus_scene::run::step_s;
+use panel::panel;
+use trend::Trend;
+
+/// The most variants that are shown.
+pub(super) const SHOWN: usize = 5;
+
+/// A window shows about this many events of the scene.
+const EVENTS: f64 = 12.0;
+
+/// One part in so many of a window is before the stretch that decides on it.
+const LEAD: usize = 8;
+
+/// Lengths of a window, s.
+const SHORTEST_S: f64 = 0.05;
+const LONGEST_S: f64 = 0.5;
+
+/// A variant that may be shown.
+pub(super) struct Candidate<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) change: Change,
+    pub(super) name: String,
+    pub(super) rms_nm: f64,
+    pub(super) profile: &'a Profile,
+}
+
+/// The story of those that differ most; none if none differs.
+pub(super) fn story<W: Watcher>(
+    whole: &Felt,
+    scene: &Scene,
+    mut candidates: Vec<Candidate<'_>>,
+    meter: &Meter,
+    watcher: &mut W,
+) -> Result<Option<Story>, W::Error> {
+    candidates.retain(|c| c.rms_nm > 0.0);
+    candidates.sort_by(|a, b| b.rms_nm.total_cmp(&a.rms_nm));
+    candidates.truncate(SHOWN);
+    let tick_s = step_s(scene);
+    let (from, to) = window(whole, &candidates, tick_s);
+    if candidates.is_empty() || to < from + 2 {
+        return Ok(None);
+    }
+    let time_s = |tick: usize| tick_s * f64::from_whole(u64::try_from(tick + 1).unwrap_or(0));
+    let heard = each(&candidates, meter, watcher, |candidate| {
+        let mut short = candidate.scene.clone();
+        short.duration_s = time_s(to - 1);
+        let mut signal = Vec::with_capacity(to - from);
+        let mut tick = 0;
+        // It has just run; where it now ends early, so does its line.
+        let _ = feel(&short, meter, |torque_nm| {
+            if tick >= from {
+                signal.push(torque_nm);
+            }
+            tick += 1;
+            tick < to
+        });
+        signal
+    })?;
+    let own = whole.signal.get(from..to).unwrap_or_default();
+    let trend = Trend::of(own);
+    let points = |signal: &[f64]| {
+        let times = (from..).map(time_s);
+        let torques = signal.iter().enumerate().map(|(i, nm)| nm - trend.at(i));
+        times.zip(torques).collect::<Vec<_>>()
+    };
+    let panels = candidates
+        .iter()
+        .zip(heard)
+        .map(|(candidate, signal)| {
+            let name = match candidate.change {
+                Change::With => WITH,
+                Change::Scene | Change::Without => WITHOUT,
+            };
+            Panel {
+                x: Scale::linear("Time (s)").within(time_s(from), time_s(to - 1)),
+                series: vec![
+                    Series::line("the scene", points(own)),
+                    Series::line(name, points(&signal)),
+                ],
+                ..panel(&candidate.name, &trend, own, &signal)
+            }
+        })
+        .collect();
+    Ok(Some(Story {
+        name: "hand-torque",
+        title: "What the hand feels, with and without",
+        caption: format!(
+            "The torque at the hand of the scene, and of the {} that change it most, from {:.3} to {:.3} s: \
+             where, taken together, they change it most. Each panel has its own scale.{}",
+            match candidates.len() {
+                1 => "variant".to_owned(),
+                n => format!("{n} variants"),
+            },
+            time_s(from),
+            time_s(to - 1),
+            if trend.matters {
+                " The slow course of the scene's torque, a parabola, is taken from both lines: beside the weight of a \
+                 leg nothing else would be seen."
+            } else {
+                ""
+            },
+        ),
+        panels,
+    }))
+}
+
+const WITHOUT: &str = "with the effect left out";
+const WITH: &str = "with the effect added";
+
+/// The ticks of the window, from its first up to its last.
+fn window(whole: &Felt, candidates: &[Candidate<'_>], tick_s: f64) -> (usize, usize) {
+    let ticks = whole.signal.len();
+    let all_s = tick_s * f64::from_whole(u64::try_from(ticks).unwrap_or(0));
+    let length_s = if whole.events > 0 {
+        (EVENTS * all_s / f64::from_whole(whole.events)).clamp(SHORTEST_S, LONGEST_S)
+    } else {
+        LONGEST_S
+    };
+    let length = usize::try_from((length_s / tick_s).whole())
+        .unwrap_or(usize::MAX)
+        .clamp(2, ticks.max(2));
+    let Some(first) = candidates.first() else {
+        return (0, 0);
+    };
+    let per_bin = usize::try_from(first.profile.ticks_per_bin).unwrap_or(usize::MAX);
+    let shares = shares(candidates);
+    let lead = length / LEAD;
+    let bins = ((length - lead) / per_bin).clamp(1, shares.len().max(1));
+    let mut best = (0, f64::NEG_INFINITY);
+    for (start, part) in shares.windows(bins).enumerate() {
+        let sum: f64 = part.iter().sum();
+        if sum > best.1 {
+            best = (start, sum);
+        }
+    }
+    // With a little of what comes before.
+    let from = (best.0 * per_bin).saturating_sub(lead);
+    let from = from.min(ticks.saturating_sub(length));
+    (from, (from + length).min(ticks))
+}
+
+/// For each bin the sum of the shares that each difference has there.
+fn shares(candidates: &[Candidate<'_>]) -> Vec<f64> {
+    let mut shares: Vec<f64> = Vec::new();
+    for candidate in candidates {
+        let bins = &candidate.profile.bins;
+        let all: f64 = bins.iter().sum();
+        shares.resize(shares.len().max(bins.len()), 0.0);
+        for (share, bin) in shares.iter_mut().zip(bins) {
+            *share += bin / all;
+        }
+    }
+    shares
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_is_where_the_difference_is() {
+        let mut profile = Profile::new(40_000);
+        for n in 0..40_000 {
+            profile.push(if (25_000..25_100).contains(&n) {
+                1.0
+            } else {
+                1e-3
+            });
+        }
+        assert!(profile.bins.len() <= 4096);
+        let scene = super::super::study::tests::scene(&["crepitus"], 2.0);
+        let whole = Felt {
+            signal: vec![0.0; 40_000],
+            events: 240,
+        };
+        let candidate = Candidate {
+            scene: &scene,
+            change: Change::Without,
+            name: String::new(),
+            rms_nm: 1.0,
+            profile: &profile,
+        };
+        let (from, to) = window(&whole, &[candidate], 5e-5);
+        // Twelve events are 0.1 s.
+        assert!((1980..=2000).contains(&(to - from)), "{from} {to}");
+        assert!(from <= 25_000 && to >= 25_100, "{from} {to}");
+        assert_eq!(window(&whole, &[], 5e-5), (0, 0));
+    }
+}

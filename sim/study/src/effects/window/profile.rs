@@ -1,0 +1,33 @@
+//! When a difference is, in bounded memory.
+
+/// Bins of a profile.
+const BINS: u64 = 4096;
+
+/// Where in time a difference is: its magnitude, in bins of equal length.
+#[derive(Clone, Debug)]
+pub(in crate::effects) struct Profile {
+    pub(super) ticks_per_bin: u64,
+    count: u64,
+    pub(super) bins: Vec<f64>,
+}
+
+impl Profile {
+    /// Of so many ticks.
+    pub(in crate::effects) fn new(ticks: u64) -> Self {
+        Self {
+            ticks_per_bin: ticks.div_ceil(BINS).max(1),
+            count: 0,
+            bins: Vec::new(),
+        }
+    }
+
+    pub(in crate::effects) fn push(&mut self, difference: f64) {
+        if self.count.is_multiple_of(self.ticks_per_bin) {
+            self.bins.push(0.0);
+        }
+        self.count += 1;
+        if let Some(bin) = self.bins.last_mut() {
+            *bin += difference.abs();
+        }
+    }
+}
