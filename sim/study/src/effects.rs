@@ -17,12 +17,12 @@
 //! |---|---|
 //! | which scenes cannot be studied | [`mod@refusal`] |
 //! | which variants a scene has | [`variant`] |
-//! | a run as the hand feels it | [`hand`] |
+//! | a run as the hand feels it | `hand` |
 //! | RMS, peak, bands, differences | [`influence`] |
 //! | the whole study, its results, their file | [`study`], [`results`], [`effects_csv`] |
-//! | limits, and the smallest set of effects within | [`tolerance`], [`smallest`], [`mod@answer`] |
-//! | the stretch of time that the report shows | [`window`] |
-//! | runs on all cores | [`parallel`] |
+//! | limits, and the smallest set of effects within | [`tolerance`], `smallest`, [`mod@answer`] |
+//! | the stretch of time that the report shows | `window` |
+//! | runs on all cores | `parallel` |
 
 pub mod answer;
 pub mod build_up;
