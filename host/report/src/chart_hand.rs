@@ -77,7 +77,7 @@ fn caption(plant: &Plant, has_fast: bool) -> String {
     };
     let whole = format!(
         "The torque about the knee that a force sensor between hand and leg shows, {}; positive \
-         torque opposes flexion. All that the scene has is in it: model, motor, gear, cuff, leg.",
+         torque opposes flexion. What the scene has of model, motor, gear, cuff and leg is in it.",
         range(&plant.hand)
     );
     let fast = if has_fast {
