@@ -1,0 +1,2 @@
+//! Talks to a device.
+#![forbid(unsafe_code)]

@@ -1,0 +1,3 @@
+//! Every message on both wires.
+#![no_std]
+#![forbid(unsafe_code)]

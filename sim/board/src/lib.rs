@@ -1,0 +1,2 @@
+//! The two devices with a simulated leg.
+#![forbid(unsafe_code)]

@@ -1,0 +1,2 @@
+//! A software USB bus.
+#![forbid(unsafe_code)]
