@@ -33,6 +33,7 @@
 //! | counts of the motor encoder to angle and speed | [`encoder`] |
 //! | what the drive adds to that torque: part of the gear's friction, the ringing of a bone | [`friction_compensation`], [`bone_shaping`] |
 //! | how the motor's current follows | [`current_loop`] |
+//! | what a device never does | [`device_limits`] |
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(
@@ -61,6 +62,7 @@ pub mod active;
 pub mod bone_shaping;
 pub mod compensated;
 pub mod current_loop;
+pub mod device_limits;
 pub mod encoder;
 pub mod energy_observer;
 mod event;

@@ -1,0 +1,271 @@
+//! Bytes to messages, one byte at a time.
+//!
+//! Whatever has come before, the first whole frame after a delimiter is
+//! received: a decoder that loses its place counts what it throws away and
+//! finds its place at the next zero byte.
+
+use crate::frame::{CRC, CRC_BYTES, DELIMITER, FRAME_BYTES};
+use crate::lane::Lane;
+use serde::Deserialize;
+
+/// Why the bytes between two delimiters are no message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum FrameError {
+    /// More bytes than any frame has.
+    Overlong,
+    /// No COBS, or too short for lane, tag and checksum.
+    Malformed,
+    /// The checksum is another.
+    Checksum,
+}
+
+/// A frame whose checksum is right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Body<'a> {
+    /// The lane's byte.
+    pub lane: u8,
+    /// The tag.
+    pub tag: u8,
+    /// The message's bytes.
+    pub payload: &'a [u8],
+}
+
+impl<'a> Body<'a> {
+    /// The lane, if this side knows it and gives it the same tag.
+    pub fn lane(&self) -> Option<Lane> {
+        Lane::of(self.lane).filter(|lane| lane.tag() == self.tag)
+    }
+
+    /// The message, if these bytes are one and nothing follows it.
+    pub fn message<T: Deserialize<'a>>(&self) -> Option<T> {
+        match postcard::take_from_bytes(self.payload) {
+            Ok((message, [])) => Some(message),
+            _ => None,
+        }
+    }
+}
+
+/// What a decoder has thrown away so far; counters wrap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Discarded {
+    /// Frames that were too long.
+    pub overlong: u32,
+    /// Frames that were none.
+    pub malformed: u32,
+    /// Frames with a wrong checksum.
+    pub checksum: u32,
+}
+
+impl Discarded {
+    /// All of them.
+    pub fn total(&self) -> u32 {
+        self.overlong
+            .wrapping_add(self.malformed)
+            .wrapping_add(self.checksum)
+    }
+}
+
+/// Takes bytes and gives frames.
+#[derive(Clone, Debug)]
+pub struct Decoder {
+    buffer: [u8; FRAME_BYTES],
+    /// Bytes since the last delimiter; beyond the buffer they are not kept.
+    length: usize,
+    discarded: Discarded,
+}
+
+impl Default for Decoder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Decoder {
+    /// One at the start of a frame.
+    pub const fn new() -> Self {
+        Self {
+            buffer: [0; FRAME_BYTES],
+            length: 0,
+            discarded: Discarded {
+                overlong: 0,
+                malformed: 0,
+                checksum: 0,
+            },
+        }
+    }
+
+    /// Takes the next byte; at a frame's end gives the frame, or why there is
+    /// none. Delimiters that follow each other are nothing.
+    pub fn push(&mut self, byte: u8) -> Option<Result<Body<'_>, FrameError>> {
+        if byte != DELIMITER {
+            if let Some(place) = self.buffer.get_mut(self.length) {
+                *place = byte;
+            }
+            self.length = self.length.saturating_add(1);
+            return None;
+        }
+        let length = core::mem::take(&mut self.length);
+        if length == 0 {
+            return None;
+        }
+        let count = &mut self.discarded;
+        let Some(frame) = self.buffer.get_mut(..length) else {
+            count.overlong = count.overlong.wrapping_add(1);
+            return Some(Err(FrameError::Overlong));
+        };
+        let opened = open(frame);
+        match opened {
+            Err(FrameError::Checksum) => count.checksum = count.checksum.wrapping_add(1),
+            Err(_) => count.malformed = count.malformed.wrapping_add(1),
+            Ok(_) => {}
+        }
+        Some(opened)
+    }
+
+    /// Forgets a frame that has begun: the wire was cut.
+    pub fn reset(&mut self) {
+        self.length = 0;
+    }
+
+    /// What was thrown away so far.
+    pub fn discarded(&self) -> Discarded {
+        self.discarded
+    }
+}
+
+/// What is in a frame without its delimiter.
+fn open(frame: &mut [u8]) -> Result<Body<'_>, FrameError> {
+    let length = cobs::decode_in_place(frame).map_err(|_| FrameError::Malformed)?;
+    let plain = frame.get(..length).ok_or(FrameError::Malformed)?;
+    let (body, checksum) = plain
+        .split_last_chunk::<CRC_BYTES>()
+        .ok_or(FrameError::Malformed)?;
+    let [lane, tag, payload @ ..] = body else {
+        return Err(FrameError::Malformed);
+    };
+    if CRC.checksum(body) != u32::from_le_bytes(*checksum) {
+        return Err(FrameError::Checksum);
+    }
+    Ok(Body {
+        lane: *lane,
+        tag: *tag,
+        payload,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{BODY_BYTES, encode_body};
+    use proptest::prelude::*;
+    use std::vec::Vec;
+
+    /// The bodies that a decoder finds, and how many errors.
+    fn decode(decoder: &mut Decoder, bytes: &[u8]) -> (Vec<Vec<u8>>, u32) {
+        let (mut bodies, mut errors) = (Vec::new(), 0);
+        for byte in bytes {
+            match decoder.push(*byte) {
+                Some(Ok(body)) => {
+                    let mut all = std::vec![body.lane, body.tag];
+                    all.extend(body.payload);
+                    bodies.push(all);
+                }
+                Some(Err(_)) => errors += 1,
+                None => {}
+            }
+        }
+        assert_eq!(decoder.discarded().total(), errors);
+        (bodies, errors)
+    }
+
+    fn body(length: usize) -> Vec<u8> {
+        (0..length)
+            .map(|i| u8::try_from(i * 7 % 256).unwrap())
+            .collect()
+    }
+
+    #[test]
+    fn every_length_comes_back() {
+        for length in 2..=BODY_BYTES {
+            let frame = encode_body(&body(length)).unwrap();
+            let mut decoder = Decoder::new();
+            assert_eq!(decode(&mut decoder, &frame), (std::vec![body(length)], 0));
+        }
+    }
+
+    #[test]
+    fn what_is_shorter_than_lane_and_tag_is_no_frame() {
+        for length in 0..2 {
+            let frame = encode_body(&body(length)).unwrap();
+            assert_eq!(decode(&mut Decoder::new(), &frame), (Vec::new(), 1));
+        }
+    }
+
+    #[test]
+    fn garbage_before_the_first_frame_costs_at_most_that_frame() {
+        let good = encode_body(&body(40)).unwrap();
+        for garbage in [
+            &b"\x05hello"[..],
+            &[255; 1000],
+            &[0, 0, 0],
+            &[1, 0, 1, 0],
+            &[0],
+        ] {
+            let mut bytes = garbage.to_vec();
+            bytes.extend(&good);
+            bytes.extend(&good);
+            let (bodies, _) = decode(&mut Decoder::new(), &bytes);
+            assert_eq!(bodies.last(), Some(&body(40)));
+            assert!(!bodies.is_empty() && bodies.len() <= 2);
+        }
+    }
+
+    #[test]
+    fn a_frame_that_never_ends_is_overlong_and_the_next_is_received() {
+        let mut bytes = std::vec![7; FRAME_BYTES + 1];
+        bytes.push(0);
+        let mut decoder = Decoder::new();
+        assert_eq!(decode(&mut decoder, &bytes), (Vec::new(), 1));
+        assert_eq!(decoder.discarded().overlong, 1);
+        let good = encode_body(&body(BODY_BYTES)).unwrap();
+        let mut found = 0;
+        for byte in good {
+            found += usize::from(matches!(decoder.push(byte), Some(Ok(_))));
+        }
+        assert_eq!(found, 1);
+    }
+
+    #[test]
+    fn a_wire_that_was_cut_starts_anew() {
+        let good = encode_body(&body(30)).unwrap();
+        let mut decoder = Decoder::new();
+        decode(&mut decoder, &good[..10]);
+        decoder.reset();
+        assert_eq!(decode(&mut decoder, &good), (std::vec![body(30)], 0));
+    }
+
+    proptest! {
+        /// Any bytes, cut anywhere: no panic, and a good frame behind a
+        /// delimiter is always received.
+        #[test]
+        fn resynchronises(noise: Vec<u8>, length in 2_usize..=BODY_BYTES) {
+            let mut bytes = noise;
+            bytes.push(0);
+            bytes.extend(encode_body(&body(length)).unwrap());
+            let (bodies, _) = decode(&mut Decoder::new(), &bytes);
+            prop_assert_eq!(bodies.last(), Some(&body(length)));
+        }
+
+        /// One flipped bit: never another message.
+        #[test]
+        fn a_flipped_bit_is_noticed(length in 2_usize..=BODY_BYTES, at: prop::sample::Index, bit in 0..8_u32) {
+            let mut frame = encode_body(&body(length)).unwrap().to_vec();
+            let at = at.index(frame.len());
+            frame[at] ^= 1_u8 << bit;
+            frame.push(0);
+            let (bodies, _) = decode(&mut Decoder::new(), &frame);
+            prop_assert!(bodies.iter().all(|b| *b == body(length)), "a wrong frame was believed");
+        }
+    }
+}

@@ -1,0 +1,379 @@
+//! Why there may be no torque: every fault with its cause, what notices it,
+//! what is done, within which time, and how to go on.
+//!
+//! Faults latch. A fault is cleared by the command `clear-fault`, once the
+//! bridge floats and what caused it is gone.
+
+/// A fault; its number is its code on the wire, for ever.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+#[expect(missing_docs, reason = "the table says it")]
+pub enum Fault {
+    CommsSilent = 1,
+    LeaseExpired = 2,
+    CommsRestarted = 3,
+    EncoderLost = 4,
+    Overspeed = 5,
+    SpeedMismatch = 6,
+    EncoderPolarity = 7,
+    CurrentOffset = 8,
+    Overcurrent = 9,
+    CurrentMissing = 10,
+    CurrentMismatch = 11,
+    EnableStuckOn = 12,
+    EnableStuckOff = 13,
+    RenderingLate = 14,
+    NotANumber = 15,
+    DriveWatchdog = 16,
+    DriveBrownOut = 17,
+    DrivePanic = 18,
+    DriveSilent = 32,
+    DriveRestarted = 33,
+    CommsEnableStuckOn = 34,
+    CommsEnableStuckOff = 35,
+    VersionMismatch = 36,
+    CommsWatchdog = 37,
+    CommsBrownOut = 38,
+    CommsPanic = 39,
+}
+
+/// Who notices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Detector {
+    /// The drive controller.
+    Drive,
+    /// The comms controller.
+    Comms,
+}
+
+impl Detector {
+    /// Name for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Drive => "drive",
+            Self::Comms => "comms",
+        }
+    }
+}
+
+/// What is known about a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FaultSpec {
+    /// Which one.
+    pub fault: Fault,
+    /// Name.
+    pub name: &'static str,
+    /// What causes it.
+    pub cause: &'static str,
+    /// Who notices.
+    pub detector: Detector,
+    /// By what.
+    pub detection: &'static str,
+    /// What is done.
+    pub reaction: &'static str,
+    /// Ticks of the drive (50 µs) from the cause until the bridge floats; none
+    /// if it floats already.
+    pub within_ticks: Option<u32>,
+    /// How to go on.
+    pub clear: &'static str,
+}
+
+const FLOAT: &str = "the bridge floats (coast)";
+const STAYS: &str = "the bridge stays floating; arming is refused";
+const CLEAR: &str = "clear-fault";
+const REPAIR: &str = "repair, then clear-fault";
+
+/// Every fault, in the order of their codes.
+pub const FAULTS: [FaultSpec; 26] = [
+    FaultSpec {
+        fault: Fault::CommsSilent,
+        name: "comms-silent",
+        cause: "the link is cut or too noisy, or comms hangs, is reset or has no power",
+        detector: Detector::Drive,
+        detection: "no fresh heartbeat for 101 ticks while armed",
+        reaction: FLOAT,
+        within_ticks: Some(101),
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::LeaseExpired,
+        name: "lease-expired",
+        cause: "the host was killed, unplugged, or is too busy to renew its lease",
+        detector: Detector::Drive,
+        detection: "no renewal of the lease for 5,001 ticks (250 ms) while armed",
+        reaction: FLOAT,
+        within_ticks: Some(5_001),
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::CommsRestarted,
+        name: "comms-restarted",
+        cause: "comms was reset: watchdog, brown-out, or a reboot",
+        detector: Detector::Drive,
+        detection: "heartbeats of another start of comms while armed",
+        reaction: FLOAT,
+        within_ticks: Some(101),
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::EncoderLost,
+        name: "encoder-lost",
+        cause: "a broken encoder line, or interference",
+        detector: Detector::Drive,
+        detection: "20 ticks (1 ms) in a row without a count that a shaft can make",
+        reaction: FLOAT,
+        within_ticks: Some(21),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::Overspeed,
+        name: "overspeed",
+        cause: "the joint turns faster than its gear may",
+        detector: Detector::Drive,
+        detection: "the estimated speed is above limits.speed_rad_s for 20 ticks (1 ms) while armed",
+        reaction: FLOAT,
+        within_ticks: Some(21),
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::SpeedMismatch,
+        name: "speed-mismatch",
+        cause: "an encoder that has frozen or slips, or a broken motor line",
+        detector: Detector::Drive,
+        detection: "speed from back-EMF and speed from the encoder differ for 400 ticks (20 ms) while armed; \
+                    an encoder that freezes at rest is noticed only once the shaft moves",
+        reaction: FLOAT,
+        within_ticks: Some(1_000),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::EncoderPolarity,
+        name: "encoder-polarity",
+        cause: "encoder or motor lines are swapped",
+        detector: Detector::Drive,
+        detection: "a short push at arming moves the shaft the wrong way",
+        reaction: STAYS,
+        within_ticks: Some(2),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::CurrentOffset,
+        name: "current-offset",
+        cause: "the current sensor has drifted or is broken",
+        detector: Detector::Drive,
+        detection: "more than 0.1 A is measured at arming while the bridge floats",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::Overcurrent,
+        name: "overcurrent",
+        cause: "a short circuit, or a current loop that has gone astray",
+        detector: Detector::Drive,
+        detection: "more than 1.95 A in 2 ticks in a row, or the hardware's break input",
+        reaction: FLOAT,
+        within_ticks: Some(3),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::CurrentMissing,
+        name: "current-missing",
+        cause: "the converter does not run",
+        detector: Detector::Drive,
+        detection: "3 ticks in a row without a measured current while armed",
+        reaction: FLOAT,
+        within_ticks: Some(4),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::CurrentMismatch,
+        name: "current-mismatch",
+        cause: "a broken motor line, a sensor that is stuck, the supply is off or the hand-held stop is pressed",
+        detector: Detector::Drive,
+        detection: "the current stays more than 0.2 A from what was asked for, without a limit that explains it, \
+                    for 100 ticks (5 ms)",
+        reaction: FLOAT,
+        within_ticks: Some(101),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::EnableStuckOn,
+        name: "enable-stuck-on",
+        cause: "the drive's enable line cannot be switched off",
+        detector: Detector::Drive,
+        detection: "the line is read back at every arming and disarming",
+        reaction: "comms takes its own line away; arming is refused",
+        within_ticks: Some(10),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::EnableStuckOff,
+        name: "enable-stuck-off",
+        cause: "the drive's enable line cannot be switched on, or falls while armed",
+        detector: Detector::Drive,
+        detection: "the line is read back every tick",
+        reaction: FLOAT,
+        within_ticks: Some(10),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::RenderingLate,
+        name: "rendering-late",
+        cause: "the model's task does not finish within its tick",
+        detector: Detector::Drive,
+        detection: "20 late ticks in a row",
+        reaction: FLOAT,
+        within_ticks: Some(21),
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::NotANumber,
+        name: "not-a-number",
+        cause: "a defect of the program",
+        detector: Detector::Drive,
+        detection: "the torque to show is no finite number",
+        reaction: FLOAT,
+        within_ticks: Some(1),
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::DriveWatchdog,
+        name: "drive-watchdog",
+        cause: "the drive hung",
+        detector: Detector::Drive,
+        detection: "its watchdog reset it; noticed at the next start",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::DriveBrownOut,
+        name: "drive-brown-out",
+        cause: "the drive's supply failed",
+        detector: Detector::Drive,
+        detection: "the reset's cause, at the next start",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::DrivePanic,
+        name: "drive-panic",
+        cause: "a defect of the program",
+        detector: Detector::Drive,
+        detection: "its panic or fault handler, at the next start",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::DriveSilent,
+        name: "drive-silent",
+        cause: "the link is cut or too noisy, or the drive hangs, is reset or has no power",
+        detector: Detector::Comms,
+        detection: "no block from the drive for 5 ms",
+        reaction: "comms takes its enable line away: the bridge floats",
+        within_ticks: Some(140),
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::DriveRestarted,
+        name: "drive-restarted",
+        cause: "the drive was reset while armed: watchdog, brown-out, or a reboot",
+        detector: Detector::Comms,
+        detection: "the drive's ticks begin anew",
+        reaction: "comms takes its enable line away: the bridge floats",
+        within_ticks: Some(140),
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::CommsEnableStuckOn,
+        name: "comms-enable-stuck-on",
+        cause: "the enable line of comms cannot be switched off",
+        detector: Detector::Comms,
+        detection: "the line is read back at every arming and disarming",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::CommsEnableStuckOff,
+        name: "comms-enable-stuck-off",
+        cause: "the enable line of comms cannot be switched on, or falls while armed",
+        detector: Detector::Comms,
+        detection: "the line is read back every millisecond",
+        reaction: FLOAT,
+        within_ticks: Some(60),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::VersionMismatch,
+        name: "version-mismatch",
+        cause: "drive and comms run programs that do not speak the same language",
+        detector: Detector::Comms,
+        detection: "the schema hash in the drive's hello",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: "flash both controllers with the same version",
+    },
+    FaultSpec {
+        fault: Fault::CommsWatchdog,
+        name: "comms-watchdog",
+        cause: "comms hung",
+        detector: Detector::Comms,
+        detection: "its watchdog reset it; noticed at the next start",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::CommsBrownOut,
+        name: "comms-brown-out",
+        cause: "the supply of comms failed",
+        detector: Detector::Comms,
+        detection: "the reset's cause, at the next start",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::CommsPanic,
+        name: "comms-panic",
+        cause: "a defect of the program",
+        detector: Detector::Comms,
+        detection: "its panic or fault handler, at the next start",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: CLEAR,
+    },
+];
+
+impl Fault {
+    /// Its code on the wire.
+    pub const fn code(self) -> u8 {
+        self as u8
+    }
+
+    /// What is known about a code, if anything is.
+    pub fn find(code: u8) -> Option<&'static FaultSpec> {
+        FAULTS.iter().find(|spec| spec.fault.code() == code)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_code_and_every_name_stands_once_in_order() {
+        for pair in FAULTS.windows(2) {
+            assert!(pair[0].fault.code() < pair[1].fault.code());
+        }
+        for (i, spec) in FAULTS.iter().enumerate() {
+            assert_eq!(Fault::find(spec.fault.code()), Some(spec));
+            assert!(FAULTS[..i].iter().all(|other| other.name != spec.name));
+        }
+        assert_eq!(Fault::find(0), None);
+    }
+}

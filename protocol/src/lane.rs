@@ -1,0 +1,78 @@
+//! What a frame carries: its first byte.
+
+use crate::schema;
+
+/// The kinds of frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Lane {
+    /// A question or an order of the lane that never changes.
+    Management,
+    /// The answer to it.
+    ManagementAnswer,
+    /// Host to comms: [`Request`](crate::host::Request).
+    Request,
+    /// Comms to host: [`Reply`](crate::host::Reply).
+    Reply,
+    /// Drive to comms to host: [`Block`](crate::telemetry::Block).
+    Telemetry,
+    /// Comms to drive: [`ToDrive`](crate::link::ToDrive).
+    ToDrive,
+    /// Drive to comms: [`FromDrive`](crate::link::FromDrive).
+    FromDrive,
+}
+
+/// The tag of the management lane: its version, for ever.
+pub const MANAGEMENT_TAG: u8 = b'1';
+
+impl Lane {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Management,
+        Self::ManagementAnswer,
+        Self::Request,
+        Self::Reply,
+        Self::Telemetry,
+        Self::ToDrive,
+        Self::FromDrive,
+    ];
+
+    /// The first byte of a frame: a letter, readable in a dump.
+    pub const fn byte(self) -> u8 {
+        match self {
+            Self::Management => b'M',
+            Self::ManagementAnswer => b'm',
+            Self::Request => b'Q',
+            Self::Reply => b'R',
+            Self::Telemetry => b'T',
+            Self::ToDrive => b'D',
+            Self::FromDrive => b'S',
+        }
+    }
+
+    /// The second byte: whether sender and receiver mean the same by what
+    /// follows.
+    pub const fn tag(self) -> u8 {
+        match self {
+            Self::Management | Self::ManagementAnswer => MANAGEMENT_TAG,
+            _ => schema::TAG,
+        }
+    }
+
+    /// The lane with this first byte.
+    pub fn of(byte: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|lane| lane.byte() == byte)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lanes_are_told_apart_by_their_byte() {
+        for lane in Lane::ALL {
+            assert_eq!(Lane::of(lane.byte()), Some(lane));
+        }
+        assert_eq!(Lane::of(0), None);
+    }
+}

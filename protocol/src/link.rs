@@ -1,0 +1,132 @@
+//! Messages between the two controllers.
+//!
+//! **Freshness.** Every heartbeat and every command echoes the drive's own
+//! tick, as comms last saw it. What has been on its way for too long, however
+//! it came to be delayed, repeated or replayed, is older than
+//! [`STALE_TICKS`] by the drive's own clock and does not count. The lease ends
+//! at a tick of the drive, too, so a late heartbeat cannot make it longer.
+//!
+//! **Commands** have numbers. The drive carries out a number that is newer
+//! than the last one, once, and says the outcome in every [`DriveStatus`];
+//! comms repeats a command until it hears its outcome.
+
+use crate::counters::DRIVE_COUNT;
+use crate::parameters::Values;
+use crate::revision::Revision;
+use crate::settings::ValueError;
+use crate::state::State;
+use postcard::experimental::max_size::MaxSize;
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// A message whose echo is older than this does not count, ticks. A block is
+/// 20 ticks, its way 17, a heartbeat every 20.
+pub const STALE_TICKS: u64 = 400;
+
+/// What comms tells the drive.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
+#[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
+pub enum ToDrive {
+    /// Comms is alive. Sent every millisecond.
+    Heartbeat(Heartbeat),
+    /// These parameters, from the next block on.
+    Commit {
+        /// Their revision.
+        revision: Revision,
+        /// All values.
+        values: Values,
+    },
+    /// Do this, once.
+    Command {
+        /// The drive's tick as comms last saw it.
+        seen_tick: u64,
+        /// Grows by one with each command; wraps.
+        number: u16,
+        /// What.
+        order: Order,
+    },
+}
+
+/// Comms is alive.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, MaxSize, Schema)]
+pub struct Heartbeat {
+    /// The drive's tick as comms last saw it.
+    pub seen_tick: u64,
+    /// The lease ends so many ticks after `seen_tick`.
+    pub lease_left: u16,
+    /// Whether there may be torque: without it the drive disarms.
+    pub enable: bool,
+    /// Which start of comms this is.
+    pub start: u16,
+}
+
+/// What the drive can be told to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema)]
+pub enum Order {
+    /// Prove the enable line, then render.
+    Arm,
+    /// The angle is zero here.
+    Zero,
+    /// Forget the fault.
+    ClearFault,
+}
+
+/// What the drive tells comms.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
+pub enum FromDrive {
+    /// How it is. Sent every 5 ms, and at every change.
+    Status(DriveStatus),
+}
+
+/// How the drive is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
+pub struct DriveStatus {
+    /// Now.
+    pub tick: u64,
+    /// Its state.
+    pub state: State,
+    /// Code of its fault, 0 for none.
+    pub fault: u8,
+    /// The parameters in force.
+    pub revision: Revision,
+    /// The last commit that it refused, and why.
+    pub refused: Option<(Revision, ValueError)>,
+    /// The last command that it carried out.
+    pub last: Option<Outcome>,
+    /// Whether the angle's zero was said.
+    pub zeroed: bool,
+    /// Whether encoder and motor have been seen to turn the same way.
+    pub polarity_proven: bool,
+    /// What it has counted.
+    pub counters: [u32; DRIVE_COUNT],
+}
+
+/// What became of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema)]
+pub struct Outcome {
+    /// Its number.
+    pub number: u16,
+    /// Done; or why not.
+    pub result: Result<(), DriveRefusal>,
+}
+
+/// Why the drive does not do what it is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema)]
+#[non_exhaustive]
+pub enum DriveRefusal {
+    /// It was given no parameters yet.
+    NoParameters,
+    /// There is no live lease.
+    NoLease,
+    /// A fault stands in the way: its code.
+    Faulted {
+        /// The code.
+        code: u8,
+    },
+    /// Not while there is torque.
+    Armed,
+    /// The encoder's counts are not to be believed.
+    NoEncoder,
+    /// Arming was given up: comms or the host took it back.
+    Aborted,
+}

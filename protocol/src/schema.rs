@@ -1,0 +1,85 @@
+//! Whether two sides speak the same language.
+//!
+//! [`HASH`] is computed at compile time from the shape and the names of every
+//! message and from the parameters, faults and counters, in their order. Two
+//! sides with the same hash understand each other; with another, only the
+//! [management lane](crate::management) does. Its low byte is the tag of every
+//! other frame, so that nothing is taken for what it is not.
+
+use crate::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
+use crate::fault::FAULTS;
+use crate::host::{Reply, Request};
+use crate::link::{FromDrive, ToDrive};
+use crate::parameters::{Kind, PARAMETERS};
+use crate::telemetry::Block;
+use postcard_schema::key::Key;
+
+/// The language of this crate.
+pub const HASH: u64 = hash();
+
+/// The tag of every frame but those of the management lane.
+pub const TAG: u8 = HASH.to_le_bytes()[0];
+
+/// FNV-1a, 64 bits.
+const fn update(mut hash: u64, bytes: &[u8]) -> u64 {
+    let mut rest = bytes;
+    while let [byte, tail @ ..] = rest {
+        hash = (hash ^ *byte as u64).wrapping_mul(0x0100_0000_01b3);
+        rest = tail;
+    }
+    // So that "ab", "c" is not "a", "bc".
+    (hash ^ 0xff).wrapping_mul(0x0100_0000_01b3)
+}
+
+const fn counted(mut hash: u64, mut list: &[CounterSpec]) -> u64 {
+    while let [counter, tail @ ..] = list {
+        hash = update(hash, counter.name.as_bytes());
+        list = tail;
+    }
+    hash
+}
+
+const fn hash() -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325;
+    hash = update(hash, &Key::for_path::<Request>("request").to_bytes());
+    hash = update(hash, &Key::for_path::<Reply>("reply").to_bytes());
+    hash = update(hash, &Key::for_path::<Block>("telemetry").to_bytes());
+    hash = update(hash, &Key::for_path::<ToDrive>("to-drive").to_bytes());
+    hash = update(hash, &Key::for_path::<FromDrive>("from-drive").to_bytes());
+    let mut parameters: &[_] = &PARAMETERS;
+    while let [parameter, tail @ ..] = parameters {
+        hash = update(hash, parameter.group.as_bytes());
+        match parameter.kind {
+            Kind::Number(spec) => hash = update(hash, spec.key.as_bytes()),
+            Kind::Choice(choice) => {
+                hash = update(hash, choice.key.as_bytes());
+                let mut names = choice.names;
+                while let [name, tail @ ..] = names {
+                    hash = update(hash, name.as_bytes());
+                    names = tail;
+                }
+            }
+        }
+        parameters = tail;
+    }
+    let mut faults: &[_] = &FAULTS;
+    while let [fault, tail @ ..] = faults {
+        hash = update(hash, &[fault.fault.code()]);
+        hash = update(hash, fault.name.as_bytes());
+        faults = tail;
+    }
+    hash = counted(hash, &DRIVE_COUNTERS);
+    counted(hash, &COMMS_COUNTERS)
+}
+
+/// Every message fits a frame, with its lane and tag.
+const _: () = {
+    use crate::frame::BODY_BYTES;
+    use postcard::experimental::max_size::MaxSize;
+    assert!(2 + Request::POSTCARD_MAX_SIZE <= BODY_BYTES);
+    assert!(2 + Reply::POSTCARD_MAX_SIZE <= BODY_BYTES);
+    assert!(2 + Block::POSTCARD_MAX_SIZE <= BODY_BYTES);
+    assert!(2 + ToDrive::POSTCARD_MAX_SIZE <= BODY_BYTES);
+    assert!(2 + FromDrive::POSTCARD_MAX_SIZE <= BODY_BYTES);
+    assert!(2 + crate::management::ANSWER_BYTES <= BODY_BYTES);
+};
