@@ -1,3 +1,53 @@
-//! What each controller does, without hardware.
+//! # What each controller of Crepitus does
+//!
+//! Without hardware: the firmware's tasks, the simulator and the tests all run
+//! this code. Peripherals in, a tick, peripherals out.
+//!
+//! ```text
+//!           USB                     link                      50 µs
+//!  host ─────────> [`Comms`] ──────────────────> [`Drive`] ─────────> bridge
+//!        requests   lease, commit,  heartbeats    safety,    torque
+//!                   supervision     commands      model
+//!       <─────────                <──────────────           <───────── encoder, current
+//!        replies, blocks            status, blocks
+//! ```
+//!
+//! | to find | look in |
+//! |---|---|
+//! | the drive's tick: sample, render, command | [`drive`] |
+//! | what the host asks, who may, and what comms watches | [`comms`] |
+//! | the USB port of comms | [`usb_port`] |
+//!
+//! Nothing here allocates, panics, blocks or loops without a bound.
 #![no_std]
 #![forbid(unsafe_code)]
+#![deny(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    clippy::cast_possible_truncation,
+    clippy::arithmetic_side_effects
+)]
+#![cfg_attr(
+    test,
+    allow(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::arithmetic_side_effects
+    )
+)]
+
+#[cfg(test)]
+extern crate std;
+
+pub mod comms;
+pub mod counters;
+pub mod drive;
+pub mod usb_port;
+
+pub use comms::Comms;
+pub use drive::Drive;

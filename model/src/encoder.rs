@@ -144,6 +144,23 @@ impl<F: Real> EncoderReader<F> {
         })
     }
 
+    /// The same reader at another count, with a settled estimate of
+    /// `omega_rad_s`: cheap, where [`Self::new`] is not.
+    #[must_use]
+    pub fn restarted(self, count: i32, omega_rad_s: F) -> Self {
+        Self {
+            last_count: count,
+            lag_rad: F::ZERO,
+            omega_rad_s,
+            ..self
+        }
+    }
+
+    /// The estimate of the velocity, rad/s.
+    pub fn omega_rad_s(&self) -> F {
+        self.omega_rad_s
+    }
+
     /// One tick without a count: the shaft is taken to move on as it did. The
     /// next count brings the travel of both ticks, so no angle is lost.
     #[inline]

@@ -60,7 +60,22 @@ impl<F: Real, L: Locate<F>> Renderer<F, L> {
     /// From the next tick on, towards these numbers, no torque faster than
     /// `slew_nm_per_s`. A change that is still under way ends where it is.
     pub fn commit(&mut self, next: Active<F>, slew_nm_per_s: f64) {
-        self.ramp = Ramp::new(*self.object.joint().active(), next, slew_nm_per_s);
+        self.follow(Ramp::new(
+            *self.object.joint().active(),
+            next,
+            slew_nm_per_s,
+        ));
+    }
+
+    /// As [`Self::commit`], along a ramp that was made elsewhere: it must
+    /// begin with the numbers in force, so none may be under way.
+    pub fn follow(&mut self, ramp: Ramp<F>) {
+        self.ramp = ramp;
+    }
+
+    /// Whether parameters are on their way.
+    pub fn is_settling(&self) -> bool {
+        self.ramp.is_settling()
     }
 
     /// One tick.

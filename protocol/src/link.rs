@@ -83,6 +83,11 @@ pub enum FromDrive {
 pub struct DriveStatus {
     /// Now.
     pub tick: u64,
+    /// Which start of the drive this is.
+    pub start: u16,
+    /// Which start of comms it has heard last; what it says of commits and
+    /// commands is about that one's.
+    pub heard: Option<u16>,
     /// Its state.
     pub state: State,
     /// Code of its fault, 0 for none.

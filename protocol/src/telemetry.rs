@@ -29,6 +29,9 @@ use serde::{Deserialize, Serialize};
 /// Samples of a block.
 pub const BLOCK_SAMPLES: usize = 20;
 
+/// The same number, to count with.
+pub const BLOCK_TICKS: u32 = 20;
+
 /// Bytes of a sample.
 pub const SAMPLE_BYTES: usize = 16;
 
@@ -135,10 +138,20 @@ pub struct BlockFlags(pub u8);
 impl BlockFlags {
     /// Where the angle is zero was said.
     pub const ZEROED: u8 = 1 << 2;
+    /// Where the number of the drive's start begins.
+    pub const START_SHIFT: u32 = 3;
 
-    /// In this state.
-    pub fn new(state: State, zeroed: bool) -> Self {
-        Self(state.number() | if zeroed { Self::ZEROED } else { 0 })
+    /// In this state; the lowest bits of the number of the drive's start.
+    pub fn new(state: State, zeroed: bool, start: u16) -> Self {
+        let [low, _] = start.to_le_bytes();
+        let zeroed = if zeroed { Self::ZEROED } else { 0 };
+        Self(state.number() | zeroed | low << Self::START_SHIFT)
+    }
+
+    /// The lowest five bits of the number of the drive's start: with another
+    /// one, ticks begin anew.
+    pub fn start(self) -> u8 {
+        self.0 >> Self::START_SHIFT
     }
 
     /// The drive's state at the end of the block.
@@ -239,9 +252,10 @@ mod tests {
             }
         }
         for state in State::ALL {
-            for zeroed in [false, true] {
-                let flags = BlockFlags::new(state, zeroed);
+            for (zeroed, start) in [(false, 0), (true, 31), (true, 0xff03)] {
+                let flags = BlockFlags::new(state, zeroed, start);
                 assert_eq!((flags.state(), flags.is_zeroed()), (state, zeroed));
+                assert_eq!(u16::from(flags.start()), start & 31);
             }
         }
     }

@@ -1,0 +1,274 @@
+//! What the comms controller does: it speaks with the host, holds the lease,
+//! owns the parameters, watches the drive, and keeps an enable line of its own.
+//!
+//! ```text
+//!  host ──> Requests ──> [`Parameters`] ──┐
+//!             │   └────> [`Lease`] ───────┤
+//!             │                           ├──> link ──> drive
+//!             └────────> [`Supervision`] ─┘      │
+//!  host <── [`Outbox`] <── [`Subscription`] <────┘ blocks, status
+//! ```
+//!
+//! [`Comms::tick`] runs every millisecond; bytes come and go between. Nothing
+//! waits: what the host does not take is dropped and counted.
+
+pub mod drive_view;
+pub mod lease;
+pub mod line;
+mod management;
+pub mod order;
+pub mod outbox;
+pub mod parameters;
+mod requests;
+pub mod sessions;
+pub mod subscription;
+pub mod supervision;
+mod to_drive;
+
+use crate::counters::CommsCounters;
+use crate::usb_port::HostBytes;
+use crepitus_protocol::counters::CommsCounter;
+use crepitus_protocol::frame::Frame;
+use crepitus_protocol::link::FromDrive;
+use crepitus_protocol::management::{Answer, Identity};
+use crepitus_protocol::telemetry::{BLOCK_TICKS, Block};
+use crepitus_protocol::{Decoder, Lane, Revision, State, Values, schema};
+use drive_view::{DriveView, News};
+use lease::Lease;
+use order::Job;
+use outbox::Outbox;
+use parameters::Parameters;
+use sessions::Sessions;
+use subscription::Subscription;
+use supervision::Supervision;
+use to_drive::ToDriveQueue;
+
+/// How comms starts.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Boot {
+    /// Who it is.
+    pub identity: Identity,
+    /// Which start this is.
+    pub start: u16,
+    /// The parameters that were kept, if there are any.
+    pub saved: Option<(Revision, Values)>,
+    /// What all counters begin with: 0, but in a test of their wrap.
+    pub counters: u32,
+}
+
+/// What the peripherals say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Inputs {
+    /// The enable line of comms, as read back.
+    pub enable_is_on: bool,
+}
+
+/// What the peripherals are to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outputs {
+    /// The enable line of comms.
+    pub enable: bool,
+    /// Keep these parameters, then call [`Comms::saved`].
+    pub save: Option<(Revision, Values)>,
+    /// Start anew.
+    pub reboot: bool,
+}
+
+/// A frame of the drive.
+#[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
+enum Heard {
+    Block(Block),
+    Message(FromDrive),
+    Answer(Answer),
+}
+
+/// The comms controller.
+#[derive(Debug)]
+pub struct Comms {
+    identity: Identity,
+    start: u16,
+    now_ms: u64,
+    counters: CommsCounters,
+    parameters: Parameters,
+    lease: Lease,
+    supervision: Supervision,
+    /// The line of comms, as read back.
+    line_is_on: bool,
+    drive: DriveView,
+    to_drive: ToDriveQueue,
+    from_drive: Decoder,
+    from_host: Decoder,
+    sessions: Sessions,
+    /// What is being done for a host.
+    job: Option<Job>,
+    subscription: Option<Subscription>,
+    outbox: Outbox,
+    save: Option<(Revision, Values)>,
+    reboot: bool,
+}
+
+impl Comms {
+    /// As it starts. Parameters that were kept and are not allowed (any more)
+    /// are not used.
+    pub fn new(boot: &Boot) -> Self {
+        let mut counters = CommsCounters::default();
+        counters.set_all(boot.counters);
+        Self {
+            identity: boot.identity,
+            start: boot.start,
+            now_ms: 0,
+            counters,
+            parameters: Parameters::new(boot.saved),
+            lease: Lease::default(),
+            supervision: Supervision::new(boot.identity.reset),
+            line_is_on: false,
+            drive: DriveView::default(),
+            to_drive: ToDriveQueue::default(),
+            from_drive: Decoder::new(),
+            from_host: Decoder::new(),
+            sessions: Sessions::default(),
+            job: None,
+            subscription: None,
+            outbox: Outbox::default(),
+            save: None,
+            reboot: false,
+        }
+    }
+
+    /// Once a millisecond.
+    pub fn tick(&mut self, inputs: &Inputs) -> Outputs {
+        self.now_ms = self.now_ms.saturating_add(1);
+        if self.lease.has_just_ended(self.now_ms) {
+            self.counters.count(CommsCounter::LeasesExpired);
+        }
+        let drive_is_silent = !self.drive.is_present(self.now_ms);
+        let is_leased = self.lease.is_alive(self.now_ms);
+        let before = self.supervision.fault();
+        let enable =
+            self.supervision
+                .tick(inputs.enable_is_on, drive_is_silent, is_leased, &self.drive);
+        if self.supervision.fault().is_some() && before.is_none() {
+            self.counters.count(CommsCounter::Faults);
+        }
+        self.line_is_on = inputs.enable_is_on;
+        self.go_on();
+        self.to_drive.millisecond(self.now_ms);
+        Outputs {
+            enable,
+            save: self.save.take(),
+            reboot: core::mem::take(&mut self.reboot),
+        }
+    }
+
+    /// The parameters that were to be kept are, or could not be.
+    pub fn saved(&mut self, done: bool) {
+        self.finish_save(done);
+    }
+
+    /// A byte from the drive.
+    pub fn link_received(&mut self, byte: u8) {
+        let known = match self.from_drive.push(byte) {
+            None => return,
+            Some(Err(_)) => return self.counters.count(CommsCounter::FromDriveDiscarded),
+            Some(Ok(body)) => match body.lane() {
+                Some(Lane::Telemetry) => body.message().map(Heard::Block),
+                Some(Lane::FromDrive) => body.message().map(Heard::Message),
+                Some(Lane::ManagementAnswer) => Answer::of(body.payload).map(Heard::Answer),
+                _ => None,
+            },
+        };
+        self.counters.count(match &known {
+            Some(_) => CommsCounter::FromDrive,
+            None => CommsCounter::Foreign,
+        });
+        match known {
+            None | Some(Heard::Answer(Answer::Stop { .. } | Answer::Reboot { .. })) => {}
+            Some(Heard::Block(block)) => self.block(&block),
+            Some(Heard::Message(FromDrive::Status(status))) => self.drive.hear_status(&status),
+            Some(Heard::Answer(Answer::Hello { own, .. })) => {
+                self.drive.introduce(&own);
+                self.supervision.drive_speaks(own.schema == schema::HASH);
+            }
+        }
+    }
+
+    /// The next frame for the drive, if there is one.
+    pub fn link_to_send(&mut self) -> Option<Frame> {
+        let heartbeat = crepitus_protocol::link::Heartbeat {
+            seen_tick: self.drive.seen_tick(),
+            lease_left: self.lease.left_ticks(self.drive.seen_tick(), self.now_ms),
+            enable: self.supervision.is_wanted(),
+            start: self.start,
+        };
+        let commit = self
+            .parameters
+            .to_send(self.drive.revision(self.now_ms))
+            .filter(|_| self.drive.is_present(self.now_ms));
+        let command = self.job.as_ref().and_then(Job::command);
+        let wants_hello = self.drive.identity().is_none();
+        self.to_drive
+            .next_frame(heartbeat, commit, command, wants_hello)
+    }
+
+    /// The state of the whole.
+    pub fn state(&self) -> State {
+        self.supervision.state(&self.drive)
+    }
+
+    /// The parameters that were committed last.
+    pub fn revision(&self) -> Revision {
+        self.parameters.revision()
+    }
+
+    /// What it has counted.
+    pub fn counters(&self) -> &CommsCounters {
+        &self.counters
+    }
+
+    fn block(&mut self, block: &Block) {
+        let samples = BLOCK_TICKS;
+        match self.drive.hear_block(block, self.now_ms) {
+            News::Old => return,
+            News::Restarted => {
+                self.counters.count(CommsCounter::DriveRestarts);
+                self.supervision.drive_restarted();
+                if let Some(subscription) = &mut self.subscription {
+                    subscription.rebase(block.first_tick);
+                }
+            }
+            News::Next { lost } => self.counters.add(CommsCounter::LostSamples, lost),
+        }
+        self.counters.add(CommsCounter::ReceivedSamples, samples);
+        let Some(subscription) = &mut self.subscription else {
+            return;
+        };
+        let counter = if subscription.forward(block, &mut self.outbox) {
+            CommsCounter::SentSamples
+        } else {
+            CommsCounter::DroppedSamples
+        };
+        self.counters.add(counter, samples);
+    }
+}
+
+impl HostBytes for Comms {
+    fn received(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.host_byte(*byte);
+        }
+    }
+
+    fn to_send(&self) -> &[u8] {
+        self.outbox.to_send()
+    }
+
+    fn sent(&mut self, count: usize) {
+        self.outbox.sent(count);
+    }
+
+    fn host_lost(&mut self) {
+        self.from_host.reset();
+        self.subscription = None;
+        self.outbox.restart();
+    }
+}

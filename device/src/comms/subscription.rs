@@ -1,0 +1,53 @@
+//! Blocks for the host, with the books of what did not arrive.
+
+use crate::comms::outbox::Outbox;
+use crepitus_protocol::Lane;
+use crepitus_protocol::frame;
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
+
+/// A host that wants every sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Subscription {
+    first_tick: u64,
+    /// Samples that were queued to the host.
+    forwarded: u64,
+}
+
+impl Subscription {
+    /// From this tick on.
+    pub fn new(first_tick: u64) -> Self {
+        Self {
+            first_tick,
+            forwarded: 0,
+        }
+    }
+
+    /// The drive has started anew, and so do the books.
+    pub fn rebase(&mut self, first_tick: u64) {
+        *self = Self::new(first_tick);
+    }
+
+    /// Its first tick.
+    pub fn first_tick(&self) -> u64 {
+        self.first_tick
+    }
+
+    /// Queues a block, which then says what was lost before it, wherever that
+    /// was; false if there is no room.
+    pub fn forward(&mut self, block: &Block, outbox: &mut Outbox) -> bool {
+        let due = block.first_tick.saturating_sub(self.first_tick);
+        let dropped = due.saturating_sub(self.forwarded);
+        let [a, b, c, d, ..] = dropped.to_le_bytes();
+        let block = Block {
+            // The counter wraps.
+            dropped: u32::from_le_bytes([a, b, c, d]),
+            ..*block
+        };
+        let queued =
+            frame::encode(Lane::Telemetry, &block).is_ok_and(|frame| outbox.telemetry(&frame));
+        if queued {
+            self.forwarded = self.forwarded.saturating_add(BLOCK_SAMPLES as u64);
+        }
+        queued
+    }
+}

@@ -1,0 +1,245 @@
+//! The way from disarmed to armed: nothing is believed that was not seen now.
+//!
+//! ```text
+//!            offset       line on      line off     line on       push
+//! enable  ______________╱‾‾‾‾‾‾‾‾‾‾╲____________╱‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾
+//! bridge  floats                                            + − − +
+//!         the sensor    read back   read back   read back   the shaft moves
+//!         shows none    on          off         on          the way it is pushed
+//! ```
+//!
+//! The push is a current of 1.2 A (4 N·m) for 3 ms to either side, twice, in
+//! mirrored order: it moves a free shaft by 17 counts and back. What the hand
+//! does meanwhile, at whatever speed, cancels; a leg that is held fast does
+//! not move, and nothing is proven.
+
+use crepitus_protocol::Fault;
+
+/// Ticks over which the sensor's offset is averaged.
+const OFFSET_TICKS: u32 = 64;
+
+/// Largest offset of the current sensor, A.
+const LARGEST_OFFSET_A: f32 = 0.1;
+
+/// Ticks within which the line follows.
+const LINE_TICKS: u32 = 9;
+
+/// Ticks of each of the four parts of the push.
+const PUSH_TICKS: u32 = 60;
+
+/// Current of the push, A.
+const PUSH_A: f32 = 1.2;
+
+/// Counts that the shaft must have moved to prove anything.
+const PROOF_COUNTS: i32 = 12;
+
+/// What arming wants of a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wish {
+    /// The line off, the bridge floating.
+    Off,
+    /// The line on, the bridge floating.
+    Line,
+    /// The line on, this current, A.
+    Push(f32),
+    /// It is armed.
+    Armed,
+    /// It failed.
+    Failed(Fault),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Step {
+    Offset,
+    FirstOn,
+    Off,
+    SecondOn,
+    Push,
+}
+
+/// Arming under way.
+#[derive(Clone, Copy, Debug)]
+pub struct Arming {
+    step: Step,
+    /// Ticks in this step.
+    ticks: u32,
+    offset_sum_a: f32,
+    /// Counts moved as pushed, minus those against.
+    moved_counts: i32,
+    last_count: Option<i32>,
+}
+
+impl Default for Arming {
+    fn default() -> Self {
+        Self {
+            step: Step::Offset,
+            ticks: 0,
+            offset_sum_a: 0.0,
+            moved_counts: 0,
+            last_count: None,
+        }
+    }
+}
+
+impl Arming {
+    /// One tick: the raw current, the line as read back, the encoder.
+    pub fn tick(&mut self, raw_a: Option<f32>, line_is_on: bool, count: i32) -> Wish {
+        self.ticks = self.ticks.saturating_add(1);
+        match self.step {
+            Step::Offset => self.offset(raw_a, line_is_on),
+            Step::FirstOn => self.line(line_is_on, true, Step::Off),
+            Step::Off => self.line(line_is_on, false, Step::SecondOn),
+            Step::SecondOn => self.line(line_is_on, true, Step::Push),
+            Step::Push => self.push(count),
+        }
+    }
+
+    /// The current sensor's offset, once it is known, A.
+    pub fn offset_a(&self) -> Option<f32> {
+        #[expect(clippy::cast_precision_loss, reason = "a small number")]
+        let mean_a = self.offset_sum_a / OFFSET_TICKS as f32;
+        (self.step != Step::Offset).then_some(mean_a)
+    }
+
+    /// Whether the push has shown that encoder and motor turn the same way.
+    pub fn is_proven(&self) -> bool {
+        self.moved_counts >= PROOF_COUNTS
+    }
+
+    fn go_to(&mut self, step: Step) {
+        (self.step, self.ticks) = (step, 0);
+    }
+
+    fn offset(&mut self, raw_a: Option<f32>, line_is_on: bool) -> Wish {
+        if line_is_on {
+            return Wish::Failed(Fault::EnableStuckOn);
+        }
+        let Some(raw_a) = raw_a else {
+            return Wish::Failed(Fault::CurrentMissing);
+        };
+        self.offset_sum_a += raw_a;
+        if self.ticks < OFFSET_TICKS {
+            return Wish::Off;
+        }
+        self.go_to(Step::FirstOn);
+        // Written so that NaN fails.
+        if self
+            .offset_a()
+            .is_some_and(|mean_a| mean_a.abs() <= LARGEST_OFFSET_A)
+        {
+            Wish::Line
+        } else {
+            Wish::Failed(Fault::CurrentOffset)
+        }
+    }
+
+    /// Waits until the line is as it should be.
+    fn line(&mut self, is_on: bool, should_be_on: bool, next: Step) -> Wish {
+        if is_on == should_be_on {
+            self.go_to(next);
+            return if next == Step::Off {
+                Wish::Off
+            } else {
+                Wish::Line
+            };
+        }
+        if self.ticks >= LINE_TICKS {
+            return Wish::Failed(if should_be_on {
+                Fault::EnableStuckOff
+            } else {
+                Fault::EnableStuckOn
+            });
+        }
+        if should_be_on { Wish::Line } else { Wish::Off }
+    }
+
+    fn push(&mut self, count: i32) -> Wish {
+        let part = self.ticks.saturating_sub(1) / PUSH_TICKS;
+        // What has moved since the last tick is due to the part before it.
+        let moved = self.last_count.map_or(0, |last| count.wrapping_sub(last));
+        self.last_count = Some(count);
+        // The first pair moves it along, the second back.
+        self.moved_counts = if part < 2 {
+            self.moved_counts.saturating_add(moved)
+        } else {
+            self.moved_counts.saturating_sub(moved)
+        };
+        match part {
+            0 | 3 => Wish::Push(PUSH_A),
+            1 | 2 => Wish::Push(-PUSH_A),
+            _ if self.moved_counts <= -PROOF_COUNTS => Wish::Failed(Fault::EncoderPolarity),
+            _ => Wish::Armed,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Arms with a line that follows a tick late, and a shaft that is moved
+    /// by `counts` a tick in the sense of the push, on top of a hand's motion.
+    fn arm(raw_a: f32, stuck: Option<bool>, counts: i32, hand: i32) -> (Wish, u32, bool) {
+        let mut arming = Arming::default();
+        let (mut line, mut count, mut ticks) = (stuck.unwrap_or(false), i32::MAX - 20, 0);
+        let mut speed = 0;
+        loop {
+            let wish = arming.tick(Some(raw_a), stuck.unwrap_or(line), count);
+            ticks += 1;
+            match wish {
+                Wish::Off => line = false,
+                Wish::Line => line = true,
+                Wish::Push(a) => speed += if a > 0.0 { counts } else { -counts },
+                Wish::Armed | Wish::Failed(_) => return (wish, ticks, arming.is_proven()),
+            }
+            count = count.wrapping_add(hand + speed);
+            assert!(ticks < 1000);
+        }
+    }
+
+    #[test]
+    fn all_in_order_is_armed_within_twenty_milliseconds() {
+        let (wish, ticks, proven) = arm(0.05, None, 1, 0);
+        assert_eq!((wish, proven), (Wish::Armed, true));
+        assert!(ticks < 400, "{ticks}");
+    }
+
+    #[test]
+    fn a_hand_that_moves_the_leg_changes_nothing() {
+        for hand in [-3, 3] {
+            assert_eq!(arm(0.0, None, 0, hand).0, Wish::Armed);
+            assert!(!arm(0.0, None, 0, hand).2);
+            assert!(arm(0.0, None, 1, hand).2);
+            assert_eq!(
+                arm(0.0, None, -1, hand).0,
+                Wish::Failed(Fault::EncoderPolarity)
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_broken_is_not_armed() {
+        for (raw_a, stuck, fault) in [
+            (0.11, None, Fault::CurrentOffset),
+            (-0.11, None, Fault::CurrentOffset),
+            (f32::NAN, None, Fault::CurrentOffset),
+            (0.0, Some(true), Fault::EnableStuckOn),
+            (0.0, Some(false), Fault::EnableStuckOff),
+        ] {
+            assert_eq!(arm(raw_a, stuck, 1, 0).0, Wish::Failed(fault));
+        }
+        assert_eq!(
+            Arming::default().tick(None, false, 0),
+            Wish::Failed(Fault::CurrentMissing)
+        );
+    }
+
+    #[test]
+    fn a_line_that_does_not_fall_again_is_stuck() {
+        let mut arming = Arming::default();
+        let wish = (0..200)
+            .map(|n| arming.tick(Some(0.0), n >= 65, 0))
+            .find(|wish| matches!(wish, Wish::Failed(_)));
+        assert_eq!(wish, Some(Wish::Failed(Fault::EnableStuckOn)));
+    }
+}

@@ -1,0 +1,223 @@
+//! `command_motor`: what the bridge does in the next tick, and the sample that
+//! tells of this one.
+
+use crate::counters::Counters;
+use crate::drive::motor::{Bridge, Motor};
+use crate::drive::plausibility::{Plausibility, Seen};
+use crate::drive::prepare::{MotorPlan, Prepared};
+use crate::drive::rendering::Rendered;
+use crate::drive::safety::{Permit, Safety};
+use crate::drive::sampler::Sampled;
+use crepitus_model::current_loop::Limit;
+use crepitus_protocol::LimitReason;
+use crepitus_protocol::counters::DriveCounter;
+use crepitus_protocol::management::ResetCause;
+use crepitus_protocol::telemetry::{NO_CURRENT, Sample, SampleFlags};
+
+/// What the peripherals say in the middle of a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Inputs {
+    /// The current, A, positive towards growing angle; none if the converter
+    /// has nothing.
+    pub current_a: Option<f32>,
+    /// The drive's enable line, as read back.
+    pub enable_is_on: bool,
+    /// The hardware's break input has fired.
+    pub is_broken: bool,
+}
+
+/// What the peripherals are to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outputs {
+    /// The drive's enable line.
+    pub enable: bool,
+    /// The bridge, from the next PWM period on; if it is to float, at once.
+    pub bridge: Bridge,
+}
+
+/// Commands the motor, once a tick.
+#[derive(Clone, Debug)]
+pub struct Command {
+    safety: Safety,
+    motor: Motor,
+    plausibility: Plausibility,
+    speed_limit_rad_s: f32,
+    /// The bridge was driven in the tick before.
+    was_driven: bool,
+}
+
+impl Command {
+    /// As a controller starts.
+    pub fn new(motor: &MotorPlan, prepared: &Prepared, reset: ResetCause) -> Self {
+        Self {
+            safety: Safety::new(reset),
+            motor: Motor::new(motor),
+            plausibility: Plausibility::default(),
+            speed_limit_rad_s: prepared.speed_limit_rad_s,
+            was_driven: false,
+        }
+    }
+
+    /// From the next tick on, these numbers.
+    pub fn take_over(&mut self, prepared: &Prepared) {
+        if let Some(motor) = &prepared.motor {
+            self.motor = Motor::new(motor);
+        }
+        self.speed_limit_rad_s = prepared.speed_limit_rad_s;
+    }
+
+    /// Whether there may be torque.
+    pub fn safety(&self) -> &Safety {
+        &self.safety
+    }
+
+    /// Whether there may be torque, for orders.
+    pub fn safety_mut(&mut self) -> &mut Safety {
+        &mut self.safety
+    }
+
+    /// One tick.
+    pub fn tick(
+        &mut self,
+        inputs: &Inputs,
+        sampled: &Sampled,
+        rendered: Option<&Rendered>,
+        counters: &Counters,
+    ) -> (Outputs, Sample) {
+        let is_late = rendered.is_none_or(|rendered| rendered.tick != sampled.tick);
+        let rendered = rendered.copied().unwrap_or_default();
+        let mut permit = self.safety.tick(
+            sampled.tick,
+            inputs.current_a,
+            inputs.enable_is_on,
+            sampled.count,
+            counters,
+        );
+        if let Some(offset_a) = self.safety.offset_a() {
+            self.motor.set_offset(offset_a);
+        }
+        let current_a = inputs.current_a.map(|raw_a| self.motor.current_a(raw_a));
+        if matches!(permit, Permit::Torque | Permit::Push(_)) {
+            permit = self.checked(
+                permit,
+                &Seen {
+                    lost_ticks: sampled.lost_ticks,
+                    omega_rad_s: sampled.omega_rad_s,
+                    is_late,
+                    is_number: rendered.torque_nm.is_finite(),
+                    current_a,
+                    enable_is_on: inputs.enable_is_on,
+                    is_broken: inputs.is_broken,
+                },
+                counters,
+            );
+        }
+        let outputs = self.drive(permit, sampled, &rendered, current_a);
+        let sample = self.sample(permit, sampled, &rendered, current_a, is_late, counters);
+        (outputs, sample)
+    }
+
+    /// What drives the motor is permitted only if nothing speaks against it.
+    fn checked(&mut self, permit: Permit, seen: &Seen, counters: &Counters) -> Permit {
+        if !self.was_driven {
+            self.plausibility = Plausibility::default();
+        }
+        let found = self
+            .plausibility
+            .check(seen, &self.motor, self.speed_limit_rad_s);
+        match found {
+            None => permit,
+            Some(fault) => {
+                self.safety.fail(fault, counters);
+                Permit::Nothing
+            }
+        }
+    }
+
+    fn drive(
+        &mut self,
+        permit: Permit,
+        sampled: &Sampled,
+        rendered: &Rendered,
+        current_a: Option<f32>,
+    ) -> Outputs {
+        let torque_nm = match permit {
+            Permit::Nothing | Permit::Line => None,
+            Permit::Push(amperes) => Some(-amperes * self.motor.joint_constant()),
+            Permit::Torque => Some(rendered.torque_nm),
+        };
+        let bridge = match torque_nm {
+            None => self.motor.float(),
+            Some(torque_nm) => {
+                if !self.was_driven {
+                    self.motor.start(sampled.omega_rad_s);
+                }
+                self.motor.drive(torque_nm, current_a)
+            }
+        };
+        self.was_driven = torque_nm.is_some();
+        Outputs {
+            enable: permit != Permit::Nothing,
+            bridge,
+        }
+    }
+
+    fn sample(
+        &self,
+        permit: Permit,
+        sampled: &Sampled,
+        rendered: &Rendered,
+        current_a: Option<f32>,
+        is_late: bool,
+        counters: &Counters,
+    ) -> Sample {
+        let is_armed = permit == Permit::Torque;
+        let by_motor = match self.motor.limited_by() {
+            Some(Limit::Current) => LimitReason::Current,
+            Some(Limit::Voltage) => LimitReason::Voltage,
+            None => LimitReason::None,
+        };
+        let limit = match (is_armed, rendered.flags.limit()) {
+            (false, _) => LimitReason::NotArmed,
+            (true, LimitReason::None | LimitReason::NotArmed) => by_motor,
+            (true, reason) => reason,
+        };
+        for (counter, is_so) in [
+            (DriveCounter::LostSamples, sampled.lost_ticks > 0),
+            (DriveCounter::LateTicks, is_late),
+            (DriveCounter::MissedCurrents, current_a.is_none()),
+            (
+                DriveCounter::LimitedTicks,
+                is_armed && limit != LimitReason::None,
+            ),
+        ] {
+            if is_so {
+                counters.count(counter);
+            }
+        }
+        Sample {
+            count: sampled.count,
+            model_torque_nm: rendered.model_torque_nm,
+            torque_nm: if is_armed { rendered.torque_nm } else { 0.0 },
+            current_ma: current_a.map_or(NO_CURRENT, milliamperes),
+            flags: rendered
+                .flags
+                .with_limit(limit)
+                .with(SampleFlags::ENERGISED, is_armed)
+                .with(SampleFlags::LATE, is_late),
+        }
+    }
+}
+
+/// Rounded; held within what fits, and never [`NO_CURRENT`].
+fn milliamperes(current_a: f32) -> i16 {
+    let most = f32::from(i16::MAX);
+    let scaled = current_a * 1e3;
+    let rounded = (scaled + 0.5_f32.copysign(scaled)).min(most).max(-most);
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a cast from float saturates"
+    )]
+    let milliamperes = rounded as i16;
+    milliamperes
+}

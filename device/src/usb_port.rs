@@ -1,0 +1,210 @@
+//! The USB CDC-ACM port of the comms controller: bytes to and from the host.
+//!
+//! ```text
+//!   HostBytes::to_send ──▶ transmit store ──▶ IN endpoint ──▶ host     512 bytes, 64 in flight
+//!   HostBytes::received ◀── receive store ◀── OUT endpoint ◀── host     one packet at a time
+//! ```
+//! The same code runs in the firmware, on the OTG_FS peripheral, and in the simulator, on a
+//! software bus; only the [`UsbBus`] differs.
+//!
+//! [`UsbPort::poll`] is called from the USB interrupt and whenever there is something to send. It
+//! handles at most one event of the bus, moves what fits and returns: it never waits, so a host
+//! that does not read costs nothing but the bytes its end has to drop (and count) itself.
+//!
+//! Facts of `usbd-serial` 0.2 this file relies on or works round:
+//! - A transfer ends with a short packet. After a full packet that empties the transmit store the
+//!   next completion sends a zero-length packet, and every eleventh packet is a short one; so a
+//!   host sees every byte promptly without a further write, at any length.
+//! - Only a bus reset clears its stores. A host that unconfigures or suspends the device does
+//!   not, so this port does that itself.
+//! - `write` reports an endpoint's error after it has stored the bytes; see [`UsbPort::poll`].
+//! - DTR is remembered but means nothing here: what proves that a host is alive is its lease.
+//!
+//! What the end has handed over and the host has not read when it goes away is lost: at most the
+//! transmit store and one packet. Frames carry sequence numbers, so the gap is visible.
+
+use usb_device::bus::{UsbBus, UsbBusAllocator};
+use usb_device::class_prelude::UsbClass;
+use usb_device::device::UsbRev;
+use usb_device::prelude::{
+    BuilderError, StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDeviceState, UsbError,
+    UsbVidPid,
+};
+use usbd_serial::{SerialPort, USB_CLASS_CDC};
+
+/// The vendor id: the shared one for free projects (V-USB).
+pub const VENDOR_ID: u16 = 0x16c0;
+/// The product id: a CDC-ACM device under [`VENDOR_ID`], told apart by its strings.
+pub const PRODUCT_ID: u16 = 0x27dd;
+
+/// The largest packet of a full-speed bulk endpoint, bytes.
+const MAX_PACKET: usize = 64;
+/// Enough to keep the IN endpoint in full packets between two calls of `poll`, bytes.
+const TRANSMIT_STORE: usize = 8 * MAX_PACKET;
+/// `usb-device` writes a string's descriptor length into one byte without a check: 2 + 2·126.
+const MAX_STRING_UNITS: usize = 126;
+/// A ring buffer offers its content in two contiguous runs.
+const RUNS_PER_POLL: usize = 2;
+
+/// The end of the bytes, in the comms controller.
+pub trait HostBytes {
+    /// Bytes arrived from the host: one packet, at most 64 bytes.
+    fn received(&mut self, bytes: &[u8]);
+
+    /// What is to be sent next, as one contiguous run; empty if there is nothing.
+    fn to_send(&self) -> &[u8];
+
+    /// The first `count` bytes of [`to_send`](Self::to_send) have been taken.
+    fn sent(&mut self, count: usize);
+
+    /// The host has gone (bus reset, unconfigured, suspended, unplugged): half-sent and
+    /// half-received frames are worthless. Called once for each loss of a configured host.
+    fn host_lost(&mut self);
+}
+
+/// What the device tells a host about itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UsbIdentity<'a> {
+    /// Who made it.
+    pub manufacturer: &'a str,
+    /// What it is; a client looks for this one.
+    pub product: &'a str,
+    /// Which of them it is; gives the serial port its stable name.
+    pub serial_number: &'a str,
+}
+
+/// Why there is no port.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum UsbPortError {
+    /// A string of the identity has more than 126 UTF-16 units, the most a descriptor can hold.
+    StringTooLong {
+        /// The length of that string, UTF-16 units.
+        units: usize,
+    },
+    /// The device stack refused the description of the device.
+    Description(BuilderError),
+}
+
+/// The USB port: device stack and serial class.
+pub struct UsbPort<'b, B: UsbBus> {
+    device: UsbDevice<'b, B>,
+    serial: SerialPort<'b, B, [u8; MAX_PACKET], [u8; TRANSMIT_STORE]>,
+    configured: bool,
+}
+
+impl<'b, B: UsbBus> UsbPort<'b, B> {
+    /// Describes the device and enables the bus.
+    ///
+    /// `usb-device` panics if the allocator has already made a device or if the bus has too few
+    /// endpoints (it takes two IN and one OUT besides the control endpoint): call this once, at
+    /// start.
+    ///
+    /// # Errors
+    ///
+    /// A string of the identity that does not fit its descriptor.
+    pub fn new(
+        allocator: &'b UsbBusAllocator<B>,
+        identity: &UsbIdentity<'b>,
+    ) -> Result<Self, UsbPortError> {
+        for string in [
+            identity.manufacturer,
+            identity.product,
+            identity.serial_number,
+        ] {
+            let units = string.encode_utf16().count();
+            if units > MAX_STRING_UNITS {
+                return Err(UsbPortError::StringTooLong { units });
+            }
+        }
+        let strings = StringDescriptors::default()
+            .manufacturer(identity.manufacturer)
+            .product(identity.product)
+            .serial_number(identity.serial_number);
+        // The interfaces and endpoints must exist before the device freezes the allocator.
+        let serial = SerialPort::new_with_store(allocator, [0; MAX_PACKET], [0; TRANSMIT_STORE]);
+        let device = UsbDeviceBuilder::new(allocator, UsbVidPid(VENDOR_ID, PRODUCT_ID))
+            .device_class(USB_CLASS_CDC)
+            // 2.0, not the default 2.1: a 2.1 device owes the host capability descriptors.
+            .usb_rev(UsbRev::Usb200)
+            // The default, 8 bytes, makes enumeration eight times as chatty.
+            .max_packet_size_0(64)
+            .and_then(|builder| builder.strings(&[strings]))
+            .map_err(UsbPortError::Description)?
+            .build();
+        Ok(Self {
+            device,
+            serial,
+            configured: false,
+        })
+    }
+
+    /// Handles at most one event of the bus, then moves what fits in both directions.
+    ///
+    /// Bytes move only while the host has the device configured. When it no longer has, for
+    /// whatever reason, both stores are emptied and the end is told once. An unplugged device
+    /// with its own supply sees a bus that falls idle, which is a suspend; so a suspend counts as
+    /// a loss, and a host that only slept finds the end starting afresh.
+    ///
+    /// After an unconfiguration or a suspend without a bus reset, the packet already in the IN
+    /// endpoint (at most 64 bytes) still reaches the next reader: frames need a delimiter in front.
+    pub fn poll(&mut self, end: &mut impl HostBytes) {
+        self.device.poll(&mut [&mut self.serial]);
+        let configured = self.is_configured();
+        if self.configured && !configured {
+            self.start_afresh(end);
+        }
+        self.configured = configured;
+        self.receive(end);
+        if configured {
+            self.send(end);
+        }
+    }
+
+    /// Whether a host has configured the device, so that bytes can move.
+    pub fn is_configured(&self) -> bool {
+        self.device.state() == UsbDeviceState::Configured
+    }
+
+    /// Takes the packet that has arrived, if any; the endpoint can then accept the next.
+    fn receive(&mut self, end: &mut impl HostBytes) {
+        let mut packet = [0; MAX_PACKET];
+        let Ok(count) = self.serial.read(&mut packet) else {
+            return;
+        };
+        // A driver may keep a packet across a bus reset in its own buffer: without a configured
+        // host it is a leftover, taken only to free the endpoint.
+        if let Some(bytes) = packet.get(..count)
+            && self.configured
+        {
+            end.received(bytes);
+        }
+    }
+
+    fn send(&mut self, end: &mut impl HostBytes) {
+        for _ in 0..RUNS_PER_POLL {
+            let run = end.to_send();
+            if run.is_empty() {
+                break;
+            }
+            match self.serial.write(run) {
+                Ok(count) => end.sent(count),
+                Err(UsbError::WouldBlock) => break,
+                // The class may have stored bytes that it does not report as written. No endpoint
+                // of this device can fail so; if one did, a gap is better than repeated bytes.
+                Err(_) => {
+                    self.start_afresh(end);
+                    return;
+                }
+            }
+        }
+        // Normally the completion of a packet starts the next. Asking again costs little and
+        // restarts the chain where a completion was lost; "would block" is the usual answer.
+        let _still_sending = self.serial.flush();
+    }
+
+    fn start_afresh(&mut self, end: &mut impl HostBytes) {
+        UsbClass::<B>::reset(&mut self.serial);
+        end.host_lost();
+    }
+}
