@@ -1,16 +1,26 @@
-//! What makes a torque out of the device's command.
+//! What drives the shaft: what makes a torque out of the device's command, or
+//! the [bridge](crate::bridge), which knows voltages only.
 
-use crate::chain::Push;
+use crate::chain::{Push, Step, Verdict};
 use crate::ledger::{Account, Ledger};
 
 /// Drives the shaft.
-pub trait Actuator {
-    /// A new tick, with the torque that the device wants to show, N·m: T > 0
-    /// opposes growing angle.
-    fn command(&mut self, torque_nm: f64);
-
+pub trait Actuator: Send {
     /// What it does to the shaft over a step of `length_s`.
     fn fold(&mut self, length_s: f64) -> Push;
+
+    /// Looks at a solution in which the shaft turns with this mean velocity,
+    /// rad/s; see [`Verdict`].
+    ///
+    /// It is asked of an actuator whose type is known: one in a box has no
+    /// modes, and costs no question.
+    #[inline]
+    fn check(&mut self, _: &Step, _mean_rad_s: impl FnOnce() -> f64) -> Verdict
+    where
+        Self: Sized,
+    {
+        Verdict::Holds
+    }
 
     /// Torque that goes through the gear as the step begins, N·m.
     fn load_nm(&self) -> f64;
@@ -31,6 +41,53 @@ pub trait Actuator {
     fn write(&self, row: &mut Vec<f64>);
 }
 
+/// An actuator that is told a torque.
+pub trait Commanded: Actuator {
+    /// A new tick, with the torque that the device wants to show, N·m: T > 0
+    /// opposes growing angle.
+    fn command(&mut self, torque_nm: f64);
+}
+
+impl Actuator for Box<dyn Commanded> {
+    #[inline]
+    fn fold(&mut self, length_s: f64) -> Push {
+        self.as_mut().fold(length_s)
+    }
+
+    #[inline]
+    fn load_nm(&self) -> f64 {
+        self.as_ref().load_nm()
+    }
+
+    #[inline]
+    fn settle(&mut self, length_s: f64, mean_rad_s: f64) {
+        self.as_mut().settle(length_s, mean_rad_s);
+    }
+
+    fn absorbed_j(&self) -> f64 {
+        self.as_ref().absorbed_j()
+    }
+
+    fn book(&self, ledger: &mut Ledger) {
+        self.as_ref().book(ledger);
+    }
+
+    fn columns(&self) -> &'static [&'static str] {
+        self.as_ref().columns()
+    }
+
+    fn write(&self, row: &mut Vec<f64>) {
+        self.as_ref().write(row);
+    }
+}
+
+impl Commanded for Box<dyn Commanded> {
+    #[inline]
+    fn command(&mut self, torque_nm: f64) {
+        self.as_mut().command(torque_nm);
+    }
+}
+
 /// An actuator that does what it is told, at once.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Ideal {
@@ -38,11 +95,13 @@ pub struct Ideal {
     absorbed_j: f64,
 }
 
-impl Actuator for Ideal {
+impl Commanded for Ideal {
     fn command(&mut self, torque_nm: f64) {
         self.torque_nm = torque_nm;
     }
+}
 
+impl Actuator for Ideal {
     fn fold(&mut self, _: f64) -> Push {
         Push {
             torque_nm: -self.torque_nm,

@@ -2,7 +2,7 @@
 //!
 //! Everything is decided here, once: what is not listed leaves no part behind.
 
-use crate::actuator::{Actuator, Ideal};
+use crate::actuator::{Actuator, Commanded, Ideal};
 use crate::chain::{Chain, Shaft};
 use crate::effect::{Context, Effect, Given, Part, Stage};
 use crate::holder::{Holder, Prescribed, Released};
@@ -47,29 +47,45 @@ pub fn assemble(
     context: &Context,
     released: bool,
 ) -> Result<Assembled, SettingsError> {
-    let mut actuator: Box<dyn Actuator> = Box::new(Ideal::default());
+    let mut actuator: Box<dyn Commanded> = Box::new(Ideal::default());
+    let mut stages = Vec::new();
+    for Listed { effect, given } in listed {
+        match effect.part {
+            Part::Actuator(make) => actuator = make(given, context)?,
+            Part::Stage(make, column) => stages.push(NamedStage {
+                effect: effect.name,
+                column,
+                stage: make(given, context)?,
+            }),
+            Part::Joint | Part::Sensor | Part::Link(_) | Part::Holder(_) => {}
+        }
+    }
+    Ok(Assembled {
+        plant: assemble_with(listed, context, released, actuator),
+        stages,
+    })
+}
+
+/// The plant of `listed` with an actuator of its owner's: of the effects, those
+/// of the mechanics. What is the device's is left out.
+pub fn assemble_with<A: Actuator>(
+    listed: &[Listed],
+    context: &Context,
+    released: bool,
+    actuator: A,
+) -> Plant<A> {
     let mut chain: Box<dyn Chain> = Box::new(Shaft);
     let mut holder: Box<dyn Holder> = if released {
         Box::new(Released)
     } else {
         Box::new(Prescribed::new(context.start))
     };
-    let mut stages = Vec::new();
     for Listed { effect, given } in listed {
         match effect.part {
-            Part::Joint | Part::Sensor => {}
-            Part::Stage(make, column) => stages.push(NamedStage {
-                effect: effect.name,
-                column,
-                stage: make(given, context)?,
-            }),
-            Part::Actuator(make) => actuator = make(given, context)?,
             Part::Link(make) => chain = make(given, context, chain),
             Part::Holder(make) => holder = make(given, context, chain.as_ref()),
+            Part::Joint | Part::Sensor | Part::Stage(..) | Part::Actuator(_) => {}
         }
     }
-    Ok(Assembled {
-        plant: Plant::new(actuator, chain, holder, context.start),
-        stages,
-    })
+    Plant::new(actuator, chain, holder, context.start)
 }

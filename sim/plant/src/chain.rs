@@ -152,11 +152,17 @@ pub(crate) fn sense_of(x: f64) -> Sense {
     Sense::of(x).unwrap_or(Sense::Positive)
 }
 
+/// A torque as a function of an angle, N·m and rad.
+pub type Weight = Box<dyn Fn(f64) -> f64 + Send>;
+
 /// The chain up to one of its parts. `body` is the body at its right end; a
 /// part that separates bodies owns the one left of it.
-pub trait Chain {
+pub trait Chain: Send {
     /// What this and all left of it do to what is right of it.
     fn fold(&mut self, step: &Step, body: &Body) -> Push;
+
+    /// Mean velocity of the motor's shaft in a solution, rad/s.
+    fn shaft_mean_rad_s(&self, step: &Step, body: &Body, flow: Flow) -> f64;
 
     /// Looks at a solution; see [`Verdict`].
     fn check(&mut self, step: &Step, body: &Body, flow: Flow) -> Verdict;
@@ -191,7 +197,7 @@ pub trait Chain {
 
     /// The torque that the chain's own weight and the like exert on its right
     /// end at rest, as a function of the angle; none if there is no such part.
-    fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>>;
+    fn weight(&self) -> Option<Weight>;
 
     /// Books what each part stores now and has lost so far.
     fn book(&self, body: &Body, ledger: &mut Ledger);
@@ -214,6 +220,10 @@ impl Chain for Shaft {
     #[inline]
     fn fold(&mut self, step: &Step, _: &Body) -> Push {
         step.drive
+    }
+
+    fn shaft_mean_rad_s(&self, _: &Step, _: &Body, flow: Flow) -> f64 {
+        flow.omega_rad_s
     }
 
     #[inline]
@@ -245,7 +255,7 @@ impl Chain for Shaft {
 
     fn jerk(&mut self, _: &Body, _: f64) {}
 
-    fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
+    fn weight(&self) -> Option<Weight> {
         None
     }
 

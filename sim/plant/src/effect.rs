@@ -1,6 +1,6 @@
 //! What an effect is: a name, its numbers, and how it joins a plant.
 
-use crate::actuator::Actuator;
+use crate::actuator::Commanded;
 use crate::chain::{Body, Chain};
 use crate::holder::Holder;
 use crepitus_model::SettingsError;
@@ -76,7 +76,7 @@ pub struct Context {
 }
 
 /// Adds to the torque that the device commands, once a tick.
-pub trait Stage {
+pub trait Stage: Send {
     /// What to add to the command, N·m.
     fn tick(&mut self, seen: &Seen) -> f64;
 }
@@ -95,7 +95,7 @@ pub struct Seen {
 /// Makes a stage of the device.
 pub type MakeStage = fn(&Given, &Context) -> Result<Box<dyn Stage>, SettingsError>;
 /// Makes an actuator.
-pub type MakeActuator = fn(&Given, &Context) -> Result<Box<dyn Actuator>, SettingsError>;
+pub type MakeActuator = fn(&Given, &Context) -> Result<Box<dyn Commanded>, SettingsError>;
 /// Lengthens the chain.
 pub type MakeLink = fn(&Given, &Context, Box<dyn Chain>) -> Box<dyn Chain>;
 /// Makes what holds the chain's right end.

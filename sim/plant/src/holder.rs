@@ -39,7 +39,7 @@ pub struct Stretch {
 }
 
 /// Holds the right end.
-pub trait Holder {
+pub trait Holder: Send {
     /// The motion's velocity jumps, and takes along what it can of the chain.
     fn jump(&mut self, omega_rad_s: f64, body: &mut Body, chain: &mut dyn Chain);
 

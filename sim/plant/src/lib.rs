@@ -13,10 +13,12 @@
 //! | what an effect is, and the table of them | [`effect`], [`effects`] |
 //! | how listed effects become a plant | [`assembly`] |
 //! | how a plant is stepped | [`plant`], [`chain`], [`load`], [`actuator`], [`holder`] |
+//! | a motor that is driven by its terminals | [`winding`], [`bridge`] |
 //! | where its energy is | [`ledger`] |
 
 pub mod actuator;
 pub mod assembly;
+pub mod bridge;
 pub mod chain;
 pub mod effect;
 pub mod effects;
@@ -28,6 +30,7 @@ pub mod motion;
 pub mod piece;
 pub mod plant;
 pub mod recording;
+pub mod winding;
 
 pub use motion::Motion;
 pub use piece::{Piece, ShaftState};

@@ -1,11 +1,11 @@
 //! Torque on the body at the right end of a chain, and inertia that moves with
 //! it: the simplest part, and most effects of a leg are one.
 
-use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict};
+use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, Weight};
 use crate::ledger::{Account, Ledger};
 
 /// A torque that depends on the body's motion, and an inertia.
-pub trait Load {
+pub trait Load: Send {
     /// The effect that it belongs to.
     const NAME: &'static str;
     /// Its column: the torque, positive where it opposes growing angle.
@@ -23,7 +23,7 @@ pub trait Load {
 
     /// Its torque on a body at rest, N·m, as a function of the angle, if it
     /// has one: a hand that lifts the leg knows it.
-    fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
+    fn weight(&self) -> Option<Weight> {
         None
     }
 
@@ -82,6 +82,11 @@ impl<L: Load> Chain for Loaded<L> {
         }
     }
 
+    fn shaft_mean_rad_s(&self, step: &Step, body: &Body, flow: Flow) -> f64 {
+        let left = self.left_flow(flow);
+        self.left.shaft_mean_rad_s(step, body, left)
+    }
+
     fn check(&mut self, step: &Step, body: &Body, flow: Flow) -> Verdict {
         let left = self.left_flow(flow);
         self.left.check(step, body, left)
@@ -123,7 +128,7 @@ impl<L: Load> Chain for Loaded<L> {
         self.left.jerk(body, change_rad_s);
     }
 
-    fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
+    fn weight(&self) -> Option<Weight> {
         match (self.left.weight(), self.load.weight()) {
             (Some(left), Some(own)) => Some(Box::new(move |angle| left(angle) + own(angle))),
             (left, own) => left.or(own),

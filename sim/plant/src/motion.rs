@@ -5,6 +5,10 @@
 //! jump. Periodic motions are computed where they are asked for: no motion
 //! grows with the length of the run, but a recording with its file.
 
+mod rest;
+
+pub use rest::STOP_S;
+
 use crate::piece::{Curve, Piece, ShaftState};
 use crate::recording::CubicSegment;
 

@@ -1,6 +1,6 @@
 //! A plant: actuator, chain and holder, stepped together.
 
-use crate::actuator::Actuator;
+use crate::actuator::{Actuator, Commanded};
 use crate::chain::{Body, Chain, Flow, Step, Verdict};
 use crate::holder::{Holder, MotionStep, Stretch};
 use crate::ledger::Ledger;
@@ -19,9 +19,10 @@ const LOOKS_PER_END: u32 = 8;
 /// The shortest part of a step that an end of a mode can cut off.
 const SHORTEST: f64 = 1e-6;
 
-/// A coupled plant.
-pub struct Plant {
-    actuator: Box<dyn Actuator>,
+/// A coupled plant. Its actuator is the one that a scene lists, in a box, or of
+/// a type that its owner knows and can reach.
+pub struct Plant<A = Box<dyn Commanded>> {
+    actuator: A,
     chain: Box<dyn Chain>,
     holder: Box<dyn Holder>,
     /// The body at the right end of the chain.
@@ -36,10 +37,17 @@ struct Solution {
     flow: Flow,
 }
 
-impl Plant {
+impl<A: Commanded> Plant<A> {
+    /// A new tick, with the torque that the device wants to show, N·m.
+    pub fn command(&mut self, torque_nm: f64) {
+        self.actuator.command(torque_nm);
+    }
+}
+
+impl<A: Actuator> Plant<A> {
     /// Couples the parts; the right end begins at `start`.
     pub fn new(
-        actuator: Box<dyn Actuator>,
+        actuator: A,
         mut chain: Box<dyn Chain>,
         holder: Box<dyn Holder>,
         start: Body,
@@ -56,9 +64,14 @@ impl Plant {
         plant
     }
 
-    /// A new tick, with the torque that the device wants to show, N·m.
-    pub fn command(&mut self, torque_nm: f64) {
-        self.actuator.command(torque_nm);
+    /// Its actuator.
+    pub fn actuator(&self) -> &A {
+        &self.actuator
+    }
+
+    /// Its actuator, to be told something between two steps.
+    pub fn actuator_mut(&mut self) -> &mut A {
+        &mut self.actuator
     }
 
     /// Between two steps the motion's velocity jumps.
@@ -136,13 +149,24 @@ impl Plant {
     fn look(&mut self, stretch: &Stretch) -> (Solution, Option<f64>) {
         for _ in 1..CHANGES_PER_FOLD {
             let solution = self.solve(stretch);
-            match self.chain.check(&solution.step, &self.body, solution.flow) {
+            match self.check(&solution) {
                 Verdict::Holds => return (solution, None),
                 Verdict::EndsAt(fraction) => return (solution, Some(fraction)),
                 Verdict::Again => {}
             }
         }
         (self.solve(stretch), None)
+    }
+
+    #[inline]
+    fn check(&mut self, Solution { step, flow }: &Solution) -> Verdict {
+        let shaft = || self.chain.shaft_mean_rad_s(step, &self.body, *flow);
+        let own = self.actuator.check(step, shaft);
+        if own == Verdict::Again {
+            // The chain would look at what will not be.
+            return own;
+        }
+        own.and(self.chain.check(step, &self.body, *flow))
     }
 
     fn solve(&mut self, stretch: &Stretch) -> Solution {

@@ -12,6 +12,7 @@
 //! |---|---|
 //! | the form of a scene file, its checks and errors | [`scene`], [`error`] |
 //! | the loop, the totals, the summary | [`mod@run`] |
+//! | the motion step by step, for who steps a plant himself | [`walk`] |
 //! | columns, rows and events | [`trace`] |
 //! | the files of a run, written whole or not at all | [`output`] |
 //! | the event-driven solver without a step | [`mod@reference`] |
@@ -23,7 +24,9 @@ pub mod reference;
 pub mod run;
 pub mod scene;
 pub mod trace;
+pub mod walk;
 
 pub use error::SceneError;
 pub use run::{Observer, RunError, Summary, run};
 pub use scene::{Overrides, Scene};
+pub use walk::Walk;

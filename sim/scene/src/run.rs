@@ -226,35 +226,3 @@ pub fn step_s(scene: &Scene) -> f64 {
 fn whole(x: f64) -> u64 {
     x as u64
 }
-
-/// The time of step `n`: by division where the rate is a whole number, so that
-/// 20,000 steps of 50 µs are one second to the bit.
-struct Clock {
-    step_s: f64,
-    rate_hz: Option<f64>,
-}
-
-impl Clock {
-    fn new(step_s: f64) -> Self {
-        let rate = 1.0 / step_s;
-        let whole = (rate - rate.round()).abs() <= 1e-9 * rate;
-        Self {
-            step_s,
-            rate_hz: whole.then_some(rate.round()),
-        }
-    }
-
-    #[inline]
-    #[expect(
-        clippy::cast_precision_loss,
-        clippy::cast_possible_wrap,
-        reason = "below 2^53; a signed number converts in one instruction"
-    )]
-    fn time_s(&self, n: u64) -> f64 {
-        let n = n as i64 as f64;
-        match self.rate_hz {
-            Some(rate) => n / rate,
-            None => n * self.step_s,
-        }
-    }
-}

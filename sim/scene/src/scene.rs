@@ -2,26 +2,26 @@
 
 mod effects;
 mod motion;
+mod solver;
+mod variants;
 
 pub use motion::MotionKind;
+pub use solver::{Precision, SolverChoice};
 
 use crate::document::{Document, Range, Section};
 use crate::error::SceneError;
 use crepitus_model::encoder::EncoderSettings;
-use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
-use crepitus_plant::Motion;
-use crepitus_plant::assembly::{Assembled, Listed, assemble};
+use crepitus_plant::actuator::Actuator;
+use crepitus_plant::assembly::{Assembled, Listed, assemble, assemble_with};
 use crepitus_plant::chain::Body;
-use crepitus_plant::effect::{Context, Effect, Given, Part};
-use crepitus_plant::effects::EFFECTS;
+use crepitus_plant::effect::{Context, Effect, Given};
+use crepitus_plant::{Motion, Plant};
+use solver::{REFERENCE, read_solver, read_trace_step};
 use std::path::{Path, PathBuf};
 
 /// The only version of scene files so far.
 pub const SCENE_VERSION: u32 = 1;
-
-/// The most steps of one run, and the most rows of one trace.
-const MOST_STEPS: f64 = 1e12;
 
 /// What is to be simulated.
 #[derive(Clone, Debug)]
@@ -63,62 +63,6 @@ pub struct Crepitus {
     pub preset: Option<&'static str>,
     /// The settings in force.
     pub settings: Validated<Settings>,
-}
-
-/// How the joint is integrated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SolverChoice {
-    /// From event to event on the true motion, in f64.
-    Reference,
-    /// A rung of the ladder.
-    Ladder {
-        /// The rung.
-        solver: Solver,
-        /// Its step, s.
-        step_s: f64,
-        /// Its precision.
-        precision: Precision,
-    },
-}
-
-/// The numbers that the model computes with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Precision {
-    /// Single, as on the device.
-    F32,
-    /// Double.
-    F64,
-}
-
-impl SolverChoice {
-    /// Names of all solvers, cheapest first.
-    pub fn names() -> impl Iterator<Item = &'static str> {
-        Solver::ALL.iter().map(|s| s.name()).chain([REFERENCE])
-    }
-
-    /// Name in scene files.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Reference => REFERENCE,
-            Self::Ladder { solver, .. } => solver.name(),
-        }
-    }
-}
-
-/// Name of the event-driven solver.
-const REFERENCE: &str = "reference";
-
-impl Precision {
-    /// Both precisions, the device's first.
-    pub const ALL: [Self; 2] = [Self::F32, Self::F64];
-
-    /// Name in scene files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-        }
-    }
 }
 
 /// What the command line changes in a scene.
@@ -241,9 +185,20 @@ impl Scene {
     /// # Errors
     /// [`SettingsError`] if a number of the device does not go with the step.
     pub fn assemble(&self) -> Result<Assembled, SettingsError> {
-        let (angle_rad, omega_rad_s) = self.motion.piece(0.0).angle_and_velocity(0.0);
-        let context = Context {
-            tick_s: crate::run::step_s(self),
+        let tick_s = crate::run::step_s(self);
+        assemble(&self.listed, &self.context(tick_s), !self.is_held())
+    }
+
+    /// The plant with an actuator of the caller's, who has a device of his own
+    /// with this tick: of the effects, those of the mechanics.
+    pub fn assemble_with<A: Actuator>(&self, tick_s: f64, actuator: A) -> Plant<A> {
+        let context = self.context(tick_s);
+        assemble_with(&self.listed, &context, !self.is_held(), actuator)
+    }
+
+    fn context(&self, tick_s: f64) -> Context {
+        Context {
+            tick_s,
             single: matches!(
                 self.solver,
                 SolverChoice::Ladder {
@@ -251,12 +206,27 @@ impl Scene {
                     ..
                 }
             ),
-            start: Body {
-                angle_rad,
-                omega_rad_s,
-            },
-        };
-        assemble(&self.listed, &context, !self.is_held())
+            start: self.start(),
+        }
+    }
+
+    /// How the motion begins.
+    pub fn start(&self) -> Body {
+        crate::walk::body(&self.motion.piece(0.0), 0.0)
+    }
+
+    /// The motion for as long as it takes: one that ends comes to rest where
+    /// the scene ends; see [`Motion::resting_after`].
+    pub fn endless_motion(&self) -> Motion {
+        self.motion.clone().resting_after(self.duration_s)
+    }
+
+    /// What it gives for an effect of the plant, or the effect's defaults.
+    pub fn given(&self, effect: &Effect) -> Given {
+        self.listed
+            .iter()
+            .find(|l| l.effect.name == effect.name)
+            .map_or_else(|| Given::defaults(effect), |l| l.given.clone())
     }
 
     /// Whether it has a plant, so that the shaft does what comes of it;
@@ -268,97 +238,6 @@ impl Scene {
     /// Whether the motion, or a hand after it, holds the leg.
     pub fn is_held(&self) -> bool {
         self.motion_kind != MotionKind::Released
-    }
-
-    /// The effects that the scene calls for, in the order of the table.
-    pub fn effects(&self) -> Vec<&'static Effect> {
-        EFFECTS
-            .iter()
-            .copied()
-            .filter(|e| self.has(e.name))
-            .collect()
-    }
-
-    /// Whether it calls for an effect.
-    pub fn has(&self, effect: &str) -> bool {
-        EFFECTS
-            .iter()
-            .find(|e| e.name == effect)
-            .is_some_and(|e| match e.part {
-                Part::Joint => self.crepitus.is_some(),
-                Part::Sensor => self.encoder.is_some(),
-                _ => self.listed.iter().any(|l| l.effect.name == effect),
-            })
-    }
-
-    /// The scene with only the first `count` effects of its plant, which need
-    /// none of the later ones.
-    pub fn first(&self, count: usize) -> Self {
-        let mut scene = self.clone();
-        scene.listed.truncate(count);
-        if scene.listed.is_empty() {
-            scene.substeps = 1;
-        }
-        scene
-    }
-
-    /// The scene without an effect and without those that need it; none if
-    /// its motion needs the effect.
-    pub fn without(&self, effect: &Effect) -> Option<Self> {
-        if effect.name == "limb" && self.motion_kind == MotionKind::Released {
-            return None;
-        }
-        let mut scene = self.clone();
-        match effect.part {
-            Part::Joint => scene.crepitus = None,
-            Part::Sensor => scene.encoder = None,
-            _ => scene.listed.retain(|l| l.effect.name != effect.name),
-        }
-        scene.warnings.clear();
-        if scene.listed.is_empty() {
-            scene.substeps = 1;
-        }
-        let dependent = scene
-            .effects()
-            .into_iter()
-            .find(|other| other.needs.iter().any(|n| n.effect == effect.name));
-        match dependent {
-            None => Some(scene),
-            Some(other) => scene.without(other)?.without(effect),
-        }
-    }
-
-    /// The scene with an effect at its defaults, and with those that it needs;
-    /// none if the motion or the solver does not allow it.
-    pub fn with(&self, effect: &'static Effect) -> Option<Self> {
-        if self.has(effect.name) {
-            return Some(self.clone());
-        }
-        if self.solver == SolverChoice::Reference || (!self.is_held() && effect.name == "hand") {
-            return None;
-        }
-        let mut scene = self.clone();
-        for need in effect.needs {
-            scene = scene.with(crepitus_plant::effects::find(need.effect)?)?;
-        }
-        match effect.part {
-            Part::Joint => {
-                scene.crepitus = Some(Crepitus {
-                    preset: None,
-                    settings: Settings::default().validate().ok()?,
-                });
-            }
-            Part::Sensor => scene.encoder = Some(EncoderSettings::default()),
-            _ => {
-                scene.listed.push(Listed {
-                    effect,
-                    given: Given::defaults(effect),
-                });
-                let place = |name| EFFECTS.iter().position(|e| e.name == name);
-                scene.listed.sort_by_key(|l| place(l.effect.name));
-            }
-        }
-        scene.assemble().is_ok().then_some(scene)
     }
 }
 
@@ -405,111 +284,6 @@ impl Overrides {
         }
         Ok(())
     }
-}
-
-fn read_solver(section: &Section<'_>) -> Result<(SolverChoice, u32), SceneError> {
-    let ladder = Solver::ALL.map(|s| (s.name(), Some(s)));
-    let names: Vec<_> = ladder.into_iter().chain([(REFERENCE, None)]).collect();
-    let kind = section.choice("kind", &names)?;
-    let step_s = section.optional_number("step_s", Range::above(0.0, 1.0))?;
-    let precisions = [Precision::F32, Precision::F64].map(|p| (p.name(), p));
-    let precision = section.optional_choice("precision", &precisions)?;
-    let substeps = read_substeps(section)?;
-    section.finish()?;
-    let choice = match kind {
-        None => {
-            if step_s.is_some() {
-                return Err(section.key_error("step_s", "\"reference\" has no step: leave it out"));
-            }
-            if precision == Some(Precision::F32) {
-                return Err(section.key_error("precision", "\"reference\" computes in f64 only"));
-            }
-            SolverChoice::Reference
-        }
-        Some(solver) => SolverChoice::Ladder {
-            solver,
-            step_s: step_s.ok_or_else(|| {
-                section.key_error(
-                    "step_s",
-                    format!(
-                        "this key is missing: \"{}\" needs a step in seconds, for example 5e-5",
-                        solver.name()
-                    ),
-                )
-            })?,
-            precision: precision.unwrap_or(Precision::F64),
-        },
-    };
-    Ok((choice, substeps))
-}
-
-/// Steps of the plant in one of the solver: the device's tick stays what it
-/// is.
-fn read_substeps(section: &Section<'_>) -> Result<u32, SceneError> {
-    match section.optional_number("substeps", Range::closed(1.0, 1000.0))? {
-        None => Ok(1),
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "whole and in range"
-        )]
-        Some(x) if x.fract() == 0.0 => Ok(x as u32),
-        Some(x) => Err(section.key_error("substeps", format!("{x} is not a whole number"))),
-    }
-}
-
-/// Time between trace rows: a whole number of solver steps.
-fn read_trace_step(
-    output: Option<&Section<'_>>,
-    solver_section: &Section<'_>,
-    solver: SolverChoice,
-    duration_s: f64,
-) -> Result<f64, SceneError> {
-    /// Of `reference`, which has no step of its own: the device's tick.
-    const DEFAULT_STEP_S: f64 = 5e-5;
-    let wanted = match output {
-        None => None,
-        Some(section) => {
-            let step = section.optional_number("trace_step_s", Range::above(0.0, 1e7))?;
-            section.finish()?;
-            step
-        }
-    };
-    let refuse = |message: String| match (output, wanted) {
-        (Some(section), Some(_)) => section.key_error("trace_step_s", message),
-        _ => solver_section.key_error("step_s", message),
-    };
-    let step_s = match solver {
-        SolverChoice::Reference => wanted.unwrap_or(DEFAULT_STEP_S),
-        SolverChoice::Ladder { step_s, .. } => {
-            if duration_s / step_s > MOST_STEPS {
-                return Err(solver_section.key_error(
-                    "step_s",
-                    format!("{step_s} s makes more than {MOST_STEPS:e} steps of {duration_s} s"),
-                ));
-            }
-            if duration_s < step_s * (1.0 - 1e-9) {
-                return Err(solver_section.key_error(
-                    "step_s",
-                    format!("a step of {step_s} s is longer than the run of {duration_s} s"),
-                ));
-            }
-            let wanted = wanted.unwrap_or(step_s);
-            let steps = wanted / step_s;
-            if steps < 0.5 || (steps - steps.round()).abs() > 1e-6 * steps {
-                return Err(refuse(format!(
-                    "{wanted} s is not a whole number of steps of {step_s} s"
-                )));
-            }
-            wanted
-        }
-    };
-    if duration_s / step_s > MOST_STEPS {
-        return Err(refuse(format!(
-            "{step_s} s makes more than {MOST_STEPS:e} rows of {duration_s} s"
-        )));
-    }
-    Ok(step_s)
 }
 
 /// `physical` turns each kink of a recording's acceleration into torque.

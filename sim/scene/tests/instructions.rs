@@ -148,7 +148,10 @@ fn is_of(effect: &Effect, function: &str) -> bool {
         "bone-shaping" => "crepitus_model::bone_shaping",
         _ => "no such function",
     };
-    function.contains(&format!("crepitus_plant::effects::{file}::")) || function.contains(model)
+    let winding = effect.name == "motor" && function.contains("crepitus_plant::winding");
+    winding
+        || function.contains(&format!("crepitus_plant::effects::{file}::"))
+        || function.contains(model)
 }
 
 #[test]

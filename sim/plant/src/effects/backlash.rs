@@ -14,7 +14,7 @@
 //!
 //! β is 1.0°: average no-load backlash of the GP 32 A.
 
-use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, sense_of};
+use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, Weight, sense_of};
 use crate::effect::{Effect, Need, Part, numbers};
 use crate::ledger::{Account, Ledger};
 use crepitus_model::Sense;
@@ -98,6 +98,14 @@ impl Backlash {
         }
     }
 
+    /// The solution for a rotor on its own.
+    fn alone(&self) -> Flow {
+        Flow {
+            omega_rad_s: self.rotor_mean_rad_s,
+            torque_nm: 0.0,
+        }
+    }
+
     /// Where in the step an open gap closes, as a fraction of it.
     fn closes(&self, step: &Step, rotor: &Body, joint: &Body, joint_mean: f64) -> Option<f64> {
         let mean = self.rotor_mean_rad_s - joint_mean;
@@ -160,6 +168,15 @@ impl Chain for Backlash {
         Push::default()
     }
 
+    fn shaft_mean_rad_s(&self, step: &Step, body: &Body, flow: Flow) -> f64 {
+        let rotor = self.rotor(body);
+        let flow = match self.contact {
+            Some(_) => flow,
+            None => self.alone(),
+        };
+        self.left.shaft_mean_rad_s(step, &rotor, flow)
+    }
+
     fn check(&mut self, step: &Step, body: &Body, flow: Flow) -> Verdict {
         let rotor = self.rotor(body);
         self.found = None;
@@ -175,10 +192,7 @@ impl Chain for Backlash {
             }
             return left;
         }
-        let alone = Flow {
-            omega_rad_s: self.rotor_mean_rad_s,
-            torque_nm: 0.0,
-        };
+        let alone = self.alone();
         let left = self.left.check(step, &rotor, alone);
         self.found = self.closes(step, &rotor, body, flow.omega_rad_s);
         left.and(self.found.map_or(Verdict::Holds, Verdict::EndsAt))
@@ -198,10 +212,7 @@ impl Chain for Backlash {
             self.rotor_rad_s = next.omega_rad_s;
             return settled;
         }
-        let alone = Flow {
-            omega_rad_s: self.rotor_mean_rad_s,
-            torque_nm: 0.0,
-        };
+        let alone = self.alone();
         let mut rotor_next = rotor.after(step.length_s, self.rotor_mean_rad_s);
         let mut settled = self
             .left
@@ -246,7 +257,7 @@ impl Chain for Backlash {
         }
     }
 
-    fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
+    fn weight(&self) -> Option<Weight> {
         self.left.weight()
     }
 

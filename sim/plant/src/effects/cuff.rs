@@ -15,7 +15,7 @@
 //! through its tail. The brace turns about the knee's axis only; it cannot
 //! pull the shank along its length.
 
-use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict};
+use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, Weight};
 use crate::effect::{Effect, Part, numbers};
 use crate::ledger::{Account, Ledger};
 use crepitus_model::parameters::ParameterSpec;
@@ -110,8 +110,7 @@ impl Cuff {
     /// What is left of the brace does this to it.
     fn left_flow(&self, step: &Step, leg: &Body, flow: Flow) -> Flow {
         let mean = self.brace_mean(step, leg, flow.omega_rad_s);
-        let own =
-            step.inertial_slope(self.inertia_kg_m2) * (self.brace.omega_rad_s - mean);
+        let own = step.inertial_slope(self.inertia_kg_m2) * (self.brace.omega_rad_s - mean);
         let (elastic, slope) = self.spring(step, leg);
         Flow {
             omega_rad_s: mean,
@@ -122,10 +121,10 @@ impl Cuff {
 
 impl Chain for Cuff {
     fn fold(&mut self, step: &Step, body: &Body) -> Push {
-        self.push = self
-            .left
-            .fold(step, &self.brace)
-            .with_inertia(self.inertia_kg_m2, step, &self.brace);
+        self.push =
+            self.left
+                .fold(step, &self.brace)
+                .with_inertia(self.inertia_kg_m2, step, &self.brace);
         let (elastic, slope) = self.spring(step, body);
         if self.push.held_by_nm.is_some() {
             return Push {
@@ -140,6 +139,11 @@ impl Chain for Cuff {
             slope_nms: share * self.push.slope_nms,
             held_by_nm: None,
         }
+    }
+
+    fn shaft_mean_rad_s(&self, step: &Step, body: &Body, flow: Flow) -> f64 {
+        let left = self.left_flow(step, body, flow);
+        self.left.shaft_mean_rad_s(step, &self.brace, left)
     }
 
     fn check(&mut self, step: &Step, body: &Body, flow: Flow) -> Verdict {
@@ -186,7 +190,7 @@ impl Chain for Cuff {
 
     fn jerk(&mut self, _: &Body, _: f64) {}
 
-    fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
+    fn weight(&self) -> Option<Weight> {
         self.left.weight()
     }
 

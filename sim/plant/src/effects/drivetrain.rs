@@ -15,7 +15,7 @@
 //! the actuator's torque as the step begins; that of the rotor's own inertia
 //! is not counted in.
 
-use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, sense_of};
+use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, Weight, sense_of};
 use crate::effect::{Effect, Part, numbers};
 use crate::ledger::{Account, Ledger};
 use crepitus_model::Sense;
@@ -121,8 +121,8 @@ impl Drivetrain {
 
     /// What is left of the rotor does this to it.
     fn left_flow(&self, step: &Step, body: &Body, flow: Flow) -> Flow {
-        let own = self.inertial_nm(step, body, flow.omega_rad_s)
-            + self.friction_of(step, body, flow);
+        let own =
+            self.inertial_nm(step, body, flow.omega_rad_s) + self.friction_of(step, body, flow);
         Flow {
             torque_nm: flow.torque_nm - own,
             ..flow
@@ -164,15 +164,19 @@ impl Drivetrain {
 
 impl Chain for Drivetrain {
     fn fold(&mut self, step: &Step, body: &Body) -> Push {
-        let mut push =
-            self.left
-                .fold(step, body)
-                .with_inertia(self.inertia_kg_m2, step, body);
+        let mut push = self
+            .left
+            .fold(step, body)
+            .with_inertia(self.inertia_kg_m2, step, body);
         match self.mode {
             Mode::Held => push.held_by_nm = Some(self.limit_nm(step)),
             Mode::Sliding(sense) => push.torque_nm -= sense.of_signed(self.limit_nm(step)),
         }
         push
+    }
+
+    fn shaft_mean_rad_s(&self, step: &Step, body: &Body, flow: Flow) -> f64 {
+        self.left.shaft_mean_rad_s(step, body, flow)
     }
 
     fn check(&mut self, step: &Step, body: &Body, flow: Flow) -> Verdict {
@@ -200,8 +204,7 @@ impl Chain for Drivetrain {
     ) -> Settled {
         self.shown_nm = -self.friction_of(step, body, flow);
         if let Mode::Sliding(sense) = self.mode {
-            self.lost_j +=
-                self.limit_nm(step) * step.length_s * sense.of_signed(flow.omega_rad_s);
+            self.lost_j += self.limit_nm(step) * step.length_s * sense.of_signed(flow.omega_rad_s);
         }
         let left = self.left_flow(step, body, flow);
         let settled = self.left.settle(step, body, next, left, ends_at);
@@ -232,7 +235,7 @@ impl Chain for Drivetrain {
         self.left.jerk(body, change_rad_s);
     }
 
-    fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
+    fn weight(&self) -> Option<Weight> {
         self.left.weight()
     }
 

@@ -15,7 +15,7 @@
 //! Who lifts a leg knows its weight: if the scene has a `limb`, the hand adds
 //! the torque that holds it at the intended angle, so the leg does not sag.
 
-use crate::chain::{Body, Chain, Flow, Push, Settled};
+use crate::chain::{Body, Chain, Flow, Push, Settled, Weight};
 use crate::effect::{Effect, Part, numbers};
 use crate::holder::{Holder, MotionStep, Stretch};
 use crate::ledger::{Account, Ledger};
@@ -85,7 +85,13 @@ pub const EFFECT: Effect = Effect {
         };
         match chain.weight() {
             None => Box::new(Hand { arm, lift: () }),
-            Some(weight) => Box::new(Hand { arm, lift: Lifts { weight, given_j: 0.0 } }),
+            Some(weight) => Box::new(Hand {
+                arm,
+                lift: Lifts {
+                    weight,
+                    given_j: 0.0,
+                },
+            }),
         }
     }),
 };
@@ -105,7 +111,7 @@ struct Arm {
 }
 
 /// What a hand does about the leg's weight.
-trait Lift {
+trait Lift: Send {
     /// Torque that holds the leg at an angle, N·m.
     fn torque_nm(&self, angle_rad: f64) -> f64;
     /// Notes work done.
@@ -127,7 +133,7 @@ impl Lift for () {
 
 /// Lifts it.
 struct Lifts {
-    weight: Box<dyn Fn(f64) -> f64>,
+    weight: Weight,
     given_j: f64,
 }
 
@@ -216,8 +222,8 @@ impl<L: Lift> Holder for Hand<L> {
         arm.given_j += pull * intent.omega_rad_s * h;
         arm.lost_j += arm.damping * slip * slip * h;
         // With the jump of an impact, which the mean of the step has not.
-        arm.felt_nms += (pull + intent.lift_nm) * h
-            - arm.inertia_kg_m2 * (next.omega_rad_s - body.omega_rad_s);
+        arm.felt_nms +=
+            (pull + intent.lift_nm) * h - arm.inertia_kg_m2 * (next.omega_rad_s - body.omega_rad_s);
         self.lift.did(intent.lift_nm * w * h);
         *body = next;
     }

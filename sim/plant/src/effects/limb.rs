@@ -39,7 +39,7 @@ mod passive;
 
 pub use passive::Passive;
 
-use crate::chain::{Body, Push, Step};
+use crate::chain::{Body, Push, Step, Weight};
 use crate::effect::{ChoiceSpec, Effect, Part, numbers};
 use crate::ledger::{Account, Ledger};
 use crate::load::{Load, Loaded};
@@ -134,7 +134,7 @@ fn posture(choice: usize) -> (f64, f64) {
 }
 
 /// A torque that depends on the angle alone.
-trait AngleTorque: Copy + 'static {
+trait AngleTorque: Copy + Send + 'static {
     /// Torque, N·m, its slope, N·m/rad, and its bend, N·m/rad².
     fn expand(&self, angle_rad: f64) -> [f64; 3];
     /// The energy that it stores, J.
@@ -233,7 +233,7 @@ impl<T: AngleTorque> Load for Limb<T> {
         self.outside |= !(low..=high).contains(&next.angle_rad);
     }
 
-    fn weight(&self) -> Option<Box<dyn Fn(f64) -> f64>> {
+    fn weight(&self) -> Option<Weight> {
         let torque = self.torque;
         Some(Box::new(move |angle| torque.expand(angle)[0]))
     }

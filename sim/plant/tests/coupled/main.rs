@@ -2,6 +2,7 @@
 //! results and conservation laws. `-- --nocapture` prints the numbers found.
 
 mod backlash;
+mod bridge;
 mod convergence;
 mod cuff;
 mod drivetrain;

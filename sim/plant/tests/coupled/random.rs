@@ -2,6 +2,7 @@
 
 use crate::support::{Build, Rig, TICK_S, knot};
 use crepitus_plant::Motion;
+use crepitus_plant::bridge::Bridge;
 use crepitus_plant::motion::Strokes;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -18,6 +19,11 @@ impl Case {
     /// The plant; with a sign of −1 its mirror image.
     pub(crate) fn rig(&self, sign: f64) -> Rig {
         self.build.on(self.moves.motion(sign))
+    }
+
+    /// The plant on a bridge.
+    pub(crate) fn rig_on_bridge(&self, sign: f64) -> Rig<Bridge> {
+        self.build.on_bridge(self.moves.motion(sign))
     }
 }
 

@@ -1,9 +1,12 @@
 //! A plant from names and numbers, stepped as a scene steps it.
 
-use crepitus_plant::assembly::{Listed, assemble};
+use crepitus_plant::actuator::{Actuator, Commanded};
+use crepitus_plant::assembly::{Listed, assemble, assemble_with};
+use crepitus_plant::bridge::Bridge;
 use crepitus_plant::chain::Body;
 use crepitus_plant::effect::{Context, Given};
 use crepitus_plant::effects::EFFECTS;
+use crepitus_plant::effects::motor::{self, MotorNumbers};
 use crepitus_plant::holder::MotionStep;
 use crepitus_plant::{Motion, Piece, Plant};
 use proptest::test_runner::{Config, RngSeed};
@@ -117,16 +120,35 @@ impl Build {
     }
 
     pub(crate) fn on(&self, motion: Motion) -> Rig {
-        let piece = motion.piece(0.0);
-        let now = body(&piece, 0.0);
-        let context = Context {
+        let context = self.context(&motion);
+        let assembled = assemble(&self.listed, &context, self.released);
+        let plant = assembled.expect("numbers within their ranges").plant;
+        self.rig(plant, motion)
+    }
+
+    /// With a bridge that the test switches, on the motor's winding.
+    pub(crate) fn on_bridge(&self, motion: Motion) -> Rig<Bridge> {
+        let context = self.context(&motion);
+        let listed = self.listed.iter().find(|l| l.effect.name == "motor");
+        let motor = listed.map_or_else(
+            || MotorNumbers::of(&Given::defaults(&motor::EFFECT)),
+            |l| MotorNumbers::of(&l.given),
+        );
+        let bridge = Bridge::new(motor, TICK_S / f64::from(self.substeps));
+        let plant = assemble_with(&self.listed, &context, self.released, bridge);
+        self.rig(plant, motion)
+    }
+
+    fn context(&self, motion: &Motion) -> Context {
+        Context {
             tick_s: TICK_S,
             single: false,
-            start: self.start.unwrap_or(now),
-        };
-        let plant = assemble(&self.listed, &context, self.released)
-            .expect("numbers within their ranges")
-            .plant;
+            start: self.start.unwrap_or(body(&motion.piece(0.0), 0.0)),
+        }
+    }
+
+    fn rig<A: Actuator>(&self, plant: Plant<A>, motion: Motion) -> Rig<A> {
+        let piece = motion.piece(0.0);
         let columns = plant.columns();
         Rig {
             plant,
@@ -135,7 +157,7 @@ impl Build {
             parts: self.substeps,
             columns,
             steps: 0,
-            now,
+            now: body(&piece, 0.0),
             felt_nm: 0.0,
             mid: Vec::new(),
         }
@@ -156,8 +178,8 @@ fn body(piece: &Piece, time_s: f64) -> Body {
 }
 
 /// A plant and the motion that it is stepped against.
-pub(crate) struct Rig {
-    pub(crate) plant: Plant,
+pub(crate) struct Rig<A = Box<dyn Commanded>> {
+    pub(crate) plant: Plant<A>,
     motion: Motion,
     piece: Piece,
     parts: u32,
@@ -171,7 +193,7 @@ pub(crate) struct Rig {
     mid: Vec<f64>,
 }
 
-impl Rig {
+impl<A: Commanded> Rig<A> {
     /// One tick with the device asking for `torque_nm`.
     pub(crate) fn tick(&mut self, torque_nm: f64) {
         let felt = self.plant.felt_nms();
@@ -192,8 +214,11 @@ impl Rig {
             self.tick(torque_nm);
         }
     }
+}
 
-    fn step(&mut self) {
+impl<A: Actuator> Rig<A> {
+    /// One step of a tick.
+    pub(crate) fn step(&mut self) {
         self.steps += 1;
         let time_s = self.time_s();
         while self.piece.end_s < time_s {

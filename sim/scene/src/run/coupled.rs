@@ -2,18 +2,17 @@
 //! shaft does what comes of it.
 
 use super::device::{Device, device};
-use super::sensor::Shaft;
-use super::stepping::{CHECK_STEPS, PROGRESS_STEPS, Walk};
+use super::stepping::{CHECK_STEPS, PROGRESS_STEPS};
 use super::{Diverged, Observer, RunError, Totals, step_s, steps};
 use crate::scene::Scene;
 use crate::trace::EventRecord;
+use crate::walk::Walk;
 use crepitus_model::Real;
 use crepitus_model::solver::Solver;
-use crepitus_plant::Plant;
 use crepitus_plant::assembly::{Assembled, NamedStage};
-use crepitus_plant::chain::Body;
 use crepitus_plant::holder::MotionStep;
 use crepitus_plant::ledger::Ledger;
+use crepitus_plant::{Motion, Plant};
 
 /// The totals of a plant.
 pub(super) struct PlantTotals {
@@ -82,7 +81,7 @@ pub(super) fn simulate<F: Real, O: Observer>(
 ) -> Result<Totals, RunError<O::Error>> {
     let tick_s = step_s(scene);
     let Assembled { plant, stages } = scene.assemble()?;
-    let shaft = shaft(&plant);
+    let shaft = plant.shaft();
     let run = Run {
         first_felt_nm: first_felt_nm(scene)?,
         device: device::<F>(scene, solver, tick_s, &shaft)?,
@@ -98,21 +97,6 @@ pub(super) fn simulate<F: Real, O: Observer>(
         tick_s,
     };
     run.go(scene, observer)
-}
-
-fn shaft(plant: &Plant) -> Shaft {
-    let body = plant.shaft();
-    Shaft {
-        phi_rad: body.angle_rad,
-        omega_rad_s: body.omega_rad_s,
-    }
-}
-
-fn body(shaft: &Shaft) -> Body {
-    Body {
-        angle_rad: shaft.phi_rad,
-        omega_rad_s: shaft.omega_rad_s,
-    }
 }
 
 struct Run {
@@ -142,11 +126,11 @@ impl Run {
         let mut n = 0;
         let mut time_s = 0.0;
         loop {
-            let before = shaft(&self.plant);
+            let before = self.plant.shaft();
             fastest_rad_s = fastest_rad_s.max(before.omega_rad_s.abs());
             if O::WANTS_ROWS && n % every == 0 {
                 row.clear();
-                row.extend([time_s, before.phi_rad, before.omega_rad_s]);
+                row.extend([time_s, before.angle_rad, before.omega_rad_s]);
                 self.device.write(&mut row);
                 row.extend(self.stages.iter().map(|s| s.added_nm));
                 self.plant.write(&mut row);
@@ -156,7 +140,7 @@ impl Run {
                 observer.row(&row).map_err(RunError::Observer)?;
             }
             if (n % CHECK_STEPS == 0 || n == steps)
-                && !(self.device.is_finite() && before.phi_rad.is_finite())
+                && !(self.device.is_finite() && before.angle_rad.is_finite())
             {
                 return Err(RunError::Diverged(diverged(scene, time_s)));
             }
@@ -173,8 +157,8 @@ impl Run {
             self.advance(&mut walk, parts);
             felt_nm = (self.plant.felt_nms() - felt_before) / self.tick_s;
             felt.note(felt_nm);
-            let after = shaft(&self.plant);
-            let turned = after.phi_rad - before.phi_rad;
+            let after = self.plant.shaft();
+            let turned = after.angle_rad - before.angle_rad;
             held += model_nm * turned;
             for stage in &mut self.stages {
                 stage.work_j += stage.added_nm * turned;
@@ -187,7 +171,7 @@ impl Run {
                     }
                 });
             result.map_err(RunError::Observer)?;
-            time_s = walk.time_s;
+            time_s = walk.time_s();
         }
         Ok(Totals {
             steps,
@@ -227,17 +211,9 @@ impl Run {
 
     /// The plant through one tick.
     #[inline]
-    fn advance(&mut self, walk: &mut Walk<'_>, parts: u32) {
+    fn advance(&mut self, walk: &mut Walk<&Motion>, parts: u32) {
         for _ in 0..parts {
-            let (from, to) = walk.step();
-            self.plant.advance(&MotionStep {
-                length_s: walk.clock.step_s,
-                from: body(&from),
-                to: body(&to),
-            });
-            if walk.now.omega_rad_s != to.omega_rad_s {
-                self.plant.jump(walk.now.omega_rad_s);
-            }
+            walk.advance(&mut self.plant);
         }
     }
 }
@@ -252,8 +228,8 @@ fn first_felt_nm(scene: &Scene) -> Result<f64, crepitus_model::SettingsError> {
     let (from, to) = walk.step();
     plant.advance(&MotionStep {
         length_s: tick_s,
-        from: body(&from),
-        to: body(&to),
+        from,
+        to,
     });
     Ok(plant.felt_nms() / tick_s)
 }

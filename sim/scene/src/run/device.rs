@@ -1,13 +1,14 @@
 //! The device of a coupled run: sensor and joint, one tick at a time, behind
 //! one call, so that the loop around them is the same for all.
 
-use super::sensor::{Encoded, Ideal, Sensor, Shaft};
+use super::sensor::{Encoded, Ideal, Sensor};
 use super::stepping::Books;
 use super::tally::Tally;
 use crate::scene::Scene;
 use crate::trace::EventRecord;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{Real, SettingsError, StickSlip};
+use crepitus_plant::chain::Body;
 use crepitus_plant::effect::Seen;
 use std::marker::PhantomData;
 
@@ -23,8 +24,8 @@ pub(super) trait Device {
     fn tick(
         &mut self,
         start_s: f64,
-        from: &Shaft,
-        to: &Shaft,
+        from: &Body,
+        to: &Body,
         on_event: &mut dyn FnMut(&EventRecord),
     );
 
@@ -43,7 +44,7 @@ pub(super) fn device<F: Real>(
     scene: &Scene,
     solver: Solver,
     step_s: f64,
-    shaft: &Shaft,
+    shaft: &Body,
 ) -> Result<Box<dyn Device>, SettingsError> {
     match &scene.encoder {
         None => with_sensor::<F, _>(scene, solver, step_s, shaft, Ideal),
@@ -58,7 +59,7 @@ fn with_sensor<F: Real, S: Sensor<F> + 'static>(
     scene: &Scene,
     solver: Solver,
     step_s: f64,
-    shaft: &Shaft,
+    shaft: &Body,
     sensor: S,
 ) -> Result<Box<dyn Device>, SettingsError> {
     let seen = Seen {
@@ -129,8 +130,8 @@ impl<F: Real, J: StickSlip<F>, S: Sensor<F>> Device for Rendering<F, J, S> {
     fn tick(
         &mut self,
         start_s: f64,
-        from: &Shaft,
-        to: &Shaft,
+        from: &Body,
+        to: &Body,
         on_event: &mut dyn FnMut(&EventRecord),
     ) {
         let seen = self.sensor.see(from, to);
@@ -191,7 +192,7 @@ impl<F: Real, S: Sensor<F>> Device for Watching<F, S> {
         self.seen
     }
 
-    fn tick(&mut self, _: f64, from: &Shaft, to: &Shaft, _: &mut dyn FnMut(&EventRecord)) {
+    fn tick(&mut self, _: f64, from: &Body, to: &Body, _: &mut dyn FnMut(&EventRecord)) {
         let seen = self.sensor.see(from, to);
         self.seen = Seen {
             omega_rad_s: seen.omega_end_rad_s.to_f64(),

@@ -2,10 +2,11 @@
 //! between.
 
 use super::tally::{StickEnd, Tally};
-use super::{Clock, Observer, RunError, Totals, steps};
+use super::{Observer, RunError, Totals, steps};
 use crate::reference::Reference;
 use crate::scene::Scene;
 use crate::trace::EventRecord;
+use crate::walk::Clock;
 use crepitus_model::{Event, Phase, Settings};
 use crepitus_plant::{Motion, ShaftState};
 

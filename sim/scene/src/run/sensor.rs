@@ -3,27 +3,8 @@
 use crate::trace::{Column, ColumnKind};
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::{Real, SettingsError, ShaftStep};
-use crepitus_plant::Piece;
+use crepitus_plant::chain::Body;
 use crepitus_plant::encoder::Encoder;
-
-/// The true shaft at one end of a step.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Shaft {
-    pub(super) phi_rad: f64,
-    pub(super) omega_rad_s: f64,
-}
-
-impl Shaft {
-    /// The shaft at `time_s` of `piece`.
-    #[inline]
-    pub(super) fn of(piece: &Piece, time_s: f64) -> Self {
-        let (phi_rad, omega_rad_s) = piece.angle_and_velocity(time_s);
-        Self {
-            phi_rad,
-            omega_rad_s,
-        }
-    }
-}
 
 /// Turns the true motion over a step into the joint's input.
 ///
@@ -34,7 +15,7 @@ pub(super) trait Sensor<F: Real> {
     const COLUMNS: &'static [Column];
 
     /// Takes in one step. Velocities are those just inside the step.
-    fn see(&mut self, from: &Shaft, to: &Shaft) -> ShaftStep<F>;
+    fn see(&mut self, from: &Body, to: &Body) -> ShaftStep<F>;
 
     /// Writes its columns.
     fn write(&self, row: &mut Vec<f64>);
@@ -47,9 +28,9 @@ impl<F: Real> Sensor<F> for Ideal {
     const COLUMNS: &'static [Column] = &[];
 
     #[inline]
-    fn see(&mut self, from: &Shaft, to: &Shaft) -> ShaftStep<F> {
+    fn see(&mut self, from: &Body, to: &Body) -> ShaftStep<F> {
         ShaftStep {
-            delta_phi_rad: F::from_f64(to.phi_rad - from.phi_rad),
+            delta_phi_rad: F::from_f64(to.angle_rad - from.angle_rad),
             omega_start_rad_s: F::from_f64(from.omega_rad_s),
             omega_end_rad_s: F::from_f64(to.omega_rad_s),
         }
@@ -74,15 +55,16 @@ impl<F: Real> Encoded<F> {
     pub(super) fn new(
         settings: &EncoderSettings,
         step_s: f64,
-        shaft: &Shaft,
+        shaft: &Body,
     ) -> Result<Self, SettingsError> {
         let encoder = Encoder::new(settings);
-        let count = encoder.count(shaft.phi_rad);
+        let count = encoder.count(shaft.angle_rad);
         let omega_rad_s = F::from_f64(shaft.omega_rad_s);
         Ok(Self {
             reader: EncoderReader::new(settings, step_s, count, omega_rad_s)?,
             first_count: count,
-            first_rad: (shaft.phi_rad / encoder.rad_per_count()).floor() * encoder.rad_per_count(),
+            first_rad: (shaft.angle_rad / encoder.rad_per_count()).floor()
+                * encoder.rad_per_count(),
             encoder,
             count,
             omega_rad_s,
@@ -107,8 +89,8 @@ impl<F: Real> Sensor<F> for Encoded<F> {
     ];
 
     #[inline]
-    fn see(&mut self, _: &Shaft, to: &Shaft) -> ShaftStep<F> {
-        self.count = self.encoder.count(to.phi_rad);
+    fn see(&mut self, _: &Body, to: &Body) -> ShaftStep<F> {
+        self.count = self.encoder.count(to.angle_rad);
         let step = self.reader.read(self.count);
         self.omega_rad_s = step.omega_end_rad_s;
         step

@@ -1,13 +1,13 @@
 //! A run in fixed steps: true motion → sensor → joint.
 
-use super::sensor::{Encoded, Ideal, Sensor, Shaft};
+use super::sensor::{Encoded, Ideal, Sensor};
 use super::tally::{StickEnd, Tally};
-use super::{Clock, Diverged, Observer, RunError, Totals, steps};
+use super::{Diverged, Observer, RunError, Totals, steps};
 use crate::scene::Scene;
 use crate::trace::EventRecord;
+use crate::walk::Walk;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{Event, Phase, Real, Settings, ShaftStep, StickSlip};
-use crepitus_plant::{Motion, Piece};
 
 /// How many steps go by between two reports of progress.
 pub(super) const PROGRESS_STEPS: u64 = 1 << 16;
@@ -22,11 +22,10 @@ pub(super) fn simulate<F: Real, O: Observer>(
     step_s: f64,
     observer: &mut O,
 ) -> Result<Totals, RunError<O::Error>> {
-    let start = Shaft::of(&scene.motion.piece(0.0), 0.0);
     match &scene.encoder {
         None => with_sensor::<F, O, _>(scene, solver, step_s, observer, Ideal),
         Some(encoder) => {
-            let sensor = Encoded::new(encoder, step_s, &start)?;
+            let sensor = Encoded::new(encoder, step_s, &scene.start())?;
             with_sensor::<F, O, _>(scene, solver, step_s, observer, sensor)
         }
     }
@@ -42,7 +41,7 @@ fn with_sensor<F: Real, O: Observer, S: Sensor<F>>(
     let Some(crepitus) = &scene.crepitus else {
         return bare(scene, observer, sensor);
     };
-    let omega = F::from_f64(Shaft::of(&scene.motion.piece(0.0), 0.0).omega_rad_s);
+    let omega = F::from_f64(scene.start().omega_rad_s);
     let run = Run {
         scene,
         observer,
@@ -50,53 +49,6 @@ fn with_sensor<F: Real, O: Observer, S: Sensor<F>>(
         sensor,
     };
     with_joint::<F, _>(&crepitus.settings, solver, step_s, omega, run)?
-}
-
-/// The true motion, step by step.
-pub(super) struct Walk<'a> {
-    motion: &'a Motion,
-    piece: Piece,
-    pub(super) clock: Clock,
-    n: u64,
-    pub(super) time_s: f64,
-    /// The motion as the next step starts.
-    pub(super) now: Shaft,
-}
-
-impl<'a> Walk<'a> {
-    pub(super) fn new(motion: &'a Motion, step_s: f64) -> Self {
-        let piece = motion.piece(0.0);
-        let now = Shaft::of(&piece, 0.0);
-        Self {
-            motion,
-            piece,
-            clock: Clock::new(step_s),
-            n: 0,
-            time_s: 0.0,
-            now,
-        }
-    }
-
-    /// The motion at both ends of the next step, just inside it.
-    #[inline]
-    pub(super) fn step(&mut self) -> (Shaft, Shaft) {
-        self.n += 1;
-        self.time_s = self.clock.time_s(self.n);
-        let from = self.now;
-        while self.piece.end_s < self.time_s {
-            self.piece = self.motion.piece(self.piece.end_s);
-        }
-        let to = Shaft::of(&self.piece, self.time_s);
-        self.now = to;
-        if self.piece.end_s == self.time_s {
-            self.piece = self.motion.piece(self.time_s);
-            // Without a jump both sides are one velocity, to the bit.
-            if self.piece.jump {
-                self.now = Shaft::of(&self.piece, self.time_s);
-            }
-        }
-        (from, to)
-    }
 }
 
 /// A scene without a joint: the motion, and perhaps its sensor.
@@ -108,18 +60,20 @@ fn bare<F: Real, O: Observer, S: Sensor<F>>(
     let (steps, every) = steps(scene);
     let mut walk = Walk::new(&scene.motion, super::step_s(scene));
     let mut row = Vec::new();
-    let mut fastest_rad_s = walk.now.omega_rad_s.abs();
+    let mut fastest_rad_s = walk.now().omega_rad_s.abs();
     loop {
-        if O::WANTS_ROWS && walk.n.is_multiple_of(every) {
+        if O::WANTS_ROWS && walk.steps().is_multiple_of(every) {
             row.clear();
-            row.extend([walk.time_s, walk.now.phi_rad, walk.now.omega_rad_s]);
+            row.extend([walk.time_s(), walk.now().angle_rad, walk.now().omega_rad_s]);
             sensor.write(&mut row);
             observer.row(&row).map_err(RunError::Observer)?;
         }
-        if walk.n.is_multiple_of(PROGRESS_STEPS) {
-            observer.progress(walk.time_s).map_err(RunError::Observer)?;
+        if walk.steps().is_multiple_of(PROGRESS_STEPS) {
+            observer
+                .progress(walk.time_s())
+                .map_err(RunError::Observer)?;
         }
-        if walk.n == steps {
+        if walk.steps() == steps {
             break;
         }
         let (from, to) = walk.step();
@@ -128,7 +82,7 @@ fn bare<F: Real, O: Observer, S: Sensor<F>>(
     }
     Ok(Totals {
         steps,
-        end_s: walk.time_s,
+        end_s: walk.time_s(),
         tally: None,
         fastest_rad_s,
         plant: None,
@@ -156,17 +110,17 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
         let (steps, every) = steps(scene);
         let step_s = super::step_s(scene);
         let mut walk = Walk::new(&scene.motion, step_s);
-        let mut books = Books::new(settings, step_s, walk.now.omega_rad_s);
+        let mut books = Books::new(settings, step_s, walk.now().omega_rad_s);
         let mut row = Vec::new();
-        let mut fastest_rad_s = walk.now.omega_rad_s.abs();
+        let mut fastest_rad_s = walk.now().omega_rad_s.abs();
         books.tally.shown(joint.torque_nm().to_f64());
         loop {
-            if O::WANTS_ROWS && walk.n.is_multiple_of(every) {
+            if O::WANTS_ROWS && walk.steps().is_multiple_of(every) {
                 row.clear();
                 row.extend([
-                    walk.time_s,
-                    walk.now.phi_rad,
-                    walk.now.omega_rad_s,
+                    walk.time_s(),
+                    walk.now().angle_rad,
+                    walk.now().omega_rad_s,
                     f64::from(joint.phase().sign()),
                     joint.theta_rad().to_f64(),
                     joint.theta_dot_rad_s().to_f64(),
@@ -175,22 +129,24 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
                 sensor.write(&mut row);
                 observer.row(&row).map_err(RunError::Observer)?;
             }
-            if (walk.n.is_multiple_of(CHECK_STEPS) || walk.n == steps)
+            if (walk.steps().is_multiple_of(CHECK_STEPS) || walk.steps() == steps)
                 && !(joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite())
             {
                 return Err(RunError::Diverged(Diverged {
                     solver: scene.solver.name(),
-                    by_s: walk.time_s,
+                    by_s: walk.time_s(),
                     radians_per_step: settings.parameters.natural_rad_s() * step_s,
                 }));
             }
-            if walk.n.is_multiple_of(PROGRESS_STEPS) {
-                observer.progress(walk.time_s).map_err(RunError::Observer)?;
+            if walk.steps().is_multiple_of(PROGRESS_STEPS) {
+                observer
+                    .progress(walk.time_s())
+                    .map_err(RunError::Observer)?;
             }
-            if walk.n == steps {
+            if walk.steps() == steps {
                 break;
             }
-            let start_s = walk.time_s;
+            let start_s = walk.time_s();
             let (from, to) = walk.step();
             fastest_rad_s = fastest_rad_s.max(to.omega_rad_s.abs());
             let seen = sensor.see(&from, &to);
@@ -208,14 +164,14 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
         }
         let (theta, theta_dot) = (joint.theta_rad(), joint.theta_dot_rad_s());
         books.tally.finish(
-            walk.time_s,
+            walk.time_s(),
             books.phi_rad,
             theta.to_f64(),
             theta_dot.to_f64(),
         );
         Ok(Totals {
             steps,
-            end_s: walk.time_s,
+            end_s: walk.time_s(),
             tally: Some(books.tally),
             fastest_rad_s,
             plant: None,

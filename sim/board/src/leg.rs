@@ -1,0 +1,202 @@
+//! What the drive's peripherals touch: motor, encoder and current sensor on a
+//! leg that somebody moves as a scene says.
+//!
+//! ```text
+//! tick n       first half        second half
+//!        ├───────────────────┬───────────────────┤
+//!   count(), bridge     current_a()         count(), bridge
+//! ```
+//!
+//! A tick is gone through in two halves, because the drive samples the current
+//! in its middle. The bridge may be switched between any two halves and holds
+//! what it was told last: PWM loads at a tick's start, an emergency off comes
+//! when it comes.
+//!
+//! Of a scene's effects the leg has those of the mechanics (`drivetrain`,
+//! `backlash`, `cuff`, `limb`, `hand`); a motor's winding is always there, with
+//! the scene's numbers or the defaults. What a device does (`crepitus`,
+//! `friction-compensation`, `bone-shaping`, the current loop of `motor`) is
+//! the board's to do.
+//!
+//! Strokes, sines and constant velocities go on for ever. Velocity knots and
+//! recordings are followed to the end of the scene; the motion then slows down
+//! within a tenth of a second, and rests.
+
+mod sensors;
+#[cfg(test)]
+mod tests;
+
+pub use crepitus_plant::bridge::Terminals;
+pub use sensors::{CurrentSensor, EncoderWiring};
+
+use crepitus_plant::bridge::Bridge;
+use crepitus_plant::chain::Body;
+use crepitus_plant::effects::motor::{self, MotorNumbers};
+use crepitus_plant::ledger::Ledger;
+use crepitus_plant::{Motion, Plant};
+use crepitus_scene::{Scene, Walk};
+use sensors::Counter;
+
+/// Tick of the drive, s.
+pub const TICK_S: f64 = 5e-5;
+
+/// A leg with brace, gear and motor.
+pub struct Leg {
+    plant: Plant<Bridge>,
+    walk: Walk<Motion>,
+    steps_per_half: u32,
+    counter: Counter,
+    current_sensor: CurrentSensor,
+    /// What the bridge was told.
+    terminals: Terminals,
+    is_supplied: bool,
+    /// Impulse felt and charge as the tick began.
+    begun: (f64, f64),
+    felt_nm: f64,
+    motor_nm: f64,
+}
+
+impl Leg {
+    /// The leg of a scene, as its motion begins. The bridge is open, the
+    /// counter at zero, wherever the leg is.
+    pub fn new(scene: &Scene) -> Self {
+        // A scene's steps are those of a tick.
+        let steps_per_half = scene.substeps.div_ceil(2);
+        let step_s = TICK_S / (2.0 * f64::from(steps_per_half));
+        let motor = MotorNumbers::of(&scene.given(&motor::EFFECT));
+        let plant = scene.assemble_with(TICK_S, Bridge::new(motor, step_s));
+        let encoder = scene.encoder.unwrap_or_default();
+        Self {
+            counter: Counter::new(&encoder, plant.shaft().angle_rad),
+            begun: (plant.felt_nms(), 0.0),
+            plant,
+            walk: Walk::new(scene.endless_motion(), step_s),
+            steps_per_half,
+            current_sensor: CurrentSensor::Right,
+            terminals: Terminals::Open,
+            is_supplied: true,
+            felt_nm: 0.0,
+            motor_nm: 0.0,
+        }
+    }
+
+    /// The first half of a tick. At its end the current is to be sampled.
+    pub fn first_half(&mut self) {
+        self.begun = (self.plant.felt_nms(), self.plant.actuator().charge_c());
+        self.half();
+    }
+
+    /// The second half of a tick.
+    pub fn second_half(&mut self) {
+        self.half();
+        let (felt_nms, charge_c) = self.begun;
+        let bridge = self.plant.actuator();
+        let impulse_nms = bridge.winding().settings().constant * (bridge.charge_c() - charge_c);
+        self.felt_nm = (self.plant.felt_nms() - felt_nms) / TICK_S;
+        self.motor_nm = -impulse_nms / TICK_S;
+    }
+
+    fn half(&mut self) {
+        for _ in 0..self.steps_per_half {
+            self.walk.advance(&mut self.plant);
+        }
+        self.counter.turn_to(self.plant.shaft().angle_rad);
+    }
+
+    /// What the bridge does from now on.
+    pub fn set_terminals(&mut self, terminals: Terminals) {
+        self.terminals = terminals;
+        self.switch();
+    }
+
+    fn switch(&mut self) {
+        let terminals = if self.is_supplied {
+            self.terminals
+        } else {
+            Terminals::Open
+        };
+        self.plant.actuator_mut().set(terminals);
+    }
+
+    /// The encoder's counter now, as a 32-bit timer holds it: it wraps.
+    pub fn count(&self) -> i32 {
+        self.counter.count()
+    }
+
+    /// The counter shows `count` now, and counts on from there.
+    pub fn preset_count(&mut self, count: i32) {
+        self.counter.preset(count);
+    }
+
+    /// What the current sensor shows now, A.
+    pub fn current_a(&self) -> f64 {
+        self.current_sensor.shows(self.winding_current_a())
+    }
+
+    /// The current that there is, A; positive drives towards growing angle.
+    pub fn winding_current_a(&self) -> f64 {
+        self.plant.actuator().current_a()
+    }
+
+    /// Voltage of the motor's supply, V.
+    pub fn supply_v(&self) -> f64 {
+        if self.is_supplied {
+            self.plant.actuator().supply_v()
+        } else {
+            0.0
+        }
+    }
+
+    /// Time since the motion's beginning, s.
+    pub fn time_s(&self) -> f64 {
+        self.walk.time_s()
+    }
+
+    /// The motor's shaft, referred to the joint.
+    pub fn shaft(&self) -> Body {
+        self.plant.shaft()
+    }
+
+    /// The leg itself, where the hand is.
+    pub fn leg(&self) -> Body {
+        self.plant.leg()
+    }
+
+    /// Torque that the hand felt in the last tick, its mean, N·m; positive
+    /// opposes growing angle. Zero if nobody holds the leg.
+    pub fn felt_nm(&self) -> f64 {
+        self.felt_nm
+    }
+
+    /// Torque of the motor at the joint in the last tick, its mean, N·m;
+    /// positive opposes growing angle.
+    pub fn motor_nm(&self) -> f64 {
+        self.motor_nm
+    }
+
+    /// The energy balance since the start.
+    pub fn balance(&self) -> Ledger {
+        self.plant.balance()
+    }
+}
+
+/// Faults, which can be put in and taken out at any time.
+impl Leg {
+    /// Rewires the encoder.
+    pub fn set_encoder_wiring(&mut self, wiring: EncoderWiring) {
+        self.counter.wiring = wiring;
+    }
+
+    /// Mends or breaks the current sensor.
+    pub fn set_current_sensor(&mut self, sensor: CurrentSensor) {
+        self.current_sensor = sensor;
+    }
+
+    /// Turns the motor's supply on or off. Without it the terminals are open,
+    /// whatever the bridge is told; a current dies away into the capacitors of
+    /// the supply, which still hold its voltage.
+    pub fn set_supply(&mut self, is_on: bool) {
+        self.is_supplied = is_on;
+        self.switch();
+    }
+}

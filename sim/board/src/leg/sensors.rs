@@ -1,0 +1,80 @@
+//! The two sensors of the drive, and what can be wrong with them.
+
+use crepitus_model::encoder::EncoderSettings;
+use crepitus_plant::encoder::Encoder;
+
+/// How the encoder is connected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EncoderWiring {
+    /// As it should be.
+    #[default]
+    Right,
+    /// Channels A and B are swapped: it counts the other way.
+    Swapped,
+    /// Not at all: the counter stays where it is, and edges are lost.
+    Unplugged,
+}
+
+/// What the current sensor shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum CurrentSensor {
+    /// The current.
+    #[default]
+    Right,
+    /// The current and this much more, A.
+    Offset(f64),
+    /// This, A, whatever the current.
+    StuckAt(f64),
+}
+
+impl CurrentSensor {
+    pub(super) fn shows(self, current_a: f64) -> f64 {
+        match self {
+            Self::Right => current_a,
+            Self::Offset(offset_a) => current_a + offset_a,
+            Self::StuckAt(stuck_a) => stuck_a,
+        }
+    }
+}
+
+/// The encoder and the timer that counts its edges.
+pub(super) struct Counter {
+    encoder: Encoder,
+    pub(super) wiring: EncoderWiring,
+    /// Edges from the angle zero to the shaft's.
+    edges: i32,
+    count: i32,
+}
+
+impl Counter {
+    /// A timer at zero.
+    pub(super) fn new(settings: &EncoderSettings, angle_rad: f64) -> Self {
+        let encoder = Encoder::new(settings);
+        Self {
+            edges: encoder.count(angle_rad),
+            encoder,
+            wiring: EncoderWiring::Right,
+            count: 0,
+        }
+    }
+
+    pub(super) fn count(&self) -> i32 {
+        self.count
+    }
+
+    pub(super) fn preset(&mut self, count: i32) {
+        self.count = count;
+    }
+
+    /// The shaft has turned to this angle.
+    pub(super) fn turn_to(&mut self, angle_rad: f64) {
+        let edges = self.encoder.count(angle_rad);
+        let turned = edges.wrapping_sub(self.edges);
+        self.edges = edges;
+        self.count = match self.wiring {
+            EncoderWiring::Right => self.count.wrapping_add(turned),
+            EncoderWiring::Swapped => self.count.wrapping_sub(turned),
+            EncoderWiring::Unplugged => self.count,
+        };
+    }
+}

@@ -1,0 +1,305 @@
+//! The leg against closed forms, and its faults.
+
+use super::*;
+use crepitus_plant::bridge::DIODE_V;
+use crepitus_scene::Overrides;
+use std::path::Path;
+use std::time::Instant;
+
+const OHM: f64 = 1.23;
+const TAU_S: f64 = 0.34e-3 / OHM;
+const SUPPLY_V: f64 = 24.0;
+/// Kt·N with the defaults, N·m/A.
+const CONSTANT: f64 = 0.0389 * 86.0;
+/// Legs of all kinds.
+const MECHANICS: [&[&str]; 7] = [
+    &[],
+    &["drivetrain"],
+    &["drivetrain", "backlash"],
+    &["drivetrain", "backlash", "cuff"],
+    &["drivetrain", "backlash", "cuff", "hand"],
+    &["drivetrain", "cuff", "limb", "hand"],
+    &["drivetrain", "backlash", "cuff", "limb", "hand"],
+];
+
+/// A scene with this motion and these effects at their defaults.
+fn scene(motion: &str, effects: &[&str]) -> Scene {
+    let tables: String = effects
+        .iter()
+        .map(|effect| ["[effects.", effect, "]\n"].concat())
+        .collect();
+    let text = format!(
+        "version = 1\ntitle = \"leg\"\nduration_s = 2.0\n[motion]\n{motion}\n[solver]\n\
+         kind = \"exact-events\"\nstep_s = 5e-5\n{tables}"
+    );
+    Scene::parse(Path::new("leg.toml"), &text, &Overrides::default()).expect("a valid scene")
+}
+
+fn leg(motion: &str, effects: &[&str]) -> Leg {
+    Leg::new(&scene(motion, effects))
+}
+
+fn turning(omega_rad_s: f64) -> Leg {
+    leg(
+        &format!("kind = \"constant\"\nvelocity_rad_s = {omega_rad_s:?}"),
+        &[],
+    )
+}
+
+fn ticks(leg: &mut Leg, ticks: u32) {
+    for _ in 0..ticks {
+        leg.first_half();
+        leg.second_half();
+    }
+}
+
+/// A current that changes towards another one under a constant voltage.
+fn after(from_a: f64, final_a: f64, seconds: f64) -> f64 {
+    final_a + (from_a - final_a) * (-seconds / TAU_S).exp()
+}
+
+fn is_balanced(leg: &Leg) {
+    let open = leg.balance().relative_residual();
+    assert!(open.abs() < 1e-9, "{open:.1e} left over");
+}
+
+#[test]
+fn it_can_live_in_a_thread() {
+    fn is_send<T: Send + 'static>(_: &T) {}
+    is_send(&turning(0.0));
+}
+
+#[test]
+fn the_current_of_a_locked_rotor_rises_exponentially() {
+    for volt in [3.0, -17.0, 60.0] {
+        let mut leg = turning(0.0);
+        leg.set_terminals(Terminals::Driven(volt));
+        let final_a = volt.clamp(-SUPPLY_V, SUPPLY_V) / OHM;
+        for n in 0..100_u32 {
+            let start_s = f64::from(n) * TICK_S;
+            leg.first_half();
+            let known = after(0.0, final_a, start_s + TICK_S / 2.0);
+            assert!((leg.current_a() - known).abs() < 1e-13);
+            leg.second_half();
+            let known = after(0.0, final_a, start_s + TICK_S);
+            assert!((leg.current_a() - known).abs() < 1e-13);
+        }
+        // The hand holds against the motor.
+        ticks(&mut leg, 100);
+        assert!((leg.motor_nm() + CONSTANT * final_a).abs() < 1e-11);
+        assert!((leg.felt_nm() - leg.motor_nm()).abs() < 1e-10);
+        is_balanced(&leg);
+    }
+}
+
+#[test]
+fn a_voltage_begins_when_it_is_set() {
+    let mut leg = turning(0.0);
+    leg.set_terminals(Terminals::Driven(5.0));
+    leg.first_half();
+    let half_a = leg.current_a();
+    leg.set_terminals(Terminals::Driven(-8.0));
+    leg.second_half();
+    let known = after(half_a, -8.0 / OHM, TICK_S / 2.0);
+    assert!((leg.current_a() - known).abs() < 1e-14);
+}
+
+/// An emergency off in the middle of a tick: the current is gone in it, and
+/// with it all torque but that of the mechanics.
+#[test]
+fn an_open_bridge_coasts() {
+    let mut leg = turning(2.0);
+    leg.set_terminals(Terminals::Driven(5.0));
+    ticks(&mut leg, 200);
+    leg.first_half();
+    let from_a = leg.current_a();
+    let mean_nm = leg.motor_nm();
+    leg.set_terminals(Terminals::Open);
+    leg.second_half();
+    let final_a = (SUPPLY_V + 2.0 * DIODE_V - CONSTANT * 2.0) / OHM;
+    let dies_s = TAU_S * (1.0 - from_a / final_a).ln();
+    assert!(from_a < 0.0 && dies_s < TICK_S / 2.0);
+    assert_eq!(leg.current_a(), 0.0);
+    let charge_c = final_a * dies_s + TAU_S * from_a;
+    let known_nm = 0.5 * mean_nm - CONSTANT * charge_c / TICK_S;
+    assert!((leg.motor_nm() - known_nm).abs() < 1e-8);
+    for _ in 0..100 {
+        ticks(&mut leg, 1);
+        assert_eq!(
+            (leg.current_a(), leg.motor_nm(), leg.felt_nm()),
+            (0.0, 0.0, 0.0)
+        );
+    }
+    is_balanced(&leg);
+}
+
+#[test]
+fn shorted_terminals_brake() {
+    let mut leg = turning(1.5);
+    leg.set_terminals(Terminals::Driven(0.0));
+    ticks(&mut leg, 200);
+    let brake = leg.felt_nm() / 1.5;
+    assert!((brake - CONSTANT * CONSTANT / OHM).abs() < 1e-9);
+    assert!((brake - 9.0).abs() < 0.15);
+    is_balanced(&leg);
+}
+
+#[test]
+fn a_motor_faster_than_its_supply_generates() {
+    for omega in [8.5_f64, -9.0, 7.6, -7.6] {
+        let mut leg = turning(omega);
+        ticks(&mut leg, 200);
+        let beyond_v = (CONSTANT * omega.abs() - SUPPLY_V - 2.0 * DIODE_V).max(0.0);
+        let known = -omega.signum() * beyond_v / OHM;
+        assert!((leg.current_a() - known).abs() < 1e-12);
+        assert!((leg.felt_nm() + CONSTANT * known).abs() < 1e-10);
+        is_balanced(&leg);
+    }
+}
+
+#[test]
+fn counts_follow_the_shaft_through_the_wrap() {
+    let count_rad = scene("kind = \"constant\"\nvelocity_rad_s = 1", &["encoder"])
+        .encoder
+        .expect("listed")
+        .rad_per_count();
+    for omega in [1.0_f64, -1.0] {
+        let mut leg = turning(omega);
+        assert_eq!(leg.count(), 0);
+        let first = if omega > 0.0 {
+            i32::MAX - 100
+        } else {
+            i32::MIN + 100
+        };
+        leg.preset_count(first);
+        for _ in 0..2000 {
+            ticks(&mut leg, 1);
+            let turned = leg.count().wrapping_sub(first);
+            let known = leg.shaft().angle_rad / count_rad;
+            assert!((f64::from(turned) - known).abs() <= 1.0);
+        }
+        assert_eq!(leg.count().signum(), -first.signum());
+    }
+}
+
+#[test]
+fn an_encoder_can_be_unplugged_and_rewired() {
+    let mut leg = turning(1.0);
+    ticks(&mut leg, 500);
+    let before = leg.count();
+    leg.set_encoder_wiring(EncoderWiring::Unplugged);
+    ticks(&mut leg, 500);
+    assert_eq!(leg.count(), before);
+    leg.set_encoder_wiring(EncoderWiring::Swapped);
+    ticks(&mut leg, 500);
+    assert!((leg.count()).abs() <= 1, "back where it came from");
+    leg.set_encoder_wiring(EncoderWiring::Right);
+    ticks(&mut leg, 500);
+    assert!((leg.count() - before).abs() <= 1);
+}
+
+#[test]
+fn a_current_sensor_can_be_wrong() {
+    let mut leg = turning(0.0);
+    leg.set_terminals(Terminals::Driven(1.0));
+    ticks(&mut leg, 400);
+    let true_a = leg.winding_current_a();
+    assert_eq!(leg.current_a(), true_a);
+    leg.set_current_sensor(CurrentSensor::Offset(-0.2));
+    assert_eq!(leg.current_a(), true_a - 0.2);
+    leg.set_current_sensor(CurrentSensor::StuckAt(0.05));
+    assert_eq!(leg.current_a(), 0.05);
+    assert_eq!(leg.winding_current_a(), true_a);
+}
+
+#[test]
+fn without_a_supply_the_terminals_are_open() {
+    let mut leg = turning(1.0);
+    leg.set_terminals(Terminals::Driven(12.0));
+    ticks(&mut leg, 100);
+    leg.set_supply(false);
+    ticks(&mut leg, 2);
+    leg.set_terminals(Terminals::Driven(-12.0));
+    ticks(&mut leg, 1);
+    assert_eq!((leg.supply_v(), leg.motor_nm()), (0.0, 0.0));
+    // When it comes back the bridge does what it was told meanwhile.
+    leg.set_supply(true);
+    ticks(&mut leg, 200);
+    assert!((leg.current_a() - (-12.0 - CONSTANT) / OHM).abs() < 1e-7);
+    is_balanced(&leg);
+}
+
+#[test]
+fn a_motion_that_ends_rests() {
+    let knots = "kind = \"velocity-knots\"\nknots = [{ t_s = 0, omega_rad_s = 0.5 }]";
+    let mut leg = leg(knots, &["motor"]);
+    ticks(&mut leg, 41_900);
+    assert!((leg.shaft().omega_rad_s - 0.5 * 0.05).abs() < 1e-9);
+    ticks(&mut leg, 10_000);
+    assert_eq!(leg.shaft().omega_rad_s, 0.0);
+    assert!((leg.shaft().angle_rad - 1.025).abs() < 1e-12);
+    assert!((leg.time_s() - 2.595).abs() < 1e-12);
+}
+
+const STROKES: &str =
+    "kind = \"strokes\"\nfrom_deg = 20\nto_deg = 80\npeak_speed_deg_s = 60\npause_s = 0.3";
+
+/// A bridge that is switched without any sense, on all that a leg can have.
+fn thrash(leg: &mut Leg, ticks: u32) {
+    for n in 0..ticks {
+        let volt = f64::from(n * 7919 % 61) - 30.0;
+        leg.set_terminals(match n / 50 % 4 {
+            0 => Terminals::Open,
+            1 => Terminals::Driven(volt),
+            2 => Terminals::Driven(0.3 * volt),
+            _ => Terminals::Driven(4.0),
+        });
+        leg.first_half();
+        if n % 97 == 0 {
+            leg.set_terminals(Terminals::Open);
+        }
+        leg.second_half();
+    }
+}
+
+#[test]
+fn energy_is_kept_whatever_the_bridge_does() {
+    for listed in MECHANICS {
+        let mut leg = leg(STROKES, listed);
+        thrash(&mut leg, 20_000);
+        println!("{listed:?}: {:.1e}", leg.balance().relative_residual());
+        is_balanced(&leg);
+    }
+}
+
+#[test]
+fn effects_of_the_device_leave_nothing_behind() {
+    let mechanics = ["motor", "drivetrain", "cuff"];
+    let device = [
+        "crepitus",
+        "encoder",
+        "friction-compensation",
+        "bone-shaping",
+    ];
+    let all: Vec<_> = device.into_iter().chain(mechanics).collect();
+    let (mut bare, mut full) = (leg(STROKES, &mechanics), leg(STROKES, &all));
+    for _ in 0..10 {
+        thrash(&mut bare, 200);
+        thrash(&mut full, 200);
+        assert_eq!(bare.shaft(), full.shaft());
+        assert_eq!(bare.current_a(), full.current_a());
+    }
+    assert_eq!(bare.balance(), full.balance());
+}
+
+#[test]
+#[ignore = "a measurement, not a check"]
+fn speed() {
+    for listed in MECHANICS {
+        let mut leg = leg(STROKES, listed);
+        let begun = Instant::now();
+        thrash(&mut leg, 100_000);
+        let ratio = leg.time_s() / begun.elapsed().as_secs_f64();
+        println!("{listed:?}: {ratio:.0} times real time");
+    }
+}

@@ -1,0 +1,59 @@
+//! The device's parameters that a scene calls for.
+
+use crepitus_model::{Convention, Restart};
+use crepitus_plant::effects::EFFECTS;
+use crepitus_protocol::Values;
+use crepitus_protocol::parameters::{Kind, PARAMETERS, id};
+use crepitus_scene::Scene;
+
+/// Why a scene cannot be rendered by a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NotRendered {
+    /// The firmware renders one convention.
+    #[error("a device renders the convention \"frozen\" only, and the scene asks for \"{0}\"")]
+    Convention(&'static str),
+    /// The convention has no damping.
+    #[error("a device renders a joint without damping, and the scene gives it some")]
+    Damping,
+}
+
+/// The values of a scene: what it lists is on, what it does not list is off,
+/// what it says nothing about has its default.
+///
+/// # Errors
+/// [`NotRendered`] if no device can render it.
+pub fn values(scene: &Scene) -> Result<Values, NotRendered> {
+    let mut values = Values::default();
+    for (place, parameter) in PARAMETERS.iter().enumerate() {
+        let Some(effect) = EFFECTS.iter().find(|e| e.name == parameter.group) else {
+            continue;
+        };
+        match parameter.kind {
+            Kind::Choice(choice) if choice.key == "render" => {
+                values.set(place, f64::from(u8::from(scene.has(effect.name))));
+            }
+            Kind::Choice(_) => {}
+            Kind::Number(spec) => {
+                let given = scene.given(effect);
+                let at = effect.parameters.iter().position(|p| p.key == spec.key);
+                if let Some(value) = at.and_then(|at| given.numbers.get(at)) {
+                    values.set(place, *value);
+                }
+            }
+        }
+    }
+    if let Some(crepitus) = &scene.crepitus {
+        let settings = &crepitus.settings;
+        if settings.convention != Convention::Frozen {
+            return Err(NotRendered::Convention(settings.convention.name()));
+        }
+        if settings.parameters.damping_nms_per_rad > 0.0 {
+            return Err(NotRendered::Damping);
+        }
+        values = values.with_crepitus(&settings.parameters);
+        let from_kinetic = settings.restart == Restart::FromKinetic;
+        values.set(id::RESTART, f64::from(u8::from(from_kinetic)));
+    }
+    Ok(values)
+}

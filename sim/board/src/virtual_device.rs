@@ -1,0 +1,193 @@
+//! A board at the end of a USB cable: what a host's program talks to.
+//!
+//! ```text
+//! program ── bytes ── CdcHost ══ packets ══ SoftBus ── usb-device, usbd-serial ── Comms ── link ── Drive ── leg
+//! ```
+//!
+//! Time goes on only when somebody makes it: [`VirtualDevice::tick`] is 50 µs
+//! of everything, one packet each way on the bus among it.
+
+use crate::board::{Board, Start};
+use crate::values::{NotRendered, values};
+use crepitus_device::usb_port::{UsbIdentity, UsbPort, UsbPortError};
+use crepitus_protocol::{Revision, ValueError};
+use crepitus_scene::Scene;
+use crepitus_usb::bus::SoftBus;
+use crepitus_usb::cable::SoftCable;
+use crepitus_usb::enumeration::EnumerationError;
+use crepitus_usb::host::{CdcHost, Traffic};
+use usb_device::bus::UsbBusAllocator;
+
+/// Turns of the bus in a frame.
+const FRAME_TICKS: u64 = 20;
+
+/// What a device says of itself on the bus.
+const IDENTITY: UsbIdentity<'static> = UsbIdentity {
+    manufacturer: "Crepitus",
+    product: "Crepitus simulated device",
+    serial_number: "SIM-COMMS-01",
+};
+
+/// Why there is no virtual device.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum VirtualError {
+    /// No device can render the scene.
+    #[error(transparent)]
+    Scene(#[from] NotRendered),
+    /// The device's own defaults are not allowed.
+    #[error("the device's defaults are not allowed: {0:?}")]
+    Defaults(ValueError),
+    /// The USB stack refused its description.
+    #[error("the USB device cannot be described: {0:?}")]
+    Port(UsbPortError),
+    /// The host could not enumerate it.
+    #[error("the virtual USB device cannot be enumerated")]
+    Enumeration(#[from] EnumerationError),
+}
+
+struct Usb {
+    port: UsbPort<'static, SoftBus>,
+    cable: SoftCable,
+    host: Option<CdcHost>,
+}
+
+impl Usb {
+    fn new() -> Result<Self, VirtualError> {
+        let (bus, cable) = SoftBus::new();
+        // The stack borrows its allocator for ever, as on the controller, where
+        // it is a static. A device is built once, and again at each restart of
+        // comms: some hundred bytes each time.
+        let allocator = Box::leak(Box::new(UsbBusAllocator::new(bus)));
+        let port = UsbPort::new(allocator, &IDENTITY).map_err(VirtualError::Port)?;
+        Ok(Self {
+            port,
+            cable,
+            host: None,
+        })
+    }
+}
+
+/// A board at the end of a USB cable.
+pub struct VirtualDevice {
+    board: Board,
+    usb: Usb,
+    /// What went over earlier connections.
+    earlier: Traffic,
+}
+
+impl VirtualDevice {
+    /// The device of a scene, with the scene's parameters kept in it, plugged
+    /// in.
+    ///
+    /// # Errors
+    /// [`VirtualError`] if no device can render the scene.
+    pub fn of(scene: &Scene, start: &Start) -> Result<Self, VirtualError> {
+        let start = Start {
+            saved: Some((Revision(1), values(scene)?)),
+            ..*start
+        };
+        let board = Board::new(scene, &start).map_err(VirtualError::Defaults)?;
+        let mut device = Self {
+            board,
+            usb: Usb::new()?,
+            earlier: Traffic::default(),
+        };
+        device.plug_in()?;
+        Ok(device)
+    }
+
+    /// Pushes the plug in, and has the host find the device.
+    ///
+    /// # Errors
+    /// [`VirtualError::Enumeration`] if it does not find one: comms hangs, or
+    /// is just starting.
+    pub fn plug_in(&mut self) -> Result<(), VirtualError> {
+        self.unplug();
+        let Self { board, usb, .. } = self;
+        let Usb { port, cable, host } = usb;
+        cable.plug_in();
+        *host = Some(CdcHost::enumerate(cable, &mut |_| turn(board, port))?);
+        Ok(())
+    }
+
+    /// Pulls the plug.
+    pub fn unplug(&mut self) {
+        if let Some(host) = self.usb.host.take() {
+            let traffic = host.traffic();
+            self.earlier.frames += traffic.frames;
+            self.earlier.packets_in += traffic.packets_in;
+            self.earlier.packets_out += traffic.packets_out;
+            self.earlier.bytes_in += traffic.bytes_in;
+            self.earlier.bytes_out += traffic.bytes_out;
+        }
+        self.usb.cable.unplug();
+    }
+
+    /// Whether the host has it.
+    pub fn is_plugged_in(&self) -> bool {
+        self.usb.host.is_some()
+    }
+
+    /// 50 µs of everything. A device that does not answer any more is gone,
+    /// until it is plugged in again.
+    pub fn tick(&mut self) {
+        turn(&mut self.board, &mut self.usb.port);
+        if self.board.take_comms_restart() {
+            self.unplug();
+            // The new start describes itself as the one before.
+            if let Ok(usb) = Usb::new() {
+                self.usb = usb;
+            }
+            return;
+        }
+        if let Some(host) = &mut self.usb.host {
+            if self.board.now().is_multiple_of(FRAME_TICKS) {
+                host.start_frame();
+            }
+            if host.poll(&mut self.usb.cable).is_err() {
+                self.unplug();
+            }
+        }
+    }
+
+    /// The board.
+    pub fn board(&self) -> &Board {
+        &self.board
+    }
+
+    /// The board, to break it.
+    pub fn board_mut(&mut self) -> &mut Board {
+        &mut self.board
+    }
+
+    /// The host's end of the cable, if the device is plugged in.
+    pub fn host(&mut self) -> Option<&mut CdcHost> {
+        self.usb.host.as_mut()
+    }
+
+    /// What has gone over the bus, over all connections.
+    pub fn traffic(&self) -> Traffic {
+        let now = self
+            .usb
+            .host
+            .as_ref()
+            .map(CdcHost::traffic)
+            .unwrap_or_default();
+        let mut sum = self.earlier;
+        sum.frames += now.frames;
+        sum.packets_in += now.packets_in;
+        sum.packets_out += now.packets_out;
+        sum.bytes_in += now.bytes_in;
+        sum.bytes_out += now.bytes_out;
+        sum
+    }
+}
+
+/// What the device does in 50 µs.
+fn turn(board: &mut Board, port: &mut UsbPort<'static, SoftBus>) {
+    board.tick();
+    if board.comms_runs() {
+        port.poll(board.comms_mut());
+    }
+}

@@ -1,0 +1,128 @@
+//! One direction of the link between the controllers: 4.2 Mbaud, 21 bytes a
+//! tick, one frame after the other, as DMA sends them.
+
+use crate::faults::FaultInjector;
+use crepitus_protocol::frame::Frame;
+use std::collections::VecDeque;
+
+/// Bytes that the UART carries in a tick: 4.2 Mbaud, ten bits a byte, 50 µs.
+pub const BYTES_PER_TICK: usize = 21;
+
+/// What has gone over a wire.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Traffic {
+    /// Frames sent.
+    pub frames: u64,
+    /// Bytes sent.
+    pub bytes: u64,
+    /// Ticks in which the wire was busy to its last byte.
+    pub full_ticks: u64,
+}
+
+/// One direction of the link.
+#[derive(Clone, Debug)]
+pub struct Wire {
+    /// What goes wrong on it.
+    pub injector: FaultInjector,
+    /// The frame that is being sent, and how much of it is.
+    sending: Option<(Frame, usize)>,
+    /// Frames that are on their way, with the tick of their arrival.
+    on_the_way: VecDeque<(u64, Vec<u8>)>,
+    traffic: Traffic,
+}
+
+impl Wire {
+    /// A good wire, whose faults will be those of this seed.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            injector: FaultInjector::new(seed),
+            sending: None,
+            on_the_way: VecDeque::new(),
+            traffic: Traffic::default(),
+        }
+    }
+
+    /// What has gone over it.
+    pub fn traffic(&self) -> Traffic {
+        self.traffic
+    }
+
+    /// The sender has been reset: what it was sending ends here.
+    pub fn sender_reset(&mut self) {
+        self.sending = None;
+    }
+
+    /// One tick: takes frames from the sender as there is room, gives the
+    /// receiver what arrives.
+    pub fn tick(
+        &mut self,
+        now: u64,
+        mut next_frame: impl FnMut() -> Option<Frame>,
+        mut receive: impl FnMut(u8),
+    ) {
+        let mut room = BYTES_PER_TICK;
+        while room > 0 {
+            let (frame, sent) = match self.sending.take() {
+                Some(sending) => sending,
+                None => match next_frame() {
+                    Some(frame) => {
+                        self.traffic.frames += 1;
+                        (frame, 0)
+                    }
+                    None => break,
+                },
+            };
+            let part = room.min(frame.len() - sent);
+            room -= part;
+            self.traffic.bytes += part as u64;
+            if sent + part < frame.len() {
+                self.sending = Some((frame, sent + part));
+            } else {
+                let on_the_way = &mut self.on_the_way;
+                self.injector.pass(&frame, |late, bytes| {
+                    on_the_way.push_back((now + late, bytes.to_vec()));
+                });
+            }
+        }
+        self.traffic.full_ticks += u64::from(room == 0);
+        self.arrive(now, &mut receive);
+    }
+
+    fn arrive(&mut self, now: u64, receive: &mut impl FnMut(u8)) {
+        // Delays differ, so one may overtake another.
+        let mut i = 0;
+        while let Some((due, _)) = self.on_the_way.get(i) {
+            if *due > now {
+                i += 1;
+            } else if let Some((_, bytes)) = self.on_the_way.remove(i) {
+                bytes.into_iter().for_each(&mut *receive);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_takes_its_time_and_arrives_whole() {
+        let mut wire = Wire::new(0);
+        let mut frames = vec![
+            Frame::from_slice(&[1; 50]).unwrap(),
+            Frame::from_slice(&[2; 10]).unwrap(),
+        ];
+        frames.reverse();
+        let mut arrived = Vec::new();
+        for tick in 0..4 {
+            wire.tick(tick, || frames.pop(), |byte| arrived.push((tick, byte)));
+        }
+        let expected: Vec<_> = [(2, 1); 50].into_iter().chain([(2, 2); 10]).collect();
+        assert_eq!(arrived, expected);
+        let traffic = wire.traffic();
+        assert_eq!(
+            (traffic.frames, traffic.bytes, traffic.full_ticks),
+            (2, 60, 2)
+        );
+    }
+}

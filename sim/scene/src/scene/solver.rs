@@ -1,0 +1,169 @@
+//! The `[solver]` table, and the step of the trace that goes with it.
+
+use crate::document::{Range, Section};
+use crate::error::SceneError;
+use crepitus_model::solver::Solver;
+
+/// The most steps of one run, and the most rows of one trace.
+const MOST_STEPS: f64 = 1e12;
+
+/// How the joint is integrated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SolverChoice {
+    /// From event to event on the true motion, in f64.
+    Reference,
+    /// A rung of the ladder.
+    Ladder {
+        /// The rung.
+        solver: Solver,
+        /// Its step, s.
+        step_s: f64,
+        /// Its precision.
+        precision: Precision,
+    },
+}
+
+/// The numbers that the model computes with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// Single, as on the device.
+    F32,
+    /// Double.
+    F64,
+}
+
+impl SolverChoice {
+    /// Names of all solvers, cheapest first.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        Solver::ALL.iter().map(|s| s.name()).chain([REFERENCE])
+    }
+
+    /// Name in scene files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Reference => REFERENCE,
+            Self::Ladder { solver, .. } => solver.name(),
+        }
+    }
+}
+
+/// Name of the event-driven solver.
+pub(super) const REFERENCE: &str = "reference";
+
+impl Precision {
+    /// Both precisions, the device's first.
+    pub const ALL: [Self; 2] = [Self::F32, Self::F64];
+
+    /// Name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+}
+
+pub(super) fn read_solver(section: &Section<'_>) -> Result<(SolverChoice, u32), SceneError> {
+    let ladder = Solver::ALL.map(|s| (s.name(), Some(s)));
+    let names: Vec<_> = ladder.into_iter().chain([(REFERENCE, None)]).collect();
+    let kind = section.choice("kind", &names)?;
+    let step_s = section.optional_number("step_s", Range::above(0.0, 1.0))?;
+    let precisions = [Precision::F32, Precision::F64].map(|p| (p.name(), p));
+    let precision = section.optional_choice("precision", &precisions)?;
+    let substeps = read_substeps(section)?;
+    section.finish()?;
+    let choice = match kind {
+        None => {
+            if step_s.is_some() {
+                return Err(section.key_error("step_s", "\"reference\" has no step: leave it out"));
+            }
+            if precision == Some(Precision::F32) {
+                return Err(section.key_error("precision", "\"reference\" computes in f64 only"));
+            }
+            SolverChoice::Reference
+        }
+        Some(solver) => SolverChoice::Ladder {
+            solver,
+            step_s: step_s.ok_or_else(|| {
+                section.key_error(
+                    "step_s",
+                    format!(
+                        "this key is missing: \"{}\" needs a step in seconds, for example 5e-5",
+                        solver.name()
+                    ),
+                )
+            })?,
+            precision: precision.unwrap_or(Precision::F64),
+        },
+    };
+    Ok((choice, substeps))
+}
+
+/// Steps of the plant in one of the solver: the device's tick stays what it
+/// is.
+fn read_substeps(section: &Section<'_>) -> Result<u32, SceneError> {
+    match section.optional_number("substeps", Range::closed(1.0, 1000.0))? {
+        None => Ok(1),
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole and in range"
+        )]
+        Some(x) if x.fract() == 0.0 => Ok(x as u32),
+        Some(x) => Err(section.key_error("substeps", format!("{x} is not a whole number"))),
+    }
+}
+
+/// Time between trace rows: a whole number of solver steps.
+pub(super) fn read_trace_step(
+    output: Option<&Section<'_>>,
+    solver_section: &Section<'_>,
+    solver: SolverChoice,
+    duration_s: f64,
+) -> Result<f64, SceneError> {
+    /// Of `reference`, which has no step of its own: the device's tick.
+    const DEFAULT_STEP_S: f64 = 5e-5;
+    let wanted = match output {
+        None => None,
+        Some(section) => {
+            let step = section.optional_number("trace_step_s", Range::above(0.0, 1e7))?;
+            section.finish()?;
+            step
+        }
+    };
+    let refuse = |message: String| match (output, wanted) {
+        (Some(section), Some(_)) => section.key_error("trace_step_s", message),
+        _ => solver_section.key_error("step_s", message),
+    };
+    let step_s = match solver {
+        SolverChoice::Reference => wanted.unwrap_or(DEFAULT_STEP_S),
+        SolverChoice::Ladder { step_s, .. } => {
+            if duration_s / step_s > MOST_STEPS {
+                return Err(solver_section.key_error(
+                    "step_s",
+                    format!("{step_s} s makes more than {MOST_STEPS:e} steps of {duration_s} s"),
+                ));
+            }
+            if duration_s < step_s * (1.0 - 1e-9) {
+                return Err(solver_section.key_error(
+                    "step_s",
+                    format!("a step of {step_s} s is longer than the run of {duration_s} s"),
+                ));
+            }
+            let wanted = wanted.unwrap_or(step_s);
+            let steps = wanted / step_s;
+            if steps < 0.5 || (steps - steps.round()).abs() > 1e-6 * steps {
+                return Err(refuse(format!(
+                    "{wanted} s is not a whole number of steps of {step_s} s"
+                )));
+            }
+            wanted
+        }
+    };
+    if duration_s / step_s > MOST_STEPS {
+        return Err(refuse(format!(
+            "{step_s} s makes more than {MOST_STEPS:e} rows of {duration_s} s"
+        )));
+    }
+    Ok(step_s)
+}
