@@ -1,10 +1,17 @@
 //! The command line.
 
+pub(crate) mod device;
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use device::{
+    ArmArguments, ClearFaultArguments, DemoArguments, DisarmArguments, DoctorArguments,
+    InfoArguments, ParamsArguments, RecordArguments, ReportArguments, ServeSimArguments,
+    StopArguments, StreamArguments, ZeroArguments,
+};
 use std::path::PathBuf;
 
 /// A motorised brace as a patient with a diseased knee: simulate the joint
-/// that the trainee feels.
+/// that the trainee feels, and run the device that renders it.
 ///
 /// Exit codes: 0 done, 1 the work failed, 2 bad usage or bad input.
 #[derive(Debug, Parser)]
@@ -16,6 +23,7 @@ use std::path::PathBuf;
 )]
 #[command(after_help = "\
 Start with:
+  crepitus demo                             the whole device, simulated; then open out/demo/report.html
   crepitus scenes                           what there is to see
   crepitus run scenes/slow-examination.toml simulate it, then open out/slow-examination/report.html")]
 pub(crate) struct Cli {
@@ -29,6 +37,35 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
+    /// Run the whole chain, simulated: host, USB, both controllers, leg; record and report it.
+    Demo(DemoArguments),
+    /// List the devices that are attached, and the simulated ones.
+    #[command(after_help = "Example:\n  crepitus devices --json")]
+    Devices,
+    /// Show who a device is, how it is, and what it has counted.
+    Info(InfoArguments),
+    /// Examine a device: what is wrong, and what to do about it.
+    Doctor(DoctorArguments),
+    /// List, read, set and keep a device's parameters.
+    Params(ParamsArguments),
+    /// Tell a device that the joint's angle is zero now.
+    Zero(ZeroArguments),
+    /// Have torque rendered, as long as this command runs.
+    Arm(ArmArguments),
+    /// No more torque.
+    Disarm(DisarmArguments),
+    /// No more torque, from a device of any version.
+    Stop(StopArguments),
+    /// Forget the faults of a device.
+    ClearFault(ClearFaultArguments),
+    /// Print a device's samples as they come.
+    Stream(StreamArguments),
+    /// Record a device's samples to a file.
+    Record(RecordArguments),
+    /// Make the report of a recording.
+    Report(ReportArguments),
+    /// Offer a simulated device as a serial port.
+    ServeSim(ServeSimArguments),
     /// Simulate a scene and write its trace, events, summary and report.
     Run(RunArguments),
     /// Show what accuracy costs in time: every solver against the reference.

@@ -2,10 +2,17 @@
 
 mod cli;
 mod failure;
+mod following;
 mod interrupt;
+mod keys;
+mod line;
 mod progress;
+mod recorded;
 mod shipped;
+mod simulated;
+mod status_line;
 mod studying;
+mod told;
 mod verbs;
 
 use clap::Parser;
@@ -15,6 +22,20 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match &cli.verb {
+        Verb::Demo(arguments) => verbs::demo::demo(arguments, cli.json),
+        Verb::Devices => verbs::devices::devices(cli.json),
+        Verb::Info(arguments) => verbs::info::info(arguments, cli.json),
+        Verb::Doctor(arguments) => verbs::doctor::doctor(arguments, cli.json),
+        Verb::Params(arguments) => verbs::params::params(arguments, cli.json),
+        Verb::Zero(arguments) => verbs::control::zero(&arguments.device, cli.json),
+        Verb::Arm(arguments) => verbs::control::arm(arguments, cli.json),
+        Verb::Disarm(arguments) => verbs::control::disarm(&arguments.device, cli.json),
+        Verb::Stop(arguments) => verbs::control::stop(&arguments.device, cli.json),
+        Verb::ClearFault(arguments) => verbs::control::clear_fault(&arguments.device, cli.json),
+        Verb::Stream(arguments) => verbs::stream::stream(arguments),
+        Verb::Record(arguments) => verbs::record::record(arguments, cli.json),
+        Verb::Report(arguments) => verbs::report::report(arguments, cli.json),
+        Verb::ServeSim(arguments) => verbs::serve_sim::serve_sim(arguments, cli.json),
         Verb::Run(arguments) => verbs::run::run(arguments, cli.json),
         Verb::Accuracy(arguments) => verbs::accuracy::accuracy(arguments, cli.json),
         Verb::Stability(arguments) => verbs::stability::stability(arguments, cli.json),

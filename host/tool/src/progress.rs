@@ -32,6 +32,13 @@ impl Progress {
         progress
     }
 
+    /// Progress through a recording, from 0 to 1.
+    pub(crate) fn of_reading() -> Self {
+        let mut progress = Self::new(1.0);
+        progress.whole = "recording";
+        progress
+    }
+
     /// The simulation has reached `time_s`.
     pub(crate) fn reached(&mut self, time_s: f64) {
         if self.begun.elapsed() < PATIENCE {

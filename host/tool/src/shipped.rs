@@ -50,6 +50,7 @@ shipped![
     "bone-shaping",
     "pendulum-test",
     "everything",
+    "passive-examination",
 ];
 
 impl Shipped {

@@ -1,0 +1,285 @@
+//! A sample as a line.
+
+use crepitus_protocol::LimitReason;
+use crepitus_protocol::telemetry::SampleFlags;
+use std::fmt::Write as _;
+
+/// The columns, with what they mean.
+pub const COLUMNS: [(&str, &str); 13] = [
+    ("tick", "ticks of 50 µs since the drive has started"),
+    ("t_s", "time since the first recorded tick, s"),
+    ("count", "counts of the encoder since the angle's zero"),
+    ("angle_rad", "angle of the joint, rad; grows with flexion"),
+    (
+        "omega_rad_s",
+        "estimated velocity of the joint, rad/s: the drive's own estimator",
+    ),
+    ("phase", "of the imaginary object: stick, slip+, slip-"),
+    ("event", "what happened in the tick: break, stick, or both"),
+    (
+        "model_torque_nm",
+        "what the model asks for, N·m; positive opposes growing angle",
+    ),
+    ("torque_nm", "what was asked of the motor, N·m"),
+    (
+        "current_a",
+        "measured current, A; positive drives towards growing angle; empty if it was not measured",
+    ),
+    ("revision", "of the parameters in force"),
+    (
+        "limit",
+        "why the torque is not the model's: none, torque, slew, current, voltage, turned-back, holding, not-armed",
+    ),
+    (
+        "flags",
+        "settling: parameters on their way; lost: no count to believe; late: rendering was late",
+    ),
+];
+
+/// A sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Row {
+    /// Ticks since the drive has started.
+    pub tick: u64,
+    /// Time since the first recorded tick, s.
+    pub time_s: f64,
+    /// Counts of the encoder.
+    pub count: i32,
+    /// Angle of the joint, rad.
+    pub angle_rad: f64,
+    /// Velocity of the joint, rad/s.
+    pub omega_rad_s: f32,
+    /// What the model asks for, N·m.
+    pub model_torque_nm: f32,
+    /// What was asked of the motor, N·m.
+    pub torque_nm: f32,
+    /// Measured current, A.
+    pub current_a: Option<f32>,
+    /// Of the parameters in force.
+    pub revision: u32,
+    /// Phase, limit and the rest.
+    pub flags: SampleFlags,
+}
+
+/// Which cell of a line is not what it should be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("column {column}: {text:?} is not what it should be")]
+pub struct RowError {
+    /// The column.
+    pub column: &'static str,
+    /// What stands there.
+    pub text: String,
+}
+
+/// What flags are called.
+const FLAGS: [(u16, &str); 3] = [
+    (SampleFlags::SETTLING, "settling"),
+    (SampleFlags::LOST, "lost"),
+    (SampleFlags::LATE, "late"),
+];
+
+impl Row {
+    /// Appends it as a line; numbers read back to the same bits.
+    pub fn append_to(&self, line: &mut String) {
+        let mut numbers = ryu::Buffer::new();
+        // Writing to a string does not fail.
+        let _ = write!(line, "{},", self.tick);
+        line.push_str(numbers.format(self.time_s));
+        let _ = write!(line, ",{},", self.count);
+        line.push_str(numbers.format(self.angle_rad));
+        line.push(',');
+        line.push_str(numbers.format(self.omega_rad_s));
+        line.push_str(match self.flags.phase_sign() {
+            0 => ",stick,",
+            1.. => ",slip+,",
+            _ => ",slip-,",
+        });
+        line.push_str(
+            match (
+                self.flags.has(SampleFlags::BREAK),
+                self.flags.has(SampleFlags::STICK),
+            ) {
+                (false, false) => ",",
+                (true, false) => "break,",
+                (false, true) => "stick,",
+                (true, true) => "both,",
+            },
+        );
+        line.push_str(numbers.format(self.model_torque_nm));
+        line.push(',');
+        line.push_str(numbers.format(self.torque_nm));
+        line.push(',');
+        if let Some(current_a) = self.current_a {
+            line.push_str(numbers.format(current_a));
+        }
+        let _ = write!(line, ",{},{},", self.revision, self.flags.limit().name());
+        let mut separator = "";
+        for (bit, name) in FLAGS {
+            if self.flags.has(bit) {
+                line.push_str(separator);
+                line.push_str(name);
+                separator = "+";
+            }
+        }
+        line.push('\n');
+    }
+
+    /// From a line without its end.
+    ///
+    /// # Errors
+    /// [`RowError`] for the first cell that is not what it should be.
+    pub fn parse(line: &str) -> Result<Self, RowError> {
+        let mut cells = line.split(',');
+        let mut columns = COLUMNS.iter();
+        let mut next = || {
+            let column = columns.next().map_or("?", |(name, _)| *name);
+            (column, cells.next().unwrap_or(""))
+        };
+        let tick = number(next())?;
+        let time_s = number(next())?;
+        let count = number(next())?;
+        let angle_rad = number(next())?;
+        let omega_rad_s = number(next())?;
+        let phase = next();
+        let event = next();
+        let row = Self {
+            tick,
+            time_s,
+            count,
+            angle_rad,
+            omega_rad_s,
+            model_torque_nm: number(next())?,
+            torque_nm: number(next())?,
+            current_a: match next() {
+                (_, "") => None,
+                cell => Some(number(cell)?),
+            },
+            revision: number(next())?,
+            flags: flags(phase, event, next(), next())?,
+        };
+        match cells.next() {
+            None => Ok(row),
+            Some(text) => Err(wrong(("flags", text))),
+        }
+    }
+}
+
+type Cell<'a> = (&'static str, &'a str);
+
+fn wrong((column, text): Cell<'_>) -> RowError {
+    RowError {
+        column,
+        text: text.to_owned(),
+    }
+}
+
+fn number<T: std::str::FromStr>(cell: Cell<'_>) -> Result<T, RowError> {
+    cell.1.parse().map_err(|_| wrong(cell))
+}
+
+fn flags(
+    phase: Cell<'_>,
+    event: Cell<'_>,
+    limit: Cell<'_>,
+    set: Cell<'_>,
+) -> Result<SampleFlags, RowError> {
+    let sign = match phase.1 {
+        "stick" => 0,
+        "slip+" => 1,
+        "slip-" => -1,
+        _ => return Err(wrong(phase)),
+    };
+    let (breaks, sticks) = match event.1 {
+        "" => (false, false),
+        "break" => (true, false),
+        "stick" => (false, true),
+        "both" => (true, true),
+        _ => return Err(wrong(event)),
+    };
+    let reason = LimitReason::ALL
+        .into_iter()
+        .find(|reason| reason.name() == limit.1)
+        .ok_or_else(|| wrong(limit))?;
+    let mut flags = SampleFlags::default()
+        .with_phase(sign)
+        .with(SampleFlags::BREAK, breaks)
+        .with(SampleFlags::STICK, sticks)
+        .with(SampleFlags::ENERGISED, reason != LimitReason::NotArmed)
+        .with_limit(reason);
+    for name in set.1.split('+').filter(|name| !name.is_empty()) {
+        let (bit, _) = FLAGS
+            .iter()
+            .find(|(_, known)| *known == name)
+            .ok_or_else(|| wrong(set))?;
+        flags = flags.with(*bit, true);
+    }
+    Ok(flags)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows() -> Vec<Row> {
+        let plain = Row {
+            tick: u64::MAX,
+            time_s: 0.1 + 0.2,
+            count: i32::MIN,
+            angle_rad: -1.0 / 3.0,
+            omega_rad_s: 1.0e-30,
+            model_torque_nm: 0.1,
+            torque_nm: -0.2,
+            current_a: Some(0.3),
+            revision: 7,
+            flags: SampleFlags::default().with_limit(LimitReason::NotArmed),
+        };
+        let mut rows = vec![
+            plain,
+            Row {
+                current_a: None,
+                ..plain
+            },
+        ];
+        for reason in LimitReason::ALL {
+            for bits in [
+                0,
+                SampleFlags::SETTLING | SampleFlags::LATE,
+                SampleFlags::LOST | SampleFlags::BREAK,
+                SampleFlags::BREAK | SampleFlags::STICK,
+            ] {
+                let flags = SampleFlags(bits)
+                    .with_phase(-1)
+                    .with(SampleFlags::ENERGISED, reason != LimitReason::NotArmed)
+                    .with_limit(reason);
+                rows.push(Row { flags, ..plain });
+            }
+        }
+        rows
+    }
+
+    #[test]
+    fn a_row_reads_back_to_the_same_bits() {
+        for row in rows() {
+            let mut line = String::new();
+            row.append_to(&mut line);
+            assert_eq!(line.matches(',').count() + 1, COLUMNS.len());
+            assert_eq!(Row::parse(line.trim_end_matches('\n')), Ok(row), "{line}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_cell_is_named() {
+        let mut line = String::new();
+        rows()[0].append_to(&mut line);
+        let cells: Vec<_> = line.trim_end().split(',').collect();
+        for (i, (column, _)) in COLUMNS.iter().enumerate() {
+            let mut broken = cells.clone();
+            broken[i] = "?";
+            assert_eq!(Row::parse(&broken.join(",")).unwrap_err().column, *column);
+            // Cut off in the middle.
+            if i < 12 {
+                assert!(Row::parse(&cells[..i].join(",")).is_err());
+            }
+        }
+    }
+}

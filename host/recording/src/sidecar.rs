@@ -1,0 +1,161 @@
+//! What stands beside the samples.
+
+use crepitus_protocol::management::Identity;
+use crepitus_protocol::parameters::{Kind, PARAMETERS};
+use crepitus_protocol::{Revision, TICKS_PER_S, Values, schema};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+use std::fmt::Write as _;
+
+/// Version of the two files.
+pub(crate) const FORMAT: u32 = 1;
+
+/// A controller that has taken part.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Controller {
+    /// Version of its program.
+    pub version: String,
+    /// Schema hash of its program, hexadecimal.
+    pub schema: String,
+    /// Number of its chip, hexadecimal.
+    pub serial: String,
+    /// CRC-32 of its program's image, hexadecimal; 0 where there is none.
+    pub image: String,
+}
+
+impl From<&Identity> for Controller {
+    fn from(identity: &Identity) -> Self {
+        let [major, minor, patch] = identity.version;
+        let serial = identity.serial.iter().fold(String::new(), |mut hex, byte| {
+            let _ = write!(hex, "{byte:02x}");
+            hex
+        });
+        Self {
+            version: format!("{major}.{minor}.{patch}"),
+            schema: format!("{:016x}", identity.schema),
+            serial,
+            image: format!("{:08x}", identity.image),
+        }
+    }
+}
+
+/// Parameters that were in force from a tick on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ParameterSet {
+    /// Their revision.
+    pub revision: u32,
+    /// The first tick that was recorded with them.
+    pub first_tick: u64,
+    /// Name to value; a choice by its name.
+    pub values: Map<String, Value>,
+}
+
+/// Samples that are missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Gap {
+    /// The first tick that is missing.
+    pub first_tick: u64,
+    /// How many are.
+    pub samples: u64,
+}
+
+/// The books: produced = received + dropped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Totals {
+    /// Samples that the drive produced from the first to the last recorded
+    /// tick.
+    pub produced: u64,
+    /// Samples that were recorded.
+    pub received: u64,
+    /// Samples that were lost on the way, wherever that was.
+    pub dropped: u64,
+}
+
+/// The JSON file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sidecar {
+    /// Version of the two files.
+    pub format: u32,
+    /// What it is of.
+    pub title: String,
+    /// When it was begun, seconds since 1970.
+    pub begun_unix_s: u64,
+    /// Version of the program that has recorded it.
+    pub recorder: String,
+    /// Schema hash of that program, hexadecimal.
+    pub schema: String,
+    /// The comms controller.
+    pub comms: Controller,
+    /// The drive controller.
+    pub drive: Option<Controller>,
+    /// Ticks in a second.
+    pub ticks_per_s: u32,
+    /// What the columns are.
+    pub columns: Map<String, Value>,
+    /// Whether it was ended in order. If not, it was cut off, and `telemetry`
+    /// and `drops` are those of the last change.
+    pub complete: bool,
+    /// Every parameter set that was in force, in order.
+    pub parameters: Vec<ParameterSet>,
+    /// The books.
+    pub telemetry: Totals,
+    /// What is missing, the first thousand gaps.
+    pub drops: Vec<Gap>,
+    /// Starts of the drive while it was recorded: ticks begin anew.
+    pub drive_restarts: u32,
+}
+
+impl Sidecar {
+    /// Of a recording that begins now, of a device that said who it is.
+    pub fn new(title: &str, begun_unix_s: u64, comms: &Identity, drive: Option<&Identity>) -> Self {
+        Self {
+            format: FORMAT,
+            title: title.to_owned(),
+            begun_unix_s,
+            recorder: env!("CARGO_PKG_VERSION").to_owned(),
+            schema: format!("{:016x}", schema::HASH),
+            comms: comms.into(),
+            drive: drive.map(Controller::from),
+            ticks_per_s: TICKS_PER_S,
+            columns: crate::row::COLUMNS
+                .iter()
+                .map(|(name, meaning)| ((*name).to_owned(), json!(meaning)))
+                .collect(),
+            complete: false,
+            parameters: Vec::new(),
+            telemetry: Totals::default(),
+            drops: Vec::new(),
+            drive_restarts: 0,
+        }
+    }
+
+    /// The value of a number in the parameters of a revision.
+    pub fn number(&self, revision: Revision, name: &str) -> Option<f64> {
+        self.parameters
+            .iter()
+            .find(|set| set.revision == revision.0)
+            .and_then(|set| set.values.get(name))
+            .and_then(Value::as_f64)
+    }
+}
+
+/// Values by name; choices by the name of what was chosen.
+pub fn named_values(values: &Values) -> Map<String, Value> {
+    PARAMETERS
+        .iter()
+        .zip(values.0)
+        .map(|(parameter, value)| {
+            let name = format!("{}.{}", parameter.group, parameter.key());
+            let value = match parameter.kind {
+                Kind::Number(_) => json!(value),
+                Kind::Choice(choice) => choice
+                    .names
+                    .iter()
+                    .zip(0_u8..)
+                    .find(|(_, place)| f64::from(*place) == value)
+                    .map_or(Value::Null, |(name, _)| json!(name)),
+            };
+            (name, value)
+        })
+        .collect()
+}

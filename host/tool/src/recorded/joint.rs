@@ -1,0 +1,114 @@
+//! The imaginary object, from what a device says of it.
+
+use crepitus_model::oscillator::Oscillator;
+use crepitus_model::parameters::{DAMPING, Parameters};
+use crepitus_protocol::telemetry::SampleFlags;
+use crepitus_protocol::{Revision, TICK_S};
+use crepitus_recording::{Row, Sidecar};
+use crepitus_scene::trace::{EventKind, EventRecord};
+
+/// Angle and velocity of the object; NaN where they are not known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Object {
+    pub(super) theta_rad: f64,
+    pub(super) theta_dot_rad_s: f64,
+}
+
+const UNKNOWN: Object = Object {
+    theta_rad: f64::NAN,
+    theta_dot_rad_s: f64::NAN,
+};
+
+/// Follows the object. In a stick its angle is torque over stiffness; in a
+/// slip it swings about sense·Tk/kr from where the stick broke, with the
+/// shaft's speed.
+#[derive(Debug, Default)]
+pub(super) struct Joint {
+    parameters: Option<(u32, Parameters)>,
+    object: Option<Object>,
+    previous: Option<(i8, f64)>,
+    /// Of the row before the one that was followed last.
+    before: Option<(i8, f64)>,
+}
+
+impl Joint {
+    /// The object in this row.
+    pub(super) fn follow(&mut self, row: &Row, sidecar: &Sidecar) -> Object {
+        let parameters = self.parameters(row.revision, sidecar);
+        let sign = row.flags.phase_sign();
+        let torque_nm = f64::from(row.model_torque_nm);
+        let object = match (parameters, sign) {
+            (None, _) => UNKNOWN,
+            (Some(p), 0) => Object {
+                theta_rad: torque_nm / p.stiffness_nm_per_rad,
+                theta_dot_rad_s: f64::from(row.omega_rad_s),
+            },
+            (Some(p), sign) => self.slip(&p, f64::from(sign), row),
+        };
+        self.object = Some(object);
+        self.before = self.previous;
+        self.previous = Some((sign, torque_nm));
+        object
+    }
+
+    fn slip(&self, p: &Parameters, sense: f64, row: &Row) -> Object {
+        let middle_rad = sense * p.kinetic_torque_nm / p.stiffness_nm_per_rad;
+        let began = self
+            .previous
+            .is_none_or(|(sign, _)| f64::from(sign) != sense);
+        let before = match self.object {
+            Some(object) if !began => object,
+            // It broke within this tick: at Ts/kr, with the shaft.
+            _ => Object {
+                theta_rad: sense * p.static_torque_nm / p.stiffness_nm_per_rad,
+                theta_dot_rad_s: f64::from(row.omega_rad_s),
+            },
+        };
+        let swing = Oscillator::<f64>::of(p).transition(TICK_S);
+        let (x, v) = swing.apply(before.theta_rad - middle_rad, before.theta_dot_rad_s);
+        Object {
+            theta_rad: x + middle_rad,
+            theta_dot_rad_s: v,
+        }
+    }
+
+    /// The event of the row that was followed last, if it has one.
+    pub(super) fn event(&self, row: &Row, object: &Object) -> Option<EventRecord> {
+        let kind = if row.flags.has(SampleFlags::BREAK) {
+            EventKind::Break
+        } else if row.flags.has(SampleFlags::STICK) {
+            EventKind::Stick
+        } else {
+            return None;
+        };
+        let (from, torque_before_nm) = self.before?;
+        Some(EventRecord {
+            time_s: row.time_s,
+            kind,
+            from,
+            to: row.flags.phase_sign(),
+            theta_rad: object.theta_rad,
+            omega_rad_s: f64::from(row.omega_rad_s),
+            torque_before_nm,
+            torque_after_nm: f64::from(row.model_torque_nm),
+        })
+    }
+
+    fn parameters(&mut self, revision: u32, sidecar: &Sidecar) -> Option<Parameters> {
+        if let Some((known, parameters)) = self.parameters
+            && known == revision
+        {
+            return Some(parameters);
+        }
+        let number = |name| sidecar.number(Revision(revision), name);
+        let parameters = Parameters {
+            inertia_kg_m2: number("crepitus.inertia_kg_m2")?,
+            stiffness_nm_per_rad: number("crepitus.stiffness_nm_per_rad")?,
+            damping_nms_per_rad: DAMPING.default,
+            kinetic_torque_nm: number("crepitus.kinetic_torque_nm")?,
+            static_torque_nm: number("crepitus.static_torque_nm")?,
+        };
+        self.parameters = Some((revision, parameters));
+        Some(parameters)
+    }
+}

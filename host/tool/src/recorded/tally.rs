@@ -1,0 +1,186 @@
+//! What a recording says in numbers.
+
+use crepitus_protocol::telemetry::SampleFlags;
+use crepitus_protocol::{LimitReason, TICK_S};
+use crepitus_recording::{Controller, ParameterSet, Row, Sidecar, Totals};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A torque over time.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct Torque {
+    pub(crate) min_nm: f64,
+    pub(crate) mean_nm: f64,
+    pub(crate) max_nm: f64,
+    pub(crate) rms_nm: f64,
+}
+
+/// `summary.json` of a recording.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct RecordedSummary {
+    pub(crate) title: String,
+    pub(crate) crepitus_version: &'static str,
+    pub(crate) begun_unix_s: u64,
+    pub(crate) comms: Controller,
+    pub(crate) drive: Option<Controller>,
+    /// Whether the recording was ended in order.
+    pub(crate) complete: bool,
+    pub(crate) duration_s: f64,
+    pub(crate) armed_s: f64,
+    pub(crate) telemetry: Totals,
+    pub(crate) gaps: usize,
+    pub(crate) drive_restarts: u32,
+    pub(crate) breaks: u64,
+    pub(crate) sticks: u64,
+    pub(crate) fastest_rad_s: f64,
+    /// Of the model, while armed.
+    pub(crate) model_torque: Option<Torque>,
+    /// Asked of the motor, while armed.
+    pub(crate) torque: Option<Torque>,
+    /// Seconds of armed time in which each reason limited the torque.
+    pub(crate) limited_s: BTreeMap<&'static str, f64>,
+    pub(crate) lost_samples: u64,
+    pub(crate) late_ticks: u64,
+    pub(crate) parameters: Vec<ParameterSet>,
+    pub(crate) warnings: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Sum {
+    count: u64,
+    min: f64,
+    max: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Default for Sum {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            min: f64::INFINITY,
+            max: f64::NEG_INFINITY,
+            sum: 0.0,
+            squares: 0.0,
+        }
+    }
+}
+
+impl Sum {
+    fn note(&mut self, x: f64) {
+        self.count += 1;
+        self.min = self.min.min(x);
+        self.max = self.max.max(x);
+        self.sum += x;
+        self.squares += x * x;
+    }
+
+    fn torque(&self) -> Option<Torque> {
+        let count = seconds(self.count) / TICK_S;
+        (self.count > 0).then(|| Torque {
+            min_nm: self.min,
+            mean_nm: self.sum / count,
+            max_nm: self.max,
+            rms_nm: (self.squares / count).sqrt(),
+        })
+    }
+}
+
+/// Adds up rows.
+#[derive(Debug, Default)]
+pub(super) struct Tally {
+    rows: u64,
+    armed: Sum,
+    asked: Sum,
+    breaks: u64,
+    sticks: u64,
+    fastest_rad_s: f64,
+    limited: BTreeMap<&'static str, u64>,
+    lost: u64,
+    late: u64,
+}
+
+impl Tally {
+    pub(super) fn row(&mut self, row: &Row) {
+        let flags = row.flags;
+        self.rows += 1;
+        self.fastest_rad_s = self.fastest_rad_s.max(f64::from(row.omega_rad_s.abs()));
+        self.lost += u64::from(flags.has(SampleFlags::LOST));
+        self.late += u64::from(flags.has(SampleFlags::LATE));
+        if flags.limit() == LimitReason::NotArmed {
+            return;
+        }
+        self.breaks += u64::from(flags.has(SampleFlags::BREAK));
+        self.sticks += u64::from(flags.has(SampleFlags::STICK));
+        self.armed.note(f64::from(row.model_torque_nm));
+        self.asked.note(f64::from(row.torque_nm));
+        if flags.limit() != LimitReason::None {
+            *self.limited.entry(flags.limit().name()).or_default() += 1;
+        }
+    }
+
+    pub(super) fn finish(self, sidecar: &Sidecar) -> RecordedSummary {
+        let mut telemetry = sidecar.telemetry;
+        let mut warnings = Vec::new();
+        if !sidecar.complete {
+            warnings.push(
+                "The recording was cut off: the program that made it was stopped. What it had \
+                 written until then is here."
+                    .to_owned(),
+            );
+            // The lines know more than the JSON file.
+            telemetry.received = self.rows;
+            telemetry.produced = self.rows + telemetry.dropped;
+        }
+        if telemetry.dropped > 0 {
+            warnings.push(format!(
+                "{} samples ({:.3} s) are missing in {} gaps.",
+                telemetry.dropped,
+                seconds(telemetry.dropped),
+                sidecar.drops.len()
+            ));
+        }
+        if sidecar.drive_restarts > 0 {
+            warnings.push(format!(
+                "The drive started {} times meanwhile.",
+                sidecar.drive_restarts
+            ));
+        }
+        if self.armed.count == 0 && self.rows > 0 {
+            warnings.push("The device was never armed: there was no torque.".to_owned());
+        }
+        RecordedSummary {
+            title: sidecar.title.clone(),
+            crepitus_version: env!("CARGO_PKG_VERSION"),
+            begun_unix_s: sidecar.begun_unix_s,
+            comms: sidecar.comms.clone(),
+            drive: sidecar.drive.clone(),
+            complete: sidecar.complete,
+            duration_s: seconds(self.rows),
+            armed_s: seconds(self.armed.count),
+            telemetry,
+            gaps: sidecar.drops.len(),
+            drive_restarts: sidecar.drive_restarts,
+            breaks: self.breaks,
+            sticks: self.sticks,
+            fastest_rad_s: self.fastest_rad_s,
+            model_torque: self.armed.torque(),
+            torque: self.asked.torque(),
+            limited_s: self
+                .limited
+                .into_iter()
+                .map(|(reason, ticks)| (reason, seconds(ticks)))
+                .collect(),
+            lost_samples: self.lost,
+            late_ticks: self.late,
+            parameters: sidecar.parameters.clone(),
+            warnings,
+        }
+    }
+}
+
+/// So many ticks, s.
+#[expect(clippy::cast_precision_loss, reason = "centuries of ticks")]
+pub(super) fn seconds(ticks: u64) -> f64 {
+    ticks as f64 * TICK_S
+}

@@ -1,0 +1,66 @@
+//! How a device is, as a person reads it.
+
+use crepitus_client::fault_text;
+use crepitus_protocol::host::Status;
+use crepitus_protocol::management::Identity;
+use serde_json::{Value, json};
+
+/// Version, language, number.
+pub(crate) fn identity(identity: &Identity) -> String {
+    let [major, minor, patch] = identity.version;
+    format!(
+        "version {major}.{minor}.{patch}, language {:016x}, serial {}, started by {}",
+        identity.schema,
+        serial(identity),
+        identity.reset.name()
+    )
+}
+
+/// The same, for machines.
+pub(crate) fn identity_json(identity: &Identity) -> Value {
+    let [major, minor, patch] = identity.version;
+    json!({
+        "version": format!("{major}.{minor}.{patch}"),
+        "schema": format!("{:016x}", identity.schema),
+        "serial": serial(identity),
+        "image": format!("{:08x}", identity.image),
+        "reset": identity.reset.name(),
+    })
+}
+
+/// The chip's number: as text where it is some, otherwise hexadecimal.
+fn serial(identity: &Identity) -> String {
+    let bytes = &identity.serial;
+    if bytes.iter().all(|b| b.is_ascii_graphic()) {
+        String::from_utf8_lossy(bytes).into_owned()
+    } else {
+        bytes.iter().map(|b| format!("{b:02x}")).collect()
+    }
+}
+
+/// The faults of a device, in words.
+pub(crate) fn faults(status: &Status) -> Vec<String> {
+    [status.drive_fault, status.comms_fault]
+        .into_iter()
+        .filter(|code| *code != 0)
+        .map(fault_text)
+        .collect()
+}
+
+/// How it is, for machines.
+pub(crate) fn status_json(status: &Status) -> Value {
+    json!({
+        "state": status.state.name(),
+        "drive_fault": status.drive_fault,
+        "comms_fault": status.comms_fault,
+        "drive_present": status.drive_present,
+        "tick": status.tick,
+        "uptime_ms": status.uptime_ms,
+        "revision": status.revision.0,
+        "in_force": status.in_force.0,
+        "saved": status.saved.map(|revision| revision.0),
+        "lease": status.lease.map(|session| session.to_string()),
+        "zeroed": status.zeroed,
+        "polarity_proven": status.polarity_proven,
+    })
+}

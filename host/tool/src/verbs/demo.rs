@@ -1,0 +1,203 @@
+//! `crepitus demo`: the whole chain in one process, from the host's library to
+//! the simulated leg.
+
+use super::record::Recording;
+use super::report::in_brief;
+use crate::cli::device::DemoArguments;
+use crate::failure::{Failure, print, print_json};
+use crate::following::{Follower, follow};
+use crate::line::{Line, failure};
+use crate::progress::Progress;
+use crate::recorded::{RecordedSummary, report};
+use crate::shipped;
+use crate::simulated::Simulated;
+use crepitus_client::{Client, RequestKind};
+use crepitus_model::presets::Preset;
+use crepitus_protocol::parameters::Parameter;
+use crepitus_protocol::telemetry::Block;
+use crepitus_protocol::{Revision, State};
+use crepitus_scene::Overrides;
+use serde_json::json;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// The leg, and what its joint begins with.
+const SCENE: &str = "passive-examination";
+const PRESET: &str = "coarse";
+
+/// What is changed on the way, after these shares of the time.
+const CHANGES: [(f64, &str, f64); 2] = [
+    (1.0 / 3.0, "crepitus.kinetic_torque_nm", 0.25),
+    (2.0 / 3.0, "crepitus.stiffness_nm_per_rad", 900.0),
+];
+
+/// Within this time a device has let go.
+const LETTING_GO: Duration = Duration::from_millis(100);
+
+/// Runs it.
+pub(crate) fn demo(arguments: &DemoArguments, as_json: bool) -> Result<(), Failure> {
+    let begun = Instant::now();
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("out/demo"));
+    let file = prepared(&out)?;
+    let scene = shipped::scene(Path::new(SCENE), &Overrides::default())?;
+    let duration = Duration::from_secs_f64(scene.duration_s);
+    let device = Simulated::of(&scene).map_err(Failure::input)?;
+    let mut say = Saying(as_json);
+
+    say.now(
+        "the device",
+        "two controllers and a leg are simulated, and plugged in",
+    )?;
+    let mut client = Client::connect(Line::Simulated(Box::new(device))).map_err(failure)?;
+    let (base, values) = client.parameters().map_err(failure)?;
+    let preset = Preset::find(PRESET)
+        .ok_or_else(|| Failure::Work(format!("there is no preset {PRESET}")))?;
+    client
+        .commit(base, &values.with_crepitus(&preset.parameters))
+        .map_err(failure)?;
+    client.zero().map_err(failure)?;
+    say.now(
+        "parameters",
+        &format!("{PRESET} is in force; the angle is zero here"),
+    )?;
+
+    let recording = Recording::begin(&mut client, &file, &scene.title)?;
+    client.subscribe().map_err(failure)?;
+    let mut examination = Examination {
+        recording,
+        changes: CHANGES
+            .iter()
+            .map(|(share, name, value)| (duration.mul_f64(*share), *name, *value))
+            .collect(),
+        begin: client.now(),
+        progress: Progress::new(scene.duration_s),
+        made: Vec::new(),
+    };
+    follow(&mut client, Some(duration), true, &mut examination)?;
+    let_go(&mut client)?;
+    let Examination {
+        recording, made, ..
+    } = examination;
+    recording.finish()?;
+    say.now("examination", &told(&client, &made))?;
+
+    let recording = crepitus_recording::Recording::open(&file).map_err(Failure::input)?;
+    let summary = report(&recording, &out, arguments.pictures)?;
+    done(&summary, &out, &client, begun.elapsed(), as_json)
+}
+
+/// The folder, without the recording of the last time.
+fn prepared(out: &Path) -> Result<PathBuf, Failure> {
+    fs::create_dir_all(out).map_err(|e| Failure::at(out, "cannot be made", &e))?;
+    let file = out.join("recording.csv");
+    for old in [file.clone(), file.with_extension("json")] {
+        match fs::remove_file(&old) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                return Err(Failure::at(&old, "cannot be replaced", &e));
+            }
+            _ => {}
+        }
+    }
+    Ok(file)
+}
+
+/// Waits until the drive has let go, which it does within milliseconds.
+fn let_go(client: &mut Client<Line>) -> Result<(), Failure> {
+    let end = client.now() + LETTING_GO;
+    while client.status().map_err(failure)?.state != State::Disarmed {
+        if client.now() >= end {
+            return Err(Failure::Work("the device does not disarm".to_owned()));
+        }
+    }
+    Ok(())
+}
+
+/// What is being done, for people.
+struct Saying(bool);
+
+impl Saying {
+    fn now(&mut self, what: &str, text: &str) -> Result<(), Failure> {
+        if self.0 {
+            return Ok(());
+        }
+        print(&format!("{what:<12} {text}\n"))
+    }
+}
+
+/// An examination that is recorded, with changes on the way.
+struct Examination {
+    recording: Recording,
+    /// When, what, to which value: those that are still to come.
+    changes: std::collections::VecDeque<(Duration, &'static str, f64)>,
+    begin: Duration,
+    progress: Progress,
+    made: Vec<(&'static str, f64, Revision)>,
+}
+
+impl Follower for Examination {
+    fn block(&mut self, client: &mut Client<Line>, block: &Block) -> Result<(), Failure> {
+        self.recording.block(client, block)
+    }
+
+    fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure> {
+        let since = client.now().saturating_sub(self.begin);
+        self.progress.reached(since.as_secs_f64());
+        if let Some((when, name, value)) = self.changes.front().copied()
+            && since >= when
+        {
+            self.changes.pop_front();
+            let (id, _) = Parameter::find(name)
+                .ok_or_else(|| Failure::Work(format!("there is no parameter {name}")))?;
+            let revision = client.set(&[(id, value)]).map_err(failure)?;
+            self.made.push((name, value, revision));
+        }
+        self.recording.pause(client)
+    }
+}
+
+fn told(client: &Client<Line>, made: &[(&'static str, f64, Revision)]) -> String {
+    let mut text = "armed, moved, disarmed".to_owned();
+    for (name, value, revision) in made {
+        text.push_str(&format!(
+            "\n{:<12} {name} = {value} on the way, revision {revision}",
+            ""
+        ));
+    }
+    if let Some(trip) = client.round_trips().of(RequestKind::Commit) {
+        text.push_str(&format!(
+            "\n{:<12} commits took {:.1} ms of the device's time (median; worst {:.1} ms)",
+            "",
+            trip.median.as_secs_f64() * 1e3,
+            trip.worst.as_secs_f64() * 1e3
+        ));
+    }
+    text
+}
+
+fn done(
+    summary: &RecordedSummary,
+    out: &Path,
+    client: &Client<Line>,
+    wall: Duration,
+    as_json: bool,
+) -> Result<(), Failure> {
+    let device_s = client.now().as_secs_f64();
+    let wall_s = wall.as_secs_f64();
+    if as_json {
+        return print_json(&json!({
+            "out": out,
+            "device_s": device_s,
+            "wall_s": wall_s,
+            "summary": summary,
+        }));
+    }
+    print(&format!(
+        "{}recording: {}\n{device_s:.1} s of the device took {wall_s:.1} s with everything\n",
+        in_brief(summary, out),
+        out.join("recording.csv").display()
+    ))
+}

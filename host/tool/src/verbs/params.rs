@@ -1,0 +1,182 @@
+//! `crepitus params`: list, read, set and keep a device's parameters.
+
+use crate::cli::device::{DeviceArguments, ParamsAction, ParamsArguments};
+use crate::failure::{Failure, print, print_json};
+use crate::line::{connect, failure};
+use crate::shipped;
+use crepitus_client::values::{allowed_text, full_name, parse_value, show_value};
+use crepitus_model::presets::Preset;
+use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter, When};
+use crepitus_protocol::{Revision, Values};
+use crepitus_scene::Overrides;
+use serde_json::{Map, Value, json};
+use std::path::Path;
+
+/// Does it.
+pub(crate) fn params(arguments: &ParamsArguments, as_json: bool) -> Result<(), Failure> {
+    let device = &arguments.device;
+    match &arguments.action {
+        ParamsAction::List => list(as_json),
+        ParamsAction::Get { names } => get(device, names, as_json),
+        ParamsAction::Set { values } => set(device, values, as_json),
+        ParamsAction::Apply { what } => apply(device, what, as_json),
+        ParamsAction::Save => {
+            let mut client = connect(device)?;
+            client.save().map_err(failure)?;
+            let (revision, _) = client.parameters().map_err(failure)?;
+            said(revision, "kept for the next start", as_json)
+        }
+    }
+}
+
+/// The parameter of a name, or what names there are like it.
+fn find(name: &str) -> Result<(usize, &'static Parameter), Failure> {
+    Parameter::find(name).ok_or_else(|| {
+        let like = PARAMETERS
+            .iter()
+            .map(full_name)
+            .max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)))
+            .unwrap_or_default();
+        Failure::Input(format!(
+            "there is no parameter {name:?}: did you mean {like:?}? `crepitus params list` lists them"
+        ))
+    })
+}
+
+fn list(as_json: bool) -> Result<(), Failure> {
+    if as_json {
+        let list: Vec<_> = PARAMETERS.iter().enumerate().map(described).collect();
+        return print_json(&list);
+    }
+    let mut text = String::new();
+    for parameter in &PARAMETERS {
+        let when = match parameter.when {
+            When::Always => "",
+            When::Disarmed => "; only while disarmed",
+        };
+        text.push_str(&format!(
+            "{}\n    {}\n    {}, default {}{when}\n",
+            full_name(parameter),
+            parameter.meaning(),
+            allowed_text(parameter),
+            show_value(parameter, parameter.default())
+        ));
+    }
+    print(&text)
+}
+
+fn described((id, parameter): (usize, &Parameter)) -> Value {
+    let (unit, min, max, choices) = match parameter.kind {
+        Kind::Number(spec) => (Some(spec.unit), Some(spec.min), Some(spec.max), None),
+        Kind::Choice(choice) => (None, None, None, Some(choice.names)),
+    };
+    json!({
+        "id": id,
+        "name": full_name(parameter),
+        "unit": unit,
+        "min": min,
+        "max": max,
+        "choices": choices,
+        "default": named(parameter, parameter.default()),
+        "only_disarmed": parameter.when == When::Disarmed,
+        "meaning": parameter.meaning(),
+    })
+}
+
+/// A number, or the name of a choice.
+fn named(parameter: &Parameter, value: f64) -> Value {
+    match parameter.kind {
+        Kind::Number(_) => json!(value),
+        Kind::Choice(_) => json!(show_value(parameter, value)),
+    }
+}
+
+fn get(device: &DeviceArguments, names: &[String], as_json: bool) -> Result<(), Failure> {
+    let wanted: Vec<_> = if names.is_empty() {
+        PARAMETERS.iter().enumerate().collect()
+    } else {
+        names
+            .iter()
+            .map(|name| find(name))
+            .collect::<Result<_, _>>()?
+    };
+    let mut client = connect(device)?;
+    let (revision, values) = client.parameters().map_err(failure)?;
+    let value = |id: usize| values.get(id).unwrap_or(f64::NAN);
+    if as_json {
+        let values: Map<String, Value> = wanted
+            .iter()
+            .map(|(id, parameter)| (full_name(parameter), named(parameter, value(*id))))
+            .collect();
+        return print_json(&json!({ "revision": revision.0, "values": values }));
+    }
+    let lines = wanted.iter().map(|(id, parameter)| {
+        let unit = match parameter.kind {
+            Kind::Number(spec) if spec.unit != "1" => format!(" {}", spec.unit),
+            _ => String::new(),
+        };
+        format!(
+            "{} = {}{unit}\n",
+            full_name(parameter),
+            show_value(parameter, value(*id))
+        )
+    });
+    print(&format!(
+        "revision {revision}\n{}",
+        lines.collect::<String>()
+    ))
+}
+
+fn set(
+    device: &DeviceArguments,
+    values: &[(String, String)],
+    as_json: bool,
+) -> Result<(), Failure> {
+    let changes = values
+        .iter()
+        .map(|(name, text)| {
+            let (id, parameter) = find(name)?;
+            let value = parse_value(parameter, text)
+                .map_err(|error| Failure::Input(format!("{name} = {text}: {error}")))?;
+            Ok((id, value))
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
+    let mut client = connect(device)?;
+    let revision = client.set(&changes).map_err(failure)?;
+    said(revision, "in force", as_json)
+}
+
+/// A preset's numbers, or all that a scene says of a device.
+fn apply(device: &DeviceArguments, what: &Path, as_json: bool) -> Result<(), Failure> {
+    let preset = what.to_str().and_then(Preset::find);
+    let from_scene = match preset {
+        Some(_) => None,
+        None => {
+            let scene =
+                shipped::scene(what, &Overrides::default()).map_err(|failure| match failure {
+                    Failure::Input(text) if !what.exists() => Failure::Input(format!(
+                        "{text}; nor is it a preset: `crepitus presets` lists them"
+                    )),
+                    other => other,
+                })?;
+            Some(crepitus_board::values::values(&scene).map_err(Failure::input)?)
+        }
+    };
+    let mut client = connect(device)?;
+    let (base, now) = client.parameters().map_err(failure)?;
+    let values: Values = match (preset, from_scene) {
+        (Some(preset), _) => now.with_crepitus(&preset.parameters),
+        (None, Some(values)) => values,
+        (None, None) => now,
+    };
+    let revision = client.commit(base, &values).map_err(failure)?;
+    said(revision, "in force", as_json)
+}
+
+fn said(revision: Revision, what: &str, as_json: bool) -> Result<(), Failure> {
+    if as_json {
+        print_json(&json!({ "revision": revision.0, "done": what }))
+    } else {
+        print(&format!("revision {revision} is {what}\n"))
+    }
+}

@@ -1,0 +1,103 @@
+//! `crepitus record`: every sample to a file.
+
+use crate::cli::device::RecordArguments;
+use crate::failure::{Failure, print, print_json};
+use crate::following::{Follower, follow};
+use crate::line::{Line, connect, failure};
+use crate::status_line::StatusLine;
+use crepitus_client::Client;
+use crepitus_protocol::Revision;
+use crepitus_protocol::telemetry::Block;
+use crepitus_recording::{Recorder, Sidecar};
+use serde_json::json;
+use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Records.
+pub(crate) fn record(arguments: &RecordArguments, as_json: bool) -> Result<(), Failure> {
+    let mut client = connect(&arguments.device)?;
+    let mut recording = Recording::begin(&mut client, &arguments.file, &arguments.title)?;
+    client.subscribe().map_err(failure)?;
+    let end = follow(&mut client, arguments.for_s, arguments.arm, &mut recording);
+    // Whatever has happened, what was recorded is brought to an end in order.
+    let sidecar = recording.finish()?;
+    end?;
+    let t = sidecar.telemetry;
+    if as_json {
+        return print_json(&json!({
+            "file": arguments.file,
+            "telemetry": t,
+            "drive_restarts": sidecar.drive_restarts,
+        }));
+    }
+    print(&format!(
+        "{}: {} samples produced = {} received + {} dropped\n\
+         `crepitus report {}` makes its report\n",
+        arguments.file.display(),
+        t.produced,
+        t.received,
+        t.dropped,
+        arguments.file.display()
+    ))
+}
+
+/// A recording that is being made of a device.
+pub(crate) struct Recording {
+    recorder: Recorder,
+    announced: Option<Revision>,
+    status: StatusLine,
+}
+
+impl Recording {
+    /// Begins one.
+    pub(crate) fn begin(
+        client: &mut Client<Line>,
+        file: &Path,
+        title: &str,
+    ) -> Result<Self, Failure> {
+        let now = SystemTime::now()
+            .duration_since(UNIX_EPOCH)
+            .map_or(0, |since| since.as_secs());
+        let handshake = client.handshake();
+        let sidecar = Sidecar::new(title, now, &handshake.comms, handshake.drive.as_ref());
+        Ok(Self {
+            recorder: Recorder::create(file, sidecar).map_err(Failure::input)?,
+            announced: None,
+            status: StatusLine::new(),
+        })
+    }
+
+    /// Ends it in order.
+    pub(crate) fn finish(self) -> Result<Sidecar, Failure> {
+        self.recorder.finish().map_err(stopped)
+    }
+}
+
+/// The disk does not take any more.
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "used where errors are mapped"
+)]
+fn stopped(error: crepitus_recording::RecordError) -> Failure {
+    Failure::Work(format!(
+        "{error}; the recording ends here, and what was written can be reported"
+    ))
+}
+
+impl Follower for Recording {
+    fn block(&mut self, client: &mut Client<Line>, block: &Block) -> Result<(), Failure> {
+        if self.announced != Some(block.revision) {
+            let (revision, values) = client.parameters().map_err(failure)?;
+            self.recorder.announce(revision, &values);
+            self.announced = Some(block.revision);
+        }
+        self.status.block(block);
+        self.recorder.block(block).map_err(stopped)
+    }
+
+    fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure> {
+        self.recorder.flush().map_err(stopped)?;
+        self.status.show(client.accounting());
+        Ok(false)
+    }
+}

@@ -1,0 +1,52 @@
+//! `crepitus report FILE`: the report of a recording.
+
+use crate::cli::device::ReportArguments;
+use crate::failure::{Failure, print, print_json};
+use crate::interrupt;
+use crate::recorded::{RecordedSummary, report as write_report};
+use crepitus_recording::Recording;
+use serde_json::json;
+use std::path::Path;
+
+/// Reports.
+pub(crate) fn report(arguments: &ReportArguments, as_json: bool) -> Result<(), Failure> {
+    let recording = Recording::open(&arguments.file).map_err(Failure::input)?;
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| arguments.file.with_extension(""));
+    interrupt::listen();
+    let summary = write_report(&recording, &out, arguments.pictures)?;
+    if as_json {
+        return print_json(&json!({ "out": out, "summary": summary }));
+    }
+    print(&in_brief(&summary, &out))
+}
+
+/// A few lines.
+pub(crate) fn in_brief(s: &RecordedSummary, out: &Path) -> String {
+    let warnings: String = s
+        .warnings
+        .iter()
+        .map(|w| format!("  note: {w}\n"))
+        .collect();
+    let torque = s.model_torque.map_or(String::new(), |t| {
+        format!(
+            "  torque of the model {:.3} to {:.3} N·m, mean {:.3}\n",
+            t.min_nm, t.max_nm, t.mean_nm
+        )
+    });
+    format!(
+        "{}\n  {:.3} s, {:.3} s of it armed, with {} breaks and {} sticks\n{torque}  \
+         {} samples produced = {} received + {} dropped\n{warnings}report: {}\n",
+        s.title,
+        s.duration_s,
+        s.armed_s,
+        s.breaks,
+        s.sticks,
+        s.telemetry.produced,
+        s.telemetry.received,
+        s.telemetry.dropped,
+        out.join("report.html").display()
+    )
+}
