@@ -8,6 +8,7 @@ mod keys;
 mod line;
 mod progress;
 mod recorded;
+mod sections;
 mod shipped;
 mod simulated;
 mod status_line;

@@ -4,6 +4,7 @@ use crepitus_client::fault_text;
 use crepitus_protocol::host::Status;
 use crepitus_protocol::management::Identity;
 use serde_json::{Value, json};
+use std::fmt::Write as _;
 
 /// Version, language, number.
 pub(crate) fn identity(identity: &Identity) -> String {
@@ -31,10 +32,14 @@ pub(crate) fn identity_json(identity: &Identity) -> Value {
 /// The chip's number: as text where it is some, otherwise hexadecimal.
 fn serial(identity: &Identity) -> String {
     let bytes = &identity.serial;
-    if bytes.iter().all(|b| b.is_ascii_graphic()) {
+    if bytes.iter().all(u8::is_ascii_graphic) {
         String::from_utf8_lossy(bytes).into_owned()
     } else {
-        bytes.iter().map(|b| format!("{b:02x}")).collect()
+        bytes.iter().fold(String::new(), |mut hex, byte| {
+            // Writing to a string does not fail.
+            let _ = write!(hex, "{byte:02x}");
+            hex
+        })
     }
 }
 

@@ -1,6 +1,7 @@
 //! The tables of a recording's report.
 
-use super::tally::{RecordedSummary, Torque, seconds};
+use super::tally::{RecordedSummary, seconds};
+use crate::sections::{section, torque_section};
 use crepitus_recording::{Controller, ParameterSet, Sidecar};
 use crepitus_report::Section;
 use serde_json::Value;
@@ -12,18 +13,18 @@ pub(super) fn sections(s: &RecordedSummary, sidecar: &Sidecar) -> Vec<Section> {
     let mut sections = vec![recording(s)];
     sections.extend(
         s.model_torque
-            .map(|t| torque("Torque of the model while armed", &t)),
+            .map(|t| torque_section("Torque of the model while armed", &t)),
     );
     sections.extend(
         s.torque
-            .map(|t| torque("Torque asked of the motor while armed", &t)),
+            .map(|t| torque_section("Torque asked of the motor while armed", &t)),
     );
     if !s.limited_s.is_empty() {
         let rows = s
             .limited_s
             .iter()
             .map(|(reason, time_s)| ((*reason).to_owned(), format!("{time_s:.3} s")));
-        sections.push(section("What limited the torque", rows));
+        sections.push(named("What limited the torque", rows));
     }
     let mut before: Option<&ParameterSet> = None;
     for set in &s.parameters {
@@ -37,12 +38,13 @@ pub(super) fn sections(s: &RecordedSummary, sidecar: &Sidecar) -> Vec<Section> {
                 format!("{} samples, {:.4} s", gap.samples, seconds(gap.samples)),
             )
         });
-        sections.push(section("What is missing", rows));
+        sections.push(named("What is missing", rows));
     }
     sections
 }
 
-fn section(title: &str, rows: impl IntoIterator<Item = (String, String)>) -> Section {
+/// A table whose rows have names of their own.
+fn named(title: &str, rows: impl IntoIterator<Item = (String, String)>) -> Section {
     Section {
         title: title.to_owned(),
         rows: rows.into_iter().collect(),
@@ -79,23 +81,7 @@ fn recording(s: &RecordedSummary) -> Section {
     if s.late_ticks > 0 {
         rows.push(("late ticks", s.late_ticks.to_string()));
     }
-    section(
-        "Recording",
-        rows.into_iter().map(|(k, v)| (k.to_owned(), v)),
-    )
-}
-
-fn torque(title: &str, t: &Torque) -> Section {
-    let rows = [
-        ("smallest", t.min_nm),
-        ("mean", t.mean_nm),
-        ("largest", t.max_nm),
-        ("root mean square", t.rms_nm),
-    ];
-    section(
-        title,
-        rows.map(|(name, nm)| (name.to_owned(), format!("{nm:.5} N·m"))),
-    )
+    section("Recording", rows)
 }
 
 /// All of the first set, and of each later one what has changed.
@@ -114,7 +100,7 @@ fn parameters(set: &ParameterSet, before: Option<&ParameterSet>, sidecar: &Sidec
         .iter()
         .filter(|(name, value)| before.is_none_or(|before| before.values.get(*name) != Some(value)))
         .map(|(name, value)| (name.clone(), shown(value)));
-    section(&title, rows)
+    named(&title, rows)
 }
 
 fn shown(value: &Value) -> String {

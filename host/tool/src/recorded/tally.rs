@@ -3,17 +3,9 @@
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{LimitReason, TICK_S};
 use crepitus_recording::{Controller, ParameterSet, Row, Sidecar, Totals};
+use crepitus_scene::run::TorqueSummary;
 use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// A torque over time.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub(crate) struct Torque {
-    pub(crate) min_nm: f64,
-    pub(crate) mean_nm: f64,
-    pub(crate) max_nm: f64,
-    pub(crate) rms_nm: f64,
-}
 
 /// `summary.json` of a recording.
 #[derive(Clone, Debug, Serialize)]
@@ -34,9 +26,9 @@ pub(crate) struct RecordedSummary {
     pub(crate) sticks: u64,
     pub(crate) fastest_rad_s: f64,
     /// Of the model, while armed.
-    pub(crate) model_torque: Option<Torque>,
+    pub(crate) model_torque: Option<TorqueSummary>,
     /// Asked of the motor, while armed.
-    pub(crate) torque: Option<Torque>,
+    pub(crate) torque: Option<TorqueSummary>,
     /// Seconds of armed time in which each reason limited the torque.
     pub(crate) limited_s: BTreeMap<&'static str, f64>,
     pub(crate) lost_samples: u64,
@@ -50,7 +42,7 @@ struct Sum {
     count: u64,
     min: f64,
     max: f64,
-    sum: f64,
+    total: f64,
     squares: f64,
 }
 
@@ -60,7 +52,7 @@ impl Default for Sum {
             count: 0,
             min: f64::INFINITY,
             max: f64::NEG_INFINITY,
-            sum: 0.0,
+            total: 0.0,
             squares: 0.0,
         }
     }
@@ -71,15 +63,15 @@ impl Sum {
         self.count += 1;
         self.min = self.min.min(x);
         self.max = self.max.max(x);
-        self.sum += x;
+        self.total += x;
         self.squares += x * x;
     }
 
-    fn torque(&self) -> Option<Torque> {
+    fn torque(&self) -> Option<TorqueSummary> {
         let count = seconds(self.count) / TICK_S;
-        (self.count > 0).then(|| Torque {
+        (self.count > 0).then(|| TorqueSummary {
             min_nm: self.min,
-            mean_nm: self.sum / count,
+            mean_nm: self.total / count,
             max_nm: self.max,
             rms_nm: (self.squares / count).sqrt(),
         })

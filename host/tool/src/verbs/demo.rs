@@ -18,6 +18,7 @@ use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};
 use crepitus_scene::Overrides;
 use serde_json::json;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -162,18 +163,20 @@ impl Follower for Examination {
 fn told(client: &Client<Line>, made: &[(&'static str, f64, Revision)]) -> String {
     let mut text = "armed, moved, disarmed".to_owned();
     for (name, value, revision) in made {
-        text.push_str(&format!(
+        let _ = write!(
+            text,
             "\n{:<12} {name} = {value} on the way, revision {revision}",
             ""
-        ));
+        );
     }
     if let Some(trip) = client.round_trips().of(RequestKind::Commit) {
-        text.push_str(&format!(
+        let _ = write!(
+            text,
             "\n{:<12} commits took {:.1} ms of the device's time (median; worst {:.1} ms)",
             "",
             trip.median.as_secs_f64() * 1e3,
             trip.worst.as_secs_f64() * 1e3
-        ));
+        );
     }
     text
 }

@@ -10,6 +10,7 @@ use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter, When};
 use crepitus_protocol::{Revision, Values};
 use crepitus_scene::Overrides;
 use serde_json::{Map, Value, json};
+use std::fmt::Write as _;
 use std::path::Path;
 
 /// Does it.
@@ -54,13 +55,14 @@ fn list(as_json: bool) -> Result<(), Failure> {
             When::Always => "",
             When::Disarmed => "; only while disarmed",
         };
-        text.push_str(&format!(
-            "{}\n    {}\n    {}, default {}{when}\n",
+        let _ = writeln!(
+            text,
+            "{}\n    {}\n    {}, default {}{when}",
             full_name(parameter),
             parameter.meaning(),
             allowed_text(parameter),
             show_value(parameter, parameter.default())
-        ));
+        );
     }
     print(&text)
 }
@@ -149,18 +151,10 @@ fn set(
 /// A preset's numbers, or all that a scene says of a device.
 fn apply(device: &DeviceArguments, what: &Path, as_json: bool) -> Result<(), Failure> {
     let preset = what.to_str().and_then(Preset::find);
-    let from_scene = match preset {
-        Some(_) => None,
-        None => {
-            let scene =
-                shipped::scene(what, &Overrides::default()).map_err(|failure| match failure {
-                    Failure::Input(text) if !what.exists() => Failure::Input(format!(
-                        "{text}; nor is it a preset: `crepitus presets` lists them"
-                    )),
-                    other => other,
-                })?;
-            Some(crepitus_board::values::values(&scene).map_err(Failure::input)?)
-        }
+    let from_scene = if preset.is_some() {
+        None
+    } else {
+        Some(values_of_scene(what)?)
     };
     let mut client = connect(device)?;
     let (base, now) = client.parameters().map_err(failure)?;
@@ -171,6 +165,16 @@ fn apply(device: &DeviceArguments, what: &Path, as_json: bool) -> Result<(), Fai
     };
     let revision = client.commit(base, &values).map_err(failure)?;
     said(revision, "in force", as_json)
+}
+
+fn values_of_scene(what: &Path) -> Result<Values, Failure> {
+    let scene = shipped::scene(what, &Overrides::default()).map_err(|failure| match failure {
+        Failure::Input(text) if !what.exists() => Failure::Input(format!(
+            "{text}; nor is it a preset: `crepitus presets` lists them"
+        )),
+        other => other,
+    })?;
+    crepitus_board::values::values(&scene).map_err(Failure::input)
 }
 
 fn said(revision: Revision, what: &str, as_json: bool) -> Result<(), Failure> {

@@ -25,11 +25,9 @@ pub(crate) fn report(arguments: &ReportArguments, as_json: bool) -> Result<(), F
 
 /// A few lines.
 pub(crate) fn in_brief(s: &RecordedSummary, out: &Path) -> String {
-    let warnings: String = s
-        .warnings
-        .iter()
-        .map(|w| format!("  note: {w}\n"))
-        .collect();
+    let warnings = s.warnings.iter().fold(String::new(), |text, warning| {
+        text + "  note: " + warning + "\n"
+    });
     let torque = s.model_torque.map_or(String::new(), |t| {
         format!(
             "  torque of the model {:.3} to {:.3} N·m, mean {:.3}\n",

@@ -1,7 +1,7 @@
 //! What the summary of a run says of a plant: where its energy went, and what
 //! the rendered torque did.
 
-use super::tables::{millijoule, nm, section};
+use crate::sections::{millijoule, nm, section};
 use crepitus_report::{Account, Balance, EnergyTerm, Section};
 use crepitus_scene::Summary;
 

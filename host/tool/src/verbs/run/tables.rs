@@ -2,10 +2,11 @@
 //! in the report.
 
 use super::plant;
+use crate::sections::{millijoule, nm, section, torque_section};
 use crepitus_model::parameters::ParameterSpec;
 use crepitus_report::Section;
 use crepitus_scene::Summary;
-use crepitus_scene::run::{EffectSummary, TorqueSummary};
+use crepitus_scene::run::EffectSummary;
 
 /// What happened, in a few lines.
 pub(super) fn in_brief(s: &Summary) -> String {
@@ -109,18 +110,6 @@ pub(super) fn sections(s: &Summary, specs: &[&[ParameterSpec]]) -> Vec<Section> 
     sections
 }
 
-fn torque_section(title: &str, t: &TorqueSummary) -> Section {
-    section(
-        title,
-        [
-            ("smallest", nm(t.min_nm)),
-            ("mean", nm(t.mean_nm)),
-            ("largest", nm(t.max_nm)),
-            ("root mean square", nm(t.rms_nm)),
-        ],
-    )
-}
-
 fn run_section(s: &Summary) -> Section {
     let mut rows = vec![
         ("scene", s.scene.clone()),
@@ -189,29 +178,6 @@ fn effect_section(effect: &EffectSummary, specs: &[ParameterSpec]) -> Section {
         title: format!("Effect: {}", effect.name),
         rows,
     }
-}
-
-pub(super) fn section<'a>(
-    title: &str,
-    rows: impl IntoIterator<Item = (&'a str, String)>,
-) -> Section {
-    Section {
-        title: title.to_owned(),
-        rows: rows.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
-    }
-}
-
-pub(super) fn nm(x: f64) -> String {
-    format!("{:.5} N·m", rounded(x))
-}
-
-pub(super) fn millijoule(x: f64) -> String {
-    format!("{:.5} mJ", rounded(x * 1e3))
-}
-
-/// Rounded to five digits behind the point; a zero has no sign.
-fn rounded(x: f64) -> f64 {
-    (x * 1e5).round() / 1e5 + 0.0
 }
 
 /// A number without the digits that rounding added.

@@ -1,0 +1,43 @@
+//! The tables that reports of a run and of a recording have in common.
+
+use crepitus_report::Section;
+use crepitus_scene::run::TorqueSummary;
+
+/// A torque over time.
+pub(crate) fn torque_section(title: &str, t: &TorqueSummary) -> Section {
+    section(
+        title,
+        [
+            ("smallest", nm(t.min_nm)),
+            ("mean", nm(t.mean_nm)),
+            ("largest", nm(t.max_nm)),
+            ("root mean square", nm(t.rms_nm)),
+        ],
+    )
+}
+
+/// A table of what is reported and its value.
+pub(crate) fn section<'a>(
+    title: &str,
+    rows: impl IntoIterator<Item = (&'a str, String)>,
+) -> Section {
+    Section {
+        title: title.to_owned(),
+        rows: rows.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
+    }
+}
+
+/// A torque.
+pub(crate) fn nm(x: f64) -> String {
+    format!("{:.5} N·m", rounded(x))
+}
+
+/// An energy.
+pub(crate) fn millijoule(x: f64) -> String {
+    format!("{:.5} mJ", rounded(x * 1e3))
+}
+
+/// Rounded to five digits behind the point; a zero has no sign.
+fn rounded(x: f64) -> f64 {
+    (x * 1e5).round() / 1e5 + 0.0
+}

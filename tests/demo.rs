@@ -1,0 +1,77 @@
+//! The main job: the whole chain in one process.
+
+mod support;
+
+use serde_json::Value;
+use std::fs;
+use std::time::{Duration, Instant};
+use support::{csv, names, run, stderr, stdout, summary};
+
+#[test]
+fn the_demo_records_and_reports_every_sample() {
+    let home = tempfile::tempdir().unwrap();
+    let out = home.path().join("demo");
+    let begun = Instant::now();
+    let output = run(&["demo", "--out", out.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(begun.elapsed() < Duration::from_secs(30));
+    assert_eq!(
+        names(&out),
+        [
+            "recording.csv",
+            "recording.json",
+            "report.html",
+            "summary.json"
+        ]
+    );
+    let summary = summary(&out);
+    let telemetry = &summary["telemetry"];
+    assert_eq!(telemetry["dropped"], 0);
+    assert_eq!(telemetry["produced"], telemetry["received"]);
+    assert!(telemetry["received"].as_u64().unwrap() >= 240_000);
+    assert!(summary["breaks"].as_u64().unwrap() > 100);
+    // Both changes came into force on the way, and the recording says when.
+    let sets = summary["parameters"].as_array().unwrap();
+    assert_eq!(sets.len(), 3);
+    assert_eq!(sets[1]["values"]["crepitus.kinetic_torque_nm"], 0.25);
+    assert_eq!(sets[2]["values"]["crepitus.stiffness_nm_per_rad"], 900.0);
+    // It says where everything is.
+    let text = stdout(&output);
+    for part in ["report.html", "recording.csv", "revision 3", "0 dropped"] {
+        assert!(text.contains(part), "{part} is missing in:\n{text}");
+    }
+    // No row is missing, and the revision changes where it should.
+    let (header, rows) = csv(&out.join("recording.csv"));
+    let column = |name: &str| header.iter().position(|h| h == name).unwrap();
+    let (tick, revision) = (column("tick"), column("revision"));
+    let mut revisions = Vec::new();
+    for pair in rows.windows(2) {
+        let ticks: Vec<u64> = pair.iter().map(|r| r[tick].parse().unwrap()).collect();
+        assert_eq!(ticks[1], ticks[0] + 1);
+        if pair[0][revision] != pair[1][revision] {
+            revisions.push((ticks[1], pair[1][revision].clone()));
+        }
+    }
+    for (set, (tick, revision)) in sets[1..].iter().zip(&revisions) {
+        assert_eq!(set["first_tick"].as_u64(), Some(*tick));
+        assert_eq!(set["revision"].to_string(), *revision);
+    }
+    assert_eq!(revisions.len(), 2);
+    let sidecar: Value =
+        serde_json::from_str(&fs::read_to_string(out.join("recording.json")).unwrap()).unwrap();
+    assert_eq!(sidecar["complete"], true);
+}
+
+#[test]
+fn the_demo_may_be_run_again_and_does_the_same() {
+    let home = tempfile::tempdir().unwrap();
+    let out = home.path().join("demo");
+    let record = || {
+        let output = run(&["demo", "--json", "--out", out.to_str().unwrap()]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let said: Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert_eq!(said["summary"]["telemetry"]["dropped"], 0);
+        fs::read(out.join("recording.csv")).unwrap()
+    };
+    assert!(record() == record(), "the same program, the same samples");
+}

@@ -1,0 +1,237 @@
+//! The verbs that talk to a device, with the simulated one of `--device sim`.
+
+mod support;
+
+use serde_json::Value;
+use std::fs;
+use support::{csv, run, stderr, stdout, summary};
+
+/// Runs a verb on a simulated device.
+fn sim(arguments: &[&str]) -> std::process::Output {
+    let mut all = arguments.to_vec();
+    all.extend(["--device", "sim"]);
+    run(&all)
+}
+
+fn done(arguments: &[&str]) -> String {
+    let output = sim(arguments);
+    assert!(
+        output.status.success(),
+        "{arguments:?}: {}",
+        stderr(&output)
+    );
+    stdout(&output)
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let mut all = arguments.to_vec();
+    all.push("--json");
+    serde_json::from_str(&done(&all)).expect("JSON")
+}
+
+#[test]
+fn info_says_who_it_is_and_how() {
+    let info = json(&["info"]);
+    assert_eq!(info["status"]["state"], "disarmed");
+    assert_eq!(info["comms"]["schema"], info["drive"]["schema"]);
+    assert_eq!(info["status"]["revision"], info["status"]["in_force"]);
+    assert_eq!(info["counters"]["drive"]["dropped-samples"], 0);
+    assert!(done(&["info"]).contains("state   disarmed"));
+}
+
+#[test]
+fn the_doctor_finds_nothing_wrong() {
+    let report = json(&["doctor"]);
+    assert_eq!(report["fine"], true, "{report:#}");
+    assert!(report["checks"].as_array().unwrap().len() >= 10);
+}
+
+#[test]
+fn parameters_are_listed_read_and_set() {
+    let list: Value = serde_json::from_str(&stdout(&run(&["params", "list", "--json"]))).unwrap();
+    assert_eq!(list.as_array().unwrap().len(), 29);
+    assert_eq!(list[4]["name"], "crepitus.static_torque_nm");
+    let got = json(&[
+        "params",
+        "get",
+        "crepitus.static_torque_nm",
+        "crepitus.restart",
+    ]);
+    assert_eq!(got["values"]["crepitus.static_torque_nm"], 0.4);
+    assert_eq!(got["values"]["crepitus.restart"], "elastic");
+    let set = json(&[
+        "params",
+        "set",
+        "crepitus.static_torque_nm=0.5",
+        "crepitus.restart=from-kinetic",
+    ]);
+    assert_eq!(set["revision"], 2);
+    for what in ["fine", "bone-shaping", "scenes/everything.toml"] {
+        let what = if what.ends_with(".toml") {
+            support::repository().join(what).display().to_string()
+        } else {
+            what.to_owned()
+        };
+        assert_eq!(json(&["params", "apply", &what])["revision"], 2, "{what}");
+    }
+    done(&["params", "save"]);
+}
+
+/// What is refused says what was wrong, and what to do.
+#[test]
+fn what_is_not_allowed_is_refused_with_the_reason() {
+    for (arguments, code, parts) in [
+        (
+            &["params", "set", "crepitus.static_torque_nm=0.1"][..],
+            1,
+            &[
+                "kinetic_torque_nm",
+                "static_torque_nm",
+                "nothing was changed",
+            ][..],
+        ),
+        (
+            &["params", "set", "crepitus.static_torque_nm=nan"],
+            2,
+            &["crepitus.static_torque_nm"],
+        ),
+        (
+            &["params", "set", "crepitus.static_torque_nm=lots"],
+            2,
+            &["lots"],
+        ),
+        (
+            &["params", "set", "crepitus.restart=maybe"],
+            2,
+            &["elastic", "from-kinetic"],
+        ),
+        (
+            &["params", "set", "crepitus.static_torque=0.5"],
+            2,
+            &["did you mean", "crepitus.static_torque_nm"],
+        ),
+        (&["params", "set", "static=0.5"], 2, &["params list"]),
+        (
+            &["params", "apply", "no-such-thing"],
+            2,
+            &["no-such-thing", "crepitus presets"],
+        ),
+        (
+            &["params", "apply", "knee-pass-physical"],
+            2,
+            &["frozen", "physical"],
+        ),
+        (&["stream", "--rate", "300"], 2, &["20000", "66"]),
+        (&["stream", "--for", "soon"], 2, &["soon", "30s"]),
+        (&["info", "--scene", "no-such-scene"], 2, &["no-such-scene"]),
+    ] {
+        let output = sim(arguments);
+        let text = stderr(&output);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {text}");
+        for part in parts {
+            assert!(
+                text.contains(part),
+                "{arguments:?}: {part:?} is missing in {text}"
+            );
+        }
+    }
+}
+
+#[test]
+fn no_device_is_an_error_that_names_the_simulated_one() {
+    let home = tempfile::tempdir().unwrap();
+    for arguments in [
+        &["info"][..],
+        &["info", "--device", "nobody"],
+        &["info", "--device", "/dev/no-such-port"],
+    ] {
+        let output = support::crepitus()
+            .args(arguments)
+            .env("XDG_RUNTIME_DIR", home.path())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        let text = stderr(&output);
+        assert!(
+            text.contains("--device sim") || text.contains("crepitus devices"),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn control_does_what_it_says() {
+    assert_eq!(done(&["zero"]), "the angle is zero here\n");
+    assert_eq!(done(&["disarm"]), "disarmed\n");
+    assert_eq!(done(&["stop"]), "stopped\n");
+    assert_eq!(done(&["clear-fault"]), "no fault\n");
+    assert_eq!(
+        done(&["arm", "--for", "1s"]),
+        "disarmed: the time is over\n"
+    );
+}
+
+#[test]
+fn samples_are_streamed_at_the_rate_that_was_asked_for() {
+    let text = done(&["stream", "--for", "2s", "--rate", "100", "--arm"]);
+    let lines: Vec<_> = text.lines().collect();
+    assert!((200..=205).contains(&(lines.len() - 1)), "{}", lines.len());
+    assert!(lines[0].starts_with("tick,t_s,count,angle_rad"));
+    let armed = lines[1..]
+        .iter()
+        .filter(|l| !l.contains("not-armed"))
+        .count();
+    assert!(armed > 190, "{armed}");
+    let text = done(&[
+        "stream", "--for", "100ms", "--rate", "1000", "--format", "jsonl",
+    ]);
+    for line in text.lines() {
+        let sample: Value = serde_json::from_str(line).unwrap();
+        assert_eq!(sample["limit"], "not-armed");
+        assert!(sample["model_torque_nm"].is_number());
+    }
+    assert!(text.lines().count() >= 100);
+}
+
+#[test]
+fn a_recording_is_reported() {
+    let home = tempfile::tempdir().unwrap();
+    let file = home.path().join("try.csv");
+    let path = file.to_str().unwrap();
+    let said = json(&[
+        "record",
+        path,
+        "--for",
+        "2s",
+        "--arm",
+        "--title",
+        "First try",
+    ]);
+    assert_eq!(said["telemetry"]["dropped"], 0);
+    let (_, rows) = csv(&file);
+    assert_eq!(said["telemetry"]["received"], rows.len());
+    // It is not written over.
+    let again = sim(&["record", path, "--for", "1s"]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(stderr(&again).contains("exists"));
+
+    let output = run(&["report", path]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let folder = home.path().join("try");
+    let numbers = summary(&folder);
+    assert_eq!(numbers["title"], "First try");
+    assert!(numbers["armed_s"].as_f64().unwrap() > 1.9);
+    let page = fs::read_to_string(folder.join("report.html")).unwrap();
+    assert!(page.contains("First try") && page.contains("<svg"));
+
+    // Cut off anywhere, what is there is reported.
+    let whole = fs::read(&file).unwrap();
+    fs::write(&file, &whole[..whole.len() / 2]).unwrap();
+    let output = run(&["report", path, "--json"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    // What is no recording is not.
+    fs::write(&file, "t,x\n1,2\n").unwrap();
+    let output = run(&["report", path]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("not the CSV file of a recording"));
+}

@@ -1,0 +1,230 @@
+//! A simulated device as a serial port: other programs, other processes, and
+//! what happens to them.
+#![cfg(target_os = "linux")]
+
+mod support;
+
+use serde_json::Value;
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+use support::{crepitus, csv, repository, stderr, stdout};
+
+/// `serve-sim`, until it is dropped.
+struct Served {
+    child: Child,
+    home: tempfile::TempDir,
+}
+
+impl Served {
+    fn new() -> Self {
+        let home = tempfile::tempdir().unwrap();
+        let mut child = crepitus()
+            .args(["serve-sim", "--name", "knee"])
+            .env("XDG_RUNTIME_DIR", home.path())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        let out = child.stdout.as_mut().unwrap();
+        BufReader::new(out).read_line(&mut line).unwrap();
+        assert!(line.contains("is offered as"), "{line}");
+        Self { child, home }
+    }
+
+    fn port(&self) -> PathBuf {
+        self.home.path().join("crepitus/knee")
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = crepitus();
+        command
+            .args(arguments)
+            .env("XDG_RUNTIME_DIR", self.home.path());
+        command
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    fn info(&self) -> Value {
+        let output = self.run(&["info", "--json"]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        serde_json::from_str(&stdout(&output)).unwrap()
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill")
+        .args([name, &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(sent.success());
+}
+
+/// Waits for something that another process does.
+fn until(what: &str, mut is_so: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !is_so() {
+        assert!(begun.elapsed() < Duration::from_secs(20), "{what}");
+        sleep(Duration::from_millis(20));
+    }
+}
+
+fn lines(file: &Path) -> usize {
+    fs::read_to_string(file).map_or(0, |text| text.lines().count())
+}
+
+#[test]
+fn it_is_found_and_talks() {
+    let served = Served::new();
+    let devices = stdout(&served.run(&["devices", "--json"]));
+    let devices: Value = serde_json::from_str(&devices).unwrap();
+    assert!(
+        devices
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|d| d["name"] == "knee"),
+        "{devices}"
+    );
+    // The only one needs no name; any of its names will do.
+    assert_eq!(served.info()["status"]["state"], "disarmed");
+    for name in ["knee", served.port().to_str().unwrap()] {
+        let output = served.run(&["zero", "--device", name]);
+        assert!(output.status.success(), "{}", stderr(&output));
+    }
+    // What one program sets, the next one finds.
+    let set = served.run(&["params", "set", "crepitus.static_torque_nm=0.45"]);
+    assert!(set.status.success(), "{}", stderr(&set));
+    let got = stdout(&served.run(&["params", "get", "crepitus.static_torque_nm"]));
+    assert!(got.contains("0.45"), "{got}");
+}
+
+#[test]
+fn a_port_that_another_process_holds_says_so() {
+    let served = Served::new();
+    let file = served.home.path().join("held.csv");
+    let mut holder = served
+        .command(&["record", file.to_str().unwrap()])
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    until("the recording has begun", || lines(&file) > 1);
+    let output = served.run(&["info"]);
+    assert_eq!(output.status.code(), Some(2));
+    let text = stderr(&output);
+    assert!(
+        text.contains("has it open") && text.contains(&holder.id().to_string()),
+        "{text}"
+    );
+    signal(&holder, "-INT");
+    assert!(holder.wait().unwrap().success());
+}
+
+#[test]
+fn ctrl_c_disarms_first() {
+    let served = Served::new();
+    let file = served.home.path().join("a.csv");
+    let child = served
+        .command(&["record", file.to_str().unwrap(), "--arm"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    until("half a second is recorded", || lines(&file) > 10_000);
+    signal(&child, "-INT");
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let info = served.info();
+    // Disarmed in order: no fault, as there would be without a renewed lease.
+    assert_eq!(info["status"]["state"], "disarmed");
+    assert_eq!(info["counters"]["drive"]["armings"], 1);
+    assert_eq!(info["counters"]["drive"]["faults"], 0);
+}
+
+#[test]
+fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
+    let served = Served::new();
+    let file = served.home.path().join("a.csv");
+    let mut child = served
+        .command(&["record", file.to_str().unwrap(), "--arm"])
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    until("half a second is recorded", || lines(&file) > 10_000);
+    signal(&child, "-KILL");
+    child.wait().unwrap();
+    sleep(Duration::from_millis(400));
+    let info = served.info();
+    assert_eq!(info["status"]["state"], "faulted");
+    assert!(
+        info["faults"][0].as_str().unwrap().contains("lease"),
+        "{info:#}"
+    );
+    // It goes on without being started anew.
+    assert!(served.run(&["clear-fault"]).status.success());
+    assert!(served.run(&["arm", "--for", "200ms"]).status.success());
+    // What was on the disk is a recording.
+    let output = served.run(&["report", file.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stdout(&output).contains("cut off"), "{}", stdout(&output));
+    let (_, rows) = csv(&file);
+    assert!(rows.len() > 9_000);
+}
+
+#[test]
+fn a_full_disk_ends_a_recording_and_what_is_there_can_be_reported() {
+    let served = Served::new();
+    let file = served.home.path().join("a.csv");
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 2000; exec '{}' record '{}' --arm",
+        env!("CARGO_BIN_EXE_crepitus"),
+        file.display()
+    );
+    let output = Command::new("sh")
+        .args(["-c", &script])
+        .env("XDG_RUNTIME_DIR", served.home.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("can be reported"),
+        "{}",
+        stderr(&output)
+    );
+    // It has disarmed in order.
+    assert_eq!(served.info()["status"]["state"], "disarmed");
+    let output = served.run(&["report", file.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", stderr(&output));
+}
+
+/// The page about the wires is enough to write a client.
+#[test]
+fn a_client_in_another_language_talks_to_it() {
+    let python = Command::new("python3").arg("--version").output();
+    if !python.is_ok_and(|output| output.status.success()) {
+        eprintln!("left out: there is no python3");
+        return;
+    }
+    let served = Served::new();
+    let output = Command::new("python3")
+        .arg(repository().join("docs/examples/client.py"))
+        .arg(served.port())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let got = stdout(&served.run(&["params", "get", "crepitus.static_torque_nm"]));
+    assert!(got.contains("0.45"), "{got}");
+}
