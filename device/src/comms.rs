@@ -32,7 +32,7 @@ use crepitus_protocol::frame::Frame;
 use crepitus_protocol::link::FromDrive;
 use crepitus_protocol::management::{Answer, Identity};
 use crepitus_protocol::telemetry::{BLOCK_TICKS, Block};
-use crepitus_protocol::{Decoder, Lane, Revision, State, Values, schema};
+use crepitus_protocol::{Decoder, Fault, Lane, Revision, State, Values, schema};
 use drive_view::{DriveView, News};
 use lease::Lease;
 use order::Job;
@@ -184,7 +184,11 @@ impl Comms {
         match known {
             None | Some(Heard::Answer(Answer::Stop { .. } | Answer::Reboot { .. })) => {}
             Some(Heard::Block(block)) => self.block(&block),
-            Some(Heard::Message(FromDrive::Status(status))) => self.drive.hear_status(&status),
+            Some(Heard::Message(FromDrive::Status(status))) => {
+                self.drive.hear_status(&status);
+                // What it answers is answered before the blocks that follow.
+                self.go_on();
+            }
             Some(Heard::Answer(Answer::Hello { own, .. })) => {
                 self.drive.introduce(&own);
                 self.supervision.drive_speaks(own.schema == schema::HASH);
@@ -215,9 +219,19 @@ impl Comms {
         self.supervision.state(&self.drive)
     }
 
+    /// The fault of comms.
+    pub fn fault(&self) -> Option<Fault> {
+        self.supervision.fault()
+    }
+
     /// The parameters that were committed last.
     pub fn revision(&self) -> Revision {
         self.parameters.revision()
+    }
+
+    /// Their values.
+    pub fn values(&self) -> &Values {
+        self.parameters.values()
     }
 
     /// What it has counted.

@@ -86,7 +86,8 @@ impl Lease {
             .holder
             .filter(|holder| now_ms < holder.end_ms)
             .map_or(0, |holder| holder.end_tick.saturating_sub(seen_tick));
-        u16::try_from(left).unwrap_or(u16::MAX)
+        // No longer than a whole one, should the drive's ticks begin anew.
+        u16::try_from(left.min(LEASE_TICKS.saturating_sub(1))).unwrap_or(u16::MAX)
     }
 }
 
@@ -104,6 +105,7 @@ mod tests {
         lease.take(A, 100, 2_000);
         assert_eq!(lease.left_ticks(2_000, 100), 5_000);
         assert_eq!(lease.left_ticks(2_400, 120), 4_600);
+        assert_eq!(lease.left_ticks(20, 120), 5_000, "a drive that was reset");
         assert!(lease.is_alive(349) && !lease.is_alive(350));
         assert!(!lease.renew(B, 200, 4_000));
         assert!(lease.renew(A, 300, 6_000));

@@ -77,6 +77,12 @@ impl Parameters {
         self.candidate = None;
     }
 
+    /// The values that were committed last, as another commit.
+    pub fn renumber(&mut self) {
+        self.newest = self.newest.next();
+        self.revision = self.newest;
+    }
+
     /// What the drive is to be sent: the commit under way; or, if it has other
     /// parameters than were committed, those.
     pub fn to_send(&self, in_force: Option<Revision>) -> Option<(Revision, &Values)> {

@@ -203,10 +203,21 @@ impl Comms {
     /// Once a millisecond: what is being done goes on.
     pub(super) fn go_on(&mut self) {
         let Some(job) = self.job else {
+            self.insist();
             return;
         };
         if let Some(answer) = self.progress(&job) {
             self.finish(&job, answer);
+        }
+    }
+
+    /// The drive has refused, while it had torque, what was taken for
+    /// committed before that was heard: what was refused once stays refused, so
+    /// it gets another number.
+    fn insist(&mut self) {
+        let refused = self.drive.refused(self.start);
+        if refused.is_some_and(|(refused, _)| refused == self.parameters.revision()) {
+            self.parameters.renumber();
         }
     }
 
@@ -231,6 +242,9 @@ impl Comms {
             Work::Command { number, order } => {
                 let outcome = self.drive.outcome(self.start);
                 if let Some(outcome) = outcome.filter(|outcome| outcome.number == number) {
+                    if order == Order::Arm && outcome.result.is_ok() {
+                        self.supervision.armed();
+                    }
                     return Some(match outcome.result {
                         Ok(()) => Ok(Answer::Done),
                         Err(refusal) => Err(Refusal::Drive(refusal)),
@@ -308,6 +322,8 @@ impl Comms {
     pub(super) fn let_go(&mut self, refusal: Refusal) {
         self.supervision.let_go();
         self.lease.release();
+        // The drive hears of it before anything that follows.
+        self.to_drive.heartbeat_now();
         if let Some(job) = self.job.filter(|job| {
             job.work == Work::ProveLine || matches!(job.command(), Some((_, Order::Arm)))
         }) {

@@ -42,7 +42,7 @@ impl Sessions {
         let Request {
             session, number, ..
         } = *request;
-        if let Some(entry) = self.entry(session) {
+        if let Some(entry) = self.latest(session) {
             if entry.number == number {
                 return entry.reply.map_or(Verdict::Ignore, Verdict::Again);
             }
@@ -71,6 +71,15 @@ impl Sessions {
         {
             entry.reply = Some(*reply);
         }
+    }
+
+    /// The entry of a host that speaks now, if it is remembered.
+    fn latest(&mut self, session: Session) -> Option<&mut Entry> {
+        let entry = *self.entry(session)?;
+        self.entries.retain(|other| other.session != session);
+        // There is room now.
+        let _ = self.entries.push_front(entry);
+        self.entries.front_mut()
     }
 
     fn entry(&mut self, session: Session) -> Option<&mut Entry> {
@@ -120,5 +129,10 @@ mod tests {
         }
         assert_eq!(sessions.judge(&request(4, 7)), Verdict::Ignore);
         assert_eq!(sessions.judge(&request(1, 7)), Verdict::New);
+        // The oldest is the one that has not spoken for longest.
+        assert_eq!(sessions.judge(&request(3, 8)), Verdict::New);
+        assert_eq!(sessions.judge(&request(5, 7)), Verdict::New);
+        assert_eq!(sessions.judge(&request(3, 8)), Verdict::Ignore);
+        assert_eq!(sessions.judge(&request(4, 7)), Verdict::New);
     }
 }

@@ -58,6 +58,11 @@ impl Supervision {
         self.line.prove();
     }
 
+    /// The drive has said that it was armed; it may have let go since.
+    pub fn armed(&mut self) {
+        self.was_armed = true;
+    }
+
     /// No more torque.
     pub fn let_go(&mut self) {
         self.wanted = false;

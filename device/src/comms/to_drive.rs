@@ -9,7 +9,7 @@ use crepitus_protocol::{Lane, Revision, Values};
 const REPEAT_MS: u64 = 10;
 
 /// Questions that are not answered are asked again after this, ms.
-const HELLO_MS: u64 = 100;
+const HELLO_MS: u64 = 10;
 
 /// What is due to the drive.
 #[derive(Clone, Copy, Debug, Default)]
@@ -27,6 +27,11 @@ impl ToDriveQueue {
     /// A millisecond has gone by.
     pub(super) fn millisecond(&mut self, now_ms: u64) {
         self.now_ms = now_ms;
+        self.heartbeat_due = true;
+    }
+
+    /// There is something to say that does not wait for the millisecond.
+    pub(super) fn heartbeat_now(&mut self) {
         self.heartbeat_due = true;
     }
 

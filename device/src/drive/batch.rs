@@ -33,11 +33,6 @@ impl Batch {
         }
     }
 
-    /// Whether the next sample begins a block: the moment to commit.
-    pub fn is_between_blocks(&self) -> bool {
-        self.filled == 0
-    }
-
     /// Takes the sample of the next tick.
     pub fn push(
         &mut self,

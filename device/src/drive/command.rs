@@ -1,18 +1,20 @@
 //! `command_motor`: what the bridge does in the next tick, and the sample that
-//! tells of this one.
+//! tells of this one, in its block.
 
 use crate::counters::Counters;
+use crate::drive::Boot;
+use crate::drive::batch::Batch;
 use crate::drive::motor::{Bridge, Motor};
 use crate::drive::plausibility::{Plausibility, Seen};
-use crate::drive::prepare::{MotorPlan, Prepared};
+use crate::drive::prepare::{CommandPlan, MotorPlan};
 use crate::drive::rendering::Rendered;
 use crate::drive::safety::{Permit, Safety};
 use crate::drive::sampler::Sampled;
 use crepitus_model::current_loop::Limit;
-use crepitus_protocol::LimitReason;
+
 use crepitus_protocol::counters::DriveCounter;
-use crepitus_protocol::management::ResetCause;
-use crepitus_protocol::telemetry::{NO_CURRENT, Sample, SampleFlags};
+use crepitus_protocol::telemetry::{Block, BlockFlags, NO_CURRENT, Sample, SampleFlags};
+use crepitus_protocol::{LimitReason, Revision};
 
 /// What the peripherals say in the middle of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,26 +46,66 @@ pub struct Command {
     speed_limit_rad_s: f32,
     /// The bridge was driven in the tick before.
     was_driven: bool,
+    /// Of the parameters in force.
+    revision: Revision,
+    /// The line, as read back.
+    line_is_on: bool,
+    batch: Batch,
+    zeroed: bool,
+    /// Which start of the drive this is.
+    start: u16,
 }
 
 impl Command {
     /// As a controller starts.
-    pub fn new(motor: &MotorPlan, prepared: &Prepared, reset: ResetCause) -> Self {
+    pub fn new(motor: &MotorPlan, plan: &CommandPlan, boot: &Boot) -> Self {
         Self {
-            safety: Safety::new(reset),
+            safety: Safety::new(boot.identity.reset),
             motor: Motor::new(motor),
             plausibility: Plausibility::default(),
-            speed_limit_rad_s: prepared.speed_limit_rad_s,
+            speed_limit_rad_s: plan.speed_limit_rad_s,
             was_driven: false,
+            revision: plan.revision,
+            line_is_on: false,
+            batch: Batch::new(boot.tick, boot.sequence),
+            zeroed: false,
+            start: boot.start,
         }
     }
 
     /// From the next tick on, these numbers.
-    pub fn take_over(&mut self, prepared: &Prepared) {
-        if let Some(motor) = &prepared.motor {
+    pub fn take_over(&mut self, plan: &CommandPlan, counters: &Counters) {
+        if let Some(motor) = &plan.motor {
             self.motor = Motor::new(motor);
         }
-        self.speed_limit_rad_s = prepared.speed_limit_rad_s;
+        self.speed_limit_rad_s = plan.speed_limit_rad_s;
+        self.revision = plan.revision;
+        counters.count(DriveCounter::Commits);
+    }
+
+    /// Of the parameters in force.
+    pub fn revision(&self) -> Revision {
+        self.revision
+    }
+
+    /// The enable line, as it was read back last.
+    pub fn line_is_on(&self) -> bool {
+        self.line_is_on
+    }
+
+    /// The angle's zero was said.
+    pub fn set_zeroed(&mut self) {
+        self.zeroed = true;
+    }
+
+    /// Whether the angle's zero was said.
+    pub fn is_zeroed(&self) -> bool {
+        self.zeroed
+    }
+
+    /// The next block for the link.
+    pub fn pop_block(&mut self) -> Option<Block> {
+        self.batch.pop()
     }
 
     /// Whether there may be torque.
@@ -83,7 +125,8 @@ impl Command {
         sampled: &Sampled,
         rendered: Option<&Rendered>,
         counters: &Counters,
-    ) -> (Outputs, Sample) {
+    ) -> Outputs {
+        self.line_is_on = inputs.enable_is_on;
         let is_late = rendered.is_none_or(|rendered| rendered.tick != sampled.tick);
         let rendered = rendered.copied().unwrap_or_default();
         let mut permit = self.safety.tick(
@@ -114,7 +157,9 @@ impl Command {
         }
         let outputs = self.drive(permit, sampled, &rendered, current_a);
         let sample = self.sample(permit, sampled, &rendered, current_a, is_late, counters);
-        (outputs, sample)
+        let flags = BlockFlags::new(self.safety.state(), self.zeroed, self.start);
+        self.batch.push(sample, self.revision, flags, counters);
+        outputs
     }
 
     /// What drives the motor is permitted only if nothing speaks against it.

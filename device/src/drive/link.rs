@@ -104,8 +104,9 @@ impl Link {
         self.status_due = true;
     }
 
-    /// The next frame for the wire: answers first, then what is due of the
-    /// status, then blocks.
+    /// The next frame for the wire: answers first, then the blocks that are
+    /// complete, then what is due of the status: so a status tells of what
+    /// comes after the blocks before it, a commit above all.
     pub fn next_frame(
         &mut self,
         now: u64,
@@ -115,12 +116,15 @@ impl Link {
         if let Some(answer) = self.answer.take() {
             return frame::encode_bytes(Lane::ManagementAnswer, &answer.bytes()).ok();
         }
+        if let Some(block) = block() {
+            return frame::encode(Lane::Telemetry, &block).ok();
+        }
         if self.status_due || now >= self.next_status_tick {
             self.status_due = false;
             self.next_status_tick = now.saturating_add(STATUS_TICKS);
             let status = FromDrive::Status(status(self.last));
             return frame::encode(Lane::FromDrive, &status).ok();
         }
-        frame::encode(Lane::Telemetry, &block()?).ok()
+        None
     }
 }

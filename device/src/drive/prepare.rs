@@ -86,13 +86,9 @@ pub struct MotorPlan {
     pub current_limit_a: f32,
 }
 
-/// Parameters, ready for a tick to take over.
+/// What `render_torque` takes over.
 #[derive(Clone, Copy, Debug)]
-pub struct Prepared {
-    /// Their revision.
-    pub revision: Revision,
-    /// The encoder, where it is another.
-    pub reader: Option<Reader>,
+pub struct RenderingPlan {
     /// Angle of one count, rad.
     pub rad_per_count: f32,
     /// The joint.
@@ -105,10 +101,28 @@ pub struct Prepared {
     pub torque_limit_nm: f32,
     /// How much torque grows in a tick, N·m.
     pub slew_nm: f32,
+}
+
+/// What `command_motor` takes over.
+#[derive(Clone, Copy, Debug)]
+pub struct CommandPlan {
+    /// The revision that blocks have from now on.
+    pub revision: Revision,
     /// The motor, where it is another.
     pub motor: Option<MotorPlan>,
     /// Speed beyond which the device lets go, rad/s.
     pub speed_limit_rad_s: f32,
+}
+
+/// Parameters, ready for the tasks to take over.
+#[derive(Clone, Copy, Debug)]
+pub struct Prepared {
+    /// The encoder, where it is another.
+    pub reader: Option<Reader>,
+    /// For `render_torque`.
+    pub rendering: RenderingPlan,
+    /// For `command_motor`.
+    pub command: CommandPlan,
 }
 
 /// Makes [`Prepared`] from values, knowing what is in force.
@@ -162,6 +176,11 @@ impl Preparation {
         ))
     }
 
+    /// What was prepared last.
+    pub fn values(&self) -> &Values {
+        &self.values
+    }
+
     /// Prepares a commit. Called only when the one before has been taken over
     /// and has settled, and then taken over in any case: it becomes what is in
     /// force.
@@ -209,27 +228,31 @@ impl Preparation {
         let is_other_motor = now.current_loop != next.current_loop
             || now.joint_constant().to_bits() != next.joint_constant().to_bits();
         let prepared = Prepared {
-            revision,
             reader: is_other_encoder.then_some(reader),
-            rad_per_count: reader.rad_per_count,
-            joint,
-            compensation: match &next.friction_compensation {
-                Some(settings) => Some(FrictionCompensation::new(settings).map_err(refused)?),
-                None => None,
+            rendering: RenderingPlan {
+                rad_per_count: reader.rad_per_count,
+                joint,
+                compensation: match &next.friction_compensation {
+                    Some(settings) => Some(FrictionCompensation::new(settings).map_err(refused)?),
+                    None => None,
+                },
+                bone: if now.bone_shaping == next.bone_shaping {
+                    None
+                } else {
+                    Some(bone(next.bone_shaping.as_ref()).map_err(refused)?)
+                },
+                torque_limit_nm: single(next.limits.torque_nm),
+                slew_nm: single(slew * TICK_S),
             },
-            bone: if now.bone_shaping == next.bone_shaping {
-                None
-            } else {
-                Some(bone(next.bone_shaping.as_ref()).map_err(refused)?)
+            command: CommandPlan {
+                revision,
+                motor: if is_other_motor {
+                    Some(motor(&next).map_err(refused)?)
+                } else {
+                    None
+                },
+                speed_limit_rad_s: single(next.limits.speed_rad_s),
             },
-            torque_limit_nm: single(next.limits.torque_nm),
-            slew_nm: single(slew * TICK_S),
-            motor: if is_other_motor {
-                Some(motor(&next).map_err(refused)?)
-            } else {
-                None
-            },
-            speed_limit_rad_s: single(next.limits.speed_rad_s),
         };
         (self.in_force, self.values, self.active) = (next, *values, active);
         Ok(prepared)

@@ -10,7 +10,7 @@
 //! nothing is asked of the motor; from arming on, what may be asked for grows
 //! with the slew limit, so a stick that is full of torque does not jolt.
 
-use crate::drive::prepare::{JointPlan, Prepared};
+use crate::drive::prepare::{JointPlan, RenderingPlan};
 use crate::drive::sampler::Sampled;
 use crepitus_model::guarded::InputLimits;
 use crepitus_model::locate::ExactEvents;
@@ -55,7 +55,7 @@ pub struct Rendering {
 
 impl Rendering {
     /// From the first numbers.
-    pub fn new(prepared: &Prepared) -> Self {
+    pub fn new(plan: &RenderingPlan) -> Self {
         let mut rendering = Self {
             joint: None,
             is_leaving: false,
@@ -68,36 +68,36 @@ impl Rendering {
             slew_nm: 0.0,
             allowance_nm: 0.0,
         };
-        rendering.take_over(prepared, 0.0);
+        rendering.take_over(plan, 0.0);
         rendering
     }
 
     /// From the next tick on, these numbers.
-    pub fn take_over(&mut self, prepared: &Prepared, omega_rad_s: f32) {
+    pub fn take_over(&mut self, plan: &RenderingPlan, omega_rad_s: f32) {
         self.is_leaving = false;
-        match prepared.joint {
+        match plan.joint {
             JointPlan::Absent => {}
             JointPlan::Begin(silent, ramp) => {
                 let limits = InputLimits::device(TICK_S);
-                let mut joint = Joint::new(silent, limits, prepared.rad_per_count, omega_rad_s);
+                let mut joint = Joint::new(silent, limits, plan.rad_per_count, omega_rad_s);
                 joint.follow(ramp);
                 self.joint = Some(joint);
             }
             JointPlan::Follow(ramp) | JointPlan::Leave(ramp) => {
-                self.is_leaving = matches!(prepared.joint, JointPlan::Leave(_));
+                self.is_leaving = matches!(plan.joint, JointPlan::Leave(_));
                 if let Some(joint) = &mut self.joint {
                     joint.follow(ramp);
                 }
             }
         }
-        self.compensation = prepared.compensation;
-        if let Some(bone) = prepared.bone {
+        self.compensation = plan.compensation;
+        if let Some(bone) = plan.bone {
             self.fading_nm += self.rung_nm;
             self.rung_nm = 0.0;
             self.bone = bone;
         }
-        self.torque_limit_nm = prepared.torque_limit_nm;
-        self.slew_nm = prepared.slew_nm;
+        self.torque_limit_nm = plan.torque_limit_nm;
+        self.slew_nm = plan.slew_nm;
     }
 
     /// Whether numbers still move: the next commit waits.
@@ -201,14 +201,19 @@ impl Rendering {
             self.allowance_nm = 0.0;
             return (0.0, LimitReason::NotArmed);
         }
-        // Never both: a limit that was lowered holds at once.
-        self.allowance_nm = (self.allowance_nm + self.slew_nm).min(self.torque_limit_nm);
-        let most_nm = self.allowance_nm;
+        let most_nm = if self.allowance_nm > self.torque_limit_nm {
+            // It was lowered, and is followed as torque is: no jolt.
+            (self.allowance_nm - self.slew_nm).max(self.torque_limit_nm)
+        } else {
+            (self.allowance_nm + self.slew_nm).min(self.torque_limit_nm)
+        };
+        self.allowance_nm = most_nm;
         // A torque that is no number passes, and is noticed by what follows.
         if wanted_nm.abs() <= most_nm || wanted_nm.is_nan() {
             return (wanted_nm, reason);
         }
-        let limit = if most_nm < self.torque_limit_nm {
+        let is_moving = most_nm < self.torque_limit_nm || most_nm > self.torque_limit_nm;
+        let limit = if is_moving {
             LimitReason::Slew
         } else {
             LimitReason::Torque

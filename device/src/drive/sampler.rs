@@ -3,6 +3,7 @@
 use crate::drive::prepare::Reader;
 use crepitus_model::Sample;
 use crepitus_model::encoder::EncoderReader;
+use crepitus_protocol::telemetry::BLOCK_TICKS;
 
 /// After so many ticks without a count that a shaft can make, the shaft is
 /// taken to be where the counter says: the counter itself was disturbed.
@@ -30,6 +31,8 @@ pub struct Sampler {
     /// The most counts that a shaft makes in a tick.
     most_counts: u32,
     tick: u64,
+    /// Ticks of the block that have begun.
+    in_block: u32,
     last: i32,
     zero: i32,
     lost_ticks: u32,
@@ -43,10 +46,17 @@ impl Sampler {
             reader: reader.at_zero.restarted(last, 0.0),
             most_counts: reader.most_counts,
             tick,
+            in_block: 0,
             last,
             zero: last,
             lost_ticks: 0,
         }
+    }
+
+    /// Whether the next tick begins a block of telemetry: the moment to take
+    /// parameters over.
+    pub fn begins_block(&self) -> bool {
+        self.in_block == 0
     }
 
     /// Another encoder: the estimate begins anew.
@@ -60,6 +70,11 @@ impl Sampler {
     /// The angle is zero here.
     pub fn zero(&mut self) {
         self.zero = self.last;
+    }
+
+    /// Ticks in a row without a count to believe.
+    pub fn lost_ticks(&self) -> u32 {
+        self.lost_ticks
     }
 
     /// The next tick.
@@ -88,6 +103,7 @@ impl Sampler {
         };
         let tick = self.tick;
         self.tick = tick.wrapping_add(1);
+        self.in_block = self.in_block.wrapping_add(1) % BLOCK_TICKS;
         Sampled {
             tick,
             count: self.last.wrapping_sub(self.zero),

@@ -1,0 +1,91 @@
+//! `docs/examples/client.py`, which knows nothing but what the book says,
+//! against a device: the book is enough.
+
+mod support;
+
+use crepitus_device::usb_port::HostBytes;
+use crepitus_protocol::parameters::{PARAMETER_COUNT, Parameter};
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::mpsc;
+use std::thread;
+use std::time::{Duration, Instant};
+use support::{Bench, Boots};
+
+/// Longest time that the client may take.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The most lines of it that are neither empty nor a comment.
+const MOST_LINES: usize = 50;
+
+fn script() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/examples/client.py")
+}
+
+#[test]
+fn the_example_client_is_short_and_knows_the_parameters() {
+    let text = std::fs::read_to_string(script()).unwrap();
+    let lines = text
+        .lines()
+        .map(str::trim)
+        .filter(|line| !line.is_empty() && !line.starts_with('#'));
+    assert!(lines.count() <= MOST_LINES);
+    let (id, _) = Parameter::find("crepitus.static_torque_nm").unwrap();
+    assert!(text.contains(&format!("values[{id}] = 0.45")));
+    assert!(text.contains(&format!("\"<{PARAMETER_COUNT}d\"")));
+}
+
+#[test]
+fn the_example_client_speaks_with_a_device() {
+    let started = Command::new("python3")
+        .arg(script())
+        .arg("-")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn();
+    let mut client = match started {
+        Ok(client) => client,
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            eprintln!("left out: there is no python3");
+            return;
+        }
+        Err(error) => panic!("{error}"),
+    };
+    let mut to_client = client.stdin.take().unwrap();
+    let mut from_client = client.stdout.take().unwrap();
+    let (sender, received) = mpsc::channel();
+    thread::spawn(move || {
+        let mut bytes = [0; 256];
+        while let Ok(count @ 1..) = from_client.read(&mut bytes) {
+            if sender.send(bytes[..count].to_vec()).is_err() {
+                break;
+            }
+        }
+    });
+    let mut bench = Bench::new(&Boots::new());
+    let mut said = Vec::new();
+    let started = Instant::now();
+    while client.try_wait().unwrap().is_none() {
+        assert!(started.elapsed() < PATIENCE, "the client does not end");
+        bench.device_millisecond();
+        for bytes in received.try_iter() {
+            bench.comms.received(&bytes);
+            said.extend(bytes);
+        }
+        let run = bench.comms.to_send().len();
+        // A client that has ended does not read: we shall see why.
+        let _ = to_client.write_all(bench.comms.to_send());
+        bench.comms.sent(run);
+        thread::sleep(Duration::from_micros(200));
+    }
+    said.extend(received.iter().flatten());
+    let output = client.wait_with_output().unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    let said = String::from_utf8_lossy(&said);
+    assert!(said.contains("count 0, model "), "{said}");
+    assert_eq!(bench.drive.revision(), bench.comms.revision());
+    assert_eq!(bench.drive.revision().0, 2, "one commit");
+}

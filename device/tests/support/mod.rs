@@ -1,0 +1,211 @@
+//! Both controllers, natively, with the wires between them and a motor that
+//! does what it is told: what the tests of the device share.
+
+#![allow(dead_code, reason = "each test program uses its part")]
+
+mod motor;
+
+use crepitus_device::comms::{self, Comms};
+use crepitus_device::drive::motor::Bridge;
+use crepitus_device::drive::{self, Drive};
+use crepitus_device::usb_port::HostBytes;
+use crepitus_protocol::host::{Answer, Ask, Refusal, Reply, Request};
+use crepitus_protocol::management::{Identity, Role};
+use crepitus_protocol::telemetry::Block;
+use crepitus_protocol::{Decoder, Lane, Session, frame, schema};
+use motor::Motor;
+use std::collections::VecDeque;
+
+/// Ticks of the drive in a millisecond.
+pub(crate) const TICKS_PER_MS: u32 = 20;
+
+/// Bytes that the link carries in a tick: 4.2 Mbaud, ten bits a byte.
+const LINK_BYTES: usize = 21;
+
+/// Who a controller is.
+pub(crate) fn identity(role: Role) -> Identity {
+    Identity {
+        role,
+        schema: schema::HASH,
+        ..Identity::default()
+    }
+}
+
+/// How both start.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Boots {
+    pub(crate) drive: drive::Boot,
+    pub(crate) comms: comms::Boot,
+}
+
+impl Boots {
+    pub(crate) fn new() -> Self {
+        let mut boots = Self::default();
+        boots.drive.identity = identity(Role::Drive);
+        boots.comms.identity = identity(Role::Comms);
+        boots
+    }
+}
+
+/// A device on a bench, and what a host has received of it.
+pub(crate) struct Bench {
+    pub(crate) drive: Drive,
+    pub(crate) comms: Comms,
+    pub(crate) motor: Motor,
+    to_drive: VecDeque<u8>,
+    to_comms: VecDeque<u8>,
+    enable: [bool; 2],
+    from_comms: Decoder,
+    pub(crate) session: Session,
+    pub(crate) number: u16,
+    replies: Vec<Reply>,
+    pub(crate) blocks: Vec<Block>,
+    ms: u32,
+}
+
+impl Bench {
+    pub(crate) fn new(boots: &Boots) -> Self {
+        Self {
+            drive: Drive::new(&boots.drive).unwrap(),
+            comms: Comms::new(&boots.comms),
+            motor: Motor::at(boots.drive.counter),
+            to_drive: VecDeque::new(),
+            to_comms: VecDeque::new(),
+            enable: [false; 2],
+            from_comms: Decoder::new(),
+            session: Session(0x1234),
+            number: 0,
+            replies: Vec::new(),
+            blocks: Vec::new(),
+            ms: 0,
+        }
+    }
+
+    /// One millisecond; the host reads afterwards.
+    pub(crate) fn millisecond(&mut self) {
+        self.device_millisecond();
+        let mut bytes = Vec::new();
+        while !self.comms.to_send().is_empty() {
+            let run = self.comms.to_send().to_vec();
+            self.comms.sent(run.len());
+            bytes.extend(run);
+        }
+        self.host_reads(&bytes);
+    }
+
+    /// One millisecond in which the host does not read.
+    pub(crate) fn device_millisecond(&mut self) {
+        self.ms += 1;
+        for _ in 0..TICKS_PER_MS {
+            self.tick();
+        }
+        let inputs = comms::Inputs {
+            enable_is_on: self.enable[1],
+        };
+        let outputs = self.comms.tick(&inputs);
+        self.enable[1] = outputs.enable;
+        if outputs.save.is_some() {
+            self.comms.saved(true);
+        }
+    }
+
+    fn tick(&mut self) {
+        self.drive.sample_encoder(self.motor.counter());
+        self.drive.render_torque();
+        let outputs = self.drive.command_motor(&drive::command::Inputs {
+            current_a: Some(self.motor.current_a()),
+            enable_is_on: self.enable[0],
+            is_broken: false,
+        });
+        self.enable[0] = outputs.enable;
+        let is_powered = self.enable == [true; 2];
+        self.motor.tick(if is_powered {
+            outputs.bridge
+        } else {
+            Bridge::Float
+        });
+        self.drive.prepare();
+        if self.to_comms.len() < LINK_BYTES
+            && let Some(frame) = self.drive.link_to_send()
+        {
+            self.to_comms.extend(frame);
+        }
+        if self.to_drive.len() < LINK_BYTES
+            && let Some(frame) = self.comms.link_to_send()
+        {
+            self.to_drive.extend(frame);
+        }
+        for byte in drain(&mut self.to_drive) {
+            self.drive.link_received(byte);
+        }
+        for byte in drain(&mut self.to_comms) {
+            self.comms.link_received(byte);
+        }
+    }
+
+    /// Bytes that the host has received.
+    fn host_reads(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            let Some(Ok(body)) = self.from_comms.push(*byte) else {
+                continue;
+            };
+            match body.lane() {
+                Some(Lane::Reply) => self.replies.push(body.message().unwrap()),
+                Some(Lane::Telemetry) => self.blocks.push(body.message().unwrap()),
+                _ => {}
+            }
+        }
+    }
+
+    /// Tells comms something that has no reply.
+    pub(crate) fn tell(&mut self, ask: Ask) {
+        let request = Request {
+            session: self.session,
+            number: self.number,
+            ask,
+        };
+        let frame = frame::encode(Lane::Request, &request).unwrap();
+        self.comms.received(&frame);
+    }
+
+    /// Asks, and runs until the answer is there.
+    pub(crate) fn ask(&mut self, ask: Ask) -> Result<Answer, Refusal> {
+        self.number = self.number.wrapping_add(1);
+        self.tell(ask);
+        for _ in 0..700 {
+            self.millisecond();
+            let (session, number) = (self.session, self.number);
+            let is_ours = |r: &Reply| (r.session, r.number) == (session, number);
+            if let Some(place) = self.replies.iter().position(is_ours) {
+                return self.replies.remove(place).answer;
+            }
+        }
+        panic!("no answer to {ask:?}");
+    }
+
+    /// Runs for so many milliseconds, renewing the lease.
+    pub(crate) fn run_leased(&mut self, ms: u32) {
+        for n in 0..ms {
+            if n % 50 == 0 {
+                self.tell(Ask::Renew);
+            }
+            self.millisecond();
+        }
+    }
+
+    /// Runs until the drive is there with the parameters of comms.
+    pub(crate) fn settle(&mut self) {
+        for _ in 0..200 {
+            self.millisecond();
+            if self.drive.revision() == self.comms.revision() {
+                return self.run_leased(20);
+            }
+        }
+        panic!("the drive was given no parameters");
+    }
+}
+
+/// What the link carries in a tick.
+fn drain(queue: &mut VecDeque<u8>) -> Vec<u8> {
+    queue.drain(..LINK_BYTES.min(queue.len())).collect()
+}

@@ -1,0 +1,167 @@
+//! Counters that began just below their wrap, in a device that works: nobody
+//! wants to be the first to run one for long enough.
+
+mod support;
+
+use crepitus_device::Drive;
+use crepitus_device::drive::command::Inputs;
+use crepitus_protocol::counters::{CommsCounter, DriveCounter};
+use crepitus_protocol::host::{Answer, Ask};
+use crepitus_protocol::link::{DriveStatus, FromDrive, Order, ToDrive};
+use crepitus_protocol::parameters::id;
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
+use crepitus_protocol::{Decoder, Lane, Revision, State, Values, frame};
+use support::{Bench, Boots};
+
+fn boots() -> Boots {
+    let mut boots = Boots::new();
+    boots.drive.tick = (1 << 32) - 4_000;
+    boots.drive.sequence = u16::MAX - 300;
+    boots.drive.counter = 0x7fff_ffff - 40;
+    boots.drive.start = u16::MAX;
+    boots.comms.counters = u32::MAX - 3;
+    boots.comms.start = u16::MAX;
+    boots.comms.saved = Some((Revision(u32::MAX), Values::default()));
+    boots
+}
+
+#[test]
+fn a_device_works_through_every_wrap() {
+    let mut bench = Bench::new(&boots());
+    bench.number = u16::MAX - 3;
+    bench.settle();
+    assert_eq!(bench.drive.revision(), Revision(u32::MAX));
+    let Ok(Answer::Subscribed { first_tick }) = bench.ask(Ask::Subscribe) else {
+        panic!("no subscription");
+    };
+    let mut values = Values::default();
+    values.set(id::STATIC_TORQUE, 0.5);
+    let commit = Ask::Commit {
+        base: Revision(u32::MAX),
+        values,
+    };
+    let committed = Answer::Committed {
+        revision: Revision(1),
+    };
+    assert_eq!(bench.ask(commit), Ok(committed));
+    assert_eq!(bench.ask(Ask::Zero), Ok(Answer::Done));
+    assert_eq!(bench.ask(Ask::Arm), Ok(Answer::Done));
+    bench.motor.hand_nm = 1.0;
+    bench.run_leased(600);
+    assert_eq!(bench.comms.state(), State::Armed);
+    assert_eq!(bench.ask(Ask::Disarm), Ok(Answer::Done));
+    assert!(bench.number < 10, "the number of requests has wrapped");
+    bench.run_leased(3);
+
+    books(&bench.blocks, first_tick);
+    let first = bench.blocks.first().unwrap();
+    let last = bench.blocks.last().unwrap();
+    assert!(first.first_tick < 1 << 32 && last.first_tick > 1 << 32);
+    assert!(last.sequence < first.sequence);
+    assert_eq!(last.revision, Revision(1));
+    let counter = bench.motor.counter();
+    assert!(counter > 0x8000_0000, "the count has wrapped: {counter:#x}");
+    let comms = bench.comms.counters();
+    for counter in [CommsCounter::FromDrive, CommsCounter::ReceivedSamples] {
+        assert!(comms.get(counter) < 1_000_000, "{counter:?} has wrapped");
+    }
+    assert_eq!(comms.get(CommsCounter::Faults), u32::MAX - 3);
+    assert_eq!(comms.get(CommsCounter::LostSamples), u32::MAX - 3);
+    let drive = bench.drive.counters();
+    assert_eq!(drive.get(DriveCounter::Faults), 0);
+    assert_eq!(drive.get(DriveCounter::LostSamples), 0);
+    assert_eq!(drive.get(DriveCounter::Armings), 1);
+}
+
+/// No sample is missing, and none jumps.
+fn books(blocks: &[Block], first_tick: u64) {
+    let samples = BLOCK_SAMPLES as u64;
+    let mut received = 0;
+    for (block, next) in blocks.iter().zip(&blocks[1..]) {
+        received += samples;
+        assert_eq!(block.first_tick + samples - first_tick, received);
+        assert_eq!(block.dropped, 0);
+        assert_eq!(next.sequence, block.sequence.wrapping_add(1));
+    }
+    let counts: Vec<_> = blocks
+        .iter()
+        .flat_map(|block| block.samples.map(|sample| sample.count))
+        .collect();
+    for pair in counts.windows(2) {
+        assert!(pair[0].wrapping_sub(pair[1]).unsigned_abs() < 20);
+    }
+}
+
+/// A host that does not read: what is dropped is in the books, through the
+/// wrap of ticks and sequence, and of what comms has counted.
+#[test]
+fn dropped_samples_are_in_the_books_through_the_wrap() {
+    let mut bench = Bench::new(&boots());
+    bench.settle();
+    let Ok(Answer::Subscribed { first_tick }) = bench.ask(Ask::Subscribe) else {
+        panic!("no subscription");
+    };
+    for n in 0..400 {
+        if (50..250).contains(&n) {
+            bench.device_millisecond();
+        } else {
+            bench.millisecond();
+        }
+    }
+    let mut received = 0;
+    for block in &bench.blocks {
+        received += BLOCK_SAMPLES as u64;
+        let produced = block.first_tick + BLOCK_SAMPLES as u64 - first_tick;
+        assert_eq!(produced, received + u64::from(block.dropped));
+    }
+    let last = bench.blocks.last().unwrap();
+    assert!(last.dropped > 2_000 && last.first_tick > 1 << 32);
+    let counters = bench.comms.counters();
+    let [sent, dropped] = [CommsCounter::SentSamples, CommsCounter::DroppedSamples]
+        .map(|counter| u64::from(counters.get(counter).wrapping_sub(u32::MAX - 3)));
+    assert_eq!((sent, dropped), (received, u64::from(last.dropped)));
+}
+
+/// The numbers of commands, for which nobody waits 65,536 times.
+#[test]
+fn numbers_of_commands_wrap() {
+    let mut drive = Drive::new(&boots().drive).unwrap();
+    for number in [0xfffe, 0xffff, 0, 1] {
+        for _ in 0..200 {
+            drive.sample_encoder(0);
+            drive.render_torque();
+            drive.command_motor(&Inputs::default());
+        }
+        let command = ToDrive::Command {
+            seen_tick: drive.next_tick(),
+            number,
+            order: Order::Zero,
+        };
+        // Twice: it is carried out once.
+        for _ in 0..2 {
+            for byte in frame::encode(Lane::ToDrive, &command).unwrap() {
+                drive.link_received(byte);
+            }
+        }
+        let last = status(&mut drive).last.unwrap();
+        assert_eq!((last.number, last.result), (number, Ok(())));
+        assert_eq!(drive.counters().get(DriveCounter::StaleCommands), 0);
+    }
+}
+
+/// The drive's last status.
+fn status(drive: &mut Drive) -> DriveStatus {
+    let mut decoder = Decoder::new();
+    let mut last = None;
+    while let Some(frame) = drive.link_to_send() {
+        for byte in frame {
+            if let Some(Ok(body)) = decoder.push(byte)
+                && body.lane() == Some(Lane::FromDrive)
+            {
+                let FromDrive::Status(status) = body.message().unwrap();
+                last = Some(status);
+            }
+        }
+    }
+    last.unwrap()
+}
