@@ -104,7 +104,8 @@ pub struct Comms {
     subscription: Option<Subscription>,
     outbox: Outbox,
     save: Option<(Revision, Values)>,
-    reboot: bool,
+    /// When it starts anew, ms.
+    reboot_ms: Option<u64>,
 }
 
 impl Comms {
@@ -131,7 +132,7 @@ impl Comms {
             subscription: None,
             outbox: Outbox::default(),
             save: None,
-            reboot: false,
+            reboot_ms: None,
         }
     }
 
@@ -156,7 +157,7 @@ impl Comms {
         Outputs {
             enable,
             save: self.save.take(),
-            reboot: core::mem::take(&mut self.reboot),
+            reboot: self.reboot_ms.is_some_and(|at| self.now_ms >= at),
         }
     }
 

@@ -23,6 +23,7 @@
 //! What the end has handed over and the host has not read when it goes away is lost: at most the
 //! transmit store and one packet. Frames carry sequence numbers, so the gap is visible.
 
+pub use crepitus_protocol::usb::{PRODUCT_ID, VENDOR_ID};
 use usb_device::bus::{UsbBus, UsbBusAllocator};
 use usb_device::class_prelude::UsbClass;
 use usb_device::device::UsbRev;
@@ -31,11 +32,6 @@ use usb_device::prelude::{
     UsbVidPid,
 };
 use usbd_serial::{SerialPort, USB_CLASS_CDC};
-
-/// The vendor id: the shared one for free projects (V-USB).
-pub const VENDOR_ID: u16 = 0x16c0;
-/// The product id: a CDC-ACM device under [`VENDOR_ID`], told apart by its strings.
-pub const PRODUCT_ID: u16 = 0x27dd;
 
 /// The largest packet of a full-speed bulk endpoint, bytes.
 const MAX_PACKET: usize = 64;
@@ -67,7 +63,7 @@ pub trait HostBytes {
 pub struct UsbIdentity<'a> {
     /// Who made it.
     pub manufacturer: &'a str,
-    /// What it is; a client looks for this one.
+    /// What it is; contains [`PRODUCT`](crepitus_protocol::usb::PRODUCT), for which a client looks.
     pub product: &'a str,
     /// Which of them it is; gives the serial port its stable name.
     pub serial_number: &'a str,

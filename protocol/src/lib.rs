@@ -29,6 +29,7 @@
 //! | parameters: id, name, unit, range, default, meaning | [`parameters`] |
 //! | faults: code, cause, detector, reaction, time, how to clear | [`fault`] |
 //! | counters | [`counters`] |
+//! | by what a host finds a device | [`usb`] |
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(
@@ -65,6 +66,7 @@ pub mod schema;
 pub mod settings;
 pub mod state;
 pub mod telemetry;
+pub mod usb;
 
 pub use decoder::Decoder;
 pub use fault::Fault;

@@ -90,6 +90,11 @@ impl DriveView {
         self.identity.as_ref()
     }
 
+    /// Whether it was ever heard.
+    pub fn is_known(&self) -> bool {
+        self.start.is_some()
+    }
+
     /// Whether blocks come.
     pub fn is_present(&self, now_ms: u64) -> bool {
         self.heard_ms

@@ -6,6 +6,9 @@ use crepitus_protocol::frame;
 use crepitus_protocol::host::Refusal;
 use crepitus_protocol::management::{Answer, Question, What};
 
+/// Time for what was said last to arrive, ms.
+const REBOOT_MS: u64 = 20;
+
 impl Comms {
     /// Who is there, stop, reboot.
     pub(super) fn host_asks(&mut self, question: Question) {
@@ -25,7 +28,7 @@ impl Comms {
                 let done = !self.supervision.is_wanted();
                 if done {
                     self.to_drive.ask(What::Reboot);
-                    self.reboot = true;
+                    self.reboot_ms = Some(self.now_ms.saturating_add(REBOOT_MS));
                 }
                 Answer::Reboot { token, done }
             }

@@ -92,6 +92,8 @@ impl Comms {
                 revision: self.parameters.revision(),
                 values: *self.parameters.values(),
             }),
+            // Where the books begin is not known.
+            Ask::Subscribe if !self.drive.is_known() => Err(Refusal::DriveSilent),
             Ask::Subscribe => {
                 let first_tick = self.drive.next_tick();
                 self.subscription = Some(Subscription::new(first_tick));
@@ -170,6 +172,9 @@ impl Comms {
         self.may_change(request.session)?;
         if self.supervision.is_wanted() {
             return Err(Refusal::Armed);
+        }
+        if self.reboot_ms.is_some() {
+            return Err(Refusal::Busy);
         }
         let drive_fault = self.drive.status().map_or(0, |status| status.fault);
         let code = self.supervision.fault().map_or(drive_fault, Fault::code);

@@ -3,15 +3,15 @@
 //! ```text
 //!            offset       line on      line off     line on       push
 //! enable  ______________╱‾‾‾‾‾‾‾‾‾‾╲____________╱‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾
-//! bridge  floats                                            + − − +
+//! bridge  floats                                            + − − + − + + −
 //!         the sensor    read back   read back   read back   the shaft moves
 //!         shows none    on          off         on          the way it is pushed
 //! ```
 //!
-//! The push is a current of 1.2 A (4 N·m) for 3 ms to either side, twice, in
-//! mirrored order: it moves a free shaft by 17 counts and back. What the hand
-//! does meanwhile, at whatever speed, cancels; a leg that is held fast does
-//! not move, and nothing is proven.
+//! The push is a current of 1.2 A (4 N·m) for 2 ms to either side, four times:
+//! it moves a free shaft by 7 counts along, twice back, and along. What the hand
+//! does meanwhile, at whatever speed and acceleration, cancels; a leg that is
+//! held fast does not move, and nothing is proven.
 
 use crepitus_protocol::Fault;
 
@@ -24,8 +24,8 @@ const LARGEST_OFFSET_A: f32 = 0.1;
 /// Ticks within which the line follows.
 const LINE_TICKS: u32 = 9;
 
-/// Ticks of each of the four parts of the push.
-const PUSH_TICKS: u32 = 60;
+/// Ticks of each of the eight parts of the push.
+const PUSH_TICKS: u32 = 40;
 
 /// Current of the push, A.
 const PUSH_A: f32 = 1.2;
@@ -158,15 +158,15 @@ impl Arming {
         // What has moved since the last tick is due to the part before it.
         let moved = self.last_count.map_or(0, |last| count.wrapping_sub(last));
         self.last_count = Some(count);
-        // The first pair moves it along, the second back.
-        self.moved_counts = if part < 2 {
+        // The first and the last pair move it along, the others back.
+        self.moved_counts = if matches!(part, 0 | 1 | 6 | 7) {
             self.moved_counts.saturating_add(moved)
         } else {
             self.moved_counts.saturating_sub(moved)
         };
         match part {
-            0 | 3 => Wish::Push(PUSH_A),
-            1 | 2 => Wish::Push(-PUSH_A),
+            0 | 3 | 5 | 6 => Wish::Push(PUSH_A),
+            1 | 2 | 4 | 7 => Wish::Push(-PUSH_A),
             _ if self.moved_counts <= -PROOF_COUNTS => Wish::Failed(Fault::EncoderPolarity),
             _ => Wish::Armed,
         }
@@ -214,6 +214,40 @@ mod tests {
                 arm(0.0, None, -1, hand).0,
                 Wish::Failed(Fault::EncoderPolarity)
             );
+        }
+    }
+
+    #[test]
+    fn a_hand_that_speeds_up_changes_nothing() {
+        // Up to 100 rad/s², in counts a tick and tick; right, loose and swapped.
+        for per_mille in [-7, -2, 2, 7] {
+            for (counts, expected, proven) in [
+                (1, Wish::Armed, true),
+                (0, Wish::Armed, false),
+                (-1, Wish::Failed(Fault::EncoderPolarity), false),
+            ] {
+                let mut arming = Arming::default();
+                let (mut line, mut pushed, mut speed) = (false, 0, 0);
+                let (wish, is_proven) = (0_i32..1_000)
+                    .find_map(|tick| {
+                        let hand = per_mille * tick * tick / 2_000;
+                        let wish = arming.tick(Some(0.0), line, hand + pushed);
+                        match wish {
+                            Wish::Off => line = false,
+                            Wish::Line => line = true,
+                            Wish::Push(a) => speed += if a > 0.0 { counts } else { -counts },
+                            _ => return Some((wish, arming.is_proven())),
+                        }
+                        pushed += speed;
+                        None
+                    })
+                    .unwrap();
+                assert_eq!(
+                    (wish, is_proven),
+                    (expected, proven),
+                    "{per_mille} {counts}"
+                );
+            }
         }
     }
 

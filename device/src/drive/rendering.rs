@@ -212,11 +212,10 @@ impl Rendering {
         if wanted_nm.abs() <= most_nm || wanted_nm.is_nan() {
             return (wanted_nm, reason);
         }
-        let is_moving = most_nm < self.torque_limit_nm || most_nm > self.torque_limit_nm;
-        let limit = if is_moving {
-            LimitReason::Slew
-        } else {
+        let limit = if most_nm == self.torque_limit_nm {
             LimitReason::Torque
+        } else {
+            LimitReason::Slew
         };
         (most_nm.copysign(wanted_nm), limit)
     }

@@ -47,8 +47,8 @@ pub struct Safety {
     /// What became of the last order to arm.
     outcome: Option<Result<(), DriveRefusal>>,
     polarity_proven: bool,
-    /// Ticks since the line was let go of.
-    off_ticks: u32,
+    /// Ticks in a row in which the line was on, and let go of.
+    astray_ticks: u32,
 }
 
 impl Safety {
@@ -71,7 +71,7 @@ impl Safety {
             arming: Arming::default(),
             outcome: None,
             polarity_proven: false,
-            off_ticks: 0,
+            astray_ticks: 0,
         }
     }
 
@@ -233,12 +233,13 @@ impl Safety {
 
     /// A line that was let go of has to fall.
     fn watch_line(&mut self, permit: Permit, line_is_on: bool, counters: &Counters) {
-        if permit != Permit::Nothing || self.state == State::Arming {
-            self.off_ticks = 0;
-            return;
-        }
-        self.off_ticks = self.off_ticks.saturating_add(1);
-        if line_is_on && self.off_ticks > LINE_TICKS && self.fault != Some(Fault::EnableStuckOn) {
+        let is_astray = permit == Permit::Nothing && self.state != State::Arming && line_is_on;
+        self.astray_ticks = if is_astray {
+            self.astray_ticks.saturating_add(1)
+        } else {
+            0
+        };
+        if self.astray_ticks > LINE_TICKS && self.fault != Some(Fault::EnableStuckOn) {
             // Worse than any other fault: it takes their place.
             self.fault = None;
             self.fail(Fault::EnableStuckOn, counters);

@@ -1,0 +1,106 @@
+//! Books with losses on purpose.
+
+use super::*;
+use crepitus_protocol::State;
+use crepitus_protocol::telemetry::BlockFlags;
+use proptest::prelude::*;
+
+fn block(first_tick: u64, dropped: u32, start: u16) -> Block {
+    Block {
+        first_tick,
+        dropped,
+        flags: BlockFlags::new(State::Armed, false, start),
+        ..Block::default()
+    }
+}
+
+fn sums(books: &Accounting) -> [u64; 4] {
+    assert_eq!(books.violations(), 0);
+    assert_eq!(books.produced(), books.received() + books.dropped());
+    assert_eq!(
+        books.dropped(),
+        books.dropped_by_device() + books.lost_on_line()
+    );
+    [
+        books.produced(),
+        books.received(),
+        books.dropped_by_device(),
+        books.lost_on_line(),
+    ]
+}
+
+#[test]
+fn what_is_missing_was_dropped_or_lost() {
+    let mut books = Accounting::new(1_000);
+    assert_eq!(books.take(&block(1_000, 0, 1)), Taken::Next { missing: 0 });
+    // Three blocks missing; the device has dropped one of them.
+    assert_eq!(
+        books.take(&block(1_080, 20, 1)),
+        Taken::Next { missing: 60 }
+    );
+    assert_eq!(books.take(&block(1_080, 20, 1)), Taken::Old);
+    assert_eq!(books.take(&block(1_020, 0, 1)), Taken::Old);
+    assert_eq!(sums(&books), [100, 40, 20, 40]);
+    let gap = Gap {
+        first_tick: 1_020,
+        samples: 60,
+    };
+    assert!(books.gaps().eq([&gap]));
+    assert_eq!((books.old_blocks(), books.next_tick()), (2, 1_100));
+}
+
+#[test]
+fn a_drive_that_starts_anew_begins_a_segment() {
+    let mut books = Accounting::new(1_000);
+    books.take(&block(1_000, 0, 31));
+    // The device has dropped the first two blocks of the new start.
+    let taken = books.take(&block(60, 40, 0));
+    assert_eq!(taken, Taken::Restarted { missing: 40 });
+    assert_eq!(books.take(&block(80, 40, 0)), Taken::Next { missing: 0 });
+    assert_eq!(sums(&books), [20 + 80, 20 + 40, 40, 0]);
+    assert_eq!((books.restarts(), books.first_tick()), (1, 20));
+}
+
+#[test]
+fn what_the_device_says_may_wrap() {
+    let mut books = Accounting::new(0);
+    books.take(&block(0xffff_fff0, 0xffff_fff0, 1));
+    books.take(&block(0x1_0000_0018, 4, 1));
+    assert_eq!(sums(&books), [0x1_0000_002c, 40, 0x1_0000_0004, 0]);
+}
+
+#[test]
+fn books_that_cannot_be_are_noticed() {
+    let mut books = Accounting::new(0);
+    books.take(&block(0, 0, 1));
+    books.take(&block(20, 20, 1));
+    assert_eq!(books.violations(), 1);
+}
+
+proptest! {
+    /// Whatever the device drops and the line loses or repeats, the books
+    /// balance and say where it was lost.
+    #[test]
+    fn the_law_holds(fates in prop::collection::vec(0..4_u8, 1..200), start_tick in 0..u64::MAX / 2) {
+        let mut books = Accounting::new(start_tick);
+        let (mut dropped, mut lost, mut received, mut tick) = (0_u32, 0, 0, start_tick);
+        let (mut dropped_seen, mut lost_seen) = (0, 0);
+        for fate in fates {
+            match fate {
+                0 => dropped += 20,
+                1 => lost += 20,
+                _ => {
+                    received += 20;
+                    (dropped_seen, lost_seen) = (dropped, lost);
+                    for _ in 2..=fate {
+                        books.take(&block(tick, dropped, 3));
+                    }
+                }
+            }
+            tick += 20;
+        }
+        let [_, here, by_device, on_line] = sums(&books);
+        prop_assert_eq!([here, by_device, on_line], [received, u64::from(dropped_seen), lost_seen]);
+        prop_assert_eq!(books.gaps().map(|gap| gap.samples).sum::<u64>(), books.dropped());
+    }
+}

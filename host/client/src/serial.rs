@@ -1,0 +1,172 @@
+//! A serial port: USB, or a pty of a simulated device.
+
+mod holder;
+
+use crate::transport::{Transport, TransportError};
+use crepitus_protocol::frame::DELIMITER;
+use serialport::{ErrorKind, SerialPort};
+use std::fmt;
+use std::io::{self, Read, Write};
+use std::time::{Duration, Instant};
+
+/// USB has no baud rate, and a pty neither; a number has to be given.
+const BAUD_RATE: u32 = 115_200;
+
+/// A port that takes no bytes for so long is stalled.
+const SEND_PATIENCE: Duration = Duration::from_millis(250);
+
+/// A serial port that nobody else can open meanwhile. Its time is the wall's.
+///
+/// A USB port that takes bytes at all takes a whole frame, so sending waits
+/// 250 ms at most; on a pty it may wait for the simulator at its other end.
+pub struct Serial {
+    path: String,
+    port: Option<Box<dyn SerialPort>>,
+    began: Instant,
+    /// The last frame was sent in part only.
+    is_torn: bool,
+}
+
+impl fmt::Debug for Serial {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Serial")
+            .field("path", &self.path)
+            .field("is_open", &self.port.is_some())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Serial {
+    /// Opens a port, for this program alone.
+    ///
+    /// # Errors
+    /// Why it does not open: no such port, somebody else has it, this user may
+    /// not.
+    pub fn open(path: &str) -> Result<Self, TransportError> {
+        Ok(Self {
+            path: path.to_owned(),
+            port: Some(open(path)?),
+            began: Instant::now(),
+            is_torn: false,
+        })
+    }
+
+    /// The line is gone: the port is closed, so that the system can give its
+    /// name to the device that comes back.
+    fn lost(&mut self, error: &io::Error) -> TransportError {
+        self.port = None;
+        TransportError::Lost {
+            port: self.path.clone(),
+            detail: error.to_string(),
+        }
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let port = self.port.as_mut().ok_or_else(closed)?;
+        port.set_timeout(SEND_PATIENCE)?;
+        port.write(bytes)
+    }
+
+    fn send_all(&mut self, mut bytes: &[u8]) -> Result<(), TransportError> {
+        while !bytes.is_empty() {
+            match self.write(bytes) {
+                Ok(count) if count > 0 => {
+                    self.is_torn = true;
+                    bytes = bytes.get(count..).unwrap_or_default();
+                }
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) if error.kind() == io::ErrorKind::TimedOut => {
+                    return Err(TransportError::Stalled {
+                        port: self.path.clone(),
+                        patience: SEND_PATIENCE,
+                    });
+                }
+                Ok(_) => return Err(self.lost(&io::ErrorKind::WriteZero.into())),
+                Err(error) => return Err(self.lost(&error)),
+            }
+        }
+        self.is_torn = false;
+        Ok(())
+    }
+}
+
+impl Transport for Serial {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
+        if self.is_torn {
+            self.send_all(&[DELIMITER])?;
+        }
+        self.send_all(bytes)
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], patience: Duration) -> Result<usize, TransportError> {
+        let end = Instant::now() + patience;
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            let result = self.port.as_mut().ok_or_else(closed).and_then(|port| {
+                port.set_timeout(left)?;
+                port.read(buffer)
+            });
+            match result {
+                Ok(0) => return Err(self.lost(&io::ErrorKind::UnexpectedEof.into())),
+                Ok(count) => return Ok(count),
+                Err(error) if error.kind() == io::ErrorKind::TimedOut => return Ok(0),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(self.lost(&error)),
+            }
+        }
+    }
+
+    fn now(&self) -> Duration {
+        self.began.elapsed()
+    }
+
+    fn wait(&mut self, time: Duration) {
+        std::thread::sleep(time);
+    }
+
+    fn reopen(&mut self) -> Result<(), TransportError> {
+        self.port = None;
+        self.is_torn = false;
+        self.port = Some(open(&self.path)?);
+        Ok(())
+    }
+
+    fn name(&self) -> String {
+        self.path.clone()
+    }
+}
+
+fn closed() -> io::Error {
+    io::ErrorKind::NotConnected.into()
+}
+
+fn open(path: &str) -> Result<Box<dyn SerialPort>, TransportError> {
+    serialport::new(path, BAUD_RATE)
+        .timeout(SEND_PATIENCE)
+        .open()
+        .map_err(|error| why(path, &error))
+}
+
+/// Why a port does not open.
+fn why(path: &str, error: &serialport::Error) -> TransportError {
+    let port = path.to_owned();
+    match error.kind() {
+        ErrorKind::Io(io::ErrorKind::PermissionDenied) => TransportError::Denied {
+            port,
+            group: holder::group_of(path).unwrap_or_else(|| "dialout".to_owned()),
+        },
+        // What the library calls this is on Unix a port that is locked.
+        ErrorKind::NoDevice if cfg!(unix) => TransportError::Busy {
+            port,
+            holder: holder::holder_of(path),
+        },
+        ErrorKind::NoDevice | ErrorKind::Io(io::ErrorKind::NotFound) => {
+            TransportError::NotFound { port }
+        }
+        _ if !holder::is_terminal(path) => TransportError::NotSerial { port },
+        _ => TransportError::Open {
+            port,
+            detail: error.to_string(),
+        },
+    }
+}

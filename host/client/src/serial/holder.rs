@@ -1,0 +1,76 @@
+//! Who has a port open, and who may: what Linux shows of it in its files.
+
+use crate::transport::Holder;
+use std::fs;
+use std::path::Path;
+
+/// A process that has this port open, if one can be seen: those of other users
+/// cannot.
+pub(super) fn holder_of(port: &str) -> Option<Holder> {
+    let port = fs::canonicalize(port).ok()?;
+    fs::read_dir("/proc").ok()?.flatten().find_map(|entry| {
+        let pid = entry.file_name().to_str()?.parse().ok()?;
+        let files = fs::read_dir(entry.path().join("fd")).ok()?;
+        files
+            .flatten()
+            .any(|file| fs::read_link(file.path()).is_ok_and(|target| target == port))
+            .then(|| Holder {
+                pid,
+                program: program(&entry.path()),
+            })
+    })
+}
+
+fn program(process: &Path) -> String {
+    fs::read_to_string(process.join("comm"))
+        .map_or_else(|_| "?".to_owned(), |name| name.trim_end().to_owned())
+}
+
+/// Whether this is a device like those that terminals are.
+pub(super) fn is_terminal(port: &str) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        fs::metadata(port).is_ok_and(|data| data.file_type().is_char_device())
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = port;
+        true
+    }
+}
+
+/// The group whose members may open this port.
+#[cfg(unix)]
+pub(super) fn group_of(port: &str) -> Option<String> {
+    use std::os::unix::fs::MetadataExt;
+    let id = fs::metadata(port).ok()?.gid().to_string();
+    let groups = fs::read_to_string("/etc/group").ok()?;
+    // name:password:id:members
+    groups.lines().find_map(|line| {
+        let mut fields = line.split(':');
+        let name = fields.next()?;
+        (fields.nth(1)? == id && id != "0").then(|| name.to_owned())
+    })
+}
+
+/// The group whose members may open this port.
+#[cfg(not(unix))]
+pub(super) fn group_of(_port: &str) -> Option<String> {
+    None
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn this_program_is_seen_to_hold_its_file() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let holder = holder_of(file.path().to_str().unwrap()).unwrap();
+        assert_eq!(holder.pid, std::process::id());
+        assert!(!holder.program.is_empty());
+        let other = tempfile::tempdir().unwrap();
+        assert_eq!(holder_of(other.path().to_str().unwrap()), None);
+    }
+}

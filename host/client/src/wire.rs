@@ -1,0 +1,141 @@
+//! Bytes to messages and back, over a transport.
+
+use crate::transport::{Transport, TransportError};
+use crepitus_protocol::frame::{self, DELIMITER};
+use crepitus_protocol::host::{Reply, Request};
+use crepitus_protocol::management::{Answer, Question};
+use crepitus_protocol::telemetry::Block;
+use crepitus_protocol::{Decoder, Lane};
+use std::time::Duration;
+
+/// What the device has said.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Heard {
+    Block(Box<Block>),
+    Reply(Box<Reply>),
+    Answer(Answer),
+}
+
+/// A transport that speaks in messages.
+#[derive(Debug)]
+pub(crate) struct Wire<T> {
+    transport: T,
+    decoder: Decoder,
+    inbox: Vec<u8>,
+    /// The next byte of the inbox to look at, and where they end.
+    at: usize,
+    end: usize,
+    frames: u64,
+    foreign: u64,
+}
+
+impl<T: Transport> Wire<T> {
+    pub(crate) fn new(transport: T) -> Self {
+        Self {
+            transport,
+            decoder: Decoder::new(),
+            inbox: vec![0; 4_096],
+            at: 0,
+            end: 0,
+            frames: 0,
+            foreign: 0,
+        }
+    }
+
+    pub(crate) fn now(&self) -> Duration {
+        self.transport.now()
+    }
+
+    pub(crate) fn name(&self) -> String {
+        self.transport.name()
+    }
+
+    pub(crate) fn wait(&mut self, time: Duration) {
+        self.transport.wait(time);
+    }
+
+    pub(crate) fn transport_mut(&mut self) -> &mut T {
+        &mut self.transport
+    }
+
+    pub(crate) fn into_transport(self) -> T {
+        self.transport
+    }
+
+    /// Frames that were in order; frames that were not; frames of a lane or a
+    /// language that this side does not speak.
+    pub(crate) fn counts(&self) -> (u64, u64, u64) {
+        let discarded = u64::from(self.decoder.discarded().total());
+        (self.frames, discarded, self.foreign)
+    }
+
+    /// Opens the line again, and forgets what was half received.
+    pub(crate) fn reopen(&mut self) -> Result<(), TransportError> {
+        (self.at, self.end) = (0, 0);
+        self.decoder.reset();
+        self.transport.reopen()
+    }
+
+    /// Ends whatever the device may have half received.
+    pub(crate) fn delimit(&mut self) -> Result<(), TransportError> {
+        self.transport.send(&[DELIMITER])
+    }
+
+    pub(crate) fn request(&mut self, request: &Request) -> Result<(), TransportError> {
+        match frame::encode(Lane::Request, request) {
+            Ok(frame) => self.transport.send(&frame),
+            // The protocol checks at compile time that every message fits.
+            Err(frame::TooLong) => Ok(()),
+        }
+    }
+
+    pub(crate) fn question(&mut self, question: Question) -> Result<(), TransportError> {
+        match frame::encode_bytes(Lane::Management, &question.bytes()) {
+            Ok(frame) => self.transport.send(&frame),
+            Err(frame::TooLong) => Ok(()),
+        }
+    }
+
+    /// The next message, waited for until then at most. If that has passed
+    /// already, one that is there.
+    pub(crate) fn next(&mut self, until: Duration) -> Result<Option<Heard>, TransportError> {
+        let mut is_first = true;
+        loop {
+            if let Some(heard) = self.decode() {
+                return Ok(Some(heard));
+            }
+            let patience = until.saturating_sub(self.now());
+            if patience.is_zero() && !is_first {
+                return Ok(None);
+            }
+            is_first = false;
+            let count = self.transport.receive(&mut self.inbox, patience)?;
+            if count == 0 {
+                return Ok(None);
+            }
+            (self.at, self.end) = (0, count.min(self.inbox.len()));
+        }
+    }
+
+    /// The next message of the inbox.
+    fn decode(&mut self) -> Option<Heard> {
+        while let Some(byte) = self.inbox.get(self.at..self.end)?.first() {
+            self.at += 1;
+            let Some(Ok(body)) = self.decoder.push(*byte) else {
+                continue;
+            };
+            self.frames += 1;
+            let heard = match body.lane() {
+                Some(Lane::Telemetry) => body.message().map(|block| Heard::Block(Box::new(block))),
+                Some(Lane::Reply) => body.message().map(|reply| Heard::Reply(Box::new(reply))),
+                Some(Lane::ManagementAnswer) => Answer::of(body.payload).map(Heard::Answer),
+                _ => None,
+            };
+            if heard.is_some() {
+                return heard;
+            }
+            self.foreign += 1;
+        }
+        None
+    }
+}

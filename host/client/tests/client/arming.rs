@@ -1,0 +1,179 @@
+//! Torque, the lease, and who may.
+
+use crate::support::{Port, client, connected, device, ms, pump_for, refusal, turning};
+use crepitus_client::{Event, Transport};
+use crepitus_protocol::counters::{CommsCounter, DriveCounter};
+use crepitus_protocol::host::Refusal;
+use crepitus_protocol::{Fault, Session, State};
+
+#[test]
+fn arm_is_armed_and_stays_so_while_it_is_pumped() {
+    let (shared, mut client) = turning(|t| 0.5 * t);
+    assert_eq!(client.status().unwrap().state, State::Disarmed);
+    client.zero().unwrap();
+    client.arm().unwrap();
+    let status = client.status().unwrap();
+    assert_eq!(status.state, State::Armed);
+    assert_eq!(status.lease, Some(client.session()));
+    assert!(client.is_armed() && status.zeroed);
+
+    let events = pump_for(&mut client, ms(2_000));
+    let changes: Vec<_> = events
+        .iter()
+        .map(|event| match event {
+            Event::State(change) => change.now.state,
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    assert_eq!(
+        changes,
+        [State::Armed],
+        "and nothing else while it is armed"
+    );
+    assert!(client.is_armed());
+    assert_eq!(shared.borrow().drive.state(), State::Armed);
+    assert!(shared.borrow().torque_nm().abs() > 0.05, "it grates");
+    // Every 50 ms, and one more or less at the ends.
+    let renewals = client.counters().unwrap().comms[CommsCounter::Renewals.index()];
+    assert!((39..=42).contains(&renewals), "{renewals}");
+
+    client.disarm().unwrap();
+    assert!(!client.is_armed());
+    let status = client.status().unwrap();
+    assert_eq!((status.state, status.lease), (State::Disarmed, None));
+    assert_eq!((status.drive_fault, status.comms_fault), (0, 0));
+    pump_for(&mut client, ms(300));
+    let counters = client.counters().unwrap();
+    assert_eq!(counters.comms[CommsCounter::LeasesExpired.index()], 0);
+    assert_eq!(counters.drive[DriveCounter::Faults.index()], 0);
+    assert_eq!(shared.borrow().torque_nm(), 0.0);
+}
+
+#[test]
+fn who_does_not_pump_loses_the_lease() {
+    let (shared, mut client) = connected();
+    client.arm().unwrap();
+    client.transport_mut().wait(ms(300));
+    assert_eq!(shared.borrow().drive.state(), State::Faulted);
+    assert!(client.is_armed(), "it has not looked yet");
+    let events = pump_for(&mut client, ms(50));
+    let [Event::State(change)] = &events[..] else {
+        panic!("{events:?}");
+    };
+    assert_eq!(change.now.state, State::Faulted);
+    assert_eq!(change.now.drive_fault, Fault::LeaseExpired.code());
+    assert!(!client.is_armed());
+
+    let error = client.arm().unwrap_err();
+    let fault = Fault::LeaseExpired.code();
+    assert!(error.to_string().contains("lease-expired"), "{error}");
+    assert_eq!(refusal::<()>(Err(error)), Refusal::Faulted { code: fault });
+    client.clear_fault().unwrap();
+    assert_eq!(client.status().unwrap().state, State::Disarmed);
+    client.arm().unwrap();
+    assert_eq!(client.status().unwrap().state, State::Armed);
+}
+
+#[test]
+fn a_lease_is_alive_for_a_quarter_of_a_second() {
+    let (shared, mut client) = connected();
+    client.arm().unwrap();
+    pump_for(&mut client, ms(200));
+    // The last renewal is at most 50 ms old.
+    client.transport_mut().wait(ms(190));
+    assert_eq!(shared.borrow().drive.state(), State::Armed);
+    pump_for(&mut client, ms(100));
+    assert!(client.is_armed());
+}
+
+#[test]
+fn stop_ends_all_torque_whoever_says_it() {
+    let (shared, port) = device();
+    let mut owner = client(port, 1);
+    owner.arm().unwrap();
+    pump_for(&mut owner, ms(10));
+    let mut other = client(Port::new(&shared), 2);
+    other.stop().unwrap();
+    other.transport_mut().wait(ms(5));
+    assert_eq!(shared.borrow().drive.state(), State::Disarmed);
+    let events = pump_for(&mut owner, ms(150));
+    let [Event::State(change)] = &events[..] else {
+        panic!("{events:?}");
+    };
+    assert_eq!(
+        (change.before.state, change.now.state, change.now.lease),
+        (State::Armed, State::Disarmed, None)
+    );
+    assert!(!owner.is_armed());
+    // It is no fault, so there is nothing to clear.
+    owner.arm().unwrap();
+}
+
+#[test]
+fn one_host_has_the_lease_and_the_others_are_refused() {
+    let (shared, port) = device();
+    let mut first = client(port, 1);
+    let mut second = client(Port::new(&shared), 0xfeed);
+    first.arm().unwrap();
+    let error = second.arm().unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "`arm` is refused: another host (session 00000001) has armed the device; \
+         end that program, or `crepitus stop`"
+    );
+    for refused in [
+        refusal(second.zero()),
+        refusal(second.save()),
+        refusal(second.clear_fault()),
+        refusal(second.set(&[(4, 0.5)])),
+    ] {
+        assert_eq!(refused, Refusal::Leased { by: Session(1) });
+    }
+    assert!(!second.is_armed());
+    assert_eq!(second.tally().renewals, 0);
+    // Looking is free.
+    assert_eq!(second.status().unwrap().lease, Some(Session(1)));
+    pump_for(&mut first, ms(100));
+    assert!(first.is_armed());
+    first.disarm().unwrap();
+    second.arm().unwrap();
+    assert_eq!(second.status().unwrap().lease, Some(second.session()));
+}
+
+#[test]
+fn who_is_armed_and_asks_again_stays_armed() {
+    let (_, mut client) = connected();
+    client.arm().unwrap();
+    assert_eq!(refusal(client.arm()), Refusal::Armed);
+    pump_for(&mut client, ms(600));
+    assert!(client.is_armed());
+    assert_eq!(
+        refusal(client.zero()),
+        Refusal::Drive(crepitus_protocol::link::DriveRefusal::Armed)
+    );
+    assert_eq!(refusal(client.save()), Refusal::Armed);
+    client.close().unwrap();
+}
+
+#[test]
+fn a_drive_that_cannot_be_heard_ends_torque_with_its_fault() {
+    let (shared, mut client) = connected();
+    client.arm().unwrap();
+    pump_for(&mut client, ms(100));
+    shared.borrow_mut().link_is_cut = true;
+    let events = pump_for(&mut client, ms(150));
+    let faulted = events.iter().any(|event| {
+        matches!(event, Event::State(change)
+            if change.now.comms_fault == Fault::DriveSilent.code() && !change.now.drive_present)
+    });
+    assert!(faulted, "{events:?}");
+    assert!(!client.is_armed());
+    assert_eq!(shared.borrow().drive.state(), State::Faulted);
+    assert_eq!(refusal(client.zero()), Refusal::DriveSilent);
+    shared.borrow_mut().link_is_cut = false;
+    pump_for(&mut client, ms(20));
+    client.clear_fault().unwrap();
+    let status = client.status().unwrap();
+    assert_eq!((status.drive_fault, status.comms_fault), (0, 0));
+    client.arm().unwrap();
+}

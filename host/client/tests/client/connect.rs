@@ -1,0 +1,153 @@
+//! Who is there, and whether it can be talked to.
+
+use crate::support::{Port, client, device, golden, ms, options, pump_for};
+use crepitus_client::{Client, Error, Management, RequestKind};
+use crepitus_protocol::management::{ResetCause, Role};
+use crepitus_protocol::{State, schema};
+
+#[test]
+fn a_device_says_who_it_is() {
+    let (_, port) = device();
+    let client = client(port, 1);
+    let handshake = client.handshake();
+    assert_eq!(handshake.comms.role, Role::Comms);
+    assert_eq!(handshake.drive.unwrap().role, Role::Drive);
+    assert_eq!(handshake.mismatch(), None);
+    assert_eq!(handshake.comms.schema, schema::HASH);
+    // A device that was switched on just now has to hear its drive first.
+    assert!(client.now() < ms(300), "{:?}", client.now());
+    assert_eq!(client.tally().discarded_frames, 0);
+}
+
+#[test]
+fn garbage_before_the_first_frame_does_no_harm() {
+    let (shared, port) = device();
+    {
+        let mut device = shared.borrow_mut();
+        device.hear(&[0x55; 700]);
+        device.hear(b"AT\r\n");
+        device.waiting(0).extend([0xaa; 3_000]);
+        device.waiting(0).extend(b"\x05boot\n");
+    }
+    let client = client(port, 1);
+    assert!(client.handshake().drive.is_some());
+    assert!(client.tally().repeats <= 1);
+    assert_eq!(client.tally().discarded_frames, 1);
+}
+
+#[test]
+fn a_device_that_says_nothing_is_given_up() {
+    let (shared, port) = device();
+    shared.borrow_mut().to_host.swallow = usize::MAX;
+    let error = Client::connect(port).unwrap_err();
+    let Error::NoAnswer { what, tries, .. } = &error else {
+        panic!("{error}");
+    };
+    assert_eq!((*what, *tries), (RequestKind::Hello, 10));
+    assert_eq!(
+        error.to_string(),
+        "no answer from bench to `hello`, asked 10 times within 1000 ms: \
+         is it a Crepitus device, and is it switched on?"
+    );
+}
+
+#[test]
+fn a_device_whose_drive_is_silent_is_connected_all_the_same() {
+    let (shared, port) = device();
+    shared.borrow_mut().link_is_cut = true;
+    let mut client = client(port, 1);
+    assert_eq!(client.handshake().drive, None);
+    assert!(!client.status().unwrap().drive_present);
+}
+
+#[test]
+fn another_language_is_said_with_what_to_do() {
+    for (name, comms, drive) in [
+        ("older-comms", ([0, 0, 9], 0x0123_4567_89ab_cdef), None),
+        ("newer-comms", ([0, 2, 0], 0xfedc_ba98_7654_3210), None),
+        (
+            "other-sources",
+            ([0, 1, 0], 0x1111_2222_3333_4444),
+            Some(([0, 1, 0], 0x1111_2222_3333_4444)),
+        ),
+        (
+            "older-both",
+            ([0, 0, 9], 0x0123_4567_89ab_cdef),
+            Some(([0, 0, 8], 0x5555_6666_7777_8888)),
+        ),
+    ] {
+        let (shared, port) = device();
+        {
+            let mut device = shared.borrow_mut();
+            (device.comms_identity.version, device.comms_identity.schema) = comms;
+            if let Some(drive) = drive {
+                (device.drive_identity.version, device.drive_identity.schema) = drive;
+            }
+            device.start_comms(ResetCause::Power);
+            device.start_drive(ResetCause::Power);
+        }
+        let error = Client::connect(port).unwrap_err();
+        assert!(matches!(error, Error::Mismatch(_)), "{error}");
+        let ours = format!("{:016x}", schema::HASH);
+        let text = error.to_string().replace(&ours, "(this language)");
+        golden(name, &text);
+    }
+}
+
+#[test]
+fn a_device_of_another_language_can_be_stopped() {
+    let (shared, port) = device();
+    let mut owner = client(port, 1);
+    owner.arm().unwrap();
+    assert_eq!(shared.borrow().comms.state(), State::Armed);
+    // The same device, seen by a tool that finds another hash in its hello.
+    let mut stranger = Management::with(Port::new(&shared), options(2));
+    let mut handshake = stranger.identify().unwrap();
+    handshake.comms.schema ^= 1;
+    assert!(handshake.mismatch().is_some());
+    let refused = stranger.reboot().unwrap_err();
+    assert_eq!(
+        refused,
+        Error::NotDone {
+            what: RequestKind::Reboot
+        }
+    );
+    stranger.stop().unwrap();
+    assert_eq!(shared.borrow().comms.state(), State::Disarmed);
+    stranger.reboot().unwrap();
+    assert!(matches!(
+        stranger.into_client(handshake),
+        Err(Error::Mismatch(_))
+    ));
+}
+
+#[test]
+fn a_drive_of_another_language_alone_is_a_fault_and_no_end() {
+    let (shared, port) = device();
+    {
+        let mut device = shared.borrow_mut();
+        device.drive_identity.schema ^= 1;
+        device.start_drive(ResetCause::Power);
+    }
+    let mut client = client(port, 1);
+    let mismatch = client.handshake().mismatch().unwrap();
+    assert!(mismatch.to_string().contains("flash `firmware/drive`"));
+    let error = client.arm().unwrap_err().to_string();
+    assert!(error.contains("version-mismatch (fault 36"), "{error}");
+}
+
+#[test]
+fn reboots_start_both_controllers_anew() {
+    let (shared, port) = device();
+    let mut client = client(port, 1);
+    client.zero().unwrap();
+    client.reboot().unwrap();
+    pump_for(&mut client, ms(50));
+    let status = client.status().unwrap();
+    assert!(status.uptime_ms < 100 && !status.zeroed, "{status:?}");
+    assert_eq!(
+        client.identify().unwrap().drive.unwrap().reset,
+        ResetCause::Asked
+    );
+    assert_eq!(shared.borrow().comms_identity.reset, ResetCause::Asked);
+}

@@ -1,0 +1,266 @@
+//! Parameters: read, set, refused, kept.
+
+use crate::support::{Port, client, connected, device, ms, pump_for, refusal};
+use crepitus_client::{Client, Error};
+use crepitus_protocol::host::Refusal;
+use crepitus_protocol::management::ResetCause;
+use crepitus_protocol::parameters::{Parameter, id};
+use crepitus_protocol::{Revision, ValueError, Values};
+
+fn place(name: &str) -> usize {
+    Parameter::find(name).unwrap().0
+}
+
+#[test]
+fn a_set_is_one_commit_and_leaves_the_others_alone() {
+    let (shared, mut client) = connected();
+    let (revision, before) = client.parameters().unwrap();
+    assert_eq!((revision, before), (Revision(1), Values::default()));
+    let changes = [(id::KINETIC_TORQUE, 0.3), (id::STATIC_TORQUE, 0.8)];
+    assert_eq!(client.set(&changes).unwrap(), Revision(2));
+    let (revision, after) = client.parameters().unwrap();
+    let mut expected = before;
+    for (id, value) in changes {
+        expected.set(id, value);
+    }
+    assert_eq!((revision, after), (Revision(2), expected));
+    assert_eq!(shared.borrow().drive.revision(), Revision(2));
+    let status = client.status().unwrap();
+    assert_eq!(
+        (status.revision, status.in_force),
+        (Revision(2), Revision(2))
+    );
+    assert_eq!(status.saved, None);
+}
+
+#[test]
+fn a_set_works_while_armed() {
+    let (shared, mut client) = connected();
+    client.arm().unwrap();
+    for torque in [0.5, 1.0, 2.0, 0.4] {
+        client.set(&[(id::STATIC_TORQUE, torque)]).unwrap();
+        pump_for(&mut client, ms(100));
+    }
+    assert!(client.is_armed());
+    assert_eq!(shared.borrow().drive.revision(), Revision(5));
+    let lines = place("encoder.lines");
+    let error = client.set(&[(lines, 500.0)]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "encoder.lines = 500 changes only while there is no torque: disarm first; nothing was changed"
+    );
+    client.disarm().unwrap();
+    client.set(&[(lines, 500.0)]).unwrap();
+}
+
+#[test]
+fn what_is_not_allowed_is_refused_with_what_is() {
+    let (_, mut client) = connected();
+    let restart = place("crepitus.restart");
+    for (changes, error, text) in [
+        (
+            &[(id::TORQUE_LIMIT, 9.0)][..],
+            ValueError::OutOfRange { id: 26 },
+            "limits.torque_nm = 9 is not allowed: it is between 0 and 6.5 N·m; nothing was changed",
+        ),
+        (
+            &[(id::STATIC_TORQUE, f64::NAN)],
+            ValueError::OutOfRange { id: 4 },
+            "crepitus.static_torque_nm = NaN is not allowed: it is between 0 and 1e6 N·m; \
+             nothing was changed",
+        ),
+        (
+            &[(restart, 2.0)],
+            ValueError::OutOfRange { id: 5 },
+            "crepitus.restart = 2 is not allowed: it is `elastic` or `from-kinetic`; \
+             nothing was changed",
+        ),
+        (
+            &[(id::KINETIC_TORQUE, 0.7)],
+            ValueError::KineticAboveStatic,
+            "crepitus.kinetic_torque_nm = 0.7 is above crepitus.static_torque_nm = 0.4: \
+             lower the first or raise the second; nothing was changed",
+        ),
+        (
+            &[(id::STATIC_TORQUE, 5.0)],
+            ValueError::StaticAboveLimit,
+            "crepitus.static_torque_nm = 5 is above limits.torque_nm = 4.5: lower the first or \
+             raise the second, which is between 0 and 6.5 N·m; nothing was changed",
+        ),
+    ] {
+        let failed = client.set(changes).unwrap_err();
+        assert_eq!(failed.to_string(), text);
+        assert_eq!(refusal::<()>(Err(failed)), Refusal::Values(error));
+    }
+    assert_eq!(
+        client.parameters().unwrap(),
+        (Revision(1), Values::default())
+    );
+    assert_eq!(
+        client.set(&[(1_000, 0.0)]).unwrap_err(),
+        Error::UnknownParameter { id: 1_000 }
+    );
+}
+
+#[test]
+fn a_commit_from_old_values_is_stale() {
+    let (_, mut client) = connected();
+    let (base, values) = client.parameters().unwrap();
+    client.set(&[(id::STATIC_TORQUE, 0.5)]).unwrap();
+    let error = client.commit(base, &values).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "`commit` is refused: the parameters have changed since they were read \
+         (they are at revision 2 now); read them again"
+    );
+    let revision = Revision(2);
+    assert_eq!(refusal::<()>(Err(error)), Refusal::Stale { revision });
+    assert_eq!(client.commit(revision, &values).unwrap(), Revision(3));
+}
+
+/// A client that is overtaken by another one whenever it commits.
+mod overtaking {
+    use super::*;
+    use crepitus_client::{Transport, TransportError};
+    use std::time::Duration;
+
+    /// Before a frame that is as long as a commit goes out, the other client
+    /// sets what is next in its list.
+    pub(super) struct Overtaken {
+        pub(super) inner: Port,
+        pub(super) other: Client<Port>,
+        pub(super) changes: Vec<(usize, f64)>,
+    }
+
+    impl Transport for Overtaken {
+        fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
+            if bytes.len() > 200
+                && let Some(change) = self.changes.pop()
+            {
+                self.other.set(&[change]).unwrap();
+            }
+            self.inner.send(bytes)
+        }
+
+        fn receive(&mut self, to: &mut [u8], patience: Duration) -> Result<usize, TransportError> {
+            self.inner.receive(to, patience)
+        }
+
+        fn now(&self) -> Duration {
+            self.inner.now()
+        }
+
+        fn wait(&mut self, time: Duration) {
+            self.inner.wait(time);
+        }
+
+        fn reopen(&mut self) -> Result<(), TransportError> {
+            self.inner.reopen()
+        }
+
+        fn name(&self) -> String {
+            self.inner.name()
+        }
+    }
+}
+
+fn overtaken(changes: &[(usize, f64)]) -> Client<overtaking::Overtaken> {
+    let (shared, port) = device();
+    let other = client(port, 2);
+    let mut changes = changes.to_vec();
+    changes.reverse();
+    let transport = overtaking::Overtaken {
+        inner: Port::new(&shared),
+        other,
+        changes,
+    };
+    Client::connect_with(transport, crate::support::options(1))
+        .map_err(|error| error.to_string())
+        .unwrap()
+}
+
+#[test]
+fn a_set_that_is_overtaken_begins_anew() {
+    let inertia = place("crepitus.inertia_kg_m2");
+    let mut client = overtaken(&[(inertia, 0.02), (inertia, 0.03), (inertia, 0.04)]);
+    assert_eq!(
+        client.set(&[(id::STATIC_TORQUE, 0.5)]).unwrap(),
+        Revision(5)
+    );
+    let (_, values) = client.parameters().unwrap();
+    assert_eq!(values.get(inertia), Some(0.04));
+    assert_eq!(values.get(id::STATIC_TORQUE), Some(0.5));
+}
+
+#[test]
+fn a_set_that_is_overtaken_for_ever_is_given_up() {
+    let inertia = place("crepitus.inertia_kg_m2");
+    let mut client = overtaken(&[0.02, 0.03, 0.04, 0.05].map(|value| (inertia, value)));
+    assert!(matches!(
+        refusal(client.set(&[(id::STATIC_TORQUE, 0.5)])),
+        Refusal::Stale {
+            revision: Revision(5)
+        }
+    ));
+}
+
+#[test]
+fn a_set_does_not_undo_what_another_host_has_just_set() {
+    let mut client = overtaken(&[(id::STATIC_TORQUE, 0.9)]);
+    let error = client.set(&[(id::STATIC_TORQUE, 0.5)]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "crepitus.static_torque_nm was to become 0.5, and another host has just changed it \
+         from 0.4 to 0.9 (revision 2): nothing was set; look whether that is what you want, \
+         and set it again"
+    );
+    let mut client = overtaken(&[(id::STATIC_TORQUE, 0.5)]);
+    assert_eq!(
+        client.set(&[(id::STATIC_TORQUE, 0.5)]).unwrap(),
+        Revision(3)
+    );
+}
+
+#[test]
+fn what_is_saved_is_there_after_the_next_start() {
+    let (shared, mut client) = connected();
+    client.set(&[(id::STATIC_TORQUE, 0.5)]).unwrap();
+    client.save().unwrap();
+    assert_eq!(client.status().unwrap().saved, Some(Revision(2)));
+    client.set(&[(id::STATIC_TORQUE, 0.6)]).unwrap();
+    shared.borrow_mut().start_comms(ResetCause::Power);
+    pump_for(&mut client, ms(20));
+    let (revision, values) = client.parameters().unwrap();
+    assert_eq!(
+        (revision, values.get(id::STATIC_TORQUE)),
+        (Revision(2), Some(0.5))
+    );
+    assert_eq!(client.status().unwrap().in_force, Revision(2));
+    client.set(&[(id::STATIC_TORQUE, 0.7)]).unwrap();
+}
+
+#[test]
+fn a_flash_that_takes_nothing_is_told() {
+    let (shared, mut client) = connected();
+    shared.borrow_mut().flash_works = false;
+    assert_eq!(refusal(client.save()), Refusal::Storage);
+    assert_eq!(client.status().unwrap().saved, None);
+}
+
+#[test]
+fn a_commit_that_the_drive_cannot_confirm_is_told() {
+    let (shared, mut client) = connected();
+    shared.borrow_mut().link_is_cut = true;
+    assert_eq!(
+        refusal(client.set(&[(id::STATIC_TORQUE, 0.5)])),
+        Refusal::Unconfirmed
+    );
+    shared.borrow_mut().link_is_cut = false;
+    pump_for(&mut client, ms(30));
+    // It has come into force since.
+    let status = client.status().unwrap();
+    assert_eq!(
+        (status.revision, status.in_force),
+        (Revision(2), Revision(2))
+    );
+}

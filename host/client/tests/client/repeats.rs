@@ -1,0 +1,139 @@
+//! What is lost on the line is asked again, and done once.
+
+use crate::support::{Device, Port, client, connected, device, ms, pump_for};
+use crepitus_client::{Error, RequestKind, Transport};
+use crepitus_protocol::counters::CommsCounter::{self, RepeatedRequests, Requests};
+use crepitus_protocol::frame;
+use crepitus_protocol::host::{Answer, Ask, Reply, Request};
+use crepitus_protocol::parameters::id;
+use crepitus_protocol::{Lane, Revision, Session, State};
+
+#[test]
+fn a_lost_reply_is_asked_for_again_and_nothing_is_done_twice() {
+    let (shared, mut client) = connected();
+    let before = client.counters().unwrap();
+    let (base, mut values) = client.parameters().unwrap();
+    values.set(id::STATIC_TORQUE, 0.5);
+    // The reply is somewhat longer than this.
+    shared.borrow_mut().to_host.swallow = 8;
+    assert_eq!(client.commit(base, &values).unwrap(), Revision(2));
+    assert_eq!(client.tally().repeats, 1);
+    let after = client.counters().unwrap();
+    let counted =
+        |counter: CommsCounter| after.comms[counter.index()] - before.comms[counter.index()];
+    // Parameters, the commit, and these counters.
+    assert_eq!((counted(Requests), counted(RepeatedRequests)), (3, 1));
+    assert_eq!(client.status().unwrap().revision, Revision(2));
+    let trip = client.round_trips().of(RequestKind::Commit).unwrap();
+    assert_eq!(trip.count, 1);
+    assert!(trip.worst >= ms(200) && trip.worst < ms(210), "{trip:?}");
+}
+
+#[test]
+fn a_lost_request_is_asked_again() {
+    let (shared, mut client) = connected();
+    shared.borrow_mut().from_host.swallow = 5;
+    client.zero().unwrap();
+    shared.borrow_mut().from_host.swallow = 5;
+    client.arm().unwrap();
+    shared.borrow_mut().from_host.swallow = 5;
+    client.stop().unwrap();
+    assert_eq!(client.tally().repeats, 3);
+}
+
+#[test]
+fn numbers_wrap_and_nobody_notices() {
+    let (_, mut client) = connected();
+    for _ in 0..12 {
+        client.status().unwrap();
+    }
+    assert_eq!(client.tally().repeats, 0);
+}
+
+#[test]
+fn answers_to_others_and_old_ones_are_counted_and_ignored() {
+    let (shared, mut client) = connected();
+    let ours = client.session();
+    for session in [ours, Session(7)] {
+        let reply = Reply {
+            session,
+            number: 1_000,
+            answer: Ok(Answer::Done),
+        };
+        let frame = frame::encode(Lane::Reply, &reply).unwrap();
+        shared.borrow_mut().waiting(0).extend(&frame);
+    }
+    shared
+        .borrow_mut()
+        .waiting(0)
+        .extend(&frame::encode_bytes(Lane::ManagementAnswer, b"S\x7f\x01").unwrap());
+    shared
+        .borrow_mut()
+        .waiting(0)
+        .extend(&frame::encode_body(b"T\xff....").unwrap());
+    client.status().unwrap();
+    let tally = client.tally();
+    assert_eq!((tally.stray_answers, tally.foreign_frames), (3, 1));
+    pump_for(&mut client, ms(5));
+}
+
+#[test]
+fn a_busy_device_is_asked_until_it_has_time() {
+    let (shared, port) = device();
+    let mut client = client(port, 1);
+    let mut other = Port::new(&shared);
+    // Another host's work takes half a second: a command that the drive never
+    // hears.
+    shared.borrow_mut().link_is_cut = true;
+    let request = Request {
+        session: Session(2),
+        number: 1,
+        ask: Ask::Zero,
+    };
+    other
+        .send(&frame::encode(Lane::Request, &request).unwrap())
+        .unwrap();
+    other.wait(ms(2));
+    shared.borrow_mut().link_is_cut = false;
+    client.save().unwrap();
+    assert_eq!(client.tally().repeats, 0);
+}
+
+#[test]
+fn a_line_that_spoils_a_byte_in_five_hundred_is_slow_and_right() {
+    let (shared, mut client) = connected();
+    spoil(&mut shared.borrow_mut(), 1_500);
+    let mut torque = 0.4;
+    for revision in 2..30 {
+        torque += 0.01;
+        let set = loop {
+            match client.set(&[(id::STATIC_TORQUE, torque)]) {
+                Err(Error::NoAnswer { .. }) => {}
+                other => break other.unwrap(),
+            }
+        };
+        assert_eq!(set, Revision(revision));
+    }
+    assert!(client.tally().repeats > 3, "{:?}", client.tally());
+    assert!(client.tally().discarded_frames > 0);
+    let (_, values) = client.parameters().unwrap();
+    assert_eq!(values.get(id::STATIC_TORQUE), Some(torque));
+}
+
+#[test]
+fn a_line_that_spoils_bytes_keeps_the_lease() {
+    let (shared, mut client) = connected();
+    spoil(&mut shared.borrow_mut(), 600);
+    client.arm().unwrap();
+    pump_for(&mut client, ms(5_000));
+    assert!(client.is_armed());
+    assert!(client.tally().discarded_frames > 0);
+    assert_eq!(shared.borrow().drive.state(), State::Armed);
+}
+
+/// Each of three evils strikes one byte in so many, both ways.
+fn spoil(device: &mut Device, once_in: u64) {
+    for line in [&mut device.to_host, &mut device.from_host] {
+        (line.lose, line.flip, line.double) = (once_in, once_in, once_in);
+    }
+}

@@ -1,0 +1,237 @@
+//! Every sample, or the number of those that are missing.
+
+use crate::support::{Port, check_books, client, connected, device, ms, pump_for, turning};
+use crepitus_client::{Client, Event, Transport};
+use crepitus_protocol::counters::{CommsCounter, DriveCounter};
+use crepitus_protocol::management::ResetCause;
+use crepitus_protocol::telemetry::{Block, SampleFlags};
+use crepitus_protocol::{Fault, State, TICKS_PER_S};
+
+fn blocks_for(client: &mut Client<Port>, time: std::time::Duration) -> Vec<Block> {
+    let end = client.now() + time;
+    let mut blocks = Vec::new();
+    while client.now() < end {
+        if let Some(Event::Block(arrival)) = client.pump(ms(20)).unwrap() {
+            blocks.push(*arrival.block);
+        }
+    }
+    blocks
+}
+
+#[test]
+fn ten_seconds_arrive_whole() {
+    let (shared, mut client) = turning(|t| 0.3 * t);
+    client.arm().unwrap();
+    let first_tick = client.subscribe().unwrap();
+    let blocks = blocks_for(&mut client, ms(10_000));
+    client.unsubscribe().unwrap();
+    let end = blocks.last().unwrap().end_tick();
+    let [produced, received, dropped, lost] = check_books(&client);
+    assert!(produced >= 10 * u64::from(TICKS_PER_S) - 40, "{produced}");
+    assert_eq!((received, dropped, lost), (produced, 0, 0));
+    assert_eq!(blocks[0].first_tick, first_tick);
+    assert_eq!(
+        produced,
+        client.accounting().unwrap().next_tick() - first_tick
+    );
+    assert!(end - first_tick >= produced - 40);
+    for pair in blocks.windows(2) {
+        assert_eq!(pair[1].first_tick, pair[0].end_tick());
+        assert_eq!(pair[1].sequence, pair[0].sequence.wrapping_add(1));
+    }
+    // It grated all the time: ωn/(2π + 2(λ − atan λ)) = 31.7 Hz at 0.3 rad/s.
+    let samples = || blocks.iter().flat_map(|block| &block.samples);
+    let breaks = samples()
+        .filter(|s| s.flags.has(SampleFlags::BREAK))
+        .count();
+    assert!((315..=319).contains(&breaks), "{breaks}");
+    assert!(
+        samples()
+            .skip(2_000)
+            .all(|s| s.flags.has(SampleFlags::ENERGISED))
+    );
+    let last = samples().next_back().unwrap();
+    assert!((f64::from(last.current_ma) * 1e-3 * 3.345 + f64::from(last.torque_nm)).abs() < 0.3);
+    let counters = client.counters().unwrap();
+    assert_eq!(counters.drive[DriveCounter::Dropped.index()], 0);
+    assert_eq!(counters.comms[CommsCounter::LostSamples.index()], 0);
+    let sent = counters.comms[CommsCounter::SentSamples.index()];
+    assert_eq!(u64::from(sent), received);
+    assert_eq!(shared.borrow().comms.state(), State::Armed);
+}
+
+#[test]
+fn on_a_lossy_line_the_sum_still_holds() {
+    let (shared, mut client) = connected();
+    client.subscribe().unwrap();
+    {
+        let line = &mut shared.borrow_mut().to_host;
+        (line.lose, line.flip, line.double) = (2_000, 2_000, 2_000);
+    }
+    let blocks = blocks_for(&mut client, ms(3_000));
+    let [produced, received, dropped, lost] = check_books(&client);
+    assert_eq!(received, 20 * blocks.len() as u64);
+    assert_eq!(
+        produced,
+        blocks.last().unwrap().end_tick() - client.accounting().unwrap().first_tick()
+    );
+    assert_eq!(dropped, 0, "the device has dropped nothing");
+    // A frame of 345 bytes is spoiled with a chance of 40 %.
+    assert!(lost > produced / 5 && lost < produced * 3 / 5, "{lost}");
+    assert!(client.tally().discarded_frames > 100);
+}
+
+#[test]
+fn frames_that_come_twice_are_taken_once() {
+    let (shared, mut client) = connected();
+    client.subscribe().unwrap();
+    for _ in 0..5 {
+        shared.borrow_mut().millisecond();
+    }
+    let waiting: Vec<u8> = shared.borrow_mut().waiting(0).iter().copied().collect();
+    shared.borrow_mut().waiting(0).extend(waiting);
+    pump_for(&mut client, ms(5));
+    let books = client.accounting().unwrap();
+    assert!(books.old_blocks() >= 4);
+    assert_eq!(books.dropped(), 0);
+    check_books(&client);
+}
+
+#[test]
+fn a_host_that_reads_too_slowly_is_told_what_it_missed() {
+    let (shared, mut client) = connected();
+    client.subscribe().unwrap();
+    shared.borrow_mut().room = 4_096;
+    pump_for(&mut client, ms(100));
+    client.transport_mut().wait(ms(500));
+    pump_for(&mut client, ms(200));
+    let [_, _, dropped, lost] = check_books(&client);
+    // It was away for 500 ms, of which about 60 found room on the way.
+    assert!((8_000..10_000).contains(&dropped), "{dropped}");
+    assert_eq!(lost, 0);
+    let books = client.accounting().unwrap();
+    assert_eq!(books.gap_count(), 1);
+}
+
+#[test]
+fn the_link_between_the_controllers_may_lose_some_too() {
+    let (shared, mut client) = connected();
+    client.subscribe().unwrap();
+    for _ in 0..20 {
+        pump_for(&mut client, ms(20));
+        shared.borrow_mut().link_is_cut = true;
+        pump_for(&mut client, ms(3));
+        shared.borrow_mut().link_is_cut = false;
+    }
+    pump_for(&mut client, ms(20));
+    let [_, _, dropped, lost] = check_books(&client);
+    assert_eq!((dropped, lost), (20 * 3 * 20, 0));
+    let counters = client.counters().unwrap();
+    assert_eq!(counters.comms[CommsCounter::LostSamples.index()], 1_200);
+}
+
+#[test]
+fn a_drive_that_starts_anew_is_told_and_the_books_go_on() {
+    let (shared, mut client) = connected();
+    client.arm().unwrap();
+    client.subscribe().unwrap();
+    pump_for(&mut client, ms(100));
+    shared.borrow_mut().start_drive(ResetCause::Watchdog);
+    let events = pump_for(&mut client, ms(100));
+    assert!(events.contains(&Event::DriveRestarted));
+    let now = events.iter().rev().find_map(|event| match event {
+        Event::State(change) => Some(change.now),
+        _ => None,
+    });
+    let now = now.unwrap();
+    assert_eq!(now.state, State::Faulted);
+    assert_eq!(now.drive_fault, Fault::DriveWatchdog.code());
+    assert_eq!(now.comms_fault, Fault::DriveRestarted.code());
+    assert!(!client.is_armed());
+    let [produced, received, _, _] = check_books(&client);
+    assert_eq!(produced, received);
+    assert!(produced > 3_900, "{produced}");
+    assert_eq!(client.accounting().unwrap().restarts(), 1);
+    client.clear_fault().unwrap();
+    client.arm().unwrap();
+}
+
+#[test]
+fn silence_is_told_once() {
+    let (shared, mut client) = connected();
+    client.subscribe().unwrap();
+    pump_for(&mut client, ms(50));
+    // Comms has forgotten the subscription.
+    shared.borrow_mut().start_comms(ResetCause::Power);
+    let events = pump_for(&mut client, ms(2_000));
+    let silences = events
+        .iter()
+        .filter(|event| matches!(event, Event::Silent(time) if *time >= ms(500)))
+        .count();
+    assert_eq!(silences, 1, "{events:?}");
+    client.subscribe().unwrap();
+    pump_for(&mut client, ms(50));
+    let [produced, received, _, _] = check_books(&client);
+    assert_eq!(produced, received);
+    assert!(received >= 900);
+}
+
+#[test]
+fn a_new_subscription_begins_new_books() {
+    let (_, mut client) = connected();
+    let first = client.subscribe().unwrap();
+    pump_for(&mut client, ms(50));
+    client.transport_mut().wait(ms(20));
+    let second = client.subscribe().unwrap();
+    assert!(second >= first + 1_400);
+    pump_for(&mut client, ms(50));
+    let [produced, received, _, _] = check_books(&client);
+    assert_eq!(produced, received);
+    assert!(produced <= 1_040, "{produced}");
+    client.unsubscribe().unwrap();
+    let after = check_books(&client);
+    assert!(pump_for(&mut client, ms(50)).is_empty());
+    assert_eq!(check_books(&client), after);
+}
+
+#[test]
+fn a_subscription_whose_reply_is_lost_misses_nothing() {
+    let (shared, mut client) = connected();
+    shared.borrow_mut().to_host.swallow = 8;
+    client.subscribe().unwrap();
+    assert_eq!(client.tally().repeats, 1);
+    pump_for(&mut client, ms(100));
+    let [produced, received, _, _] = check_books(&client);
+    assert_eq!(produced, received);
+    assert!(produced >= 3_800, "{produced}");
+}
+
+#[test]
+fn blocks_that_nobody_takes_are_thrown_away_in_the_end() {
+    let (_, mut client) = connected();
+    client.subscribe().unwrap();
+    for _ in 0..110 {
+        client.transport_mut().wait(ms(100));
+        client.status().unwrap();
+    }
+    assert!((1_000..1_200).contains(&client.tally().unread_blocks));
+    pump_for(&mut client, ms(1_000));
+    let [_, _, dropped, lost] = check_books(&client);
+    assert_eq!((dropped, lost), (0, 20 * client.tally().unread_blocks));
+}
+
+#[test]
+fn blocks_of_an_earlier_program_do_no_harm() {
+    let (shared, port) = device();
+    let mut earlier = client(port, 1);
+    earlier.subscribe().unwrap();
+    drop(earlier);
+    let mut client = client(Port::new(&shared), 2);
+    pump_for(&mut client, ms(50));
+    assert!(client.tally().unasked_blocks > 40);
+    assert!(client.accounting().is_none());
+    client.subscribe().unwrap();
+    pump_for(&mut client, ms(50));
+    let [produced, received, _, _] = check_books(&client);
+    assert_eq!(produced, received);
+}

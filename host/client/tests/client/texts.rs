@@ -1,0 +1,163 @@
+//! What people read.
+
+use crate::support::golden;
+use crepitus_client::values::{full_name, parse_value, show_value};
+use crepitus_client::{Holder, Refused, RequestKind, TransportError, fault_text};
+use crepitus_protocol::fault::FAULTS;
+use crepitus_protocol::host::Refusal;
+use crepitus_protocol::link::DriveRefusal;
+use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter};
+use crepitus_protocol::{Revision, Session, ValueError, Values};
+use std::time::Duration;
+
+#[test]
+fn every_fault_says_what_to_do() {
+    let mut lines: Vec<_> = FAULTS
+        .iter()
+        .map(|spec| fault_text(spec.fault.code()))
+        .collect();
+    lines.push(fault_text(200));
+    golden("faults", &lines.join("\n"));
+}
+
+#[test]
+fn every_refusal_says_what_to_do() {
+    let drive = [
+        DriveRefusal::NoParameters,
+        DriveRefusal::NoLease,
+        DriveRefusal::Faulted { code: 13 },
+        DriveRefusal::Armed,
+        DriveRefusal::NoEncoder,
+        DriveRefusal::Aborted,
+    ];
+    let values = [
+        ValueError::OutOfRange { id: 2 },
+        ValueError::OutOfRange { id: 5 },
+        ValueError::OutOfRange { id: 200 },
+        ValueError::KineticAboveStatic,
+        ValueError::StaticAboveLimit,
+        ValueError::NeedsDisarmed { id: 6 },
+    ];
+    let others = [
+        Refusal::Stale {
+            revision: Revision(7),
+        },
+        Refusal::Leased {
+            by: Session(0x00c0_ffee),
+        },
+        Refusal::DriveSilent,
+        Refusal::Unconfirmed,
+        Refusal::Faulted { code: 2 },
+        Refusal::Armed,
+        Refusal::Busy,
+        Refusal::Storage,
+        Refusal::Aborted,
+    ];
+    let text = |what, refusal, values| {
+        Refused {
+            what,
+            refusal,
+            values,
+        }
+        .to_string()
+    };
+    let mut lines = Vec::new();
+    for error in values {
+        let values = Some(Values::default());
+        lines.push(text(RequestKind::Commit, Refusal::Values(error), values));
+    }
+    lines.push(text(RequestKind::Commit, Refusal::Unconfirmed, None));
+    for refusal in others.into_iter().chain(drive.map(Refusal::Drive)) {
+        for what in [RequestKind::Arm, RequestKind::Zero] {
+            lines.push(text(what, refusal, None));
+        }
+    }
+    golden("refusals", &lines.join("\n"));
+}
+
+#[test]
+fn every_failure_of_a_port_says_what_to_do() {
+    let port = || "/dev/ttyACM0".to_owned();
+    let detail = || "I/O error".to_owned();
+    let holder = Holder {
+        pid: 4_321,
+        program: "minicom".into(),
+    };
+    let errors = [
+        TransportError::NotFound { port: port() },
+        TransportError::Busy {
+            port: port(),
+            holder: Some(holder),
+        },
+        TransportError::Busy {
+            port: port(),
+            holder: None,
+        },
+        TransportError::Denied {
+            port: port(),
+            group: "dialout".into(),
+        },
+        TransportError::NotSerial { port: port() },
+        TransportError::Open {
+            port: port(),
+            detail: detail(),
+        },
+        TransportError::Stalled {
+            port: port(),
+            patience: Duration::from_millis(250),
+        },
+        TransportError::Lost {
+            port: port(),
+            detail: detail(),
+        },
+    ];
+    golden("ports", &errors.map(|error| error.to_string()).join("\n"));
+}
+
+#[test]
+fn values_are_read_as_they_are_shown() {
+    for parameter in &PARAMETERS {
+        let mut values = vec![parameter.default()];
+        match parameter.kind {
+            Kind::Number(spec) => values.extend([
+                spec.min,
+                spec.max,
+                1.0 / 3.0,
+                5e-324,
+                -0.0,
+                1e300,
+                123_456.789_012_345_67,
+            ]),
+            Kind::Choice(_) => values.extend([0.0, 1.0]),
+        }
+        for value in values {
+            let text = show_value(parameter, value);
+            assert!(text.len() < 25, "{text}");
+            let read = parse_value(parameter, &format!(" {text}\n")).unwrap();
+            assert_eq!(read.to_bits(), value.to_bits(), "{text}");
+        }
+    }
+    let (_, restart) = Parameter::find("crepitus.restart").unwrap();
+    assert_eq!(show_value(restart, 1.0), "from-kinetic");
+    assert_eq!(full_name(restart), "crepitus.restart");
+}
+
+#[test]
+fn what_is_no_value_is_refused_with_what_is_one() {
+    let text = |name: &str, value: &str| {
+        let (_, parameter) = Parameter::find(name).unwrap();
+        parse_value(parameter, value).unwrap_err().to_string()
+    };
+    assert_eq!(
+        text("crepitus.static_torque_nm", "0,4"),
+        "crepitus.static_torque_nm is a number: `0,4` is none; it is between 0 and 1e6 N·m"
+    );
+    assert_eq!(
+        text("friction-compensation.share", "inf"),
+        "friction-compensation.share is a number: `inf` is none; it is between 0 and 1"
+    );
+    assert_eq!(
+        text("crepitus.restart", "1"),
+        "crepitus.restart cannot be `1`: it is `elastic` or `from-kinetic`"
+    );
+}
