@@ -93,7 +93,7 @@ fn every_page_is_in_the_summary() {
 fn the_readme_names_the_main_job_and_the_tests_first() {
     let readme = fs::read_to_string(repository().join("README.md")).unwrap();
     let commands: Vec<_> = readme.lines().filter(|l| l.starts_with("cargo ")).collect();
-    assert!(commands[0].starts_with("cargo run --release -- run scenes/"));
+    assert_eq!(commands[0], "cargo run --release -- demo");
     assert_eq!(commands[1], "cargo test --workspace");
 }
 
