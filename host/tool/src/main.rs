@@ -33,7 +33,7 @@ fn main() -> ExitCode {
         Verb::Disarm(arguments) => verbs::control::disarm(&arguments.device, cli.json),
         Verb::Stop(arguments) => verbs::control::stop(&arguments.device, cli.json),
         Verb::ClearFault(arguments) => verbs::control::clear_fault(&arguments.device, cli.json),
-        Verb::Stream(arguments) => verbs::stream::stream(arguments),
+        Verb::Stream(arguments) => verbs::stream::stream(arguments, cli.json),
         Verb::Record(arguments) => verbs::record::record(arguments, cli.json),
         Verb::Report(arguments) => verbs::report::report(arguments, cli.json),
         Verb::ServeSim(arguments) => verbs::serve_sim::serve_sim(arguments, cli.json),

@@ -24,6 +24,11 @@ impl StatusLine {
         self.last = Some(*block);
     }
 
+    /// Does something else with the terminal meanwhile.
+    pub(crate) fn aside<R>(&self, work: impl FnOnce() -> R) -> R {
+        self.bar.suspend(work)
+    }
+
     /// Shows how it is.
     pub(crate) fn show(&self, books: Option<&Accounting>) {
         if self.bar.is_hidden() {

@@ -198,7 +198,7 @@ pub(crate) struct StreamArguments {
     #[arg(long, value_name = "HZ", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=20_000))]
     pub(crate) rate: u32,
 
-    /// How they are printed.
+    /// How they are printed; with --json as JSON lines.
     #[arg(long, default_value = "csv")]
     pub(crate) format: SampleFormat,
 

@@ -12,7 +12,7 @@ use crepitus_recording::{COLUMNS, Row, Samples};
 use serde_json::json;
 
 /// Streams.
-pub(crate) fn stream(arguments: &StreamArguments) -> Result<(), Failure> {
+pub(crate) fn stream(arguments: &StreamArguments, as_json: bool) -> Result<(), Failure> {
     let rate = arguments.rate;
     if !TICKS_PER_S.is_multiple_of(rate) {
         let every = TICKS_PER_S / rate;
@@ -24,17 +24,22 @@ pub(crate) fn stream(arguments: &StreamArguments) -> Result<(), Failure> {
             every + 1
         )));
     }
+    let format = if as_json {
+        SampleFormat::Jsonl
+    } else {
+        arguments.format
+    };
     let mut client = connect(&arguments.device)?;
     client.subscribe().map_err(failure)?;
     let mut printing = Printing {
         samples: Samples::default(),
         revision: None,
         every: u64::from(TICKS_PER_S / rate),
-        format: arguments.format,
+        format,
         text: String::new(),
         status: StatusLine::new(),
     };
-    if arguments.format == SampleFormat::Csv {
+    if format == SampleFormat::Csv {
         let header: Vec<_> = COLUMNS.iter().map(|(name, _)| *name).collect();
         print(&(header.join(",") + "\n"))?;
     }
@@ -75,7 +80,7 @@ impl Follower for Printing {
     }
 
     fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure> {
-        print(&self.text)?;
+        self.status.aside(|| print(&self.text))?;
         self.text.clear();
         self.status.show(client.accounting());
         Ok(false)
