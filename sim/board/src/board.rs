@@ -13,6 +13,7 @@ use crate::wire::Wire;
 use crepitus_device::comms::{self, Comms};
 use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
+use crepitus_device::drive::plausibility::TRIP_A;
 use crepitus_device::drive::{self, Drive};
 use crepitus_protocol::management::{Identity, ResetCause, Role};
 use crepitus_protocol::{Revision, ValueError, Values, schema};
@@ -35,7 +36,7 @@ struct EnableLine {
 }
 
 impl EnableLine {
-    fn is_on(&self) -> bool {
+    fn is_on(self) -> bool {
         self.stuck.unwrap_or(self.driven)
     }
 }
@@ -77,6 +78,10 @@ pub struct Start {
 }
 
 /// The two controllers with a leg.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a part that works or not"
+)]
 pub struct Board {
     drive: Drive,
     comms: Comms,
@@ -97,6 +102,16 @@ pub struct Board {
     kept: Option<(Revision, Values)>,
     keeps: bool,
     comms_has_restarted: bool,
+    /// The comparator at the shunt works.
+    trips: bool,
+    /// It has let go of the bridge, until the drive does.
+    is_broken: bool,
+    /// The drive's converter gives currents.
+    converts: bool,
+    /// The drive's rendering is ready in time.
+    renders: bool,
+    /// Language of the drive's program, from its next start on.
+    drive_schema: u64,
     tick: u64,
 }
 
@@ -156,6 +171,11 @@ impl Board {
             kept: start.saved,
             keeps: true,
             comms_has_restarted: false,
+            trips: true,
+            is_broken: false,
+            converts: true,
+            renders: true,
+            drive_schema: schema::HASH,
             tick: 0,
         })
     }
@@ -166,18 +186,22 @@ impl Board {
         let drive_runs = self.drive_health == Health::Runs;
         if drive_runs {
             self.drive.sample_encoder(self.leg.count().cast_unsigned());
-            self.drive.render_torque();
+            if self.renders {
+                self.drive.render_torque();
+            }
         }
         self.leg.first_half();
+        self.watch_current();
         if drive_runs {
             let outputs = self.drive.command_motor(&Inputs {
-                current_a: Some(single(self.leg.current_a())),
+                current_a: self.converts.then(|| single(self.leg.current_a())),
                 enable_is_on: self.drive_line.read,
-                is_broken: false,
+                is_broken: self.is_broken,
             });
             self.obey(outputs);
         }
         self.leg.second_half();
+        self.watch_current();
         self.switch();
         self.drive_line.read = self.drive_line.is_on();
         self.carry();
@@ -193,6 +217,16 @@ impl Board {
         self.tick += 1;
     }
 
+    /// The comparator at the shunt, which no program stands behind.
+    fn watch_current(&mut self) {
+        if self.bridge == Bridge::Float {
+            self.is_broken = false;
+        } else if self.trips && self.leg.winding_current_a().abs() > f64::from(TRIP_A) {
+            self.is_broken = true;
+            self.switch();
+        }
+    }
+
     fn obey(&mut self, outputs: Outputs) {
         self.drive_line.driven = outputs.enable;
         self.bridge = outputs.bridge;
@@ -205,9 +239,7 @@ impl Board {
     /// The bridge, as both lines let it.
     fn switch(&mut self) {
         let terminals = match self.bridge {
-            Bridge::Driven(volts) if self.drive_line.is_on() && self.comms_line.is_on() => {
-                Terminals::Driven(f64::from(volts))
-            }
+            Bridge::Driven(volts) if self.is_driven() => Terminals::Driven(f64::from(volts)),
             _ => Terminals::Open,
         };
         self.leg.set_terminals(terminals);
@@ -270,7 +302,10 @@ impl Board {
             && tick <= self.tick
         {
             let boot = drive::Boot {
-                identity: identity(Role::Drive, cause),
+                identity: Identity {
+                    schema: self.drive_schema,
+                    ..identity(Role::Drive, cause)
+                },
                 start: self.starts[0],
                 counter: self.leg.count().cast_unsigned(),
                 ..drive::Boot::default()
@@ -337,9 +372,11 @@ impl Board {
         &mut self.up
     }
 
-    /// Whether the motor is being driven: told to, and let by both lines.
+    /// Whether the motor is being driven: told to, and let by both lines and
+    /// the comparator.
     pub fn is_driven(&self) -> bool {
         matches!(self.bridge, Bridge::Driven(_))
+            && !self.is_broken
             && self.drive_line.is_on()
             && self.comms_line.is_on()
     }
@@ -374,7 +411,12 @@ impl Board {
 
     /// A controller is reset: its pins fall, and it starts anew.
     pub fn reset(&mut self, controller: Controller, cause: ResetCause) {
-        *self.health(controller) = Health::StartsAt(self.tick + START_TICKS, cause);
+        self.reset_for(controller, cause, START_TICKS);
+    }
+
+    /// The same, of a controller that takes so many ticks to start.
+    pub fn reset_for(&mut self, controller: Controller, cause: ResetCause, ticks: u64) {
+        *self.health(controller) = Health::StartsAt(self.tick + ticks, cause);
         match controller {
             Controller::Drive => {
                 self.drive_line.driven = false;
@@ -393,6 +435,27 @@ impl Board {
     /// Whether parameters can be kept.
     pub fn set_storage(&mut self, works: bool) {
         self.keeps = works;
+    }
+
+    /// The comparator at the shunt works, or is as blind as the sensor.
+    pub fn set_trip(&mut self, works: bool) {
+        self.trips = works;
+    }
+
+    /// The drive's converter works, or gives no currents any more.
+    pub fn set_converter(&mut self, works: bool) {
+        self.converts = works;
+    }
+
+    /// The drive's model is ready within its tick, or never.
+    pub fn set_rendering(&mut self, in_time: bool) {
+        self.renders = in_time;
+    }
+
+    /// From its next start on the drive's program says that it speaks this
+    /// language.
+    pub fn set_drive_schema(&mut self, schema: u64) {
+        self.drive_schema = schema;
     }
 
     fn health(&mut self, controller: Controller) -> &mut Health {

@@ -2,12 +2,20 @@
 
 #![allow(dead_code, reason = "each test uses its part")]
 
+pub(crate) mod oracle;
+pub(crate) mod random_values;
+
 use crepitus_board::{Start, VirtualDevice};
+use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::frame;
 use crepitus_protocol::host::{Answer, Ask, Refusal, Reply, Request, Status};
+use crepitus_protocol::management::{self, Question, What};
+use crepitus_protocol::parameters::Parameter;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, Sample};
 use crepitus_protocol::{Decoder, Lane, Revision, Session, Values};
 use crepitus_scene::{Overrides, Scene};
+use oracle::Oracle;
+use std::cell::Cell;
 use std::path::Path;
 
 /// Ticks after which a request is repeated: 50 ms.
@@ -55,6 +63,15 @@ pub(crate) struct Books {
     /// What the last block said.
     pub(crate) dropped: u32,
     pub(crate) end_tick: u64,
+    /// The number of the drive's start: with another one, books begin anew.
+    pub(crate) start: Option<u8>,
+}
+
+/// What arrives, in its order.
+#[derive(Clone, Debug)]
+pub(crate) enum Heard {
+    Reply(Box<Reply>),
+    Block(Box<Block>),
 }
 
 pub(crate) struct Host {
@@ -63,14 +80,21 @@ pub(crate) struct Host {
     pub(crate) number: u16,
     decoder: Decoder,
     replies: Vec<Reply>,
+    answers: Vec<management::Answer>,
     pub(crate) books: Option<Books>,
     /// Every sample, if they are wanted.
     pub(crate) samples: Option<Vec<Sample>>,
     pub(crate) last_block: Option<Block>,
+    /// Replies and blocks in their order, if they are wanted.
+    pub(crate) stream: Option<Vec<Heard>>,
     /// Ticks between two renewals; none without a lease.
     pub(crate) renew_every: Option<u64>,
-    /// Called after every tick.
+    /// Frames that were none.
     pub(crate) discarded: u32,
+    /// Looks at every tick and every block.
+    pub(crate) oracle: Option<Oracle>,
+    /// A number to compare with that of the tick before.
+    pub(crate) watched: Cell<u32>,
 }
 
 impl Host {
@@ -82,11 +106,15 @@ impl Host {
             number: 0,
             decoder: Decoder::new(),
             replies: Vec::new(),
+            answers: Vec::new(),
             books: None,
             samples: None,
             last_block: None,
+            stream: None,
             renew_every: None,
             discarded: 0,
+            oracle: None,
+            watched: Cell::default(),
         }
     }
 
@@ -108,6 +136,9 @@ impl Host {
             });
         }
         self.device.tick();
+        if let Some(oracle) = &mut self.oracle {
+            oracle.look(self.device.board());
+        }
         let Some(host) = self.device.host() else {
             return;
         };
@@ -116,14 +147,30 @@ impl Host {
                 None => {}
                 Some(Err(_)) => self.discarded += 1,
                 Some(Ok(body)) => match body.lane() {
-                    Some(Lane::Reply) => self.replies.push(body.message().expect("a reply")),
+                    Some(Lane::Reply) => {
+                        let reply: Reply = body.message().expect("a reply");
+                        if let Some(stream) = &mut self.stream {
+                            stream.push(Heard::Reply(Box::new(reply)));
+                        }
+                        self.replies.push(reply);
+                    }
+                    Some(Lane::ManagementAnswer) => {
+                        let answer = management::Answer::of(body.payload);
+                        self.answers.push(answer.expect("an answer"));
+                    }
                     Some(Lane::Telemetry) => {
                         let block: Block = body.message().expect("a block");
                         if let Some(books) = &mut self.books {
                             books.book(&block);
                         }
+                        if let Some(stream) = &mut self.stream {
+                            stream.push(Heard::Block(Box::new(block)));
+                        }
                         if let Some(samples) = &mut self.samples {
                             samples.extend(block.samples);
+                        }
+                        if let Some(oracle) = &mut self.oracle {
+                            oracle.block(&block);
                         }
                         self.last_block = Some(block);
                     }
@@ -152,18 +199,60 @@ impl Host {
             number: self.number,
             ask,
         };
-        for _ in 0..times {
+        (0..times).find_map(|_| {
             self.say(&request);
-            for _ in 0..PATIENCE_TICKS {
-                self.tick();
-                let found = self
-                    .replies
-                    .drain(..)
-                    .find(|r| r.session == request.session && r.number == request.number);
-                if let Some(reply) = found {
-                    return Some(reply.answer);
-                }
+            self.answer_to(&request)
+        })
+    }
+
+    /// As another host at the same port asks.
+    pub(crate) fn ask_as(
+        &mut self,
+        session: Session,
+        number: u16,
+        ask: Ask,
+    ) -> Option<Result<Answer, Refusal>> {
+        let request = Request {
+            session,
+            number,
+            ask,
+        };
+        self.say(&request);
+        self.answer_to(&request)
+    }
+
+    /// A question of the lane that never changes, and its answer.
+    pub(crate) fn manage(&mut self, what: What, token: u8) -> Option<management::Answer> {
+        let question = Question { what, token };
+        let frame = frame::encode_bytes(Lane::Management, &question.bytes()).expect("a frame");
+        self.send(&frame);
+        self.managed(token)
+    }
+
+    /// Waits for the answer with this token.
+    pub(crate) fn managed(&mut self, token: u8) -> Option<management::Answer> {
+        (0..PATIENCE_TICKS).find_map(|_| {
+            self.tick();
+            self.answers.drain(..).find(|a| a.token() == token)
+        })
+    }
+
+    /// Replies that came and were not asked for.
+    pub(crate) fn take_replies(&mut self) -> Vec<Reply> {
+        std::mem::take(&mut self.replies)
+    }
+
+    /// Waits for the answer to a request.
+    pub(crate) fn answer_to(&mut self, request: &Request) -> Option<Result<Answer, Refusal>> {
+        for _ in 0..PATIENCE_TICKS {
+            let found = self
+                .replies
+                .drain(..)
+                .find(|r| r.session == request.session && r.number == request.number);
+            if let Some(reply) = found {
+                return Some(reply.answer);
             }
+            self.tick();
         }
         None
     }
@@ -211,6 +300,60 @@ impl Host {
         }
     }
 
+    /// Plugs the device in again, as soon as it can be, and begins anew as
+    /// another host.
+    pub(crate) fn reconnect(&mut self) {
+        let found = (0..400).any(|_| {
+            self.run(20);
+            self.device.board().comms_runs() && self.device.plug_in().is_ok()
+        });
+        assert!(found, "the device can be found again");
+        self.decoder = Decoder::new();
+        self.replies.clear();
+        self.answers.clear();
+        (self.books, self.last_block) = (None, None);
+        self.session = Session(self.session.0.wrapping_add(1));
+        self.number = 0;
+    }
+
+    /// Asks until nothing else is being done for a host any more.
+    pub(crate) fn ask_patiently(&mut self, ask: Ask) -> Result<Answer, Refusal> {
+        for _ in 0..20 {
+            let answer = self.ask(ask);
+            if answer != Err(Refusal::Busy) {
+                return answer;
+            }
+            self.run(500);
+        }
+        Err(Refusal::Busy)
+    }
+
+    /// Asks for no more torque, and does not wait for the answer.
+    pub(crate) fn disarm(&mut self) {
+        self.number = self.number.wrapping_add(1);
+        self.say(&Request {
+            session: self.session,
+            number: self.number,
+            ask: Ask::Disarm,
+        });
+    }
+
+    /// Sets the parameter of this name.
+    pub(crate) fn set(&mut self, name: &str, value: f64) {
+        self.commit(|values| set(values, name, value))
+            .expect("a commit");
+    }
+
+    /// The drive's counter.
+    pub(crate) fn drive_count(&self, counter: DriveCounter) -> u32 {
+        self.device.board().drive().counters().get(counter)
+    }
+
+    /// The counter of comms.
+    pub(crate) fn comms_count(&self, counter: CommsCounter) -> u32 {
+        self.device.board().comms().counters().get(counter)
+    }
+
     /// Waits until the drive has its parameters, then arms and keeps the lease.
     pub(crate) fn arm(&mut self) {
         self.renew_every = Some(1_000);
@@ -226,8 +369,23 @@ impl Host {
     }
 }
 
+/// Sets the value of this name.
+pub(crate) fn set(values: &mut Values, name: &str, value: f64) {
+    let (id, _) = Parameter::find(name).expect("a parameter");
+    values.set(id, value);
+}
+
 impl Books {
     fn book(&mut self, block: &Block) {
+        let start = block.flags.start();
+        if self.start.is_some_and(|known| known != start) {
+            *self = Self {
+                first_tick: block.first_tick,
+                end_tick: block.first_tick,
+                ..Self::default()
+            };
+        }
+        self.start = Some(start);
         if block.first_tick < self.first_tick {
             return;
         }

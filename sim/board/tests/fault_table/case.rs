@@ -1,0 +1,141 @@
+//! A cause of a fault, and its repair.
+
+use crate::support::Host;
+use crepitus_device::drive::plausibility::TRIP_A;
+use crepitus_protocol::State;
+use crepitus_protocol::counters::{CommsCounter, DriveCounter};
+use std::ops::Range;
+
+/// By so much the estimated speed lags behind a hand's, with a margin.
+pub(crate) const ESTIMATE_TICKS: u64 = 150;
+
+/// Ticks that the slowest current takes for the last 20 mA.
+pub(crate) const OVER_TICKS: u64 = 3;
+
+/// A torque whose current is worth measuring: 1.1 N·m.
+const HEAVY: &[(&str, f64)] = &[
+    ("crepitus.inertia_kg_m2", 0.03),
+    ("crepitus.static_torque_nm", 1.1),
+    ("crepitus.kinetic_torque_nm", 1.0),
+];
+
+/// When the cause comes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Moment {
+    /// Under torque.
+    Armed,
+    /// Before arming, which finds it.
+    Arming,
+    /// While the bridge floats.
+    Disarmed,
+}
+
+/// A cause.
+pub(crate) struct Case {
+    /// What happens.
+    pub(crate) name: &'static str,
+    /// With which parameters.
+    pub(crate) values: &'static [(&'static str, f64)],
+    /// When.
+    pub(crate) moment: Moment,
+    /// Armed: what is waited for.
+    pub(crate) settled: fn(&Host) -> bool,
+    /// And so many ticks more.
+    pub(crate) phases: Range<u64>,
+    /// The cause, before each tick; ticks since the first.
+    pub(crate) cause: fn(&mut Host, u64),
+    /// Whether it has come to what the table calls the cause.
+    pub(crate) onset: fn(&Host) -> bool,
+    /// Ticks that it takes to be seen, beside what the table says.
+    pub(crate) lag: u64,
+    /// The repair.
+    pub(crate) repair: fn(&mut Host),
+}
+
+/// Under torque, on a leg that is being flexed.
+pub(crate) fn case(name: &'static str, cause: fn(&mut Host, u64), repair: fn(&mut Host)) -> Case {
+    Case {
+        name,
+        values: &[],
+        moment: Moment::Armed,
+        settled: moves,
+        phases: 0..20,
+        cause,
+        onset: |_| true,
+        lag: 0,
+        repair,
+    }
+}
+
+impl Case {
+    pub(crate) fn when(self, moment: Moment) -> Self {
+        Self {
+            moment,
+            // Nothing moves: one is like the other.
+            phases: 0..3,
+            ..self
+        }
+    }
+
+    /// At this moment, which is the worst, or a little later.
+    pub(crate) fn settled(self, settled: fn(&Host) -> bool) -> Self {
+        Self {
+            settled,
+            phases: 0..3,
+            ..self
+        }
+    }
+
+    pub(crate) fn onset(self, onset: fn(&Host) -> bool) -> Self {
+        Self { onset, ..self }
+    }
+
+    pub(crate) fn lag(self, lag: u64) -> Self {
+        Self { lag, ..self }
+    }
+
+    /// With much torque, while it pulls.
+    pub(crate) fn heavy(self) -> Self {
+        Self {
+            values: HEAVY,
+            settled: pulls,
+            ..self
+        }
+    }
+}
+
+/// The leg is being flexed at more than 0.9 rad/s.
+fn moves(host: &Host) -> bool {
+    host.device.board().leg().shaft().omega_rad_s > 0.9
+}
+
+/// The motor's current is large.
+fn pulls(host: &Host) -> bool {
+    host.device.board().leg().winding_current_a().abs() > 0.28
+}
+
+/// A heartbeat has just been heard.
+pub(crate) fn heartbeat(host: &Host) -> bool {
+    changes(host, host.drive_count(DriveCounter::Heartbeats))
+}
+
+/// The lease has just been renewed.
+pub(crate) fn renewal(host: &Host) -> bool {
+    changes(host, host.comms_count(CommsCounter::Renewals))
+}
+
+/// Whether this is another number than a tick before.
+fn changes(host: &Host, now: u32) -> bool {
+    host.watched.replace(now) != now
+}
+
+/// There is almost more current than there may be: what grows slowly takes
+/// [`OVER_TICKS`] more.
+pub(crate) fn is_over(host: &Host) -> bool {
+    host.device.board().leg().winding_current_a().abs() > f64::from(TRIP_A) - 0.02
+}
+
+/// The drive has let go.
+pub(crate) fn is_disarmed(host: &Host) -> bool {
+    host.device.board().drive().state() != State::Armed
+}

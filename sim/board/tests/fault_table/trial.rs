@@ -1,0 +1,273 @@
+//! One cause: from an armed device to a fault, and back.
+
+use crate::case::{Case, Moment};
+use crate::support::{Host, examination};
+use crepitus_board::Start;
+use crepitus_protocol::fault::{Detector, FaultSpec};
+use crepitus_protocol::host::{Answer, Ask, Refusal, Request};
+use crepitus_protocol::link::DriveRefusal;
+use crepitus_protocol::{Fault, State};
+
+/// Ticks for which the cause is watched after the fault: 100 ms.
+const AFTER_TICKS: u64 = 2_000;
+
+/// Ticks after which a fault that was not noticed is none.
+const MOST_TICKS: u64 = 20_000;
+
+/// The push that shows at arming which way the shaft turns, ticks.
+pub(crate) const PUSH_TICKS: u64 = 321;
+
+/// What was measured: the worst of all phases.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Times {
+    /// Ticks from the cause until the bridge floated for good.
+    pub(crate) floats: u64,
+    /// Ticks from the cause until the fault was latched.
+    pub(crate) latched: u64,
+    /// The largest current that there was meanwhile, mA.
+    pub(crate) current_ma: u64,
+}
+
+/// Tries a case at each of its phases.
+pub(crate) fn run(spec: &FaultSpec, case: &Case) -> Times {
+    let mut worst = Times::default();
+    for phase in case.phases.clone() {
+        let context = format!("{}, {}, phase {phase}", spec.name, case.name);
+        let times = Trial {
+            host: ready(case, phase),
+            spec,
+            case,
+            context: &context,
+            current_a: 0.0,
+        }
+        .run();
+        worst.floats = worst.floats.max(times.floats);
+        worst.latched = worst.latched.max(times.latched);
+        worst.current_ma = worst.current_ma.max(times.current_ma);
+    }
+    worst
+}
+
+/// A device at the moment of the cause.
+fn ready(case: &Case, phase: u64) -> Host {
+    let mut host = Host::new(&examination(), &Start::default());
+    host.run(400);
+    host.subscribe();
+    for (name, value) in case.values {
+        host.set(name, *value);
+    }
+    if case.moment == Moment::Armed {
+        host.arm();
+        let settled = (0..40_000).any(|_| {
+            host.tick();
+            (case.settled)(&host)
+        });
+        assert!(settled, "{}: the moment comes", case.name);
+        assert_eq!(
+            host.device.board().drive().state(),
+            State::Armed,
+            "{}",
+            case.name
+        );
+    }
+    host.run(phase);
+    host
+}
+
+struct Trial<'a> {
+    host: Host,
+    spec: &'a FaultSpec,
+    case: &'a Case,
+    context: &'a str,
+    /// The largest current so far, A.
+    current_a: f64,
+}
+
+impl Trial<'_> {
+    fn run(mut self) -> Times {
+        let times = match self.case.moment {
+            Moment::Armed | Moment::Disarmed => self.provoke(),
+            Moment::Arming => self.provoke_arming(),
+        };
+        self.stays();
+        self.recovers();
+        times
+    }
+
+    /// Whether the fault is the one that its detector is in.
+    fn is_latched(&self) -> bool {
+        let board = self.host.device.board();
+        let fault = match self.spec.detector {
+            Detector::Drive => board.drive().fault(),
+            Detector::Comms => board.comms().fault(),
+        };
+        fault == Some(self.spec.fault)
+    }
+
+    /// A tick with the cause.
+    fn tick(&mut self, since: u64) -> bool {
+        (self.case.cause)(&mut self.host, since);
+        self.host.tick();
+        let board = self.host.device.board();
+        self.current_a = self.current_a.max(board.leg().winding_current_a().abs());
+        board.is_driven()
+    }
+
+    fn times(&self, floats: u64, latched: u64) -> Times {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "to be printed"
+        )]
+        let current_ma = (self.current_a * 1e3) as u64;
+        Times {
+            floats,
+            latched,
+            current_ma,
+        }
+    }
+
+    fn provoke(&mut self) -> Times {
+        let was_armed = self.case.moment == Moment::Armed;
+        let (mut floats, mut latched) = (0, None);
+        let (mut since, mut onset) = (0, None);
+        while latched.is_none_or(|latched| since < latched + AFTER_TICKS) {
+            if self.tick(since) {
+                // It floats in the next tick, or later.
+                floats = since + 2;
+            } else if was_armed {
+                floats = floats.max(1);
+            }
+            if (self.case.onset)(&self.host) {
+                onset.get_or_insert(since);
+            }
+            since += 1;
+            if latched.is_none() && self.is_latched() {
+                latched = Some(since);
+            }
+            assert!(
+                latched.is_some() || since < MOST_TICKS,
+                "{}: not noticed; drive {:?}, comms {:?}, driven for {floats} ticks",
+                self.context,
+                self.host.device.board().drive().fault(),
+                self.host.device.board().comms().fault(),
+            );
+        }
+        let onset = onset.unwrap_or(0);
+        self.times(
+            floats.saturating_sub(onset),
+            latched.unwrap_or(since).saturating_sub(onset),
+        )
+    }
+
+    /// The cause is there before, and arming finds it.
+    fn provoke_arming(&mut self) -> Times {
+        self.host.renew_every = Some(1_000);
+        self.host.number += 1;
+        let request = Request {
+            session: self.host.session,
+            number: self.host.number,
+            ask: Ask::Arm,
+        };
+        self.host.say(&request);
+        let (mut driven, mut since) = (None, 0);
+        let mut floats = 0;
+        while !self.is_latched() {
+            if self.tick(since) {
+                floats = since + 2 - *driven.get_or_insert(since);
+            }
+            since += 1;
+            assert!(since < MOST_TICKS, "{}: not noticed", self.context);
+        }
+        let answer = self.host.answer_to(&request).expect("an answer");
+        let code = self.spec.fault.code();
+        assert!(
+            [
+                Err(Refusal::Drive(DriveRefusal::Faulted { code })),
+                Err(Refusal::Faulted { code })
+            ]
+            .contains(&answer),
+            "{}: {answer:?}",
+            self.context
+        );
+        assert!(!self.host.device.board().is_driven(), "{}", self.context);
+        self.times(floats, since)
+    }
+
+    /// The fault stays, whatever the host asks for.
+    fn stays(&mut self) {
+        if !self.host.device.board().comms_runs() {
+            return;
+        }
+        if !self.host.device.is_plugged_in() {
+            self.host.reconnect();
+        }
+        for since in 0..AFTER_TICKS {
+            assert!(
+                !self.tick(since + MOST_TICKS),
+                "{}: driven again",
+                self.context
+            );
+        }
+        assert!(self.is_latched(), "{}: not latched", self.context);
+        self.arming_is_refused();
+    }
+
+    fn arming_is_refused(&mut self) {
+        let answer = self.host.ask_patiently(Ask::Arm);
+        let board = self.host.device.board();
+        let codes = [board.drive().fault(), board.comms().fault()]
+            .map(|fault| fault.map_or(0, Fault::code));
+        assert!(
+            matches!(answer, Err(Refusal::Faulted { code }) if codes.contains(&code))
+                || answer == Err(Refusal::DriveSilent),
+            "{}: {answer:?} with {codes:?}",
+            self.context
+        );
+        assert!(!self.host.device.board().is_driven(), "{}", self.context);
+        assert!(codes.contains(&self.spec.fault.code()), "{}", self.context);
+    }
+
+    /// Repaired and cleared, it works as before.
+    fn recovers(&mut self) {
+        (self.case.repair)(&mut self.host);
+        self.host.run(1_000);
+        if !self.host.device.is_plugged_in() {
+            self.host.reconnect();
+        }
+        let status = self.host.status();
+        assert_eq!(
+            status.state,
+            State::Faulted,
+            "{}: a repair clears nothing",
+            self.context
+        );
+        self.arming_is_refused();
+        assert_eq!(
+            self.host.ask_patiently(Ask::ClearFault),
+            Ok(Answer::Done),
+            "{}",
+            self.context
+        );
+        self.host.run(200);
+        let status = self.host.status();
+        assert_eq!(
+            (status.state, status.drive_fault, status.comms_fault),
+            (State::Disarmed, 0, 0),
+            "{}",
+            self.context
+        );
+        self.host.arm();
+        self.host.run(400);
+        assert_eq!(self.host.status().state, State::Armed, "{}", self.context);
+        assert!(self.host.device.board().is_driven(), "{}", self.context);
+        assert_eq!(
+            self.host.ask(Ask::Disarm),
+            Ok(Answer::Done),
+            "{}",
+            self.context
+        );
+        self.host.run(100);
+        assert!(!self.host.device.board().is_driven(), "{}", self.context);
+    }
+}

@@ -1,0 +1,147 @@
+//! What is over in a moment is no fault; and what a hand does while it is
+//! armed is none either.
+
+mod support;
+
+use crepitus_board::board::Controller;
+use crepitus_board::leg::EncoderWiring;
+use crepitus_board::{Board, Start};
+use crepitus_protocol::host::{Answer, Ask, Refusal};
+use crepitus_protocol::link::DriveRefusal;
+use crepitus_protocol::{Fault, State};
+use support::{Host, examination, scene};
+
+fn connected() -> Host {
+    let mut host = Host::new(&examination(), &Start::default());
+    host.run(400);
+    host
+}
+
+fn faults(board: &Board) -> [Option<Fault>; 2] {
+    [board.drive().fault(), board.comms().fault()]
+}
+
+/// Something is wrong for so many ticks, again and again.
+fn flicker(host: &mut Host, ticks: u64, break_it: fn(&mut Board), mend_it: fn(&mut Board)) {
+    for round in 0..20 {
+        break_it(host.device.board_mut());
+        host.run(ticks);
+        mend_it(host.device.board_mut());
+        host.run(100 + 7 * round);
+        assert_eq!(faults(host.device.board()), [None, None], "round {round}");
+    }
+}
+
+#[test]
+fn a_moment_under_torque_is_no_fault() {
+    let mut host = connected();
+    host.subscribe();
+    host.arm();
+    host.run(6_000);
+    flicker(
+        &mut host,
+        2,
+        |board| board.set_converter(false),
+        |board| board.set_converter(true),
+    );
+    flicker(
+        &mut host,
+        19,
+        |board| board.set_rendering(false),
+        |board| board.set_rendering(true),
+    );
+    flicker(
+        &mut host,
+        8,
+        |board| board.set_stuck(Controller::Drive, Some(false)),
+        |board| board.set_stuck(Controller::Drive, None),
+    );
+    let jump = |board: &mut Board, counts: i32| {
+        let count = board.leg().count();
+        board.leg_mut().preset_count(count.wrapping_add(counts));
+    };
+    for _ in 0..20 {
+        jump(host.device.board_mut(), 50_000);
+        host.run(1);
+        jump(host.device.board_mut(), -50_000);
+        host.run(100);
+    }
+    assert_eq!(host.status().state, State::Armed);
+    assert_eq!(host.books.expect("books").dropped, 0);
+}
+
+#[test]
+fn a_moment_at_rest_is_no_fault() {
+    let mut host = connected();
+    for controller in [Controller::Drive, Controller::Comms] {
+        for _ in 0..20 {
+            host.device.board_mut().set_stuck(controller, Some(true));
+            host.run(8);
+            host.device.board_mut().set_stuck(controller, None);
+            host.run(33);
+        }
+    }
+    assert_eq!(faults(host.device.board()), [None, None]);
+    assert_eq!(host.status().state, State::Disarmed);
+}
+
+/// A leg that a hand swings fast, armed at whatever
+/// moment: encoder and motor are judged by the push alone.
+#[test]
+fn a_leg_that_moves_while_it_is_armed_is_not_misjudged() {
+    let fast = scene(
+        r#"
+version = 1
+title = "Fast"
+duration_s = 60.0
+[motion]
+kind = "strokes"
+from_deg = 10.0
+to_deg = 80.0
+peak_speed_deg_s = 150.0
+pause_s = 0.05
+[solver]
+kind = "exact-events"
+step_s = 5e-5
+precision = "f32"
+[effects.crepitus]
+preset = "coarse"
+[effects.encoder]
+[effects.motor]
+[effects.drivetrain]
+[effects.cuff]
+[effects.limb]
+[effects.hand]
+"#,
+    );
+    let mut host = Host::new(&fast, &Start::default());
+    host.run(400);
+    host.renew_every = Some(1_000);
+    let (mut proven, mut noticed) = (0, 0);
+    for wiring in [EncoderWiring::Right, EncoderWiring::Swapped] {
+        host.device.board_mut().leg_mut().set_encoder_wiring(wiring);
+        for round in 0..60 {
+            host.run(137);
+            let answer = host.ask(Ask::Arm);
+            let is_proven = host.status().polarity_proven;
+            if wiring == EncoderWiring::Right {
+                assert_eq!(answer, Ok(Answer::Done), "round {round}");
+                proven += u32::from(is_proven);
+            } else {
+                // In the wrong sense the bridge starts with the wrong voltage:
+                // a fast leg makes a large current of it.
+                let is_refused = [Fault::EncoderPolarity, Fault::Overcurrent]
+                    .map(Fault::code)
+                    .map(|code| Err(Refusal::Drive(DriveRefusal::Faulted { code })))
+                    .contains(&answer);
+                assert!(is_refused || !is_proven, "round {round}: {answer:?}");
+                noticed += u32::from(is_refused);
+            }
+            assert_eq!(host.ask(Ask::Disarm), Ok(Answer::Done));
+            host.run(60);
+            assert_eq!(host.ask(Ask::ClearFault), Ok(Answer::Done));
+        }
+    }
+    println!("{proven} of 60 proven, {noticed} of 60 swapped encoders noticed");
+    assert!(proven >= 50 && noticed >= 50);
+}

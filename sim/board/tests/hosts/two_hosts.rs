@@ -1,0 +1,179 @@
+//! Two hosts at one port: one has the lease, the other may look, and stop.
+
+use crate::support::{Host, set};
+use crate::{connected, streaming};
+use crepitus_protocol::counters::CommsCounter;
+use crepitus_protocol::host::{Answer, Ask, Refusal};
+use crepitus_protocol::management::{self, What};
+use crepitus_protocol::{Session, State};
+
+const OTHER: Session = Session(0xbeef);
+
+fn changes(host: &mut Host) -> [Ask; 5] {
+    let (base, mut values) = host.parameters();
+    set(&mut values, "crepitus.static_torque_nm", 0.7);
+    [
+        Ask::Commit { base, values },
+        Ask::Save,
+        Ask::Zero,
+        Ask::Arm,
+        Ask::ClearFault,
+    ]
+}
+
+#[test]
+fn what_changes_something_is_for_the_one_with_the_lease() {
+    let mut host = streaming();
+    let first = host.session;
+    let mut number = 0;
+    for ask in changes(&mut host) {
+        number += 1;
+        let answer = host.ask_as(OTHER, number, ask);
+        assert_eq!(answer, Some(Err(Refusal::Leased { by: first })), "{ask:?}");
+    }
+    // Looking is free.
+    for ask in [Ask::Status, Ask::Parameters, Ask::Counters] {
+        number += 1;
+        assert!(
+            matches!(host.ask_as(OTHER, number, ask), Some(Ok(_))),
+            "{ask:?}"
+        );
+    }
+    // A renewal of the other one is none.
+    let renewals = host.comms_count(CommsCounter::Renewals);
+    host.renew_every = None;
+    for _ in 0..40 {
+        host.say(&crepitus_protocol::host::Request {
+            session: OTHER,
+            number: 0,
+            ask: Ask::Renew,
+        });
+        host.run(200);
+    }
+    assert_eq!(host.comms_count(CommsCounter::Renewals), renewals);
+    assert_eq!(host.status().state, State::Faulted, "the lease has expired");
+}
+
+#[test]
+fn disarming_is_for_everybody_and_then_the_other_one_may_arm() {
+    let mut host = streaming();
+    let first = host.session;
+    assert_eq!(host.ask_as(OTHER, 1, Ask::Disarm), Some(Ok(Answer::Done)));
+    host.run(21);
+    assert!(!host.device.board().is_driven());
+    assert_eq!(host.status().lease, None);
+    assert_eq!(host.ask_as(OTHER, 2, Ask::Arm), Some(Ok(Answer::Done)));
+    // The first one goes on renewing, which is nothing now.
+    assert_eq!(host.status().lease, Some(OTHER));
+    assert_eq!(host.ask(Ask::Arm), Err(Refusal::Leased { by: OTHER }));
+    for _ in 0..20 {
+        host.say(&crepitus_protocol::host::Request {
+            session: OTHER,
+            number: 0,
+            ask: Ask::Renew,
+        });
+        host.run(1_000);
+    }
+    assert_eq!(host.status().state, State::Armed);
+    assert_ne!(first, OTHER);
+}
+
+#[test]
+fn disarming_works_in_the_middle_of_the_others_arming() {
+    for phase in 0..40 {
+        let mut host = connected();
+        let first = host.session;
+        let request = crepitus_protocol::host::Request {
+            session: first,
+            number: host.number + 1,
+            ask: Ask::Arm,
+        };
+        host.renew_every = Some(1_000);
+        host.number += 1;
+        host.say(&request);
+        host.run(13 * phase);
+        host.say(&crepitus_protocol::host::Request {
+            session: OTHER,
+            number: 1,
+            ask: Ask::Disarm,
+        });
+        host.run(600);
+        let replies = host.take_replies();
+        let of = |session| {
+            let answers: Vec<_> = replies
+                .iter()
+                .filter(|reply| reply.session == session)
+                .map(|reply| reply.answer)
+                .collect();
+            assert_eq!(answers.len(), 1, "phase {phase}: {replies:?}");
+            answers[0]
+        };
+        assert_eq!(of(OTHER), Ok(Answer::Done));
+        // It had been armed, or was given up.
+        assert!(
+            [Ok(Answer::Done), Err(Refusal::Aborted)].contains(&of(first)),
+            "phase {phase}: {:?}",
+            of(first)
+        );
+        assert!(!host.device.board().is_driven());
+        let status = host.status();
+        assert_eq!((status.state, status.drive_fault), (State::Disarmed, 0));
+        host.arm();
+    }
+}
+
+#[test]
+fn stopping_is_for_everybody_and_needs_no_session() {
+    let mut host = streaming();
+    assert!(host.device.board().is_driven());
+    let answer = host.manage(What::Stop, 7);
+    assert_eq!(
+        answer,
+        Some(management::Answer::Stop {
+            token: 7,
+            done: true
+        })
+    );
+    host.run(21);
+    assert!(!host.device.board().is_driven());
+    let status = host.status();
+    assert_eq!(
+        (status.state, status.drive_fault, status.comms_fault),
+        (State::Disarmed, 0, 0)
+    );
+    host.arm();
+}
+
+#[test]
+fn two_hosts_that_ask_in_turn_both_get_their_answers() {
+    let mut host = streaming();
+    for number in 0..200_u16 {
+        let asks = [Ask::Status, Ask::Parameters, Ask::Counters];
+        let ask = asks[usize::from(number) % 3];
+        let first = crepitus_protocol::host::Request {
+            session: host.session,
+            number: host.number + 1,
+            ask,
+        };
+        host.number += 1;
+        let second = crepitus_protocol::host::Request {
+            session: OTHER,
+            number: 1 + number,
+            ask,
+        };
+        host.say(&first);
+        host.say(&second);
+        host.run(u64::from(number) % 50);
+        host.run(100);
+        let replies = host.take_replies();
+        for request in [first, second] {
+            let answered = replies
+                .iter()
+                .filter(|r| (r.session, r.number) == (request.session, request.number))
+                .count();
+            assert_eq!(answered, 1);
+        }
+    }
+    assert_eq!(host.status().state, State::Armed);
+    assert_eq!(host.books.expect("books").dropped, 0);
+}
