@@ -108,7 +108,7 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::CommsRestarted,
         name: "comms-restarted",
-        cause: "comms was reset: watchdog, brown-out, or a reboot",
+        cause: "comms was reset and is back within 5 ms; if it takes longer it is comms-silent",
         detector: Detector::Drive,
         detection: "heartbeats of another start of comms while armed",
         reaction: FLOAT,
@@ -130,18 +130,19 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "overspeed",
         cause: "the joint turns faster than its gear may",
         detector: Detector::Drive,
-        detection: "the estimated speed is above limits.speed_rad_s for 20 ticks (1 ms) while armed",
+        detection: "the estimated speed is above limits.speed_rad_s for 20 ticks (1 ms) while armed; \
+                    the estimate lags a speed that grows by up to 150 ticks",
         reaction: FLOAT,
-        within_ticks: Some(21),
+        within_ticks: Some(170),
         clear: CLEAR,
     },
     FaultSpec {
         fault: Fault::SpeedMismatch,
         name: "speed-mismatch",
-        cause: "an encoder that has frozen or slips, or a broken motor line",
+        cause: "an encoder that has frozen or slips, a broken motor line, or no supply while little torque is asked for",
         detector: Detector::Drive,
         detection: "speed from back-EMF and speed from the encoder differ for 400 ticks (20 ms) while armed; \
-                    an encoder that freezes at rest is noticed only once the shaft moves",
+                    an encoder that freezes is noticed only once the shaft moves faster than 0.5 rad/s (29 deg/s)",
         reaction: FLOAT,
         within_ticks: Some(1_000),
         clear: REPAIR,
@@ -151,9 +152,9 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "encoder-polarity",
         cause: "encoder or motor lines are swapped",
         detector: Detector::Drive,
-        detection: "a short push at arming moves the shaft the wrong way",
-        reaction: STAYS,
-        within_ticks: Some(2),
+        detection: "the push at arming, 16 ms, moves the shaft the wrong way",
+        reaction: "the push ends and the bridge floats; arming is refused",
+        within_ticks: Some(330),
         clear: REPAIR,
     },
     FaultSpec {
@@ -169,7 +170,7 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::Overcurrent,
         name: "overcurrent",
-        cause: "a short circuit, or a current loop that has gone astray",
+        cause: "a short circuit, a current loop that has gone astray, or a current sensor that is stuck",
         detector: Detector::Drive,
         detection: "more than 1.95 A in 2 ticks in a row, or the hardware's break input",
         reaction: FLOAT,
@@ -189,7 +190,8 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::CurrentMismatch,
         name: "current-mismatch",
-        cause: "a broken motor line, a sensor that is stuck, the supply is off or the hand-held stop is pressed",
+        cause: "a broken motor line; or, while more than 0.2 A (0.67 N·m) is asked for, the supply is off or the \
+                hand-held stop is pressed",
         detector: Detector::Drive,
         detection: "the current stays more than 0.2 A from what was asked for, without a limit that explains it, \
                     for 100 ticks (5 ms)",
@@ -280,7 +282,7 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::DriveRestarted,
         name: "drive-restarted",
-        cause: "the drive was reset while armed: watchdog, brown-out, or a reboot",
+        cause: "the drive was reset while armed and is back within 5 ms; if it takes longer it is drive-silent",
         detector: Detector::Comms,
         detection: "the drive's ticks begin anew",
         reaction: "comms takes its enable line away: the bridge floats",
@@ -304,7 +306,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         detector: Detector::Comms,
         detection: "the line is read back every millisecond",
         reaction: FLOAT,
-        within_ticks: Some(60),
+        within_ticks: Some(80),
         clear: REPAIR,
     },
     FaultSpec {
