@@ -27,8 +27,9 @@ impl Commits {
         counters: &Counters,
     ) {
         let is_older = |newest: Revision| revision.0.wrapping_sub(newest.0).cast_signed() < 0;
-        if self.newest.is_some_and(is_older) {
-            // Overtaken on its way by the one after it.
+        // Overtaken on its way by the one after it; or the number of none, which
+        // no commit has.
+        if revision == Revision::NONE || self.newest.is_some_and(is_older) {
             counters.count(DriveCounter::StaleCommands);
             return;
         }
@@ -79,6 +80,15 @@ impl Commits {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_number_of_none_is_no_commit() {
+        let counters = Counters::new();
+        let mut commits = Commits::default();
+        commits.hear(Revision::NONE, &Values::default(), Revision(4), &counters);
+        assert_eq!(commits.take(), None);
+        assert_eq!(counters.get(DriveCounter::StaleCommands), 1);
+    }
 
     #[test]
     fn a_commit_is_taken_once_however_often_it_is_heard() {

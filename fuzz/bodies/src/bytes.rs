@@ -26,13 +26,34 @@ impl<'a> Bytes<'a> {
         byte
     }
 
+    /// All that is left.
+    pub(crate) fn rest(&mut self) -> &'a [u8] {
+        core::mem::take(&mut self.0)
+    }
+
+    /// The next `count`, or as many as there are.
+    pub(crate) fn take_some(&mut self, count: usize) -> &'a [u8] {
+        let (now, rest) = self.0.split_at(count.min(self.0.len()));
+        self.0 = rest;
+        now
+    }
+
+    pub(crate) fn u16(&mut self) -> u16 {
+        u16::from_le_bytes(self.take())
+    }
+
+    /// Any bit pattern of single precision.
+    pub(crate) fn f32(&mut self) -> f32 {
+        f32::from_le_bytes(self.take())
+    }
+
     pub(crate) fn i32(&mut self) -> i32 {
         i32::from_le_bytes(self.take())
     }
 
     /// Any bit pattern of single precision.
     pub(crate) fn single(&mut self) -> f64 {
-        f64::from(f32::from_le_bytes(self.take()))
+        f64::from(self.f32())
     }
 
     /// Any bit pattern of double precision.

@@ -13,25 +13,38 @@
 //! | [`encoder`] | counts, and ticks without one |
 //! | [`scene`] | the text of a scene file |
 //! | [`recording`] | the text of a recording |
+//! | [`frames`] | bytes on a wire |
+//! | [`drive`] | what the drive controller hears and reads |
+//! | [`comms`] | what the comms controller hears, of hosts and of the drive |
 
 mod bytes;
+pub mod comms;
+pub mod drive;
+mod drive_words;
 pub mod encoder;
+pub mod frames;
 pub mod guarded;
+mod host_ear;
 mod laws;
+mod link_words;
 pub mod recording;
 pub mod renderer;
 mod rung;
 pub mod scene;
 mod shaft;
 pub mod step;
+mod winding;
 
 /// Turns bytes into inputs, and panics where a law is broken.
 pub type Body = fn(&[u8]);
 
 /// All targets: the name of each, which is also its folder in the corpus, and
 /// its body.
-pub const TARGETS: [(&str, Body); 6] = [
+pub const TARGETS: [(&str, Body); 9] = [
+    ("comms", comms::body),
+    ("drive", drive::body),
     ("encoder", encoder::body),
+    ("frames", frames::body),
     ("guarded", guarded::body),
     ("recording", recording::body),
     ("renderer", renderer::body),

@@ -134,6 +134,21 @@ fn every_target_has_its_folder_and_its_fuzz_target() {
 }
 
 #[test]
+fn nothing_that_comms_hears_breaks_its_laws() {
+    hold("comms");
+}
+
+#[test]
+fn nothing_that_the_drive_hears_or_reads_breaks_its_laws() {
+    hold("drive");
+}
+
+#[test]
+fn no_bytes_confuse_the_decoder_of_frames() {
+    hold("frames");
+}
+
+#[test]
 fn no_counts_confuse_the_encoder() {
     hold("encoder");
 }

@@ -1,0 +1,377 @@
+//! The comms controller, with anything from hosts and from the drive,
+//! millisecond by millisecond:
+//!
+//! - its line is on only while somebody's lease is alive, blocks come, and
+//!   there is no fault of comms; and only after somebody has asked to arm, and
+//!   nobody since to disarm or to stop. So it is with what heartbeats allow;
+//! - no heartbeat tells of a longer lease than there is;
+//! - every frame for a host or for the drive is in order. A request has at most
+//!   as many replies as it was sent times, and nobody else has any;
+//! - the revision changes only after a commit, or a refusal, to the next one. Parameters that
+//!   are told, sent or kept are those of the start or of a commit, and allowed;
+//! - every sample of a subscription is in the books;
+//! - nothing is kept and nothing starts anew that was not asked for.
+
+use crate::bytes::Bytes;
+use crate::drive_words::DriveSide;
+use crate::host_ear::HostEar;
+use crate::link_words;
+use crepitus_device::Comms;
+use crepitus_device::comms::{Boot, Inputs, Outputs};
+use crepitus_device::usb_port::HostBytes;
+use crepitus_protocol::counters::CommsCounter;
+use crepitus_protocol::host::{Ask, Request};
+use crepitus_protocol::link::{Order, ToDrive};
+use crepitus_protocol::management::{Identity, Question, ResetCause, What};
+use crepitus_protocol::{
+    Decoder, DeviceSettings, LEASE_TICKS, Lane, Revision, Session, Values, frame, schema,
+};
+
+/// The most milliseconds of one input.
+const MOST_MS: u64 = 4096;
+
+/// Length of a lease, ms.
+const LEASE_MS: u64 = 250;
+
+/// After so long without a block the drive is silent, ms.
+const SILENT_MS: u64 = 5;
+
+/// Checks the laws.
+///
+/// # Panics
+/// Where one is broken.
+pub fn body(data: &[u8]) {
+    let mut bytes = Bytes::new(data);
+    let reset = bytes.choice(&ResetCause::ALL);
+    let saved = bytes.byte();
+    let boot = Boot {
+        identity: Identity {
+            schema: schema::HASH,
+            reset,
+            ..Identity::default()
+        },
+        start: u16::from(bytes.byte()),
+        saved: (saved > 127).then(|| {
+            let revision = bytes.choice(&[0, 1, 7, u32::MAX - 1]);
+            (Revision(revision), link_words::values(&mut bytes))
+        }),
+        counters: bytes.choice(&[0, u32::MAX - 2]),
+    };
+    let mut bench = Bench::new(&boot);
+    while !bytes.is_empty() && bench.now_ms < MOST_MS {
+        bench.step(&mut bytes);
+        bench.revision();
+    }
+    bench.read(usize::MAX);
+}
+
+/// Comms, and what somebody who listens to both its wires knows.
+struct Bench {
+    comms: Comms,
+    now_ms: u64,
+    line_is_on: bool,
+    drive: DriveSide,
+    host: HostEar,
+    /// Hears what hosts say, and what the drive is told.
+    ear: Decoder,
+    link_ear: Decoder,
+    numbers: [u16; 5],
+    /// When a block came last, and when a lease was taken or renewed last.
+    block_ms: Option<u64>,
+    lease_ms: Option<u64>,
+    /// Somebody has asked to arm, and nobody since not to be.
+    wants: bool,
+    /// Reasons that there were for another revision.
+    numbered: u32,
+    revision: Revision,
+    /// All values that there may be.
+    values: Vec<Values>,
+    may_save: bool,
+    may_reboot: bool,
+}
+
+impl Bench {
+    fn new(boot: &Boot) -> Self {
+        let comms = Comms::new(boot);
+        let saved = boot.saved.map(|(_, values)| values);
+        Self {
+            now_ms: 0,
+            line_is_on: false,
+            drive: DriveSide::new(boot.start),
+            host: HostEar::default(),
+            ear: Decoder::new(),
+            link_ear: Decoder::new(),
+            numbers: [0, 1, 0x7ffe, 0xfffe, 9],
+            block_ms: None,
+            lease_ms: None,
+            wants: false,
+            numbered: 0,
+            revision: comms.revision(),
+            values: saved.into_iter().chain([Values::default()]).collect(),
+            may_save: false,
+            may_reboot: false,
+            comms,
+        }
+    }
+
+    fn step(&mut self, bytes: &mut Bytes<'_>) {
+        match bytes.byte() % 9 {
+            0 => {
+                let how = bytes.byte();
+                let line = (how & 1 != 0).then_some(how & 2 != 0);
+                self.tick(line);
+            }
+            // As it should be, for so many milliseconds.
+            1 => {
+                let reads = bytes.byte();
+                for _ in 0..bytes.byte() {
+                    self.good_millisecond();
+                    self.read(if reads < 128 { usize::MAX } else { 8 });
+                }
+            }
+            2 | 3 => {
+                let place = usize::from(bytes.byte()) % self.numbers.len();
+                let ask = self.ask(bytes);
+                let number = &mut self.numbers[place];
+                match bytes.byte() {
+                    // Repeated; but of a subscription nobody could tell which
+                    // one it is that begins.
+                    0..=47 if ask != Ask::Subscribe => {}
+                    48..=63 => *number = number.wrapping_add(bytes.u16()),
+                    _ => *number = number.wrapping_add(1),
+                }
+                let request = Request {
+                    session: Session(u32::try_from(place).unwrap_or(0) * 0x1001),
+                    number: *number,
+                    ask,
+                };
+                let frame = frame::encode(Lane::Request, &request);
+                self.say(&frame.expect("every message fits"));
+            }
+            4 => {
+                let count = usize::from(bytes.byte());
+                let raw = bytes.take_some(count).to_vec();
+                self.say(&raw);
+            }
+            5 => {
+                let question = Question {
+                    what: link_words::what(bytes),
+                    token: bytes.byte(),
+                };
+                let frame = frame::encode_bytes(Lane::Management, &question.bytes());
+                self.say(&frame.expect("a short frame"));
+            }
+            6 => {
+                let frame = self.drive.anything(bytes);
+                self.numbered += u32::from(self.drive.has_refused());
+                self.from_drive(&frame);
+            }
+            7 => match bytes.byte() {
+                0..=15 => {
+                    self.comms.host_lost();
+                    self.host.cut();
+                    self.ear.reset();
+                }
+                16..=63 => self.comms.saved(bytes.byte() < 200),
+                count => self.read(usize::from(count)),
+            },
+            _ => {
+                self.tick(None);
+                for _ in 0..bytes.byte() % 8 {
+                    self.link_frame();
+                }
+            }
+        }
+    }
+
+    fn ask(&mut self, bytes: &mut Bytes<'_>) -> Ask {
+        match bytes.byte() % 16 {
+            0 | 1 => Ask::Renew,
+            2 => Ask::Status,
+            3 => Ask::Counters,
+            4 => Ask::Parameters,
+            5 | 6 => Ask::Commit {
+                base: if bytes.byte() < 224 {
+                    self.comms.revision()
+                } else {
+                    Revision(u32::from(bytes.byte()))
+                },
+                values: link_words::values(bytes),
+            },
+            7 => Ask::Save,
+            8 => Ask::Zero,
+            9..=11 => Ask::Arm,
+            12 => Ask::Disarm,
+            13 => Ask::ClearFault,
+            14 => Ask::Subscribe,
+            _ => Ask::Unsubscribe,
+        }
+    }
+
+    /// Bytes of a host, for comms and for whoever listens.
+    fn say(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            let (mut request, mut question) = (None, None);
+            match self.ear.push(*byte) {
+                Some(Ok(body)) if body.lane() == Some(Lane::Request) => {
+                    request = body.message::<Request>();
+                }
+                Some(Ok(body)) if body.lane() == Some(Lane::Management) => {
+                    question = Question::of(body.payload);
+                }
+                _ => {}
+            }
+            let requests = self.comms.counters().get(CommsCounter::Requests);
+            self.comms.received(&[*byte]);
+            let is_new = self.comms.counters().get(CommsCounter::Requests) != requests;
+            if let Some(request) = request {
+                self.note(&request, is_new);
+            }
+            match question.map(|question| question.what) {
+                Some(What::Stop) => (self.wants, self.lease_ms) = (false, None),
+                Some(What::Reboot) => self.may_reboot = true,
+                _ => {}
+            }
+        }
+    }
+
+    fn note(&mut self, request: &Request, is_new: bool) {
+        self.host.asked(request);
+        match request.ask {
+            Ask::Renew if self.is_leased() => self.lease_ms = Some(self.now_ms),
+            _ if !is_new => {}
+            // Whether or not it is refused.
+            Ask::Arm => (self.wants, self.lease_ms) = (true, Some(self.now_ms)),
+            Ask::Disarm => (self.wants, self.lease_ms) = (false, None),
+            Ask::Commit { values, .. } => {
+                self.numbered += 1;
+                if DeviceSettings::of(&values).is_ok() {
+                    self.values.push(values);
+                }
+            }
+            Ask::Save => self.may_save = true,
+            _ => {}
+        }
+    }
+
+    /// By what was said on the wire, at most.
+    fn is_leased(&self) -> bool {
+        self.lease_ms
+            .is_some_and(|lease_ms| self.now_ms - lease_ms < LEASE_MS)
+    }
+
+    fn from_drive(&mut self, frame: &[u8]) {
+        for byte in frame {
+            self.comms.link_received(*byte);
+        }
+        // Whatever it was.
+        self.block_ms = Some(self.now_ms);
+    }
+
+    fn good_millisecond(&mut self) {
+        for frame in self.drive.millisecond() {
+            self.from_drive(&frame);
+        }
+        self.tick(None);
+        while self.link_frame() {}
+    }
+
+    fn tick(&mut self, line: Option<bool>) {
+        self.now_ms += 1;
+        let outputs = self.comms.tick(&Inputs {
+            enable_is_on: line.unwrap_or(self.line_is_on),
+        });
+        self.line_is_on = outputs.enable;
+        self.hold(&outputs);
+    }
+
+    fn hold(&mut self, outputs: &Outputs) {
+        if outputs.enable {
+            assert!(self.is_leased(), "enabled without a lease");
+            assert!(self.wants, "enabled, and nobody wants it");
+            assert_eq!(self.comms.fault(), None);
+            let heard = self.block_ms.expect("a block");
+            assert!(self.now_ms - heard < SILENT_MS, "the drive is silent");
+        }
+        if let Some((revision, values)) = outputs.save {
+            assert!(std::mem::take(&mut self.may_save));
+            assert_eq!(revision, self.comms.revision());
+            assert!(self.values.contains(&values));
+        }
+        if outputs.reboot {
+            assert!(self.may_reboot, "it starts anew, and nobody has asked");
+            assert!(!outputs.enable);
+        }
+    }
+
+    fn revision(&mut self) {
+        let now = self.comms.revision();
+        if now == self.revision {
+            return;
+        }
+        // Commits that were refused had numbers, too; and what the drive has
+        // refused after it was taken for committed is given another.
+        let mut next = self.revision;
+        while next != now {
+            next = next.next();
+            assert!(self.numbered > 0, "a revision without a commit");
+            self.numbered -= 1;
+        }
+        self.revision = now;
+    }
+
+    /// Takes the next frame for the drive, if there is one.
+    fn link_frame(&mut self) -> bool {
+        let Some(frame) = self.comms.link_to_send() else {
+            return false;
+        };
+        let mut found = 0;
+        for byte in &frame {
+            let Some(body) = self.link_ear.push(*byte) else {
+                continue;
+            };
+            let body = body.expect("a frame in order");
+            found += 1;
+            match body.lane() {
+                Some(Lane::ToDrive) => {
+                    let message = body.message().expect("a message");
+                    self.told(&message);
+                }
+                Some(Lane::Management) => assert!(Question::of(body.payload).is_some()),
+                other => panic!("{other:?} for the drive"),
+            }
+        }
+        assert_eq!(found, 1, "frames in a frame");
+        true
+    }
+
+    fn told(&mut self, message: &ToDrive) {
+        self.drive.hear(message);
+        match message {
+            ToDrive::Heartbeat(heartbeat) => {
+                assert!(u64::from(heartbeat.lease_left) < LEASE_TICKS);
+                assert!(heartbeat.lease_left == 0 || self.is_leased());
+                assert!(!heartbeat.enable || self.wants);
+            }
+            ToDrive::Commit { values, .. } => {
+                assert!(DeviceSettings::of(values).is_ok());
+                assert!(self.values.contains(values), "nobody's values");
+            }
+            ToDrive::Command { order, .. } => assert!(*order != Order::Arm || self.wants),
+        }
+    }
+
+    /// Takes so many bytes for the host.
+    fn read(&mut self, count: usize) {
+        let mut left = count;
+        while left > 0 && !self.comms.to_send().is_empty() {
+            let run = self.comms.to_send();
+            let run = run[..run.len().min(left)].to_vec();
+            self.comms.sent(run.len());
+            left -= run.len();
+            for byte in &run {
+                self.host.hear(*byte, &self.values);
+            }
+        }
+    }
+}

@@ -1,0 +1,438 @@
+//! The drive controller, with anything on its link and any readings, tick by
+//! tick:
+//!
+//! - the bridge is driven only while armed or arming, with the line on, with a
+//!   finite voltage, and not in a tick in which the hardware has let go;
+//! - at most 100 ticks after the last fresh heartbeat, and before the end of
+//!   the lease that it told;
+//! - at most 10 ticks in a row without the line read back on;
+//! - a fault stays until a command clears it; nothing else arms but a command;
+//! - parameters in force were sent whole, and are allowed;
+//! - torque is a number within the largest limit, and zero unless armed;
+//! - every frame that it sends is in order, and every sample is in the books.
+
+use crate::bytes::Bytes;
+use crate::link_words;
+use crate::winding::Winding;
+use crepitus_device::Drive;
+use crepitus_device::drive::Boot;
+use crepitus_device::drive::command::{Inputs, Outputs};
+use crepitus_device::drive::motor::Bridge;
+use crepitus_protocol::counters::DriveCounter;
+use crepitus_protocol::link::{FromDrive, Heartbeat, Order, STALE_TICKS, ToDrive};
+use crepitus_protocol::management::{Answer, Identity, Question, ResetCause};
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, SampleFlags};
+use crepitus_protocol::{
+    Decoder, DeviceSettings, HEARTBEAT_TICKS, Lane, Revision, State, Values, frame, schema,
+};
+
+/// The most ticks of one input.
+const MOST_TICKS: u64 = 4096;
+
+/// The largest torque that limits can be set to, N·m.
+const MOST_NM: f32 = 6.5;
+
+/// Checks the laws.
+///
+/// # Panics
+/// Where one is broken.
+pub fn body(data: &[u8]) {
+    let mut bytes = Bytes::new(data);
+    let boot = Boot {
+        identity: Identity {
+            schema: schema::HASH,
+            reset: bytes.choice(&ResetCause::ALL),
+            ..Identity::default()
+        },
+        counter: bytes.choice(&[0, 7, 0x7fff_fff0, 0xffff_fff0]),
+        start: u16::from(bytes.byte()),
+        tick: bytes.choice(&[0, 1, (1 << 32) - 50, 1 << 40]),
+        sequence: bytes.choice(&[0, u16::MAX - 1]),
+    };
+    let mut bench = Bench::new(&boot);
+    while !bytes.is_empty() && bench.ticks < MOST_TICKS {
+        bench.step(&mut bytes);
+    }
+    bench.read(usize::MAX);
+}
+
+/// The readings of some ticks.
+struct Readings {
+    turn: i8,
+    has_current: bool,
+    /// Instead of what the winding does.
+    current_a: Option<f32>,
+    line: Option<bool>,
+    is_broken: bool,
+    is_late: bool,
+    is_idle: bool,
+}
+
+impl Readings {
+    /// Of a device that is in order.
+    fn good() -> Self {
+        Self {
+            turn: 0,
+            has_current: true,
+            current_a: None,
+            line: None,
+            is_broken: false,
+            is_late: false,
+            is_idle: true,
+        }
+    }
+
+    fn any(bytes: &mut Bytes<'_>) -> Self {
+        let how = bytes.byte();
+        Self {
+            turn: bytes.byte().cast_signed(),
+            has_current: how & 1 == 0,
+            current_a: (how & 2 != 0).then(|| bytes.f32()),
+            line: (how & 4 != 0).then_some(how & 8 != 0),
+            is_broken: how & 0x30 == 0x30,
+            is_late: how & 0x40 != 0,
+            is_idle: how & 0x80 == 0,
+        }
+    }
+}
+
+/// A drive, and what somebody who listens to its link knows.
+struct Bench {
+    drive: Drive,
+    winding: Winding,
+    counter: u32,
+    line_is_on: bool,
+    ticks: u64,
+    /// Hears what the drive hears.
+    ear: Decoder,
+    heard: Option<u64>,
+    lease_end: u64,
+    sent: Vec<(Revision, Values)>,
+    number: u16,
+    /// Ticks in a row with a driven bridge and the line read back off.
+    astray: u32,
+    /// Hears what the drive says.
+    host: Decoder,
+    received: u64,
+    first_tick: u64,
+    sequence: u16,
+}
+
+impl Bench {
+    fn new(boot: &Boot) -> Self {
+        Self {
+            drive: Drive::new(boot).expect("the defaults are allowed"),
+            winding: Winding::default(),
+            counter: boot.counter,
+            line_is_on: false,
+            ticks: 0,
+            ear: Decoder::new(),
+            heard: None,
+            lease_end: 0,
+            sent: Vec::new(),
+            number: 0,
+            astray: 0,
+            host: Decoder::new(),
+            received: 0,
+            first_tick: boot.tick,
+            sequence: boot.sequence,
+        }
+    }
+
+    fn step(&mut self, bytes: &mut Bytes<'_>) {
+        let now = self.drive.next_tick();
+        match bytes.byte() % 10 {
+            0 => {
+                let readings = Readings::any(bytes);
+                self.run(u64::from(bytes.byte()), &readings);
+            }
+            1 => {
+                let heartbeat = Heartbeat {
+                    seen_tick: link_words::near(bytes, now),
+                    lease_left: bytes.u16(),
+                    enable: !bytes.byte().is_multiple_of(8),
+                    start: u16::from(bytes.byte() / 64),
+                };
+                self.say(&ToDrive::Heartbeat(heartbeat));
+            }
+            // As it should be: for so many milliseconds, and with a shaft that
+            // turns.
+            2 => {
+                let readings = Readings {
+                    turn: bytes.byte().cast_signed() / 16,
+                    ..Readings::good()
+                };
+                for _ in 0..bytes.byte() % 32 {
+                    self.heartbeat();
+                    self.run(20, &readings);
+                    self.read(2);
+                }
+            }
+            3 => {
+                let revision = Revision(u32::from(bytes.byte()));
+                let values = link_words::values(bytes);
+                self.say(&ToDrive::Commit { revision, values });
+            }
+            4 => {
+                let order = bytes.choice(&[Order::Arm, Order::Zero, Order::ClearFault]);
+                let number = bytes.byte();
+                self.number = if number < 192 {
+                    self.number.wrapping_add(1)
+                } else {
+                    u16::from(number) << 8
+                };
+                self.say(&ToDrive::Command {
+                    seen_tick: link_words::near(bytes, now),
+                    number: self.number,
+                    order,
+                });
+            }
+            5 => {
+                let count = usize::from(bytes.byte());
+                let raw = bytes.take_some(count).to_vec();
+                self.hear(&raw);
+            }
+            6 => {
+                let question = Question {
+                    what: link_words::what(bytes),
+                    token: bytes.byte(),
+                };
+                let frame = frame::encode_bytes(Lane::Management, &question.bytes());
+                self.hear(&frame.expect("a short frame"));
+            }
+            7 => self.read(usize::from(bytes.byte() % 8)),
+            // All that arming needs.
+            8 => {
+                self.say(&ToDrive::Commit {
+                    revision: Revision(1),
+                    values: Values::default(),
+                });
+                self.heartbeat();
+                self.run(20, &Readings::good());
+                self.heartbeat();
+                self.number = self.number.wrapping_add(1);
+                self.say(&ToDrive::Command {
+                    seen_tick: self.drive.next_tick(),
+                    number: self.number,
+                    order: Order::Arm,
+                });
+            }
+            // Heartbeats of a lease that is not renewed.
+            _ => {
+                let seen_tick = self.drive.next_tick();
+                let end = seen_tick.saturating_add(u64::from(bytes.byte()) * 4);
+                for _ in 0..20 {
+                    let now = self.drive.next_tick();
+                    let left = end.saturating_sub(now);
+                    self.say(&ToDrive::Heartbeat(Heartbeat {
+                        seen_tick: now,
+                        lease_left: u16::try_from(left).unwrap_or(u16::MAX),
+                        enable: true,
+                        start: 0,
+                    }));
+                    self.run(20, &Readings::good());
+                }
+            }
+        }
+    }
+
+    fn heartbeat(&mut self) {
+        self.say(&ToDrive::Heartbeat(Heartbeat {
+            seen_tick: self.drive.next_tick(),
+            lease_left: 5_000,
+            enable: true,
+            start: 0,
+        }));
+    }
+
+    fn say(&mut self, message: &ToDrive) {
+        let frame = frame::encode(Lane::ToDrive, message).expect("every message fits");
+        self.hear(&frame);
+    }
+
+    /// Bytes for the drive, and for whoever listens.
+    fn hear(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            let message = match self.ear.push(*byte) {
+                Some(Ok(body)) if body.lane() == Some(Lane::ToDrive) => body.message(),
+                _ => None,
+            };
+            let (before, now) = (self.drive.state(), self.drive.next_tick());
+            self.drive.link_received(*byte);
+            let after = self.drive.state();
+            let order = match &message {
+                Some(ToDrive::Command { order, .. }) => Some(*order),
+                _ => None,
+            };
+            assert!(
+                before != State::Faulted || after == before || order == Some(Order::ClearFault),
+                "{message:?} clears a fault"
+            );
+            assert!(
+                before == after || after != State::Armed,
+                "armed at once by {message:?}"
+            );
+            assert!(
+                before == after || after != State::Arming || order == Some(Order::Arm),
+                "{message:?} arms"
+            );
+            match message {
+                Some(ToDrive::Heartbeat(heartbeat)) => self.note(now, &heartbeat),
+                Some(ToDrive::Commit { revision, values }) => self.sent.push((revision, values)),
+                _ => {}
+            }
+        }
+    }
+
+    fn note(&mut self, now: u64, heartbeat: &Heartbeat) {
+        let seen = heartbeat.seen_tick;
+        if seen <= now && now - seen <= STALE_TICKS {
+            self.heard = Some(now);
+            self.lease_end = seen.saturating_add(u64::from(heartbeat.lease_left));
+            if !heartbeat.enable {
+                let state = self.drive.state();
+                assert!(matches!(state, State::Disarmed | State::Faulted));
+            }
+        }
+    }
+
+    fn run(&mut self, ticks: u64, readings: &Readings) {
+        for _ in 0..ticks {
+            self.tick(readings);
+        }
+    }
+
+    fn tick(&mut self, readings: &Readings) {
+        let before = self.drive.state();
+        let tick = self.drive.next_tick();
+        self.ticks += 1;
+        self.counter = self.counter.wrapping_add_signed(readings.turn.into());
+        self.drive.sample_encoder(self.counter);
+        if !readings.is_late {
+            self.drive.render_torque();
+        }
+        let current_a = readings.current_a.unwrap_or(self.winding.current_a());
+        let inputs = Inputs {
+            current_a: readings.has_current.then_some(current_a),
+            enable_is_on: readings.line.unwrap_or(self.line_is_on),
+            is_broken: readings.is_broken,
+        };
+        let outputs = self.drive.command_motor(&inputs);
+        if readings.is_idle {
+            self.drive.prepare();
+        }
+        self.line_is_on = outputs.enable;
+        let powered = outputs.enable && inputs.enable_is_on;
+        self.winding.tick(
+            if powered {
+                outputs.bridge
+            } else {
+                Bridge::Float
+            },
+            readings.turn,
+        );
+        self.hold(tick, before, &inputs, &outputs);
+        self.parameters();
+    }
+
+    fn hold(&mut self, tick: u64, before: State, inputs: &Inputs, outputs: &Outputs) {
+        let state = self.drive.state();
+        assert!(before != State::Faulted || state == State::Faulted);
+        assert!(before != State::Disarmed || !matches!(state, State::Arming | State::Armed));
+        assert_eq!(self.drive.fault().is_some(), state == State::Faulted);
+        let live = matches!(state, State::Arming | State::Armed);
+        assert!(!live || self.drive.revision() != Revision::NONE);
+        assert!(!outputs.enable || live, "the line is on in {state:?}");
+        let Bridge::Driven(volts) = outputs.bridge else {
+            self.astray = 0;
+            return;
+        };
+        assert!(volts.is_finite() && outputs.enable && live);
+        assert!(!inputs.is_broken && inputs.current_a.is_some());
+        let heard = self.heard.expect("a heartbeat");
+        assert!(tick - heard < HEARTBEAT_TICKS, "{} ticks", tick - heard);
+        assert!(tick < self.lease_end, "the lease has ended");
+        self.astray = if inputs.enable_is_on {
+            0
+        } else {
+            self.astray + 1
+        };
+        assert!(self.astray <= 10, "the line is off");
+    }
+
+    fn parameters(&self) {
+        let Some(values) = self.drive.values() else {
+            return;
+        };
+        let revision = self.drive.revision();
+        if revision == Revision::NONE && *values == Values::default() {
+            return;
+        }
+        assert!(DeviceSettings::of(values).is_ok());
+        assert!(
+            self.sent.contains(&(revision, *values)),
+            "{revision} was never sent like this"
+        );
+    }
+
+    /// Takes so many frames from the drive.
+    fn read(&mut self, frames: usize) {
+        for _ in 0..frames {
+            let Some(frame) = self.drive.link_to_send() else {
+                break;
+            };
+            self.received(&frame);
+        }
+        let counters = self.drive.counters();
+        let produced = u64::from(counters.get(DriveCounter::Produced));
+        let dropped = u64::from(counters.get(DriveCounter::Dropped));
+        let samples = BLOCK_SAMPLES as u64;
+        assert_eq!(produced, self.ticks / samples * samples);
+        let waiting = produced - dropped - self.received;
+        assert!(waiting <= 4 * samples, "{waiting} samples wait");
+    }
+
+    fn received(&mut self, frame: &[u8]) {
+        let mut found = 0;
+        for byte in frame {
+            let Some(body) = self.host.push(*byte) else {
+                continue;
+            };
+            let body = body.expect("a frame in order");
+            found += 1;
+            match body.lane() {
+                Some(Lane::FromDrive) => {
+                    let FromDrive::Status(status) = body.message().expect("a status");
+                    assert_eq!(status.state, self.drive.state());
+                    assert_eq!(status.revision, self.drive.revision());
+                    assert_eq!(status.tick, self.drive.next_tick());
+                }
+                Some(Lane::ManagementAnswer) => {
+                    assert!(Answer::of(body.payload).is_some());
+                }
+                Some(Lane::Telemetry) => {
+                    let block = body.message().expect("a block");
+                    self.received += BLOCK_SAMPLES as u64;
+                    let end = self.received + u64::from(block_dropped(&block));
+                    assert_eq!(block.end_tick() - self.first_tick, end, "the books");
+                    let blocks = (block.first_tick - self.first_tick) / BLOCK_SAMPLES as u64;
+                    let [low, high, ..] = blocks.to_le_bytes();
+                    let expected = self.sequence.wrapping_add(u16::from_le_bytes([low, high]));
+                    assert_eq!(block.sequence, expected);
+                }
+                other => panic!("{other:?} from the drive"),
+            }
+        }
+        assert_eq!(found, 1, "frames in a frame");
+    }
+}
+
+/// What a block says was dropped; its torque is held to its law on the way.
+fn block_dropped(block: &crepitus_protocol::telemetry::Block) -> u32 {
+    for sample in &block.samples {
+        let is_energised = sample.flags.has(SampleFlags::ENERGISED);
+        assert!(sample.torque_nm.abs() <= MOST_NM, "{sample:?}");
+        assert!(is_energised || sample.torque_nm == 0.0, "{sample:?}");
+    }
+    block.dropped
+}

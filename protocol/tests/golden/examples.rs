@@ -1,0 +1,391 @@
+//! An example of every message. Its numbers are chosen so that no two fields
+//! could be exchanged unnoticed, and none depends on a default.
+
+use crate::hex::hex;
+use crate::management;
+use crepitus_protocol::counters::{COMMS_COUNT, DRIVE_COUNT};
+use crepitus_protocol::host::{Answer, Ask, Counters, Refusal, Reply, Request, Status};
+use crepitus_protocol::link::{
+    DriveRefusal, DriveStatus, FromDrive, Heartbeat, Order, Outcome, ToDrive,
+};
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
+use crepitus_protocol::telemetry::{BlockFlags, NO_CURRENT, Sample, SampleFlags};
+use crepitus_protocol::{
+    Decoder, Frame, Lane, LimitReason, Revision, Session, State, ValueError, Values, frame,
+};
+use postcard_schema::Schema;
+use postcard_schema::schema::NamedType;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fmt::Debug;
+
+/// A message and its bytes.
+pub(crate) struct Example {
+    pub(crate) name: String,
+    pub(crate) means: String,
+    pub(crate) lane: Lane,
+    /// Of what is postcard.
+    pub(crate) schema: Option<&'static NamedType>,
+    /// Lane, tag, message.
+    pub(crate) body: Vec<u8>,
+    pub(crate) frame: Vec<u8>,
+}
+
+impl Example {
+    /// The message alone.
+    pub(crate) fn message(&self) -> &[u8] {
+        &self.body[2..]
+    }
+}
+
+/// The body of the one frame that these bytes are.
+pub(crate) fn received(frame: &[u8]) -> Vec<u8> {
+    let mut decoder = Decoder::new();
+    let (last, rest) = frame.split_last().expect("a frame");
+    for byte in rest {
+        assert!(decoder.push(*byte).is_none(), "a zero inside a frame");
+    }
+    let body = decoder
+        .push(*last)
+        .expect("the end")
+        .unwrap_or_else(|e| panic!("{e:?}: {}", hex(frame)));
+    let mut bytes = vec![body.lane, body.tag];
+    bytes.extend(body.payload);
+    bytes
+}
+
+/// An example; what was encoded comes back.
+fn example<T>(lane: Lane, name: &str, message: &T, means: Option<&str>) -> Example
+where
+    T: Schema + Serialize + DeserializeOwned + Debug + PartialEq,
+{
+    let frame: Frame = frame::encode(lane, message).expect("every message fits");
+    let body = received(&frame);
+    let (back, rest) = postcard::take_from_bytes::<T>(&body[2..]).expect("a message");
+    assert!(rest.is_empty(), "{name}: bytes are left");
+    assert_eq!(&back, message, "{name} does not come back");
+    Example {
+        name: name.to_owned(),
+        means: means.map_or_else(|| format!("{message:?}"), str::to_owned),
+        lane,
+        schema: Some(T::SCHEMA),
+        body,
+        frame: frame.to_vec(),
+    }
+}
+
+/// Every example.
+pub(crate) fn all() -> Vec<Example> {
+    let mut all = management::examples();
+    all.extend(requests());
+    all.extend(replies());
+    all.extend(blocks());
+    all.extend(to_drive());
+    all.extend(from_drive());
+    all
+}
+
+const HOST: Session = Session(0x1234_5678);
+const OTHER: Session = Session(0xcafe);
+
+/// Half its id for each parameter: no device would take them.
+fn values() -> Values {
+    let mut values = Values::default();
+    for (id, value) in (0_u8..).zip(&mut values.0) {
+        *value = f64::from(id) / 2.0;
+    }
+    values
+}
+
+const VALUES: &str = "the value of each parameter is half its id";
+
+/// Names of questions. A new one does not compile until it is here, and fails
+/// until it has an example.
+fn ask_name(ask: &Ask) -> &'static str {
+    match ask {
+        Ask::Renew => "renew",
+        Ask::Status => "status",
+        Ask::Counters => "counters",
+        Ask::Parameters => "parameters",
+        Ask::Commit { .. } => "commit",
+        Ask::Save => "save",
+        Ask::Zero => "zero",
+        Ask::Arm => "arm",
+        Ask::Disarm => "disarm",
+        Ask::ClearFault => "clear-fault",
+        Ask::Subscribe => "subscribe",
+        Ask::Unsubscribe => "unsubscribe",
+    }
+}
+
+fn requests() -> Vec<Example> {
+    let commit = Ask::Commit {
+        base: Revision(300),
+        values: values(),
+    };
+    let asks = [
+        Ask::Renew,
+        Ask::Status,
+        Ask::Counters,
+        Ask::Parameters,
+        commit,
+        Ask::Save,
+        Ask::Zero,
+        Ask::Arm,
+        Ask::Disarm,
+        Ask::ClearFault,
+        Ask::Subscribe,
+        Ask::Unsubscribe,
+    ];
+    (0x1fe..)
+        .zip(asks)
+        .map(|(number, ask)| {
+            let request = Request {
+                session: HOST,
+                number,
+                ask,
+            };
+            let means = (ask == commit)
+                .then(|| format!("Request {{ session: Session(305419896), number: {number}, ask: Commit {{ base: Revision(300), values }} }}; {VALUES}"));
+            let name = format!("request.{}", ask_name(&ask));
+            example(Lane::Request, &name, &request, means.as_deref())
+        })
+        .collect()
+}
+
+/// Names of answers; see [`ask_name`].
+fn answer_name(answer: &Answer) -> &'static str {
+    match answer {
+        Answer::Done => "done",
+        Answer::Status(status) if status.saved.is_some() => "status-full",
+        Answer::Status(_) => "status",
+        Answer::Counters(_) => "counters",
+        Answer::Parameters { .. } => "parameters",
+        Answer::Committed { .. } => "committed",
+        Answer::Subscribed { .. } => "subscribed",
+    }
+}
+
+fn replies() -> Vec<Example> {
+    let reply = |answer| Reply {
+        session: HOST,
+        number: 0x1ff,
+        answer,
+    };
+    let full = Status {
+        state: State::Faulted,
+        drive_fault: 4,
+        comms_fault: 32,
+        drive_present: true,
+        tick: 20_000_000_000,
+        uptime_ms: 1_000_000,
+        revision: Revision(301),
+        in_force: Revision(300),
+        saved: Some(Revision(299)),
+        lease: Some(OTHER),
+        zeroed: true,
+        polarity_proven: true,
+    };
+    let answers = [
+        Answer::Done,
+        Answer::Status(Status::default()),
+        Answer::Status(full),
+        Answer::Counters(Counters {
+            drive: counts::<DRIVE_COUNT>(1_000_000),
+            comms: counts::<COMMS_COUNT>(1),
+        }),
+        Answer::Parameters {
+            revision: Revision(300),
+            values: values(),
+        },
+        Answer::Committed {
+            revision: Revision(301),
+        },
+        Answer::Subscribed {
+            first_tick: 20_000_000_000,
+        },
+    ];
+    let mut examples: Vec<_> = answers
+        .iter()
+        .map(|answer| {
+            let means = matches!(answer, Answer::Parameters { .. })
+                .then(|| format!("Reply {{ session: Session(305419896), number: 511, answer: Ok(Parameters {{ revision: Revision(300), values }}) }}; {VALUES}"));
+            let name = format!("reply.{}", answer_name(answer));
+            example(Lane::Reply, &name, &reply(Ok(*answer)), means.as_deref())
+        })
+        .collect();
+    for (name, refusal) in refusals() {
+        let name = format!("refusal.{name}");
+        examples.push(example(Lane::Reply, &name, &reply(Err(refusal)), None));
+    }
+    examples
+}
+
+fn refusals() -> Vec<(String, Refusal)> {
+    let mut all: Vec<(String, Refusal)> = [
+        (
+            "stale",
+            Refusal::Stale {
+                revision: Revision(302),
+            },
+        ),
+        ("leased", Refusal::Leased { by: OTHER }),
+        ("drive-silent", Refusal::DriveSilent),
+        ("unconfirmed", Refusal::Unconfirmed),
+        ("faulted", Refusal::Faulted { code: 9 }),
+        ("armed", Refusal::Armed),
+        ("busy", Refusal::Busy),
+        ("storage", Refusal::Storage),
+        ("aborted", Refusal::Aborted),
+    ]
+    .map(|(name, refusal)| (name.to_owned(), refusal))
+    .into();
+    for (name, error) in [
+        ("out-of-range", ValueError::OutOfRange { id: 28 }),
+        ("kinetic-above-static", ValueError::KineticAboveStatic),
+        ("static-above-limit", ValueError::StaticAboveLimit),
+        ("needs-disarmed", ValueError::NeedsDisarmed { id: 6 }),
+    ] {
+        all.push((format!("values.{name}"), Refusal::Values(error)));
+    }
+    for (name, refusal) in [
+        ("no-parameters", DriveRefusal::NoParameters),
+        ("no-lease", DriveRefusal::NoLease),
+        ("faulted", DriveRefusal::Faulted { code: 12 }),
+        ("armed", DriveRefusal::Armed),
+        ("no-encoder", DriveRefusal::NoEncoder),
+        ("aborted", DriveRefusal::Aborted),
+    ] {
+        all.push((format!("drive.{name}"), Refusal::Drive(refusal)));
+    }
+    all
+}
+
+/// Another number at each place.
+fn counts<const N: usize>(factor: u32) -> [u32; N] {
+    std::array::from_fn(|i| factor * u32::try_from(i).expect("a small number"))
+}
+
+fn blocks() -> Vec<Example> {
+    let sample = |n: i16| Sample {
+        count: -2 + i32::from(n),
+        model_torque_nm: 0.25 * f32::from(n),
+        torque_nm: -0.5 * f32::from(n),
+        current_ma: if n == 0 { NO_CURRENT } else { -100 * n },
+        flags: SampleFlags::default()
+            .with_phase(if n % 2 == 0 { 0 } else { -1 })
+            .with(SampleFlags::ENERGISED, true)
+            .with_limit(LimitReason::ALL[usize::try_from(n).expect("a place") % 8]),
+    };
+    let mut samples = [Sample::default(); BLOCK_SAMPLES];
+    for (n, place) in (0..).zip(&mut samples) {
+        *place = sample(n);
+    }
+    let block = Block {
+        sequence: 0xfffe,
+        first_tick: 20_000_000_000,
+        revision: Revision(300),
+        dropped: 140,
+        flags: BlockFlags::new(State::Armed, true, 3),
+        samples,
+    };
+    let means = "Block { sequence: 65534, first_tick: 20000000000, revision: Revision(300), dropped: 140, \
+                 flags: BlockFlags(30): armed, zeroed, start 3, samples }; sample n has count n - 2, model torque n/4 N·m, \
+                 torque -n/2 N·m, current -100 n mA but none in the first, limit reason n modulo 8, energised, \
+                 and slips towards falling angle where n is odd";
+    vec![
+        example(Lane::Telemetry, "block", &block, Some(means)),
+        example(
+            Lane::Telemetry,
+            "block.empty",
+            &Block::default(),
+            Some("a Block of zeros"),
+        ),
+    ]
+}
+
+/// Names of what comms tells the drive; see [`ask_name`].
+fn to_drive_name(message: &ToDrive) -> &'static str {
+    match message {
+        ToDrive::Heartbeat(_) => "heartbeat",
+        ToDrive::Commit { .. } => "commit",
+        ToDrive::Command { order, .. } => match order {
+            Order::Arm => "command.arm",
+            Order::Zero => "command.zero",
+            Order::ClearFault => "command.clear-fault",
+        },
+    }
+}
+
+fn to_drive() -> Vec<Example> {
+    let command = |order| ToDrive::Command {
+        seen_tick: 20_000_000_000,
+        number: 0xff00,
+        order,
+    };
+    let messages = [
+        ToDrive::Heartbeat(Heartbeat {
+            seen_tick: 20_000_000_000,
+            lease_left: 4_980,
+            enable: true,
+            start: 7,
+        }),
+        ToDrive::Commit {
+            revision: Revision(301),
+            values: values(),
+        },
+        command(Order::Arm),
+        command(Order::Zero),
+        command(Order::ClearFault),
+    ];
+    messages
+        .iter()
+        .map(|message| {
+            let means = matches!(message, ToDrive::Commit { .. })
+                .then(|| format!("Commit {{ revision: Revision(301), values }}; {VALUES}"));
+            let name = format!("to-drive.{}", to_drive_name(message));
+            example(Lane::ToDrive, &name, message, means.as_deref())
+        })
+        .collect()
+}
+
+fn from_drive() -> Vec<Example> {
+    let full = DriveStatus {
+        tick: 20_000_000_040,
+        start: 7,
+        heard: Some(9),
+        state: State::Armed,
+        fault: 0,
+        revision: Revision(300),
+        refused: Some((Revision(301), ValueError::NeedsDisarmed { id: 6 })),
+        last: Some(Outcome {
+            number: 0xff00,
+            result: Ok(()),
+        }),
+        zeroed: true,
+        polarity_proven: true,
+        counters: counts(1_000_000),
+    };
+    let refused = DriveStatus {
+        state: State::Arming,
+        last: Some(Outcome {
+            number: 1,
+            result: Err(DriveRefusal::NoEncoder),
+        }),
+        ..DriveStatus::default()
+    };
+    [
+        ("at-start", DriveStatus::default()),
+        ("full", full),
+        ("command-refused", refused),
+    ]
+    .into_iter()
+    .map(|(name, status)| {
+        let message = FromDrive::Status(status);
+        // A second kind of message does not compile until it is an example.
+        let FromDrive::Status(_) = message;
+        let name = format!("from-drive.status.{name}");
+        example(Lane::FromDrive, &name, &message, None)
+    })
+    .collect()
+}
