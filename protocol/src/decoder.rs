@@ -110,7 +110,9 @@ impl Decoder {
             return None;
         }
         let count = &mut self.discarded;
-        let Some(frame) = self.buffer.get_mut(..length) else {
+        // The longest frame has its delimiter, too.
+        let fits = length < FRAME_BYTES;
+        let Some(frame) = self.buffer.get_mut(..length).filter(|_| fits) else {
             count.overlong = count.overlong.wrapping_add(1);
             return Some(Err(FrameError::Overlong));
         };

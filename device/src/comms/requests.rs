@@ -9,7 +9,7 @@ use crepitus_protocol::frame::{self, Frame};
 use crepitus_protocol::host::{Answer, Ask, Counters, Refusal, Reply, Request, Status};
 use crepitus_protocol::link::Order;
 use crepitus_protocol::management::Question;
-use crepitus_protocol::{Fault, Lane, Revision, Session, Values};
+use crepitus_protocol::{Fault, Lane, Revision, Session, State, Values};
 
 /// A frame of a host.
 #[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
@@ -173,7 +173,8 @@ impl Comms {
         if self.supervision.is_wanted() {
             return Err(Refusal::Armed);
         }
-        if self.reboot_ms.is_some() {
+        // It starts anew; or the drive has not let go yet, a moment ago disarmed.
+        if self.reboot_ms.is_some() || matches!(self.drive.state(), State::Arming | State::Armed) {
             return Err(Refusal::Busy);
         }
         let drive_fault = self.drive.status().map_or(0, |status| status.fault);

@@ -66,6 +66,10 @@ pub fn body(data: &[u8]) {
 }
 
 /// Comms, and what somebody who listens to both its wires knows.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a line or a fact by itself"
+)]
 struct Bench {
     comms: Comms,
     now_ms: u64,
@@ -164,7 +168,7 @@ impl Bench {
             6 => {
                 let frame = self.drive.anything(bytes);
                 self.numbered += u32::from(self.drive.has_refused());
-                self.from_drive(&frame);
+                self.drive_says(&frame);
             }
             7 => match bytes.byte() {
                 0..=15 => {
@@ -260,7 +264,7 @@ impl Bench {
             .is_some_and(|lease_ms| self.now_ms - lease_ms < LEASE_MS)
     }
 
-    fn from_drive(&mut self, frame: &[u8]) {
+    fn drive_says(&mut self, frame: &[u8]) {
         for byte in frame {
             self.comms.link_received(*byte);
         }
@@ -270,7 +274,7 @@ impl Bench {
 
     fn good_millisecond(&mut self) {
         for frame in self.drive.millisecond() {
-            self.from_drive(&frame);
+            self.drive_says(&frame);
         }
         self.tick(None);
         while self.link_frame() {}

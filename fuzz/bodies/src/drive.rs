@@ -57,6 +57,10 @@ pub fn body(data: &[u8]) {
 }
 
 /// The readings of some ticks.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a line or a fact by itself"
+)]
 struct Readings {
     turn: i8,
     has_current: bool,

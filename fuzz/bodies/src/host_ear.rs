@@ -76,16 +76,16 @@ impl HostEar {
         assert!(*expected > 0, "a reply too many: {reply:?}");
         *expected -= 1;
         match reply.answer {
-            Ok(Answer::Subscribed { first_tick }) => {
-                if self.subscription == Some((reply.session, reply.number)) {
-                    self.subscription = None;
-                    self.books = Some(Books {
-                        first_tick,
-                        received: 0,
-                        start: None,
-                        next_tick: 0,
-                    });
-                }
+            Ok(Answer::Subscribed { first_tick })
+                if self.subscription == Some((reply.session, reply.number)) =>
+            {
+                self.subscription = None;
+                self.books = Some(Books {
+                    first_tick,
+                    received: 0,
+                    start: None,
+                    next_tick: 0,
+                });
             }
             Ok(Answer::Parameters { values: told, .. }) => {
                 assert!(values.contains(&told), "nobody's values");

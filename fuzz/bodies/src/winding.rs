@@ -16,7 +16,7 @@ pub(crate) struct Winding {
 }
 
 impl Winding {
-    pub(crate) fn current_a(&self) -> f32 {
+    pub(crate) fn current_a(self) -> f32 {
         self.current_a
     }
 

@@ -22,6 +22,7 @@ use crepitus_protocol::Decoder;
 use crepitus_protocol::host::{Reply, Request};
 use crepitus_protocol::link::{FromDrive, ToDrive};
 use crepitus_protocol::telemetry::Block;
+use examples::Example;
 use postcard_schema::Schema;
 use postcard_schema::schema::NamedType;
 use std::collections::BTreeSet;
@@ -74,5 +75,5 @@ fn a_stream_of_every_frame_is_received() {
         }
     }
     assert_eq!(decoder.discarded().total(), 1);
-    assert!(received.iter().eq(examples.iter().map(|e| e.message())));
+    assert!(received.iter().eq(examples.iter().map(Example::message)));
 }

@@ -102,13 +102,12 @@ fn list(all: impl Iterator<Item = String>) -> String {
 /// Puts what has a table of its own into the queue.
 fn enqueue(ty: &'static NamedType, queue: &mut Vec<&'static NamedType>) {
     match ty.ty {
-        Type::Struct(_) => queue.push(ty),
         Type::Enum(variants) if ty.name.starts_with("Result") => {
             for variant in *variants {
                 let _ = followed_by(variant.ty, queue);
             }
         }
-        Type::Enum(_) => queue.push(ty),
+        Type::Struct(_) | Type::Enum(_) => queue.push(ty),
         Type::Option(inner) | Type::NewtypeStruct(inner) => enqueue(inner, queue),
         Type::Tuple(all) => {
             for inner in *all {

@@ -96,8 +96,7 @@ fn differences(file: &File, examples: &[Example]) -> (Vec<String>, bool) {
                     hex(example.message())
                 ));
             }
-            Some([body, frame]) if body != &example.body => {
-                let _ = frame;
+            Some([body, _]) if body != &example.body => {
                 found.push(format!("{name}: lane and tag"));
             }
             Some([_, frame]) if frame != &example.frame => {
