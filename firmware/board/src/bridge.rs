@@ -1,0 +1,154 @@
+//! The bridge: four switches on TIM1, with dead time and a break input.
+//!
+//! Unipolar and centre-aligned: both halves switch at 20 kHz, one with the
+//! share ½ + v/2 of the period and the other with ½ − v/2, so the motor sees
+//! 40 kHz and a ripple of 0.55 A. In the middle of the tick both lower
+//! switches are closed: nothing switches near the converter.
+//!
+//! | pin | timer | switch |
+//! |---|---|---|
+//! | PA8, PB13 | CH1, CH1N | upper and lower of half A |
+//! | PA9, PB14 | CH2, CH2N | upper and lower of half B |
+//! | PB12 | BKIN | low: overcurrent, or the driver's fault; a broken wire is low, too |
+//!
+//! Off is all four low: the motor coasts. The break does that without any
+//! program, and stays until the program has let go as well. Dead time, break
+//! and what off means are locked until the next reset.
+
+use crate::clocks::APB2_TIMER_HZ;
+use stm32f4xx_hal::gpio::{PA8, PA9, PB12, PB13, PB14, Pull};
+use stm32f4xx_hal::pac::TIM1;
+use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
+
+/// The motor's supply, V.
+pub const SUPPLY_V: f32 = 24.0;
+
+/// Counts from bottom to top.
+const TOP: u16 = 4_200;
+const _: () = assert!(2 * TOP as u32 * 20_000 == APB2_TIMER_HZ);
+
+/// Dead time: 50 clocks of 168 MHz, 0.3 µs.
+const DEAD_CLOCKS: u8 = 50;
+
+/// The bridge.
+pub struct Bridge {
+    timer: TIM1,
+    is_driven: bool,
+}
+
+impl Bridge {
+    /// All switches open; the timer waits for its start.
+    pub fn new(
+        timer: TIM1,
+        half_a: (PA8, PB13),
+        half_b: (PA9, PB14),
+        breaks: PB12,
+        rcc: &mut Rcc,
+    ) -> Self {
+        TIM1::enable(rcc);
+        TIM1::reset(rcc);
+        timer
+            .cr1()
+            .write(|w| w.cms().center_aligned1().arpe().set_bit());
+        timer.arr().write(|w| w.arr().set(TOP));
+        timer.ccmr1_output().write(|w| {
+            w.oc1m().pwm_mode1().oc1pe().set_bit();
+            w.oc2m().pwm_mode1().oc2pe().set_bit()
+        });
+        timer.ccer().write(|w| {
+            w.cc1e().set_bit().cc1ne().set_bit();
+            w.cc2e().set_bit().cc2ne().set_bit()
+        });
+        // Idle levels are low after a reset. The driver of the HAL would let
+        // the outputs come back by themselves after a break; here only the
+        // program switches them on.
+        timer.bdtr().write(|w| {
+            w.dtg().set(DEAD_CLOCKS);
+            w.ossi().idle_level().ossr().idle_level();
+            w.bkp().active_low().bke().enabled();
+            w.aoe().manual().moe().disabled_idle();
+            w.lock().level2()
+        });
+        let mut bridge = Self {
+            timer,
+            is_driven: false,
+        };
+        bridge.set_shares(0.0);
+        bridge.timer.egr().write(|w| w.ug().set_bit());
+        breaks
+            .into_alternate::<1>()
+            .set_internal_resistor(Pull::Down);
+        half_a
+            .0
+            .into_alternate::<1>()
+            .set_internal_resistor(Pull::Down);
+        half_a
+            .1
+            .into_alternate::<1>()
+            .set_internal_resistor(Pull::Down);
+        half_b
+            .0
+            .into_alternate::<1>()
+            .set_internal_resistor(Pull::Down);
+        half_b
+            .1
+            .into_alternate::<1>()
+            .set_internal_resistor(Pull::Down);
+        bridge.float();
+        bridge
+    }
+
+    /// The timer, to be started.
+    pub(crate) fn timer(&self) -> &TIM1 {
+        &self.timer
+    }
+
+    /// A voltage, V, from the next period on. What is no number lets go.
+    pub fn drive(&mut self, volts: f32) {
+        if !volts.is_finite() {
+            self.float();
+            return;
+        }
+        self.set_shares(volts);
+        if !self.is_driven {
+            self.is_driven = true;
+            // Has no effect while the break is there.
+            self.timer.bdtr().modify(|_, w| w.moe().set_bit());
+        }
+    }
+
+    /// All switches open, at once; a break that is over is forgotten.
+    pub fn float(&mut self) {
+        self.timer.bdtr().modify(|_, w| w.moe().clear_bit());
+        self.is_driven = false;
+        self.set_shares(0.0);
+        self.timer.sr().write(|w| w.bif().clear());
+    }
+
+    /// The break has fired since the bridge floated last.
+    pub fn is_broken(&self) -> bool {
+        self.timer.sr().read().bif().bit()
+    }
+
+    fn set_shares(&mut self, volts: f32) {
+        let half = f32::from(TOP / 2);
+        #[expect(clippy::manual_clamp, reason = "`clamp` can panic")]
+        let swing = (volts / SUPPLY_V).max(-1.0).min(1.0) * half;
+        self.timer
+            .ccr1()
+            .write(|w| w.ccr().set(counts(half + swing)));
+        self.timer
+            .ccr2()
+            .write(|w| w.ccr().set(counts(half - swing)));
+    }
+}
+
+fn counts(share: f32) -> u16 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a cast from float saturates; within 0 and TOP anyway"
+    )]
+    let counts = share as u16;
+    counts
+}

@@ -1,0 +1,58 @@
+//! The board of comms: which part is on which pin.
+
+use crate::clocks;
+use crate::enable_line::EnableLine;
+use crate::flash::ParameterSectors;
+use crate::link::Link;
+use crate::parameter_log::ParameterLog;
+use crate::start::{Start, start};
+use crate::ticks::Quarters;
+use crate::usb::{self, PACKET_WORDS, UsbBusType};
+use crate::who::identity;
+use crepitus_protocol::management::{Identity, Role};
+use stm32f4xx_hal::pac::{IWDG, Peripherals};
+use stm32f4xx_hal::prelude::*;
+use usb_device::bus::UsbBusAllocator;
+
+/// Its parts.
+pub struct CommsBoard {
+    /// Why it has started.
+    pub start: Start,
+    /// Who it is.
+    pub identity: Identity,
+    /// PB0, read back on PB1.
+    pub line: EnableLine,
+    /// PC6, PC7.
+    pub link: Link,
+    /// PA11, PA12.
+    pub bus: UsbBusAllocator<UsbBusType>,
+    /// Sectors 2 and 3 of flash.
+    pub log: ParameterLog<ParameterSectors>,
+    /// Starts `tick`.
+    pub quarters: Quarters,
+    /// To be started last.
+    pub watchdog: IWDG,
+}
+
+impl CommsBoard {
+    /// Outputs off. May erase a sector of flash, which takes up to a second.
+    pub fn new(chip: Peripherals, packets: &'static mut [u32; PACKET_WORDS]) -> Self {
+        let mut rcc = clocks::start(chip.RCC);
+        let start = start(&mut rcc, &chip.RNG);
+        let a = chip.GPIOA.split(&mut rcc);
+        let b = chip.GPIOB.split(&mut rcc);
+        let c = chip.GPIOC.split(&mut rcc);
+        let line = EnableLine::new(b.pb0, b.pb1);
+        let blocks = (chip.OTG_FS_GLOBAL, chip.OTG_FS_DEVICE, chip.OTG_FS_PWRCLK);
+        Self {
+            start,
+            identity: identity(Role::Comms, &start),
+            line,
+            log: ParameterLog::open(ParameterSectors::new(chip.FLASH)),
+            link: Link::new(&chip.USART6, chip.DMA2, c.pc6, c.pc7, &mut rcc),
+            bus: usb::bus(blocks, a.pa11, a.pa12, packets, &rcc),
+            quarters: Quarters::start(chip.TIM2, &mut rcc),
+            watchdog: chip.IWDG,
+        }
+    }
+}

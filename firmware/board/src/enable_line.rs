@@ -1,0 +1,38 @@
+//! An enable line: driven, and read back at its far end.
+//!
+//! The resistor that pulls it down on the power board keeps it off while a
+//! controller is in reset, off, or without a program.
+
+use stm32f4xx_hal::gpio::{Input, Output, PB0, PB1};
+
+/// Of GPIOB, on both boards: what drives the line.
+pub(crate) const PIN: u8 = 0;
+
+/// The line.
+#[derive(Debug)]
+pub struct EnableLine {
+    drives: PB0<Output>,
+    reads: PB1<Input>,
+}
+
+impl EnableLine {
+    /// Off.
+    pub fn new(drives: PB0, reads: PB1) -> Self {
+        let mut drives = drives.into_push_pull_output();
+        drives.set_low();
+        Self {
+            drives,
+            reads: reads.into_pull_down_input(),
+        }
+    }
+
+    /// Drives it.
+    pub fn set(&mut self, on: bool) {
+        self.drives.set_state(on.into());
+    }
+
+    /// As it is read back.
+    pub fn is_on(&self) -> bool {
+        self.reads.is_high()
+    }
+}

@@ -1,0 +1,35 @@
+//! The encoder: TIM5 counts every edge of both channels, in 32 bits.
+//!
+//! PA0 is channel A, PA1 channel B. A level counts once it has stood for eight
+//! samples of 21 MHz, 0.38 µs; at 420 deg/s of the joint edges are 4.9 µs
+//! apart.
+
+use stm32f4xx_hal::gpio::{PA0, PA1, Pull};
+use stm32f4xx_hal::pac::TIM5;
+use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
+
+/// The encoder.
+pub struct Encoder(TIM5);
+
+impl Encoder {
+    /// Counts from zero on.
+    pub fn new(timer: TIM5, a: PA0, b: PA1, rcc: &mut Rcc) -> Self {
+        TIM5::enable(rcc);
+        TIM5::reset(rcc);
+        a.into_alternate::<2>().set_internal_resistor(Pull::Up);
+        b.into_alternate::<2>().set_internal_resistor(Pull::Up);
+        timer.ccmr1_input().write(|w| {
+            w.cc1s().ti1().ic1f().fdts_div4_n8();
+            w.cc2s().ti2().ic2f().fdts_div4_n8()
+        });
+        timer.smcr().write(|w| w.sms().encoder_mode_3());
+        timer.arr().write(|w| w.arr().set(u32::MAX));
+        timer.cr1().write(|w| w.cen().set_bit());
+        Self(timer)
+    }
+
+    /// What it has counted; wraps.
+    pub fn count(&self) -> u32 {
+        self.0.cnt().read().cnt().bits()
+    }
+}

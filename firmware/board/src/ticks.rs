@@ -1,0 +1,103 @@
+//! The timers that start tasks.
+//!
+//! ```text
+//! TIM1   ╱╲        bridge: up and down in 50 µs; switches load at the bottom
+//!       ╱  ╲
+//! TIM4  |          sample_encoder, at the bottom
+//! TIM3     |       the converter, in the middle of the top: no switch near
+//!           |      command_motor, 2 µs later: the current is there
+//! ```
+//!
+//! All three count the same crystal, start together and are never stopped:
+//! whatever the bridge does, the ticks go on.
+
+use crate::bridge::Bridge;
+use crate::clocks::APB1_TIMER_HZ;
+use stm32f4xx_hal::pac::{TIM2, TIM3, TIM4};
+use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
+
+/// Counts of TIM3 and TIM4 in a tick.
+const COUNTS: u16 = 4_200;
+const _: () = assert!(COUNTS as u32 * 20_000 == APB1_TIMER_HZ);
+
+/// The converter looks for 15 of its clocks, 0.71 µs: it begins 0.36 µs before
+/// the middle of the tick.
+const CONVERTER_EARLY: u16 = 30;
+
+/// From its start to the current: 2 µs. It takes 27 clocks of 21 MHz, 1.29 µs.
+const CONVERSION: u16 = 168;
+
+/// The middle of a tick.
+pub struct MiddleOfTick(TIM3);
+
+/// The beginning of a tick.
+pub struct BeginOfTick(TIM4);
+
+impl MiddleOfTick {
+    /// A timer that waits for [`start`].
+    pub fn new(timer: TIM3, rcc: &mut Rcc) -> Self {
+        TIM3::enable(rcc);
+        TIM3::reset(rcc);
+        timer.arr().write(|w| w.arr().set(COUNTS - 1));
+        timer
+            .cnt()
+            .write(|w| w.cnt().set(COUNTS / 2 + CONVERTER_EARLY));
+        timer.ccr1().write(|w| w.ccr().set(CONVERSION));
+        // Its overflow starts the converter, its first channel the task.
+        timer.cr2().write(|w| w.mms().update());
+        timer.dier().write(|w| w.cc1ie().set_bit());
+        Self(timer)
+    }
+
+    /// The task has begun.
+    pub fn acknowledge(&mut self) {
+        self.0.sr().write(|w| w.cc1if().clear());
+    }
+}
+
+impl BeginOfTick {
+    /// A timer that waits for [`start`].
+    pub fn new(timer: TIM4, rcc: &mut Rcc) -> Self {
+        TIM4::enable(rcc);
+        TIM4::reset(rcc);
+        timer.arr().write(|w| w.arr().set(COUNTS - 1));
+        timer.dier().write(|w| w.uie().set_bit());
+        Self(timer)
+    }
+
+    /// The task has begun.
+    pub fn acknowledge(&mut self) {
+        self.0.sr().write(|w| w.uif().clear());
+    }
+}
+
+/// Starts the three together, but for some clocks of the core.
+pub fn start(bridge: &Bridge, middle: &MiddleOfTick, begin: &BeginOfTick) {
+    cortex_m::interrupt::free(|_| {
+        bridge.timer().cr1().modify(|_, w| w.cen().set_bit());
+        middle.0.cr1().modify(|_, w| w.cen().set_bit());
+        begin.0.cr1().modify(|_, w| w.cen().set_bit());
+    });
+}
+
+/// Quarters of a millisecond, for comms.
+pub struct Quarters(TIM2);
+
+impl Quarters {
+    /// Begins.
+    pub fn start(timer: TIM2, rcc: &mut Rcc) -> Self {
+        TIM2::enable(rcc);
+        TIM2::reset(rcc);
+        timer
+            .arr()
+            .write(|w| w.arr().set(APB1_TIMER_HZ / 4_000 - 1));
+        timer.dier().write(|w| w.uie().set_bit());
+        timer.cr1().write(|w| w.cen().set_bit());
+        Self(timer)
+    }
+
+    /// The task has begun.
+    pub fn acknowledge(&mut self) {
+        self.0.sr().write(|w| w.uif().clear());
+    }
+}

@@ -1,0 +1,323 @@
+//! # The drive controller
+//!
+//! `device::drive` on silicon: peripherals in, a tick, peripherals out.
+//!
+//! | priority | task | interrupt | when | what it has to itself |
+//! |---|---|---|---|---|
+//! | 4 | `command_motor` | TIM3 | in the middle of the tick, as the current is there | bridge, line, converter |
+//! | 3 | `sample_encoder` | TIM4 | every 50 µs | encoder |
+//! | 2 | `render_torque` | SDIO, pended | after it | the model |
+//! | 1 | `link` | DMA2_STREAM6, pended | after each tick, and as a frame has gone | the link, watchdog |
+//! | 0 | `idle` | | always | preparation, log |
+//!
+//! | shared | between | locked for |
+//! |---|---|---|
+//! | `command`: safety, motor, blocks | 4, 2, 1, 0 | a status, a block of 20 samples |
+//! | `sampled` | 4, 3, 2 | a copy |
+//! | `rendered` | 4, 2 | a copy |
+//! | `sampler` | 3, 1 | the clock, the zero |
+//! | `prepared`, `rendering_plan`, `command_plan` | 3, 2, 4, 0 | a plan on its way |
+//! | `commits` | 1, 0 | a commit on its way |
+//!
+//! Parameters go from `link` by `commits` to `idle`, which makes numbers of
+//! them; with a block `sample_encoder` hands those to the others. Nothing
+//! above `idle` logs, and nothing waits.
+#![no_std]
+#![no_main]
+
+mod shared;
+
+use defmt_rtt as _;
+
+#[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
+mod app {
+    use crate::shared::Parts;
+    use board::bridge::Bridge;
+    use board::converter::Converter;
+    use board::drive_board::DriveBoard;
+    use board::enable_line::EnableLine;
+    use board::encoder::Encoder;
+    use board::link::{Link, RING_BYTES};
+    use board::ticks::{self, BeginOfTick, MiddleOfTick};
+    use board::watchdog::{Roll, Watchdog};
+    use core::sync::atomic::{AtomicBool, Ordering};
+    use crepitus_device::counters::Counters;
+    use crepitus_device::drive::Boot;
+    use crepitus_device::drive::command::{Command, Inputs, Outputs};
+    use crepitus_device::drive::commits::Commits;
+    use crepitus_device::drive::link_task::LinkTask;
+    use crepitus_device::drive::motor;
+    use crepitus_device::drive::prepare::{CommandPlan, Preparation, Prepared, RenderingPlan};
+    use crepitus_device::drive::rendering::{Rendered, Rendering};
+    use crepitus_device::drive::sampler::{Sampled, Sampler};
+    use crepitus_protocol::{Fault, State};
+    use stm32f4xx_hal::pac::Interrupt;
+
+    /// What starts `render_torque`: of an interrupt that nothing else uses.
+    const RENDER: Interrupt = Interrupt::SDIO;
+
+    /// What starts `link`, beside the end of a frame.
+    const LINK: Interrupt = Interrupt::DMA2_STREAM6;
+
+    /// Who has run, for the watchdog.
+    const COMMAND: u32 = 1;
+    const SAMPLE: u32 = 1 << 1;
+    const RENDERED: u32 = 1 << 2;
+    const LINKED: u32 = 1 << 3;
+    const EVERYONE: u32 = COMMAND | SAMPLE | RENDERED | LINKED;
+
+    /// Runs of `link` that `idle` may take for a round: at most 250 ms.
+    const PATIENCE: u32 = 5_000;
+
+    #[shared]
+    struct Shared {
+        command: Command,
+        sampler: Sampler,
+        commits: Commits,
+        prepared: Option<Prepared>,
+        rendering_plan: Option<RenderingPlan>,
+        command_plan: Option<CommandPlan>,
+        sampled: Option<Sampled>,
+        rendered: Option<Rendered>,
+        is_settling: AtomicBool,
+        counters: Counters,
+        roll: Roll,
+    }
+
+    #[local]
+    struct Local {
+        middle: MiddleOfTick,
+        converter: Converter,
+        line: EnableLine,
+        bridge: Bridge,
+        begin: BeginOfTick,
+        encoder: Encoder,
+        rendering: Rendering,
+        link: Link,
+        link_task: LinkTask,
+        preparation: Preparation,
+        watchdog: Watchdog,
+    }
+
+    #[init]
+    fn init(cx: init::Context) -> (Shared, Local) {
+        let board = DriveBoard::new(cx.device);
+        let start = board.start;
+        defmt::info!(
+            "drive: start {=u16} after {=str}; before: {=str} {=u32:#x}",
+            start.number,
+            start.cause.name(),
+            start.before.reason.name(),
+            start.before.detail,
+        );
+        let boot = Boot {
+            identity: board.identity,
+            counter: board.encoder.count(),
+            start: start.number,
+            ..Boot::default()
+        };
+        let Ok((preparation, first)) = Preparation::new() else {
+            panic!("the defaults are not allowed");
+        };
+        let shared = Shared {
+            command: Command::new(&first.motor, &first.prepared.command, &boot),
+            sampler: Sampler::new(&first.reader, boot.counter, boot.tick),
+            commits: Commits::default(),
+            prepared: None,
+            rendering_plan: None,
+            command_plan: None,
+            sampled: None,
+            rendered: None,
+            is_settling: AtomicBool::new(false),
+            counters: Counters::new(),
+            roll: Roll::new(),
+        };
+        let local = Local {
+            middle: board.middle,
+            converter: board.converter,
+            line: board.line,
+            bridge: board.bridge,
+            begin: board.begin,
+            encoder: board.encoder,
+            rendering: Rendering::new(&first.prepared.rendering),
+            link: board.link,
+            link_task: LinkTask::new(boot.identity, boot.start),
+            preparation,
+            watchdog: Watchdog::start(board.watchdog, EVERYONE, PATIENCE),
+        };
+        // Last, so that the first tick is like the others.
+        ticks::start(&local.bridge, &local.middle, &local.begin);
+        (shared, local)
+    }
+
+    #[task(
+        binds = TIM3, priority = 4,
+        local = [middle, converter, line, bridge],
+        shared = [command, command_plan, sampled, rendered, &counters, &roll]
+    )]
+    fn command_motor(mut cx: command_motor::Context) {
+        let part = cx.local;
+        part.middle.acknowledge();
+        cx.shared.roll.here(COMMAND);
+        let inputs = Inputs {
+            current_a: part.converter.take_a(),
+            enable_is_on: part.line.is_on(),
+            is_broken: part.bridge.is_broken(),
+        };
+        let counters = cx.shared.counters;
+        let sampled = cx.shared.sampled.lock(|sampled| *sampled);
+        let rendered = cx.shared.rendered.lock(|rendered| *rendered);
+        let plan = cx.shared.command_plan.lock(Option::take);
+        let outputs = cx.shared.command.lock(|command| {
+            let Some(sampled) = &sampled else {
+                return Outputs::default();
+            };
+            if let Some(plan) = &plan {
+                command.take_over(plan, counters);
+            }
+            command.tick(&inputs, sampled, rendered.as_ref(), counters)
+        });
+        part.line.set(outputs.enable);
+        match outputs.bridge {
+            motor::Bridge::Float => part.bridge.float(),
+            motor::Bridge::Driven(volts) => part.bridge.drive(volts),
+        }
+        rtic::pend(LINK);
+    }
+
+    #[task(
+        binds = TIM4, priority = 3,
+        local = [begin, encoder],
+        shared = [sampler, sampled, prepared, rendering_plan, command_plan, &roll]
+    )]
+    fn sample_encoder(mut cx: sample_encoder::Context) {
+        cx.local.begin.acknowledge();
+        cx.shared.roll.here(SAMPLE);
+        let counter = cx.local.encoder.count();
+        let begins_block = cx.shared.sampler.lock(|sampler| sampler.begins_block());
+        if begins_block {
+            let mut slots = (
+                cx.shared.prepared,
+                cx.shared.rendering_plan,
+                cx.shared.command_plan,
+            );
+            let sampler = &mut cx.shared.sampler;
+            slots.lock(|prepared, rendering_plan, command_plan| {
+                if let Some(ready) = prepared {
+                    if let Some(reader) = &ready.reader {
+                        sampler.lock(|sampler| sampler.replace(reader));
+                    }
+                    *rendering_plan = Some(ready.rendering);
+                    *command_plan = Some(ready.command);
+                    *prepared = None;
+                }
+            });
+        }
+        let now = cx.shared.sampler.lock(|sampler| sampler.sample(counter));
+        cx.shared.sampled.lock(|sampled| *sampled = Some(now));
+        rtic::pend(RENDER);
+    }
+
+    #[task(
+        binds = SDIO, priority = 2,
+        local = [rendering],
+        shared = [command, sampled, rendered, rendering_plan, &is_settling, &roll]
+    )]
+    fn render_torque(mut cx: render_torque::Context) {
+        cx.shared.roll.here(RENDERED);
+        let rendering = cx.local.rendering;
+        let Some(sampled) = cx.shared.sampled.lock(|sampled| *sampled) else {
+            return;
+        };
+        cx.shared.rendering_plan.lock(|slot| {
+            // Where it lies: a copy takes microseconds.
+            if let Some(plan) = slot {
+                rendering.take_over(plan, sampled.omega_rad_s);
+                *slot = None;
+            }
+        });
+        let state = cx.shared.command.lock(|command| command.safety().state());
+        let now = rendering.tick(&sampled, state == State::Armed);
+        let is_settling = rendering.is_settling();
+        cx.shared.is_settling.store(is_settling, Ordering::Relaxed);
+        cx.shared.rendered.lock(|rendered| *rendered = Some(now));
+    }
+
+    #[task(
+        binds = DMA2_STREAM6, priority = 1,
+        local = [link, link_task, watchdog],
+        shared = [command, sampler, commits, &counters, &roll]
+    )]
+    fn link(cx: link::Context) {
+        let (link, task) = (cx.local.link, cx.local.link_task);
+        link.acknowledge();
+        cx.shared.roll.here(LINKED);
+        cx.local.watchdog.feed(cx.shared.roll);
+        let counters = cx.shared.counters;
+        let mut parts = Parts {
+            command: cx.shared.command,
+            sampler: cx.shared.sampler,
+            commits: cx.shared.commits,
+        };
+        for _ in 0..RING_BYTES {
+            let Some(byte) = link.next_byte() else {
+                break;
+            };
+            task.received(byte, &mut parts, counters);
+        }
+        if link.can_send()
+            && let Some(frame) = task.next_frame(&mut parts, counters)
+        {
+            link.send(&frame);
+        }
+        if task.take_reboot() {
+            board::stop::reboot();
+        }
+    }
+
+    #[idle(
+        local = [preparation],
+        shared = [
+            command, commits, prepared, rendering_plan, command_plan,
+            &is_settling, &counters, &roll,
+        ]
+    )]
+    fn idle(mut cx: idle::Context) -> ! {
+        let mut told = None;
+        loop {
+            // On their way from the first of these to the last.
+            let is_busy = cx.shared.prepared.lock(|slot| slot.is_some())
+                || cx.shared.rendering_plan.lock(|slot| slot.is_some())
+                || cx.shared.command_plan.lock(|slot| slot.is_some())
+                || cx.shared.is_settling.load(Ordering::Relaxed);
+            if !is_busy && let Some((revision, values)) = cx.shared.commits.lock(Commits::take) {
+                let is_live = cx.shared.command.lock(|command| command.safety().is_live());
+                let result = cx.local.preparation.prepare(revision, &values, is_live);
+                let done = result.as_ref().map(|_| ()).map_err(|error| *error);
+                let counters = cx.shared.counters;
+                cx.shared
+                    .commits
+                    .lock(|commits| commits.done(revision, done, counters));
+                let prepared = result.ok();
+                cx.shared.prepared.lock(|slot| *slot = prepared);
+            }
+            let now = cx.shared.command.lock(|command| {
+                let safety = command.safety();
+                let fault = safety.fault().map_or(0, Fault::code);
+                (safety.state(), fault, command.revision())
+            });
+            if told != Some(now) {
+                told = Some(now);
+                let (state, fault, revision) = now;
+                defmt::info!(
+                    "{=str}, fault {=u8}, revision {=u32}",
+                    state.name(),
+                    fault,
+                    revision.0
+                );
+            }
+            cx.shared.roll.idle_here();
+            cortex_m::asm::wfi();
+        }
+    }
+}
