@@ -173,10 +173,6 @@ impl Comms {
         if self.supervision.is_wanted() {
             return Err(Refusal::Armed);
         }
-        // It starts anew; or the drive has not let go yet, a moment ago disarmed.
-        if self.reboot_ms.is_some() || matches!(self.drive.state(), State::Arming | State::Armed) {
-            return Err(Refusal::Busy);
-        }
         let drive_fault = self.drive.status().map_or(0, |status| status.fault);
         let code = self.supervision.fault().map_or(drive_fault, Fault::code);
         if code != 0 {
@@ -184,6 +180,10 @@ impl Comms {
         }
         if !self.drive.is_present(self.now_ms) {
             return Err(Refusal::DriveSilent);
+        }
+        // It starts anew; or the drive has not let go yet, a moment ago disarmed.
+        if self.reboot_ms.is_some() || matches!(self.drive.state(), State::Arming | State::Armed) {
+            return Err(Refusal::Busy);
         }
         if self.drive.revision(self.now_ms) != Some(self.parameters.revision()) {
             return Err(Refusal::Busy);
