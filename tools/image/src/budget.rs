@@ -1,0 +1,277 @@
+//! The budget file: what an image may take, and what somebody has looked at.
+//!
+//! ```toml
+//! tolerance_percent = 2.0                # what a recorded size may grow by
+//!
+//! [images.drive]
+//! elf = "target/thumbv7em-none-eabihf/release/drive"   # from the budget file
+//! memory = "drive/memory.x"
+//! flash = ["FLASH"]                      # memories that are programmed
+//!
+//! [images.drive.recorded]                # bytes; `check --bless` rewrites them
+//! flash = 41_204
+//! ram = 5_120
+//! stack = 1_632
+//!
+//! [[images.drive.reserved]]              # addresses that no byte may touch
+//! from = 0x0800_8000
+//! to = 0x0801_0000
+//! what = "parameter log"
+//!
+//! [[images.drive.interrupts]]            # every vector that is not the default
+//! handler = "TIM3"                       # symbol, checked against the vector table
+//! irq = 29                               # CMSIS number, exceptions below 0
+//! priority = 3                           # RTIC's: higher preempts lower
+//! gated = true                           # no panic, no unknown call, no unbounded loop
+//!
+//! [[images.drive.loops]]                 # loops that a gated interrupt reaches
+//! function = "crepitus_device::link::parse"
+//! bounds = [64, 8]                       # most rounds of each, in the order of lines
+//! reason = "a frame has at most 64 bytes of 8 bits"
+//!
+//! [[images.drive.ends]]                  # control goes in and does not come back
+//! function = "board::stop::stop"
+//! reason = "resets the processor"
+//!
+//! [[images.drive.indirect]]              # calls through pointers
+//! function = "<rtic::Executor>::run"
+//! calls = 1                              # so many in this function
+//! targets = ["app::link_task::poll"]     # all that they can reach
+//! reason = "one task is ever spawned there"
+//!
+//! [[images.drive.dynamic_stack]]         # stack pointers that are computed
+//! function = "core::aligned"
+//! bytes = 12                             # at most on top of its frame
+//! reason = "aligns to 16"
+//! ```
+
+use crate::error::ImageError;
+use serde::Deserialize;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use toml::Spanned;
+
+/// A budget file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Budget {
+    /// How much a recorded size may grow, in percent.
+    #[serde(default = "two")]
+    pub tolerance_percent: f64,
+    /// Budgets by the image's name.
+    pub images: BTreeMap<String, ImageBudget>,
+}
+
+/// The budget of one image.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ImageBudget {
+    /// The built image, seen from the budget file.
+    pub elf: PathBuf,
+    /// The linker's memory layout, seen from the budget file.
+    pub memory: PathBuf,
+    /// Names of the memories that are programmed.
+    #[serde(default = "flash")]
+    pub flash: Vec<String>,
+    /// Addresses that no segment may touch.
+    #[serde(default)]
+    pub reserved: Vec<Reserved>,
+    /// Sizes on record.
+    pub recorded: Recorded,
+    /// Handlers of interrupts and exceptions.
+    #[serde(default)]
+    pub interrupts: Vec<Interrupt>,
+    /// Loops that end, and why.
+    #[serde(default)]
+    pub loops: Vec<BoundedLoops>,
+    /// Functions that end an interrupt for good.
+    #[serde(default)]
+    pub ends: Vec<End>,
+    /// Calls through pointers, and where they go.
+    #[serde(default)]
+    pub indirect: Vec<IndirectCalls>,
+    /// Stack pointers that are computed, and by how much.
+    #[serde(default)]
+    pub dynamic_stack: Vec<DynamicStack>,
+}
+
+/// Sizes on record, in bytes, with their place in the file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Recorded {
+    /// What is programmed.
+    pub flash: Spanned<u32>,
+    /// Sections in RAM.
+    pub ram: Spanned<u32>,
+    /// The worst stack with all interrupts nested.
+    pub stack: Spanned<u32>,
+}
+
+/// Addresses for something else than the program.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reserved {
+    /// The first.
+    pub from: u32,
+    /// The one behind the last.
+    pub to: u32,
+    /// For what.
+    pub what: String,
+}
+
+/// The handler of an interrupt.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Interrupt {
+    /// Its symbol.
+    pub handler: String,
+    /// Its number; exceptions below 0.
+    pub irq: i16,
+    /// Its priority: higher preempts lower.
+    pub priority: u8,
+    /// Whether it must be free of panics, unknown calls and unbounded loops.
+    #[serde(default = "yes")]
+    pub gated: bool,
+}
+
+/// A function that control does not come back from, on purpose.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct End {
+    /// The function; that it never returns is checked.
+    pub function: String,
+    /// What happens instead.
+    pub reason: String,
+}
+
+/// Loops of a function of the source.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoundedLoops {
+    /// The function.
+    pub function: String,
+    /// The most rounds of each of its loops, in the order of their lines.
+    pub bounds: Vec<u64>,
+    /// Why they hold.
+    pub reason: String,
+}
+
+/// Calls through pointers in a function.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IndirectCalls {
+    /// The function.
+    pub function: String,
+    /// How many there are in it.
+    #[serde(default = "one")]
+    pub calls: usize,
+    /// Every function that they can reach.
+    pub targets: Vec<String>,
+    /// Why it is these.
+    pub reason: String,
+}
+
+/// A function that computes its stack pointer.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DynamicStack {
+    /// The function.
+    pub function: String,
+    /// The most that it takes on top of its frame.
+    pub bytes: u32,
+    /// Why that is enough.
+    pub reason: String,
+}
+
+fn two() -> f64 {
+    2.0
+}
+
+fn one() -> usize {
+    1
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn flash() -> Vec<String> {
+    vec!["FLASH".to_owned()]
+}
+
+impl Budget {
+    /// Reads the text of a budget file; `path` is for messages.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageError::Budget`] with the position of what is wrong.
+    pub fn parse(path: &Path, text: &str) -> Result<Self, ImageError> {
+        let error = |what: String| ImageError::Budget {
+            path: path.to_owned(),
+            what,
+        };
+        let budget: Self = toml::from_str(text).map_err(|e| error(e.to_string()))?;
+        if !(0.0..=100.0).contains(&budget.tolerance_percent) {
+            return Err(error("tolerance_percent is not in 0..=100".to_owned()));
+        }
+        for (name, image) in &budget.images {
+            if let Some(reserved) = image.reserved.iter().find(|r| r.from >= r.to) {
+                let what = &reserved.what;
+                return Err(error(format!(
+                    "{name}: {what} is reserved from behind its end"
+                )));
+            }
+            image
+                .reasons()
+                .map_err(|what| error(format!("{name}: {what}")))?;
+        }
+        Ok(budget)
+    }
+}
+
+impl ImageBudget {
+    /// What somebody vouches for: the kind, the function, the reason.
+    pub fn vouched(&self) -> impl Iterator<Item = (&'static str, &str, &str)> {
+        let loops = self.loops.iter().map(|e| ("loops", &e.function, &e.reason));
+        let ends = self.ends.iter().map(|e| ("ends", &e.function, &e.reason));
+        let indirect = self.indirect.iter();
+        let indirect = indirect.map(|e| ("indirect", &e.function, &e.reason));
+        let stack = self.dynamic_stack.iter();
+        let stack = stack.map(|e| ("dynamic_stack", &e.function, &e.reason));
+        let all = loops.chain(ends).chain(indirect).chain(stack);
+        all.map(|(kind, function, reason)| (kind, function.as_str(), reason.as_str()))
+    }
+
+    /// One entry a function, each with a reason.
+    fn reasons(&self) -> Result<(), String> {
+        let mut seen = BTreeSet::new();
+        for (kind, function, reason) in self.vouched() {
+            if reason.trim().is_empty() {
+                return Err(format!("{function} is in {kind} without a reason"));
+            }
+            if !seen.insert((kind, function)) {
+                return Err(format!("{function} is in {kind} twice"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The text of a budget file with other recorded sizes, in place.
+pub fn bless(text: &str, changes: &[(&Spanned<u32>, u32)]) -> String {
+    let mut changes: Vec<_> = changes.iter().map(|(old, new)| (old.span(), new)).collect();
+    changes.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
+    let mut text = text.to_owned();
+    for (span, new) in changes {
+        text.replace_range(span, &underscored(*new));
+    }
+    text
+}
+
+/// A number as TOML lets people read it.
+fn underscored(number: u32) -> String {
+    crate::text::grouped(number, '_')
+}
+
+#[cfg(test)]
+mod tests;

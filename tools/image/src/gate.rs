@@ -1,0 +1,109 @@
+//! The gate: an image against its budget.
+
+mod code;
+mod layout;
+mod loops;
+mod sizes;
+mod stacks;
+mod vouched;
+
+use crate::budget::ImageBudget;
+use crate::elf::Image;
+use crate::error::ImageError;
+use crate::lines::Lines;
+use crate::memory::Region;
+use crate::program::{Function, Program};
+use crate::report::{Finding, Report};
+use crate::vectors::Vectors;
+use vouched::Vouched;
+
+pub(crate) use sizes::change_percent;
+pub(crate) use vouched::unknown_calls;
+
+/// An image taken apart, next to its budget.
+pub struct Gate<'a> {
+    name_of_image: &'a str,
+    image: &'a Image,
+    vectors: &'a Vectors,
+    program: &'a Program,
+    lines: &'a Lines,
+    memory: &'a [Region],
+    budget: &'a ImageBudget,
+    tolerance_percent: f64,
+    vouched: Vouched<'a>,
+}
+
+/// What is examined.
+#[derive(Clone, Copy)]
+pub struct Subject<'a> {
+    /// The image.
+    pub image: &'a Image,
+    /// Its source lines.
+    pub lines: &'a Lines,
+    /// The memories of its linker script.
+    pub memory: &'a [Region],
+    /// Its budget.
+    pub budget: &'a ImageBudget,
+    /// What recorded sizes may grow by.
+    pub tolerance_percent: f64,
+}
+
+/// Examines an image.
+///
+/// # Errors
+///
+/// [`ImageError`] if there is no vector table.
+pub fn examine(name: &str, subject: Subject<'_>) -> Result<Report, ImageError> {
+    let vectors = Vectors::read(subject.image)?;
+    let program = Program::new(subject.image);
+    let gate = Gate {
+        name_of_image: name,
+        image: subject.image,
+        vectors: &vectors,
+        program: &program,
+        lines: subject.lines,
+        memory: subject.memory,
+        budget: subject.budget,
+        tolerance_percent: subject.tolerance_percent,
+        vouched: Vouched::new(&program, subject.budget),
+    };
+    let mut report = Report {
+        image: name.to_owned(),
+        sizes: Vec::new(),
+        levels: Vec::new(),
+        interrupts: Vec::new(),
+        loops: Vec::new(),
+        failures: Vec::new(),
+        hints: Vec::new(),
+    };
+    gate.check_layout(&mut report);
+    let roots = gate.roots(&mut report);
+    gate.check_stacks(&roots, &mut report);
+    gate.check_code(&roots, &mut report);
+    gate.check_sizes(&mut report);
+    Ok(report)
+}
+
+impl Gate<'_> {
+    /// An instruction's place for people: function, address, source line.
+    fn place(&self, address: u32) -> String {
+        let name = self.program.at(address).map_or("?", Function::name);
+        let line = self.lines.at(address);
+        let line = line.map_or_else(String::new, |line| format!(", {line}"));
+        format!("{name} at {address:#010x}{line}")
+    }
+
+    fn name(&self, function: u32) -> String {
+        let function = self.program.functions.get(&function);
+        function.map_or("?", Function::name).to_owned()
+    }
+}
+
+fn finding(check: &'static str, what: String, at: Vec<String>, todo: &str) -> Finding {
+    Finding {
+        check,
+        what,
+        at,
+        todo: todo.to_owned(),
+    }
+}

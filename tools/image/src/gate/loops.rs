@@ -1,0 +1,200 @@
+//! Loops that gated interrupts reach, and who bounds them.
+//!
+//! Compilers inline, so a loop is known by the function that holds it in the
+//! source, not by the symbol that it ended up in: of the inlined functions
+//! that *all* its instructions have in common, the innermost that is not from
+//! a library. In that function it is told from others by its line, and by the
+//! line in the library that it comes from. So a bound survives edits above it
+//! and another mood of the inliner, and a new loop is a new one. Without debug
+//! information it is the symbol and the address.
+
+use super::code::Found;
+use super::layout::Root;
+use super::{Gate, finding};
+use crate::lines::Frame;
+use crate::loops::Loop;
+use crate::program::Function;
+use crate::report::LoopRow;
+use std::collections::BTreeMap;
+
+/// Where a loop stands in its function.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+enum Spot {
+    /// Line, the place in a library, and how many loops of the same spot it
+    /// is nested in.
+    Line(u32, String, usize),
+    /// Without debug information.
+    Address(u32),
+}
+
+/// The loops of one function of the source.
+#[derive(Debug, Default)]
+pub(super) struct Loops {
+    spots: BTreeMap<Spot, Copies>,
+    /// The first handler found to reach it, and the way.
+    handler: String,
+    path: Vec<String>,
+}
+
+/// One loop of the source, as often as it was inlined.
+#[derive(Debug)]
+struct Copies {
+    place: String,
+    count: usize,
+}
+
+/// Loops by the function of the source.
+pub(super) type Catalogue = BTreeMap<String, Loops>;
+
+impl Gate<'_> {
+    /// Notes the loops of a function; endless ones are wrong at once.
+    pub(super) fn note_loops(
+        &self,
+        root: &Root<'_>,
+        function: &Function,
+        path: &dyn Fn(u32) -> Vec<String>,
+        found: &mut Found<'_>,
+    ) {
+        let handler = &root.interrupt.handler;
+        for l in &function.loops {
+            if !found.is_new("loop", l.address, l.instructions.len()) {
+                continue;
+            }
+            if l.endless {
+                found.report.failures.push(finding(
+                    "loop",
+                    format!("{handler} can reach a loop that never ends"),
+                    path(l.address),
+                    "an interrupt must return: take the loop out; where it waits for a reset \
+                     that was asked for, list the function in `ends`",
+                ));
+                continue;
+            }
+            let (owner, mut spot, place) = self.origin(function, l);
+            if let Spot::Line(.., nested) = &mut spot {
+                let around = function.loops.iter().filter(|o| surrounds(o, l));
+                let same = around.filter(|o| self.origin(function, o).2 == place);
+                *nested = same.count();
+            }
+            let loops = found.loops.entry(owner).or_default();
+            if loops.path.is_empty() {
+                loops.handler.clone_from(handler);
+                loops.path = path(l.address);
+            }
+            let copies = loops.spots.entry(spot);
+            copies.or_insert(Copies { place, count: 0 }).count += 1;
+        }
+    }
+
+    /// The function of the source that holds a loop, its spot there, and the
+    /// spot for people.
+    fn origin(&self, function: &Function, l: &Loop) -> (String, Spot, String) {
+        let common = self.common_frames(l);
+        let own = common.iter().rposition(|frame| !frame.library);
+        let holder = common.get(own.unwrap_or(0));
+        match (holder, common.last()) {
+            (Some(holder), Some(inner)) => {
+                let library = if holder == inner {
+                    String::new()
+                } else {
+                    inner.place()
+                };
+                let place = if library.is_empty() {
+                    holder.place()
+                } else {
+                    format!("{} ({library})", holder.place())
+                };
+                // A symbol's name is the same with and without debug information.
+                let name = match own {
+                    Some(n) if n > 0 => holder.function.clone(),
+                    _ => function.name().to_owned(),
+                };
+                (name, Spot::Line(holder.line, library, 0), place)
+            }
+            _ => (
+                function.name().to_owned(),
+                Spot::Address(l.address),
+                format!("{:#010x}", l.address),
+            ),
+        }
+    }
+
+    /// The frames that all instructions of a loop share, with the lines of its
+    /// first one. Frames are the same if they were inlined at the same place.
+    fn common_frames(&self, l: &Loop) -> Vec<Frame> {
+        // What was made of several lines says little about where it is from.
+        let telling = |frames: &Vec<Frame>| frames.last().is_some_and(|inner| inner.line > 0);
+        let addresses = std::iter::once(&l.address).chain(&l.instructions);
+        let frames = addresses.map(|&address| self.lines.frames(address));
+        let mut frames = frames.filter(telling);
+        let mut common = frames.next().unwrap_or_default();
+        for other in frames {
+            let same = |n: &usize| {
+                let (Some(a), Some(b)) = (common.get(*n), other.get(*n)) else {
+                    return false;
+                };
+                let outer = n.checked_sub(1);
+                let site =
+                    |frames: &[Frame]| outer.map(|m| (frames[m].file.clone(), frames[m].line));
+                a.function == b.function && site(&common) == site(&other)
+            };
+            let shared = (0..common.len()).take_while(same).count();
+            common.truncate(shared);
+        }
+        common
+    }
+
+    /// Compares what was found with the bounds of the budget.
+    pub(super) fn check_bounds(&self, found: &mut Found<'_>) {
+        let catalogue = std::mem::take(&mut found.loops);
+        for (function, loops) in &catalogue {
+            let entry = self.vouched.loops(function);
+            for (n, copies) in loops.spots.values().enumerate() {
+                found.report.loops.push(LoopRow {
+                    function: function.clone(),
+                    place: copies.place.clone(),
+                    copies: copies.count,
+                    bound: entry.and_then(|e| e.bounds.get(n).copied()),
+                    reason: entry.map(|e| e.reason.clone()),
+                });
+            }
+            let (count, said) = (loops.spots.len(), entry.map(|e| e.bounds.len()));
+            if said == Some(count) {
+                continue;
+            }
+            let mut at = loops.path.clone();
+            at.extend(loops.spots.values().map(|c| format!("loop {}", c.place)));
+            let bounds = vec!["…"; count].join(", ");
+            let image = self.name_of_image;
+            found.report.failures.push(finding(
+                "loop",
+                match said {
+                    None => format!(
+                        "{} reaches {} in {function} without a bound",
+                        loops.handler,
+                        counted(count)
+                    ),
+                    Some(said) => format!(
+                        "{function} has {}; the budget bounds {said}",
+                        counted(count)
+                    ),
+                },
+                at,
+                &format!(
+                    "see what bounds each; then write it down, in this order:\n\
+                     [[images.{image}.loops]]\nfunction = \"{function}\"\n\
+                     bounds = [{bounds}]\nreason = \"…\""
+                ),
+            ));
+        }
+    }
+}
+
+fn surrounds(outer: &Loop, inner: &Loop) -> bool {
+    outer.instructions.len() > inner.instructions.len()
+        && outer.instructions.contains(&inner.address)
+}
+
+fn counted(loops: usize) -> String {
+    format!("{loops} loop{}", if loops == 1 { "" } else { "s" })
+}

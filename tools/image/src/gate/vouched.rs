@@ -1,0 +1,137 @@
+//! What the budget file vouches for, looked up in the image.
+
+use crate::body::{Leave, Target};
+use crate::budget::{BoundedLoops, DynamicStack, ImageBudget, IndirectCalls};
+use crate::program::{Function, Program};
+use crate::report::Finding;
+use crate::stack::Extra;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The allowances, and which of them something needed.
+pub(super) struct Vouched<'a> {
+    budget: &'a ImageBudget,
+    targets: BTreeMap<&'a str, Vec<u32>>,
+    missing: Vec<Finding>,
+    used: RefCell<BTreeSet<(&'static str, &'a str)>>,
+}
+
+impl<'a> Vouched<'a> {
+    pub(super) fn new(program: &Program, budget: &'a ImageBudget) -> Self {
+        let mut targets: BTreeMap<&str, Vec<u32>> = BTreeMap::new();
+        let mut missing = Vec::new();
+        for entry in &budget.indirect {
+            let known = targets.entry(&entry.function).or_default();
+            for name in &entry.targets {
+                let named = program.functions.values().filter(|f| f.is(name));
+                let before = known.len();
+                known.extend(named.map(|f| f.address));
+                if known.len() == before {
+                    missing.push(super::finding(
+                        "budget",
+                        format!("no function {name} in the image"),
+                        vec![format!(
+                            "targets of the indirect calls in {}",
+                            entry.function
+                        )],
+                        "correct or remove the target",
+                    ));
+                }
+            }
+        }
+        Self {
+            budget,
+            targets,
+            missing,
+            used: RefCell::default(),
+        }
+    }
+
+    /// Where the unknown calls of a function go.
+    pub(super) fn targets(&self, function: &Function) -> Vec<u32> {
+        let names = function.names.iter();
+        let known = names.filter_map(|name| self.targets.get(name.as_str()));
+        known.flatten().copied().collect()
+    }
+
+    /// The entry for a function's unknown calls.
+    pub(super) fn indirect(&self, function: &Function) -> Option<&'a IndirectCalls> {
+        let mut entries = self.budget.indirect.iter();
+        let entry = entries.find(|e| function.is(&e.function))?;
+        self.used.borrow_mut().insert(("indirect", &entry.function));
+        Some(entry)
+    }
+
+    /// The entry for the loops of a function of the source.
+    pub(super) fn loops(&self, function: &str) -> Option<&'a BoundedLoops> {
+        let mut entries = self.budget.loops.iter();
+        let entry = entries.find(|e| e.function == function)?;
+        self.used.borrow_mut().insert(("loops", &entry.function));
+        Some(entry)
+    }
+
+    /// The entry for a function that computes its stack pointer.
+    pub(super) fn dynamic(&self, function: &Function) -> Option<&'a DynamicStack> {
+        let mut entries = self.budget.dynamic_stack.iter();
+        let entry = entries.find(|e| function.is(&e.function))?;
+        self.used
+            .borrow_mut()
+            .insert(("dynamic_stack", &entry.function));
+        Some(entry)
+    }
+
+    /// The entry for a function that control does not come back from.
+    pub(super) fn ends(&self, function: &Function) -> bool {
+        let entry = self.budget.ends.iter().find(|e| function.is(&e.function));
+        if let Some(entry) = entry {
+            self.used.borrow_mut().insert(("ends", &entry.function));
+        }
+        entry.is_some()
+    }
+
+    /// What counts for a function's stack on top of its frame.
+    pub(super) fn extra(&self, function: &Function) -> Extra {
+        let dynamic = function
+            .body
+            .live()
+            .any(|s| s.it.stack == crate::decode::Stack::Dynamic);
+        let unknown = unknown_calls(function) > 0;
+        Extra {
+            dynamic: dynamic
+                .then(|| self.dynamic(function))
+                .flatten()
+                .map(|e| e.bytes),
+            targets: unknown
+                .then(|| self.indirect(function))
+                .flatten()
+                .map(|_| self.targets(function)),
+        }
+    }
+
+    /// Entries that nothing needed, and targets that do not exist.
+    pub(super) fn stale(&self) -> Vec<Finding> {
+        let used = self.used.borrow();
+        let all = self
+            .budget
+            .vouched()
+            .map(|(kind, function, _)| (kind, function));
+        let stale = all.filter(|entry| !used.contains(entry));
+        let stale = stale.map(|(kind, function)| {
+            super::finding(
+                "budget",
+                format!("the entry in {kind} for {function} is not needed"),
+                Vec::new(),
+                "remove it: left alone it would let something new through",
+            )
+        });
+        stale.chain(self.missing.iter().cloned()).collect()
+    }
+}
+
+/// How many calls and jumps of a function go where the code does not tell.
+pub(crate) fn unknown_calls(function: &Function) -> usize {
+    let unknown = |step: &&crate::body::Step| {
+        step.call == Some(Target::Unknown) || step.leave == Some(Leave::Tail(Target::Unknown))
+    };
+    function.body.live().filter(unknown).count()
+}

@@ -1,0 +1,238 @@
+//! An image from the real compiler, with a panic planted in an interrupt.
+//!
+//! Needs the target `thumbv7em-none-eabihf`; without it the test says so and
+//! passes, unless `CREPITUS_NEEDS_TARGET` is set.
+
+use crepitus_image::budget::Budget;
+use crepitus_image::lines::Lines;
+use crepitus_image::{Image, Report, Subject, examine, memory};
+use std::path::Path;
+use std::process::Command;
+
+const TARGET: &str = "thumbv7em-none-eabihf";
+
+const MEMORY: &str = "MEMORY { FLASH : ORIGIN = 0x08000000, LENGTH = 64K
+                               RAM : ORIGIN = 0x20000000, LENGTH = 16K }";
+
+const SECTIONS: &str = "
+SECTIONS {
+  .vector_table ORIGIN(FLASH) : { KEEP(*(.vector_table)) } > FLASH
+  .text : { *(.text .text.*) } > FLASH
+  .rodata : { *(.rodata .rodata.*) } > FLASH
+  .data : { *(.data .data.*) } > RAM AT > FLASH
+  .bss (NOLOAD) : { *(.bss .bss.*) } > RAM
+  /DISCARD/ : { *(.ARM.exidx .ARM.exidx.*) }
+}";
+
+const PROGRAM: &str = r#"
+#![no_std]
+#![no_main]
+use core::sync::atomic::{AtomicU32, Ordering};
+
+static INPUT: AtomicU32 = AtomicU32::new(0);
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    loop {}
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn Reset() -> ! {
+    loop {}
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn DefaultHandler() {
+    INPUT.store(!0, Ordering::SeqCst);
+}
+
+/// Cannot panic: the length is what it is.
+#[unsafe(no_mangle)]
+extern "C" fn SOUND() {
+    let table = [3_u32, 1, 4, 1, 5, 9, 2, 6];
+    let n = INPUT.load(Ordering::Relaxed) as usize % table.len();
+    INPUT.store(table[n], Ordering::Relaxed);
+}
+
+/// Panics on an odd number.
+#[unsafe(no_mangle)]
+extern "C" fn PLANTED() {
+    INPUT.store(half(INPUT.load(Ordering::Relaxed)).unwrap(), Ordering::Relaxed);
+}
+
+#[inline(never)]
+fn half(n: u32) -> Option<u32> {
+    (n % 2 == 0).then_some(n / 2)
+}
+
+/// Ends, but nobody has said when.
+#[inline(always)]
+fn drain(by: u32) {
+    let get = || INPUT.load(Ordering::SeqCst);
+    let put = |n| INPUT.store(n, Ordering::SeqCst);
+    while get() >= by { put(get() / by); while get() > 99 { put(get() - by); } put(get() + 1); }
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn COUNTS() {
+    drain(2);
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn COUNTS_TOO() {
+    drain(3);
+}
+
+union Vector {
+    handler: extern "C" fn(),
+    reset: extern "C" fn() -> !,
+    stack: u32,
+}
+unsafe impl Sync for Vector {}
+
+#[used]
+#[unsafe(link_section = ".vector_table")]
+static VECTORS: [Vector; 20] = {
+    const DEFAULT: Vector = Vector { handler: DefaultHandler };
+    let mut all = [DEFAULT; 20];
+    all[0] = Vector { stack: 0x2000_4000 };
+    all[1] = Vector { reset: Reset };
+    all[16] = Vector { handler: SOUND };
+    all[17] = Vector { handler: PLANTED };
+    all[18] = Vector { handler: COUNTS };
+    all[19] = Vector { handler: COUNTS_TOO };
+    all
+};
+"#;
+
+const BUDGET: &str = r#"
+[images.it]
+elf = "it.elf"
+memory = "it.x"
+[images.it.recorded]
+flash = 10_000
+ram = 10_000
+stack = 10_000
+[[images.it.interrupts]]
+handler = "SOUND"
+irq = 0
+priority = 3
+[[images.it.interrupts]]
+handler = "PLANTED"
+irq = 1
+priority = 2
+[[images.it.interrupts]]
+handler = "COUNTS"
+irq = 2
+priority = 1
+[[images.it.interrupts]]
+handler = "COUNTS_TOO"
+irq = 3
+priority = 1
+"#;
+
+/// Compiles the program; nothing if the target is not installed.
+fn compile(folder: &Path) -> Option<Vec<u8>> {
+    let at = |name: &str| folder.join(name);
+    std::fs::write(at("it.rs"), PROGRAM).unwrap();
+    std::fs::write(at("it.x"), format!("{MEMORY}{SECTIONS}")).unwrap();
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let output = Command::new(rustc)
+        .args([
+            "--edition",
+            "2024",
+            "--target",
+            TARGET,
+            "--crate-name",
+            "it",
+        ])
+        .args([
+            "-C",
+            "opt-level=2",
+            "-C",
+            "debuginfo=1",
+            "-C",
+            "panic=abort",
+        ])
+        .args([
+            "-C",
+            "link-arg=-Tit.x",
+            "-C",
+            "link-arg=--nmagic",
+            "-o",
+            "it.elf",
+            "it.rs",
+        ])
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    if said.contains("target may not be installed") {
+        assert!(
+            std::env::var_os("CREPITUS_NEEDS_TARGET").is_none(),
+            "the target {TARGET} is not installed"
+        );
+        println!("left out: the target {TARGET} is not installed");
+        return None;
+    }
+    assert!(output.status.success(), "{said}");
+    Some(std::fs::read(at("it.elf")).unwrap())
+}
+
+fn report(bytes: &[u8], lines: &Lines, more: &str) -> Report {
+    let budget = Budget::parse(Path::new("budget.toml"), &format!("{BUDGET}{more}")).unwrap();
+    let subject = Subject {
+        image: &Image::parse(bytes).unwrap(),
+        lines,
+        memory: &memory::parse(MEMORY).unwrap(),
+        budget: &budget.images["it"],
+        tolerance_percent: 2.0,
+    };
+    examine("it", subject).unwrap()
+}
+
+#[test]
+fn a_planted_unwrap_is_found_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(bytes) = compile(folder.path()) else {
+        return;
+    };
+    let lines = Lines::of(&folder.path().join("it.elf"));
+    let found = report(&bytes, &lines, "").failures;
+    let [panic, bound] = found.as_slice() else {
+        panic!("{found:#?}");
+    };
+    assert_eq!(panic.what, "PLANTED can reach core::option::unwrap_failed");
+    let planted = PROGRAM
+        .lines()
+        .position(|l| l.contains(".unwrap()"))
+        .unwrap()
+        + 1;
+    let line = format!("it.rs:{planted}");
+    assert!(panic.at[0].contains(&line), "{:?} without {line}", panic.at);
+    // Inlined twice, they are two loops of the source, on one line.
+    assert!(
+        bound
+            .what
+            .ends_with("reaches 2 loops in it::drain without a bound")
+    );
+    let bounded = "[[images.it.loops]]
+function = \"it::drain\"
+bounds = [32, 9]
+reason = \"bits\"";
+    let report = report(&bytes, &lines, bounded);
+    let loops = report.loops.iter().map(|l| (l.copies, l.bound));
+    assert_eq!(loops.collect::<Vec<_>>(), [(2, Some(32)), (2, Some(9))]);
+    assert_eq!(report.failures.len(), 1, "the panic stays");
+}
+
+#[test]
+fn it_is_found_without_debug_information_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(bytes) = compile(folder.path()) else {
+        return;
+    };
+    let report = report(&bytes, &Lines::default(), "");
+    let found: Vec<&str> = report.failures.iter().map(|f| f.check).collect();
+    assert_eq!(found, ["panic", "loop", "loop"]);
+}
