@@ -80,6 +80,7 @@ mod app {
         sampled: Option<Sampled>,
         rendered: Option<Rendered>,
         is_settling: AtomicBool,
+        is_going: AtomicBool,
         counters: Counters,
         roll: Roll,
     }
@@ -129,6 +130,7 @@ mod app {
             sampled: None,
             rendered: None,
             is_settling: AtomicBool::new(false),
+            is_going: AtomicBool::new(false),
             counters: Counters::new(),
             roll: Roll::new(),
         };
@@ -152,13 +154,19 @@ mod app {
 
     #[task(
         binds = TIM3, priority = 4,
-        local = [middle, converter, line, bridge],
-        shared = [command, command_plan, sampled, rendered, &counters, &roll]
+        local = [middle, converter, line, bridge, middles: u8 = 0],
+        shared = [command, command_plan, sampled, rendered, &is_going, &counters, &roll]
     )]
     fn command_motor(mut cx: command_motor::Context) {
         let part = cx.local;
         part.middle.acknowledge();
         cx.shared.roll.here(COMMAND);
+        // The timers have started before the tasks could run: the first of
+        // these is a remnant of that time, the second is in step.
+        *part.middles = part.middles.saturating_add(1);
+        if *part.middles >= 2 {
+            cx.shared.is_going.store(true, Ordering::Relaxed);
+        }
         let inputs = Inputs {
             current_a: part.converter.take_a(),
             enable_is_on: part.line.is_on(),
@@ -188,11 +196,14 @@ mod app {
     #[task(
         binds = TIM4, priority = 3,
         local = [begin, encoder],
-        shared = [sampler, sampled, prepared, rendering_plan, command_plan, &roll]
+        shared = [sampler, sampled, prepared, rendering_plan, command_plan, &is_going, &roll]
     )]
     fn sample_encoder(mut cx: sample_encoder::Context) {
         cx.local.begin.acknowledge();
         cx.shared.roll.here(SAMPLE);
+        if !cx.shared.is_going.load(Ordering::Relaxed) {
+            return;
+        }
         let counter = cx.local.encoder.count();
         let begins_block = cx.shared.sampler.lock(|sampler| sampler.begins_block());
         if begins_block {

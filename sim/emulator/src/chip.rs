@@ -1,0 +1,313 @@
+//! The chip without its core: an STM32F405 as far as the firmware uses it.
+//!
+//! | part | from |
+//! |---|---|
+//! | RCC, PWR, FLASH, GPIO, TIM1 to TIM5, TIM8, DMA, IWDG, RNG, DBGMCU | the library |
+//! | the break of TIM1, ADC1, USART6 | [`crate::devices`] |
+//!
+//! Wired: interrupts, the requests of USART6 to DMA2, the trigger outputs of
+//! TIM2, TIM3 and TIM8 to ADC1, the encoder's channels to TIM5, the watchdog
+//! to the reset. Not wired: timers to each other, pins to EXTI.
+
+pub(crate) mod bus;
+pub(crate) mod clocks;
+pub(crate) mod memory;
+pub(crate) mod part;
+pub(crate) mod state_hash;
+pub(crate) mod wires;
+
+use crate::devices::adc::{self, Adc};
+use crate::devices::brake::Brake;
+use crate::devices::registers::AsRegisters;
+use crate::devices::usart::Usart;
+use bus::{Bus, Now};
+use clocks::{Clock, Rates};
+use part::{Gate, Library, Part, registers};
+use rsemu::core::device::Device;
+use rsemu::core::props::Props;
+use rsemu::core::wire::WireSource;
+use rsemu::cpu::arm::v7m::ArmV7m;
+use rsemu::dev::stm32::dma::{self, Dma};
+use rsemu::dev::stm32::flash::Flash;
+use rsemu::dev::stm32::gpio::{Gpio, ResetValues};
+use rsemu::dev::stm32::iwdg::Iwdg;
+use rsemu::dev::stm32::pwr::{self, Pwr};
+use rsemu::dev::stm32::rcc::{self, Frequencies, Rcc};
+use rsemu::dev::stm32::rng::{Fault, Rng};
+use rsemu::dev::stm32::tim::Tim;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use wires::{Latch, Nets};
+
+/// Ports that the chip has.
+const PORTS: u32 = 9;
+
+/// Clocks of 48 MHz that the random number generator takes for a word.
+const RANDOM_CLOCKS: u64 = 40;
+
+/// Seed of its numbers.
+const SEED: u64 = 1;
+
+/// Clocks of the crystal until crystal or PLL are ready: nominal 2 ms would
+/// only cost time.
+const READY_CLOCKS: u64 = 400;
+
+/// The parts that somebody outside of the chip touches.
+pub(crate) struct Chip {
+    pub(crate) bus: Arc<Bus>,
+    pub(crate) rcc: Arc<Rcc>,
+    pub(crate) flash: Arc<Flash>,
+    pub(crate) ports: Vec<Arc<Gpio>>,
+    pub(crate) brake: Arc<Brake>,
+    pub(crate) adc: Arc<Adc>,
+    pub(crate) analog: adc::Input,
+    pub(crate) usart: Arc<Usart>,
+    pub(crate) dma: [Arc<Dma>; 2],
+    /// Channels A and B of the encoder.
+    pub(crate) quadrature: [WireSource; 2],
+    /// The watchdog has bitten.
+    pub(crate) bitten: Arc<AtomicBool>,
+    /// The inputs of the reset flags.
+    pub(crate) causes: wires::Causes,
+}
+
+/// A timer of the library.
+fn timer(variant: &str, width: u32) -> Arc<Tim> {
+    let reload = if width == 32 { u32::MAX } else { 0xffff };
+    let props = Props::new()
+        .with("variant", variant)
+        .with("width", u64::from(width))
+        .with("arr-reset", u64::from(reload));
+    Arc::new(Tim::new(&props).expect("a timer that there is"))
+}
+
+impl Chip {
+    /// A chip around a core.
+    pub(crate) fn new(core: &ArmV7m) -> Self {
+        let nets = Nets::new(core);
+        let now = Now::default();
+        let frequencies = Frequencies::default();
+        let rcc = Arc::new(Rcc::with_config(
+            rcc::Variant::F4,
+            frequencies,
+            READY_CLOCKS,
+        ));
+        let rates = Arc::new(Rates::new(rcc.clocks()));
+        let dma = [(); 2].map(|()| Arc::new(Dma::with_variant(dma::Variant::Stream)));
+        let flash_props = Props::new().with("variant", "f4").with("size", 1_u64 << 20);
+        let flash = Arc::new(Flash::new(&flash_props).expect("a flash that there is"));
+        let mut parts = vec![
+            Part::of_library("RCC", 0x4002_3800, Clock::Crystal, None, rcc.clone()),
+            Part::of_library("FLASH", 0x4002_3c00, Clock::Core, None, flash.clone()),
+        ];
+        let apb2_reset = Gate::apb1(28);
+        let pwr = Arc::new(Pwr::with_config(pwr::Variant::F4, 0));
+        parts.push(Part::of_library(
+            "PWR",
+            0x4000_7000,
+            Clock::Core,
+            apb2_reset,
+            pwr,
+        ));
+        let rng = Arc::new(Rng::build(SEED, RANDOM_CLOCKS, false, Fault::None));
+        let gate = Gate::ahb2(6);
+        parts.push(Part::of_library(
+            "RNG",
+            0x5006_0800,
+            Clock::Pll48,
+            gate,
+            rng,
+        ));
+        let bitten = Latch::new();
+        let watchdog = Arc::new(Iwdg::with_window(false));
+        watchdog
+            .connect("reset", nets.to(bitten.clone(), 0))
+            .expect("it has a reset");
+        parts.push(Part::of_library(
+            "IWDG",
+            0x4000_3000,
+            Clock::Low,
+            None,
+            watchdog,
+        ));
+        let ports = Self::add_ports(&mut parts);
+        Self::add_dma(&mut parts, &nets, &dma);
+        let (adc, analog) = Self::add_adc(&mut parts, &nets, &rates, &now);
+        let brake = Self::add_bridge_timer(&mut parts, &nets);
+        let quadrature = Self::add_timers(&mut parts, &nets, &adc);
+        let usart = Self::add_usart(&mut parts, &nets, &rates, &now, &dma[1]);
+        let causes = wires::Causes::new(&nets, &rcc);
+        Self {
+            bus: Arc::new(Bus::new(parts, rates, now, rcc.clone(), dma.clone())),
+            rcc,
+            flash,
+            ports,
+            brake,
+            adc,
+            analog,
+            usart,
+            dma,
+            quadrature,
+            bitten: bitten.flag(),
+            causes,
+        }
+    }
+
+    fn add_ports(parts: &mut Vec<Part>) -> Vec<Arc<Gpio>> {
+        const NAMES: [&str; PORTS as usize] = [
+            "GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI",
+        ];
+        // Pins of the debugger.
+        let resets = |port| match port {
+            0 => (0xa800_0000, 0, 0x6400_0000),
+            1 => (0x0000_0280, 0x0000_00c0, 0x0000_0100),
+            _ => (0, 0, 0),
+        };
+        (0..PORTS)
+            .zip(NAMES)
+            .map(|(port, name)| {
+                let (moder, ospeedr, pupdr) = resets(port);
+                let gpio = Arc::new(Gpio::with_reset(ResetValues {
+                    moder,
+                    ospeedr,
+                    pupdr,
+                }));
+                let base = 0x4002_0000 + 0x400 * port;
+                let gate = Gate::ahb1(port);
+                parts.push(Part::of_library(
+                    name,
+                    base,
+                    Clock::Core,
+                    gate,
+                    gpio.clone(),
+                ));
+                gpio
+            })
+            .collect()
+    }
+
+    fn add_dma(parts: &mut Vec<Part>, nets: &Nets<'_>, dma: &[Arc<Dma>; 2]) {
+        const INTERRUPTS: [[u16; 8]; 2] = [
+            [11, 12, 13, 14, 15, 16, 17, 47],
+            [56, 57, 58, 59, 60, 68, 69, 70],
+        ];
+        let places = [("DMA1", 0x4002_6000, 21), ("DMA2", 0x4002_6400, 22)];
+        for ((dma, interrupts), (name, base, bit)) in dma.iter().zip(INTERRUPTS).zip(places) {
+            for (stream, interrupt) in interrupts.into_iter().enumerate() {
+                dma.connect_irq(stream, nets.interrupt(interrupt));
+            }
+            let gate = Gate::ahb1(bit);
+            parts.push(Part::of_library(name, base, Clock::Core, gate, dma.clone()));
+        }
+    }
+
+    fn add_adc(
+        parts: &mut Vec<Part>,
+        nets: &Nets<'_>,
+        rates: &Arc<Rates>,
+        now: &Now,
+    ) -> (Arc<Adc>, adc::Input) {
+        let analog = adc::Input::default();
+        let interrupt = nets.interrupt(18);
+        let adc = Arc::new(Adc::new(
+            rates.clone(),
+            now.clone(),
+            interrupt,
+            analog.clone(),
+        ));
+        let registers = Arc::new(AsRegisters(adc.clone()));
+        let (clock, gate) = (Clock::Time, Gate::apb2(8));
+        parts.push(Part::new(
+            "ADC1",
+            0x4001_2000,
+            clock,
+            gate,
+            registers,
+            adc.clone(),
+        ));
+        (adc, analog)
+    }
+
+    fn add_bridge_timer(parts: &mut Vec<Part>, nets: &Nets<'_>) -> Arc<Brake> {
+        let timer = timer("advanced", 16);
+        for (port, interrupt) in [("irq-up", 25), ("irq-trg", 26), ("irq-cc", 27)] {
+            let connected = timer.connect(port, nets.interrupt(interrupt));
+            connected.expect("an advanced timer has it");
+        }
+        let brake = Arc::new(Brake::new(
+            registers(&*timer),
+            Arc::new(Library(timer)),
+            nets.interrupt(24),
+        ));
+        let (clock, gate) = (Clock::Timers2, Gate::apb2(0));
+        parts.push(Part::new(
+            "TIM1",
+            0x4001_0000,
+            clock,
+            gate,
+            brake.clone(),
+            brake.clone(),
+        ));
+        brake
+    }
+
+    fn add_timers(parts: &mut Vec<Part>, nets: &Nets<'_>, adc: &Arc<Adc>) -> [WireSource; 2] {
+        const TIMERS: [(&str, u32, u32, u32, u16); 4] = [
+            ("TIM2", 0x4000_0000, 0, 32, 28),
+            ("TIM3", 0x4000_0400, 1, 16, 29),
+            ("TIM4", 0x4000_0800, 2, 16, 30),
+            ("TIM5", 0x4000_0c00, 3, 32, 50),
+        ];
+        let mut quadrature = Vec::new();
+        for (name, base, bit, width, interrupt) in TIMERS {
+            let timer = timer("general", width);
+            let connected = timer.connect("irq", nets.interrupt(interrupt));
+            connected.expect("every timer has an interrupt");
+            if let Some((_, number)) = adc::TRIGGERS.iter().find(|(timer, _)| *timer == name) {
+                let connected = timer.connect("trgo", nets.to(adc.clone(), *number));
+                connected.expect("every timer has a trigger output");
+            }
+            if name == "TIM5" {
+                quadrature = ["ti1", "ti2"]
+                    .map(|port| nets.to_device(&*timer, port))
+                    .into();
+            }
+            let gate = Gate::apb1(bit);
+            parts.push(Part::of_library(name, base, Clock::Timers1, gate, timer));
+        }
+        quadrature.try_into().expect("two channels")
+    }
+
+    fn add_usart(
+        parts: &mut Vec<Part>,
+        nets: &Nets<'_>,
+        rates: &Arc<Rates>,
+        now: &Now,
+        dma: &Arc<Dma>,
+    ) -> Arc<Usart> {
+        const CHANNEL: u8 = 5;
+        let requests = |streams: [usize; 2]| {
+            streams
+                .map(|stream| (dma.clone(), stream, CHANNEL))
+                .to_vec()
+        };
+        let usart = Arc::new(Usart::new(
+            rates.clone(),
+            now.clone(),
+            nets.interrupt(71),
+            requests([1, 2]),
+            requests([6, 7]),
+        ));
+        let registers = Arc::new(AsRegisters(usart.clone()));
+        let (clock, gate) = (Clock::Time, Gate::apb2(5));
+        parts.push(Part::new(
+            "USART6",
+            0x4001_1400,
+            clock,
+            gate,
+            registers,
+            usart.clone(),
+        ));
+        usart
+    }
+}

@@ -1,0 +1,319 @@
+//! The peripheral bus: finds the part at an address, brings it up to date,
+//! and notices what the access has changed.
+
+use super::clocks::Rates;
+use super::part::{Part, lock};
+use crate::mcu::Access;
+use crate::time::Time;
+use rsemu::core::space::{MemAttrs, MemOps, MemResult};
+use rsemu::dev::stm32::dma::Dma;
+use rsemu::dev::stm32::rcc::Rcc;
+use std::collections::BTreeSet;
+use std::fmt;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
+
+/// A part has its kilobyte.
+const PAGE: u32 = 0x400;
+
+/// From here on parts are on the AHB. Below, on an APB, there are only words:
+/// the bridge repeats half a word, or a byte, over all of it (RM0090 2.1).
+const AHB: u32 = 0x4002_0000;
+
+/// Beats that a controller moves before it looks up: more than all requests
+/// that can be there at once.
+const BEATS: u64 = 64;
+
+/// Time as all parts see it, in units.
+pub(crate) type Now = Arc<AtomicU64>;
+
+/// All parts, and what happens between them.
+pub(crate) struct Bus {
+    parts: Vec<Part>,
+    pub(crate) rates: Arc<Rates>,
+    pub(crate) now: Now,
+    rcc: Arc<Rcc>,
+    rcc_place: usize,
+    dma: [Arc<Dma>; 2],
+    /// Something has been touched: deadlines and requests may be others.
+    is_touched: AtomicBool,
+    /// Parts to be asked anew.
+    touched: Mutex<Vec<usize>>,
+    /// Addresses that were used and have nothing behind them.
+    strays: Mutex<BTreeSet<u32>>,
+    /// Registers whose accesses are written down, if there are any.
+    listens: AtomicBool,
+    listened: Mutex<Vec<u32>>,
+    accesses: Mutex<Vec<Access>>,
+}
+
+impl Bus {
+    pub(crate) fn new(
+        parts: Vec<Part>,
+        rates: Arc<Rates>,
+        now: Now,
+        rcc: Arc<Rcc>,
+        dma: [Arc<Dma>; 2],
+    ) -> Self {
+        let rcc_place = parts.iter().position(|part| part.name == "RCC");
+        let bus = Self {
+            rcc_place: rcc_place.expect("the chip has one"),
+            parts,
+            rates,
+            now,
+            rcc,
+            dma,
+            is_touched: AtomicBool::new(true),
+            touched: Mutex::default(),
+            strays: Mutex::default(),
+            listens: AtomicBool::new(false),
+            listened: Mutex::default(),
+            accesses: Mutex::default(),
+        };
+        bus.look_at_gates();
+        bus.look_ahead();
+        bus
+    }
+
+    pub(crate) fn now(&self) -> u64 {
+        self.now.load(Relaxed)
+    }
+
+    fn place_of(&self, address: u32) -> Option<usize> {
+        let page = address & !(PAGE - 1);
+        self.parts.iter().position(|part| part.base == page)
+    }
+
+    /// Something outside of the chip touches a part: brings it up to date.
+    pub(crate) fn touch(&self, name: &str) {
+        if let Some(place) = self.parts.iter().position(|part| part.name == name) {
+            self.parts[place].advance(self.now(), &self.rates);
+            self.mark(place);
+        }
+    }
+
+    fn mark(&self, place: usize) {
+        lock(&self.touched).push(place);
+        self.is_touched.store(true, Relaxed);
+    }
+
+    /// Whether there is something to settle.
+    pub(crate) fn is_touched(&self) -> bool {
+        self.is_touched.load(Relaxed)
+    }
+
+    /// After an access or an event: clocks, DMA, deadlines.
+    pub(crate) fn settle(&self) {
+        self.is_touched.store(false, Relaxed);
+        if self.rates.refresh() {
+            for part in &self.parts {
+                part.rerate(self.now());
+            }
+            self.look_ahead();
+        }
+        while self.dma.iter().map(|dma| dma.pump(BEATS)).sum::<u64>() > 0 {}
+        self.is_touched.store(false, Relaxed);
+        let mut touched = std::mem::take(&mut *lock(&self.touched));
+        touched.sort_unstable();
+        touched.dedup();
+        for place in touched {
+            self.parts[place].look_ahead(&self.rates);
+        }
+        for part in &self.parts {
+            // Ours may have been started by another part.
+            if part.clock == super::clocks::Clock::Time {
+                part.look_ahead(&self.rates);
+            }
+        }
+    }
+
+    fn look_ahead(&self) {
+        for part in &self.parts {
+            part.look_ahead(&self.rates);
+        }
+    }
+
+    /// When something happens by itself next.
+    pub(crate) fn deadline(&self) -> u64 {
+        let deadlines = self.parts.iter().map(Part::deadline);
+        deadlines.min().unwrap_or(u64::MAX)
+    }
+
+    /// All that happens by itself until `now`, in its order.
+    pub(crate) fn advance(&self, now: u64) {
+        loop {
+            let next = (0..self.parts.len()).min_by_key(|place| self.parts[*place].deadline());
+            let Some(place) = next.filter(|place| self.parts[*place].deadline() <= now) else {
+                break;
+            };
+            let part = &self.parts[place];
+            // Never back: a deadline may have passed within an instruction.
+            let at = part.deadline().max(self.now());
+            self.now.store(at, Relaxed);
+            part.advance(at, &self.rates);
+            self.mark(place);
+            self.settle();
+        }
+        self.now.store(now, Relaxed);
+    }
+
+    /// Everything as after a reset of the chip.
+    pub(crate) fn reset(&self) {
+        for part in &self.parts {
+            part.peripheral.reset();
+        }
+        self.look_at_gates();
+        self.rates.refresh();
+        for part in &self.parts {
+            part.rerate(self.now());
+        }
+        self.look_ahead();
+    }
+
+    /// Where the registers of all parts begin.
+    pub(crate) fn bases(&self) -> impl Iterator<Item = u32> {
+        self.parts.iter().map(|part| part.base)
+    }
+
+    /// Clock enable and reset bits of all parts.
+    fn look_at_gates(&self) {
+        for part in &self.parts {
+            let Some(gate) = part.gate else { continue };
+            let is_set = |bank| self.rcc.gate(bank, gate.bit).unwrap_or(false);
+            let is_clocked = is_set(gate.enable);
+            if part.is_clocked.load(Relaxed) != is_clocked {
+                part.advance(self.now(), &self.rates);
+                part.rerate(self.now());
+                part.is_clocked.store(is_clocked, Relaxed);
+            }
+            if is_set(gate.reset) {
+                part.peripheral.reset();
+            }
+            part.look_ahead(&self.rates);
+        }
+    }
+
+    /// Addresses that a program has used without anything behind them, or of
+    /// a part whose clock was off.
+    pub(crate) fn strays(&self) -> Vec<u32> {
+        lock(&self.strays).iter().copied().collect()
+    }
+
+    /// Writes down every access to these registers from now on.
+    pub(crate) fn listen(&self, registers: &[u32]) {
+        self.listens.store(!registers.is_empty(), Relaxed);
+        *lock(&self.listened) = registers.to_vec();
+    }
+
+    /// What was written down since this was asked last.
+    pub(crate) fn take_accesses(&self) -> Vec<Access> {
+        std::mem::take(&mut *lock(&self.accesses))
+    }
+
+    fn hear(&self, address: u32, is_write: bool, bytes: &[u8]) {
+        if !self.listens.load(Relaxed) || !lock(&self.listened).contains(&address) {
+            return;
+        }
+        let value = bytes
+            .iter()
+            .rev()
+            .fold(0, |all, byte| all << 8 | u32::from(*byte));
+        lock(&self.accesses).push(Access {
+            at: Time::from_units(self.now()),
+            address,
+            value,
+            is_write,
+        });
+    }
+
+    fn stray(&self, address: u32) {
+        lock(&self.strays).insert(address);
+    }
+}
+
+/// A stretch of the bus that the core and the DMA see at `base`.
+pub(crate) struct Window {
+    pub(crate) bus: Arc<Bus>,
+    pub(crate) base: u32,
+}
+
+impl fmt::Debug for Window {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Window({:#x})", self.base)
+    }
+}
+
+impl Window {
+    fn address(&self, offset: u64) -> u32 {
+        self.base + u32::try_from(offset).unwrap_or(u32::MAX - self.base)
+    }
+}
+
+impl MemOps for Window {
+    fn read(&self, offset: u64, into: &mut [u8], attrs: MemAttrs) -> MemResult {
+        let (bus, address) = (&self.bus, self.address(offset));
+        let Some(place) = bus.place_of(address) else {
+            if !attrs.debug {
+                bus.stray(address);
+            }
+            into.fill(0);
+            return Ok(());
+        };
+        let part = &bus.parts[place];
+        let is_clocked = part.is_clocked.load(Relaxed);
+        if !attrs.debug {
+            if !is_clocked {
+                bus.stray(address);
+            }
+            part.advance(bus.now(), &bus.rates);
+            bus.mark(place);
+        }
+        if !is_clocked && !attrs.debug {
+            into.fill(0);
+            return Ok(());
+        }
+        let offset = u64::from(address - part.base);
+        if address >= AHB {
+            part.registers.read(offset, into, attrs)?;
+        } else {
+            let mut word = [0; 4];
+            part.registers.read(offset & !3, &mut word, attrs)?;
+            let first = usize::try_from(offset & 3).unwrap_or_default();
+            for (place, byte) in into.iter_mut().zip(word.iter().skip(first)) {
+                *place = *byte;
+            }
+        }
+        if !attrs.debug {
+            bus.hear(address, false, into);
+        }
+        Ok(())
+    }
+
+    fn write(&self, offset: u64, from: &[u8], attrs: MemAttrs) -> MemResult {
+        let (bus, address) = (&self.bus, self.address(offset));
+        let place = bus.place_of(address);
+        let is_clocked = |place: &usize| bus.parts[*place].is_clocked.load(Relaxed);
+        let Some(place) = place.filter(is_clocked) else {
+            bus.stray(address);
+            return Ok(());
+        };
+        let part = &bus.parts[place];
+        part.advance(bus.now(), &bus.rates);
+        bus.mark(place);
+        bus.hear(address, true, from);
+        let offset = u64::from(address - part.base);
+        let result = if address >= AHB {
+            part.registers.write(offset, from, attrs)
+        } else {
+            let mut word = [0; 4];
+            for (place, byte) in word.iter_mut().zip(from.iter().cycle()) {
+                *place = *byte;
+            }
+            part.registers.write(offset & !3, &word, attrs)
+        };
+        if place == bus.rcc_place {
+            bus.look_at_gates();
+        }
+        result
+    }
+}

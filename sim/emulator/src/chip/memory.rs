@@ -1,0 +1,102 @@
+//! What the core and the DMA see at which address.
+//!
+//! | address | what | core | DMA |
+//! |---|---|---|---|
+//! | 0, 0x0800_0000 | flash, 1 MB | yes | yes |
+//! | 0x1000_0000 | CCM RAM, 64 KB | yes | no |
+//! | 0x1fff_7a10 | number of the chip, bytes of flash | yes | no |
+//! | 0x2000_0000 | RAM, 128 KB | yes | yes |
+//! | 0x4000_0000 | peripherals | yes | yes |
+//! | 0x5000_0000 | peripherals of AHB2 | yes | no |
+
+use super::Chip;
+use super::bus::Window;
+use rsemu::core::device::Device;
+use rsemu::core::space::{AddressSpace, RamStore, Region, RegionRef, RequesterId};
+use std::sync::Arc;
+
+const RAM_BYTES: u64 = 128 << 10;
+const CCM_BYTES: u64 = 64 << 10;
+
+/// Of the system memory with number and flash size.
+const SYSTEM: u64 = 0x1fff_7a00;
+
+/// The chip's number: X 1, Y 2, wafer 3, lot "EMUL405".
+const NUMBER: [u8; 12] = *b"\x01\x00\x02\x00\x03EMUL405";
+
+/// The memories that a program can change.
+pub(crate) struct Memory {
+    pub(crate) space: Arc<AddressSpace>,
+    /// What the DMA sees; the controllers hold it weakly.
+    _dma_space: Arc<AddressSpace>,
+    pub(crate) ram: Arc<RamStore>,
+    pub(crate) ccm: Arc<RamStore>,
+}
+
+impl Memory {
+    pub(crate) fn new(chip: &Chip) -> Self {
+        let ram = Arc::new(RamStore::new(RAM_BYTES));
+        let ccm = Arc::new(RamStore::new(CCM_BYTES));
+        let flash = chip.flash.region("array").expect("flash has an array");
+        let ram_region: RegionRef = Arc::new(Region::ram("RAM", ram.clone()));
+        let peripherals = window(chip, 0x4000_0000, 0x8_0000);
+        let space = Arc::new(AddressSpace::new("core", 32));
+        let dma_space = Arc::new(AddressSpace::new("DMA", 32));
+        let system = Arc::new(RamStore::new(0x40));
+        write(&system, 0x10, &NUMBER);
+        write(&system, 0x22, &1024_u16.to_le_bytes());
+        let shared = [
+            (flash, 0x0800_0000),
+            (ram_region, 0x2000_0000),
+            (peripherals, 0x4000_0000),
+        ];
+        let own = [
+            (shared[0].0.clone(), 0),
+            (Arc::new(Region::ram("CCM", ccm.clone())), 0x1000_0000),
+            (Arc::new(Region::ram("system", system)), SYSTEM),
+            (window(chip, 0x5000_0000, 0x8_0000), 0x5000_0000),
+        ];
+        for (region, base) in shared.iter().chain(&own) {
+            map(&space, region, *base);
+        }
+        for (region, base) in &shared {
+            map(&dma_space, region, *base);
+        }
+        for (n, dma) in (1..).zip(&chip.dma) {
+            dma.attach_bus(&dma_space, RequesterId(n));
+        }
+        Self {
+            space,
+            _dma_space: dma_space,
+            ram,
+            ccm,
+        }
+    }
+
+    /// Power was off: anything may be in it.
+    pub(crate) fn forget(&self) {
+        let noise = |size: u64| -> Vec<u8> {
+            let bytes = (0..size).map(|n| ((n * 167) >> 3).to_le_bytes()[0]);
+            bytes.collect()
+        };
+        write(&self.ram, 0, &noise(RAM_BYTES));
+        write(&self.ccm, 0, &noise(CCM_BYTES));
+    }
+}
+
+fn window(chip: &Chip, base: u32, bytes: u64) -> RegionRef {
+    let window = Window {
+        bus: chip.bus.clone(),
+        base,
+    };
+    Arc::new(Region::io("peripherals", bytes, Arc::new(window)))
+}
+
+fn map(space: &AddressSpace, region: &RegionRef, base: u64) {
+    let mapped = space.topology().map(region.clone(), base);
+    mapped.expect("regions do not overlap");
+}
+
+fn write(store: &RamStore, at: u64, bytes: &[u8]) {
+    store.write_at(at, bytes).expect("within the memory");
+}

@@ -1,0 +1,83 @@
+//! Wires between parts.
+
+use rsemu::core::device::Device;
+use rsemu::core::wire::{Level, Wire, WireId, WireIdAllocator, WireSink, WireSource};
+use rsemu::cpu::arm::v7m::ArmV7m;
+use rsemu::dev::stm32::rcc::Rcc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+/// Makes wires to a core and to devices.
+pub(crate) struct Nets<'a> {
+    core: &'a ArmV7m,
+    ids: WireIdAllocator,
+}
+
+impl<'a> Nets<'a> {
+    pub(crate) fn new(core: &'a ArmV7m) -> Self {
+        Self {
+            core,
+            ids: WireIdAllocator::new(),
+        }
+    }
+
+    /// A wire to an interrupt of the core.
+    pub(crate) fn interrupt(&self, number: u16) -> WireSource {
+        self.to_device(self.core, &format!("irq{number}"))
+    }
+
+    /// A wire to a pin of a device of the library.
+    pub(crate) fn to_device(&self, device: &dyn Device, port: &str) -> WireSource {
+        let id = self.ids.alloc();
+        let pin = device.sink(port, &[id]).expect("the device has this pin");
+        let wire = Wire::builder().source(id).sink(pin.sink, pin.line).build();
+        WireSource::new(Arc::new(wire), id)
+    }
+
+    /// A wire to one of ours.
+    pub(crate) fn to(&self, sink: Arc<dyn WireSink>, line: u32) -> WireSource {
+        let id = self.ids.alloc();
+        let wire = Wire::builder().source(id).sink(sink, line).build();
+        WireSource::new(Arc::new(wire), id)
+    }
+}
+
+/// Remembers that its wire was high.
+#[derive(Debug, Default)]
+pub(crate) struct Latch(Arc<AtomicBool>);
+
+impl Latch {
+    pub(crate) fn new() -> Arc<Self> {
+        Arc::default()
+    }
+
+    pub(crate) fn flag(&self) -> Arc<AtomicBool> {
+        self.0.clone()
+    }
+}
+
+impl WireSink for Latch {
+    fn set_level(&self, _: WireId, _: u32, level: Level) {
+        if level.is_high() {
+            self.0.store(true, Relaxed);
+        }
+    }
+}
+
+/// The inputs of the flags that say why a chip was reset.
+pub(crate) struct Causes(Vec<(&'static str, WireSource)>);
+
+impl Causes {
+    pub(crate) fn new(nets: &Nets<'_>, rcc: &Rcc) -> Self {
+        let pins = ["porrst", "borrst", "pinrst", "sftrst", "iwdgrst"];
+        Self(pins.map(|pin| (pin, nets.to_device(rcc, pin))).into())
+    }
+
+    /// Sets a flag.
+    pub(crate) fn set(&self, name: &str) {
+        for (_, source) in self.0.iter().filter(|(pin, _)| *pin == name) {
+            source.set(Level::High);
+            source.set(Level::Low);
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Which cycles a task takes: from the entry into its exception to the end of
+//! its return, without those of the tasks that interrupt it.
+//!
+//! Modelled cycles, 0 wait states: a load or a store is two, a branch that is
+//! taken three, entry into an exception 12, the return 10, from one straight to
+//! the next 6. A core on silicon is faster where it overlaps loads, and slower
+//! where flash makes it wait.
+
+use crate::mcu::{Step, Watch};
+use crate::time::Time;
+use std::collections::BTreeMap;
+
+/// What a task has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// How often it has run.
+    pub calls: u64,
+    /// Cycles, all of them.
+    pub cycles: u64,
+    /// Cycles of the worst run.
+    pub worst_cycles: u64,
+    /// Instructions, all of them.
+    pub instructions: u64,
+    /// Instructions of the longest run.
+    pub worst_instructions: u64,
+    /// From begin to end with all that interrupts it, the worst.
+    pub worst_span: Time,
+}
+
+impl Cost {
+    /// Mean cycles of a run.
+    #[expect(clippy::cast_precision_loss, reason = "for people")]
+    pub fn mean_cycles(&self) -> f64 {
+        self.cycles as f64 / self.calls.max(1) as f64
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    exception: u16,
+    begin: Time,
+    cycles: u64,
+    instructions: u64,
+}
+
+/// Keeps the books.
+#[derive(Clone, Debug, Default)]
+pub struct Cycles {
+    runs: Vec<Run>,
+    costs: BTreeMap<u16, Cost>,
+    /// Which exception has interrupted which.
+    preemptions: BTreeMap<(u16, u16), u64>,
+}
+
+impl Cycles {
+    /// The cost of each exception's task.
+    pub fn costs(&self) -> &BTreeMap<u16, Cost> {
+        &self.costs
+    }
+
+    /// How often an exception (the second) has interrupted another (the
+    /// first).
+    pub fn preemptions(&self) -> &BTreeMap<(u16, u16), u64> {
+        &self.preemptions
+    }
+
+    /// Forgets what it has seen, but for what runs now.
+    pub fn clear(&mut self) {
+        self.costs.clear();
+        self.preemptions.clear();
+    }
+
+    fn begin(&mut self, step: &Step) {
+        if let Some(below) = self.runs.last() {
+            let pair = (below.exception, step.exception);
+            *self.preemptions.entry(pair).or_default() += 1;
+        }
+        self.begin_run(step, u64::from(step.cycles));
+    }
+
+    fn begin_run(&mut self, step: &Step, cycles: u64) {
+        self.runs.push(Run {
+            exception: step.exception,
+            begin: step.at,
+            cycles,
+            instructions: 0,
+        });
+    }
+
+    fn end(&mut self, end: Time) {
+        let Some(run) = self.runs.pop() else { return };
+        let cost = self.costs.entry(run.exception).or_default();
+        cost.calls += 1;
+        cost.cycles += run.cycles;
+        cost.worst_cycles = cost.worst_cycles.max(run.cycles);
+        cost.instructions += run.instructions;
+        cost.worst_instructions = cost.worst_instructions.max(run.instructions);
+        cost.worst_span = cost.worst_span.max(end - run.begin);
+    }
+}
+
+impl Watch for Cycles {
+    fn step(&mut self, step: &Step) {
+        let depth = step.active as usize;
+        if depth > self.runs.len() {
+            self.begin(step);
+            return;
+        }
+        if let Some(run) = self.runs.last_mut() {
+            run.cycles += u64::from(step.cycles);
+            run.instructions += 1;
+        }
+        while depth < self.runs.len() {
+            self.end(step.at);
+        }
+        let top = self.runs.last();
+        if top.is_some_and(|run| run.exception != step.exception) {
+            // Straight from one to the next, with the cost of the way charged
+            // to the first.
+            self.end(step.at);
+            self.begin_run(step, 0);
+        }
+    }
+}

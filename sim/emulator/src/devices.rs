@@ -1,0 +1,12 @@
+//! What the library lacks.
+//!
+//! | device | for |
+//! |---|---|
+//! | [`adc`] | a converter that a timer starts |
+//! | [`usart`] | a USART with DMA requests and the time of every character |
+//! | [`brake`] | the break input of an advanced timer |
+
+pub(crate) mod adc;
+pub(crate) mod brake;
+pub(crate) mod registers;
+pub(crate) mod usart;

@@ -1,0 +1,296 @@
+//! A converter that a timer starts.
+//!
+//! ```text
+//! trigger ── sampling ── 12 clocks ──> DR, EOC
+//! ```
+//!
+//! Modelled: one converter of the three, regular conversions of a sequence of
+//! any length, started by software or on an edge of a timer's trigger output;
+//! sampling times, prescaler, 12 bits right-aligned; EOC, OVR, STRT and the
+//! interrupts of EOC and OVR. The voltage is the one that there is as sampling
+//! ends. Not modelled: injected conversions, DMA, the analog watchdog, other
+//! resolutions and triggers, continuous mode; a program that asks for them is
+//! told so by [`Adc::is_asked_too_much`].
+
+use super::registers::Words;
+use crate::chip::bus::Now;
+use crate::chip::clocks::{Clock, Rates};
+use crate::chip::part::{Peripheral, lock};
+use rsemu::core::wire::{Level, WireId, WireSink, WireSource};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
+
+const EOC: u32 = 1 << 1;
+const STRT: u32 = 1 << 4;
+const OVR: u32 = 1 << 5;
+
+const EOCIE: u32 = 1 << 5;
+const OVRIE: u32 = 1 << 26;
+/// SCAN and the interrupts that are modelled; all else of CR1 is not.
+const KNOWN_1: u32 = EOCIE | OVRIE | 1 << 8;
+
+const ADON: u32 = 1;
+const EOCS: u32 = 1 << 10;
+const SWSTART: u32 = 1 << 30;
+const EXTEN_SHIFT: u32 = 28;
+const EXTSEL_SHIFT: u32 = 24;
+const KNOWN_2: u32 = ADON | EOCS | SWSTART | 3 << EXTEN_SHIFT | 15 << EXTSEL_SHIFT;
+
+/// Clocks of each sampling time.
+const SAMPLING: [u64; 8] = [3, 15, 28, 56, 84, 112, 144, 480];
+
+/// Clocks of a conversion of 12 bits.
+const CONVERSION: u64 = 12;
+
+/// Highest count.
+const TOP: f64 = 4095.0;
+
+/// The trigger outputs that are wired, with their numbers in EXTSEL.
+pub(crate) const TRIGGERS: [(&str, u32); 3] = [("TIM2", 6), ("TIM3", 8), ("TIM8", 14)];
+
+/// What stands at the converter's input, as share of its reference.
+pub(crate) type Input = Arc<Mutex<f64>>;
+
+#[derive(Debug, Default)]
+struct State {
+    sr: u32,
+    cr1: u32,
+    cr2: u32,
+    smpr: [u32; 2],
+    sqr: [u32; 3],
+    dr: u32,
+    ccr: u32,
+    /// Place in the sequence of what is being converted, when it ends.
+    converting: Option<(u32, u64)>,
+    /// When its sampling ends, if it has not.
+    sampling: Option<u64>,
+    sampled: f64,
+    trigger_levels: u32,
+    lost_triggers: u32,
+    is_dead: bool,
+}
+
+/// The device.
+pub(crate) struct Adc {
+    state: Mutex<State>,
+    rates: Arc<Rates>,
+    now: Now,
+    interrupt: WireSource,
+    input: Input,
+    asked_too_much: AtomicBool,
+}
+
+impl Adc {
+    pub(crate) fn new(rates: Arc<Rates>, now: Now, interrupt: WireSource, input: Input) -> Self {
+        Self {
+            state: Mutex::default(),
+            rates,
+            now,
+            interrupt,
+            input,
+            asked_too_much: AtomicBool::new(false),
+        }
+    }
+
+    /// Whether a program has asked for what is not modelled.
+    pub(crate) fn is_asked_too_much(&self) -> bool {
+        self.asked_too_much.load(Relaxed)
+    }
+
+    /// From now on it converts, or never ends a conversion.
+    pub(crate) fn set_dead(&self, is_dead: bool) {
+        lock(&self.state).is_dead = is_dead;
+    }
+
+    /// Triggers that came while it was converting.
+    pub(crate) fn lost_triggers(&self) -> u32 {
+        lock(&self.state).lost_triggers
+    }
+
+    fn units(&self, state: &State) -> u64 {
+        let prescaler = u64::from((state.ccr >> 16 & 3) + 1) * 2;
+        prescaler * self.rates.units(Clock::Apb2)
+    }
+
+    fn channel(state: &State, place: u32) -> u32 {
+        let word = state.sqr[2 - (place / 6) as usize % 3];
+        word >> (place % 6 * 5) & 31
+    }
+
+    fn start(&self, state: &mut State, place: u32, at: u64) {
+        let channel = Self::channel(state, place);
+        let word = state.smpr[usize::from(channel < 10)];
+        let sampling = SAMPLING[(word >> (channel % 10 * 3) & 7) as usize];
+        let units = self.units(state);
+        let end = at + sampling * units;
+        state.sampling = Some(end);
+        state.converting = Some((place, end + CONVERSION * units));
+        state.sr |= STRT;
+    }
+
+    fn trigger(&self, state: &mut State) {
+        if state.cr2 & ADON == 0 || state.is_dead {
+            return;
+        }
+        if state.converting.is_some() {
+            state.lost_triggers += 1;
+            return;
+        }
+        let now = self.now.load(Relaxed);
+        self.start(state, 0, now);
+    }
+
+    fn happen(&self, state: &mut State, at: u64) {
+        if state.sampling == Some(at) {
+            state.sampling = None;
+            state.sampled = *lock(&self.input);
+        }
+        let Some((place, end)) = state.converting.filter(|(_, end)| *end == at) else {
+            return;
+        };
+        // Without DMA an overrun is noticed only with EOCS.
+        if state.sr & EOC != 0 && state.cr2 & EOCS != 0 {
+            state.sr |= OVR;
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "within the range of the converter"
+        )]
+        let counts = (state.sampled * (TOP + 1.0)).floor().clamp(0.0, TOP) as u32;
+        state.dr = counts;
+        let last = state.sqr[0] >> 20 & 15;
+        if place >= last || state.cr2 & EOCS != 0 {
+            state.sr |= EOC;
+        }
+        state.converting = None;
+        if place < last {
+            self.start(state, place + 1, end);
+        }
+    }
+
+    fn next(state: &State) -> Option<u64> {
+        let end = state.converting.map(|(_, end)| end);
+        [state.sampling, end].into_iter().flatten().min()
+    }
+
+    fn tell(&self) {
+        let state = lock(&self.state);
+        let ends = state.sr & EOC != 0 && state.cr1 & EOCIE != 0;
+        let overran = state.sr & OVR != 0 && state.cr1 & OVRIE != 0;
+        drop(state);
+        self.interrupt.set(Level::from(ends || overran));
+    }
+}
+
+impl Peripheral for Adc {
+    fn advance_to(&self, tick: u64) {
+        {
+            let mut state = lock(&self.state);
+            while let Some(at) = Self::next(&state).filter(|at| *at <= tick) {
+                self.happen(&mut state, at);
+            }
+        }
+        self.tell();
+    }
+
+    fn next_event(&self) -> Option<u64> {
+        Self::next(&lock(&self.state))
+    }
+
+    fn reset(&self) {
+        {
+            let mut state = lock(&self.state);
+            *state = State {
+                trigger_levels: state.trigger_levels,
+                lost_triggers: state.lost_triggers,
+                is_dead: state.is_dead,
+                ..State::default()
+            };
+        }
+        self.tell();
+    }
+}
+
+/// A timer's trigger output; the line is its number in EXTSEL.
+impl WireSink for Adc {
+    fn set_level(&self, _: WireId, line: u32, level: Level) {
+        let mut state = lock(&self.state);
+        let was_high = state.trigger_levels >> line & 1 == 1;
+        state.trigger_levels &= !(1 << line);
+        state.trigger_levels |= u32::from(level.is_high()) << line;
+        if state.cr2 >> EXTSEL_SHIFT & 15 != line || was_high == level.is_high() {
+            return;
+        }
+        // Bit 0 of EXTEN: rising edges; bit 1: falling ones.
+        let enabled = state.cr2 >> EXTEN_SHIFT & 3;
+        if enabled & (if level.is_high() { 1 } else { 2 }) != 0 {
+            self.trigger(&mut state);
+        }
+    }
+}
+
+impl Words for Adc {
+    fn read(&self, offset: u32, is_debugger: bool) -> u32 {
+        let value = {
+            let mut state = lock(&self.state);
+            match offset {
+                0x00 => state.sr,
+                0x04 => state.cr1,
+                0x08 => state.cr2,
+                0x0c => state.smpr[0],
+                0x10 => state.smpr[1],
+                0x2c => state.sqr[0],
+                0x30 => state.sqr[1],
+                0x34 => state.sqr[2],
+                0x4c => {
+                    if !is_debugger {
+                        state.sr &= !EOC;
+                    }
+                    state.dr
+                }
+                0x304 => state.ccr,
+                _ => 0,
+            }
+        };
+        if !is_debugger {
+            self.tell();
+        }
+        value
+    }
+
+    fn write(&self, offset: u32, value: u32) {
+        {
+            let mut state = lock(&self.state);
+            match offset {
+                0x00 => state.sr &= value,
+                0x04 => state.cr1 = value,
+                0x08 => {
+                    state.cr2 = value & !SWSTART;
+                    if value & SWSTART != 0 {
+                        self.trigger(&mut state);
+                    }
+                    if value & ADON == 0 {
+                        (state.sampling, state.converting) = (None, None);
+                    }
+                    let selected = value >> EXTSEL_SHIFT & 15;
+                    let is_wired = TRIGGERS.iter().any(|(_, number)| *number == selected);
+                    if value >> EXTEN_SHIFT & 3 != 0 && !is_wired {
+                        self.asked_too_much.store(true, Relaxed);
+                    }
+                }
+                0x0c => state.smpr[0] = value,
+                0x10 => state.smpr[1] = value,
+                0x2c => state.sqr[0] = value,
+                0x30 => state.sqr[1] = value,
+                0x34 => state.sqr[2] = value,
+                0x304 => state.ccr = value,
+                _ => {}
+            }
+            if state.cr1 & !KNOWN_1 != 0 || state.cr2 & !KNOWN_2 != 0 {
+                self.asked_too_much.store(true, Relaxed);
+            }
+        }
+        self.tell();
+    }
+}

@@ -1,0 +1,200 @@
+//! The break of an advanced timer, in front of the library's timer, which has
+//! none.
+//!
+//! Modelled: BKE, BKP, BG; BIF and its interrupt; MOE that falls with the
+//! break and cannot rise while it is there; the lock of level 1 over BDTR and
+//! of CR2's idle levels. Not modelled: dead time (its register can be looked
+//! at), outputs that come back by themselves (AOE), higher levels of the lock
+//! over CCER and CCMR; [`Brake::is_asked_too_much`] tells of AOE.
+
+use crate::chip::part::{Peripheral, lock};
+use rsemu::core::space::{MemAttrs, MemOps, MemResult};
+use rsemu::core::wire::{Level, WireSource};
+use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
+
+const DIER: u64 = 0x0c;
+const SR: u64 = 0x10;
+const EGR: u64 = 0x14;
+const BDTR: u64 = 0x44;
+
+/// In DIER, SR and EGR.
+const BREAK: u32 = 1 << 7;
+const BKE: u32 = 1 << 12;
+const BKP: u32 = 1 << 13;
+const AOE: u32 = 1 << 14;
+const MOE: u32 = 1 << 15;
+/// DTG, LOCK, BKE, BKP, AOE.
+const LOCKED_1: u32 = 0xff | 3 << 8 | BKE | BKP | AOE;
+/// OSSI, OSSR.
+const LOCKED_2: u32 = 3 << 10;
+
+#[derive(Clone, Copy, Debug, Default)]
+struct State {
+    has_broken: bool,
+    input: bool,
+    /// Written once after a reset.
+    lock: u32,
+}
+
+/// The break.
+pub(crate) struct Brake {
+    timer: Arc<dyn MemOps>,
+    behind: Arc<dyn Peripheral>,
+    interrupt: WireSource,
+    state: Mutex<State>,
+    asked_too_much: AtomicBool,
+}
+
+impl fmt::Debug for Brake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Brake").finish_non_exhaustive()
+    }
+}
+
+impl Brake {
+    pub(crate) fn new(
+        timer: Arc<dyn MemOps>,
+        behind: Arc<dyn Peripheral>,
+        interrupt: WireSource,
+    ) -> Self {
+        Self {
+            timer,
+            behind,
+            interrupt,
+            state: Mutex::default(),
+            asked_too_much: AtomicBool::new(false),
+        }
+    }
+
+    /// Whether a program has asked for what is not modelled.
+    pub(crate) fn is_asked_too_much(&self) -> bool {
+        self.asked_too_much.load(Relaxed)
+    }
+
+    fn word(&self, offset: u64) -> u32 {
+        let mut bytes = [0; 4];
+        let _ = self.timer.read(offset, &mut bytes, MemAttrs::DEBUG);
+        u32::from_le_bytes(bytes)
+    }
+
+    fn set_word(&self, offset: u64, value: u32) {
+        let _ = self
+            .timer
+            .write(offset, &value.to_le_bytes(), MemAttrs::DEFAULT);
+    }
+
+    /// Whether the break is there now.
+    fn is_broken(&self, bdtr: u32) -> bool {
+        let is_high = lock(&self.state).input;
+        bdtr & BKE != 0 && is_high == (bdtr & BKP != 0)
+    }
+
+    /// The level at the pin; low if nothing is connected.
+    pub(crate) fn set_input(&self, is_high: bool) {
+        lock(&self.state).input = is_high;
+        self.look(false);
+    }
+
+    /// Breaks if there is a reason to.
+    fn look(&self, by_program: bool) {
+        let bdtr = self.word(BDTR);
+        if by_program || self.is_broken(bdtr) {
+            lock(&self.state).has_broken = true;
+            if bdtr & MOE != 0 {
+                self.set_word(BDTR, bdtr & !MOE);
+            }
+        }
+        self.tell();
+    }
+
+    fn tell(&self) {
+        let has_broken = lock(&self.state).has_broken;
+        let level = has_broken && self.word(DIER) & BREAK != 0;
+        self.interrupt.set(Level::from(level));
+    }
+
+    /// What may be written to BDTR.
+    fn permitted(&self, value: u32) -> u32 {
+        let held = {
+            let mut state = lock(&self.state);
+            let held = match state.lock {
+                0 => 0,
+                1 => LOCKED_1,
+                _ => LOCKED_1 | LOCKED_2,
+            };
+            if state.lock == 0 {
+                state.lock = value >> 8 & 3;
+            }
+            held
+        };
+        let value = self.word(BDTR) & held | value & !held;
+        if value & AOE != 0 {
+            self.asked_too_much.store(true, Relaxed);
+        }
+        if self.is_broken(value) {
+            value & !MOE
+        } else {
+            value
+        }
+    }
+}
+
+impl Peripheral for Brake {
+    fn advance_to(&self, tick: u64) {
+        self.behind.advance_to(tick);
+    }
+
+    fn next_event(&self) -> Option<u64> {
+        self.behind.next_event()
+    }
+
+    fn reset(&self) {
+        self.behind.reset();
+        let input = lock(&self.state).input;
+        *lock(&self.state) = State {
+            input,
+            ..State::default()
+        };
+        self.tell();
+    }
+}
+
+impl MemOps for Brake {
+    fn read(&self, offset: u64, into: &mut [u8], attrs: MemAttrs) -> MemResult {
+        self.timer.read(offset, into, attrs)?;
+        if offset == SR
+            && lock(&self.state).has_broken
+            && let Some(byte) = into.first_mut()
+        {
+            *byte |= BREAK.to_le_bytes()[0];
+        }
+        Ok(())
+    }
+
+    fn write(&self, offset: u64, from: &[u8], attrs: MemAttrs) -> MemResult {
+        let mut bytes = [0; 4];
+        for (place, byte) in bytes.iter_mut().zip(from) {
+            *place = *byte;
+        }
+        let value = u32::from_le_bytes(bytes);
+        if offset == BDTR {
+            self.set_word(BDTR, self.permitted(value));
+            self.look(false);
+            return Ok(());
+        }
+        self.timer.write(offset, from, attrs)?;
+        match offset {
+            EGR if value & BREAK != 0 => self.look(true),
+            SR if value & BREAK == 0 => {
+                lock(&self.state).has_broken = false;
+                // It cannot be forgotten while it is there.
+                self.look(false);
+            }
+            DIER => self.tell(),
+            _ => {}
+        }
+        Ok(())
+    }
+}

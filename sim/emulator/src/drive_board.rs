@@ -1,0 +1,282 @@
+//! The drive's image on its board: leg, link, enable lines, and a native comms.
+//!
+//! ```text
+//!   native Comms ── 4.2 Mbaud ──> USART6 ┌───────────┐ TIM5 <── edges ─────┐
+//!                <────────────────       │ the image │ ADC1 <── current ── Leg
+//!        │                               └───────────┘ TIM1 ──> voltage ───┘
+//!   enable line of comms ────────────┬──── PB0, read back on PB1
+//!                              motor supply
+//! ```
+//!
+//! Leg and chip take turns, half a tick at a time. The halves are in step with
+//! the bridge's timer once it runs: a tick begins at its bottom. What the leg
+//! sees of the bridge is its mean voltage: shares of the period times supply,
+//! without dead time. The encoder's edges come evenly within the last six
+//! tenths of a half. The comparator at the shunt looks as a half ends.
+
+mod access;
+mod encoder_edges;
+mod half_bridges;
+mod link_wires;
+
+use crate::elf::Image;
+use crate::mcu::{Mcu, Pin, Reset, Watch};
+use crate::stm32f405::Stm32f405;
+use crate::time::Time;
+use crepitus_board::leg::{Leg, Terminals};
+use crepitus_device::comms::{Boot, Comms, Inputs};
+use crepitus_device::drive::plausibility::TRIP_A;
+use crepitus_protocol::management::{Identity, ResetCause, Role};
+use crepitus_protocol::{Revision, Values, schema};
+use crepitus_scene::Scene;
+use encoder_edges::Edges;
+use link_wires::{Down, Up};
+
+/// Half a tick.
+pub const HALF: Time = Time::from_us(25);
+
+/// Halves in a millisecond, the tick of comms.
+const COMMS_HALVES: u64 = 40;
+
+/// The drive's enable line: what drives it, and where it is read back.
+const LINE: Pin = Pin::new('B', 0);
+const LINE_BACK: Pin = Pin::new('B', 1);
+
+/// Low: overcurrent.
+const BREAK: Pin = Pin::new('B', 12);
+
+/// Share of the converter's reference per ampere: 33 mΩ, 20 V/V, of 3.3 V.
+const SHARE_PER_A: f64 = 20.0 * 0.033 / 3.3;
+
+/// What is broken, or switched off.
+#[derive(Clone, Copy, Debug, Default)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a part that works or not"
+)]
+pub struct Faults {
+    /// Nothing from comms arrives.
+    pub down_is_cut: bool,
+    /// Nothing from the drive arrives.
+    pub up_is_cut: bool,
+    /// Comms does nothing any more; its line stays as it is.
+    pub comms_hangs: bool,
+    /// The comparator at the shunt sees nothing.
+    pub trip_is_blind: bool,
+    /// The drive's line stays like this whatever drives it.
+    pub line_is_stuck: Option<bool>,
+}
+
+/// The board.
+pub struct DriveBoard {
+    mcu: Stm32f405,
+    leg: Leg,
+    comms: Comms,
+    /// What is broken.
+    pub faults: Faults,
+    comms_line: bool,
+    down: Down,
+    up: Up,
+    edges: Edges,
+    /// Halves since the board was switched on.
+    halves: u64,
+    is_second: bool,
+    /// Where the next half ends.
+    end: Time,
+    is_in_step: bool,
+    resets: Vec<(Time, Reset)>,
+}
+
+fn identity() -> Identity {
+    let part = |text: &str| text.parse().unwrap_or(0);
+    Identity {
+        role: Role::Comms,
+        version: [
+            part(env!("CARGO_PKG_VERSION_MAJOR")),
+            part(env!("CARGO_PKG_VERSION_MINOR")),
+            part(env!("CARGO_PKG_VERSION_PATCH")),
+        ],
+        schema: schema::HASH,
+        serial: *b"EMU-COMMS-01",
+        image: 0,
+        reset: ResetCause::Power,
+    }
+}
+
+impl DriveBoard {
+    /// The board with an image and a scene's leg, just switched on.
+    pub fn new(image: &Image, scene: &Scene, saved: Option<(Revision, Values)>) -> Self {
+        let comms = Comms::new(&Boot {
+            identity: identity(),
+            start: 1,
+            saved,
+            counters: 0,
+        });
+        let mut mcu = Stm32f405::new(image);
+        mcu.drive_pin(BREAK, true);
+        Self {
+            mcu,
+            leg: Leg::new(scene),
+            comms,
+            faults: Faults::default(),
+            comms_line: false,
+            down: Down::default(),
+            up: Up::default(),
+            edges: Edges::default(),
+            halves: 0,
+            is_second: false,
+            end: Time::ZERO,
+            is_in_step: false,
+            resets: Vec::new(),
+        }
+    }
+
+    /// So many ticks.
+    pub fn run(&mut self, ticks: u64) {
+        for _ in 0..2 * ticks {
+            self.half(None);
+        }
+    }
+
+    /// As [`Self::run`], with every step of the core for `watch`.
+    pub fn watch(&mut self, ticks: u64, watch: &mut dyn Watch) {
+        for _ in 0..2 * ticks {
+            self.half(Some(watch));
+        }
+    }
+
+    /// Half a tick of everything.
+    pub fn half(&mut self, mut watch: Option<&mut dyn Watch>) {
+        self.go_in_step();
+        self.connect();
+        let before = self.leg.count();
+        if self.is_second {
+            self.leg.second_half();
+        } else {
+            self.leg.first_half();
+        }
+        let begin = self.mcu.now().min(self.end);
+        self.mcu
+            .set_analog(0.5 + SHARE_PER_A * self.leg.current_a());
+        self.end = self.end.max(begin) + HALF;
+        let start = self.end - HALF;
+        for (at, channel, level) in self.edges.between(before, self.leg.count(), start) {
+            go(&mut self.mcu, at, &mut watch);
+            self.mcu.drive_encoder(channel, level);
+        }
+        go(&mut self.mcu, self.end, &mut watch);
+        self.look_at_current();
+        self.carry();
+        if self.halves.is_multiple_of(COMMS_HALVES) && !self.faults.comms_hangs {
+            self.comms_millisecond();
+        }
+        self.halves += 1;
+        self.is_second = !self.is_second;
+        let resets = self.mcu.take_resets();
+        self.is_in_step &= resets.is_empty();
+        self.resets.extend(resets);
+    }
+
+    /// Once the bridge's timer runs, halves end where it is at its bottom or
+    /// its top.
+    fn go_in_step(&mut self) {
+        if self.is_in_step {
+            return;
+        }
+        let Some(phase) = half_bridges::phase(&self.mcu) else {
+            return;
+        };
+        self.is_in_step = true;
+        self.is_second = phase >= HALF;
+        let into = if self.is_second { phase - HALF } else { phase };
+        self.end = self.mcu.now() - into;
+    }
+
+    /// Lines and terminals, as they are now.
+    fn connect(&mut self) {
+        let line = self.line_is_on();
+        self.mcu.drive_pin(LINE_BACK, line);
+        let terminals = if line && self.comms_line {
+            half_bridges::terminals(&self.mcu, self.leg.supply_v())
+        } else {
+            Terminals::Open
+        };
+        self.leg.set_terminals(terminals);
+    }
+
+    fn look_at_current(&mut self) {
+        let is_over = self.leg.winding_current_a().abs() > f64::from(TRIP_A);
+        self.mcu
+            .drive_pin(BREAK, !is_over || self.faults.trip_is_blind);
+    }
+
+    /// What goes over the link.
+    fn carry(&mut self) {
+        let Self {
+            mcu, comms, faults, ..
+        } = self;
+        let arrived = self.up.carry(mcu.link_take(), mcu.now());
+        if !faults.comms_hangs && !faults.up_is_cut {
+            for byte in arrived {
+                comms.link_received(byte);
+            }
+        }
+        let begin = self.end;
+        let next = || {
+            (!faults.comms_hangs)
+                .then(|| comms.link_to_send())
+                .flatten()
+        };
+        let characters = self.down.carry(begin, begin + HALF, next);
+        if !faults.down_is_cut {
+            for character in characters {
+                mcu.link_feed(character);
+            }
+        }
+    }
+
+    fn comms_millisecond(&mut self) {
+        let inputs = Inputs {
+            enable_is_on: self.comms_line,
+        };
+        self.comms_line = self.comms.tick(&inputs).enable;
+    }
+
+    /// Whether the drive's enable line is on.
+    pub fn line_is_on(&self) -> bool {
+        self.faults
+            .line_is_stuck
+            .unwrap_or_else(|| self.mcu.pin(LINE))
+    }
+
+    /// Whether the enable line of comms is on.
+    pub fn comms_line_is_on(&self) -> bool {
+        self.comms_line
+    }
+
+    /// Whether the drive itself drives the motor: its bridge switches and its
+    /// line is on.
+    pub fn drive_is_on(&self) -> bool {
+        let terminals = half_bridges::terminals(&self.mcu, self.leg.supply_v());
+        self.line_is_on() && terminals != Terminals::Open
+    }
+
+    /// Whether the motor is driven: the drive does, and comms lets it.
+    pub fn is_driven(&self) -> bool {
+        self.drive_is_on() && self.comms_line
+    }
+
+    /// The supply falls for a moment.
+    pub fn brown_out(&mut self) {
+        self.resets.push((self.mcu.now(), Reset::BrownOut));
+        self.mcu.reset(Reset::BrownOut);
+        self.is_in_step = false;
+    }
+}
+
+fn go(mcu: &mut Stm32f405, until: Time, watch: &mut Option<&mut dyn Watch>) {
+    match watch {
+        Some(watch) => mcu.watch_until(until, *watch),
+        None => mcu.run_until(until),
+    }
+}

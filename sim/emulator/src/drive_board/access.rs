@@ -1,0 +1,68 @@
+//! What is on the board, to look at and to break.
+
+use super::DriveBoard;
+use crate::devices::usart::Character;
+use crate::mcu::Reset;
+use crate::stm32f405::Stm32f405;
+use crate::time::Time;
+use crepitus_board::leg::Leg;
+use crepitus_device::comms::Comms;
+
+impl DriveBoard {
+    /// Resets of the chip since the board was switched on.
+    pub fn resets(&self) -> &[(Time, Reset)] {
+        &self.resets
+    }
+
+    /// The microcontroller.
+    pub fn mcu(&self) -> &Stm32f405 {
+        &self.mcu
+    }
+
+    /// The microcontroller, to break it.
+    pub fn mcu_mut(&mut self) -> &mut Stm32f405 {
+        &mut self.mcu
+    }
+
+    /// The leg.
+    pub fn leg(&self) -> &Leg {
+        &self.leg
+    }
+
+    /// The leg, to break its sensors and its supply.
+    pub fn leg_mut(&mut self) -> &mut Leg {
+        &mut self.leg
+    }
+
+    /// Comms.
+    pub fn comms(&self) -> &Comms {
+        &self.comms
+    }
+
+    /// Comms, for what comes and goes by USB.
+    pub fn comms_mut(&mut self) -> &mut Comms {
+        &mut self.comms
+    }
+
+    /// What goes to the drive and comes from it is kept from now on, for
+    /// [`Self::to_drive`] and [`Self::from_drive`].
+    pub fn keep_bytes(&mut self) {
+        self.down.keeps = true;
+        self.up.keeps = true;
+    }
+
+    /// Bytes to the drive, each with the end of its stop bit.
+    pub fn to_drive(&self) -> &[Character] {
+        &self.down.kept
+    }
+
+    /// Bytes from the drive.
+    pub fn from_drive(&self) -> &[u8] {
+        &self.up.kept
+    }
+
+    /// Whether halves are in step with the bridge's timer: the image runs.
+    pub fn is_in_step(&self) -> bool {
+        self.is_in_step
+    }
+}

@@ -1,0 +1,120 @@
+//! Where the images come from.
+//!
+//! `CREPITUS_IMAGES` names a folder with `drive` and `comms`. Without it they
+//! are built in `firmware/` by `cargo build --release`, once in a process,
+//! into `firmware/target`. Where that cannot be done, for want of the target
+//! `thumbv7em-none-eabihf`, a test says so in a line and is left out;
+//! with `CREPITUS_NEEDS_TARGET` set it fails instead.
+
+use crate::elf::{Image, ImageError};
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// Which image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Program {
+    /// The drive's.
+    Drive,
+    /// That of comms.
+    Comms,
+}
+
+impl Program {
+    /// Name of its file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Drive => "drive",
+            Self::Comms => "comms",
+        }
+    }
+}
+
+/// Why there is no image.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoImage {
+    /// The compiler has no core library for the target.
+    #[error("the target {TARGET} is not installed (rustup target add {TARGET})")]
+    NoTarget,
+    /// Cargo could not build it.
+    #[error("firmware/ cannot be built: {0}")]
+    NotBuilt(String),
+    /// The file is no image.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+}
+
+/// The image of a program.
+///
+/// # Errors
+/// [`NoImage`].
+pub fn image(program: Program) -> Result<Image, NoImage> {
+    let folder = match env::var_os("CREPITUS_IMAGES") {
+        Some(folder) => PathBuf::from(folder),
+        None => built()?,
+    };
+    Ok(Image::read(&folder.join(program.name()))?)
+}
+
+/// The image of a program, for a test; none, and a line about it, where it
+/// cannot be built.
+///
+/// # Panics
+/// If there is none although `CREPITUS_NEEDS_TARGET` is set, or for any other
+/// reason than the target that is not installed.
+pub fn image_for_test(program: Program) -> Option<Image> {
+    match image(program) {
+        Ok(image) => Some(image),
+        Err(NoImage::NoTarget) if env::var_os("CREPITUS_NEEDS_TARGET").is_none() => {
+            println!("left out: {}", NoImage::NoTarget);
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn built() -> Result<PathBuf, NoImage> {
+    static BUILT: OnceLock<Result<(), String>> = OnceLock::new();
+    if !is_installed() {
+        return Err(NoImage::NoTarget);
+    }
+    let firmware = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../firmware");
+    let folder = firmware.join("target").join(TARGET).join("release");
+    BUILT
+        .get_or_init(|| build(&firmware))
+        .clone()
+        .map_err(NoImage::NotBuilt)?;
+    Ok(folder)
+}
+
+fn build(firmware: &Path) -> Result<(), String> {
+    let output = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .args(["build", "--release", "--target-dir", "target"])
+        .current_dir(firmware)
+        // What Cargo tells the tests of the host is not for the firmware.
+        .env_remove("RUSTFLAGS")
+        .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .env_remove("CARGO_BUILD_TARGET")
+        .output()
+        .map_err(|error| error.to_string())?;
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err(String::from_utf8_lossy(&output.stderr).into_owned())
+    }
+}
+
+fn is_installed() -> bool {
+    let compiler = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let output = Command::new(compiler)
+        .args(["--print", "target-libdir", "--target", TARGET])
+        .output();
+    output.is_ok_and(|output| {
+        let folder = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        output.status.success() && Path::new(&folder).is_dir()
+    })
+}

@@ -1,0 +1,151 @@
+//! A microcontroller that runs an image, whoever emulates it.
+//!
+//! The boards of this crate know this trait only; [`crate::Stm32f405`] is the
+//! one implementation, with the library `rsemu` behind it.
+
+use crate::devices::usart::Character;
+use crate::time::Time;
+
+/// A pin: `Pin::new('B', 12)` is PB12.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Pin {
+    port: u8,
+    number: u8,
+}
+
+impl Pin {
+    /// A pin of a port from 'A' to 'I'.
+    pub const fn new(port: char, number: u8) -> Self {
+        Self {
+            port: (port as u8).wrapping_sub(b'A'),
+            number,
+        }
+    }
+
+    /// Its port, counted from A.
+    pub const fn port(self) -> usize {
+        self.port as usize
+    }
+
+    /// Its number in its port.
+    pub const fn number(self) -> u32 {
+        self.number as u32
+    }
+}
+
+/// Why a chip is reset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Reset {
+    /// Power comes after it was off: memory has anything in it.
+    PowerOn,
+    /// The supply fell for a moment: memory stays.
+    BrownOut,
+    /// The independent watchdog.
+    Watchdog,
+    /// The program has asked for it.
+    Software,
+    /// The pin.
+    Pin,
+}
+
+/// What goes on in the core, for whoever watches: see [`crate::cycles`].
+pub trait Watch {
+    /// A step of the core has ended: an instruction, or the entry into an
+    /// exception.
+    fn step(&mut self, step: &Step);
+}
+
+/// A step of the core.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// Where the core was before it.
+    pub pc: u32,
+    /// The exception that was being handled after it; 0 if none.
+    pub exception: u16,
+    /// Exceptions that had begun and not ended after it.
+    pub active: u32,
+    /// Cycles that it took.
+    pub cycles: u32,
+    /// When it began.
+    pub at: Time,
+}
+
+/// An access of the program, or of the DMA, to a register.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Access {
+    /// When the instruction began.
+    pub at: Time,
+    /// Of the register.
+    pub address: u32,
+    /// What was read or written.
+    pub value: u32,
+    /// Written, not read.
+    pub is_write: bool,
+}
+
+/// A microcontroller.
+pub trait Mcu {
+    /// Runs until `until`, and at most one instruction beyond.
+    fn run_until(&mut self, until: Time);
+
+    /// As [`Self::run_until`]; tells `watch` of every step. Slower.
+    fn watch_until(&mut self, until: Time, watch: &mut dyn Watch);
+
+    /// How far it has come.
+    fn now(&self) -> Time;
+
+    /// The core's cycles since it was switched on; none pass while it sleeps.
+    fn cycles(&self) -> u64;
+
+    /// A word of memory or of a register, without touching it; none where
+    /// there is nothing.
+    fn peek(&self, address: u32) -> Option<u32>;
+
+    /// Writes a word as a debugger does.
+    fn poke(&mut self, address: u32, value: u32);
+
+    /// Every access to these registers is written down from now on.
+    fn listen(&mut self, registers: &[u32]);
+
+    /// What was written down since this was asked last, in its order.
+    fn take_accesses(&mut self) -> Vec<Access>;
+
+    /// The level at a pin, as the chip sees it.
+    fn pin(&self, pin: Pin) -> bool;
+
+    /// What drives a pin from outside.
+    fn drive_pin(&mut self, pin: Pin, level: bool);
+
+    /// Share of its reference at the input of the converter.
+    fn set_analog(&mut self, share: f64);
+
+    /// A character for the link's receiver; they come in their order.
+    fn link_feed(&mut self, character: Character);
+
+    /// What the link's sender has sent since this was asked last.
+    fn link_take(&mut self) -> Vec<Character>;
+
+    /// Units of time of a character on the link, as the program has set it.
+    fn link_character_units(&self) -> u64;
+
+    /// Resets the chip.
+    fn reset(&mut self, reset: Reset);
+
+    /// Resets that the chip has done by itself since this was asked last.
+    fn take_resets(&mut self) -> Vec<(Time, Reset)>;
+
+    /// The core stops where it is, all else goes on: what a program that hangs
+    /// with interrupts masked looks like from outside. A reset ends it.
+    fn set_hung(&mut self, is_hung: bool);
+
+    /// The core can neither go on nor handle it.
+    fn is_locked_up(&self) -> bool;
+
+    /// A hash of memory, core and registers: of two runs that are the same it
+    /// is the same.
+    fn state_hash(&self) -> u64;
+
+    /// What the program has used and is not modelled; addresses with nothing
+    /// behind them, parts whose clock was off. Empty if all is well.
+    fn not_modelled(&self) -> Vec<String>;
+}

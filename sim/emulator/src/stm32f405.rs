@@ -1,0 +1,224 @@
+//! An STM32F405: the library's core among the parts of `chip`.
+//!
+//! ```text
+//! until the next thing that a part does by itself:
+//!     one step of the core, at the time at which it begins
+//!     if it has touched a part: clocks, DMA, the next thing
+//! then that thing, at its time
+//! ```
+//!
+//! So an interrupt is there with the step after its event, and a register says
+//! what it says when the instruction that reads it begins.
+
+mod as_mcu;
+
+use crate::chip::Chip;
+use crate::chip::clocks::Clock;
+use crate::chip::memory::Memory;
+use crate::elf::Image;
+use crate::mcu::{Mcu, Pin, Reset, Step, Watch};
+use crate::time::Time;
+use rsemu::core::wire::Level;
+use rsemu::cpu::arm::v7m::{ArmV7m, Config};
+use std::sync::atomic::Ordering::Relaxed;
+
+/// SysTick is enabled.
+const SYSTICK_ENABLE: u32 = 1;
+
+/// Interval at which the core is asked whether it wants a reset, or sleeps
+/// with its own timer running: 10 µs.
+const LOOK_UNITS: u64 = 3_360;
+
+/// The library takes the eight words of a frame as loads and stores of their
+/// own, on top of the 12 and 10 cycles that have them in already: so many
+/// cycles too many at every entry and every return. `tests/timing.rs` has the
+/// known answer. Its own cycle counter, DWT, keeps them.
+const FRAME_CYCLES: u64 = 8;
+
+/// No entry and no return takes less, counted like that.
+const ENTRY_OR_RETURN: u64 = 18;
+
+/// The microcontroller.
+pub struct Stm32f405 {
+    core: ArmV7m,
+    chip: Chip,
+    memory: Memory,
+    now: u64,
+    cycles: u64,
+    /// Exceptions that have begun and not ended.
+    active: u32,
+    is_hung: bool,
+    resets: Vec<(Time, Reset)>,
+}
+
+/// Watches nothing.
+struct Nobody;
+
+impl Watch for Nobody {
+    fn step(&mut self, _: &Step) {}
+}
+
+impl Stm32f405 {
+    /// A chip with an image in its flash, just switched on.
+    ///
+    /// # Panics
+    /// If the image is longer than flash.
+    pub fn new(image: &Image) -> Self {
+        let core = ArmV7m::new(Config::CORTEX_M4F.with_priority_bits(4));
+        let chip = Chip::new(&core);
+        let loaded = chip.flash.load_image(0, &image.flash);
+        loaded.expect("an image is not longer than flash");
+        let memory = Memory::new(&chip);
+        core.attach_space(memory.space.clone());
+        let mut mcu = Self {
+            core,
+            chip,
+            memory,
+            now: 0,
+            cycles: 0,
+            active: 0,
+            is_hung: false,
+            resets: Vec::new(),
+        };
+        Mcu::reset(&mut mcu, Reset::PowerOn);
+        mcu
+    }
+
+    /// Changes channel A (0) or B (1) of the encoder.
+    pub fn drive_encoder(&mut self, channel: usize, level: bool) {
+        self.chip.bus.touch("TIM5");
+        if let Some(source) = self.chip.quadrature.get(channel) {
+            source.set(Level::from(level));
+        }
+        self.settle();
+    }
+
+    /// The converter works, or never ends a conversion.
+    pub fn set_converter_dead(&mut self, is_dead: bool) {
+        self.chip.adc.set_dead(is_dead);
+    }
+
+    /// Triggers that the converter has missed because it was converting.
+    pub fn lost_triggers(&self) -> u32 {
+        self.chip.adc.lost_triggers()
+    }
+
+    /// The watchdog's oscillator runs at this frequency, Hz: 17,000 to 47,000
+    /// on silicon.
+    pub fn set_watchdog_hz(&mut self, hz: u32) {
+        let units = crate::time::UNITS_PER_S / u64::from(hz.max(1));
+        self.chip.bus.touch("IWDG");
+        self.chip.bus.rates.set_units(Clock::Low, units);
+        self.settle();
+    }
+
+    /// The core's program counter.
+    pub fn program_counter(&self) -> u32 {
+        self.core.pc()
+    }
+
+    /// A core register.
+    pub fn register(&self, number: u8) -> u32 {
+        self.core.reg(number)
+    }
+
+    /// The exception that is being handled; 0 if none.
+    pub fn exception(&self) -> u16 {
+        self.core.current_exception().0
+    }
+
+    fn settle(&mut self) {
+        if self.chip.bus.is_touched() {
+            self.chip.bus.settle();
+        }
+    }
+
+    /// Sleeps without its own timer: nothing happens before the next event.
+    fn sleeps_soundly(&self) -> bool {
+        self.core.is_asleep() && self.core.with_sys(|sys| sys.syst_csr & SYSTICK_ENABLE == 0)
+    }
+
+    fn go_to(&mut self, until: u64, watch: Option<&mut dyn Watch>) {
+        match watch {
+            Some(watch) => self.run::<true>(until, watch),
+            None => self.run::<false>(until, &mut Nobody),
+        }
+    }
+
+    fn run<const WATCHED: bool>(&mut self, until: u64, watch: &mut dyn Watch) {
+        while self.now < until {
+            self.settle();
+            let look = self.now + LOOK_UNITS;
+            let stop = self.chip.bus.deadline().min(until).min(look);
+            self.steps::<WATCHED>(stop, watch);
+            self.chip.bus.advance(self.now);
+            self.reset_if_asked();
+        }
+    }
+
+    /// One step of the core, and its cycles.
+    fn step(&mut self) -> u64 {
+        let cycles = self.core.step();
+        if cycles < ENTRY_OR_RETURN {
+            return cycles;
+        }
+        let active = self.core.with_sys(|sys| sys.active_count());
+        if std::mem::replace(&mut self.active, active) == active {
+            cycles
+        } else {
+            cycles - FRAME_CYCLES
+        }
+    }
+
+    /// Steps of the core until `stop`.
+    fn steps<const WATCHED: bool>(&mut self, mut stop: u64, watch: &mut dyn Watch) {
+        let mut units = self.chip.bus.rates.units(Clock::Core);
+        while self.now < stop {
+            if self.is_hung {
+                self.now = stop;
+                break;
+            }
+            self.chip.bus.now.store(self.now, Relaxed);
+            let pc = if WATCHED { self.core.pc() } else { 0 };
+            let cycles = self.step();
+            if WATCHED {
+                watch.step(&Step {
+                    pc,
+                    exception: self.core.current_exception().0,
+                    active: self.active,
+                    cycles: u32::try_from(cycles).unwrap_or(u32::MAX),
+                    at: Time::from_units(self.now),
+                });
+            }
+            if cycles == 1 && self.sleeps_soundly() && !self.chip.bus.is_touched() {
+                // Whole cycles, so that the core keeps its phase.
+                let asleep = (stop - self.now).div_ceil(units).max(1);
+                self.now += asleep * units;
+                break;
+            }
+            self.cycles += cycles;
+            self.now += cycles * units;
+            if self.chip.bus.is_touched() {
+                self.chip.bus.settle();
+                units = self.chip.bus.rates.units(Clock::Core);
+                stop = stop.min(self.chip.bus.deadline());
+            }
+        }
+    }
+
+    fn reset_if_asked(&mut self) {
+        let cause = if self.chip.bitten.swap(false, Relaxed) {
+            Reset::Watchdog
+        } else if self.core.reset_requested() {
+            Reset::Software
+        } else {
+            return;
+        };
+        self.resets.push((Time::from_units(self.now), cause));
+        Mcu::reset(self, cause);
+    }
+
+    fn port(&self, pin: Pin) -> Option<&rsemu::dev::stm32::gpio::Gpio> {
+        self.chip.ports.get(pin.port()).map(|port| &**port)
+    }
+}

@@ -1,0 +1,149 @@
+//! Rows of the fault table with the real image: outputs off in the time that
+//! the table says, measured in half ticks of the leg.
+
+use crate::host::{Host, examination, image};
+use crepitus_board::leg::EncoderWiring;
+use crepitus_emulator::{Mcu, Reset};
+use crepitus_protocol::fault::{FAULTS, Fault};
+use crepitus_protocol::host::{Answer, Ask};
+
+/// The encoder's counter.
+const TIM5_CNT: u32 = 0x4000_0c24;
+
+/// The table's time, in half ticks; measuring is one more.
+fn limit(fault: Fault) -> u64 {
+    let spec = FAULTS.iter().find(|spec| spec.fault == fault);
+    let ticks = spec.and_then(|spec| spec.within_ticks).expect("a time");
+    2 * u64::from(ticks) + 1
+}
+
+/// 4 × (160 + 1) clocks of 17 kHz, 37.9 ms, in half ticks.
+const SLOWEST_WATCHDOG: u64 = 1_516;
+
+fn under_torque() -> Option<Host> {
+    let mut host = Host::new(&image()?, &examination());
+    host.arm();
+    host.run_until_torque();
+    Some(host)
+}
+
+/// What the drive says it is.
+fn drive_fault(host: &mut Host) -> u8 {
+    match host.ask(Ask::Status) {
+        Ok(Answer::Status(status)) => status.drive_fault,
+        other => panic!("no status but {other:?}"),
+    }
+}
+
+#[test]
+fn a_link_that_is_cut() {
+    let Some(mut host) = under_torque() else {
+        return;
+    };
+    host.board.faults.down_is_cut = true;
+    let halves = host.halves_until_off(limit(Fault::CommsSilent));
+    println!("link cut: off after {halves} half ticks");
+    assert!(halves > 2 * 60);
+    host.board.faults.down_is_cut = false;
+    host.run(200);
+    assert_eq!(drive_fault(&mut host), Fault::CommsSilent.code());
+}
+
+#[test]
+fn comms_that_hangs() {
+    let Some(mut host) = under_torque() else {
+        return;
+    };
+    host.board.faults.comms_hangs = true;
+    let halves = host.halves_until_off(limit(Fault::CommsSilent));
+    println!("comms hangs: off after {halves} half ticks");
+    // Its own line stays as it was: the drive's is the one that fell.
+    assert!(host.board.comms_line_is_on());
+}
+
+#[test]
+fn interference_on_the_encoder() {
+    let Some(mut host) = under_torque() else {
+        return;
+    };
+    let mut halves = 0;
+    while host.board.drive_is_on() {
+        assert!(halves <= limit(Fault::EncoderLost), "still on");
+        if halves % 2 == 0 {
+            let mcu = host.board.mcu_mut();
+            let count = mcu.peek(TIM5_CNT).expect("a counter");
+            mcu.poke(TIM5_CNT, count.wrapping_add(5_000));
+        }
+        host.board.half(None);
+        halves += 1;
+    }
+    println!("encoder jumps: off after {halves} half ticks");
+    assert!(halves > 2 * 18);
+    host.run(200);
+    assert_eq!(drive_fault(&mut host), Fault::EncoderLost.code());
+}
+
+#[test]
+fn an_encoder_that_is_unplugged() {
+    let Some(mut host) = under_torque() else {
+        return;
+    };
+    // Faster than what the table says is needed to notice.
+    while host.board.leg().shaft().omega_rad_s < 0.6 {
+        host.run(1);
+    }
+    host.board
+        .leg_mut()
+        .set_encoder_wiring(EncoderWiring::Unplugged);
+    let halves = host.halves_until_off(limit(Fault::SpeedMismatch));
+    println!("encoder unplugged: off after {halves} half ticks");
+    host.run(200);
+    assert_eq!(drive_fault(&mut host), Fault::SpeedMismatch.code());
+}
+
+#[test]
+fn the_break_input_needs_no_program() {
+    let Some(mut host) = under_torque() else {
+        return;
+    };
+    host.board.mcu_mut().set_hung(true);
+    host.board
+        .mcu_mut()
+        .drive_pin(crepitus_emulator::Pin::new('B', 12), false);
+    assert!(!host.board.drive_is_on());
+}
+
+#[test]
+fn a_brown_out() {
+    let Some(mut host) = under_torque() else {
+        return;
+    };
+    host.board.brown_out();
+    assert!(
+        !host.board.drive_is_on(),
+        "a pin that is reset drives nothing"
+    );
+    for _ in 0..2_000 {
+        host.run(1);
+        assert!(!host.board.drive_is_on());
+    }
+    assert!(host.board.is_in_step(), "it has started again");
+    assert_eq!(drive_fault(&mut host), Fault::DriveBrownOut.code());
+}
+
+#[test]
+fn a_program_that_hangs_is_reset_by_the_watchdog() {
+    for hz in [17_000, 47_000] {
+        let Some(mut host) = under_torque() else {
+            return;
+        };
+        host.board.mcu_mut().set_watchdog_hz(hz);
+        host.board.mcu_mut().set_hung(true);
+        let halves = host.halves_until_off(SLOWEST_WATCHDOG);
+        println!("watchdog at {hz} Hz: off after {halves} half ticks");
+        let last = host.board.resets().last().map(|(_, reset)| *reset);
+        assert_eq!(last, Some(Reset::Watchdog));
+        host.run(2_000);
+        assert_eq!(drive_fault(&mut host), Fault::DriveWatchdog.code());
+    }
+}

@@ -1,0 +1,177 @@
+//! A host at the USB end of the native comms.
+
+use crepitus_board::values::values;
+use crepitus_device::usb_port::HostBytes;
+use crepitus_emulator::firmware::{Program, image_for_test};
+use crepitus_emulator::{DriveBoard, Image, Mcu};
+use crepitus_protocol::frame;
+use crepitus_protocol::host::{Answer, Ask, Refusal, Reply, Request};
+use crepitus_protocol::telemetry::Block;
+use crepitus_protocol::{Decoder, Lane, Revision, Session};
+use crepitus_scene::{Overrides, Scene};
+use std::path::Path;
+
+/// Ticks between two renewals of the lease: 50 ms.
+const RENEWAL_TICKS: u64 = 1_000;
+
+/// Ticks until the image must run.
+const BOOT_TICKS: u64 = 1_000;
+
+pub(crate) struct Host {
+    pub(crate) board: DriveBoard,
+    number: u16,
+    holds_lease: bool,
+    ticks: u64,
+    from_comms: Decoder,
+    replies: Vec<Reply>,
+    from_drive: Decoder,
+    decoded: usize,
+    /// What the drive has told.
+    pub(crate) blocks: Vec<Block>,
+}
+
+pub(crate) fn image() -> Option<Image> {
+    image_for_test(Program::Drive)
+}
+
+pub(crate) fn examination() -> Scene {
+    let text = include_str!("examination.toml");
+    Scene::parse(Path::new("examination.toml"), text, &Overrides::default()).expect("a scene")
+}
+
+impl Host {
+    /// A board with the scene's parameters kept in comms, until its image
+    /// runs.
+    pub(crate) fn new(image: &Image, scene: &Scene) -> Self {
+        Self::listening(image, scene, &[])
+    }
+
+    /// With accesses to these registers written down from the first
+    /// instruction on.
+    pub(crate) fn listening(image: &Image, scene: &Scene, registers: &[u32]) -> Self {
+        let values = values(scene).expect("a scene for the device");
+        let mut board = DriveBoard::new(image, scene, Some((Revision(1), values)));
+        board.keep_bytes();
+        board.mcu_mut().listen(registers);
+        let mut host = Self {
+            board,
+            number: 0,
+            holds_lease: false,
+            ticks: 0,
+            from_comms: Decoder::new(),
+            replies: Vec::new(),
+            from_drive: Decoder::new(),
+            decoded: 0,
+            blocks: Vec::new(),
+        };
+        for _ in 0..BOOT_TICKS {
+            if host.board.is_in_step() {
+                return host;
+            }
+            host.run(1);
+        }
+        panic!("the image does not start");
+    }
+
+    pub(crate) fn run(&mut self, ticks: u64) {
+        for _ in 0..ticks {
+            if self.holds_lease && self.ticks.is_multiple_of(RENEWAL_TICKS) {
+                self.say(0, Ask::Renew);
+            }
+            self.board.run(1);
+            self.ticks += 1;
+            self.listen();
+        }
+    }
+
+    fn say(&mut self, number: u16, ask: Ask) {
+        let request = Request {
+            session: Session(0x1234),
+            number,
+            ask,
+        };
+        let frame = frame::encode(Lane::Request, &request).expect("a frame");
+        self.board.comms_mut().received(&frame);
+    }
+
+    fn listen(&mut self) {
+        let comms = self.board.comms_mut();
+        let bytes = comms.to_send().to_vec();
+        comms.sent(bytes.len());
+        for byte in bytes {
+            if let Some(Ok(body)) = self.from_comms.push(byte)
+                && body.lane() == Some(Lane::Reply)
+            {
+                self.replies.extend(body.message::<Reply>());
+            }
+        }
+        let sent = self.board.from_drive();
+        for byte in &sent[self.decoded..] {
+            if let Some(Ok(body)) = self.from_drive.push(*byte)
+                && body.lane() == Some(Lane::Telemetry)
+            {
+                self.blocks.extend(body.message::<Block>());
+            }
+        }
+        self.decoded = sent.len();
+    }
+
+    /// Asks, and waits for the answer.
+    pub(crate) fn ask(&mut self, ask: Ask) -> Result<Answer, Refusal> {
+        self.number += 1;
+        let number = self.number;
+        for _ in 0..40 {
+            self.say(number, ask);
+            for _ in 0..100 {
+                self.run(1);
+                let found = self.replies.drain(..).find(|reply| reply.number == number);
+                if let Some(reply) = found {
+                    return reply.answer;
+                }
+            }
+        }
+        panic!("no answer to {ask:?}");
+    }
+
+    /// Takes the lease and arms, as soon as the drive has its parameters.
+    pub(crate) fn arm(&mut self) {
+        self.holds_lease = true;
+        self.say(0, Ask::Renew);
+        for _ in 0..100 {
+            match self.ask(Ask::Arm) {
+                Ok(Answer::Done) => return,
+                Err(Refusal::Busy | Refusal::DriveSilent) => self.run(200),
+                other => panic!("arming: {other:?}"),
+            }
+        }
+        panic!("not armed");
+    }
+
+    /// Whether the drive's last block has shown torque.
+    pub(crate) fn shows_torque(&self) -> bool {
+        let last = self.blocks.last().and_then(|block| block.samples.last());
+        last.is_some_and(|sample| sample.torque_nm.abs() > 0.05)
+    }
+
+    /// Runs until the hand feels the joint.
+    pub(crate) fn run_until_torque(&mut self) {
+        for _ in 0..20_000 {
+            if self.shows_torque() && self.board.is_driven() {
+                return;
+            }
+            self.run(1);
+        }
+        panic!("no torque");
+    }
+
+    /// Half ticks until the drive itself drives no longer.
+    pub(crate) fn halves_until_off(&mut self, at_most: u64) -> u64 {
+        for halves in 0..=at_most {
+            if !self.board.drive_is_on() {
+                return halves;
+            }
+            self.board.half(None);
+        }
+        panic!("still on after {at_most} half ticks");
+    }
+}

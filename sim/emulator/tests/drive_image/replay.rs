@@ -1,0 +1,192 @@
+//! The image's torque is that of the native `Drive`, bit for bit.
+//!
+//! What the image reads from its registers is written down, in its order: the
+//! encoder's counter, the converter, the enable line, the break, and how far
+//! the DMA has come. The native drive is given just that, at the same places
+//! of its program, and has to send the same blocks.
+
+use crate::host::{Host, examination, image};
+use crepitus_device::Drive;
+use crepitus_device::drive::Boot;
+use crepitus_device::drive::command::Inputs;
+use crepitus_emulator::Mcu;
+use crepitus_emulator::mcu::Access;
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
+use crepitus_protocol::{Decoder, Lane, Revision, State};
+use std::collections::BTreeMap;
+
+const ENCODER: u32 = 0x4000_0c24;
+const CONVERTER_FLAGS: u32 = 0x4001_2000;
+const CONVERTER_DATA: u32 = 0x4001_204c;
+const LINE: u32 = 0x4002_0410;
+const BREAK_FLAGS: u32 = 0x4001_0010;
+const LINK_CONTROL: u32 = 0x4001_140c;
+const RECEIVED_LEFT: u32 = 0x4002_642c;
+const SENDER_CONTROL: u32 = 0x4002_64a0;
+const REGISTERS: [u32; 8] = [
+    ENCODER,
+    CONVERTER_FLAGS,
+    CONVERTER_DATA,
+    LINE,
+    BREAK_FLAGS,
+    LINK_CONTROL,
+    RECEIVED_LEFT,
+    SENDER_CONTROL,
+];
+
+/// Bytes of the ring that the DMA fills.
+const RING: u32 = 2_048;
+
+/// Ticks that are compared, at least.
+const TICKS: usize = 20_000;
+
+/// As the converter's counts become amperes, in the same arithmetic.
+fn amperes(counts: u32) -> f32 {
+    #[expect(clippy::cast_precision_loss, reason = "twelve bits")]
+    let counts = counts as f32;
+    (counts - 4096.0 / 2.0) * (3.3 / 4096.0 / (20.0 * 0.033))
+}
+
+/// The native drive, led by what the image has read.
+struct Replay<'a> {
+    drive: Drive,
+    inputs: Inputs,
+    /// Bytes that the image's link has received.
+    bytes: std::slice::Iter<'a, u8>,
+    next: u32,
+    may_send: bool,
+    /// Samples that were put into blocks.
+    pushed: u64,
+    /// The parameters in force, block by block, in the image.
+    revisions: BTreeMap<u64, Revision>,
+    decoder: Decoder,
+    blocks: Vec<Block>,
+}
+
+impl Replay<'_> {
+    fn access(&mut self, access: &Access) {
+        if access.is_write {
+            return;
+        }
+        match access.address {
+            ENCODER => self.sample(access.value),
+            CONVERTER_FLAGS => self.inputs = Inputs::default(),
+            CONVERTER_DATA => self.inputs.current_a = Some(amperes(access.value)),
+            // PB1.
+            LINE => self.inputs.enable_is_on = access.value >> 1 & 1 == 1,
+            BREAK_FLAGS => {
+                self.inputs.is_broken = access.value >> 7 & 1 == 1;
+                self.drive.command_motor(&self.inputs);
+                self.pushed += u64::from(self.drive.next_tick() > 0);
+            }
+            RECEIVED_LEFT => {
+                let end = (RING - access.value) % RING;
+                if self.next == end {
+                    self.may_send = true;
+                } else {
+                    let byte = self.bytes.next().expect("a byte that was received");
+                    self.drive.link_received(*byte);
+                    self.next = (self.next + 1) % RING;
+                }
+            }
+            SENDER_CONTROL if std::mem::take(&mut self.may_send) && access.value & 1 == 0 => {
+                self.send();
+            }
+            _ => {}
+        }
+    }
+
+    fn sample(&mut self, counter: u32) {
+        // The block that the next command puts its sample into.
+        let block = self.pushed / BLOCK_SAMPLES as u64 * BLOCK_SAMPLES as u64;
+        let in_force = self.revisions.get(&block);
+        // When the idle loop was done with a commit shows in the blocks.
+        if in_force.is_some_and(|revision| *revision != self.drive.revision()) {
+            self.drive.prepare();
+        }
+        self.drive.sample_encoder(counter);
+        self.drive.render_torque();
+    }
+
+    fn send(&mut self) {
+        let Some(frame) = self.drive.link_to_send() else {
+            return;
+        };
+        for byte in &frame {
+            if let Some(Ok(body)) = self.decoder.push(*byte)
+                && body.lane() == Some(Lane::Telemetry)
+            {
+                self.blocks.extend(body.message::<Block>());
+            }
+        }
+    }
+}
+
+#[test]
+fn twenty_thousand_ticks_are_those_of_the_native_drive_bit_for_bit() {
+    let Some(image) = image() else { return };
+    let mut host = Host::listening(&image, &examination(), &REGISTERS);
+    host.arm();
+    host.run(TICKS as u64 + 500);
+    let accesses = host.board.mcu_mut().take_accesses();
+    let listens = accesses
+        .iter()
+        .find(|access| access.address == LINK_CONTROL && access.is_write)
+        .expect("the link is switched on");
+    let bytes: Vec<u8> = host
+        .board
+        .to_drive()
+        .iter()
+        .filter(|character| character.at > listens.at.units())
+        .map(|character| character.byte)
+        .collect();
+    let first = host.blocks.first().expect("a block");
+    // Until the first current is asked for the counter is read to begin with.
+    let begin = accesses
+        .iter()
+        .position(|access| access.address == CONVERTER_FLAGS)
+        .expect("a first tick");
+    let counter = accesses[..begin]
+        .iter()
+        .rfind(|access| access.address == ENCODER)
+        .expect("a count");
+    let boot = Boot {
+        counter: counter.value,
+        start: first.flags.start().into(),
+        ..Boot::default()
+    };
+    let revision = |block: &Block| (block.first_tick, block.revision);
+    let mut replay = Replay {
+        drive: Drive::new(&boot).expect("a drive"),
+        inputs: Inputs::default(),
+        bytes: bytes.iter(),
+        next: 0,
+        may_send: false,
+        pushed: 0,
+        revisions: host.blocks.iter().map(revision).collect(),
+        decoder: Decoder::new(),
+        blocks: Vec::new(),
+    };
+    for access in &accesses[begin..] {
+        replay.access(access);
+    }
+    let natives = replay
+        .blocks
+        .iter()
+        .skip_while(|block| block.sequence != first.sequence);
+    let mut armed = 0;
+    for (image, native) in host.blocks.iter().zip(natives) {
+        assert_eq!(image, native);
+        // Floats that are equal may differ in the sign of a zero.
+        for (ours, theirs) in image.samples.iter().zip(&native.samples) {
+            assert_eq!(ours.torque_nm.to_bits(), theirs.torque_nm.to_bits());
+            let (ours, theirs) = (ours.model_torque_nm, theirs.model_torque_nm);
+            assert_eq!(ours.to_bits(), theirs.to_bits());
+        }
+        if image.flags.state() == State::Armed {
+            armed += BLOCK_SAMPLES;
+        }
+    }
+    assert!(armed >= TICKS, "{armed} ticks under torque");
+    assert!(host.shows_torque());
+}

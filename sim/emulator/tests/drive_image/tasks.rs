@@ -1,0 +1,131 @@
+//! The three tasks: which interrupts which, and that none is late.
+
+use crate::host::{Host, examination, image};
+use crepitus_emulator::cycles::Cycles;
+use crepitus_emulator::{Mcu, Time};
+use crepitus_protocol::telemetry::SampleFlags;
+
+/// Exceptions of the tasks, and their priority.
+const COMMAND: u16 = 16 + 29;
+const SAMPLE: u16 = 16 + 30;
+const RENDER: u16 = 16 + 49;
+const LINK: u16 = 16 + 69;
+const PRIORITIES: [(u16, u8); 4] = [(COMMAND, 4), (SAMPLE, 3), (RENDER, 2), (LINK, 1)];
+
+/// Units of time in a tick.
+const TICK_UNITS: u64 = 16_800;
+
+/// Ticks that are watched.
+const TICKS: u64 = 1_000;
+
+fn priority(exception: u16) -> u8 {
+    let found = PRIORITIES.iter().find(|(task, _)| *task == exception);
+    found.unwrap_or_else(|| panic!("exception {exception}")).1
+}
+
+#[test]
+fn a_task_is_interrupted_by_higher_ones_only_and_every_tick_has_all() {
+    let Some(image) = image() else { return };
+    let mut host = Host::new(&image, &examination());
+    host.arm();
+    host.run_until_torque();
+    let mut cycles = Cycles::default();
+    host.board.watch(20, &mut cycles);
+    cycles.clear();
+    host.board.watch(TICKS, &mut cycles);
+    for ((below, above), count) in cycles.preemptions() {
+        assert!(
+            priority(*above) > priority(*below),
+            "{below} by {above}, {count} times"
+        );
+    }
+    // The link's task is long enough to be interrupted by the sampling.
+    assert!(cycles.preemptions().contains_key(&(LINK, SAMPLE)));
+    for (name, exception) in [
+        ("command_motor", COMMAND),
+        ("sample_encoder", SAMPLE),
+        ("render_torque", RENDER),
+        ("link", LINK),
+    ] {
+        let cost = cycles.costs()[&exception];
+        println!(
+            "{name}: {} runs, {:.0} cycles, worst {}, {} instructions at most, span {:.1} us \
+             (modelled, 0 wait states)",
+            cost.calls,
+            cost.mean_cycles(),
+            cost.worst_cycles,
+            cost.worst_instructions,
+            cost.worst_span.as_s() * 1e6,
+        );
+        if exception != LINK {
+            assert!(cost.calls.abs_diff(TICKS) <= 1, "{name}: {cost:?}");
+        }
+    }
+}
+
+#[test]
+fn no_tick_is_late_under_torque() {
+    let Some(image) = image() else { return };
+    let mut host = Host::new(&image, &examination());
+    host.arm();
+    host.run_until_torque();
+    host.blocks.clear();
+    host.run(2_000);
+    let samples = host.blocks.iter().flat_map(|block| block.samples);
+    let late = samples.filter(|sample| sample.flags.has(SampleFlags::LATE | SampleFlags::LOST));
+    assert_eq!(late.count(), 0);
+}
+
+#[test]
+fn tasks_begin_when_they_should() {
+    // Each task acknowledges its timer with its first write.
+    const MIDDLE: u32 = 0x4000_0410;
+    const BEGIN: u32 = 0x4000_0810;
+    let Some(image) = image() else { return };
+    let mut host = Host::new(&image, &examination());
+    host.arm();
+    host.run_until_torque();
+    host.board.mcu_mut().listen(&[MIDDLE, BEGIN]);
+    host.run(2_000);
+    let accesses = host.board.mcu_mut().take_accesses();
+    let tick = TICK_UNITS;
+    for (name, register, most_us) in [
+        ("command_motor", MIDDLE, 3.0),
+        ("sample_encoder", BEGIN, 3.0),
+    ] {
+        let writes = accesses
+            .iter()
+            .filter(|access| access.address == register && access.is_write);
+        let times: Vec<u64> = writes.map(|access| access.at.units()).collect();
+        assert!(times.len() >= 1_999, "{name}");
+        let spans = times.windows(2).map(|pair| pair[1] - pair[0]);
+        let first = times[0];
+        let late = times
+            .iter()
+            .zip(0_u64..)
+            .map(|(time, n)| (first + n * tick).abs_diff(*time));
+        let jitter_us = Time::from_units(late.max().unwrap_or(0)).as_s() * 1e6;
+        println!("{name}: jitter {jitter_us:.2} us (modelled, 0 wait states)");
+        assert!(jitter_us < most_us, "{name}: {jitter_us} us");
+        assert!(spans.min() > Some(tick / 2));
+    }
+}
+
+#[test]
+fn every_tick_is_sampled_and_then_commanded() {
+    const ENCODER: u32 = 0x4000_0c24;
+    const CONVERTER: u32 = 0x4001_2000;
+    let Some(image) = image() else { return };
+    let mut host = Host::listening(&image, &examination(), &[ENCODER, CONVERTER]);
+    host.run(200);
+    let accesses = host.board.mcu_mut().take_accesses();
+    let tasks = accesses.iter().map(|access| access.address);
+    // The first count is what the program begins with.
+    let tasks: Vec<u32> = tasks
+        .skip(1)
+        .skip_while(|task| *task == CONVERTER)
+        .collect();
+    for (n, pair) in tasks.chunks_exact(2).enumerate() {
+        assert_eq!(pair, [ENCODER, CONVERTER], "tick {n}");
+    }
+}
