@@ -192,7 +192,7 @@ Examples:
   crepitus stream --format jsonl --rate 10 | head
 
 On a terminal a line with the state goes along on stderr. A rate below the drive's 20000 Hz takes \
-every so manieth sample; it is no filter.")]
+every n-th sample; it is no filter.")]
 pub(crate) struct StreamArguments {
     /// Samples a second: 20000 divided by a whole number.
     #[arg(long, value_name = "HZ", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=20_000))]

@@ -17,7 +17,7 @@ pub(crate) fn stream(arguments: &StreamArguments, as_json: bool) -> Result<(), F
     if !TICKS_PER_S.is_multiple_of(rate) {
         let every = TICKS_PER_S / rate;
         return Err(Failure::Input(format!(
-            "--rate {rate}: the drive makes {TICKS_PER_S} samples a second, and every so manieth \
+            "--rate {rate}: the drive makes {TICKS_PER_S} samples a second, and every n-th \
              is taken: {} is every {every}th, {} every {}th",
             TICKS_PER_S / every,
             TICKS_PER_S / (every + 1),
