@@ -216,7 +216,7 @@ impl<F: Real> Active<F> {
     /// `torque_nm` held within ±Ts.
     #[inline]
     pub fn limited(&self, torque_nm: F) -> F {
-        torque_nm.at_most(self.static_nm).at_least(-self.static_nm)
+        torque_nm.within(self.static_nm)
     }
 }
 

@@ -270,10 +270,8 @@ impl<F: Real> BoneShaping<F> {
             .at_most(F::ONE)
             .at_least(F::ZERO);
         let torque_nm = share * self.limited(self.ringing_nm);
-        self.given_nm.rotate_right(1);
-        if let Some(latest) = self.given_nm.first_mut() {
-            *latest = torque_nm;
-        }
+        let [last, before, _] = self.given_nm;
+        self.given_nm = [torque_nm, last, before];
         torque_nm
     }
 
@@ -302,7 +300,7 @@ impl<F: Real> BoneShaping<F> {
 
     #[inline]
     fn limited(&self, torque_nm: F) -> F {
-        torque_nm.at_most(self.limit_nm).at_least(-self.limit_nm)
+        torque_nm.within(self.limit_nm)
     }
 }
 

@@ -213,9 +213,9 @@ impl<F: Real> CurrentLoop<F> {
             self.missed = self.missed.saturating_add(1);
             return F::ZERO;
         }
-        let allowed_a = within(wanted_a, self.current_limit_a);
+        let allowed_a = wanted_a.within(self.current_limit_a);
         let unlimited_v = self.explained_v + self.gain * (allowed_a - measured_a);
-        let volts = within(unlimited_v, self.supply_v);
+        let volts = unlimited_v.within(self.supply_v);
         self.limited_by = if volts != unlimited_v {
             Some(Limit::Voltage)
         } else if allowed_a != wanted_a {
@@ -231,7 +231,7 @@ impl<F: Real> CurrentLoop<F> {
     /// Takes over from a voltage that current and back-EMF explain: a shaft
     /// that already turns is not jolted.
     pub fn start(&mut self, volts: F) {
-        self.explained_v = within(volts, self.supply_v);
+        self.explained_v = volts.within(self.supply_v);
     }
 
     /// As at the start, for disarming. What was counted stays.
@@ -249,12 +249,6 @@ impl<F: Real> CurrentLoop<F> {
     pub fn missed(&self) -> u32 {
         self.missed
     }
-}
-
-/// `x` held within ±`limit`.
-#[inline]
-fn within<F: Real>(x: F, limit: F) -> F {
-    x.at_most(limit).at_least(-limit)
 }
 
 #[cfg(test)]

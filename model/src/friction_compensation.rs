@@ -137,7 +137,7 @@ impl<F: Real> FrictionCompensation<F> {
             return F::ZERO;
         }
         let along_nm = self.slope * omega_rad_s;
-        -along_nm.at_most(self.most_nm).at_least(-self.most_nm)
+        -along_nm.within(self.most_nm)
     }
 }
 

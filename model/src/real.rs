@@ -8,6 +8,7 @@
 
 mod double;
 pub mod single;
+mod square_root;
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -112,6 +113,13 @@ pub trait Real:
     fn at_most(self, high: Self) -> Self {
         if high < self { high } else { self }
     }
+
+    /// The same number, held within ±`limit`; a NaN stays one.
+    #[inline]
+    #[must_use]
+    fn within(self, limit: Self) -> Self {
+        self.at_most(limit).at_least(-limit)
+    }
 }
 
 #[cfg(test)]
@@ -137,6 +145,10 @@ mod tests {
         assert_eq!(F::TWO.at_least(F::ONE), F::TWO);
         assert_eq!(F::ONE.at_most(F::TWO), F::ONE);
         assert_eq!(F::TWO.at_most(F::ONE), F::ONE);
+        assert_eq!(F::TWO.within(F::ONE), F::ONE);
+        assert_eq!((-F::TWO).within(F::ONE), -F::ONE);
+        assert_eq!(F::HALF.within(F::ONE), F::HALF);
+        assert!(nan.within(F::ONE) != nan.within(F::ONE));
         // A NaN on the right is ignored.
         assert_eq!(
             (F::ONE.at_least(nan), F::ONE.at_most(nan)),

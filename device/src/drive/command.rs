@@ -10,6 +10,7 @@ use crate::drive::prepare::{CommandPlan, MotorPlan};
 use crate::drive::rendering::Rendered;
 use crate::drive::safety::{Permit, Safety};
 use crate::drive::sampler::Sampled;
+use crepitus_model::Real;
 use crepitus_model::current_loop::Limit;
 
 use crepitus_protocol::counters::DriveCounter;
@@ -258,7 +259,7 @@ impl Command {
 fn milliamperes(current_a: f32) -> i16 {
     let most = f32::from(i16::MAX);
     let scaled = current_a * 1e3;
-    let rounded = (scaled + 0.5_f32.copysign(scaled)).min(most).max(-most);
+    let rounded = (scaled + 0.5_f32.copysign(scaled)).within(most);
     #[expect(
         clippy::cast_possible_truncation,
         reason = "a cast from float saturates"

@@ -2,6 +2,7 @@
 //! the shaft.
 
 use crate::drive::prepare::MotorPlan;
+use crepitus_model::Real;
 use crepitus_model::current_loop::{CurrentLoop, Limit};
 
 /// What the bridge does.
@@ -86,7 +87,7 @@ impl Motor {
             _ => Bridge::Float,
         };
         let most_a = self.plan.current_limit_a;
-        self.wanted_a = wanted_a.min(most_a).max(-most_a);
+        self.wanted_a = wanted_a.within(most_a);
         self.bridge
     }
 

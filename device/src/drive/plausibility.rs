@@ -5,6 +5,7 @@
 //! is no fault.
 
 use crate::drive::motor::Motor;
+use crepitus_model::Real;
 use crepitus_model::current_loop::Limit;
 use crepitus_protocol::Fault;
 
@@ -26,7 +27,11 @@ struct Patience(u32);
 impl Patience {
     /// Whether it is so for the `ticks`-th time in a row.
     fn is_over(&mut self, is_so: bool, ticks: u32) -> bool {
-        self.0 = if is_so { self.0.saturating_add(1) } else { 0 };
+        if !is_so {
+            self.0 = 0;
+            return false;
+        }
+        self.0 = self.0.saturating_add(1);
         self.0 >= ticks
     }
 }
@@ -77,37 +82,40 @@ impl Plausibility {
                 && motor.limited_by() != Some(Limit::Voltage)
         });
         let (emf, encoder) = (motor.emf_rad_s(), seen.omega_rad_s);
-        let slack = SPEED_SLACK_RAD_S + SPEED_SLACK_SHARE * emf.abs().max(encoder.abs());
+        let slack = SPEED_SLACK_RAD_S + SPEED_SLACK_SHARE * emf.abs().at_least(encoder.abs());
         let differ = (emf - encoder).abs() > slack;
         // Each is asked in every tick: none may lose count for another.
-        let found = [
-            (seen.is_broken, Fault::Overcurrent),
-            (!seen.is_number, Fault::NotANumber),
-            (self.overcurrent.is_over(over, 2), Fault::Overcurrent),
-            (
-                self.missing.is_over(current_a.is_none(), 3),
-                Fault::CurrentMissing,
-            ),
-            (
-                self.enable.is_over(!seen.enable_is_on, 9),
-                Fault::EnableStuckOff,
-            ),
-            (
-                seen.lost_ticks >= crate::drive::sampler::LOST_TICKS,
-                Fault::EncoderLost,
-            ),
-            (
-                self.overspeed
-                    .is_over(encoder.abs() > speed_limit_rad_s, 20),
-                Fault::Overspeed,
-            ),
-            (self.late.is_over(seen.is_late, 20), Fault::RenderingLate),
-            (self.mismatch.is_over(astray, 100), Fault::CurrentMismatch),
-            (self.speeds.is_over(differ, 400), Fault::SpeedMismatch),
-        ];
-        found
-            .into_iter()
-            .find(|(is_so, _)| *is_so)
-            .map(|(_, fault)| fault)
+        let overcurrent = self.overcurrent.is_over(over, 2);
+        let missing = self.missing.is_over(current_a.is_none(), 3);
+        let enable = self.enable.is_over(!seen.enable_is_on, 9);
+        let is_fast = encoder.abs() > speed_limit_rad_s;
+        let overspeed = self.overspeed.is_over(is_fast, 20);
+        let late = self.late.is_over(seen.is_late, 20);
+        let mismatch = self.mismatch.is_over(astray, 100);
+        let speeds = self.speeds.is_over(differ, 400);
+        // By urgency.
+        if seen.is_broken {
+            Some(Fault::Overcurrent)
+        } else if !seen.is_number {
+            Some(Fault::NotANumber)
+        } else if overcurrent {
+            Some(Fault::Overcurrent)
+        } else if missing {
+            Some(Fault::CurrentMissing)
+        } else if enable {
+            Some(Fault::EnableStuckOff)
+        } else if seen.lost_ticks >= crate::drive::sampler::LOST_TICKS {
+            Some(Fault::EncoderLost)
+        } else if overspeed {
+            Some(Fault::Overspeed)
+        } else if late {
+            Some(Fault::RenderingLate)
+        } else if mismatch {
+            Some(Fault::CurrentMismatch)
+        } else if speeds {
+            Some(Fault::SpeedMismatch)
+        } else {
+            None
+        }
     }
 }

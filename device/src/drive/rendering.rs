@@ -14,7 +14,9 @@ use crate::drive::prepare::{JointPlan, RenderingPlan};
 use crate::drive::sampler::Sampled;
 use crepitus_model::guarded::InputLimits;
 use crepitus_model::locate::ExactEvents;
-use crepitus_model::{BoneShaping, EventKind, FrictionCompensation, Renderer, Sample, StickSlip};
+use crepitus_model::{
+    BoneShaping, EventKind, FrictionCompensation, Real, Renderer, Sample, StickSlip,
+};
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{LimitReason, TICK_S};
 
@@ -183,7 +185,7 @@ impl Rendering {
             total_nm += self.rung_nm;
         }
         if self.fading_nm != 0.0 {
-            let left_nm = (self.fading_nm.abs() - self.slew_nm).max(0.0);
+            let left_nm = (self.fading_nm.abs() - self.slew_nm).at_least(0.0);
             self.fading_nm = left_nm.copysign(self.fading_nm);
             total_nm += self.fading_nm;
         }
@@ -203,9 +205,9 @@ impl Rendering {
         }
         let most_nm = if self.allowance_nm > self.torque_limit_nm {
             // It was lowered, and is followed as torque is: no jolt.
-            (self.allowance_nm - self.slew_nm).max(self.torque_limit_nm)
+            (self.allowance_nm - self.slew_nm).at_least(self.torque_limit_nm)
         } else {
-            (self.allowance_nm + self.slew_nm).min(self.torque_limit_nm)
+            (self.allowance_nm + self.slew_nm).at_most(self.torque_limit_nm)
         };
         self.allowance_nm = most_nm;
         // A torque that is no number passes, and is noticed by what follows.

@@ -16,6 +16,7 @@
 //! and what off means are locked until the next reset.
 
 use crate::clocks::APB2_TIMER_HZ;
+use crepitus_model::Real;
 use stm32f4xx_hal::gpio::{PA8, PA9, PB12, PB13, PB14, Pull};
 use stm32f4xx_hal::pac::TIM1;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
@@ -132,8 +133,7 @@ impl Bridge {
 
     fn set_shares(&mut self, volts: f32) {
         let half = f32::from(TOP / 2);
-        #[expect(clippy::manual_clamp, reason = "`clamp` can panic")]
-        let swing = (volts / SUPPLY_V).max(-1.0).min(1.0) * half;
+        let swing = (volts / SUPPLY_V).within(1.0) * half;
         self.timer
             .ccr1()
             .write(|w| w.ccr().set(counts(half + swing)));

@@ -173,15 +173,20 @@ mod app {
             is_broken: part.bridge.is_broken(),
         };
         let counters = cx.shared.counters;
-        let sampled = cx.shared.sampled.lock(|sampled| *sampled);
-        let rendered = cx.shared.rendered.lock(|rendered| *rendered);
-        let plan = cx.shared.command_plan.lock(Option::take);
-        let outputs = cx.shared.command.lock(|command| {
-            let Some(sampled) = &sampled else {
+        let shared = (
+            cx.shared.command,
+            cx.shared.command_plan,
+            cx.shared.sampled,
+            cx.shared.rendered,
+        );
+        let outputs = shared.lock(|command, plan, sampled, rendered| {
+            let Some(sampled) = sampled else {
                 return Outputs::default();
             };
-            if let Some(plan) = &plan {
-                command.take_over(plan, counters);
+            // Where it lies: a copy takes microseconds.
+            if let Some(new) = plan {
+                command.take_over(new, counters);
+                *plan = None;
             }
             command.tick(&inputs, sampled, rendered.as_ref(), counters)
         });

@@ -8,6 +8,7 @@
 //! below half a unit in the last place over the reduced range.
 
 use super::Real;
+use super::square_root::square_root;
 use core::f32::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 
 // π/2 = HI + MID + LO, where HI and MID have so few digits that a product with
@@ -173,13 +174,20 @@ impl Real for f32 {
         reason = "`as` truncates and saturates, which is the contract"
     )]
     fn whole(self) -> u64 {
-        self as u64
+        const BEYOND: f32 = 4_294_967_296.0;
+        // One instruction, where the way by 64 bits is a routine.
+        if self < BEYOND {
+            u64::from(self as u32)
+        } else {
+            self as u64
+        }
     }
 
     #[inline]
     #[expect(clippy::cast_precision_loss, reason = "nearest is the contract")]
     fn from_whole(n: u64) -> Self {
-        n as f32
+        // As in `whole`; both are rounded to nearest.
+        u32::try_from(n).map_or_else(|_| n as f32, |n| n as f32)
     }
 
     #[inline]
@@ -190,12 +198,12 @@ impl Real for f32 {
 
     #[inline]
     fn abs(self) -> Self {
-        libm::fabsf(self)
+        f32::abs(self)
     }
 
     #[inline]
     fn sqrt(self) -> Self {
-        libm::sqrtf(self)
+        square_root(self)
     }
 
     #[inline]
