@@ -4,8 +4,10 @@
 //! received: a decoder that loses its place counts what it throws away and
 //! finds its place at the next zero byte.
 
-use crate::frame::{CRC, CRC_BYTES, DELIMITER, FRAME_BYTES};
+use crate::frame::{BODY_BYTES, CRC_BYTES, Checksum, DELIMITER, FRAME_BYTES};
 use crate::lane::Lane;
+use cobs::{DecodeResult, DecoderState};
+use crc::CRC_32_ISO_HDLC;
 use serde::Deserialize;
 
 /// Why the bytes between two delimiters are no message.
@@ -66,11 +68,15 @@ impl Discarded {
     }
 }
 
-/// Takes bytes and gives frames.
-#[derive(Clone, Debug)]
+/// Takes bytes and gives frames. Each byte is decoded, and taken into the
+/// checksum, as it comes: the last one costs no more than the others.
+#[derive(Debug)]
 pub struct Decoder {
-    buffer: [u8; FRAME_BYTES],
-    /// Bytes since the last delimiter; beyond the buffer they are not kept.
+    cobs: DecoderState,
+    /// Body and checksum, as far as they have come.
+    plain: heapless::Vec<u8, { BODY_BYTES + CRC_BYTES }>,
+    checksum: Checksum,
+    /// Bytes since the last delimiter.
     length: usize,
     discarded: Discarded,
 }
@@ -81,17 +87,18 @@ impl Default for Decoder {
     }
 }
 
+/// Checksum of a body with its own checksum behind it.
+const RESIDUE: u32 = CRC_32_ISO_HDLC.residue ^ CRC_32_ISO_HDLC.xorout;
+
 impl Decoder {
     /// One at the start of a frame.
-    pub const fn new() -> Self {
+    pub fn new() -> Self {
         Self {
-            buffer: [0; FRAME_BYTES],
+            cobs: DecoderState::Idle,
+            plain: heapless::Vec::new(),
+            checksum: Checksum::new(),
             length: 0,
-            discarded: Discarded {
-                overlong: 0,
-                malformed: 0,
-                checksum: 0,
-            },
+            discarded: Discarded::default(),
         }
     }
 
@@ -99,34 +106,54 @@ impl Decoder {
     /// none. Delimiters that follow each other are nothing.
     pub fn push(&mut self, byte: u8) -> Option<Result<Body<'_>, FrameError>> {
         if byte != DELIMITER {
-            if let Some(place) = self.buffer.get_mut(self.length) {
-                *place = byte;
+            if self.length == 0 {
+                self.reset();
             }
             self.length = self.length.saturating_add(1);
+            if let Ok(DecodeResult::DataContinue(plain)) = self.cobs.feed(byte)
+                && self.plain.push(plain).is_ok()
+            {
+                self.checksum.update(&[plain]);
+            }
             return None;
         }
         let length = core::mem::take(&mut self.length);
         if length == 0 {
             return None;
         }
+        let ended = self.cobs.feed(DELIMITER);
         let count = &mut self.discarded;
         // The longest frame has its delimiter, too.
-        let fits = length < FRAME_BYTES;
-        let Some(frame) = self.buffer.get_mut(..length).filter(|_| fits) else {
+        if length >= FRAME_BYTES {
             count.overlong = count.overlong.wrapping_add(1);
             return Some(Err(FrameError::Overlong));
-        };
-        let opened = open(frame);
-        match opened {
-            Err(FrameError::Checksum) => count.checksum = count.checksum.wrapping_add(1),
-            Err(_) => count.malformed = count.malformed.wrapping_add(1),
-            Ok(_) => {}
         }
+        let opened = match (ended, self.plain.split_last_chunk::<CRC_BYTES>()) {
+            (Ok(DecodeResult::DataComplete), Some(([lane, tag, payload @ ..], _))) => {
+                if self.checksum.value() == RESIDUE {
+                    Ok(Body {
+                        lane: *lane,
+                        tag: *tag,
+                        payload,
+                    })
+                } else {
+                    count.checksum = count.checksum.wrapping_add(1);
+                    Err(FrameError::Checksum)
+                }
+            }
+            _ => {
+                count.malformed = count.malformed.wrapping_add(1);
+                Err(FrameError::Malformed)
+            }
+        };
         Some(opened)
     }
 
     /// Forgets a frame that has begun: the wire was cut.
     pub fn reset(&mut self) {
+        self.cobs = DecoderState::Idle;
+        self.plain.clear();
+        self.checksum = Checksum::new();
         self.length = 0;
     }
 
@@ -134,26 +161,6 @@ impl Decoder {
     pub fn discarded(&self) -> Discarded {
         self.discarded
     }
-}
-
-/// What is in a frame without its delimiter.
-fn open(frame: &mut [u8]) -> Result<Body<'_>, FrameError> {
-    let length = cobs::decode_in_place(frame).map_err(|_| FrameError::Malformed)?;
-    let plain = frame.get(..length).ok_or(FrameError::Malformed)?;
-    let (body, checksum) = plain
-        .split_last_chunk::<CRC_BYTES>()
-        .ok_or(FrameError::Malformed)?;
-    let [lane, tag, payload @ ..] = body else {
-        return Err(FrameError::Malformed);
-    };
-    if CRC.checksum(body) != u32::from_le_bytes(*checksum) {
-        return Err(FrameError::Checksum);
-    }
-    Ok(Body {
-        lane: *lane,
-        tag: *tag,
-        payload,
-    })
 }
 
 #[cfg(test)]

@@ -54,6 +54,21 @@ pub struct Sample {
     pub flags: SampleFlags,
 }
 
+impl Sample {
+    /// As it stands in a block: what postcard makes of it.
+    #[inline]
+    pub fn bytes(&self) -> [u8; SAMPLE_BYTES] {
+        let [c0, c1, c2, c3] = self.count.to_le_bytes();
+        let [m0, m1, m2, m3] = self.model_torque_nm.to_le_bytes();
+        let [t0, t1, t2, t3] = self.torque_nm.to_le_bytes();
+        let [a0, a1] = self.current_ma.to_le_bytes();
+        let [f0, f1] = self.flags.0.to_le_bytes();
+        [
+            c0, c1, c2, c3, m0, m1, m2, m3, t0, t1, t2, t3, a0, a1, f0, f1,
+        ]
+    }
+}
+
 /// A current that was not measured.
 pub const NO_CURRENT: i16 = i16::MIN;
 
@@ -186,6 +201,18 @@ pub struct Block {
 }
 
 impl Block {
+    /// What stands before the samples, for a sender that makes a frame sample
+    /// by sample.
+    pub fn head(&self) -> impl Serialize + MaxSize {
+        (
+            self.sequence,
+            self.first_tick,
+            self.revision,
+            self.dropped,
+            self.flags,
+        )
+    }
+
     /// Tick after the last sample.
     pub fn end_tick(&self) -> u64 {
         self.first_tick.saturating_add(BLOCK_SAMPLES as u64)
@@ -213,7 +240,32 @@ mod tests {
                 postcard::to_slice(&sample, &mut bytes).unwrap().len(),
                 SAMPLE_BYTES
             );
+            assert_eq!(bytes[..SAMPLE_BYTES], sample.bytes());
         }
+    }
+
+    #[test]
+    fn a_block_is_its_head_and_its_samples() {
+        let mut block = Block {
+            sequence: 700,
+            first_tick: 1 << 40,
+            revision: Revision(300),
+            dropped: 20,
+            flags: BlockFlags(7),
+            samples: [Sample::default(); BLOCK_SAMPLES],
+        };
+        for (sample, n) in block.samples.iter_mut().zip(1..) {
+            (sample.count, sample.torque_nm) = (-n, 0.1);
+        }
+        let mut bytes = [0; 512];
+        let whole = postcard::to_slice(&block, &mut bytes).unwrap().to_vec();
+        let mut pieces = postcard::to_slice(&block.head(), &mut bytes)
+            .unwrap()
+            .to_vec();
+        for sample in &block.samples {
+            pieces.extend(sample.bytes());
+        }
+        assert_eq!(whole, pieces);
     }
 
     #[test]
