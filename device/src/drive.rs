@@ -21,6 +21,7 @@ pub mod commits;
 pub mod link;
 pub mod link_task;
 pub mod motor;
+pub mod outgoing;
 pub mod plausibility;
 pub mod prepare;
 pub mod rendering;
@@ -31,7 +32,7 @@ pub mod vigil;
 use crate::counters::Counters;
 use command::{Command, Inputs, Outputs};
 use commits::Commits;
-use crepitus_protocol::frame::Frame;
+use crepitus_protocol::frame::{FRAME_BYTES, Frame, Place};
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::{Fault, Revision, State, ValueError, Values};
 use link_task::{LinkTask, Shared};
@@ -64,7 +65,7 @@ pub struct Drive {
     sampler: Sampler,
     rendering: Rendering,
     command: Command,
-    link: LinkTask,
+    link: LinkTask<Place>,
     /// Between the tasks.
     commits: Commits,
     prepared: Option<Prepared>,
@@ -188,13 +189,16 @@ impl Drive {
         link.received(byte, &mut parts, counters);
     }
 
-    /// The next frame for comms, if there is one.
-    pub fn link_to_send(&mut self) -> Option<Frame> {
+    /// A run of the rest of `link`: goes on with the next frame for comms, a
+    /// piece, or begins it if it `has_place`. The frame, once it is whole.
+    pub fn link_to_send(&mut self, has_place: bool) -> Option<Frame> {
         let (link, mut parts, counters) = self.link();
-        link.next_frame(&mut parts, counters)
+        let place = || has_place.then_some([0; FRAME_BYTES]);
+        let made = link.next_frame(place, &mut parts, counters)?;
+        Some(made.frame())
     }
 
-    fn link(&mut self) -> (&mut LinkTask, Parts<'_>, &Counters) {
+    fn link(&mut self) -> (&mut LinkTask<Place>, Parts<'_>, &Counters) {
         let parts = Parts {
             command: &mut self.command,
             sampler: &mut self.sampler,

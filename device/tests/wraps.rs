@@ -153,7 +153,7 @@ fn numbers_of_commands_wrap() {
 fn status(drive: &mut Drive) -> DriveStatus {
     let mut decoder = Decoder::new();
     let mut last = None;
-    while let Some(frame) = drive.link_to_send() {
+    for frame in (0..100).filter_map(|_| drive.link_to_send(true)) {
         for byte in frame {
             if let Some(Ok(body)) = decoder.push(byte)
                 && body.lane() == Some(Lane::FromDrive)

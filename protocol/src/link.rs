@@ -78,6 +78,25 @@ pub enum FromDrive {
     Status(DriveStatus),
 }
 
+/// Bytes of a counter, at most.
+pub const COUNTER_BYTES: usize = u32::POSTCARD_MAX_SIZE;
+
+impl DriveStatus {
+    /// Bytes of [`Self::head`], at most.
+    pub const HEAD_BYTES: usize = FromDrive::POSTCARD_MAX_SIZE - DRIVE_COUNT * COUNTER_BYTES;
+
+    /// The message [`FromDrive::Status`] as far as the counters, for a sender
+    /// that makes its frame piece by piece. Each of them follows by itself.
+    pub fn head(&self) -> impl Serialize + use<> {
+        const STATUS: u8 = 0;
+        (
+            (STATUS, self.tick, self.start, self.heard),
+            (self.state, self.fault, self.revision, self.refused),
+            (self.last, self.zeroed, self.polarity_proven),
+        )
+    }
+}
+
 /// How the drive is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct DriveStatus {
@@ -134,4 +153,41 @@ pub enum DriveRefusal {
     NoEncoder,
     /// Arming was given up: comms or the host took it back.
     Aborted,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::write;
+
+    #[test]
+    fn a_status_is_its_head_and_its_counters() {
+        let status = DriveStatus {
+            tick: u64::MAX,
+            start: u16::MAX,
+            heard: Some(u16::MAX),
+            state: State::Faulted,
+            fault: 255,
+            revision: Revision(u32::MAX),
+            refused: Some((Revision(u32::MAX), ValueError::KineticAboveStatic)),
+            last: Some(Outcome {
+                number: u16::MAX,
+                result: Err(DriveRefusal::Faulted { code: 255 }),
+            }),
+            zeroed: true,
+            polarity_proven: true,
+            counters: core::array::from_fn(|n| u32::MAX >> n),
+        };
+        for status in [status, DriveStatus::default()] {
+            let (mut whole, mut part) = ([0; 256], [0; 256]);
+            let whole = write(&FromDrive::Status(status), &mut whole).unwrap();
+            let head = write(&status.head(), &mut part[..DriveStatus::HEAD_BYTES]).unwrap();
+            let mut pieces = head.to_vec();
+            for counter in &status.counters {
+                let mut bytes = [0; COUNTER_BYTES];
+                pieces.extend(write(counter, &mut bytes).unwrap());
+            }
+            assert_eq!(whole, pieces);
+        }
+    }
 }

@@ -224,9 +224,12 @@ impl Identity {
     }
 }
 
+/// The bytes of an answer, after lane and tag.
+pub type AnswerBytes = heapless::Vec<u8, ANSWER_BYTES>;
+
 impl Answer {
     /// Its bytes, after lane and tag.
-    pub fn bytes(&self) -> heapless::Vec<u8, ANSWER_BYTES> {
+    pub fn bytes(&self) -> AnswerBytes {
         let mut bytes = heapless::Vec::new();
         let head = match *self {
             Self::Hello { token, .. } => [b'H', token],

@@ -201,9 +201,12 @@ pub struct Block {
 }
 
 impl Block {
+    /// Bytes of [`Self::head`], at most.
+    pub const HEAD_BYTES: usize = Self::POSTCARD_MAX_SIZE - BLOCK_SAMPLES * SAMPLE_BYTES;
+
     /// What stands before the samples, for a sender that makes a frame sample
     /// by sample.
-    pub fn head(&self) -> impl Serialize + MaxSize {
+    pub fn head(&self) -> impl Serialize + Copy + use<> {
         (
             self.sequence,
             self.first_tick,

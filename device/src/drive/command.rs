@@ -104,9 +104,19 @@ impl Command {
         self.zeroed
     }
 
-    /// The next block for the link.
-    pub fn pop_block(&mut self) -> Option<Block> {
-        self.batch.pop()
+    /// The block that waits for the link, the oldest.
+    pub fn block(&self) -> Option<&Block> {
+        self.batch.front()
+    }
+
+    /// How many wait.
+    pub fn waiting_blocks(&self) -> usize {
+        self.batch.waiting()
+    }
+
+    /// The link has it.
+    pub fn pop_block(&mut self) {
+        self.batch.pop();
     }
 
     /// Whether there may be torque.

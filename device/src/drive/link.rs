@@ -1,11 +1,9 @@
-//! The drive's end of the link: frames in, frames out.
+//! The drive's end of the link: what comes in, and what is due.
 
 use crate::counters::Counters;
 use crepitus_protocol::counters::DriveCounter;
-use crepitus_protocol::frame::{self, Frame};
-use crepitus_protocol::link::{DriveRefusal, DriveStatus, FromDrive, Outcome, ToDrive};
+use crepitus_protocol::link::{DriveRefusal, Outcome, ToDrive};
 use crepitus_protocol::management::{Answer, Identity, Question, What};
-use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Lane};
 
 use crate::drive::vigil::is_fresh;
@@ -24,7 +22,7 @@ pub enum Inbound {
 }
 
 /// The drive's end of the link.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Link {
     decoder: Decoder,
     /// The last command that was carried out, or is being.
@@ -104,27 +102,29 @@ impl Link {
         self.status_due = true;
     }
 
-    /// The next frame for the wire: answers first, then the blocks that are
-    /// complete, then what is due of the status: so a status tells of what
-    /// comes after the blocks before it, a commit above all.
-    pub fn next_frame(
-        &mut self,
-        now: u64,
-        status: impl FnOnce(Option<Outcome>) -> DriveStatus,
-        block: impl FnOnce() -> Option<Block>,
-    ) -> Option<Frame> {
-        if let Some(answer) = self.answer.take() {
-            return frame::encode_bytes(Lane::ManagementAnswer, &answer.bytes()).ok();
-        }
-        if let Some(block) = block() {
-            return frame::encode(Lane::Telemetry, &block).ok();
-        }
-        if self.status_due || now >= self.next_status_tick {
-            self.status_due = false;
-            self.next_status_tick = now.saturating_add(STATUS_TICKS);
-            let status = FromDrive::Status(status(self.last));
-            return frame::encode(Lane::FromDrive, &status).ok();
-        }
-        None
+    /// Whether a question waits for its answer.
+    pub fn has_answer(&self) -> bool {
+        self.answer.is_some()
+    }
+
+    /// The answer that waits.
+    pub fn take_answer(&mut self) -> Option<Answer> {
+        self.answer.take()
+    }
+
+    /// Whether a status is due.
+    pub fn is_status_due(&self, now: u64) -> bool {
+        self.status_due || now >= self.next_status_tick
+    }
+
+    /// A status is told now.
+    pub fn status_told(&mut self, now: u64) {
+        self.status_due = false;
+        self.next_status_tick = now.saturating_add(STATUS_TICKS);
+    }
+
+    /// The last command that was carried out, or refused.
+    pub fn last(&self) -> Option<Outcome> {
+        self.last
     }
 }

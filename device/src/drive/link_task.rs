@@ -4,10 +4,12 @@ use crate::counters::Counters;
 use crate::drive::command::Command;
 use crate::drive::commits::Commits;
 use crate::drive::link::{Inbound, Link};
+use crate::drive::outgoing::{Outgoing, PIECE_SAMPLES};
 use crate::drive::sampler::Sampler;
 use crate::drive::vigil::Heard;
-use crepitus_protocol::frame::Frame;
-use crepitus_protocol::link::{DriveRefusal, DriveStatus, Order, Outcome, ToDrive};
+use core::borrow::BorrowMut;
+use crepitus_protocol::frame::{Made, Place};
+use crepitus_protocol::link::{DriveRefusal, DriveStatus, Order, ToDrive};
 use crepitus_protocol::management::{Identity, Question, What};
 use crepitus_protocol::{Fault, Revision, State};
 
@@ -24,25 +26,31 @@ pub trait Shared {
     fn commits<R>(&mut self, work: impl FnOnce(&mut Commits) -> R) -> R;
 }
 
-/// The drive's end of the link, and what is done about what comes.
-#[derive(Clone, Debug)]
-pub struct LinkTask {
+/// The drive's end of the link, and what is done about what comes. Frames are
+/// made in places `P`.
+#[derive(Debug)]
+pub struct LinkTask<P> {
     identity: Identity,
     start: u16,
     link: Link,
+    outgoing: Outgoing<P>,
     wants_reboot: bool,
+    /// Blocks that were complete before what the next status has to tell.
+    blocks_first: usize,
     /// What the last status has said.
     told: (State, Option<Fault>, Revision, bool),
 }
 
-impl LinkTask {
+impl<P: BorrowMut<Place>> LinkTask<P> {
     /// Of a drive that has just started.
     pub fn new(identity: Identity, start: u16) -> Self {
         Self {
             identity,
             start,
             link: Link::default(),
+            outgoing: Outgoing::default(),
             wants_reboot: false,
+            blocks_first: 0,
             told: (State::Disarmed, None, Revision::NONE, false),
         }
     }
@@ -81,51 +89,102 @@ impl LinkTask {
         }
     }
 
-    /// The next frame for comms, if there is one.
-    pub fn next_frame(&mut self, shared: &mut impl Shared, counters: &Counters) -> Option<Frame> {
-        let now = shared.sampler(|sampler| sampler.next_tick());
-        let refused = shared.commits(|commits| commits.refused());
-        let (start, told) = (self.start, self.told);
-        let (outcome, mut status) = shared.command(|command| {
+    /// Goes on with the frame that is being made for comms, a piece, or begins
+    /// the next in a place from `spare`; gives the frame whose last piece it
+    /// was.
+    pub fn next_frame(
+        &mut self,
+        spare: impl FnOnce() -> Option<P>,
+        shared: &mut impl Shared,
+        counters: &Counters,
+    ) -> Option<Made<P>> {
+        self.look_for_news(shared);
+        if self.outgoing.is_idle() {
+            self.begin(spare, shared, counters);
+            return None;
+        }
+        let Some(next) = self.outgoing.next_sample() else {
+            return self.outgoing.piece();
+        };
+        let piece = shared.command(|command| {
+            let samples = command.block()?.samples.get(next..)?;
+            samples.first_chunk::<PIECE_SAMPLES>().copied()
+        })?;
+        let frame = self.outgoing.samples(&piece)?;
+        shared.command(Command::pop_block);
+        self.blocks_first = self.blocks_first.saturating_sub(1);
+        Some(frame)
+    }
+
+    /// What a status has to tell at once.
+    fn look_for_news(&mut self, shared: &mut impl Shared) {
+        let is_refused = shared.commits(|commits| commits.refused().is_some());
+        let (outcome, tells, waiting) = shared.command(|command| {
             let revision = command.revision();
-            let zeroed = command.is_zeroed();
+            let waiting = command.waiting_blocks();
             let safety = command.safety_mut();
-            let status = DriveStatus {
-                tick: now,
-                start,
-                heard: safety.heard_start(),
-                state: safety.state(),
-                fault: safety.fault().map_or(0, Fault::code),
-                revision,
-                refused,
-                last: None,
-                zeroed,
-                polarity_proven: safety.polarity_proven(),
-                counters: counters.all(),
-            };
-            (safety.take_outcome(), (status, safety.fault()))
+            let tells = (safety.state(), safety.fault(), revision, is_refused);
+            (safety.take_outcome(), tells, waiting)
         });
         if let Some(result) = outcome {
             self.link.finish(result);
         }
-        let tells = (
-            status.0.state,
-            status.1,
-            status.0.revision,
-            refused.is_some(),
-        );
-        if tells != told {
+        if tells != self.told {
             self.told = tells;
             self.link.changed();
+            self.blocks_first = waiting;
         }
-        self.link.next_frame(
-            now,
-            |last: Option<Outcome>| {
-                status.0.last = last;
-                status.0
-            },
-            || shared.command(Command::pop_block),
-        )
+    }
+
+    /// Begins the next frame, if one is due: answers first, then blocks and
+    /// statuses, in the order in which what they tell has happened, however
+    /// slow the wire: a commit shows in the blocks after its status only.
+    fn begin(
+        &mut self,
+        spare: impl FnOnce() -> Option<P>,
+        shared: &mut impl Shared,
+        counters: &Counters,
+    ) -> Option<()> {
+        if self.link.has_answer() {
+            let place = spare()?;
+            let answer = self.link.take_answer()?;
+            return self.outgoing.begin_answer(place, &answer).ok();
+        }
+        let now = shared.sampler(|sampler| sampler.next_tick());
+        let is_status_due = self.link.is_status_due(now);
+        let has_block = shared.command(|command| command.block().is_some());
+        if has_block && !(is_status_due && self.blocks_first == 0) {
+            let place = spare()?;
+            let outgoing = &mut self.outgoing;
+            return shared.command(|command| outgoing.begin_block(place, command.block()?).ok());
+        }
+        if is_status_due {
+            let place = spare()?;
+            self.link.status_told(now);
+            let status = self.status(now, shared, counters);
+            return self.outgoing.begin_status(place, &status).ok();
+        }
+        None
+    }
+
+    fn status(&self, now: u64, shared: &mut impl Shared, counters: &Counters) -> DriveStatus {
+        let refused = shared.commits(|commits| commits.refused());
+        shared.command(|command| {
+            let safety = command.safety();
+            DriveStatus {
+                tick: now,
+                start: self.start,
+                heard: safety.heard_start(),
+                state: safety.state(),
+                fault: safety.fault().map_or(0, Fault::code),
+                revision: command.revision(),
+                refused,
+                last: self.link.last(),
+                zeroed: command.is_zeroed(),
+                polarity_proven: safety.polarity_proven(),
+                counters: counters.all(),
+            }
+        })
     }
 
     /// Whether it was asked to start anew; once. The board does it.

@@ -9,6 +9,7 @@ use crepitus_device::comms::{self, Comms};
 use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::{self, Drive};
 use crepitus_device::usb_port::HostBytes;
+use crepitus_protocol::frame::FRAME_BYTES;
 use crepitus_protocol::host::{Answer, Ask, Refusal, Reply, Request};
 use crepitus_protocol::management::{Identity, Role};
 use crepitus_protocol::telemetry::Block;
@@ -125,11 +126,9 @@ impl Bench {
             Bridge::Float
         });
         self.drive.prepare();
-        if self.to_comms.len() < LINK_BYTES
-            && let Some(frame) = self.drive.link_to_send()
-        {
-            self.to_comms.extend(frame);
-        }
+        let has_place = self.to_comms.len() < FRAME_BYTES;
+        self.to_comms
+            .extend(self.drive.link_to_send(has_place).into_iter().flatten());
         if self.to_drive.len() < LINK_BYTES
             && let Some(frame) = self.comms.link_to_send()
         {

@@ -3,7 +3,7 @@
 use crate::clocks;
 use crate::enable_line::EnableLine;
 use crate::flash::ParameterSectors;
-use crate::link::Link;
+use crate::link::{DmaPlace, Link, PLACES};
 use crate::parameter_log::ParameterLog;
 use crate::start::{Start, start};
 use crate::ticks::Quarters;
@@ -36,7 +36,11 @@ pub struct CommsBoard {
 
 impl CommsBoard {
     /// Outputs off. May erase a sector of flash, which takes up to a second.
-    pub fn new(chip: Peripherals, packets: &'static mut [u32; PACKET_WORDS]) -> Self {
+    pub fn new(
+        chip: Peripherals,
+        packets: &'static mut [u32; PACKET_WORDS],
+        places: [DmaPlace; PLACES],
+    ) -> Self {
         let mut rcc = clocks::start(chip.RCC);
         let start = start(&mut rcc, &chip.RNG);
         let a = chip.GPIOA.split(&mut rcc);
@@ -49,7 +53,7 @@ impl CommsBoard {
             identity: identity(Role::Comms, &start),
             line,
             log: ParameterLog::open(ParameterSectors::new(chip.FLASH)),
-            link: Link::new(&chip.USART6, chip.DMA2, c.pc6, c.pc7, &mut rcc),
+            link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), places, &mut rcc),
             bus: usb::bus(blocks, a.pa11, a.pa12, packets, &rcc),
             quarters: Quarters::start(chip.TIM2, &mut rcc),
             watchdog: chip.IWDG,

@@ -5,7 +5,7 @@ use crate::clocks;
 use crate::converter::Converter;
 use crate::enable_line::EnableLine;
 use crate::encoder::Encoder;
-use crate::link::Link;
+use crate::link::{DmaPlace, Link, PLACES};
 use crate::start::{Start, start};
 use crate::ticks::{BeginOfTick, MiddleOfTick};
 use crate::who::identity;
@@ -39,7 +39,7 @@ pub struct DriveBoard {
 
 impl DriveBoard {
     /// Outputs off; the ticks wait for [`ticks::start`](crate::ticks::start).
-    pub fn new(chip: Peripherals) -> Self {
+    pub fn new(chip: Peripherals, places: [DmaPlace; PLACES]) -> Self {
         let mut rcc = clocks::start(chip.RCC);
         let start = start(&mut rcc, &chip.RNG);
         let a = chip.GPIOA.split(&mut rcc);
@@ -61,7 +61,7 @@ impl DriveBoard {
             bridge,
             converter: Converter::new(chip.ADC1, &chip.ADC_COMMON, c.pc0, &mut rcc),
             encoder: Encoder::new(chip.TIM5, a.pa0, a.pa1, &mut rcc),
-            link: Link::new(&chip.USART6, chip.DMA2, c.pc6, c.pc7, &mut rcc),
+            link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), places, &mut rcc),
             begin: BeginOfTick::new(chip.TIM4, &mut rcc),
             middle: MiddleOfTick::new(chip.TIM3, &mut rcc),
             watchdog: chip.IWDG,

@@ -7,8 +7,9 @@
 //!
 //! 84 MHz / 20 = 4.2 MHz exactly, with 16 samples a bit (1 + 4/16).
 //!
-//! A frame of telemetry takes 0.8 of the millisecond, and making one takes
-//! another 0.1: so the next is made while one is on its way.
+//! A frame takes 0.8 of the millisecond to be sent, and about as long to be
+//! made: so there are three places, one whose frame is on its way, one that
+//! waits, and one in which the next is made. The DMA reads where it was made.
 //!
 //! The end of a frame that was sent is an interrupt (`DMA2_STREAM6`); what has
 //! been received is looked for, several times a millisecond. There is no
@@ -17,38 +18,52 @@
 
 use crate::raw;
 use core::sync::atomic::{AtomicU8, Ordering, fence};
-use crepitus_protocol::frame::{FRAME_BYTES, Frame};
+use crepitus_protocol::frame::{FRAME_BYTES, Frame, Made, Place};
 use stm32f4xx_hal::gpio::{PC6, PC7, Pull};
 use stm32f4xx_hal::pac::{DMA2, USART6};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
-/// Bytes that may wait for [`Link::next_byte`].
-pub const RING_BYTES: usize = 2048;
+/// Bytes that may wait to be taken.
+const RING_BYTES: usize = 2048;
+
+/// Places for frames: see the module.
+pub const PLACES: usize = 3;
+
+/// A place for a frame, in RAM that DMA reaches.
+pub type DmaPlace = &'static mut Place;
+
+/// What places are made of.
+pub const PLACE: Place = [0; FRAME_BYTES];
+
 const RECEIVE: usize = 1;
 const SEND: usize = 6;
 
 /// Both streams serve USART6 on this channel.
 const CHANNEL: u8 = 5;
 
-// Written and read by DMA, so in RAM that it reaches, and atomic.
+// Written by DMA, so in RAM that it reaches, and atomic.
 static RING: [AtomicU8; RING_BYTES] = [const { AtomicU8::new(0) }; RING_BYTES];
-static OUTGOING: [[AtomicU8; FRAME_BYTES]; 2] =
-    [const { [const { AtomicU8::new(0) }; FRAME_BYTES] }; 2];
 
 /// The link.
 pub struct Link {
     dma: DMA2,
-    /// The next byte of the ring to be read.
+    /// The next byte of the ring to be taken.
     next: usize,
-    /// Which of [`OUTGOING`] is being sent, or was last.
-    sending: usize,
-    /// The length of what waits in the other.
-    waiting: Option<u16>,
+    spare: [Option<DmaPlace>; PLACES],
+    /// In their order; never more than there are places.
+    waiting: [Option<Made<DmaPlace>>; PLACES],
+    sending: Option<DmaPlace>,
 }
 
 impl Link {
     /// Receives from now on.
-    pub fn new(usart: &USART6, dma: DMA2, sends: PC6, receives: PC7, rcc: &mut Rcc) -> Self {
+    pub fn new(
+        usart: &USART6,
+        dma: DMA2,
+        (sends, receives): (PC6, PC7),
+        places: [DmaPlace; PLACES],
+        rcc: &mut Rcc,
+    ) -> Self {
         USART6::enable(rcc);
         USART6::reset(rcc);
         DMA2::enable(rcc);
@@ -84,8 +99,9 @@ impl Link {
         Self {
             dma,
             next: 0,
-            sending: 0,
-            waiting: None,
+            spare: places.map(Some),
+            waiting: [const { None }; PLACES],
+            sending: None,
         }
     }
 
@@ -96,59 +112,78 @@ impl Link {
         self.go_on();
     }
 
-    /// The next byte that has been received, if there is one. At most
-    /// [`RING_BYTES`] come before none does, at 2.4 µs each.
-    pub fn next_byte(&mut self) -> Option<u8> {
+    /// Bytes that have been received and not taken: 2,047 at most.
+    pub fn received(&self) -> usize {
         let left = usize::from(self.dma.st(RECEIVE).ndtr().read().ndt().bits());
-        let end = RING_BYTES.wrapping_sub(left) % RING_BYTES;
-        if self.next == end {
-            return None;
-        }
+        let end = RING_BYTES.wrapping_sub(left);
+        end.wrapping_sub(self.next) % RING_BYTES
+    }
+
+    /// Takes one of them.
+    pub fn take_byte(&mut self) -> Option<u8> {
         let byte = RING.get(self.next)?.load(Ordering::Relaxed);
         self.next = (self.next + 1) % RING_BYTES;
         Some(byte)
     }
 
-    /// Whether there is room for a frame.
-    pub fn can_send(&self) -> bool {
-        self.waiting.is_none()
+    /// A place for the next frame, if there is one.
+    pub fn spare(&mut self) -> Option<DmaPlace> {
+        self.spare.iter_mut().find_map(Option::take)
     }
 
-    /// Sends a frame once the one before has gone; if [`Self::can_send`].
-    pub fn send(&mut self, frame: &Frame) {
-        if !self.can_send() {
-            return;
-        }
-        if let Some(place) = OUTGOING.get(1 - self.sending) {
-            for (place, byte) in place.iter().zip(frame) {
-                place.store(*byte, Ordering::Relaxed);
+    /// Whether there is a place.
+    pub fn can_send(&self) -> bool {
+        self.spare.iter().any(Option::is_some)
+    }
+
+    /// Sends a copy of a frame, if there is a place.
+    pub fn send_copy(&mut self, frame: &Frame) {
+        if let Some(place) = self.spare() {
+            if let Some(bytes) = place.get_mut(..frame.len()) {
+                bytes.copy_from_slice(frame);
             }
-            self.waiting = Some(length(frame.len()));
+            let length = frame.len();
+            self.send(Made { place, length });
         }
+    }
+
+    /// Sends a frame once those before have gone.
+    pub fn send(&mut self, frame: Made<DmaPlace>) {
+        put(&mut self.waiting, frame);
         self.go_on();
     }
 
     /// Starts what waits, if nothing is on its way.
     fn go_on(&mut self) {
-        let stream = self.dma.st(SEND);
-        let is_sending = stream.cr().read().en().is_enabled();
+        let is_sending = self.dma.st(SEND).cr().read().en().is_enabled();
         if is_sending {
             return;
         }
-        let other = 1 - self.sending;
-        let (Some(length), Some(bytes)) = (self.waiting.take(), OUTGOING.get(other)) else {
+        if let Some(sent) = self.sending.take() {
+            put(&mut self.spare, sent);
+        }
+        let Some(frame) = self.waiting.iter_mut().next().and_then(Option::take) else {
             return;
         };
-        self.sending = other;
-        // The bytes are there before the stream reads them.
-        fence(Ordering::SeqCst);
+        self.waiting.rotate_left(1);
+        let stream = self.dma.st(SEND);
         self.dma.hifcr().write(|w| {
             w.ctcif6().clear().chtif6().clear().cteif6().clear();
             w.cdmeif6().clear().cfeif6().clear()
         });
-        raw::dma_bytes(stream, bytes);
-        stream.ndtr().write(|w| w.ndt().set(length));
+        let place = raw::dma_place(stream, frame.place);
+        stream.ndtr().write(|w| w.ndt().set(length(frame.length)));
+        // The bytes are there before the stream reads them.
+        fence(Ordering::SeqCst);
         stream.cr().modify(|_, w| w.en().enabled());
+        self.sending = Some(place);
+    }
+}
+
+/// Behind those that are there.
+fn put<T>(slots: &mut [Option<T>; PLACES], one_more: T) {
+    if let Some(free) = slots.iter_mut().find(|free| free.is_none()) {
+        *free = Some(one_more);
     }
 }
 

@@ -5,13 +5,15 @@
 //! | [`kept_words`], [`keep_words`] | words that the start-up code leaves alone; any bits are a `u32`; read and written whole, by `init` before there are tasks, or by who never returns |
 //! | [`image`] | symbols of the linker script around the program in flash, which nobody writes while it runs |
 //! | [`outputs_off`] | called where nothing else runs any more; only ever switches off |
-//! | [`dma_register`], [`dma_bytes`] | the stream reads or writes a `'static` buffer of atomic bytes in RAM that DMA reaches, within the length that `link.rs` gives it |
+//! | [`dma_register`], [`dma_bytes`] | the stream writes a `'static` buffer of atomic bytes in RAM that DMA reaches, within the length that `link.rs` gives it |
+//! | [`dma_place`] | the stream reads a place that `link.rs` owns and keeps until the stream is done, in RAM that DMA reaches, within it |
 //! | [`converter_channel`] | a channel that the converter has |
 //! | `HardFault` | the stack may be of no use, so it begins anew; it never returns |
 #![allow(unsafe_code)]
 
 use crate::enable_line;
 use crate::kept::{Reason, WORDS};
+use crate::link::DmaPlace;
 use crate::stop::stop;
 use core::mem::MaybeUninit;
 use core::sync::atomic::AtomicU8;
@@ -66,7 +68,16 @@ pub(crate) fn dma_register(stream: &pac::dma2::ST, register: *const u16) {
     unsafe { stream.par().write(|w| w.bits(address(register.addr()))) };
 }
 
-/// Tells a DMA stream which bytes it fills or empties.
+/// Tells a DMA stream where the frame is that it sends. Whoever calls keeps the
+/// place, and leaves it alone, until the stream is done.
+pub(crate) fn dma_place(stream: &pac::dma2::ST, place: DmaPlace) -> DmaPlace {
+    let begin = address(place.as_mut_ptr().expose_provenance());
+    // SAFETY: see the table.
+    unsafe { stream.m0ar().write(|w| w.bits(begin)) };
+    place
+}
+
+/// Tells a DMA stream which bytes it fills.
 pub(crate) fn dma_bytes(stream: &pac::dma2::ST, bytes: &'static [AtomicU8]) {
     let begin = address(bytes.as_ptr().addr());
     // SAFETY: see the table.

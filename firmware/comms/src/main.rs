@@ -27,7 +27,7 @@ mod app {
     use board::comms_board::CommsBoard;
     use board::enable_line::EnableLine;
     use board::flash::ParameterSectors;
-    use board::link::{Link, RING_BYTES};
+    use board::link::{Link, PLACE, PLACES};
     use board::parameter_log::ParameterLog;
     use board::ticks::Quarters;
     use board::usb::{DIGITS, PACKET_WORDS, UsbBusAllocator, UsbBusType, identity};
@@ -35,6 +35,7 @@ mod app {
     use core::mem::MaybeUninit;
     use crepitus_device::comms::{Boot, Comms, Inputs};
     use crepitus_device::usb_port::{HostBytes, UsbPort};
+    use crepitus_protocol::frame::Place;
     use crepitus_protocol::{Fault, Revision, Values};
     use stm32f4xx_hal::pac::Interrupt;
 
@@ -75,6 +76,7 @@ mod app {
     }
 
     #[init(local = [
+        places: [Place; PLACES] = [PLACE; PLACES],
         // In their places from the beginning: large, or referred to for ever.
         comms: MaybeUninit<Comms> = MaybeUninit::uninit(),
         bus: MaybeUninit<UsbBusAllocator<UsbBusType>> = MaybeUninit::uninit(),
@@ -82,7 +84,7 @@ mod app {
         digits: [u8; DIGITS] = [0; DIGITS]
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let board = CommsBoard::new(cx.device, cx.local.packets);
+        let board = CommsBoard::new(cx.device, cx.local.packets, cx.local.places.each_mut());
         let start = board.start;
         defmt::info!(
             "comms: start {=u16} after {=str}; before: {=str} {=u32:#x}",
@@ -163,16 +165,15 @@ mod app {
         link.acknowledge();
         cx.shared.roll.here(LINKED);
         cx.local.watchdog.feed(cx.shared.roll);
-        for _ in 0..RING_BYTES {
-            let Some(byte) = link.next_byte() else {
-                break;
-            };
-            cx.shared.comms.lock(|comms| comms.link_received(byte));
+        for _ in 0..link.received() {
+            if let Some(byte) = link.take_byte() {
+                cx.shared.comms.lock(|comms| comms.link_received(byte));
+            }
         }
         if link.can_send()
             && let Some(frame) = cx.shared.comms.lock(|comms| comms.link_to_send())
         {
-            link.send(&frame);
+            link.send_copy(&frame);
         }
         if cx.shared.comms.lock(|comms| !comms.to_send().is_empty()) {
             rtic::pend(USB);

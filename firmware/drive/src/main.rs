@@ -37,7 +37,7 @@ mod app {
     use board::drive_board::DriveBoard;
     use board::enable_line::EnableLine;
     use board::encoder::Encoder;
-    use board::link::{Link, RING_BYTES};
+    use board::link::{DmaPlace, Link, PLACE, PLACES};
     use board::ticks::{self, BeginOfTick, MiddleOfTick};
     use board::watchdog::{Roll, Watchdog};
     use core::sync::atomic::{AtomicBool, Ordering};
@@ -50,6 +50,7 @@ mod app {
     use crepitus_device::drive::prepare::{CommandPlan, Preparation, Prepared, RenderingPlan};
     use crepitus_device::drive::rendering::{Rendered, Rendering};
     use crepitus_device::drive::sampler::{Sampled, Sampler};
+    use crepitus_protocol::frame::Place;
     use crepitus_protocol::{Fault, State};
     use stm32f4xx_hal::pac::Interrupt;
 
@@ -66,6 +67,9 @@ mod app {
     const LINKED: u32 = 1 << 3;
     const EVERYONE: u32 = COMMAND | SAMPLE | RENDERED | LINKED;
 
+    /// The most bytes that a run of `link` takes: the wire brings 21 in a tick.
+    const RUN_BYTES: usize = 32;
+
     /// Runs of `link` that `idle` may take for a round: at most 250 ms.
     const PATIENCE: u32 = 5_000;
 
@@ -81,6 +85,7 @@ mod app {
         rendered: Option<Rendered>,
         is_settling: AtomicBool,
         is_going: AtomicBool,
+        is_piece_due: AtomicBool,
         counters: Counters,
         roll: Roll,
     }
@@ -95,14 +100,14 @@ mod app {
         encoder: Encoder,
         rendering: Rendering,
         link: Link,
-        link_task: LinkTask,
+        link_task: LinkTask<DmaPlace>,
         preparation: Preparation,
         watchdog: Watchdog,
     }
 
-    #[init]
+    #[init(local = [places: [Place; PLACES] = [PLACE; PLACES]])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let board = DriveBoard::new(cx.device);
+        let board = DriveBoard::new(cx.device, cx.local.places.each_mut());
         let start = board.start;
         defmt::info!(
             "drive: start {=u16} after {=str}; before: {=str} {=u32:#x}",
@@ -131,6 +136,7 @@ mod app {
             rendered: None,
             is_settling: AtomicBool::new(false),
             is_going: AtomicBool::new(false),
+            is_piece_due: AtomicBool::new(false),
             counters: Counters::new(),
             roll: Roll::new(),
         };
@@ -155,9 +161,11 @@ mod app {
     #[task(
         binds = TIM3, priority = 4,
         local = [middle, converter, line, bridge, middles: u8 = 0],
-        shared = [command, command_plan, sampled, rendered, &is_going, &counters, &roll]
+        shared = [
+            command, command_plan, sampled, rendered, &is_going, &is_piece_due, &counters, &roll,
+        ]
     )]
-    fn command_motor(mut cx: command_motor::Context) {
+    fn command_motor(cx: command_motor::Context) {
         let part = cx.local;
         part.middle.acknowledge();
         cx.shared.roll.here(COMMAND);
@@ -173,7 +181,7 @@ mod app {
             is_broken: part.bridge.is_broken(),
         };
         let counters = cx.shared.counters;
-        let shared = (
+        let mut shared = (
             cx.shared.command,
             cx.shared.command_plan,
             cx.shared.sampled,
@@ -195,6 +203,7 @@ mod app {
             motor::Bridge::Float => part.bridge.float(),
             motor::Bridge::Driven(volts) => part.bridge.drive(volts),
         }
+        cx.shared.is_piece_due.store(true, Ordering::Relaxed);
         rtic::pend(LINK);
     }
 
@@ -261,8 +270,8 @@ mod app {
 
     #[task(
         binds = DMA2_STREAM6, priority = 1,
-        local = [link, link_task, watchdog],
-        shared = [command, sampler, commits, &counters, &roll]
+        local = [link, link_task, watchdog, has_received: bool = false],
+        shared = [command, sampler, commits, &is_piece_due, &counters, &roll]
     )]
     fn link(cx: link::Context) {
         let (link, task) = (cx.local.link, cx.local.link_task);
@@ -275,16 +284,22 @@ mod app {
             sampler: cx.shared.sampler,
             commits: cx.shared.commits,
         };
-        for _ in 0..RING_BYTES {
-            let Some(byte) = link.next_byte() else {
-                break;
-            };
-            task.received(byte, &mut parts, counters);
-        }
-        if link.can_send()
-            && let Some(frame) = task.next_frame(&mut parts, counters)
+        // One or the other, so that no run takes long: bytes that have come, or
+        // a piece of what is to go, once a tick. If both wait they take turns.
+        let is_piece_due = cx.shared.is_piece_due.swap(false, Ordering::Relaxed);
+        let received = link.received().min(RUN_BYTES);
+        let receives = received > 0 && !(is_piece_due && *cx.local.has_received);
+        *cx.local.has_received = receives;
+        if receives {
+            for _ in 0..received {
+                if let Some(byte) = link.take_byte() {
+                    task.received(byte, &mut parts, counters);
+                }
+            }
+        } else if is_piece_due
+            && let Some(frame) = task.next_frame(|| link.spare(), &mut parts, counters)
         {
-            link.send(&frame);
+            link.send(frame);
         }
         if task.take_reboot() {
             board::stop::reboot();

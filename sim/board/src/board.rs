@@ -258,7 +258,11 @@ impl Board {
         let comms_runs = self.comms_health == Health::Runs;
         down.tick(
             self.tick,
-            || comms_runs.then(|| comms.link_to_send()).flatten(),
+            |has_place| {
+                (comms_runs && has_place)
+                    .then(|| comms.link_to_send())
+                    .flatten()
+            },
             |byte| {
                 if drive_runs {
                     drive.link_received(byte);
@@ -267,7 +271,7 @@ impl Board {
         );
         up.tick(
             self.tick,
-            || drive_runs.then(|| drive.link_to_send()).flatten(),
+            |has_place| drive_runs.then(|| drive.link_to_send(has_place)).flatten(),
             |byte| {
                 if comms_runs {
                     comms.link_received(byte);

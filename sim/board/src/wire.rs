@@ -8,6 +8,9 @@ use std::collections::VecDeque;
 /// Bytes that the UART carries in a tick: 4.2 Mbaud, ten bits a byte, 50 µs.
 pub const BYTES_PER_TICK: usize = 21;
 
+/// Frames that the sender has a place for, the one that it makes among them.
+const PLACES: usize = 3;
+
 /// What has gone over a wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
@@ -26,6 +29,8 @@ pub struct Wire {
     pub injector: FaultInjector,
     /// The frame that is being sent, and how much of it is.
     sending: Option<(Frame, usize)>,
+    /// Those after it.
+    waiting: VecDeque<Frame>,
     /// Frames that are on their way, with the tick of their arrival.
     on_the_way: VecDeque<(u64, Vec<u8>)>,
     traffic: Traffic,
@@ -37,6 +42,7 @@ impl Wire {
         Self {
             injector: FaultInjector::new(seed),
             sending: None,
+            waiting: VecDeque::new(),
             on_the_way: VecDeque::new(),
             traffic: Traffic::default(),
         }
@@ -50,23 +56,26 @@ impl Wire {
     /// The sender has been reset: what it was sending ends here.
     pub fn sender_reset(&mut self) {
         self.sending = None;
+        self.waiting.clear();
     }
 
-    /// One tick: takes frames from the sender as there is room, gives the
-    /// receiver what arrives.
+    /// One tick: asks the sender for a frame, tells it whether there is a place
+    /// for one that it begins, and gives the receiver what arrives.
     pub fn tick(
         &mut self,
         now: u64,
-        mut next_frame: impl FnMut() -> Option<Frame>,
+        mut next_frame: impl FnMut(bool) -> Option<Frame>,
         mut receive: impl FnMut(u8),
     ) {
         let mut room = BYTES_PER_TICK;
+        self.ask(&mut next_frame);
         while room > 0 {
             let (frame, sent) = match self.sending.take() {
                 Some(sending) => sending,
-                None => match next_frame() {
+                None => match self.waiting.pop_front() {
                     Some(frame) => {
                         self.traffic.frames += 1;
+                        self.ask(&mut next_frame);
                         (frame, 0)
                     }
                     None => break,
@@ -86,6 +95,11 @@ impl Wire {
         }
         self.traffic.full_ticks += u64::from(room == 0);
         self.arrive(now, &mut receive);
+    }
+
+    fn ask(&mut self, next_frame: &mut impl FnMut(bool) -> Option<Frame>) {
+        let in_use = self.waiting.len() + usize::from(self.sending.is_some());
+        self.waiting.extend(next_frame(in_use < PLACES));
     }
 
     fn arrive(&mut self, now: u64, receive: &mut impl FnMut(u8)) {
@@ -115,7 +129,7 @@ mod tests {
         frames.reverse();
         let mut arrived = Vec::new();
         for tick in 0..4 {
-            wire.tick(tick, || frames.pop(), |byte| arrived.push((tick, byte)));
+            wire.tick(tick, |_| frames.pop(), |byte| arrived.push((tick, byte)));
         }
         let expected: Vec<_> = [(2, 1); 50].into_iter().chain([(2, 2); 10]).collect();
         assert_eq!(arrived, expected);

@@ -217,7 +217,7 @@ impl Device {
     }
 
     fn link(&mut self) {
-        while let Some(frame) = self.drive.link_to_send() {
+        if let Some(frame) = self.drive.link_to_send(true) {
             for byte in frame {
                 if !self.link_is_cut {
                     self.comms.link_received(byte);

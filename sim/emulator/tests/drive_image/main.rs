@@ -1,6 +1,7 @@
 //! The drive's real image: see each module.
 
 mod boot;
+mod budget;
 mod faults;
 mod host;
 mod replay;

@@ -22,8 +22,7 @@ const LINE: u32 = 0x4002_0410;
 const BREAK_FLAGS: u32 = 0x4001_0010;
 const LINK_CONTROL: u32 = 0x4001_140c;
 const RECEIVED_LEFT: u32 = 0x4002_642c;
-const SENDER_CONTROL: u32 = 0x4002_64a0;
-const REGISTERS: [u32; 8] = [
+const REGISTERS: [u32; 7] = [
     ENCODER,
     CONVERTER_FLAGS,
     CONVERTER_DATA,
@@ -31,11 +30,13 @@ const REGISTERS: [u32; 8] = [
     BREAK_FLAGS,
     LINK_CONTROL,
     RECEIVED_LEFT,
-    SENDER_CONTROL,
 ];
 
 /// Bytes of the ring that the DMA fills.
 const RING: u32 = 2_048;
+
+/// The most that a run of the task takes of them.
+const RUN: u32 = 32;
 
 /// Ticks that are compared, at least.
 const TICKS: usize = 20_000;
@@ -54,7 +55,6 @@ struct Replay<'a> {
     /// Bytes that the image's link has received.
     bytes: std::slice::Iter<'a, u8>,
     next: u32,
-    may_send: bool,
     /// Samples that were put into blocks.
     pushed: u64,
     /// The parameters in force, block by block, in the image.
@@ -81,15 +81,12 @@ impl Replay<'_> {
             }
             RECEIVED_LEFT => {
                 let end = (RING - access.value) % RING;
-                if self.next == end {
-                    self.may_send = true;
-                } else {
-                    let byte = self.bytes.next().expect("a byte that was received");
+                let come = (end + RING - self.next) % RING;
+                let run = come.min(RUN);
+                for byte in self.bytes.by_ref().take(run as usize) {
                     self.drive.link_received(*byte);
-                    self.next = (self.next + 1) % RING;
                 }
-            }
-            SENDER_CONTROL if std::mem::take(&mut self.may_send) && access.value & 1 == 0 => {
+                self.next = (self.next + run) % RING;
                 self.send();
             }
             _ => {}
@@ -109,7 +106,7 @@ impl Replay<'_> {
     }
 
     fn send(&mut self) {
-        let Some(frame) = self.drive.link_to_send() else {
+        let Some(frame) = self.drive.link_to_send(true) else {
             return;
         };
         for byte in &frame {
@@ -161,7 +158,6 @@ fn twenty_thousand_ticks_are_those_of_the_native_drive_bit_for_bit() {
         inputs: Inputs::default(),
         bytes: bytes.iter(),
         next: 0,
-        may_send: false,
         pushed: 0,
         revisions: host.blocks.iter().map(revision).collect(),
         decoder: Decoder::new(),

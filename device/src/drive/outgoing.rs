@@ -1,0 +1,148 @@
+//! The frame that is being made for comms, a piece in every run of the link's
+//! task: no tick pays for a whole one.
+
+use core::borrow::BorrowMut;
+use crepitus_protocol::Lane;
+use crepitus_protocol::counters::DRIVE_COUNT;
+use crepitus_protocol::frame::{self, Encoder, Made, Place, TooLong};
+use crepitus_protocol::link::{COUNTER_BYTES, DriveStatus};
+use crepitus_protocol::management::{Answer, AnswerBytes};
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, SAMPLE_BYTES, Sample};
+
+/// Samples of a piece: with its head a block takes eleven of its twenty ticks.
+pub const PIECE_SAMPLES: usize = 2;
+const _: () = assert!(BLOCK_SAMPLES.is_multiple_of(PIECE_SAMPLES));
+
+/// Bytes of a piece of an answer.
+const PIECE_BYTES: usize = 32;
+
+/// Counters of a piece of a status.
+const PIECE_COUNTERS: usize = 5;
+
+/// What is to come of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Rest {
+    /// An answer, from here on.
+    Answer(usize),
+    /// The counters of a status, from here on.
+    Counters(usize),
+    /// The samples of a block, from here on.
+    Samples(usize),
+}
+
+/// Makes frames, one after the other, in places `P`.
+#[derive(Debug)]
+pub struct Outgoing<P> {
+    making: Option<(Encoder<P>, Rest)>,
+    answer: AnswerBytes,
+    counters: [u32; DRIVE_COUNT],
+}
+
+impl<P> Default for Outgoing<P> {
+    fn default() -> Self {
+        Self {
+            making: None,
+            answer: AnswerBytes::new(),
+            counters: [0; DRIVE_COUNT],
+        }
+    }
+}
+
+impl<P: BorrowMut<Place>> Outgoing<P> {
+    /// Whether no frame is being made.
+    pub fn is_idle(&self) -> bool {
+        self.making.is_none()
+    }
+
+    /// Begins the frame of an answer.
+    ///
+    /// # Errors
+    /// [`TooLong`]; never, as an answer fits.
+    pub fn begin_answer(&mut self, place: P, answer: &Answer) -> Result<(), TooLong> {
+        self.answer = answer.bytes();
+        let encoder = Encoder::new(place, Lane::ManagementAnswer)?;
+        self.making = Some((encoder, Rest::Answer(0)));
+        Ok(())
+    }
+
+    /// Begins the frame of a status.
+    ///
+    /// # Errors
+    /// [`TooLong`]; never, as a status fits.
+    pub fn begin_status(&mut self, place: P, status: &DriveStatus) -> Result<(), TooLong> {
+        let mut encoder = Encoder::new(place, Lane::FromDrive)?;
+        encoder.push(frame::write(
+            &status.head(),
+            &mut [0; DriveStatus::HEAD_BYTES],
+        )?)?;
+        self.counters = status.counters;
+        self.making = Some((encoder, Rest::Counters(0)));
+        Ok(())
+    }
+
+    /// Begins the frame of a block; its samples come in pieces.
+    ///
+    /// # Errors
+    /// [`TooLong`]; never, as a block fits.
+    pub fn begin_block(&mut self, place: P, block: &Block) -> Result<(), TooLong> {
+        let mut encoder = Encoder::new(place, Lane::Telemetry)?;
+        encoder.push(frame::write(&block.head(), &mut [0; Block::HEAD_BYTES])?)?;
+        self.making = Some((encoder, Rest::Samples(0)));
+        Ok(())
+    }
+
+    /// The first sample of the next piece, if a block is being made.
+    pub fn next_sample(&self) -> Option<usize> {
+        match self.making {
+            Some((_, Rest::Samples(next))) => Some(next),
+            _ => None,
+        }
+    }
+
+    /// Goes on with these samples of the block; the frame, if they were its
+    /// last.
+    pub fn samples(&mut self, piece: &[Sample; PIECE_SAMPLES]) -> Option<Made<P>> {
+        let (encoder, Rest::Samples(next)) = self.making.as_mut()? else {
+            return None;
+        };
+        let mut bytes = [0; PIECE_SAMPLES * SAMPLE_BYTES];
+        for (bytes, sample) in bytes.as_chunks_mut().0.iter_mut().zip(piece) {
+            *bytes = sample.bytes();
+        }
+        encoder.push(&bytes).ok()?;
+        *next = next.saturating_add(PIECE_SAMPLES);
+        if *next < BLOCK_SAMPLES {
+            return None;
+        }
+        self.finish()
+    }
+
+    /// Goes on with an answer or a status; the frame, if that was its end.
+    pub fn piece(&mut self) -> Option<Made<P>> {
+        let (encoder, rest) = self.making.as_mut()?;
+        let is_whole = match rest {
+            Rest::Answer(next) => {
+                let left = self.answer.get(*next..)?;
+                let piece = left.get(..PIECE_BYTES).unwrap_or(left);
+                encoder.push(piece).ok()?;
+                *next = next.saturating_add(PIECE_BYTES);
+                *next >= self.answer.len()
+            }
+            Rest::Counters(next) => {
+                for counter in self.counters.iter().skip(*next).take(PIECE_COUNTERS) {
+                    let mut bytes = [0; COUNTER_BYTES];
+                    encoder.push(frame::write(counter, &mut bytes).ok()?).ok()?;
+                }
+                *next = next.saturating_add(PIECE_COUNTERS);
+                *next >= DRIVE_COUNT
+            }
+            Rest::Samples(_) => false,
+        };
+        if is_whole { self.finish() } else { None }
+    }
+
+    fn finish(&mut self) -> Option<Made<P>> {
+        let (encoder, _) = self.making.take()?;
+        encoder.finish().ok()
+    }
+}
