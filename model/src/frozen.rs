@@ -3,7 +3,9 @@
 //! Nothing is integrated. In stick the torque is kr·θ and θ follows the shaft
 //! by position; at |T| = Ts the slip begins, shows s·Tk for the closed-form
 //! time of eqs. (10)–(11), and ends with θ at the restart angle. A step inside
-//! a slip is one comparison and one decrement. The object's own motion during
+//! a slip is one comparison and one decrement; the time itself is computed in
+//! the step after the break, where nothing else is to be done, so that no step
+//! pays for both. The object's own motion during
 //! a slip is a closed form too, computed only when it is asked for.
 
 use core::marker::PhantomData;
@@ -31,6 +33,10 @@ pub struct Frozen<F, L> {
     locator: PhantomData<L>,
 }
 
+/// A free period of fewer ticks: a slip may end in the step in which it begins,
+/// or in the next.
+const SHORT_PERIOD: u64 = 8;
+
 #[derive(Clone, Debug)]
 enum State<F> {
     Stick { theta: Compensated<F> },
@@ -41,8 +47,10 @@ enum State<F> {
 #[derive(Clone, Copy, Debug)]
 struct Slip<F> {
     sense: Sense,
-    /// Where in its last tick it ends.
+    /// Where in its last tick it ends; while it is open, where it began.
     end_fraction: F,
+    /// It began in the step before, and its end is not known yet.
+    is_open: bool,
     /// From its anchor, where x and v are known, to its end.
     duration: Ticks<F>,
     /// θ − s·Tk/kr at the anchor, rad.
@@ -93,6 +101,9 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                 }
             }
             State::Slip(slip) => {
+                if slip.is_open {
+                    self.ticks_left = slip.close(&self.active).saturating_sub(1);
+                }
                 let end = Ticks {
                     whole: self.ticks_left,
                     fraction: slip.end_fraction,
@@ -112,65 +123,58 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
         self.active = next;
     }
 
-    /// Begins the slip of `sense` at `fraction` of this step in state (θ, Ω).
-    fn begin_slip(&mut self, sense: Sense, fraction: F, theta: F, omega: F) {
-        let duration = self.active.slip_time(sense.of_signed(omega));
-        let end = duration.later_by(fraction);
-        self.slip_number = self.slip_number.wrapping_add(1);
-        self.ticks_left = end.whole;
-        self.state = State::Slip(Slip {
-            sense,
-            end_fraction: end.fraction,
-            duration,
-            x: theta - sense.of_signed(self.active.kinetic_angle_rad),
-            v: omega,
-            limit_rad: self.active.static_angle_rad,
-        });
-    }
-
     /// The time since the anchor of a slip.
-    fn since_anchor(&self, slip: &Slip<F>) -> Ticks<F> {
+    fn since_anchor(&self, mut slip: Slip<F>) -> Ticks<F> {
+        let whole = if slip.is_open {
+            slip.close(&self.active).saturating_sub(1)
+        } else {
+            self.ticks_left
+        };
         slip.duration.less(Ticks {
-            whole: self.ticks_left,
+            whole,
             fraction: slip.end_fraction,
         })
     }
 
-    /// Where and in which sense a stick at `theta` breaks after `from_s`.
-    fn find_break(&self, path: &ShaftPath<F>, theta: F, from_s: F) -> Option<(F, Sense)> {
-        let a = &self.active;
-        let stick = StickPath {
-            torque_nm: a.stiffness * theta,
-            rate: a.stiffness * path.rate(from_s),
-            curvature: a.stiffness * path.omega_dot,
-        };
-        first_break::<F, L>(&stick, a.static_nm, a.step_s - from_s)
-    }
-
     /// The steps that have an event, or are in stick.
     fn step_with_events(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
-        let a = self.active;
-        let path = ShaftPath::new(shaft, &a);
+        let Self {
+            active: a,
+            ticks_left,
+            slip_number,
+            state,
+            ..
+        } = self;
+        let mut begin_slip = |state: &mut State<F>, ticks_left: &mut u64, slip: Slip<F>| {
+            *slip_number = slip_number.wrapping_add(1);
+            let mut slip = slip;
+            // It lasts half a period at least.
+            *ticks_left = if a.period.whole < SHORT_PERIOD {
+                slip.close(a)
+            } else {
+                1
+            };
+            *state = State::Slip(slip);
+        };
+        let path = ShaftPath::new(shaft, a);
         let mut from_s = F::ZERO;
         let mut from_fraction = F::ZERO;
         let mut events = 0;
         loop {
-            match &mut self.state {
+            match state {
                 State::Stick { theta } => {
                     let theta_from = theta.value();
                     let found = if events < EVENTS_PER_STEP {
-                        self.find_break(&path, theta_from, from_s)
+                        find_break::<F, L>(a, &path, theta_from, from_s)
                     } else {
                         None
                     };
                     let Some((after_s, sense)) = found else {
-                        if let State::Stick { theta } = &mut self.state {
-                            theta.add(if events == 0 {
-                                shaft.delta_phi_rad
-                            } else {
-                                path.travel(from_s, a.step_s)
-                            });
-                        }
+                        theta.add(if events == 0 {
+                            shaft.delta_phi_rad
+                        } else {
+                            path.travel(from_s, a.step_s)
+                        });
                         return;
                     };
                     let theta = theta_from + path.travel(from_s, from_s + after_s);
@@ -180,7 +184,11 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                     let fraction = (from_s * a.per_step).at_least(from_fraction);
                     let fraction = fraction.at_most(F::ONE);
                     from_fraction = fraction;
-                    self.begin_slip(sense, fraction, theta, omega);
+                    begin_slip(
+                        state,
+                        ticks_left,
+                        Slip::begin(a, sense, fraction, theta, omega),
+                    );
                     events += 1;
                     on_event(Event {
                         kind: EventKind::Break,
@@ -194,8 +202,11 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                         torque_after_nm: sense.of_signed(a.kinetic_nm),
                     });
                 }
-                State::Slip(_) if self.ticks_left > 0 || events >= EVENTS_PER_STEP => {
-                    self.ticks_left = self.ticks_left.saturating_sub(1);
+                State::Slip(slip) if *ticks_left == 0 && slip.is_open => {
+                    *ticks_left = slip.close(a).saturating_sub(1);
+                }
+                State::Slip(_) if *ticks_left > 0 || events >= EVENTS_PER_STEP => {
+                    *ticks_left = ticks_left.saturating_sub(1);
                     return;
                 }
                 State::Slip(slip) => {
@@ -211,10 +222,14 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                     // Ts = Tk: the stick would break where it begins. The slip
                     // goes on, and nothing is felt or reported.
                     if a.touches() && sense.of_signed(path.rate(from_s)) > F::ZERO {
-                        self.begin_slip(sense, fraction, theta, omega);
+                        begin_slip(
+                            state,
+                            ticks_left,
+                            Slip::begin(a, sense, fraction, theta, omega),
+                        );
                         continue;
                     }
-                    self.state = State::Stick {
+                    *state = State::Stick {
                         theta: Compensated::new(theta),
                     };
                     on_event(Event {
@@ -234,7 +249,45 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
     }
 }
 
+/// Where and in which sense a stick at `theta` breaks after `from_s`.
+fn find_break<F: Real, L: Locate<F>>(
+    active: &Active<F>,
+    path: &ShaftPath<F>,
+    theta: F,
+    from_s: F,
+) -> Option<(F, Sense)> {
+    let stick = StickPath {
+        torque_nm: active.stiffness * theta,
+        rate: active.stiffness * path.rate(from_s),
+        curvature: active.stiffness * path.omega_dot,
+    };
+    first_break::<F, L>(&stick, active.static_nm, active.step_s - from_s)
+}
+
 impl<F: Real> Slip<F> {
+    /// One of `sense` that begins at `fraction` of a step in state (θ, Ω).
+    fn begin(active: &Active<F>, sense: Sense, fraction: F, theta: F, omega: F) -> Self {
+        Self {
+            sense,
+            end_fraction: fraction,
+            is_open: true,
+            duration: Ticks::default(),
+            x: theta - sense.of_signed(active.kinetic_angle_rad),
+            v: omega,
+            limit_rad: active.static_angle_rad,
+        }
+    }
+
+    /// Finds its end, with the numbers that it began with: how many whole ticks
+    /// are left before the one in which it ends, as its first step begins.
+    fn close(&mut self, active: &Active<F>) -> u64 {
+        self.is_open = false;
+        self.duration = active.slip_time(self.sense.of_signed(self.v));
+        let end = self.duration.later_by(self.end_fraction);
+        self.end_fraction = end.fraction;
+        end.whole
+    }
+
     /// (x, v) of the object `after` the slip began.
     fn motion(&self, active: &Active<F>, after: Ticks<F>) -> (F, F) {
         active
@@ -288,7 +341,7 @@ impl<F: Real, L: Locate<F>> StickSlip<F> for Frozen<F, L> {
         match &self.state {
             State::Stick { theta } => theta.value(),
             State::Slip(slip) => {
-                let (x, _) = slip.motion(&self.active, self.since_anchor(slip));
+                let (x, _) = slip.motion(&self.active, self.since_anchor(*slip));
                 x + slip.sense.of_signed(self.active.kinetic_angle_rad)
             }
         }
@@ -297,7 +350,7 @@ impl<F: Real, L: Locate<F>> StickSlip<F> for Frozen<F, L> {
     fn theta_dot_rad_s(&self) -> F {
         match &self.state {
             State::Stick { .. } => self.omega_rad_s,
-            State::Slip(slip) => slip.motion(&self.active, self.since_anchor(slip)).1,
+            State::Slip(slip) => slip.motion(&self.active, self.since_anchor(*slip)).1,
         }
     }
 }

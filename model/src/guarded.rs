@@ -160,10 +160,12 @@ impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
     /// Whether a shaft can have made this step. A NaN passes no comparison.
     fn believes(&self, shaft: &ShaftStep<F>) -> bool {
         let l = &self.limits;
-        let ticks = F::from_whole(u64::from(self.missed).saturating_add(1));
         // Twice: the speed within a gap may have been above that at its ends,
         // and a count comes whole.
-        let reach = F::TWO * l.speed_rad_s * self.joint.active().step_s * ticks;
+        let mut reach = F::TWO * l.speed_rad_s * self.joint.active().step_s;
+        if self.missed > 0 {
+            reach = reach * F::from_whole(u64::from(self.missed).saturating_add(1));
+        }
         shaft.omega_start_rad_s.abs() <= l.speed_rad_s
             && shaft.omega_end_rad_s.abs() <= l.speed_rad_s
             && (shaft.omega_end_rad_s - shaft.omega_start_rad_s).abs() <= l.jump_rad_s

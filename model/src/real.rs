@@ -70,7 +70,7 @@ pub trait Real:
     /// The whole part of a non-negative number; negative and NaN give 0, too
     /// large gives `u64::MAX`.
     fn whole(self) -> u64;
-    /// The nearest number to a whole one.
+    /// The nearest number to a whole one; in f32 beyond 2³² one of the nearest.
     fn from_whole(n: u64) -> Self;
 
     /// The nearest number to an encoder count.
@@ -137,6 +137,9 @@ mod tests {
             assert_eq!(f(x).whole(), n, "{x}");
         }
         assert_eq!(inf.whole(), u64::MAX);
+        for n in [0, 20, 1 << 24, u64::from(u32::MAX) + 1, 3 << 40] {
+            assert_eq!(F::from_whole(n).whole(), n);
+        }
         assert_eq!(F::from_whole(20), f(20.0));
         assert_eq!(F::from_count(-7), f(-7.0));
         assert_eq!((f(9.0).sqrt(), f(0.0).exp()), (f(3.0), F::ONE));

@@ -67,8 +67,9 @@ mod app {
     const LINKED: u32 = 1 << 3;
     const EVERYONE: u32 = COMMAND | SAMPLE | RENDERED | LINKED;
 
-    /// The most bytes that a run of `link` takes: the wire brings 21 in a tick.
-    const RUN_BYTES: usize = 32;
+    /// The most bytes that a run of `link` takes. The wire could bring 21 in
+    /// each tick; comms sends 25 in a millisecond, and 180 with a commit.
+    const RUN_BYTES: usize = 24;
 
     /// Runs of `link` that `idle` may take for a round: at most 250 ms.
     const PATIENCE: u32 = 5_000;
@@ -85,7 +86,7 @@ mod app {
         rendered: Option<Rendered>,
         is_settling: AtomicBool,
         is_going: AtomicBool,
-        is_piece_due: AtomicBool,
+        is_link_due: AtomicBool,
         counters: Counters,
         roll: Roll,
     }
@@ -136,7 +137,7 @@ mod app {
             rendered: None,
             is_settling: AtomicBool::new(false),
             is_going: AtomicBool::new(false),
-            is_piece_due: AtomicBool::new(false),
+            is_link_due: AtomicBool::new(false),
             counters: Counters::new(),
             roll: Roll::new(),
         };
@@ -162,7 +163,7 @@ mod app {
         binds = TIM3, priority = 4,
         local = [middle, converter, line, bridge, middles: u8 = 0],
         shared = [
-            command, command_plan, sampled, rendered, &is_going, &is_piece_due, &counters, &roll,
+            command, command_plan, sampled, rendered, &is_going, &is_link_due, &counters, &roll,
         ]
     )]
     fn command_motor(cx: command_motor::Context) {
@@ -203,7 +204,7 @@ mod app {
             motor::Bridge::Float => part.bridge.float(),
             motor::Bridge::Driven(volts) => part.bridge.drive(volts),
         }
-        cx.shared.is_piece_due.store(true, Ordering::Relaxed);
+        cx.shared.is_link_due.store(true, Ordering::Relaxed);
         rtic::pend(LINK);
     }
 
@@ -271,7 +272,7 @@ mod app {
     #[task(
         binds = DMA2_STREAM6, priority = 1,
         local = [link, link_task, watchdog, has_received: bool = false],
-        shared = [command, sampler, commits, &is_piece_due, &counters, &roll]
+        shared = [command, sampler, commits, &is_link_due, &counters, &roll]
     )]
     fn link(cx: link::Context) {
         let (link, task) = (cx.local.link, cx.local.link_task);
@@ -284,11 +285,14 @@ mod app {
             sampler: cx.shared.sampler,
             commits: cx.shared.commits,
         };
-        // One or the other, so that no run takes long: bytes that have come, or
-        // a piece of what is to go, once a tick. If both wait they take turns.
-        let is_piece_due = cx.shared.is_piece_due.swap(false, Ordering::Relaxed);
+        // Once a tick, and one or the other, so that no tick has much to do:
+        // bytes that have come, or a piece of what is to go. If both wait they
+        // take turns.
+        if !cx.shared.is_link_due.swap(false, Ordering::Relaxed) {
+            return;
+        }
         let received = link.received().min(RUN_BYTES);
-        let receives = received > 0 && !(is_piece_due && *cx.local.has_received);
+        let receives = received > 0 && !*cx.local.has_received;
         *cx.local.has_received = receives;
         if receives {
             for _ in 0..received {
@@ -296,9 +300,7 @@ mod app {
                     task.received(byte, &mut parts, counters);
                 }
             }
-        } else if is_piece_due
-            && let Some(frame) = task.next_frame(|| link.spare(), &mut parts, counters)
-        {
+        } else if let Some(frame) = task.next_frame(|| link.spare(), &mut parts, counters) {
             link.send(frame);
         }
         if task.take_reboot() {

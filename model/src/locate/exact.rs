@@ -26,7 +26,10 @@ impl<F: Real> Locate<F> for ExactEvents {
         let rate = sense.of_signed(path.rate);
         let curvature = sense.of_signed(path.curvature);
         let time_s = if left > F::ZERO {
-            if rate <= F::ZERO && curvature <= F::ZERO {
+            // Most sticks are nowhere near: no root is needed to see it, and
+            // far enough that rounding does not matter.
+            let reach = (rate.abs() + F::HALF * curvature.abs() * length_s) * length_s;
+            if left > F::TWO * reach || (rate <= F::ZERO && curvature <= F::ZERO) {
                 return None;
             }
             if curvature == F::ZERO {
