@@ -202,9 +202,6 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
                         torque_after_nm: sense.of_signed(a.kinetic_nm),
                     });
                 }
-                State::Slip(slip) if *ticks_left == 0 && slip.is_open => {
-                    *ticks_left = slip.close(a).saturating_sub(1);
-                }
                 State::Slip(_) if *ticks_left > 0 || events >= EVENTS_PER_STEP => {
                     *ticks_left = ticks_left.saturating_sub(1);
                     return;
@@ -250,6 +247,8 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
 }
 
 /// Where and in which sense a stick at `theta` breaks after `from_s`.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "as `first_break`, with one caller")]
 fn find_break<F: Real, L: Locate<F>>(
     active: &Active<F>,
     path: &ShaftPath<F>,
@@ -300,6 +299,12 @@ impl<F: Real> Slip<F> {
 impl<F: Real, L: Locate<F>> StickSlip<F> for Frozen<F, L> {
     #[inline]
     fn step(&mut self, shaft: &ShaftStep<F>, on_event: impl FnMut(Event<F>)) {
+        if self.ticks_left == 0
+            && let State::Slip(slip) = &mut self.state
+            && slip.is_open
+        {
+            self.ticks_left = slip.close(&self.active).saturating_sub(1);
+        }
         if self.ticks_left > 0 {
             self.ticks_left -= 1;
         } else {

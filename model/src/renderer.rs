@@ -98,13 +98,16 @@ impl<F: Real, L: Locate<F>> Renderer<F, L> {
             // What is held is what was shown.
             self.object.let_go();
         }
+        let model_torque_nm = self.object.joint().torque_nm();
         Shown {
             torque_nm: if turned_back {
                 F::ZERO
-            } else {
+            } else if self.object.is_holding() {
                 self.object.torque_nm()
+            } else {
+                model_torque_nm
             },
-            model_torque_nm: self.object.joint().torque_nm(),
+            model_torque_nm,
             settling: self.ramp.is_settling(),
             holding: self.object.is_holding(),
             turned_back,

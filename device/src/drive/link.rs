@@ -1,30 +1,18 @@
-//! The drive's end of the link: what comes in, and what is due.
+//! What is known of the link: which command was carried out, what is due.
 
 use crate::counters::Counters;
 use crepitus_protocol::counters::DriveCounter;
-use crepitus_protocol::link::{DriveRefusal, Outcome, ToDrive};
+use crepitus_protocol::link::{DriveRefusal, Outcome};
 use crepitus_protocol::management::{Answer, Identity, Question, What};
-use crepitus_protocol::{Decoder, Lane};
 
 use crate::drive::vigil::is_fresh;
 
 /// Ticks between two statuses.
 pub const STATUS_TICKS: u64 = 100;
 
-/// What a byte has completed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
-pub enum Inbound {
-    /// A message of comms.
-    Message(ToDrive),
-    /// A question of the lane that never changes.
-    Management(Question),
-}
-
-/// The drive's end of the link.
+/// Which command was carried out last, and what is due to be said.
 #[derive(Debug, Default)]
 pub struct Link {
-    decoder: Decoder,
     /// The last command that was carried out, or is being.
     last: Option<Outcome>,
     in_hand: Option<u16>,
@@ -34,25 +22,6 @@ pub struct Link {
 }
 
 impl Link {
-    /// Takes a byte from the wire.
-    pub fn receive(&mut self, byte: u8, counters: &Counters) -> Option<Inbound> {
-        let Ok(body) = self.decoder.push(byte)? else {
-            counters.count(DriveCounter::Discarded);
-            return None;
-        };
-        let inbound = match body.lane() {
-            Some(Lane::ToDrive) => body.message().map(Inbound::Message),
-            Some(Lane::Management) => Question::of(body.payload).map(Inbound::Management),
-            _ => None,
-        };
-        counters.count(if inbound.is_some() {
-            DriveCounter::Frames
-        } else {
-            DriveCounter::Foreign
-        });
-        inbound
-    }
-
     /// Whether a command that echoes `seen_tick` is to be carried out now:
     /// newer than the last one, and fresh.
     pub fn accepts(&mut self, now: u64, seen_tick: u64, number: u16, counters: &Counters) -> bool {

@@ -3,15 +3,16 @@
 use crate::counters::Counters;
 use crate::drive::command::Command;
 use crate::drive::commits::Commits;
-use crate::drive::link::{Inbound, Link};
+use crate::drive::link::Link;
 use crate::drive::outgoing::{Outgoing, PIECE_SAMPLES};
 use crate::drive::sampler::Sampler;
 use crate::drive::vigil::Heard;
 use core::borrow::BorrowMut;
+use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::frame::{Made, Place};
 use crepitus_protocol::link::{DriveRefusal, DriveStatus, Order, ToDrive};
 use crepitus_protocol::management::{Identity, Question, What};
-use crepitus_protocol::{Fault, Revision, State};
+use crepitus_protocol::{Decoder, Fault, Lane, Revision, State};
 
 /// What the task shares with the others. The firmware locks each for as long
 /// as the work takes, so the work is short.
@@ -32,6 +33,7 @@ pub trait Shared {
 pub struct LinkTask<P> {
     identity: Identity,
     start: u16,
+    decoder: Decoder,
     link: Link,
     outgoing: Outgoing<P>,
     wants_reboot: bool,
@@ -47,6 +49,7 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
         Self {
             identity,
             start,
+            decoder: Decoder::new(),
             link: Link::default(),
             outgoing: Outgoing::default(),
             wants_reboot: false,
@@ -57,31 +60,56 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
 
     /// A byte from comms.
     pub fn received(&mut self, byte: u8, shared: &mut impl Shared, counters: &Counters) {
-        match self.link.receive(byte, counters) {
-            None => {}
-            Some(Inbound::Management(question)) => self.manage(question, shared),
-            Some(Inbound::Message(ToDrive::Heartbeat(heartbeat))) => {
+        let Some(frame) = self.decoder.push(byte) else {
+            return;
+        };
+        let Ok(body) = frame else {
+            counters.count(DriveCounter::Discarded);
+            return;
+        };
+        match body.lane() {
+            Some(Lane::ToDrive) => {
+                if let Some(message) = body.message() {
+                    counters.count(DriveCounter::Frames);
+                    return self.hear(&message, shared, counters);
+                }
+            }
+            Some(Lane::Management) => {
+                if let Some(question) = Question::of(body.payload) {
+                    counters.count(DriveCounter::Frames);
+                    return self.manage(question, shared);
+                }
+            }
+            _ => {}
+        }
+        counters.count(DriveCounter::Foreign);
+    }
+
+    /// A message; by reference, as a commit is long.
+    fn hear(&mut self, message: &ToDrive, shared: &mut impl Shared, counters: &Counters) {
+        match message {
+            ToDrive::Heartbeat(heartbeat) => {
                 let now = shared.sampler(|sampler| sampler.next_tick());
                 let heard =
-                    shared.command(|command| command.safety_mut().hear(now, &heartbeat, counters));
+                    shared.command(|command| command.safety_mut().hear(now, heartbeat, counters));
                 if heard == Heard::Restarted {
                     self.link.forget();
                     shared.commits(Commits::forget);
                 }
             }
-            Some(Inbound::Message(ToDrive::Commit { revision, values })) => {
+            ToDrive::Commit { revision, values } => {
                 let in_force = shared.command(|command| command.revision());
-                shared.commits(|commits| commits.hear(revision, &values, in_force, counters));
+                shared.commits(|commits| commits.hear(*revision, values, in_force, counters));
                 self.link.changed();
             }
-            Some(Inbound::Message(ToDrive::Command {
+            ToDrive::Command {
                 seen_tick,
                 number,
                 order,
-            })) => {
+            } => {
                 let now = shared.sampler(|sampler| sampler.next_tick());
-                if self.link.accepts(now, seen_tick, number, counters)
-                    && let Some(result) = obey(now, order, shared)
+                if self.link.accepts(now, *seen_tick, *number, counters)
+                    && let Some(result) = obey(now, *order, shared)
                 {
                     self.link.finish(result);
                 }

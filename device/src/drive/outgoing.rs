@@ -24,7 +24,9 @@ const PIECE_COUNTERS: usize = 5;
 enum Rest {
     /// An answer, from here on.
     Answer(usize),
-    /// The counters of a status, from here on.
+    /// A status, the head of which has so many bytes.
+    Status(usize),
+    /// Its counters, from here on.
     Counters(usize),
     /// The samples of a block, from here on.
     Samples(usize),
@@ -35,6 +37,7 @@ enum Rest {
 pub struct Outgoing<P> {
     making: Option<(Encoder<P>, Rest)>,
     answer: AnswerBytes,
+    head: [u8; DriveStatus::HEAD_BYTES],
     counters: [u32; DRIVE_COUNT],
 }
 
@@ -43,6 +46,7 @@ impl<P> Default for Outgoing<P> {
         Self {
             making: None,
             answer: AnswerBytes::new(),
+            head: [0; DriveStatus::HEAD_BYTES],
             counters: [0; DRIVE_COUNT],
         }
     }
@@ -70,13 +74,10 @@ impl<P: BorrowMut<Place>> Outgoing<P> {
     /// # Errors
     /// [`TooLong`]; never, as a status fits.
     pub fn begin_status(&mut self, place: P, status: &DriveStatus) -> Result<(), TooLong> {
-        let mut encoder = Encoder::new(place, Lane::FromDrive)?;
-        encoder.push(frame::write(
-            &status.head(),
-            &mut [0; DriveStatus::HEAD_BYTES],
-        )?)?;
+        let length = frame::write(&status.head(), &mut self.head)?.len();
         self.counters = status.counters;
-        self.making = Some((encoder, Rest::Counters(0)));
+        let encoder = Encoder::new(place, Lane::FromDrive)?;
+        self.making = Some((encoder, Rest::Status(length)));
         Ok(())
     }
 
@@ -128,11 +129,19 @@ impl<P: BorrowMut<Place>> Outgoing<P> {
                 *next = next.saturating_add(PIECE_BYTES);
                 *next >= self.answer.len()
             }
+            Rest::Status(length) => {
+                encoder.push(self.head.get(..*length)?).ok()?;
+                *rest = Rest::Counters(0);
+                false
+            }
             Rest::Counters(next) => {
+                let mut bytes = [0; PIECE_COUNTERS * COUNTER_BYTES];
+                let mut length = 0_usize;
                 for counter in self.counters.iter().skip(*next).take(PIECE_COUNTERS) {
-                    let mut bytes = [0; COUNTER_BYTES];
-                    encoder.push(frame::write(counter, &mut bytes).ok()?).ok()?;
+                    let written = frame::write(counter, bytes.get_mut(length..)?).ok()?;
+                    length = length.saturating_add(written.len());
                 }
+                encoder.push(bytes.get(..length)?).ok()?;
                 *next = next.saturating_add(PIECE_COUNTERS);
                 *next >= DRIVE_COUNT
             }

@@ -67,9 +67,10 @@ mod app {
     const LINKED: u32 = 1 << 3;
     const EVERYONE: u32 = COMMAND | SAMPLE | RENDERED | LINKED;
 
-    /// The most bytes that a run of `link` takes. The wire could bring 21 in
-    /// each tick; comms sends 25 in a millisecond, and 180 with a commit.
-    const RUN_BYTES: usize = 24;
+    /// The most bytes that a run of `link` takes, every other tick. The wire
+    /// could bring 42 in that time; comms sends 25 in a millisecond, and 300 with
+    /// a commit.
+    const RUN_BYTES: usize = 16;
 
     /// Runs of `link` that `idle` may take for a round: at most 250 ms.
     const PATIENCE: u32 = 5_000;
@@ -252,7 +253,9 @@ mod app {
     fn render_torque(mut cx: render_torque::Context) {
         cx.shared.roll.here(RENDERED);
         let rendering = cx.local.rendering;
-        let Some(sampled) = cx.shared.sampled.lock(|sampled| *sampled) else {
+        let sampled = cx.shared.sampled.lock(|sampled| *sampled);
+        // Where it lies, again.
+        let Some(sampled) = &sampled else {
             return;
         };
         cx.shared.rendering_plan.lock(|slot| {
@@ -263,7 +266,7 @@ mod app {
             }
         });
         let state = cx.shared.command.lock(|command| command.safety().state());
-        let now = rendering.tick(&sampled, state == State::Armed);
+        let now = rendering.tick(sampled, state == State::Armed);
         let is_settling = rendering.is_settling();
         cx.shared.is_settling.store(is_settling, Ordering::Relaxed);
         cx.shared.rendered.lock(|rendered| *rendered = Some(now));

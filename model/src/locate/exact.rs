@@ -21,6 +21,7 @@ pub struct ExactEvents;
 const SEARCH_STEPS: u32 = 64;
 
 impl<F: Real> Locate<F> for ExactEvents {
+    #[inline]
     fn break_time(path: &StickPath<F>, sense: Sense, limit_nm: F, length_s: F) -> Option<F> {
         let left = limit_nm - sense.of_signed(path.torque_nm);
         let rate = sense.of_signed(path.rate);
