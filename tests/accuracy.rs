@@ -55,7 +55,8 @@ fn a_study_becomes_three_files() {
         header.join(","),
         "scene,convention,solver,precision,step_s,events,events_true,unmatched,\
          max_event_error_s,rms_event_error_s,max_interval_error_s,frequency_error_rel,\
-         rms_torque_error_nm,max_torque_error_nm,ns_per_step,us_per_simulated_s,time_spread"
+         rms_torque_error_nm,max_torque_error_nm,ns_per_step,us_per_simulated_s,time_spread,\
+         cycles_per_step,worst_cycles,instructions_per_step"
     );
     // Ten rungs, two precisions, five steps.
     assert_eq!(rows.len(), 100);

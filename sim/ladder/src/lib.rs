@@ -18,6 +18,7 @@
 //! | the words of the block | [`exchange`], [`plan`] |
 //! | what one step of each is | [`measured`] |
 //! | the program | [`serve`] |
+//! | what its steps have cost, in numbers | [`cost`] |
 //!
 //! A step is one call of one function that is never inlined. Its address is in
 //! the block, so that whoever counts needs no symbols; what it costs to get the
@@ -38,12 +39,14 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod cost;
 pub mod exchange;
 pub mod measured;
 pub mod plan;
 pub mod serve;
 pub mod subject;
 
+pub use cost::{Call, Cost};
 pub use exchange::Exchange;
 pub use plan::Plan;
 pub use serve::serve;
