@@ -33,15 +33,16 @@ pub(crate) fn is_there() -> bool {
     is_there
 }
 
-/// Since 8.1 it is a property of the accelerator.
-fn one_instruction_a_block() -> [&'static str; 2] {
-    let help = Command::new(QEMU).args(["-accel", "tcg,help"]).output();
-    let text = help.map(|help| [help.stdout, help.stderr].concat());
-    let text = text.unwrap_or_default();
-    if String::from_utf8_lossy(&text).contains("one-insn-per-tb") {
-        ["-accel", "tcg,one-insn-per-tb=on"]
+/// An instruction a block, as this version wants to be told.
+fn one_instruction_a_block() -> &'static [&'static str] {
+    let version = Command::new(QEMU).arg("--version").output().unwrap();
+    let version = String::from_utf8_lossy(&version.stdout).into_owned();
+    let numbers = version.split("version ").nth(1).unwrap_or_default();
+    let mut numbers = numbers.split('.').map_while(|n| n.parse::<u32>().ok());
+    if (numbers.next(), numbers.next()) >= (Some(8), Some(1)) {
+        &["-accel", "tcg,one-insn-per-tb=on"]
     } else {
-        ["-accel", "tcg"]
+        &["-accel", "tcg", "-singlestep"]
     }
 }
 
@@ -58,12 +59,11 @@ pub(crate) fn run(
     let (before, after) = (folder.join("before"), folder.join("after"));
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     fs::write(&before, &bytes).unwrap();
-    let accelerator = one_instruction_a_block();
     let mut command = Command::new(QEMU);
     command
         .args(["-M", "netduinoplus2", "-display", "none", "-serial", "none"])
         .args(["-monitor", "stdio", "-d", "exec,nochain"])
-        .args(accelerator)
+        .args(one_instruction_a_block())
         .arg("-kernel")
         .arg(image)
         .arg("-device")
@@ -71,9 +71,6 @@ pub(crate) fn run(
             "loader,file={},addr={ADDRESS:#x},force-raw=on",
             before.display()
         ));
-    if !accelerator[1].contains("one-insn") {
-        command.arg("-singlestep");
-    }
     let mut qemu = command
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
@@ -84,20 +81,27 @@ pub(crate) fn run(
     let mut monitor = qemu.stdin.take().unwrap();
     let mut calls = Calls::new(entry);
     let mut line = String::new();
+    // What is logged may be put off: the next line says so.
+    let mut pending = None;
     let mut is_asked = false;
     while log.read_line(&mut line).unwrap() > 0 {
         if let Some(pc) = address(&line) {
-            calls.instruction(pc, 0);
+            if let Some(pc) = pending.replace(pc) {
+                calls.instruction(pc, 0);
+            }
+        } else if line.starts_with("Stopped execution") {
+            pending = None;
         }
         line.clear();
         if calls.count() == inputs.len() && !is_asked {
             is_asked = true;
-            let save = format!("pmemsave {ADDRESS:#x} {} {}", bytes.len(), after.display());
             // The last output is on its way still: some more instructions.
             for _ in 0..100 {
                 log.read_line(&mut line).unwrap();
                 line.clear();
             }
+            let (size, file) = (bytes.len(), after.display());
+            let save = format!("pmemsave {ADDRESS:#x} {size} \"{file}\"");
             writeln!(monitor, "stop\n{save}\nquit").unwrap();
         }
     }
