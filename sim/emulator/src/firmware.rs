@@ -59,6 +59,11 @@ pub fn image(program: Program) -> Result<Image, NoImage> {
     Ok(Image::read(&path(program)?)?)
 }
 
+/// Whether images come from `firmware/`, and may have to be built.
+pub fn is_to_be_built() -> bool {
+    env::var_os("CREPITUS_IMAGES").is_none()
+}
+
 /// The file of a program.
 ///
 /// # Errors

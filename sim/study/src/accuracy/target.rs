@@ -15,6 +15,7 @@
 
 pub mod inputs;
 
+use crate::accuracy::point::Point;
 use crate::accuracy::results::Study;
 use crate::accuracy::scenes::StudyScene;
 use crate::watcher::{StudyError, Watcher};
@@ -54,6 +55,9 @@ pub struct Row {
     pub convention: Option<&'static str>,
     /// Whether it is a rung of the ladder.
     pub is_rung: bool,
+    /// Relative error of the cycle frequency in f32 at the device's tick, the
+    /// worst of the study's scenes; NaN without, or where events are wrong.
+    pub frequency_error_rel: f64,
     /// Mean cycles of a step on the study's scenes.
     pub mean_cycles: f64,
     /// Most cycles of a step that were observed.
@@ -128,7 +132,8 @@ pub fn add<T, W: Watcher>(
             progress.map_err(StudyError::Watcher)?;
         }
         on.steps += seen.all.calls;
-        on.rows.push(seen.row(*subject));
+        let frequency = frequency_error(study, *subject);
+        on.rows.push(seen.row(*subject, frequency));
     }
     study.target = Some(on);
     Ok(())
@@ -146,14 +151,42 @@ fn is_studied(subject: Subject, scenes: &[StudyScene]) -> bool {
     })
 }
 
+/// Whether a point is what the device would do.
+fn is_on_the_device(point: &Point) -> bool {
+    point.precision == Precision::F32.name()
+        && (point.step_s - inputs::TICK_S).abs() < 1e-6 * inputs::TICK_S
+}
+
+/// The worst of a rung under its convention.
+fn frequency_error(study: &Study, subject: Subject) -> f64 {
+    let Subject::Rung(convention, solver) = subject else {
+        return f64::NAN;
+    };
+    let points = study.points.iter().filter(|point| {
+        is_on_the_device(point)
+            && point.convention == convention.name()
+            && point.solver == solver.name()
+    });
+    let errors = points.map(|point| {
+        if point.unmatched == 0 {
+            point.frequency_error_rel
+        } else {
+            f64::NAN
+        }
+    });
+    // NaN, for not known, is the worst.
+    errors
+        .reduce(|a, b| if a.is_nan() || a > b { a } else { b })
+        .unwrap_or(f64::NAN)
+}
+
 /// The cost of a rung beside its errors.
 fn note(study: &mut Study, scene: &StudyScene, solver: &str, cost: &Cost) {
     let point = study.points.iter_mut().find(|point| {
-        point.scene == scene.name
+        is_on_the_device(point)
+            && point.scene == scene.name
             && point.convention == scene.convention()
             && point.solver == solver
-            && point.precision == Precision::F32.name()
-            && (point.step_s - inputs::TICK_S).abs() < 1e-6 * inputs::TICK_S
     });
     if let Some(point) = point {
         point.cycles_per_step = cost.mean_cycles();
@@ -182,12 +215,13 @@ impl Seen {
         self.all.add(cost);
     }
 
-    fn row(self, subject: Subject) -> Row {
+    fn row(self, subject: Subject, frequency_error_rel: f64) -> Row {
         let mean_cycles = self.usual.mean_cycles();
         Row {
             subject: subject.name(),
             convention: subject.convention().map(Convention::name),
             is_rung: matches!(subject, Subject::Rung(..)),
+            frequency_error_rel,
             mean_cycles,
             worst_cycles: self.all.worst_cycles,
             worst_on: self.worst_on,

@@ -22,7 +22,7 @@ use crate::stability::input::{Input as Hard, Shaft};
 use crate::stability::replay::steps;
 use crepitus_ladder::exchange::Input;
 use crepitus_ladder::{Plan, Subject};
-use crepitus_model::{Convention, SettingsError, ShaftStep};
+use crepitus_model::{SettingsError, ShaftStep};
 
 /// The device's tick, s.
 pub const TICK_S: f64 = 5e-5;
@@ -70,7 +70,7 @@ pub struct Task<'a> {
 type Motion = Vec<ShaftStep<f32>>;
 
 /// The tasks of a subject: the scenes of its convention, and hard inputs. What
-/// has no joint gets each scene under `frozen`, which the device renders.
+/// has no joint gets the scenes under the convention of the first.
 ///
 /// # Errors
 /// None in practice: the paper's parameters and the encoder are allowed.
@@ -79,10 +79,11 @@ pub fn tasks(
     scenes: &[StudyScene],
     lengths: Lengths,
 ) -> Result<Vec<Task<'_>>, SettingsError> {
-    let convention = subject.convention().unwrap_or(Convention::Frozen);
+    let first = scenes.first().map(|scene| scene.settings.convention);
+    let convention = subject.convention().or(first);
     let mut tasks = Vec::new();
     for scene in scenes {
-        if scene.settings.convention == convention {
+        if Some(scene.settings.convention) == convention {
             let motion = stretch(scene, lengths.scene);
             let plan = Plan {
                 parameters: [scene.settings.parameters; 2],

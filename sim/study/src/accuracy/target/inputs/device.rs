@@ -140,7 +140,11 @@ fn counts(motion: &[ShaftStep<f32>]) -> Vec<Input> {
 fn rendered(plan: &Plan, motion: &[ShaftStep<f32>]) -> Result<Vec<(f32, f32)>, SettingsError> {
     let [parameters, _] = plan.parameters;
     let settings = Settings {
-        parameters,
+        // `frozen` has no damping.
+        parameters: Parameters {
+            damping_nms_per_rad: 0.0,
+            ..parameters
+        },
         restart: plan.restart,
         ..Settings::default()
     };
