@@ -5,7 +5,7 @@
 //! | a scene | the stretch of it that is timed on the host too | all; means are over these |
 //! | `wander` | a hand that wanders: breaks, matches, reversals in stick and in slip | all |
 //! | `shaking hand` | 50 Hz, to and fro within a stick and its slip | all |
-//! | `white velocities` | every step ends at another velocity, up to 7.3 rad/s, where the device trips | all |
+//! | `white velocities` | every step ends at another velocity, up to 5 rad/s: the largest jump that the check of the input believes | all |
 //! | `gaps` | `wander` with samples missing, one to six at a time, and some that no shaft can make | what checks its input |
 //! | `commits` | `wander` while the parameters move to others and back | the renderer |
 //! | `extremes` | numbers at and beyond every limit | effects |
@@ -27,8 +27,9 @@ use crepitus_model::{SettingsError, ShaftStep};
 /// The device's tick, s.
 pub const TICK_S: f64 = 5e-5;
 
-/// Above this speed of the joint the device trips, rad/s.
-const TRIP_RAD_S: f64 = 7.3;
+/// With both senses the largest change that the check of the input believes,
+/// rad/s.
+const WHITE_RAD_S: f64 = 5.0;
 
 /// How many steps of each input are run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -160,7 +161,7 @@ fn motions(length: u32) -> Result<Vec<(&'static str, Motion)>, SettingsError> {
         phase_deg: 0.0,
     };
     let white = Hard::White {
-        most_rad_s: TRIP_RAD_S,
+        most_rad_s: WHITE_RAD_S,
         seed: 1,
         duration_s: duration_s(0.2),
         step_s: TICK_S,
