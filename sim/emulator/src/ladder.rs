@@ -27,12 +27,6 @@ use crepitus_ladder::exchange::{
 };
 use crepitus_ladder::{Call, Plan};
 
-/// Core cycles of a tick of the device: 50 µs at 168 MHz.
-pub const TICK_CYCLES: u32 = 8_400;
-
-/// What every number of cycles is called.
-pub const LABEL: &str = "modelled cycles, 0 wait states; not measured on hardware";
-
 /// The most that a command may take, in time of the core's 16 MHz.
 const PATIENCE: Time = Time::from_us(60_000_000);
 

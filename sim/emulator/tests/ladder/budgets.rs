@@ -6,10 +6,10 @@
 //! four steps in it, or that moves the parameters under way, has another.
 
 use crate::ladder;
-use crepitus_emulator::ladder::LABEL;
 use crepitus_ladder::{Cost, Subject};
 use crepitus_model::Convention;
 use crepitus_study::accuracy::scenes::standard;
+use crepitus_study::accuracy::target::LABEL;
 use crepitus_study::accuracy::target::inputs::{Lengths, tasks};
 
 /// Most cycles of a step on a motion, and on other inputs.
