@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The mean of a rung is over the study's scenes, a stretch of each; the worst
-//! is the worst *observed*, over those and [`hard`](inputs) inputs with breaks,
+//! is the worst *observed*, over those and hard [`inputs`] with breaks,
 //! matches and reversals. It is no bound.
 
 pub mod inputs;
@@ -230,6 +230,71 @@ impl Seen {
             mean_share: mean_cycles / TICK_CYCLES,
             worst_share: f64::from(self.all.worst_cycles) / TICK_CYCLES,
             steps: self.all.calls,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accuracy::scenes::standard;
+    use crate::accuracy::study;
+    use crepitus_ladder::exchange::Kind;
+
+    struct Nobody;
+
+    impl Watcher for Nobody {
+        type Error = ();
+
+        fn progress(&mut self, fraction: f64) -> Result<(), ()> {
+            assert!(fraction <= 1.0);
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn costs_stand_beside_the_errors_of_the_same_rung() {
+        let mut scenes = standard().unwrap();
+        scenes.truncate(1);
+        scenes[0].duration_s = 0.1;
+        let plan = study::Plan {
+            scenes: scenes.clone(),
+            steps_s: vec![1e-4, 5e-5],
+            precisions: vec![Precision::F32, Precision::F64],
+            repeats: 1,
+        };
+        let mut study = study::run(&plan, &mut Nobody).unwrap();
+        let lengths = Lengths {
+            scene: 10,
+            hard: 30,
+        };
+        // A tick without a sample costs more than any other.
+        let on_target = |_: &Plan, inputs: &[Input]| -> Result<Vec<Call>, ()> {
+            let call = |input: &Input| Call {
+                cycles: if input.kind == Kind::Lost { 900 } else { 100 },
+                instructions: 50,
+                path: 0,
+            };
+            Ok(inputs.iter().map(call).collect())
+        };
+        add(&mut study, &scenes, lengths, on_target, &mut Nobody).unwrap();
+        let on = study.target.as_ref().unwrap();
+        let names: Vec<_> = on.rows.iter().map(|row| row.subject).collect();
+        let rungs = ["exact", "exact-break", "exact-interpolated", "exact-events"];
+        assert_eq!(names[..4], rungs);
+        assert_eq!((names[4], names.len()), ("input check", 10));
+        assert_eq!(
+            (on.rows[3].worst_cycles, on.rows[4].worst_cycles),
+            (100, 900)
+        );
+        assert_eq!(on.rows[4].worst_on, "gaps");
+        assert_eq!(
+            (on.rows[4].mean_cycles, on.rows[4].mean_instructions),
+            (100.0, 50.0)
+        );
+        for point in &study.points {
+            let is_known = point.precision == "f32" && point.step_s == 5e-5;
+            assert_eq!(point.cycles_per_step == 100.0, is_known, "{point:?}");
         }
     }
 }
