@@ -17,7 +17,7 @@
 //! | what is measured, and the names | [`subject`] |
 //! | the words of the block | [`exchange`], [`plan`] |
 //! | what one step of each is | [`measured`] |
-//! | the program | [`serve`] |
+//! | the program | [`mod@serve`] |
 //! | what its steps have cost, in numbers | [`cost`] |
 //!
 //! A step is one call of one function that is never inlined. Its address is in
