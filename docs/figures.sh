@@ -11,12 +11,25 @@ figure slow-examination zoom-1 stick-slip-cycles
 figure knee-pass-frozen torque knee-pass-frozen
 figure knee-pass-physical torque knee-pass-physical
 
-cargo run --release --quiet -- accuracy --pictures --out target/figures/accuracy >/dev/null
+cargo run --release --quiet -- accuracy --target --pictures --out target/figures/accuracy >target/figures/accuracy.txt
 for picture in frequency-f64 frequency-f32 torque-f32; do
     measure=${picture%-*} precision=${picture#*-}
     cp "target/figures/accuracy/$measure-constant-0-988-physical-$precision.svg" "docs/images/accuracy-$picture.svg"
     echo "docs/images/accuracy-$picture.svg"
 done
+
+for convention in frozen physical; do
+    cp "target/figures/accuracy/target-constant-0-988-$convention-f32.svg" "docs/images/accuracy-target-$convention.svg"
+    echo "docs/images/accuracy-target-$convention.svg"
+done
+# The table of the target goes between its marks.
+awk 'NR == FNR { if (/^\|/) table = table $0 "\n"; next }
+     /<!-- end of the table -->/ { printf "%s\n", table; inside = 0 }
+     !inside { print }
+     /<!-- table of the target/ { inside = 1; print "" }' \
+    target/figures/accuracy.txt docs/accuracy.md >target/figures/accuracy.md
+cp target/figures/accuracy.md docs/accuracy.md
+echo docs/accuracy.md
 
 cargo run --release --quiet -- stability --pictures --out target/figures/stability >/dev/null
 cp target/figures/stability/matrix.svg docs/images/stability-matrix.svg

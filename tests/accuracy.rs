@@ -55,7 +55,8 @@ fn a_study_becomes_three_files() {
         header.join(","),
         "scene,convention,solver,precision,step_s,events,events_true,unmatched,\
          max_event_error_s,rms_event_error_s,max_interval_error_s,frequency_error_rel,\
-         rms_torque_error_nm,max_torque_error_nm,ns_per_step,us_per_simulated_s,time_spread"
+         rms_torque_error_nm,max_torque_error_nm,ns_per_step,us_per_simulated_s,time_spread,\
+         cycles_per_step,worst_cycles,instructions_per_step"
     );
     // Ten rungs, two precisions, five steps.
     assert_eq!(rows.len(), 100);
@@ -306,4 +307,83 @@ fn a_scene_without_events_is_studied_too() {
         assert_eq!(row[8], "nan");
         assert!(number(&row[12]) < 1e-3, "{row:?}");
     }
+}
+
+/// Whether the image for the target could not be built here; a line about it,
+/// or a failure where it must be.
+fn has_no_target(output: &Output) -> bool {
+    let has_none = stderr(output).contains("rustup target add thumbv7em-none-eabihf");
+    if has_none {
+        assert!(std::env::var_os("CREPITUS_NEEDS_TARGET").is_none());
+        println!("left out: there is no image for the target");
+    }
+    has_none
+}
+
+#[test]
+fn the_target_adds_cycles_to_points_summary_and_report() {
+    let home = tempfile::tempdir().unwrap();
+    let scene = short_scene(home.path(), "frozen");
+    let out = home.path().join("study");
+    let (scene, folder) = (scene.to_str().unwrap(), out.to_str().unwrap());
+    let output = accuracy(&[
+        "--target",
+        "--quick",
+        "--steps",
+        "1e-4,5e-5",
+        "--scene",
+        scene,
+        "--out",
+        folder,
+    ]);
+    if has_no_target(&output) {
+        return;
+    }
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    let label = "modelled cycles, 0 wait states; not measured on hardware";
+    assert!(
+        text.contains(label) && text.contains("| bone-shaping |"),
+        "{text}"
+    );
+
+    let (header, rows) = csv(&out.join("points.csv"));
+    let column = |name: &str| header.iter().position(|h| h == name).unwrap();
+    for row in &rows {
+        let cell = |name: &str| number(&row[column(name)]);
+        let on_the_device = row[column("precision")] == "f32" && cell("step_s") == 5e-5;
+        if on_the_device {
+            assert!(
+                cell("instructions_per_step") < cell("cycles_per_step"),
+                "{row:?}"
+            );
+            assert!(cell("cycles_per_step") < cell("worst_cycles"), "{row:?}");
+            assert!(cell("worst_cycles") < 8_400.0, "{row:?}");
+        } else {
+            assert!(cell("cycles_per_step").is_nan(), "{row:?}");
+        }
+    }
+    let target = &summary(&out)["target"];
+    assert_eq!(target["label"], label);
+    // Four rungs, the check, the renderer, four effects.
+    assert_eq!(target["rows"].as_array().unwrap().len(), 10);
+    let report = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report.contains("On the device’s core") || report.contains("On the device's core"));
+    assert!(report.contains(label));
+}
+
+#[test]
+fn without_the_target_it_says_what_to_install() {
+    let output = support::crepitus()
+        .args(["accuracy", "--target", "--quick"])
+        .env_remove("CREPITUS_IMAGES")
+        .env("RUSTC", "no-such-compiler")
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let told = stderr(&output);
+    assert!(
+        told.contains("rustup target add thumbv7em-none-eabihf"),
+        "{told}"
+    );
 }

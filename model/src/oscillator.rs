@@ -48,6 +48,10 @@ pub struct Transition<F> {
     vv: F,
 }
 
+/// Within this angle, squared, eight terms of each series are exact in f64, and
+/// four or five in f32.
+const SERIES_ANGLE_SQUARED: f64 = 0.3;
+
 impl<F: Real> Oscillator<F> {
     /// From kr, J and c.
     pub fn new(stiffness: F, inertia: F, damping: F) -> Self {
@@ -95,6 +99,27 @@ impl<F: Real> Oscillator<F> {
         }
     }
 
+    /// (x, v) after `time_s` ≥ 0: as [`Self::transition`] says, quicker where
+    /// there is no damping and the time is short.
+    #[inline]
+    pub fn moved(&self, x: F, v: F, time_s: F) -> (F, F) {
+        let z = self.discriminant * time_s * time_s;
+        if self.decay == F::ZERO && z <= F::from_f64(SERIES_ANGLE_SQUARED) {
+            let less_one = cosine_of_root_less_one(z);
+            let sine = time_s * sine_over_root(z);
+            return (
+                x + (less_one * x + sine * v),
+                v + (-(self.omega_n_squared * sine) * x + less_one * v),
+            );
+        }
+        self.moved_by_any(x, v, time_s)
+    }
+
+    #[inline(never)]
+    fn moved_by_any(&self, x: F, v: F, time_s: F) -> (F, F) {
+        self.transition(time_s).apply(x, v)
+    }
+
     /// The acceleration at (x, v): −ωn²·x − 2a·v, rad/s².
     #[inline]
     pub fn acceleration(&self, x: F, v: F) -> F {
@@ -127,8 +152,6 @@ impl<F: Real> Oscillator<F> {
 
     /// (C − 1, S) of the module's equations.
     fn cosine_less_one_and_sine(&self, time_s: F) -> (F, F) {
-        // Within this angle eight terms of each series are exact in f64.
-        const SERIES_ANGLE_SQUARED: f64 = 0.3;
         let z = self.discriminant * time_s * time_s;
         if z.abs() <= F::from_f64(SERIES_ANGLE_SQUARED) {
             let less_one = cosine_of_root_less_one(z);
@@ -177,13 +200,22 @@ impl<F: Real> Transition<F> {
 /// cos √z − 1 = Σ (−z)ᵏ/(2k)! from k = 1 on.
 #[inline]
 fn cosine_of_root_less_one<F: Real>(z: F) -> F {
-    -(F::HALF * z) * series(z, &[12.0, 30.0, 56.0, 90.0, 132.0, 182.0])
+    let factor = -(F::HALF * z);
+    if F::IS_SINGLE {
+        factor * series(z, &[12.0, 30.0, 56.0])
+    } else {
+        factor * series(z, &[12.0, 30.0, 56.0, 90.0, 132.0, 182.0])
+    }
 }
 
 /// sin √z/√z = Σ (−z)ᵏ/(2k+1)!.
 #[inline]
 fn sine_over_root<F: Real>(z: F) -> F {
-    series(z, &[6.0, 20.0, 42.0, 72.0, 110.0, 156.0, 210.0])
+    if F::IS_SINGLE {
+        series(z, &[6.0, 20.0, 42.0, 72.0])
+    } else {
+        series(z, &[6.0, 20.0, 42.0, 72.0, 110.0, 156.0, 210.0])
+    }
 }
 
 /// eˣ − 1; by its series where the difference would cancel.

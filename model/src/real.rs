@@ -60,6 +60,8 @@ pub trait Real:
     /// far above the subnormal numbers that a decay would otherwise end in,
     /// which some processors compute with slowly.
     const AT_REST: Self;
+    /// With 24 bits: short series do.
+    const IS_SINGLE: bool;
     /// Name in scene files: `f32` or `f64`.
     const NAME: &'static str;
 

@@ -24,9 +24,12 @@ pub(crate) mod overlay;
 mod page;
 mod pair;
 mod steps;
+mod target;
+mod target_table;
 mod tick_table;
 
 use crepitus_study::accuracy::Point;
+use crepitus_study::accuracy::target::OnTarget;
 
 use crate::picture::{Picture, document};
 use crate::{ReportError, Section};
@@ -50,16 +53,21 @@ pub struct AccuracyText {
 /// The report as one HTML page, complete in itself.
 ///
 /// The pair of a scene with `0.988` in its name and the frozen convention
-/// comes first and in full, the others below it, folded.
+/// comes first and in full, the others below it, folded. What the ladder costs
+/// on the target, if that is known, has a diagram in each and a table below.
 ///
 /// # Errors
 /// [`ReportError::Draw`] if the drawing library refuses a diagram.
-pub fn html(points: &[Point], text: &AccuracyText) -> Result<String, ReportError> {
-    page::html(&Study::new(points), text)
+pub fn html(
+    points: &[Point],
+    target: Option<&OnTarget>,
+    text: &AccuracyText,
+) -> Result<String, ReportError> {
+    page::html(&Study::new(points), target, text)
 }
 
 /// Every diagram as a file of its own, named after what it shows:
-/// `event-time-constant-0-988-frozen-f64`.
+/// `event-time-constant-0-988-frozen-f64`, `target-constant-0-988-frozen-f32`.
 ///
 /// # Errors
 /// [`ReportError::Draw`] if the drawing library refuses a diagram.
@@ -67,7 +75,9 @@ pub fn pictures(points: &[Point]) -> Result<Vec<Picture>, ReportError> {
     let study = Study::new(points);
     let mut pictures = Vec::new();
     for pair in &study.pairs {
-        for diagram in diagram::all(&study, pair)? {
+        let mut diagrams = diagram::all(&study, pair)?;
+        diagrams.extend(target::diagram(&study, pair)?);
+        for diagram in diagrams {
             pictures.push(Picture {
                 name: diagram.name,
                 svg: document(&diagram.svg, &diagram.legend),

@@ -15,6 +15,7 @@ use std::path::Path;
 use crepitus_report::Section;
 use crepitus_report::accuracy::{AccuracyText, html, pictures};
 use crepitus_study::accuracy::Point;
+use crepitus_study::accuracy::target::{LABEL, OnTarget, Row};
 use markup::{assert_balanced, count};
 
 fn text(title: &str) -> AccuracyText {
@@ -43,7 +44,16 @@ fn text(title: &str) -> AccuracyText {
 }
 
 fn page(name: &str, points: &[Point], text: &AccuracyText) -> String {
-    let page = html(points, text).expect("drawn");
+    page_with(name, points, None, text)
+}
+
+fn page_with(
+    name: &str,
+    points: &[Point],
+    target: Option<&OnTarget>,
+    text: &AccuracyText,
+) -> String {
+    let page = html(points, target, text).expect("drawn");
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("accuracy-{name}.html"));
     std::fs::write(path, &page).expect("written");
     assert!(page.len() < 3_000_000, "{name}: {} bytes", page.len());
@@ -72,6 +82,52 @@ fn a_whole_study() {
     for step in [">1 ms</text>", ">50 µs</text>", ">2 µs</text>"] {
         assert!(page.contains(step), "{step}");
     }
+}
+
+#[test]
+fn what_the_target_says_has_its_diagram_and_its_table() {
+    let mut points = study::all();
+    let (mut marked, mut cycles) = (0, 100.0);
+    for point in &mut points {
+        let is_there = point.scene == "constant-0.988" && point.convention == "frozen";
+        if is_there && point.precision == "f32" && point.step_s == 5e-5 {
+            cycles += 10.0;
+            point.cycles_per_step = cycles;
+            point.worst_cycles = 5.0 * cycles;
+            point.instructions_per_step = 0.5 * cycles;
+            marked += usize::from(point.unmatched == 0);
+        }
+    }
+    let row = Row {
+        subject: "bone-shaping",
+        convention: None,
+        is_rung: false,
+        frequency_error_rel: f64::NAN,
+        mean_cycles: 171.4,
+        worst_cycles: 192,
+        worst_on: "extremes".to_owned(),
+        mean_instructions: 125.0,
+        worst_instructions: 141,
+        mean_share: 0.0204,
+        worst_share: 0.0229,
+        steps: 100,
+    };
+    let target = OnTarget {
+        label: LABEL,
+        tick_cycles: 8_400.0,
+        steps: 100,
+        rows: vec![row],
+    };
+    let page = page_with("target", &points, Some(&target), &text("On the target"));
+    assert!(marked >= 2);
+    assert_eq!(count(&page, "% of a tick)</title>"), marked);
+    assert_eq!(count(&page, "role=\"img\""), 7 * 3 * 2 + 1);
+    assert!(page.contains("not measured on hardware"));
+    assert!(page.contains("bone-shaping") && page.contains("extremes"));
+    let pictures = pictures(&points).unwrap();
+    let names = pictures.iter().filter(|p| p.name.starts_with("target-"));
+    let names: Vec<_> = names.map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["target-constant-0-988-frozen-f32"]);
 }
 
 #[test]

@@ -145,12 +145,15 @@ pub(crate) struct RunArguments {
 #[command(after_help = "\
 Examples:
   crepitus accuracy --quick
+  crepitus accuracy --quick --target
   crepitus accuracy --scene slow-examination --out /tmp/accuracy
   crepitus accuracy --need torque=5e-3,interval=5e-4 --rate 20000
   crepitus accuracy --need frequency=1e-6 --convention physical --precision f64
 
 Every solver, in f32 and f64 and at steps from 1 ms to 2 µs, is compared with the reference \
-on four constant speeds and a hand-like sine, and timed on this machine.
+on four constant speeds and a hand-like sine, and timed on this machine. With --target it is also \
+run on an emulated STM32F405: modelled cycles, 0 wait states; not measured on hardware. The worst \
+cycles are the worst observed, over inputs with breaks, matches and reversals.
 
 A NEED is a list of limits that must hold on every scene: torque (rms torque error, N·m), \
 peak-torque (largest torque error, N·m), event (worst event-time error, s), interval (worst \
@@ -170,6 +173,12 @@ pub(crate) struct AccuracyArguments {
     /// Fewer steps and repeats: seconds instead of minutes.
     #[arg(long)]
     pub(crate) quick: bool,
+
+    /// Also run every solver, and every effect of the device, on an emulated STM32F405: cycles and
+    /// instructions of a step. Builds firmware/ladder, unless CREPITUS_IMAGES names a folder with
+    /// it.
+    #[arg(long, conflicts_with = "need")]
+    pub(crate) target: bool,
 
     /// Write each diagram of the report as an SVG file of its own, too.
     #[arg(long)]

@@ -11,6 +11,7 @@ impl Real for f64 {
     const LIMIT_SLACK: Self = 1e-9;
     const TOUCH_SLACK: Self = 1e-6;
     const AT_REST: Self = 1e-290;
+    const IS_SINGLE: bool = false;
     const NAME: &'static str = "f64";
 
     #[inline]

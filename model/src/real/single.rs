@@ -157,6 +157,7 @@ impl Real for f32 {
     const LIMIT_SLACK: Self = 1e-5;
     const TOUCH_SLACK: Self = 1e-2;
     const AT_REST: Self = 1e-30;
+    const IS_SINGLE: bool = true;
     const NAME: &'static str = "f32";
 
     #[inline]

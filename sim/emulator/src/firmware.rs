@@ -1,8 +1,8 @@
 //! Where the images come from.
 //!
-//! `CREPITUS_IMAGES` names a folder with `drive` and `comms`. Without it they
-//! are built in `firmware/` by `cargo build --release`, once in a process,
-//! into `firmware/target`. Where that cannot be done, for want of the target
+//! `CREPITUS_IMAGES` names a folder with `drive`, `comms` and `ladder`. Without
+//! it each is built in `firmware/` by `cargo build --release`, once in a
+//! process, into `firmware/target`. Where that cannot be done, for want of the target
 //! `thumbv7em-none-eabihf`, a test says so in a line and is left out;
 //! with `CREPITUS_NEEDS_TARGET` set it fails instead.
 
@@ -21,6 +21,8 @@ pub enum Program {
     Drive,
     /// That of comms.
     Comms,
+    /// The solver ladder, see [`crate::ladder`].
+    Ladder,
 }
 
 impl Program {
@@ -29,6 +31,7 @@ impl Program {
         match self {
             Self::Drive => "drive",
             Self::Comms => "comms",
+            Self::Ladder => "ladder",
         }
     }
 }
@@ -53,11 +56,24 @@ pub enum NoImage {
 /// # Errors
 /// [`NoImage`].
 pub fn image(program: Program) -> Result<Image, NoImage> {
+    Ok(Image::read(&path(program)?)?)
+}
+
+/// Whether images come from `firmware/`, and may have to be built.
+pub fn is_to_be_built() -> bool {
+    env::var_os("CREPITUS_IMAGES").is_none()
+}
+
+/// The file of a program.
+///
+/// # Errors
+/// [`NoImage`] if it cannot be built.
+pub fn path(program: Program) -> Result<PathBuf, NoImage> {
     let folder = match env::var_os("CREPITUS_IMAGES") {
         Some(folder) => PathBuf::from(folder),
-        None => built()?,
+        None => built(program)?,
     };
-    Ok(Image::read(&folder.join(program.name()))?)
+    Ok(folder.join(program.name()))
 }
 
 /// The image of a program, for a test; none, and a line about it, where it
@@ -77,23 +93,27 @@ pub fn image_for_test(program: Program) -> Option<Image> {
     }
 }
 
-fn built() -> Result<PathBuf, NoImage> {
-    static BUILT: OnceLock<Result<(), String>> = OnceLock::new();
+fn built(program: Program) -> Result<PathBuf, NoImage> {
+    static BUILT: [OnceLock<Result<(), String>>; 3] = [const { OnceLock::new() }; 3];
     if !is_installed() {
         return Err(NoImage::NoTarget);
     }
     let firmware = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../firmware");
     let folder = firmware.join("target").join(TARGET).join("release");
-    BUILT
-        .get_or_init(|| build(&firmware))
+    BUILT[program as usize]
+        .get_or_init(|| build(&firmware, program))
         .clone()
         .map_err(NoImage::NotBuilt)?;
     Ok(folder)
 }
 
-fn build(firmware: &Path) -> Result<(), String> {
+fn build(firmware: &Path, program: Program) -> Result<(), String> {
     let output = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .args(["build", "--release", "--target-dir", "target"])
+        .args([
+            "--package",
+            &format!("crepitus-firmware-{}", program.name()),
+        ])
         .current_dir(firmware)
         // What Cargo tells the tests of the host is not for the firmware.
         .env_remove("RUSTFLAGS")

@@ -9,6 +9,7 @@
 //! | what a microcontroller is here | [`mcu`] |
 //! | the one there is | [`stm32f405`] |
 //! | which cycles a task takes | [`cycles`] |
+//! | what a step of each solver costs | [`ladder`] |
 //! | where the images come from | [`firmware`], [`elf`] |
 //!
 //! Time is exact and virtual: nothing reads a clock, and two runs of the same
@@ -27,6 +28,7 @@ mod devices;
 pub mod drive_board;
 pub mod elf;
 pub mod firmware;
+pub mod ladder;
 pub mod mcu;
 pub mod stm32f405;
 pub mod time;

@@ -15,6 +15,7 @@
 //! | one point of the diagram, and its file | [`point`], [`points_csv`] |
 //! | the torque to compare with | [`reference_torque`] |
 //! | how a run is measured and how it is timed | [`measure`], [`timing`] |
+//! | what a step costs on the device's core | [`target`] |
 //! | orders of convergence | [`orders`] |
 //! | limits, and the cheapest rung that keeps them | [`need`], [`mod@answer`] |
 
@@ -28,6 +29,7 @@ pub mod reference_torque;
 pub mod results;
 pub mod scenes;
 pub mod study;
+pub mod target;
 pub mod timing;
 
 pub use answer::{Question, answer};

@@ -13,6 +13,7 @@
 //! | who is put to the test | [`subject`] |
 //! | how a case is run and judged | `source`, `observe`, `books`, `judge` |
 //! | what came of it | [`verdict`], [`matrix`] |
+//! | an input as data, for a joint elsewhere | [`replay`] |
 //! | the file of it | [`cases_csv`] |
 //! | pictures that explain a case | [`story`] |
 
@@ -29,6 +30,7 @@ pub mod matrix;
 mod observation;
 mod observe;
 mod random;
+pub mod replay;
 mod shaken;
 mod sighted;
 mod source;

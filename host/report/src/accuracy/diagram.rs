@@ -72,7 +72,7 @@ pub(crate) fn side_by_side(
             draw(area, &axes, right, measure, curves)
         })?;
         diagrams.push(Diagram {
-            name: file_name(measure, pair, precision),
+            name: file_name(measure.name(), pair, precision),
             precision,
             svg,
             legend: legend(study, curves),
@@ -83,13 +83,9 @@ pub(crate) fn side_by_side(
 
 const COST: &str = "Cost (µs of one core per simulated second)";
 
-fn file_name(measure: Measure, pair: &Pair, precision: &str) -> String {
-    let raw = format!(
-        "{}-{}-{}-{precision}",
-        measure.name(),
-        pair.scene,
-        pair.convention
-    );
+/// `what-scene-convention-precision`.
+pub(crate) fn file_name(what: &str, pair: &Pair, precision: &str) -> String {
+    let raw = format!("{what}-{}-{}-{precision}", pair.scene, pair.convention);
     raw.chars()
         .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
         .collect()

@@ -1,19 +1,24 @@
 //! The page of the study.
 
+use crepitus_study::accuracy::target::OnTarget;
 use maud::{Markup, html};
 
 use super::curve::{FLOOR, unfit};
 use super::diagram::side_by_side;
 use super::measure::Measure;
 use super::pair::{Pair, Study};
-use super::{AccuracyText, left_out, tick_table};
+use super::{AccuracyText, left_out, target, target_table, tick_table};
 use crate::ReportError;
 use crate::figure::{Chart, Figure};
 use crate::frame;
 
 const LAYOUT: &str = include_str!("page.css");
 
-pub(crate) fn html(study: &Study, text: &AccuracyText) -> Result<String, ReportError> {
+pub(crate) fn html(
+    study: &Study,
+    on: Option<&OnTarget>,
+    text: &AccuracyText,
+) -> Result<String, ReportError> {
     let mut shown = Vec::new();
     for pair in &study.pairs {
         shown.push((pair, diagrams(study, pair)?));
@@ -42,6 +47,7 @@ pub(crate) fn html(study: &Study, text: &AccuracyText) -> Result<String, ReportE
                     }
                 }
             }
+            @if let Some(on) = on { (target_table::table(on)) }
             (frame::tables(&text.tables))
             @if !text.notes.is_empty() {
                 section.notes {
@@ -61,6 +67,7 @@ fn diagrams(study: &Study, pair: &Pair) -> Result<Markup, ReportError> {
     for measure in Measure::ALL {
         figures.push(figure(study, pair, measure)?);
     }
+    figures.extend(target::figure(study, pair)?);
     Ok(html! {
         (tick_table::table(study, pair))
         @for figure in &figures { (frame::figure(figure)) }

@@ -6,6 +6,7 @@ mod page;
 mod plan;
 mod summary;
 mod table;
+mod target;
 mod words;
 
 use crate::cli::AccuracyArguments;
@@ -36,7 +37,13 @@ pub(crate) fn accuracy(arguments: &AccuracyArguments, as_json: bool) -> Result<(
         .as_deref()
         .map(|out| Folder::create(out).map_err(|e| Failure::at(out, "cannot be written", &e)))
         .transpose()?;
-    let study = study::run(&studied.plan, &mut Watch::new()).map_err(studying::failed)?;
+    // So is an image that cannot be built.
+    let ladder = arguments.target.then(target::ladder).transpose()?;
+    let mut study = study::run(&studied.plan, &mut Watch::new()).map_err(studying::failed)?;
+    if let Some(mut ladder) = ladder {
+        let scenes = &studied.plan.scenes;
+        target::add(&mut study, scenes, arguments.quick, &mut ladder)?;
+    }
     let summary = Summary::new(arguments.quick, &studied, &study);
     if let (Some(folder), Some(out)) = (folder, &out) {
         studying::write(folder, out, files(&study, &summary, arguments.pictures)?)?;
@@ -46,9 +53,11 @@ pub(crate) fn accuracy(arguments: &AccuracyArguments, as_json: bool) -> Result<(
         None if as_json => print_json(&json!({ "out": out, "summary": summary })),
         None => {
             let report = out.unwrap_or_default().join("report.html");
+            let target = study.target.as_ref().map(target::table);
             print(&format!(
-                "{}\nreport: {}\n",
+                "{}\n{}\nreport: {}\n",
                 table::at_the_tick(&study),
+                target.map_or_else(String::new, |table| format!("\n{table}")),
                 report.display()
             ))
         }

@@ -43,6 +43,12 @@ pub struct Point {
     pub us_per_simulated_s: f64,
     /// Spread of the repeats: (third quartile − first quartile)/median.
     pub time_spread: f64,
+    /// Mean cycles of a step on the target, modelled; NaN where not asked for.
+    pub cycles_per_step: f64,
+    /// Most cycles of a step in this scene, as far as it was run; NaN likewise.
+    pub worst_cycles: f64,
+    /// Mean instructions of a step on the target; NaN likewise.
+    pub instructions_per_step: f64,
 }
 
 #[cfg(test)]
@@ -69,6 +75,9 @@ pub(crate) mod tests {
             ns_per_step: 4.0,
             us_per_simulated_s: 4e-3 / step_s,
             time_spread: 0.01,
+            cycles_per_step: f64::NAN,
+            worst_cycles: f64::NAN,
+            instructions_per_step: f64::NAN,
         }
     }
 }

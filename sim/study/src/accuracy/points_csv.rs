@@ -7,7 +7,8 @@ use std::fmt::Write;
 /// The header, in the order of the fields of [`Point`].
 pub const HEADER: &str = "scene,convention,solver,precision,step_s,events,events_true,unmatched,\
 max_event_error_s,rms_event_error_s,max_interval_error_s,frequency_error_rel,rms_torque_error_nm,\
-max_torque_error_nm,ns_per_step,us_per_simulated_s,time_spread";
+max_torque_error_nm,ns_per_step,us_per_simulated_s,time_spread,cycles_per_step,worst_cycles,\
+instructions_per_step";
 
 /// The file.
 pub fn points_csv(points: &[Point]) -> String {
@@ -31,6 +32,9 @@ pub fn points_csv(points: &[Point]) -> String {
             p.ns_per_step,
             p.us_per_simulated_s,
             p.time_spread,
+            p.cycles_per_step,
+            p.worst_cycles,
+            p.instructions_per_step,
         ] {
             text.push(',');
             push_number(&mut text, value);

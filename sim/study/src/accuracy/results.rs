@@ -2,6 +2,7 @@
 
 use crate::accuracy::orders::Orders;
 use crate::accuracy::point::Point;
+use crate::accuracy::target::OnTarget;
 use serde::Serialize;
 
 /// A study's results.
@@ -21,6 +22,9 @@ pub struct Study {
     pub orders: Vec<Orders>,
     /// How long the study took, s.
     pub wall_s: f64,
+    /// What the ladder costs on the target, if that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target: Option<OnTarget>,
     /// The points, by scene, convention, rung, precision and falling step.
     #[serde(skip)]
     pub points: Vec<Point>,

@@ -60,6 +60,7 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError
         skipped: Vec::new(),
         orders: Vec::new(),
         wall_s: 0.0,
+        target: None,
         points: Vec::new(),
     };
     let mut work = Work {
@@ -178,6 +179,9 @@ fn point(
         ns_per_step: cost.ns_per_step,
         us_per_simulated_s: cost.ns_per_step * 1e-3 / step_s,
         time_spread: cost.spread,
+        cycles_per_step: f64::NAN,
+        worst_cycles: f64::NAN,
+        instructions_per_step: f64::NAN,
     }
 }
 

@@ -22,6 +22,8 @@ mod tools;
 
 use super::case::Case;
 
+pub(crate) use motions::WANDER;
+
 /// All cases.
 pub fn all() -> Vec<Case> {
     vec![

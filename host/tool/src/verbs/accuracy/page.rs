@@ -16,7 +16,8 @@ pub(super) fn files(
     pictures: bool,
 ) -> Result<Vec<(String, String)>, Failure> {
     let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
-    let page = accuracy::html(&study.points, &text(study, summary)).map_err(undrawn)?;
+    let page = accuracy::html(&study.points, study.target.as_ref(), &text(study, summary))
+        .map_err(undrawn)?;
     let mut files = vec![("report.html".to_owned(), page)];
     if pictures {
         let pictures = accuracy::pictures(&study.points).map_err(undrawn)?;

@@ -99,7 +99,9 @@ pub(super) fn golden() -> Case {
         title: "The bits that every target must reproduce",
         hard: "A fused multiply-add, another sine or a reordered sum changes the last bit, and then firmware, \
                software in the loop and host are no longer one program. These hashes of every torque of six runs \
-               are the numbers that the firmware must reproduce.",
+               are the numbers that the firmware must reproduce. It does: the same runs on an emulated STM32F405 \
+               (`cargo test -p crepitus-emulator --test ladder golden`) give these hashes, and QEMU goes through \
+               the same instructions.",
         source: "numerics report, section 2; the hashes are of this model's own torques",
         long: false,
         must: located,

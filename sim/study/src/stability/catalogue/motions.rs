@@ -67,7 +67,7 @@ pub(super) const THROUGH_ZERO: Knots = &[
 
 /// Random-looking, with jumps.
 #[expect(clippy::approx_constant, reason = "0.318 is a velocity, not 1/π")]
-pub(super) const WANDER: Knots = &[
+pub(crate) const WANDER: Knots = &[
     (0.0, 0.3, 0.3),
     (0.049, -0.288, -0.288),
     (0.118, -0.684, 0.057),

@@ -1,0 +1,83 @@
+//! What the ladder costs on the target: `--target`.
+
+use super::words;
+use crate::failure::Failure;
+use crate::studying::{Interrupted, Watch};
+use crepitus_emulator::firmware::{self, Program};
+use crepitus_emulator::ladder::{Ladder, LadderError};
+use crepitus_study::accuracy::target::inputs::Lengths;
+use crepitus_study::accuracy::target::{self, OnTarget, Row, TargetError};
+use crepitus_study::accuracy::{Study, StudyScene};
+use std::fmt::Write;
+
+/// The program on an emulated core.
+pub(super) fn ladder() -> Result<Ladder, Failure> {
+    if firmware::is_to_be_built() {
+        eprintln!("building firmware/ladder, if it is not up to date");
+    }
+    let image = firmware::image(Program::Ladder)
+        .map_err(|error| Failure::Work(format!("--target: {error}")))?;
+    Ok(Ladder::new(&image))
+}
+
+/// Adds cycles and instructions to a study.
+pub(super) fn add(
+    study: &mut Study,
+    scenes: &[StudyScene],
+    is_quick: bool,
+    ladder: &mut Ladder,
+) -> Result<(), Failure> {
+    let lengths = if is_quick {
+        Lengths::QUICK
+    } else {
+        Lengths::FULL
+    };
+    let run = |plan: &_, inputs: &[_]| Ok(ladder.run_and_compare(plan, inputs)?.calls);
+    target::add(study, scenes, lengths, run, &mut Watch::new()).map_err(
+        |error: TargetError<LadderError, Interrupted>| match error {
+            TargetError::Study(error) => crate::studying::failed(error),
+            other => Failure::Work(format!("--target: {other}")),
+        },
+    )
+}
+
+/// As a table, for the terminal and for a page of the book.
+pub(super) fn table(on: &OnTarget) -> String {
+    let mut text = format!(
+        "A step on the target, in f32 at the device's tick ({}; a tick has {}):\n\n\
+         | what | convention | frequency error | mean cycles | worst observed | on | mean instructions | most | worst, % of a tick |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+        on.label, on.tick_cycles
+    );
+    for row in &on.rows {
+        push(&mut text, row);
+    }
+    // Writing to a String cannot fail.
+    let _ = write!(
+        text,
+        "\n{} steps, every output the same to the bit as on the host.\n",
+        on.steps
+    );
+    text
+}
+
+fn push(text: &mut String, row: &Row) {
+    let frequency = if row.is_rung {
+        words::error(row.frequency_error_rel)
+    } else {
+        String::new()
+    };
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        text,
+        "| {} | {} | {frequency} | {:.0} | {} | {} | {:.0} | {} | {:.1} |",
+        row.subject,
+        row.convention.unwrap_or("–"),
+        row.mean_cycles,
+        row.worst_cycles,
+        row.worst_on,
+        row.mean_instructions,
+        row.worst_instructions,
+        100.0 * row.worst_share,
+    );
+}

@@ -1,0 +1,64 @@
+//! Modelled cycles, 0 wait states, and what they may be at most: of the 8,400
+//! of a tick.
+//!
+//! On motions, with breaks, matches and reversals, what is rendered has one
+//! budget; a tick that makes up for up to three that are missing, and so has
+//! four steps in it, or that moves the parameters under way, has another.
+
+use crate::ladder;
+use crepitus_ladder::{Cost, Subject};
+use crepitus_model::Convention;
+use crepitus_study::accuracy::scenes::standard;
+use crepitus_study::accuracy::target::LABEL;
+use crepitus_study::accuracy::target::inputs::{Lengths, tasks};
+
+/// Most cycles of a step on a motion, and on other inputs.
+struct Budget {
+    motion: u32,
+    other: u32,
+}
+
+/// Holds a subject to its budget, over all its inputs.
+fn hold(subject: Subject, budget: &Budget) {
+    let Some(mut ladder) = ladder() else { return };
+    let scenes = standard().unwrap();
+    let mut over = Vec::new();
+    for task in tasks(subject, &scenes, Lengths::FULL).unwrap() {
+        let run = ladder.run(&task.plan, &task.inputs).unwrap();
+        let cost = Cost::of(&run.calls);
+        let most = match task.name.as_str() {
+            "gaps" | "commits" => budget.other,
+            _ => budget.motion,
+        };
+        let line = format!(
+            "{} on {}: mean {:.0}, worst {} of {most} ({LABEL})",
+            subject.name(),
+            task.name,
+            cost.mean_cycles(),
+            cost.worst_cycles
+        );
+        println!("{line}");
+        if cost.worst_cycles > most {
+            over.push(line);
+        }
+    }
+    assert!(over.is_empty(), "{}", over.join("\n"));
+}
+
+#[test]
+fn what_the_firmware_renders_stays_within_its_budget() {
+    let budget = Budget {
+        motion: 800,
+        other: 2_400,
+    };
+    hold(Subject::Renderer, &budget);
+}
+
+#[test]
+fn exact_events_behind_its_check_stays_within_its_budget() {
+    let budget = Budget {
+        motion: 1_600,
+        other: 4_000,
+    };
+    hold(Subject::Checked(Convention::Physical), &budget);
+}

@@ -1,0 +1,163 @@
+//! One step of each subject.
+//!
+//! The second word of a joint's output has its events: two bits each, the last
+//! in the lowest, 1 a break, 2 a stick, 3 a reversal.
+
+use crate::exchange::{Input, Kind, Output};
+use crepitus_model::encoder::EncoderReader;
+use crepitus_model::locate::ExactEvents;
+use crepitus_model::{
+    Active, BoneShaping, CurrentLoop, Event, EventKind, FrictionCompensation, Guarded, Renderer,
+    Sample, ShaftStep, StickSlip,
+};
+
+/// Something that is stepped.
+pub trait Measured {
+    /// A commit of other numbers, outside of the step.
+    fn commit(&mut self, _next: Active<f32>) {}
+
+    /// One step.
+    fn step(&mut self, input: &Input) -> Output;
+}
+
+/// The function whose calls are measured: one for each subject.
+#[inline(never)]
+pub fn step<M: Measured>(subject: &mut M, input: &Input) -> Output {
+    subject.step(input)
+}
+
+/// What is seen of the events of a step.
+#[derive(Default)]
+struct Seen {
+    kinds: u32,
+    fraction: f32,
+}
+
+impl Seen {
+    #[inline]
+    fn event(&mut self, event: &Event<f32>) {
+        let kind = match event.kind {
+            EventKind::Break => 1,
+            EventKind::Stick => 2,
+            EventKind::Reverse => 3,
+        };
+        self.kinds = self.kinds << 2 | kind;
+        self.fraction = event.fraction;
+    }
+
+    #[inline]
+    fn with(&self, torque_nm: f32) -> Output {
+        [torque_nm.to_bits(), self.kinds, self.fraction.to_bits()]
+    }
+}
+
+impl Input {
+    #[inline]
+    fn number(&self, n: usize) -> f32 {
+        self.words.get(n).map_or(0.0, |word| f32::from_bits(*word))
+    }
+
+    #[inline]
+    fn shaft(&self) -> ShaftStep<f32> {
+        ShaftStep {
+            delta_phi_rad: self.number(0),
+            omega_start_rad_s: self.number(1),
+            omega_end_rad_s: self.number(2),
+        }
+    }
+
+    #[inline]
+    fn sample(&self) -> Sample<f32> {
+        if self.kind == Kind::Lost {
+            Sample::Lost
+        } else {
+            Sample::Taken(self.shaft())
+        }
+    }
+}
+
+/// A rung alone.
+pub struct Joint<J>(pub J);
+
+impl<J: StickSlip<f32>> Measured for Joint<J> {
+    #[inline]
+    fn step(&mut self, input: &Input) -> Output {
+        let mut seen = Seen::default();
+        self.0.step(&input.shaft(), |event| seen.event(&event));
+        seen.with(self.0.torque_nm())
+    }
+}
+
+impl<J: StickSlip<f32>> Measured for Guarded<f32, J> {
+    #[inline]
+    fn step(&mut self, input: &Input) -> Output {
+        let mut seen = Seen::default();
+        self.tick(&input.sample(), |event| seen.event(&event));
+        seen.with(self.torque_nm())
+    }
+}
+
+/// The renderer, and how fast its numbers move.
+pub struct Rendered {
+    /// The joint of the firmware.
+    pub renderer: Renderer<f32, ExactEvents>,
+    /// Slew limit, N·m/s.
+    pub slew_nm_per_s: f64,
+}
+
+impl Measured for Rendered {
+    fn commit(&mut self, next: Active<f32>) {
+        self.renderer.commit(next, self.slew_nm_per_s);
+    }
+
+    #[inline]
+    fn step(&mut self, input: &Input) -> Output {
+        let mut seen = Seen::default();
+        let shown = self
+            .renderer
+            .tick(&input.sample(), |event| seen.event(&event));
+        seen.with(shown.torque_nm)
+    }
+}
+
+impl Measured for EncoderReader<f32> {
+    #[inline]
+    fn step(&mut self, input: &Input) -> Output {
+        if input.kind == Kind::Lost {
+            self.miss();
+            return [0, self.omega_rad_s().to_bits(), 0];
+        }
+        let [count, ..] = input.words;
+        let shaft = self.read(count.cast_signed());
+        [
+            shaft.delta_phi_rad.to_bits(),
+            shaft.omega_end_rad_s.to_bits(),
+            0,
+        ]
+    }
+}
+
+impl Measured for FrictionCompensation<f32> {
+    #[inline]
+    fn step(&mut self, input: &Input) -> Output {
+        [self.torque_nm(input.number(0)).to_bits(), 0, 0]
+    }
+}
+
+impl Measured for BoneShaping<f32> {
+    #[inline]
+    fn step(&mut self, input: &Input) -> Output {
+        let jump_nm = input.number(1);
+        if jump_nm != 0.0 {
+            self.ring(jump_nm);
+        }
+        [self.tick(input.number(0)).to_bits(), 0, 0]
+    }
+}
+
+impl Measured for CurrentLoop<f32> {
+    #[inline]
+    fn step(&mut self, input: &Input) -> Output {
+        [self.tick(input.number(0), input.number(1)).to_bits(), 0, 0]
+    }
+}

@@ -1,0 +1,135 @@
+//! What is to be run.
+
+use crate::exchange::{Exchange, PLAN, STEPS};
+use crate::subject::Subject;
+use crepitus_model::{Parameters, Restart, Settings, SettingsError, Validated};
+
+/// A subject, its numbers, and how many steps of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    /// What.
+    pub subject: Subject,
+    /// The joint's numbers, and those that a commit brings. (The next commit
+    /// brings the first ones back.)
+    pub parameters: [Parameters; 2],
+    /// How a stick begins.
+    pub restart: Restart,
+    /// The step, s.
+    pub step_s: f64,
+    /// The shaft's velocity at the start, rad/s.
+    pub omega_rad_s: f32,
+    /// Steps of one command.
+    pub steps: u32,
+}
+
+/// Words of a plan.
+const WORDS: usize = STEPS - PLAN;
+
+/// Those before the numbers of the joint.
+const HEAD: usize = 6;
+
+impl Plan {
+    /// A subject with the paper's numbers at the device's tick, from rest.
+    pub fn of(subject: Subject) -> Self {
+        Self {
+            subject,
+            parameters: [Parameters::default(); 2],
+            restart: Restart::default(),
+            step_s: 5e-5,
+            omega_rad_s: 0.0,
+            steps: 0,
+        }
+    }
+
+    /// The settings of its joint.
+    ///
+    /// # Errors
+    /// [`SettingsError`] if they are not allowed.
+    pub fn settings(&self, which: usize) -> Result<Validated<Settings>, SettingsError> {
+        let [first, second] = self.parameters;
+        Settings {
+            parameters: if which == 0 { first } else { second },
+            convention: self.subject.convention().unwrap_or_default(),
+            restart: self.restart,
+        }
+        .validate()
+    }
+
+    /// As words from [`PLAN`] on.
+    pub fn encode(&self) -> [u32; WORDS] {
+        let mut words = [0; WORDS];
+        let step = self.step_s.to_bits();
+        let restart = u32::from(self.restart == Restart::FromKinetic);
+        let head = [
+            self.subject.code(),
+            self.steps,
+            restart,
+            self.omega_rad_s.to_bits(),
+            low(step),
+            high(step),
+        ];
+        let values = self.parameters.iter().flat_map(Parameters::values);
+        let bits = values.flat_map(|value| [low(value.to_bits()), high(value.to_bits())]);
+        for (word, value) in words.iter_mut().zip(head.into_iter().chain(bits)) {
+            *word = value;
+        }
+        words
+    }
+
+    /// From the words of a block; none if there is no such subject.
+    pub fn decode(exchange: &Exchange<'_>) -> Option<Self> {
+        let word = |n: usize| exchange.get(PLAN + n);
+        let number = |n| f64::from_bits(u64::from(word(n)) | u64::from(word(n + 1)) << 32);
+        let parameters = |first: usize| {
+            let mut parameters = Parameters::default();
+            for (n, value) in parameters.values_mut().into_iter().enumerate() {
+                *value = number(first + 2 * n);
+            }
+            parameters
+        };
+        Some(Self {
+            subject: Subject::of_code(word(0))?,
+            steps: word(1),
+            restart: if word(2) == 0 {
+                Restart::Elastic
+            } else {
+                Restart::FromKinetic
+            },
+            omega_rad_s: f32::from_bits(word(3)),
+            step_s: number(4),
+            parameters: [HEAD, HEAD + 10].map(parameters),
+        })
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "that half")]
+fn low(bits: u64) -> u32 {
+    bits as u32
+}
+
+fn high(bits: u64) -> u32 {
+    low(bits >> 32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::sync::atomic::AtomicU32;
+    use std::vec::Vec;
+
+    #[test]
+    fn a_plan_comes_out_as_it_went_in() {
+        let mut plan = Plan::of(Subject::Renderer);
+        plan.parameters[1].inertia_kg_m2 = 0.0123;
+        plan.parameters[1].static_torque_nm = 0.77;
+        plan.restart = Restart::FromKinetic;
+        plan.step_s = 1.0 / 3.0;
+        plan.omega_rad_s = -0.25;
+        plan.steps = 77;
+        let head = [0; PLAN].into_iter();
+        let words: Vec<_> = head.chain(plan.encode()).map(AtomicU32::new).collect();
+        assert_eq!(Plan::decode(&Exchange::new(&words)), Some(plan));
+        words[PLAN].store(99, core::sync::atomic::Ordering::Relaxed);
+        assert_eq!(Plan::decode(&Exchange::new(&words)), None);
+    }
+}

@@ -1,0 +1,172 @@
+//! The program: takes a plan, makes its steps, waits for the next command.
+
+use crate::exchange::{BEGIN, ENTRY, Exchange, Input, Kind, Output, READY, REFUSED, RUN, STATE};
+use crate::measured::{Joint, Measured, Rendered, step};
+use crate::plan::Plan;
+use crate::subject::Subject;
+use core::hint::black_box;
+use crepitus_model::bone_shaping::BoneShapingSettings;
+use crepitus_model::current_loop::CurrentLoopSettings;
+use crepitus_model::device_limits::LimitSettings;
+use crepitus_model::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::energy_observer::MOST_DELAY_TICKS;
+use crepitus_model::friction_compensation::FrictionCompensationSettings;
+use crepitus_model::guarded::InputLimits;
+use crepitus_model::parameters::Tabled;
+use crepitus_model::real::Real;
+use crepitus_model::solver::{JointVisitor, Solver, with_joint};
+use crepitus_model::{
+    Active, BoneShaping, CurrentLoop, FrictionCompensation, Guarded, Renderer, SettingsError,
+    StickSlip,
+};
+
+/// Serves one command after the other. `wait` is called as there is none, and
+/// says whether there will be another.
+pub fn serve(exchange: &Exchange<'_>, wait: &mut dyn FnMut() -> bool) {
+    let mut here = Here { exchange, wait };
+    let mut goes_on = here.next();
+    while goes_on {
+        let plan = Plan::decode(exchange);
+        let served = plan.map(|plan| here.serve(&plan));
+        goes_on = if let Some(Ok(goes_on)) = served {
+            goes_on
+        } else {
+            exchange.set(STATE, REFUSED);
+            exchange.done();
+            here.next()
+        };
+    }
+}
+
+struct Here<'a> {
+    exchange: &'a Exchange<'a>,
+    wait: &'a mut dyn FnMut() -> bool,
+}
+
+impl Here<'_> {
+    /// Waits for a command; whether there is one.
+    fn next(&mut self) -> bool {
+        while self.exchange.command() == 0 {
+            if !(self.wait)() {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// One plan, until a command brings another one; whether one does.
+    fn serve(&mut self, plan: &Plan) -> Result<bool, SettingsError> {
+        let step_s = plan.step_s;
+        Ok(match plan.subject {
+            Subject::Rung(_, solver) => self.joint::<false>(plan, solver)?,
+            Subject::Checked(_) => self.joint::<true>(plan, Solver::ExactEvents)?,
+            Subject::Renderer => {
+                let active = |which| Active::<f32>::new(&plan.settings(which)?, step_s);
+                let actives = [active(0)?, active(1)?];
+                let rendered = Rendered {
+                    renderer: Renderer::new(
+                        actives[0],
+                        InputLimits::device(step_s),
+                        f32::from_f64(EncoderSettings::default().rad_per_count()),
+                        plan.omega_rad_s,
+                    ),
+                    slew_nm_per_s: LimitSettings::defaults().slew_nm_per_s,
+                };
+                self.run(rendered, Some(actives))
+            }
+            Subject::Encoder => {
+                let settings = EncoderSettings::default();
+                self.run(
+                    EncoderReader::new(&settings, step_s, 0, plan.omega_rad_s)?,
+                    None,
+                )
+            }
+            Subject::FrictionCompensation => {
+                let settings = FrictionCompensationSettings::defaults();
+                self.run(FrictionCompensation::new(&settings)?, None)
+            }
+            Subject::BoneShaping => {
+                let settings = BoneShapingSettings::defaults();
+                self.run(BoneShaping::new(&settings, step_s, MOST_DELAY_TICKS)?, None)
+            }
+            Subject::CurrentLoop => {
+                let settings = CurrentLoopSettings::defaults();
+                self.run(CurrentLoop::new(&settings, step_s)?, None)
+            }
+        })
+    }
+
+    fn joint<const CHECKED: bool>(
+        &mut self,
+        plan: &Plan,
+        solver: Solver,
+    ) -> Result<bool, SettingsError> {
+        let visitor = Visitor::<CHECKED> { here: self, plan };
+        with_joint(
+            &plan.settings(0)?,
+            solver,
+            plan.step_s,
+            plan.omega_rad_s,
+            visitor,
+        )
+    }
+
+    /// Steps of a subject, command after command; whether another plan comes.
+    fn run<M: Measured>(&mut self, mut subject: M, actives: Option<[Active<f32>; 2]>) -> bool {
+        // What is called is not known here, so it is called.
+        let step: fn(&mut M, &Input) -> Output = black_box(step::<M>);
+        self.exchange.set(ENTRY, address(step as usize));
+        self.exchange.set(STATE, READY);
+        let mut committed = 0;
+        let mut command = self.exchange.command();
+        loop {
+            if command & RUN != 0 {
+                let steps = Plan::decode(self.exchange).map_or(0, |plan| plan.steps);
+                for n in (0..usize::MAX).take(steps as usize) {
+                    let input = self.exchange.input(n);
+                    if let (Kind::Commit, Some(actives)) = (input.kind, &actives) {
+                        committed = 1 - committed;
+                        if let Some(next) = actives.get(committed) {
+                            subject.commit(*next);
+                        }
+                    }
+                    self.exchange.set_output(n, &step(&mut subject, &input));
+                }
+            }
+            self.exchange.done();
+            if !self.next() {
+                return false;
+            }
+            command = self.exchange.command();
+            if command & BEGIN != 0 {
+                return true;
+            }
+        }
+    }
+}
+
+/// Where code is, on the target.
+#[expect(clippy::cast_possible_truncation, reason = "32 bits on the target")]
+fn address(of: usize) -> u32 {
+    of as u32 & !1
+}
+
+/// Runs the joint that it gets.
+struct Visitor<'a, 'b, const CHECKED: bool> {
+    here: &'a mut Here<'b>,
+    plan: &'a Plan,
+}
+
+impl<const CHECKED: bool> JointVisitor<f32> for Visitor<'_, '_, CHECKED> {
+    type Output = bool;
+
+    fn visit<J: StickSlip<f32>>(self, joint: J) -> bool {
+        if CHECKED {
+            let limits = InputLimits::device(self.plan.step_s);
+            let checked = Guarded::new(joint, limits, self.plan.omega_rad_s);
+            self.here.run(checked, None)
+        } else {
+            self.here.run(Joint(joint), None)
+        }
+    }
+}

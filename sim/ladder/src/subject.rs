@@ -1,0 +1,115 @@
+//! What is measured.
+
+use crepitus_model::Convention;
+use crepitus_model::solver::Solver;
+
+/// Something that the device could run in every tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Subject {
+    /// A rung of the ladder under a convention.
+    Rung(Convention, Solver),
+    /// `exact-events` behind the check of its input.
+    Checked(Convention),
+    /// What the firmware renders: `frozen` with `exact-events`, behind the
+    /// check of its input, with the ramp of a commit and the turn-back guard.
+    Renderer,
+    /// Counts of the motor's encoder to angle and speed.
+    Encoder,
+    /// Feed-forward against the gear's friction.
+    FrictionCompensation,
+    /// The ringing of a bone.
+    BoneShaping,
+    /// The loop of the motor's current.
+    CurrentLoop,
+}
+
+/// Those that are no rungs.
+const DEVICE: [Subject; 8] = [
+    Subject::Checked(Convention::Frozen),
+    Subject::Checked(Convention::Paper),
+    Subject::Checked(Convention::Physical),
+    Subject::Renderer,
+    Subject::Encoder,
+    Subject::FrictionCompensation,
+    Subject::BoneShaping,
+    Subject::CurrentLoop,
+];
+
+impl Subject {
+    /// All of them: each rung under every convention where it has a meaning,
+    /// then what else the device does.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let rungs = Convention::ALL.into_iter().flat_map(|convention| {
+            Solver::ALL
+                .into_iter()
+                .filter(move |solver| solver.refusal(convention).is_none())
+                .map(move |solver| Self::Rung(convention, solver))
+        });
+        rungs.chain(DEVICE)
+    }
+
+    /// Its name: of a rung as in scene files, of an effect as `crepitus
+    /// effects` lists it, of the rest as the model's documents call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rung(_, solver) => solver.name(),
+            Self::Checked(_) => "input check",
+            Self::Renderer => "renderer",
+            Self::Encoder => "encoder",
+            Self::FrictionCompensation => "friction-compensation",
+            Self::BoneShaping => "bone-shaping",
+            Self::CurrentLoop => "current loop",
+        }
+    }
+
+    /// The convention of its joint, if it has one.
+    pub fn convention(self) -> Option<Convention> {
+        match self {
+            Self::Rung(convention, _) | Self::Checked(convention) => Some(convention),
+            Self::Renderer => Some(Convention::Frozen),
+            _ => None,
+        }
+    }
+
+    /// Its place among all.
+    pub(crate) fn code(self) -> u32 {
+        (0..)
+            .zip(Self::all())
+            .find(|(_, subject)| *subject == self)
+            .map_or(u32::MAX, |(code, _)| code)
+    }
+
+    /// The one of this place.
+    pub(crate) fn of_code(code: u32) -> Option<Self> {
+        (0..)
+            .zip(Self::all())
+            .find(|(n, _)| *n == code)
+            .map(|(_, subject)| subject)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn each_rung_is_there_under_each_convention_that_allows_it() {
+        let rungs = |convention| {
+            Subject::all()
+                .filter(|subject| matches!(subject, Subject::Rung(c, _) if *c == convention))
+                .count()
+        };
+        assert_eq!(Convention::ALL.map(rungs), [4, 9, 10]);
+    }
+
+    #[test]
+    fn a_code_is_of_one_subject() {
+        let all: HashSet<_> = Subject::all().collect();
+        assert_eq!(all.len(), 31);
+        for subject in all {
+            assert_eq!(Subject::of_code(subject.code()), Some(subject));
+        }
+        assert_eq!(Subject::of_code(31), None);
+    }
+}
