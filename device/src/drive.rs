@@ -148,8 +148,8 @@ impl Drive {
         if let Some(plan) = self.rendering_plan.take() {
             self.rendering.take_over(&plan, sampled.omega_rad_s);
         }
-        let is_energised = self.command.safety().state() == State::Armed;
-        self.rendered = Some(self.rendering.tick(sampled, is_energised));
+        let was_armed = self.command.was_armed();
+        self.rendered = Some(self.rendering.tick(sampled, was_armed));
     }
 
     /// `command_motor`, priority 4: half a tick later.

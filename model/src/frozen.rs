@@ -136,119 +136,169 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
         })
     }
 
-    /// The steps that have an event, or are in stick.
+    /// A step that has an event, or is in stick.
     fn step_with_events(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
-        let Self {
-            active: a,
-            ticks_left,
-            slip_number,
-            state,
-            ..
-        } = self;
-        let mut begin_slip = |state: &mut State<F>, ticks_left: &mut u64, slip: Slip<F>| {
-            *slip_number = slip_number.wrapping_add(1);
-            let mut slip = slip;
-            // It lasts half a period at least.
-            *ticks_left = if a.period.whole < SHORT_PERIOD {
-                slip.close(a)
-            } else {
-                1
-            };
-            *state = State::Slip(slip);
-        };
-        let path = ShaftPath::new(shaft, a);
-        let mut from_s = F::ZERO;
-        let mut from_fraction = F::ZERO;
-        let mut events = 0;
+        let mut at = Place::start_of(shaft, &self.active);
+        let is_stick = matches!(self.state, State::Stick { .. });
+        if !(is_stick && self.stick(&mut at, &mut on_event)) {
+            self.go_on(&mut at, &mut on_event);
+        }
+    }
+
+    /// The end of a slip, and what follows it or a break in the same step. By
+    /// itself, so that a step in stick does not carry its load.
+    #[inline(never)]
+    fn go_on(&mut self, at: &mut Place<F>, on_event: &mut impl FnMut(Event<F>)) {
+        // Once without a loop, as there is hardly ever more.
+        if !(self.slip(at, on_event) || self.stick(at, on_event)) {
+            self.go_on_and_on(at, on_event);
+        }
+    }
+
+    /// At most [`EVENTS_PER_STEP`] events.
+    #[inline(never)]
+    fn go_on_and_on(&mut self, at: &mut Place<F>, on_event: &mut impl FnMut(Event<F>)) {
         loop {
-            match state {
-                State::Stick { theta } => {
-                    let theta_from = theta.value();
-                    let found = if events < EVENTS_PER_STEP {
-                        find_break::<F, L>(a, &path, theta_from, from_s)
-                    } else {
-                        None
-                    };
-                    let Some((after_s, sense)) = found else {
-                        theta.add(if events == 0 {
-                            shaft.delta_phi_rad
-                        } else {
-                            path.travel(from_s, a.step_s)
-                        });
-                        return;
-                    };
-                    let theta = theta_from + path.travel(from_s, from_s + after_s);
-                    from_s += after_s;
-                    let omega = path.omega(from_s);
-                    // Rounding must not put an event before the last one.
-                    let fraction = (from_s * a.per_step).at_least(from_fraction);
-                    let fraction = fraction.at_most(F::ONE);
-                    from_fraction = fraction;
-                    begin_slip(
-                        state,
-                        ticks_left,
-                        Slip::begin(a, sense, fraction, theta, omega),
-                    );
-                    events += 1;
-                    on_event(Event {
-                        kind: EventKind::Break,
-                        fraction,
-                        from: Phase::Stick,
-                        to: Phase::Slip(sense),
-                        theta_rad: theta,
-                        theta_dot_rad_s: omega,
-                        omega_rad_s: omega,
-                        torque_before_nm: a.limited(a.stiffness * theta),
-                        torque_after_nm: sense.of_signed(a.kinetic_nm),
-                    });
-                }
-                State::Slip(_) if *ticks_left > 0 || events >= EVENTS_PER_STEP => {
-                    *ticks_left = ticks_left.saturating_sub(1);
-                    return;
-                }
-                State::Slip(slip) => {
-                    let (sense, fraction) = (slip.sense, slip.end_fraction);
-                    from_s = fraction * a.step_s;
-                    from_fraction = fraction;
-                    let omega = path.omega(from_s);
-                    let limit = slip.limit_rad;
-                    let theta =
-                        sense.of_signed(a.restart_angle_rad.at_most(limit).at_least(-limit));
-                    let torque = a.stiffness * theta;
-                    events += 1;
-                    // Ts = Tk: the stick would break where it begins. The slip
-                    // goes on, and nothing is felt or reported.
-                    if a.touches() && sense.of_signed(path.rate(from_s)) > F::ZERO {
-                        begin_slip(
-                            state,
-                            ticks_left,
-                            Slip::begin(a, sense, fraction, theta, omega),
-                        );
-                        continue;
-                    }
-                    *state = State::Stick {
-                        theta: Compensated::new(theta),
-                    };
-                    on_event(Event {
-                        kind: EventKind::Stick,
-                        fraction,
-                        from: Phase::Slip(sense),
-                        to: Phase::Stick,
-                        theta_rad: theta,
-                        theta_dot_rad_s: omega,
-                        omega_rad_s: omega,
-                        torque_before_nm: sense.of_signed(a.kinetic_nm),
-                        torque_after_nm: a.limited(torque),
-                    });
-                }
+            if self.slip(at, on_event) || self.stick(at, on_event) {
+                return;
             }
+        }
+    }
+
+    /// From here on in stick: whether that is the rest of the step.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "as `first_break`")]
+    fn stick(&mut self, at: &mut Place<F>, on_event: &mut impl FnMut(Event<F>)) -> bool {
+        let State::Stick { theta } = &mut self.state else {
+            return false;
+        };
+        let a = &self.active;
+        let theta_from = theta.value();
+        let found = if at.events < EVENTS_PER_STEP {
+            find_break::<F, L>(a, &at.path, theta_from, at.from_s)
+        } else {
+            None
+        };
+        let Some((after_s, sense)) = found else {
+            theta.add(if at.events == 0 {
+                at.delta_phi_rad
+            } else {
+                at.path.travel(at.from_s, a.step_s)
+            });
+            return true;
+        };
+        let theta = theta_from + at.path.travel(at.from_s, at.from_s + after_s);
+        at.from_s += after_s;
+        let omega = at.path.omega(at.from_s);
+        // Rounding must not put an event before the last one.
+        let fraction = (at.from_s * a.per_step).at_least(at.from_fraction);
+        let fraction = fraction.at_most(F::ONE);
+        at.from_fraction = fraction;
+        at.events += 1;
+        on_event(Event {
+            kind: EventKind::Break,
+            fraction,
+            from: Phase::Stick,
+            to: Phase::Slip(sense),
+            theta_rad: theta,
+            theta_dot_rad_s: omega,
+            omega_rad_s: omega,
+            torque_before_nm: a.limited(a.stiffness * theta),
+            torque_after_nm: sense.of_signed(a.kinetic_nm),
+        });
+        self.begin_slip(sense, fraction, theta, omega)
+    }
+
+    /// From here on in a slip, if it is one: whether that is the rest of the
+    /// step.
+    #[inline]
+    fn slip(&mut self, at: &mut Place<F>, on_event: &mut impl FnMut(Event<F>)) -> bool {
+        let State::Slip(slip) = &self.state else {
+            return false;
+        };
+        if self.ticks_left > 0 || at.events >= EVENTS_PER_STEP {
+            self.ticks_left = self.ticks_left.saturating_sub(1);
+            return true;
+        }
+        let a = &self.active;
+        let (sense, fraction, limit) = (slip.sense, slip.end_fraction, slip.limit_rad);
+        at.from_s = fraction * a.step_s;
+        at.from_fraction = fraction;
+        at.events += 1;
+        let omega = at.path.omega(at.from_s);
+        let theta = sense.of_signed(a.restart_angle_rad.at_most(limit).at_least(-limit));
+        // Ts = Tk: the stick would break where it begins. The slip goes on, and
+        // nothing is felt or reported.
+        if a.touches() && sense.of_signed(at.path.rate(at.from_s)) > F::ZERO {
+            return self.begin_slip(sense, fraction, theta, omega);
+        }
+        on_event(Event {
+            kind: EventKind::Stick,
+            fraction,
+            from: Phase::Slip(sense),
+            to: Phase::Stick,
+            theta_rad: theta,
+            theta_dot_rad_s: omega,
+            omega_rad_s: omega,
+            torque_before_nm: sense.of_signed(a.kinetic_nm),
+            torque_after_nm: a.limited(a.stiffness * theta),
+        });
+        self.state = State::Stick {
+            theta: Compensated::new(theta),
+        };
+        false
+    }
+
+    /// Begins the slip of `sense` at `fraction` of this step in state (θ, Ω):
+    /// whether it lasts longer than the step.
+    #[inline]
+    fn begin_slip(&mut self, sense: Sense, fraction: F, theta: F, omega: F) -> bool {
+        let a = &self.active;
+        self.slip_number = self.slip_number.wrapping_add(1);
+        let mut slip = Slip {
+            sense,
+            end_fraction: fraction,
+            is_open: true,
+            duration: Ticks::default(),
+            x: theta - sense.of_signed(a.kinetic_angle_rad),
+            v: omega,
+            limit_rad: a.static_angle_rad,
+        };
+        // It lasts half a period at least.
+        let is_long = a.period.whole >= SHORT_PERIOD;
+        self.ticks_left = if is_long { 0 } else { slip.close(a) };
+        self.state = State::Slip(slip);
+        is_long
+    }
+}
+
+/// How far a step has come.
+struct Place<F> {
+    path: ShaftPath<F>,
+    /// Travel of the whole step, rad.
+    delta_phi_rad: F,
+    /// Time since its start, s.
+    from_s: F,
+    /// The same as a fraction of it.
+    from_fraction: F,
+    events: usize,
+}
+
+impl<F: Real> Place<F> {
+    fn start_of(shaft: &ShaftStep<F>, active: &Active<F>) -> Self {
+        Self {
+            path: ShaftPath::new(shaft, active),
+            delta_phi_rad: shaft.delta_phi_rad,
+            from_s: F::ZERO,
+            from_fraction: F::ZERO,
+            events: 0,
         }
     }
 }
 
 /// Where and in which sense a stick at `theta` breaks after `from_s`.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "as `first_break`, with one caller")]
+#[expect(clippy::inline_always, reason = "as `first_break`")]
 fn find_break<F: Real, L: Locate<F>>(
     active: &Active<F>,
     path: &ShaftPath<F>,
@@ -264,19 +314,6 @@ fn find_break<F: Real, L: Locate<F>>(
 }
 
 impl<F: Real> Slip<F> {
-    /// One of `sense` that begins at `fraction` of a step in state (θ, Ω).
-    fn begin(active: &Active<F>, sense: Sense, fraction: F, theta: F, omega: F) -> Self {
-        Self {
-            sense,
-            end_fraction: fraction,
-            is_open: true,
-            duration: Ticks::default(),
-            x: theta - sense.of_signed(active.kinetic_angle_rad),
-            v: omega,
-            limit_rad: active.static_angle_rad,
-        }
-    }
-
     /// Finds its end, with the numbers that it began with: how many whole ticks
     /// are left before the one in which it ends, as its first step begins.
     fn close(&mut self, active: &Active<F>) -> u64 {

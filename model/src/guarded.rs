@@ -81,6 +81,8 @@ pub struct Counters {
 pub struct Guarded<F, J> {
     joint: J,
     limits: InputLimits<F>,
+    /// Travel of a tick that is believed, rad.
+    reach_rad: F,
     counters: Counters,
     /// Ticks since the last good sample.
     missed: u32,
@@ -93,6 +95,9 @@ impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
     pub fn new(joint: J, limits: InputLimits<F>, omega_rad_s: F) -> Self {
         Self {
             held_nm: joint.torque_nm(),
+            // Twice: the speed within a gap may have been above that at its
+            // ends, and a count comes whole.
+            reach_rad: F::TWO * limits.speed_rad_s * joint.active().step_s,
             joint,
             limits,
             counters: Counters::default(),
@@ -160,9 +165,7 @@ impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
     /// Whether a shaft can have made this step. A NaN passes no comparison.
     fn believes(&self, shaft: &ShaftStep<F>) -> bool {
         let l = &self.limits;
-        // Twice: the speed within a gap may have been above that at its ends,
-        // and a count comes whole.
-        let mut reach = F::TWO * l.speed_rad_s * self.joint.active().step_s;
+        let mut reach = self.reach_rad;
         if self.missed > 0 {
             reach = reach * F::from_whole(u64::from(self.missed).saturating_add(1));
         }

@@ -15,7 +15,7 @@ use crepitus_model::current_loop::Limit;
 
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::telemetry::{Block, BlockFlags, NO_CURRENT, Sample, SampleFlags};
-use crepitus_protocol::{LimitReason, Revision};
+use crepitus_protocol::{LimitReason, Revision, State};
 
 /// What the peripherals say in the middle of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,6 +47,7 @@ pub struct Command {
     speed_limit_rad_s: f32,
     /// The bridge was driven in the tick before.
     was_driven: bool,
+    was_armed: bool,
     /// Of the parameters in force.
     revision: Revision,
     /// The line, as read back.
@@ -66,6 +67,7 @@ impl Command {
             plausibility: Plausibility::default(),
             speed_limit_rad_s: plan.speed_limit_rad_s,
             was_driven: false,
+            was_armed: false,
             revision: plan.revision,
             line_is_on: false,
             batch: Batch::new(boot.tick, boot.sequence),
@@ -119,6 +121,11 @@ impl Command {
         self.batch.pop();
     }
 
+    /// Whether it was armed in its last tick: then rendering shows torque.
+    pub fn was_armed(&self) -> bool {
+        self.was_armed
+    }
+
     /// Whether there may be torque.
     pub fn safety(&self) -> &Safety {
         &self.safety
@@ -168,7 +175,9 @@ impl Command {
         }
         let outputs = self.drive(permit, sampled, &rendered, current_a);
         let sample = self.sample(permit, sampled, &rendered, current_a, is_late, counters);
-        let flags = BlockFlags::new(self.safety.state(), self.zeroed, self.start);
+        let state = self.safety.state();
+        self.was_armed = state == State::Armed;
+        let flags = BlockFlags::new(state, self.zeroed, self.start);
         self.batch.push(sample, self.revision, flags, counters);
         outputs
     }

@@ -42,6 +42,7 @@ pub struct Rendering {
     joint: Option<Joint>,
     /// It goes once it has settled.
     is_leaving: bool,
+    is_settling: bool,
     compensation: Option<FrictionCompensation<f32>>,
     /// What compensation adds now, N·m.
     compensating_nm: f32,
@@ -61,6 +62,7 @@ impl Rendering {
         let mut rendering = Self {
             joint: None,
             is_leaving: false,
+            is_settling: false,
             compensation: None,
             compensating_nm: 0.0,
             bone: None,
@@ -102,9 +104,9 @@ impl Rendering {
         self.slew_nm = plan.slew_nm;
     }
 
-    /// Whether numbers still move: the next commit waits.
+    /// Whether numbers still move, after a tick: the next commit waits.
     pub fn is_settling(&self) -> bool {
-        self.is_leaving || self.joint.as_ref().is_some_and(Joint::is_settling)
+        self.is_settling
     }
 
     /// One tick.
@@ -132,10 +134,11 @@ impl Rendering {
             flags = flags
                 .with_phase(joint.joint().phase().sign())
                 .with(SampleFlags::SETTLING, shown.settling);
-            if self.is_leaving && !joint.is_settling() {
+            if self.is_leaving && !shown.settling {
                 self.joint = None;
                 self.is_leaving = false;
             }
+            self.is_settling = shown.settling;
         }
         let (wanted_nm, slewed) = self.with_what_is_added(shown_nm, jump_nm, sampled);
         if slewed && reason == LimitReason::None {

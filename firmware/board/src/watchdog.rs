@@ -8,33 +8,48 @@
 //! 37.6 ms. A debugger that halts the core does not halt the watchdog: a motor
 //! is no thing to leave at a breakpoint.
 
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use stm32f4xx_hal::pac::IWDG;
 
 /// Counts of an eighth of a millisecond, at 32 kHz.
 const RELOAD: u16 = 160;
 
-/// Who has run.
-#[derive(Debug, Default)]
-pub struct Roll {
-    /// Tasks, since the watchdog was fed last.
-    tasks: AtomicU32,
+/// Who has run, of `N` tasks.
+#[derive(Debug)]
+pub struct Roll<const N: usize> {
+    /// Tasks, since the watchdog was fed last. Each has its own, as a store
+    /// takes a third of the time of an addition.
+    tasks: [AtomicBool; N],
     /// Feeds that were asked for since the idle loop came round.
     without_idle: AtomicU32,
 }
 
-impl Roll {
+impl<const N: usize> Roll<N> {
     /// Nobody yet.
     pub const fn new() -> Self {
         Self {
-            tasks: AtomicU32::new(0),
+            tasks: [const { AtomicBool::new(false) }; N],
             without_idle: AtomicU32::new(0),
         }
     }
 
-    /// The task with this bit has run.
-    pub fn here(&self, task: u32) {
-        self.tasks.fetch_or(task, Ordering::Relaxed);
+    /// The task with this number, from 0 on, has run.
+    pub fn here(&self, task: usize) {
+        if let Some(ran) = self.tasks.get(task) {
+            ran.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Whether all of them have; if so, they have to run again.
+    fn take(&self) -> bool {
+        let all = self.tasks.iter().all(|ran| ran.load(Ordering::Relaxed));
+        if all {
+            // One that runs meanwhile may be forgotten, and runs again.
+            for ran in &self.tasks {
+                ran.store(false, Ordering::Relaxed);
+            }
+        }
+        all
     }
 
     /// The idle loop has come round.
@@ -46,37 +61,28 @@ impl Roll {
 /// The watchdog.
 pub struct Watchdog {
     timer: IWDG,
-    everyone: u32,
     patience: u32,
 }
 
 impl Watchdog {
-    /// Starts it: from now on nothing stops it but a reset. `everyone` is the
-    /// bits of all tasks, `patience` how many feeds the idle loop may take.
+    /// Starts it: from now on nothing stops it but a reset. `patience` is how
+    /// many feeds the idle loop may take.
     ///
     /// Its registers take some of its own clocks to load, so the first period
     /// may be the longest, half a second.
-    pub fn start(timer: IWDG, everyone: u32, patience: u32) -> Self {
+    pub fn start(timer: IWDG, patience: u32) -> Self {
         timer.kr().write(|w| w.key().start());
         timer.kr().write(|w| w.key().unlock());
         timer.pr().write(|w| w.pr().divide_by4());
         timer.rlr().write(|w| w.rl().set(RELOAD));
         timer.kr().write(|w| w.key().feed());
-        Self {
-            timer,
-            everyone,
-            patience,
-        }
+        Self { timer, patience }
     }
 
     /// Feeds it, if everybody has run.
-    pub fn feed(&mut self, roll: &Roll) {
+    pub fn feed<const N: usize>(&mut self, roll: &Roll<N>) {
         let waited = roll.without_idle.fetch_add(1, Ordering::Relaxed);
-        let tasks_ran = roll
-            .tasks
-            .compare_exchange(self.everyone, 0, Ordering::Relaxed, Ordering::Relaxed)
-            .is_ok();
-        if tasks_ran && waited < self.patience {
+        if roll.take() && waited < self.patience {
             self.timer.kr().write(|w| w.key().feed());
         }
     }

@@ -50,10 +50,10 @@ mod app {
     const FAREWELL_MS: u8 = 20;
 
     /// Who has run, for the watchdog.
-    const TICKED: u32 = 1;
-    const USED: u32 = 1 << 1;
-    const LINKED: u32 = 1 << 2;
-    const EVERYONE: u32 = TICKED | USED | LINKED;
+    const TICKED: usize = 0;
+    const USED: usize = 1;
+    const LINKED: usize = 2;
+    const TASKS: usize = 3;
 
     /// Runs of `link` that `idle` may take for a round: at most 250 ms.
     const PATIENCE: u32 = 1_000;
@@ -62,7 +62,7 @@ mod app {
     struct Shared {
         comms: &'static mut Comms,
         save: Option<(Revision, Values)>,
-        roll: Roll,
+        roll: Roll<TASKS>,
     }
 
     #[local]
@@ -115,7 +115,7 @@ mod app {
                 port,
                 link: board.link,
                 log: board.log,
-                watchdog: Watchdog::start(board.watchdog, EVERYONE, PATIENCE),
+                watchdog: Watchdog::start(board.watchdog, PATIENCE),
             },
         )
     }

@@ -12,7 +12,7 @@
 //!
 //! | shared | between | locked for |
 //! |---|---|---|
-//! | `command`: safety, motor, blocks | 4, 2, 1, 0 | a status, a block of 20 samples |
+//! | `command`: safety, motor, blocks | 4, 1, 0 | a status, two samples |
 //! | `sampled` | 4, 3, 2 | a copy |
 //! | `rendered` | 4, 2 | a copy |
 //! | `sampler` | 3, 1 | the clock, the zero |
@@ -50,8 +50,8 @@ mod app {
     use crepitus_device::drive::prepare::{CommandPlan, Preparation, Prepared, RenderingPlan};
     use crepitus_device::drive::rendering::{Rendered, Rendering};
     use crepitus_device::drive::sampler::{Sampled, Sampler};
+    use crepitus_protocol::Fault;
     use crepitus_protocol::frame::Place;
-    use crepitus_protocol::{Fault, State};
     use stm32f4xx_hal::pac::Interrupt;
 
     /// What starts `render_torque`: of an interrupt that nothing else uses.
@@ -61,11 +61,11 @@ mod app {
     const LINK: Interrupt = Interrupt::DMA2_STREAM6;
 
     /// Who has run, for the watchdog.
-    const COMMAND: u32 = 1;
-    const SAMPLE: u32 = 1 << 1;
-    const RENDERED: u32 = 1 << 2;
-    const LINKED: u32 = 1 << 3;
-    const EVERYONE: u32 = COMMAND | SAMPLE | RENDERED | LINKED;
+    const COMMAND: usize = 0;
+    const SAMPLE: usize = 1;
+    const RENDERED: usize = 2;
+    const LINKED: usize = 3;
+    const TASKS: usize = 4;
 
     /// The most bytes that a run of `link` takes, every other tick. The wire
     /// could bring 42 in that time; comms sends 25 in a millisecond, and 300 with
@@ -88,8 +88,10 @@ mod app {
         is_settling: AtomicBool,
         is_going: AtomicBool,
         is_link_due: AtomicBool,
+        was_armed: AtomicBool,
+        has_plan: AtomicBool,
         counters: Counters,
-        roll: Roll,
+        roll: Roll<TASKS>,
     }
 
     #[local]
@@ -139,6 +141,8 @@ mod app {
             is_settling: AtomicBool::new(false),
             is_going: AtomicBool::new(false),
             is_link_due: AtomicBool::new(false),
+            was_armed: AtomicBool::new(false),
+            has_plan: AtomicBool::new(false),
             counters: Counters::new(),
             roll: Roll::new(),
         };
@@ -153,7 +157,7 @@ mod app {
             link: board.link,
             link_task: LinkTask::new(boot.identity, boot.start),
             preparation,
-            watchdog: Watchdog::start(board.watchdog, EVERYONE, PATIENCE),
+            watchdog: Watchdog::start(board.watchdog, PATIENCE),
         };
         // Last, so that the first tick is like the others.
         ticks::start(&local.bridge, &local.middle, &local.begin);
@@ -164,7 +168,8 @@ mod app {
         binds = TIM3, priority = 4,
         local = [middle, converter, line, bridge, middles: u8 = 0],
         shared = [
-            command, command_plan, sampled, rendered, &is_going, &is_link_due, &counters, &roll,
+            command, command_plan, sampled, rendered, &is_going, &is_link_due, &was_armed,
+            &counters, &roll,
         ]
     )]
     fn command_motor(cx: command_motor::Context) {
@@ -182,7 +187,7 @@ mod app {
             enable_is_on: part.line.is_on(),
             is_broken: part.bridge.is_broken(),
         };
-        let counters = cx.shared.counters;
+        let (counters, was_armed) = (cx.shared.counters, cx.shared.was_armed);
         let mut shared = (
             cx.shared.command,
             cx.shared.command_plan,
@@ -198,7 +203,9 @@ mod app {
                 command.take_over(new, counters);
                 *plan = None;
             }
-            command.tick(&inputs, sampled, rendered.as_ref(), counters)
+            let outputs = command.tick(&inputs, sampled, rendered.as_ref(), counters);
+            was_armed.store(command.was_armed(), Ordering::Relaxed);
+            outputs
         });
         part.line.set(outputs.enable);
         match outputs.bridge {
@@ -212,7 +219,9 @@ mod app {
     #[task(
         binds = TIM4, priority = 3,
         local = [begin, encoder],
-        shared = [sampler, sampled, prepared, rendering_plan, command_plan, &is_going, &roll]
+        shared = [
+            sampler, sampled, prepared, rendering_plan, command_plan, &has_plan, &is_going, &roll,
+        ]
     )]
     fn sample_encoder(mut cx: sample_encoder::Context) {
         cx.local.begin.acknowledge();
@@ -228,13 +237,14 @@ mod app {
                 cx.shared.rendering_plan,
                 cx.shared.command_plan,
             );
-            let sampler = &mut cx.shared.sampler;
+            let (sampler, has_plan) = (&mut cx.shared.sampler, cx.shared.has_plan);
             slots.lock(|prepared, rendering_plan, command_plan| {
                 if let Some(ready) = prepared {
                     if let Some(reader) = &ready.reader {
                         sampler.lock(|sampler| sampler.replace(reader));
                     }
                     *rendering_plan = Some(ready.rendering);
+                    has_plan.store(true, Ordering::Relaxed);
                     *command_plan = Some(ready.command);
                     *prepared = None;
                 }
@@ -248,7 +258,9 @@ mod app {
     #[task(
         binds = SDIO, priority = 2,
         local = [rendering],
-        shared = [command, sampled, rendered, rendering_plan, &is_settling, &roll]
+        shared = [
+            sampled, rendered, rendering_plan, &has_plan, &is_settling, &was_armed, &roll,
+        ]
     )]
     fn render_torque(mut cx: render_torque::Context) {
         cx.shared.roll.here(RENDERED);
@@ -258,15 +270,18 @@ mod app {
         let Some(sampled) = &sampled else {
             return;
         };
-        cx.shared.rendering_plan.lock(|slot| {
-            // Where it lies: a copy takes microseconds.
-            if let Some(plan) = slot {
-                rendering.take_over(plan, sampled.omega_rad_s);
-                *slot = None;
-            }
-        });
-        let state = cx.shared.command.lock(|command| command.safety().state());
-        let now = rendering.tick(sampled, state == State::Armed);
+        if cx.shared.has_plan.load(Ordering::Relaxed) {
+            cx.shared.has_plan.store(false, Ordering::Relaxed);
+            cx.shared.rendering_plan.lock(|slot| {
+                // Where it lies: a copy takes microseconds.
+                if let Some(plan) = slot {
+                    rendering.take_over(plan, sampled.omega_rad_s);
+                    *slot = None;
+                }
+            });
+        }
+        let was_armed = cx.shared.was_armed.load(Ordering::Relaxed);
+        let now = rendering.tick(sampled, was_armed);
         let is_settling = rendering.is_settling();
         cx.shared.is_settling.store(is_settling, Ordering::Relaxed);
         cx.shared.rendered.lock(|rendered| *rendered = Some(now));

@@ -50,7 +50,13 @@ pub struct Cycles {
     costs: BTreeMap<u16, Cost>,
     /// Which exception has interrupted which.
     preemptions: BTreeMap<(u16, u16), u64>,
+    /// Cycles in exceptions, tick by tick from the first step on.
+    busy: Vec<u64>,
+    begin: Option<Time>,
 }
+
+/// A tick of the drive.
+const TICK: Time = Time::from_us(50);
 
 impl Cycles {
     /// The cost of each exception's task.
@@ -64,10 +70,36 @@ impl Cycles {
         &self.preemptions
     }
 
+    /// Cycles that all tasks have taken in a tick, in the mean.
+    #[expect(clippy::cast_precision_loss, reason = "for people")]
+    pub fn mean_busy_cycles(&self) -> f64 {
+        self.busy.iter().sum::<u64>() as f64 / self.busy.len().max(1) as f64
+    }
+
+    /// Cycles that all tasks have taken in the worst tick.
+    pub fn worst_busy_cycles(&self) -> u64 {
+        self.busy.iter().copied().max().unwrap_or(0)
+    }
+
     /// Forgets what it has seen, but for what runs now.
     pub fn clear(&mut self) {
         self.costs.clear();
         self.preemptions.clear();
+        self.busy.clear();
+        self.begin = None;
+    }
+
+    fn count_busy(&mut self, step: &Step) {
+        let begin = *self.begin.get_or_insert(step.at);
+        let tick = (step.at - begin).units() / TICK.units();
+        let tick = usize::try_from(tick).unwrap_or(usize::MAX);
+        if self.busy.len() <= tick {
+            self.busy.resize(tick + 1, 0);
+        }
+        // From the entry on, which is the step after which it is active.
+        if step.active > 0 {
+            self.busy[tick] += u64::from(step.cycles);
+        }
     }
 
     fn begin(&mut self, step: &Step) {
@@ -101,6 +133,7 @@ impl Cycles {
 
 impl Watch for Cycles {
     fn step(&mut self, step: &Step) {
+        self.count_busy(step);
         let depth = step.active as usize;
         if depth > self.runs.len() {
             self.begin(step);

@@ -35,8 +35,13 @@ pub(crate) fn image() -> Option<Image> {
 }
 
 pub(crate) fn examination() -> Scene {
-    let text = include_str!("examination.toml");
-    Scene::parse(Path::new("examination.toml"), text, &Overrides::default()).expect("a scene")
+    scene("")
+}
+
+/// The examination with more effects.
+pub(crate) fn scene(effects: &str) -> Scene {
+    let text = [include_str!("examination.toml"), effects].concat();
+    Scene::parse(Path::new("examination.toml"), &text, &Overrides::default()).expect("a scene")
 }
 
 impl Host {
