@@ -155,3 +155,67 @@ impl<P: BorrowMut<Place>> Outgoing<P> {
         encoder.finish().ok()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_protocol::frame::{FRAME_BYTES, Frame};
+    use crepitus_protocol::link::FromDrive;
+    use crepitus_protocol::management::Identity;
+
+    type Places = Outgoing<Place>;
+
+    /// What a few runs make, and how many it takes.
+    fn run(outgoing: &mut Places, block: &Block) -> (Frame, usize) {
+        for runs in 1..100 {
+            let made = match outgoing.next_sample() {
+                Some(next) => {
+                    let piece = block.samples[next..].first_chunk().unwrap();
+                    outgoing.samples(piece)
+                }
+                None => outgoing.piece(),
+            };
+            if let Some(made) = made {
+                assert!(outgoing.is_idle());
+                return (made.frame(), runs);
+            }
+        }
+        panic!("no end");
+    }
+
+    #[test]
+    fn pieces_make_the_frames_that_a_whole_message_makes() {
+        let mut outgoing = Places::default();
+        let place = || [0; FRAME_BYTES];
+        let status = DriveStatus {
+            tick: 1 << 40,
+            counters: core::array::from_fn(|n| u32::MAX >> n),
+            ..DriveStatus::default()
+        };
+        let mut block = Block {
+            first_tick: 300,
+            ..Block::default()
+        };
+        for (sample, n) in block.samples.iter_mut().zip(1_u8..) {
+            (sample.count, sample.torque_nm) = (n.into(), f32::from(n));
+        }
+        let answer = Answer::Hello {
+            token: 7,
+            own: Identity::default(),
+            drive: Identity::default(),
+        };
+        outgoing.begin_status(place(), &status).unwrap();
+        let (frame, runs) = run(&mut outgoing, &block);
+        let whole = FromDrive::Status(status);
+        assert_eq!(frame, frame::encode(Lane::FromDrive, &whole).unwrap());
+        assert!(runs <= 5, "{runs}");
+        outgoing.begin_block(place(), &block).unwrap();
+        let (frame, runs) = run(&mut outgoing, &block);
+        assert_eq!(frame, frame::encode(Lane::Telemetry, &block).unwrap());
+        assert_eq!(runs, BLOCK_SAMPLES / PIECE_SAMPLES);
+        outgoing.begin_answer(place(), &answer).unwrap();
+        let (frame, _) = run(&mut outgoing, &block);
+        let whole = frame::encode_bytes(Lane::ManagementAnswer, &answer.bytes());
+        assert_eq!(frame, whole.unwrap());
+    }
+}

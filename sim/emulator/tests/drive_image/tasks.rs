@@ -62,6 +62,46 @@ fn a_task_is_interrupted_by_higher_ones_only_and_every_tick_has_all() {
 }
 
 #[test]
+fn a_task_gives_way_at_once_to_a_higher_one() {
+    /// Make an interrupt of TIM3, of TIM4.
+    const MIDDLE_EVENT: (u32, u32) = (0x4000_0414, 0b10);
+    const BEGIN_EVENT: (u32, u32) = (0x4000_0814, 0b1);
+    let Some(image) = image() else { return };
+    // In the half of a tick and so long into it, this is made to come: then
+    // this one has interrupted that one.
+    for (half, after_ns, (register, event), below, above) in [
+        (0, 700, MIDDLE_EVENT, SAMPLE, COMMAND),
+        (0, 3_000, MIDDLE_EVENT, RENDER, COMMAND),
+        (0, 3_000, BEGIN_EVENT, RENDER, SAMPLE),
+        (1, 8_000, MIDDLE_EVENT, LINK, COMMAND),
+        (1, 8_000, BEGIN_EVENT, LINK, SAMPLE),
+        (1, 8_000, BEGIN_EVENT, LINK, RENDER),
+    ] {
+        let mut host = Host::new(&image, &examination());
+        host.arm();
+        host.run_until_torque();
+        let mut cycles = Cycles::default();
+        for _ in 0..half {
+            host.board.half(None);
+        }
+        let mcu = host.board.mcu_mut();
+        let until = Time::from_units(mcu.now().units() + after_ns * 336 / 1_000);
+        mcu.watch_until(until, &mut cycles);
+        cycles.clear();
+        mcu.poke(register, event);
+        host.board.half(Some(&mut cycles));
+        let preemptions = cycles.preemptions();
+        assert!(
+            preemptions.contains_key(&(below, above)),
+            "{below} by {above}: {preemptions:?}"
+        );
+        for (below, above) in preemptions.keys() {
+            assert!(priority(*above) > priority(*below), "{below} by {above}");
+        }
+    }
+}
+
+#[test]
 fn no_tick_is_late_under_torque() {
     let Some(image) = image() else { return };
     let mut host = Host::new(&image, &examination());
