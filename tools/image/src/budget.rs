@@ -29,6 +29,11 @@
 //! bounds = [64, 8]                       # most rounds of each, in the order of lines
 //! reason = "a frame has at most 64 bytes of 8 bits"
 //!
+//! [[images.drive.loops]]                 # of a library, however many it has
+//! function = "__aeabi_mem*"              # a last `*`: whatever begins like this
+//! at_most = 512
+//! reason = "bytes; nothing longer is copied"
+//!
 //! [[images.drive.ends]]                  # control goes in and does not come back
 //! function = "board::stop::stop"
 //! reason = "resets the processor"
@@ -47,6 +52,7 @@
 
 use crate::error::ImageError;
 use serde::Deserialize;
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
@@ -148,10 +154,15 @@ pub struct End {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BoundedLoops {
-    /// The function.
+    /// The function; for a library's, a last `*` stands for any end.
     pub function: String,
-    /// The most rounds of each of its loops, in the order of their lines.
+    /// The most rounds of each of its loops, in the order of their lines. If
+    /// the compiler has dissolved some of them, the largest is for all others.
+    #[serde(default)]
     pub bounds: Vec<u64>,
+    /// Instead: the most rounds of any of its loops. Only for a library, whose
+    /// lines nobody here has under his eyes.
+    pub at_most: Option<u64>,
     /// Why they hold.
     pub reason: String,
 }
@@ -229,6 +240,26 @@ impl Budget {
     }
 }
 
+impl BoundedLoops {
+    /// Whether it is for this function of the source.
+    pub fn is_for(&self, function: &str) -> bool {
+        match self.function.strip_suffix('*') {
+            Some(begin) if self.at_most.is_some() => function.starts_with(begin),
+            _ => self.function == function,
+        }
+    }
+
+    /// The most rounds of the loop at place `n` of `count`.
+    pub fn bound(&self, n: usize, count: usize) -> Option<u64> {
+        let listed = match count.cmp(&self.bounds.len()) {
+            Ordering::Less => self.bounds.iter().max(),
+            Ordering::Equal => self.bounds.get(n),
+            Ordering::Greater => None,
+        };
+        self.at_most.or(listed.copied())
+    }
+}
+
 impl ImageBudget {
     /// What somebody vouches for: the kind, the function, the reason.
     pub fn vouched(&self) -> impl Iterator<Item = (&'static str, &str, &str)> {
@@ -251,6 +282,14 @@ impl ImageBudget {
             }
             if !seen.insert((kind, function)) {
                 return Err(format!("{function} is in {kind} twice"));
+            }
+        }
+        for entry in &self.loops {
+            if entry.at_most.is_some() != entry.bounds.is_empty() {
+                let function = &entry.function;
+                return Err(format!(
+                    "{function} needs either `bounds` or `at_most` in loops"
+                ));
             }
         }
         Ok(())

@@ -1,5 +1,6 @@
 //! The gate: an image against its budget.
 
+mod bounds;
 mod code;
 mod layout;
 mod loops;

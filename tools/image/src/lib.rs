@@ -32,7 +32,8 @@
 //! is a lower bound where it calls through pointers; the report says so.
 //! Handlers of faults add to it only where the budget lists them. Loops are
 //! those of the machine code: where the compiler has made one of two nested
-//! loops without anything between them, one bound covers both.
+//! loops without anything between them, one bound covers both. Where it has
+//! dissolved a loop, its bound stays for one that comes later in that function.
 
 pub mod body;
 pub mod budget;

@@ -52,6 +52,15 @@ extern "C" fn SOUND() {
     let table = [3_u32, 1, 4, 1, 5, 9, 2, 6];
     let n = INPUT.load(Ordering::Relaxed) as usize % table.len();
     INPUT.store(table[n], Ordering::Relaxed);
+    unrolled();
+}
+
+/// Three rounds, of which the compiler makes straight code.
+#[inline(always)]
+fn unrolled() {
+    for bit in 0..3 {
+        INPUT.store(INPUT.load(Ordering::Relaxed) ^ 1 << bit, Ordering::Relaxed);
+    }
 }
 
 /// Panics on an odd number.
@@ -224,6 +233,34 @@ reason = \"bits\"";
     let loops = report.loops.iter().map(|l| (l.copies, l.bound));
     assert_eq!(loops.collect::<Vec<_>>(), [(2, Some(32)), (2, Some(9))]);
     assert_eq!(report.failures.len(), 1, "the panic stays");
+}
+
+#[test]
+fn a_bound_outlives_the_mood_of_the_compiler() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(bytes) = compile(folder.path()) else {
+        return;
+    };
+    let lines = Lines::of(&folder.path().join("it.elf"));
+    let entry = |function: &str, bound: &str| {
+        format!("[[images.it.loops]]\nfunction = \"it::{function}\"\n{bound}\nreason = \"so\"\n")
+    };
+    let drain = entry("drain", "bounds = [32, 9]");
+    // Dissolved, but its function is there: the entry may stay.
+    let dissolved = drain.clone() + &entry("unrolled", "bounds = [3]");
+    let found = report(&bytes, &lines, &dissolved);
+    assert_eq!(found.failures.len(), 1, "{:#?}", found.failures);
+    assert_eq!(
+        found.hints[0].what,
+        "it::unrolled has 0 loops left; the budget bounds 1"
+    );
+    let gone = drain + &entry("gone", "bounds = [3]");
+    let found = report(&bytes, &lines, &gone).failures;
+    assert_eq!(found.len(), 2, "{found:#?}");
+    assert!(found[1].what.contains("it::gone is not needed"));
+    // One bound for all is for code that nobody here edits.
+    let found = report(&bytes, &lines, &entry("drain", "at_most = 32")).failures;
+    assert!(found[1].what.starts_with("it::drain is no library's"));
 }
 
 #[test]

@@ -46,6 +46,14 @@ fn says_what_is_wrong() {
             "twice",
         ),
         (
+            "[[images.a.loops]]\nfunction = \"f\"\nreason = \"r\"\n",
+            "either `bounds` or `at_most`",
+        ),
+        (
+            "[[images.a.loops]]\nfunction = \"f\"\nbounds = [1]\nat_most = 1\nreason = \"r\"\n",
+            "either `bounds` or `at_most`",
+        ),
+        (
             "[[images.a.reserved]]\nfrom = 2\nto = 2\nwhat = \"w\"\n",
             "behind its end",
         ),

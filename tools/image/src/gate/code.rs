@@ -45,6 +45,7 @@ impl Gate<'_> {
             loops: Catalogue::new(),
             seen: BTreeSet::new(),
         };
+        let mut reached = BTreeSet::new();
         for root in roots.iter().filter(|root| root.interrupt.gated) {
             let reach = self.reach(root.function);
             for address in reach.functions() {
@@ -53,11 +54,13 @@ impl Gate<'_> {
                 };
                 if address == root.function || !panics(function) && !self.vouched.ends(function) {
                     self.check_function(root, &reach, function, &mut found);
+                    reached.insert(address);
                 }
             }
             self.check_recursion(root, &reach, &mut found);
         }
         self.check_bounds(&mut found);
+        self.note_dissolved(&reached, &mut found);
         self.check_ends(&mut found);
         found.report.failures.extend(self.vouched.stale());
     }

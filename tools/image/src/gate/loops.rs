@@ -1,4 +1,4 @@
-//! Loops that gated interrupts reach, and who bounds them.
+//! Loops that gated interrupts reach, by where they stand in the source.
 //!
 //! Compilers inline, so a loop is known by the function that holds it in the
 //! source, not by the symbol that it ended up in: of the inlined functions
@@ -14,12 +14,11 @@ use super::{Gate, finding};
 use crate::lines::Frame;
 use crate::loops::Loop;
 use crate::program::Function;
-use crate::report::LoopRow;
 use std::collections::BTreeMap;
 
 /// Where a loop stands in its function.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-enum Spot {
+pub(super) enum Spot {
     /// Line, the place in a library, and how many loops of the same spot it
     /// is nested in.
     Line(u32, String, usize),
@@ -30,17 +29,31 @@ enum Spot {
 /// The loops of one function of the source.
 #[derive(Debug, Default)]
 pub(super) struct Loops {
-    spots: BTreeMap<Spot, Copies>,
+    pub(super) spots: BTreeMap<Spot, Copies>,
+    /// Some line of them is in this repository.
+    pub(super) is_own: bool,
     /// The first handler found to reach it, and the way.
-    handler: String,
-    path: Vec<String>,
+    pub(super) handler: String,
+    pub(super) path: Vec<String>,
 }
 
 /// One loop of the source, as often as it was inlined.
 #[derive(Debug)]
-struct Copies {
+pub(super) struct Copies {
+    pub(super) place: String,
+    pub(super) count: usize,
+}
+
+/// Where a loop comes from.
+struct Origin {
+    /// The function of the source that holds it.
+    owner: String,
+    /// Its spot there.
+    spot: Spot,
+    /// The same for people.
     place: String,
-    count: usize,
+    /// The spot is in this repository.
+    is_own: bool,
 }
 
 /// Loops by the function of the source.
@@ -70,13 +83,19 @@ impl Gate<'_> {
                 ));
                 continue;
             }
-            let (owner, mut spot, place) = self.origin(function, l);
+            let Origin {
+                owner,
+                mut spot,
+                place,
+                is_own,
+            } = self.origin(function, l);
             if let Spot::Line(.., nested) = &mut spot {
                 let around = function.loops.iter().filter(|o| surrounds(o, l));
-                let same = around.filter(|o| self.origin(function, o).2 == place);
+                let same = around.filter(|o| self.origin(function, o).place == place);
                 *nested = same.count();
             }
             let loops = found.loops.entry(owner).or_default();
+            loops.is_own |= is_own;
             if loops.path.is_empty() {
                 loops.handler.clone_from(handler);
                 loops.path = path(l.address);
@@ -86,9 +105,7 @@ impl Gate<'_> {
         }
     }
 
-    /// The function of the source that holds a loop, its spot there, and the
-    /// spot for people.
-    fn origin(&self, function: &Function, l: &Loop) -> (String, Spot, String) {
+    fn origin(&self, function: &Function, l: &Loop) -> Origin {
         let common = self.common_frames(l);
         let own = common.iter().rposition(|frame| !frame.library);
         let holder = common.get(own.unwrap_or(0));
@@ -109,13 +126,19 @@ impl Gate<'_> {
                     Some(n) if n > 0 => holder.function.clone(),
                     _ => function.name().to_owned(),
                 };
-                (name, Spot::Line(holder.line, library, 0), place)
+                Origin {
+                    owner: name,
+                    spot: Spot::Line(holder.line, library, 0),
+                    place,
+                    is_own: own.is_some(),
+                }
             }
-            _ => (
-                function.name().to_owned(),
-                Spot::Address(l.address),
-                format!("{:#010x}", l.address),
-            ),
+            _ => Origin {
+                owner: function.name().to_owned(),
+                spot: Spot::Address(l.address),
+                place: format!("{:#010x}", l.address),
+                is_own: false,
+            },
         }
     }
 
@@ -143,58 +166,9 @@ impl Gate<'_> {
         }
         common
     }
-
-    /// Compares what was found with the bounds of the budget.
-    pub(super) fn check_bounds(&self, found: &mut Found<'_>) {
-        let catalogue = std::mem::take(&mut found.loops);
-        for (function, loops) in &catalogue {
-            let entry = self.vouched.loops(function);
-            for (n, copies) in loops.spots.values().enumerate() {
-                found.report.loops.push(LoopRow {
-                    function: function.clone(),
-                    place: copies.place.clone(),
-                    copies: copies.count,
-                    bound: entry.and_then(|e| e.bounds.get(n).copied()),
-                    reason: entry.map(|e| e.reason.clone()),
-                });
-            }
-            let (count, said) = (loops.spots.len(), entry.map(|e| e.bounds.len()));
-            if said == Some(count) {
-                continue;
-            }
-            let mut at = loops.path.clone();
-            at.extend(loops.spots.values().map(|c| format!("loop {}", c.place)));
-            let bounds = vec!["…"; count].join(", ");
-            let image = self.name_of_image;
-            found.report.failures.push(finding(
-                "loop",
-                match said {
-                    None => format!(
-                        "{} reaches {} in {function} without a bound",
-                        loops.handler,
-                        counted(count)
-                    ),
-                    Some(said) => format!(
-                        "{function} has {}; the budget bounds {said}",
-                        counted(count)
-                    ),
-                },
-                at,
-                &format!(
-                    "see what bounds each; then write it down, in this order:\n\
-                     [[images.{image}.loops]]\nfunction = \"{function}\"\n\
-                     bounds = [{bounds}]\nreason = \"…\""
-                ),
-            ));
-        }
-    }
 }
 
 fn surrounds(outer: &Loop, inner: &Loop) -> bool {
     outer.instructions.len() > inner.instructions.len()
         && outer.instructions.contains(&inner.address)
-}
-
-fn counted(loops: usize) -> String {
-    format!("{loops} loop{}", if loops == 1 { "" } else { "s" })
 }

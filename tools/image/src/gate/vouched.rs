@@ -64,8 +64,9 @@ impl<'a> Vouched<'a> {
 
     /// The entry for the loops of a function of the source.
     pub(super) fn loops(&self, function: &str) -> Option<&'a BoundedLoops> {
-        let mut entries = self.budget.loops.iter();
-        let entry = entries.find(|e| e.function == function)?;
+        let loops = &self.budget.loops;
+        let exact = loops.iter().find(|e| e.function == function);
+        let entry = exact.or_else(|| loops.iter().find(|e| e.is_for(function)))?;
         self.used.borrow_mut().insert(("loops", &entry.function));
         Some(entry)
     }
@@ -106,6 +107,20 @@ impl<'a> Vouched<'a> {
                 .flatten()
                 .map(|_| self.targets(function)),
         }
+    }
+
+    /// Functions whose loops are bounded, but were not found.
+    pub(super) fn without_loops(&self) -> Vec<&'a BoundedLoops> {
+        let used = self.used.borrow();
+        let loops = self.budget.loops.iter();
+        loops
+            .filter(|e| !used.contains(&("loops", &e.function)))
+            .collect()
+    }
+
+    /// An entry is in order although nothing needed it.
+    pub(super) fn keep(&self, entry: &'a BoundedLoops) {
+        self.used.borrow_mut().insert(("loops", &entry.function));
     }
 
     /// Entries that nothing needed, and targets that do not exist.
