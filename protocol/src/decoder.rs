@@ -143,23 +143,21 @@ impl Decoder {
             count.overlong = count.overlong.wrapping_add(1);
             return Some(Err(FrameError::Overlong));
         }
-        let opened = match (self.left, self.plain.split_last_chunk::<CRC_BYTES>()) {
-            (0, Some(([lane, tag, payload @ ..], _))) => {
-                if self.checksum.value() == RESIDUE {
-                    Ok(Body {
-                        lane: *lane,
-                        tag: *tag,
-                        payload,
-                    })
-                } else {
-                    count.checksum = count.checksum.wrapping_add(1);
-                    Err(FrameError::Checksum)
-                }
+        let plain = self.plain.split_last_chunk::<CRC_BYTES>();
+        let opened = if let (0, Some(([lane, tag, payload @ ..], _))) = (self.left, plain) {
+            if self.checksum.value() == RESIDUE {
+                Ok(Body {
+                    lane: *lane,
+                    tag: *tag,
+                    payload,
+                })
+            } else {
+                count.checksum = count.checksum.wrapping_add(1);
+                Err(FrameError::Checksum)
             }
-            _ => {
-                count.malformed = count.malformed.wrapping_add(1);
-                Err(FrameError::Malformed)
-            }
+        } else {
+            count.malformed = count.malformed.wrapping_add(1);
+            Err(FrameError::Malformed)
         };
         Some(opened)
     }

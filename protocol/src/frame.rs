@@ -312,7 +312,9 @@ mod tests {
             piece in 1_usize..100,
         ) {
             if let Some(zero) = only_zero {
-                body.iter_mut().for_each(|byte| *byte |= 1);
+                for byte in &mut body {
+                    *byte |= 1;
+                }
                 if let Some(byte) = body.get_mut(zero) {
                     *byte = 0;
                 }
