@@ -47,7 +47,8 @@ pub struct Command {
     speed_limit_rad_s: f32,
     /// The bridge was driven in the tick before.
     was_driven: bool,
-    was_armed: bool,
+    /// The state after that tick.
+    last_state: State,
     /// Of the parameters in force.
     revision: Revision,
     /// The line, as read back.
@@ -67,7 +68,7 @@ impl Command {
             plausibility: Plausibility::default(),
             speed_limit_rad_s: plan.speed_limit_rad_s,
             was_driven: false,
-            was_armed: false,
+            last_state: State::Disarmed,
             revision: plan.revision,
             line_is_on: false,
             batch: Batch::new(boot.tick, boot.sequence),
@@ -123,7 +124,7 @@ impl Command {
 
     /// Whether it was armed in its last tick: then rendering shows torque.
     pub fn was_armed(&self) -> bool {
-        self.was_armed
+        self.last_state == State::Armed
     }
 
     /// Whether there may be torque.
@@ -176,7 +177,7 @@ impl Command {
         let outputs = self.drive(permit, sampled, &rendered, current_a);
         let sample = self.sample(permit, sampled, &rendered, current_a, is_late, counters);
         let state = self.safety.state();
-        self.was_armed = state == State::Armed;
+        self.last_state = state;
         let flags = BlockFlags::new(state, self.zeroed, self.start);
         self.batch.push(sample, self.revision, flags, counters);
         outputs

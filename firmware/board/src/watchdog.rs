@@ -24,6 +24,12 @@ pub struct Roll<const N: usize> {
     without_idle: AtomicU32,
 }
 
+impl<const N: usize> Default for Roll<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<const N: usize> Roll<N> {
     /// Nobody yet.
     pub const fn new() -> Self {

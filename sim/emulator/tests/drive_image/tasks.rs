@@ -63,33 +63,27 @@ fn a_task_is_interrupted_by_higher_ones_only_and_every_tick_has_all() {
 
 #[test]
 fn a_task_gives_way_at_once_to_a_higher_one() {
-    /// Make an interrupt of TIM3, of TIM4.
-    const MIDDLE_EVENT: (u32, u32) = (0x4000_0414, 0b10);
-    const BEGIN_EVENT: (u32, u32) = (0x4000_0814, 0b1);
     let Some(image) = image() else { return };
-    // In the half of a tick and so long into it, this is made to come: then
-    // this one has interrupted that one.
-    for (half, after_ns, (register, event), below, above) in [
-        (0, 700, MIDDLE_EVENT, SAMPLE, COMMAND),
-        (0, 3_000, MIDDLE_EVENT, RENDER, COMMAND),
-        (0, 3_000, BEGIN_EVENT, RENDER, SAMPLE),
-        (1, 8_000, MIDDLE_EVENT, LINK, COMMAND),
-        (1, 8_000, BEGIN_EVENT, LINK, SAMPLE),
-        (1, 8_000, BEGIN_EVENT, LINK, RENDER),
+    // In step no task meets another. So the core stands still, from so many ns
+    // after the middle of a tick, where the board stops, until the next timer's
+    // interrupt has come: then the second of these has interrupted the first.
+    for (from_ns, until_ns, below, above) in [
+        (25_700, 52_000, SAMPLE, COMMAND),
+        (28_000, 52_000, RENDER, COMMAND),
+        (9_000, 25_400, LINK, SAMPLE),
     ] {
         let mut host = Host::new(&image, &examination());
         host.arm();
         host.run_until_torque();
         let mut cycles = Cycles::default();
-        for _ in 0..half {
-            host.board.half(None);
-        }
         let mcu = host.board.mcu_mut();
-        let until = Time::from_units(mcu.now().units() + after_ns * 336 / 1_000);
-        mcu.watch_until(until, &mut cycles);
-        cycles.clear();
-        mcu.poke(register, event);
-        host.board.half(Some(&mut cycles));
+        let begin = mcu.now().units();
+        let after = |ns: u64| Time::from_units(begin + ns * 336 / 1_000);
+        mcu.watch_until(after(from_ns), &mut cycles);
+        mcu.set_hung(true);
+        mcu.run_until(after(until_ns));
+        mcu.set_hung(false);
+        mcu.watch_until(after(until_ns + 20_000), &mut cycles);
         let preemptions = cycles.preemptions();
         assert!(
             preemptions.contains_key(&(below, above)),
