@@ -3,7 +3,8 @@
 
 use crate::host::{Host, examination, image};
 use crepitus_board::leg::EncoderWiring;
-use crepitus_emulator::{Mcu, Reset};
+use crepitus_emulator::mcu::{Step, Watch};
+use crepitus_emulator::{Mcu, Reset, Time};
 use crepitus_protocol::fault::{FAULTS, Fault};
 use crepitus_protocol::host::{Answer, Ask};
 
@@ -129,6 +130,51 @@ fn a_brown_out() {
     }
     assert!(host.board.is_in_step(), "it has started again");
     assert_eq!(drive_fault(&mut host), Fault::DriveBrownOut.code());
+}
+
+/// The last instruction before an exception.
+struct Below(u32);
+
+impl Watch for Below {
+    fn step(&mut self, step: &Step) {
+        if step.active == 0 {
+            self.0 = step.pc;
+        }
+    }
+}
+
+#[test]
+fn a_stack_that_was_written_over() {
+    /// The stack's RAM, and where nobody executes anything.
+    const CCM: std::ops::Range<u32> = 0x1000_0000..0x1001_0000;
+    const NOWHERE: u32 = 0xf000_0000;
+    let Some(mut host) = under_torque() else {
+        return;
+    };
+    let mcu = host.board.mcu_mut();
+    // In `sample_encoder`, with the way back on the stack.
+    let mut below = Below(0);
+    let until = Time::from_units(mcu.now().units() + 26 * 336);
+    mcu.watch_until(until, &mut below);
+    let ways_back: Vec<u32> = CCM
+        .step_by(4)
+        .filter(|at| {
+            let back = mcu.peek(*at).unwrap_or(0).wrapping_sub(below.0);
+            back <= 4 && back.is_multiple_of(2)
+        })
+        .collect();
+    assert!(!ways_back.is_empty());
+    for at in ways_back {
+        mcu.poke(at, NOWHERE);
+    }
+    let halves = host.halves_until_off(2);
+    println!("stack written over: off after {halves} half ticks");
+    for _ in 0..2_000 {
+        host.run(1);
+        assert!(!host.board.drive_is_on());
+    }
+    assert!(host.board.is_in_step(), "it has started again");
+    assert_eq!(drive_fault(&mut host), Fault::DrivePanic.code());
 }
 
 #[test]
