@@ -141,23 +141,23 @@ impl<F: Real, L: Locate<F>> Frozen<F, L> {
         let mut at = Place::start_of(shaft, &self.active);
         let is_stick = matches!(self.state, State::Stick { .. });
         if !(is_stick && self.stick(&mut at, &mut on_event)) {
-            self.go_on(&mut at, &mut on_event);
+            self.end_of_slip(&mut at, &mut on_event);
         }
     }
 
     /// The end of a slip, and what follows it or a break in the same step. By
     /// itself, so that a step in stick does not carry its load.
     #[inline(never)]
-    fn go_on(&mut self, at: &mut Place<F>, on_event: &mut impl FnMut(Event<F>)) {
+    fn end_of_slip(&mut self, at: &mut Place<F>, on_event: &mut impl FnMut(Event<F>)) {
         // Once without a loop, as there is hardly ever more.
         if !(self.slip(at, on_event) || self.stick(at, on_event)) {
-            self.go_on_and_on(at, on_event);
+            self.further_phases(at, on_event);
         }
     }
 
     /// At most [`EVENTS_PER_STEP`] events.
     #[inline(never)]
-    fn go_on_and_on(&mut self, at: &mut Place<F>, on_event: &mut impl FnMut(Event<F>)) {
+    fn further_phases(&mut self, at: &mut Place<F>, on_event: &mut impl FnMut(Event<F>)) {
         loop {
             if self.slip(at, on_event) || self.stick(at, on_event) {
                 return;
