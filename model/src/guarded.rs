@@ -13,6 +13,17 @@
 //!        └ hold_ticks ┘   slew            shaft seen again
 //! ```
 //!
+//! A held torque T pushes a hand that retreats by x meanwhile, and returns T·x.
+//! The new stick must not hold that energy a second time, so it begins with
+//! less, by as much as the spring would have unwound:
+//!
+//! ```text
+//! |T′| = max(0, |T| − kr·x)      T·x ≤ (T² − T′²)/2kr + ½·kr·x²
+//! ```
+//!
+//! With x² ≤ N·h·∫Ω² dt over the N ticks of the gap, a gap returns no more than
+//! a spring that is sampled once in N ticks: ½·N·kr·h·∫Ω² dt.
+//!
 //! A tick costs at most `CATCH_UP_TICKS` + 1 steps of the joint, and each of
 //! these at most [`EVENTS_PER_STEP`] events.
 
@@ -221,11 +232,24 @@ impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
         }
     }
 
+    /// The held torque less what the spring loses where the shaft has gone
+    /// back by this travel, N·m; never beyond zero.
+    fn unwound_nm(&self, travel_rad: F) -> F {
+        let held_nm = self.held_nm;
+        let change_nm = self.joint.active().stiffness * travel_rad;
+        if held_nm < F::ZERO {
+            (held_nm + F::ZERO.at_least(change_nm)).at_most(F::ZERO)
+        } else {
+            (held_nm + F::ZERO.at_most(change_nm)).at_least(F::ZERO)
+        }
+    }
+
     /// The first good sample after missing ones.
     fn catch_up(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
         if self.missed > CATCH_UP_TICKS {
             self.counters.restarts = self.counters.restarts.saturating_add(1);
-            self.joint.restart(self.held_nm, shaft.omega_end_rad_s);
+            let torque_nm = self.unwound_nm(shaft.delta_phi_rad);
+            self.joint.restart(torque_nm, shaft.omega_end_rad_s);
             return;
         }
         let ticks = self.missed + 1;
