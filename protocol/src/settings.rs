@@ -24,10 +24,9 @@ pub enum ValueError {
         /// The parameter.
         id: u8,
     },
-    /// The kinetic torque is above what the static torque allows: above it, or
-    /// so close below it that the turn-back guard cannot keep the bound of
-    /// returned energy with this stiffness and encoder; see
-    /// [`most_rad_per_count`].
+    /// The kinetic torque is above the static torque, or so close below it that
+    /// the turn-back guard cannot keep the bound of returned energy with this
+    /// stiffness and encoder.
     KineticAboveStatic,
     /// The static torque is above the device's largest torque.
     StaticAboveLimit,
