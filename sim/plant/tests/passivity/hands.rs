@@ -6,7 +6,7 @@ use fastrand::Rng;
 use std::f64::consts::TAU;
 
 /// The fastest that they move, rad/s.
-pub(crate) const FASTEST_RAD_S: f64 = 3.0;
+const FASTEST_RAD_S: f64 = 3.0;
 
 /// The fastest that one moves whose speed jumps, rad/s: back-EMF jumps with it,
 /// and the supply has to follow.
@@ -124,7 +124,7 @@ pub(crate) struct TurnsBack {
 
 impl TurnsBack {
     /// Back by four counts and a tick, at up to 0.15 rad/s.
-    pub(crate) fn slowly(rng: &mut Rng, count_rad: f64, forward_rad_s: f64) -> Self {
+    pub(crate) fn slowly(rng: &mut Rng, count_rad: f64) -> Self {
         let back_rad_s = logarithmic(rng, 0.02, 0.15);
         #[expect(
             clippy::cast_possible_truncation,
@@ -133,7 +133,7 @@ impl TurnsBack {
         )]
         let back_ticks = (4.0 * count_rad / (back_rad_s * TICK_S)) as u32 + 1;
         Self {
-            forward_rad_s: logarithmic(rng, 0.05, forward_rad_s),
+            forward_rad_s: logarithmic(rng, 0.05, FASTEST_RAD_S),
             back_rad_s,
             back_ticks,
         }
