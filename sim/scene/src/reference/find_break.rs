@@ -3,6 +3,7 @@
 use super::first_root::{Sample, first_root};
 use super::{Reference, SLACK};
 use crepitus_model::locate::{ExactEvents, StickPath, earlier, first_break};
+use crepitus_model::shaft::Linear;
 use crepitus_model::{Convention, Sense};
 use crepitus_plant::ShaftState;
 
@@ -67,6 +68,7 @@ impl Reference<'_> {
                 torque_nm,
                 rate,
                 curvature: self.settings.parameters.stiffness_nm_per_rad * self.now.omega_dot,
+                shape: Linear,
             };
             return first_break::<f64, ExactEvents>(&path, limit, to_s - from_s)
                 .map(|(after_s, sense)| (from_s + after_s, sense));
