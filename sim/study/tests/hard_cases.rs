@@ -156,7 +156,7 @@ fn numbers_are_consecutive_and_texts_are_there() {
 fn asks_somebody(case: &Case) {
     let (mut must, mut longest) = (0, 0.0_f64);
     for subject in Subject::all() {
-        for trial in (case.trials)(subject) {
+        for trial in case.trials_of(subject) {
             assert!(!trial.criteria.is_empty(), "{}", case.id);
             must += usize::from((case.must)(subject));
             longest = longest.max(trial.input.steps());

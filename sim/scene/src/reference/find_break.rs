@@ -4,6 +4,7 @@ use super::Reference;
 use super::ahead::PhaseEnd;
 use super::first_root::{Sample, first_root};
 use crepitus_model::locate::{ExactEvents, StickPath, earlier, first_break};
+use crepitus_model::shaft::Linear;
 use crepitus_model::{Convention, Sense};
 use crepitus_plant::ShaftState;
 use std::ops::ControlFlow;
@@ -93,6 +94,7 @@ impl Reference<'_> {
                 torque_nm,
                 rate,
                 curvature: self.settings.parameters.stiffness_nm_per_rad * shaft.omega_dot,
+                shape: Linear,
             };
             return ControlFlow::Continue(
                 first_break::<f64, ExactEvents>(&path, limit_nm, to_s - from_s)

@@ -86,7 +86,7 @@ pub fn standard() -> Result<Vec<StudyScene>, SettingsError> {
                 title: format!("{speed} rad/s for {CONSTANT_S} s"),
                 motion: Motion::constant(speed),
                 duration_s: CONSTANT_S,
-                settings: settings(convention)?,
+                settings: paper(convention)?,
             });
         }
     }
@@ -96,14 +96,14 @@ pub fn standard() -> Result<Vec<StudyScene>, SettingsError> {
             title: format!("sine of {SINE_DEG}° at {SINE_HZ} Hz from rest for {SINE_S} s"),
             motion: Motion::sine(SINE_DEG.to_radians(), SINE_HZ, -90.0),
             duration_s: SINE_S,
-            settings: settings(convention)?,
+            settings: paper(convention)?,
         });
     }
     Ok(scenes)
 }
 
 /// The paper's parameters under a convention.
-fn settings(convention: Convention) -> Result<Validated<Settings>, SettingsError> {
+pub(super) fn paper(convention: Convention) -> Result<Validated<Settings>, SettingsError> {
     Settings {
         convention,
         ..Settings::default()

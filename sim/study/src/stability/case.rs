@@ -61,6 +61,16 @@ impl Trial {
 }
 
 impl Case {
+    /// What `subject` is put through; nothing where the case says nothing about
+    /// it. A rung that needs the exact motion is not given another.
+    pub fn trials_of(&self, subject: Subject) -> Vec<Trial> {
+        let mut trials = (self.trials)(subject);
+        if subject.solver.needs_exact_motion() {
+            trials.retain(|trial| trial.input.is_exact());
+        }
+        trials
+    }
+
     /// What goes in, in words: every trial of every subject, none twice.
     pub fn inputs(&self) -> Vec<String> {
         self.collect(|trial| vec![trial.describe()])
@@ -74,7 +84,7 @@ impl Case {
     fn collect(&self, texts: impl Fn(&Trial) -> Vec<String>) -> Vec<String> {
         let mut all = Vec::new();
         for subject in Subject::all() {
-            for text in (self.trials)(subject).iter().flat_map(&texts) {
+            for text in self.trials_of(subject).iter().flat_map(&texts) {
                 if !all.contains(&text) {
                     all.push(text);
                 }

@@ -9,6 +9,7 @@ use crate::sampling::Sampling;
 use crate::true_events::TimedEvent;
 use crepitus_model::locate::Locate;
 use crepitus_model::ramp::Ramp;
+use crepitus_model::shaft::Linear;
 use crepitus_model::{
     Active, Frozen, Phase, Real, Settings, SettingsError, ShaftStep, StickSlip, Validated,
 };
@@ -31,7 +32,7 @@ impl Changed<'_> {
 
 /// The energy that a frozen object stores: its spring's, and in a slip, where
 /// it moves by itself, its motion's, J.
-pub(super) fn stored_j<F: Real, L: Locate<F>>(joint: &Frozen<F, L>) -> f64 {
+pub(super) fn stored_j<F: Real, L: Locate<F, Shape = Linear>>(joint: &Frozen<F, L>) -> f64 {
     let (a, theta) = (joint.active(), joint.theta_rad().to_f64());
     let spring = 0.5 * a.stiffness.to_f64() * theta * theta;
     match joint.phase() {
@@ -45,7 +46,7 @@ pub(super) fn stored_j<F: Real, L: Locate<F>>(joint: &Frozen<F, L>) -> f64 {
 impl<F: Real> WithLocator<F> for Changed<'_> {
     type Output = Result<Observation, SettingsError>;
 
-    fn run<L: Locate<F>>(self) -> Self::Output {
+    fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
         let step_s = self.sampling.step_s();
         let active = Active::<F>::new(&self.settings, step_s)?;
         let mut joint = Frozen::<F, L>::new(active, F::ZERO);
@@ -77,7 +78,7 @@ impl<F: Real> WithLocator<F> for Changed<'_> {
 }
 
 /// One tick: the adjustment that is due, and the step.
-fn tick<F: Real, L: Locate<F>>(
+fn tick<F: Real, L: Locate<F, Shape = Linear>>(
     joint: &mut Frozen<F, L>,
     ramp: &mut Ramp<F>,
     shaft: &ShaftStep<F>,

@@ -260,6 +260,12 @@ impl Input {
         }
     }
 
+    /// Whether each step is that of the motion, as far as f64 goes: no counts of
+    /// an encoder, and nothing made up for.
+    pub(super) fn is_exact(&self) -> bool {
+        !matches!(self, Self::Encoder { .. } | Self::Faulty { .. })
+    }
+
     /// Steps of a run; 0 where nothing runs.
     pub fn steps(&self) -> f64 {
         self.duration_and_step_s()

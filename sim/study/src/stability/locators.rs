@@ -3,6 +3,7 @@
 
 use crepitus_model::Real;
 use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
+use crepitus_model::shaft::Linear;
 use crepitus_model::solver::Solver;
 
 /// What to do once the locator is known.
@@ -11,7 +12,7 @@ pub(super) trait WithLocator<F: Real> {
     type Output;
 
     /// Called with the locator as a type.
-    fn run<L: Locate<F>>(self) -> Self::Output;
+    fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output;
 }
 
 /// Runs with the locator of a rung of `frozen`.

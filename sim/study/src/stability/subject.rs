@@ -25,7 +25,10 @@ impl Subject {
                 if solver.refusal(convention).is_some() {
                     continue;
                 }
-                all.extend(Precision::ALL.map(|precision| Self {
+                let precisions = Precision::ALL
+                    .into_iter()
+                    .filter(|p| *p == Precision::F64 || solver.single_refusal().is_none());
+                all.extend(precisions.map(|precision| Self {
                     solver,
                     convention,
                     precision,
