@@ -15,7 +15,7 @@ mod stepping;
 mod summary;
 mod tally;
 
-pub use coupled::FELT_COLUMN;
+pub use coupled::{FELT_COLUMN, STRUCK_COLUMN};
 pub use probe::{StepTime, step_times};
 pub use summary::{
     CycleSummary, EffectSummary, EnergySummary, EventCounts, ParameterValue, SUMMARY_VERSION,
@@ -106,6 +106,8 @@ pub(crate) struct Totals {
     end_s: f64,
     tally: Option<tally::Tally>,
     fastest_rad_s: f64,
+    /// Steps with as many events as a step may have.
+    crowded_steps: u64,
     plant: Option<coupled::PlantTotals>,
 }
 
@@ -133,6 +135,9 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         columns.extend(plant.columns().into_iter().map(number));
         if scene.is_held() {
             columns.push(number(coupled::FELT_COLUMN));
+            if plant.impacts().is_some() {
+                columns.push(number(coupled::STRUCK_COLUMN));
+            }
         }
     }
     columns

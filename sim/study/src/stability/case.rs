@@ -2,7 +2,7 @@
 
 use super::criterion::Criterion;
 use super::input::Input;
-use super::subject::Subject;
+use super::subject::{Rung, Subject};
 use super::text::Plain;
 use crepitus_model::parameters::PARAMETERS;
 use crepitus_model::solver::Solver;
@@ -71,6 +71,22 @@ impl Case {
         self.collect(|trial| trial.criteria.iter().map(ToString::to_string).collect())
     }
 
+    /// What this subject is put through: of the reference what it has a meaning
+    /// for, a motion that is prescribed and not sampled.
+    pub fn trials_of(&self, subject: Subject) -> Vec<Trial> {
+        let mut trials = (self.trials)(subject);
+        if subject.solver == Rung::Reference {
+            trials.retain(|trial| trial.input.suits_the_reference());
+            for trial in &mut trials {
+                trial.criteria.retain(Criterion::suits_the_reference);
+                if trial.criteria.is_empty() {
+                    trial.criteria.push(Criterion::Survives);
+                }
+            }
+        }
+        trials
+    }
+
     fn collect(&self, texts: impl Fn(&Trial) -> Vec<String>) -> Vec<String> {
         let mut all = Vec::new();
         for subject in Subject::all() {
@@ -84,12 +100,12 @@ impl Case {
     }
 }
 
-/// Who must hold unless a case says otherwise: `exact-events` everywhere, and
-/// under `frozen` also `exact-break`, which is the same there.
+/// Who must hold unless a case says otherwise: `exact-events` and the reference
+/// everywhere, and under `frozen` also `exact-break`, which is the same there.
 pub fn located(subject: Subject) -> bool {
     match subject.solver {
-        Solver::ExactEvents => true,
-        Solver::ExactBreak => subject.convention == Convention::Frozen,
+        Rung::Reference | Rung::Ladder(Solver::ExactEvents) => true,
+        Rung::Ladder(Solver::ExactBreak) => subject.convention == Convention::Frozen,
         _ => false,
     }
 }

@@ -198,6 +198,27 @@ pub enum Criterion {
         /// Share of the limit beyond it: rounding only.
         beyond: Limits,
     },
+    /// The first event after this time is a break, and comes when it should.
+    FirstBreakAfter {
+        /// Since the start, s.
+        from_s: f64,
+        /// When it is due, s.
+        at_s: f64,
+        /// Seconds.
+        within_s: Limits,
+    },
+    /// No slip ends with more energy in the spring than it held at the break.
+    SlipEnergy {
+        /// Relative: rounding only.
+        most: Limits,
+    },
+    /// Ticks in which the turn-back guard has switched the torque off.
+    GuardTicks {
+        /// At least.
+        least: u64,
+        /// At most.
+        most: u64,
+    },
     /// Energy that the hand gets back over any time, as a share of the bound
     /// Ts²/2kr, sampling's (½ + d)·kr·h·∫Ω²dt being granted.
     Returned {
@@ -209,6 +230,20 @@ pub enum Criterion {
 }
 
 impl Criterion {
+    /// Whether it says something about a solver that has no steps, and that the
+    /// true events come from.
+    pub fn suits_the_reference(&self) -> bool {
+        !matches!(
+            self,
+            Self::Events { .. }
+                | Self::EventTorques { .. }
+                | Self::EventsPerStep { .. }
+                | Self::TorqueBits(_)
+                | Self::TorqueStep { .. }
+                | Self::Subnormals { .. }
+        )
+    }
+
     /// The other input that a criterion compares with.
     pub fn twin(&self) -> Option<&Input> {
         match self {
