@@ -3,11 +3,13 @@
 mod words;
 
 use super::input::Input;
+use crepitus_model::EVENTS_PER_STEP;
 use crepitus_scene::scene::Precision;
 
 /// What holds in every trial beside its own criteria: nothing is infinite or
 /// no number, and no torque is above Ts by more than this share; under
-/// `frozen` no angle of a stick is above Ts/kr by more.
+/// `frozen` no angle of a stick is above Ts/kr by more, unless its step had as
+/// many events as a step may have.
 pub const BOUND_SLACK: f64 = 1e-5;
 
 /// How much of (work + stored energy) may be missing under `physical` with
@@ -23,7 +25,9 @@ pub fn common_bounds() -> [String; 3] {
         format!(
             "finite, and |T| ≤ Ts · (1 + {BOUND_SLACK:e}), after every step and at every event"
         ),
-        format!("frozen: |θ| ≤ Ts/kr · (1 + {BOUND_SLACK:e}) in every stick"),
+        format!(
+            "frozen: |θ| ≤ Ts/kr · (1 + {BOUND_SLACK:e}) in every stick, but after a step of {EVENTS_PER_STEP} events"
+        ),
         format!(
             "physical, exact-events: |work − stored − dissipated| within {} of the largest |work| + stored so far, \
              which is at least Ts²/2kr",

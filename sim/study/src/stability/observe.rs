@@ -16,7 +16,8 @@ use crate::true_events::TimedEvent;
 use crate::watcher::StudyError;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
-    Convention, Event, EventKind, Parameters, Phase, Real, Settings, ShaftStep, StickSlip,
+    Convention, EVENTS_PER_STEP, Event, EventKind, Parameters, Phase, Real, Settings, ShaftStep,
+    StickSlip,
 };
 use crepitus_scene::scene::Precision;
 
@@ -262,7 +263,9 @@ impl<F: Real, E> Look<'_, F, E> {
         if !self.frozen || stick {
             let (theta, v) = (joint.theta_rad().to_f64(), joint.theta_dot_rad_s().to_f64());
             finite &= theta.is_finite() && v.is_finite();
-            above |= self.frozen && stiffness_nm_per_rad * theta.abs() > limit_nm;
+            // At the cap a break that is due waits for the next step.
+            let capped = u64::from(in_step) >= u64::try_from(EVENTS_PER_STEP).unwrap_or(u64::MAX);
+            above |= self.frozen && !capped && stiffness_nm_per_rad * theta.abs() > limit_nm;
             if v != 0.0 && v.abs() < smallest_normal::<F>() {
                 seen.subnormals += 1;
             }

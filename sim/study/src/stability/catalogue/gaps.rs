@@ -72,11 +72,11 @@ pub(super) fn losses_with_the_motion() -> Case {
                     high_nm: 0.4,
                     slack_nm: 1e-5,
                 },
-                // Let go of after 20 + 80 ticks, and nothing to be seen.
+                // 1 mrad from the turn at −0.9 mrad: sin(4π·t) = 1/9.
                 Criterion::FirstBreakAfter {
                     from_s: 0.126,
-                    at_s: 0.512_5,
-                    within_s: Limits::both(2e-3),
+                    at_s: 0.508_86,
+                    within_s: Limits::both(1e-4),
                 },
             ];
             vec![trial(paper_joint(subject.convention), input, criteria)]
