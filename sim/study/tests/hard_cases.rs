@@ -6,7 +6,7 @@ use crepitus_model::Convention;
 use crepitus_model::solver::Solver;
 use crepitus_scene::scene::Precision;
 use crepitus_study::stability::{
-    Case, Cell, Failure, Matrix, Plan, Subject, Verdict, catalogue, criterion, run,
+    Case, Cell, Failure, Matrix, Plan, Rung, Subject, Verdict, catalogue, criterion, run,
 };
 use crepitus_study::{StudyError, Watcher};
 use std::collections::HashSet;
@@ -39,7 +39,7 @@ fn matrix() -> &'static Matrix {
 
 fn verdict(id: &str, convention: Convention, solver: Solver, precision: Precision) -> Verdict {
     let subject = Subject {
-        solver,
+        solver: Rung::Ladder(solver),
         convention,
         precision,
     };

@@ -11,7 +11,8 @@ use crepitus_model::locate::Locate;
 use crepitus_model::ramp::Ramp;
 use crepitus_model::shaft::Linear;
 use crepitus_model::{
-    Active, Frozen, Phase, Real, Settings, SettingsError, ShaftStep, StickSlip, Validated,
+    Active, EventKind, Frozen, Phase, Real, Settings, SettingsError, ShaftStep, StickSlip,
+    Validated,
 };
 
 /// The device's slew limit, N·m/s.
@@ -26,7 +27,7 @@ pub(super) struct Changed<'a> {
 
 impl Changed<'_> {
     pub(super) fn observe<F: Real>(self, subject: Subject) -> Result<Observation, SettingsError> {
-        with_locator::<F, _>(subject.solver, self)
+        with_locator::<F, _>(subject, self)
     }
 }
 
@@ -55,6 +56,7 @@ impl<F: Real> WithLocator<F> for Changed<'_> {
             step_s,
             ..Observation::default()
         };
+        let mut slip_j = None;
         let mut changes = self.changes.iter().peekable();
         let mut walk = self.sampling.walk_from(0);
         let mut chunk = Vec::new();
@@ -72,7 +74,7 @@ impl<F: Real> WithLocator<F> for Changed<'_> {
                 let next = Active::new(&next.validate()?, step_s)?;
                 ramp = Ramp::new(*joint.active(), next, SLEW_NM_PER_S);
             }
-            tick(&mut joint, &mut ramp, shaft, now_s, &mut seen);
+            tick(&mut joint, &mut ramp, shaft, now_s, &mut slip_j, &mut seen);
         }
     }
 }
@@ -83,6 +85,7 @@ fn tick<F: Real, L: Locate<F, Shape = Linear>>(
     ramp: &mut Ramp<F>,
     shaft: &ShaftStep<F>,
     now_s: f64,
+    slip_j: &mut Option<f64>,
     seen: &mut Observation,
 ) {
     let before_nm = joint.torque_nm().to_f64();
@@ -94,8 +97,19 @@ fn tick<F: Real, L: Locate<F, Shape = Linear>>(
     }
     let step_s = seen.step_s;
     let mut events = 0;
+    let stiffness = joint.active().stiffness.to_f64();
     joint.step(shaft, |event| {
         events += 1;
+        let spring_j = 0.5 * stiffness * event.theta_rad.to_f64().powi(2);
+        match event.kind {
+            EventKind::Break => *slip_j = Some(spring_j),
+            EventKind::Stick | EventKind::Reverse => {
+                if let Some(held_j) = slip_j.take() {
+                    let excess = (spring_j - held_j) / held_j.max(f64::MIN_POSITIVE);
+                    seen.slip_energy = seen.slip_energy.max(excess);
+                }
+            }
+        }
         seen.tally.add(&TimedEvent::new(
             now_s + event.fraction.to_f64() * step_s,
             &event,

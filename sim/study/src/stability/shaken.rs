@@ -67,7 +67,7 @@ impl Shaken<'_> {
         subject: Subject,
         on_tick: impl FnMut(&Tick),
     ) -> Result<Returned, SettingsError> {
-        with_locator::<F, _>(subject.solver, Watched(self, on_tick))
+        with_locator::<F, _>(subject, Watched(self, on_tick))
     }
 }
 

@@ -3,9 +3,8 @@
 use crate::cli::StabilityArguments;
 use crate::failure::Failure;
 use crepitus_model::Convention;
-use crepitus_model::solver::Solver;
 use crepitus_scene::scene::Precision;
-use crepitus_study::stability::{Case, Plan, Subject, catalogue};
+use crepitus_study::stability::{Case, Plan, Rung, Subject, catalogue};
 
 pub(super) fn plan(arguments: &StabilityArguments) -> Result<Plan, Failure> {
     Ok(Plan {
@@ -41,7 +40,7 @@ fn cases(arguments: &StabilityArguments) -> Result<Vec<Case>, Failure> {
 }
 
 fn subjects(arguments: &StabilityArguments) -> Result<Vec<Subject>, Failure> {
-    let solvers = chosen("solver", &arguments.solvers, &Solver::ALL, Solver::name)?;
+    let solvers = chosen("solver", &arguments.solvers, &Rung::all(), Rung::name)?;
     let conventions = chosen(
         "convention",
         &arguments.conventions,
