@@ -6,7 +6,7 @@
 //! device ticks; 0.12 and 0.988 are incommensurate with every step, so that no
 //! rung looks good by luck there.
 
-use crate::true_events::{TrueEvent, true_events};
+use crate::true_events::{TrueEvent, true_events, true_events_while};
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use crepitus_plant::Motion;
 use crepitus_scene::Scene;
@@ -48,6 +48,17 @@ impl StudyScene {
     /// The events of the reference, in the order of time.
     pub fn true_events(&self) -> Vec<TrueEvent> {
         true_events(&self.settings, &self.motion, self.duration_s)
+    }
+
+    /// As [`Self::true_events`], and asks `go_on` now and then.
+    ///
+    /// # Errors
+    /// What `go_on` returns.
+    pub fn true_events_while<E>(
+        &self,
+        go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<Vec<TrueEvent>, E> {
+        true_events_while(&self.settings, &self.motion, self.duration_s, go_on)
     }
 
     /// The convention's name.
