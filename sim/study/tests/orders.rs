@@ -82,7 +82,7 @@ fn expected(convention: Convention, solver: Solver, motion: &str) -> Option<(f64
         // J·Ω̇ is of first order in the torque of a stick.
         (Convention::Physical, Solver::ExactEvents) => Some((0.7, 1.4)),
         // And of second on the cubic path.
-        (Convention::Physical, Solver::ExactHermite) => Some((1.5, 3.5)),
+        (Convention::Physical, Solver::ExactHermite) => Some((1.4, 3.5)),
         // Ω is of third order, at least.
         (Convention::Paper, Solver::ExactHermite) => Some((2.4, 5.0)),
         _ => None,
@@ -185,7 +185,8 @@ fn recorded_knees_have_the_same_orders() {
                 name: name.to_owned(),
                 title: name.to_owned(),
                 motion: motion.clone(),
-                duration_s: samples.duration_s(),
+                // A recording has no end of its own: what follows is undefined.
+                duration_s: samples.duration_s() - 0.05,
                 settings: settings.validate().unwrap(),
             });
         }
