@@ -13,10 +13,12 @@
 //! the estimator's error on a device. The linear path leaves it as a difference
 //! between Ω and the velocity of the angle; its Ω̇ is wrong by h·Ω̈/2 at the ends
 //! of the step. The quadratic path takes it for bend: its Ω̇ is wrong by
-//! h²·|d³Ω/dt³|/12 at most. It needs a Δφ that is exact: an error ε of Δφ becomes
-//! 6ε/h² of Ω̇, at 50 µs 5e-7 rad/s² for the rounding of an f64 angle of 1 rad,
-//! 1e2 rad/s² for that of an f32 travel, and 9e4 rad/s² for one count of an
-//! encoder.
+//! h²·|d³Ω/dt³|/12 at most. It needs a Δφ that is exact: an error ε becomes
+//! 6ε/h² of Ω̇. At 50 µs that is 5e-7 rad/s² for the rounding of an f64 angle of
+//! 1 rad, 1e-2 rad/s² for a step at 1 rad/s rounded to f32 (on a hand's motion
+//! h·Ω̈/2 is a hundredth of that), and 9e4 rad/s² for one count of an encoder. A d·h
+//! that is no more than the rounding of an angle of 4 rad counts as none, so that a
+//! straight motion of a knee stays straight to the bit.
 
 use crate::active::Active;
 use crate::real::Real;
@@ -168,8 +170,14 @@ impl<F: Real> VelocityShape<F> for Quadratic<F> {
     #[inline]
     fn path(step: &ShaftStep<F>, active: &Active<F>) -> ShaftPath<F, Self> {
         let (from, to) = (step.omega_start_rad_s, step.omega_end_rad_s);
-        let bend =
-            F::from_f64(6.0) * (step.delta_phi_rad * active.per_step - F::HALF * (from + to));
+        let chord = F::HALF * (from + to) * active.step_s;
+        let beside = step.delta_phi_rad - chord;
+        // Less than the rounding of an angle of 4 rad is no bend.
+        let bend = if beside.abs() <= F::TWO * F::TWO * F::EPSILON {
+            F::ZERO
+        } else {
+            F::from_f64(6.0) * beside * active.per_step
+        };
         ShaftPath {
             rate: from,
             omega: from,
@@ -223,6 +231,25 @@ mod tests {
             assert!((path.travel(0.0, to_s) - travel).abs() < 1e-15);
             assert!((step.travel(fraction, 1e-3) - travel).abs() < 1e-15);
             assert!((path.travel(to_s, 1e-3) - (3e-3 - travel)).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn the_rounding_of_an_angle_is_no_bend() {
+        let active = Active::<f64>::new(&Settings::default().validate().unwrap(), 5e-5).unwrap();
+        let path = |phi: f64, more_rad: f64| {
+            let step = ShaftStep {
+                delta_phi_rad: (phi + 5e-5 + more_rad) - phi,
+                omega_start_rad_s: 1.0,
+                omega_end_rad_s: 1.0,
+            };
+            ShaftPath::<f64, Quadratic<f64>>::new(&step, &active)
+        };
+        for phi in [0.0, 0.3, 1.1, 2.7, 3.99] {
+            assert_eq!(path(phi, 0.0).omega_dot(5e-5), 0.0, "{phi}");
+            // Ω̈ = 3 rad/s³, as of a hand's sine: −h³·Ω̈/12.
+            let bent = path(phi, -3.1e-14);
+            assert!((bent.shape().omega_ddot / 3.0 - 1.0).abs() < 0.1, "{phi}");
         }
     }
 

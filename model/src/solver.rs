@@ -109,8 +109,9 @@ impl Solver {
     /// Why this rung cannot compute in f32, if it cannot.
     pub fn single_refusal(self) -> Option<&'static str> {
         (self == Self::ExactHermite).then_some(
-            "the shaft's acceleration is found from its travel over the step squared: the rounding of an \
-             f32 becomes 100 rad/s² at 50 µs; use precision \"f64\"",
+            "the shaft's acceleration comes from its travel over the step squared; in f32 rounding makes \
+             1e-2 rad/s² of that at 50 µs and 1 rad/s, a hundred times what the cubic path corrects on a hand's \
+             motion; use precision \"f64\"",
         )
     }
 

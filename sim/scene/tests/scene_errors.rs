@@ -106,15 +106,15 @@ fn every_error_names_line_key_and_what_is_allowed() {
         ),
         (
             refused(
-                "exact-events\"",
-                "exact-hermite\"\nprecision = \"f32\"\n[effects.crepitus]\nconvention = \"physical\"",
+                "exact-events\"\nstep_s = 5e-5\n\n[effects.crepitus]\n",
+                "exact-hermite\"\nstep_s = 5e-5\nprecision = \"f32\"\n[effects.crepitus]\nconvention = \"physical\"\n",
             ),
-            ["line 11", "`solver.precision`", "use precision \"f64\""],
+            ["line 12", "`solver.precision`", "use precision \"f64\""],
         ),
         (
             refused(
-                "exact-events\"\nstep_s = 5e-5",
-                "exact-hermite\"\nstep_s = 5e-5\n[effects.encoder]",
+                "exact-events\"\nstep_s = 5e-5\n\n[effects.crepitus]\n",
+                "exact-hermite\"\nstep_s = 5e-5\n[effects.encoder]\n[effects.crepitus]\nconvention = \"physical\"\n",
             ),
             ["line 10", "`solver.kind`", "leave out [effects.encoder]"],
         ),

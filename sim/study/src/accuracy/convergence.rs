@@ -29,8 +29,9 @@ const RATIO: f64 = 0.8;
 /// Number of steps; the shortest is 24 µs.
 const STEPS: i32 = 24;
 
-/// Duration of each motion, s.
+/// Duration of a motion, s; of the sine, three times there and back.
 const DURATION_S: f64 = 4.0;
+const SINE_S: f64 = 12.0;
 
 /// One rung at one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,7 +89,7 @@ pub fn motions() -> Result<Vec<StudyScene>, SettingsError> {
                 name: name.to_owned(),
                 title: title.to_owned(),
                 motion: motion.clone(),
-                duration_s: DURATION_S,
+                duration_s: if name == "sine" { SINE_S } else { DURATION_S },
                 settings: paper(convention)?,
             });
         }
