@@ -19,6 +19,7 @@
 
 #![allow(
     clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
     reason = "small numbers, and f32 is what is tested"
 )]
 
@@ -169,11 +170,11 @@ type Named = (String, Box<dyn Fn(f64) -> (f64, f64)>);
 /// by delay.
 fn worst(name: &str, p: Parameters, hands: &[Named]) -> [[[f64; 3]; 2]; 3] {
     let mut worst = [[[-1.0; 3]; 2]; 3];
-    let mut by: [[[&str; 3]; 2]; 3] = Default::default();
+    let mut by = [[[""; 3]; 2]; 3];
     for (what, hand) in hands {
         for (s, sight) in SIGHTS.into_iter().enumerate() {
             let ticks = ticks(p, sight, hand, SECONDS);
-            for way in 0..SHOWN.len() {
+            for (way, _) in SHOWN.into_iter().enumerate() {
                 for delay in DELAYS {
                     let g = constant(p, sight, &ticks, way, delay);
                     if g > worst[way][s][delay] {
@@ -249,7 +250,7 @@ fn no_prediction_is_as_passive_as_the_torque_of_the_tick() {
     let p = PRESETS[0].parameters;
     for (name, hands) in [("shakes", shakes(p)), ("dashes", dashes(p))] {
         let worst = worst(name, p, &hands);
-        for s in 0..SIGHTS.len() {
+        for (s, _) in SIGHTS.into_iter().enumerate() {
             for (delay, d) in DELAYS.into_iter().zip([0.0, 1.0, 2.0]) {
                 // What is shown today stays within its bound.
                 assert!(worst[0][s][delay] <= 0.5 + d + 1e-3);

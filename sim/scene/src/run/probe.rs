@@ -158,7 +158,7 @@ fn time(scene: &Scene) -> f64 {
         Ok(totals) => totals.steps,
         Err(_) => return f64::INFINITY,
     };
-    (cpu_time::now() - begun).as_secs_f64() * 1e9 / steps as f64
+    cpu_time::since(begun).as_secs_f64() * 1e9 / steps as f64
 }
 
 #[cfg(test)]

@@ -39,7 +39,7 @@ use crepitus_plant::{Motion, Piece, ShaftState};
 
 /// Nodes and weights of the three-point Gauss rule on (0, 1).
 const GAUSS: [(f64, f64); 3] = [
-    (0.112_701_665_379_258_31, 5.0 / 18.0),
+    (0.112_701_665_379_258_3, 5.0 / 18.0),
     (0.5, 8.0 / 18.0),
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];

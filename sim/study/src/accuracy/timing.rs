@@ -147,7 +147,7 @@ impl<F: Real> JointVisitor<F> for Timed<'_, F> {
                 });
                 black_box(joint.torque_nm());
             }
-            total += (cpu_time::now() - begun).saturating_sub(self.reading);
+            total += cpu_time::since(begun).saturating_sub(self.reading);
         }
         total
     }
