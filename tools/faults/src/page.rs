@@ -54,9 +54,10 @@ pub fn page(outcomes: &[(Fault, Outcome)]) -> String {
         let ids: Vec<&str> = outcome.noticed_by().map(|case| case.id.as_str()).collect();
         let cases = match ids.as_slice() {
             [] => "none".to_owned(),
-            [few @ ..] if few.len() <= 4 => few.join(" "),
-            [a, b, c, rest @ ..] => format!("{a} {b} {c} and {} more", rest.len()),
-            [..] => String::new(),
+            [a, b, c, _, rest @ ..] if !rest.is_empty() => {
+                format!("{a} {b} {c} and {} more", rest.len() + 1)
+            }
+            few => few.join(" "),
         };
         let unseen = if outcome.tested { "none" } else { "not run" };
         let test = outcome.test.as_deref().unwrap_or(unseen);

@@ -14,10 +14,10 @@ use std::process::Command;
 use std::time::Duration;
 
 /// Longer than any build takes, with waiting for its turn.
-const BUILD: Duration = Duration::from_secs(3600);
+const BUILD: Duration = Duration::from_hours(1);
 
 /// Many times what the slowest program takes on a slow machine.
-const RUN: Duration = Duration::from_secs(600);
+const RUN: Duration = Duration::from_mins(10);
 
 /// The variable that says which fault is in force; 0 is none.
 const SWITCH: &str = "CREPITUS_FAULT";

@@ -133,7 +133,7 @@ pub(super) fn dead_object() -> Case {
             vec![
                 trial(
                     settings,
-                    at_tick(Shaft::Knots(STOPS), 6.0),
+                    at_tick(Shaft::Knots(STOPS), 5.9),
                     [few, at_rest, Criterion::NoBreakAtRest],
                 ),
                 trial(
