@@ -33,7 +33,21 @@ fn outcome(case: &Case) -> String {
         Ok(Err(error)) => format!("broken: {error}"),
         Ok(Ok(matrix)) => matrix.broken().next().map_or_else(
             || "holds".to_owned(),
-            |(_, cell)| format!("broken: {} ({})", cell.verdict, cell.detail),
+            |(_, cell)| {
+                let Subject {
+                    solver,
+                    convention,
+                    precision,
+                } = cell.subject;
+                format!(
+                    "broken: {} {} {}: {} ({})",
+                    convention.name(),
+                    solver.name(),
+                    precision.name(),
+                    cell.verdict,
+                    cell.detail
+                )
+            },
         ),
     }
 }

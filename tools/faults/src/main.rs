@@ -2,11 +2,12 @@
 //! writes which hard cases and which of the model's tests notice them.
 
 use clap::Parser;
+use crepitus_faults::fault::Fault;
 use crepitus_faults::outcome::{Outcome, fingerprint};
-use crepitus_faults::trial::Workshop;
+use crepitus_faults::trial::{TrialError, Workshop};
 use crepitus_faults::{fault, page, tree};
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -23,6 +24,9 @@ struct Arguments {
     /// List the faults and end.
     #[arg(long)]
     list: bool,
+    /// Run the hard cases only, and leave the model's tests to a later run.
+    #[arg(long)]
+    cases_only: bool,
     /// Root of the repository.
     #[arg(long, value_name = "DIR", default_value = ".")]
     root: PathBuf,
@@ -65,37 +69,25 @@ fn work(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
     let known = scratch.join("known");
     std::fs::create_dir_all(&known)?;
     let sources = tree::fingerprint(&arguments.root)?;
-    let mut workshop: Option<Workshop> = None;
+    let mut bench = Bench {
+        arguments,
+        scratch: &scratch,
+        faults: &all,
+        workshop: None,
+    };
     let mut outcomes = Vec::new();
     for (number, fault) in (1..).zip(&all) {
         let print = fingerprint(sources, fault);
-        let outcome = match Outcome::load(&known, &fault.name, print) {
-            Some(outcome) => outcome,
-            None if !wanted(&fault.name) => continue,
-            None => {
-                let open = match workshop.take() {
-                    Some(open) => open,
-                    None => {
-                        eprintln!(
-                            "building with {} faults; without any in force, all must hold",
-                            all.len()
-                        );
-                        let cargo =
-                            std::env::var("CREPITUS_CARGO").unwrap_or_else(|_| "cargo".to_owned());
-                        Workshop::open(&arguments.root, &scratch, &cargo, &all)?
-                    }
-                };
-                let begun = Instant::now();
-                let outcome = workshop.insert(open).try_fault(number, fault, print)?;
-                outcome.save(&known)?;
-                let (all, took) = (all.len(), begun.elapsed().as_secs());
-                eprintln!("{number:2}/{all} {} ({took} s)", fault.name);
-                outcome
-            }
-        };
-        if wanted(&fault.name) {
+        let known_so_far = Outcome::load(&known, &fault.name, print);
+        let outcome = if wanted(&fault.name) {
+            let outcome = bench.complete(number, fault, print, known_so_far, &known)?;
             println!("{}", page::line(&outcome));
-        }
+            outcome
+        } else if let Some(outcome) = known_so_far {
+            outcome
+        } else {
+            continue;
+        };
         outcomes.push((fault.clone(), outcome));
     }
     println!("{}", page::totals(&outcomes));
@@ -109,11 +101,70 @@ fn work(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
     }
     let unexplained = outcomes.iter().any(|(fault, outcome)| {
         (outcome.noticed_by().next().is_none() && fault.unseen_by_cases.is_none())
-            || (outcome.test.is_none() && fault.unseen_by_tests.is_none())
+            || (outcome.tested && outcome.test.is_none() && fault.unseen_by_tests.is_none())
     });
     Ok(if unexplained {
         ExitCode::FAILURE
     } else {
         ExitCode::SUCCESS
     })
+}
+
+/// Tries what is not known yet; built when first needed.
+struct Bench<'a> {
+    arguments: &'a Arguments,
+    scratch: &'a Path,
+    faults: &'a [Fault],
+    workshop: Option<Workshop>,
+}
+
+impl Bench<'_> {
+    fn workshop(&mut self) -> Result<&Workshop, TrialError> {
+        let open = match self.workshop.take() {
+            Some(open) => open,
+            None => {
+                let all = self.faults.len();
+                eprintln!("building with {all} faults; with none in force, all must hold");
+                let cargo = std::env::var("CREPITUS_CARGO").unwrap_or_else(|_| "cargo".to_owned());
+                let tests = !self.arguments.cases_only;
+                Workshop::open(
+                    &self.arguments.root,
+                    self.scratch,
+                    &cargo,
+                    self.faults,
+                    tests,
+                )?
+            }
+        };
+        Ok(self.workshop.insert(open))
+    }
+
+    /// The outcome of a fault, with what was `known` of it before.
+    fn complete(
+        &mut self,
+        number: usize,
+        fault: &Fault,
+        print: u64,
+        known: Option<Outcome>,
+        folder: &Path,
+    ) -> Result<Outcome, Box<dyn Error>> {
+        let (begun, all) = (Instant::now(), self.faults.len());
+        let mut outcome = match known {
+            Some(outcome) => outcome,
+            None => {
+                let outcome = self.workshop()?.try_cases(number, fault, print)?;
+                outcome.save(folder)?;
+                outcome
+            }
+        };
+        if !outcome.tested && !self.arguments.cases_only {
+            self.workshop()?.try_tests(number, &mut outcome)?;
+            outcome.save(folder)?;
+        }
+        let took = begun.elapsed().as_secs();
+        if took > 0 {
+            eprintln!("{number:2}/{all} {} ({took} s)", fault.name);
+        }
+        Ok(outcome)
+    }
 }

@@ -17,7 +17,9 @@ pub struct Outcome {
     pub fingerprint: u64,
     /// Every hard case, in the order of the catalogue, and what became of it.
     pub cases: Vec<CaseOutcome>,
-    /// The first of the model's tests that failed: `energy: name`.
+    /// Whether the model's tests were run.
+    pub tested: bool,
+    /// The first of them that failed: `energy: name`.
     pub test: Option<String>,
 }
 

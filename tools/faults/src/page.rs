@@ -13,19 +13,28 @@ pub fn line(outcome: &Outcome) -> String {
     } else {
         cases.join(" ")
     };
-    let test = outcome.test.as_deref().unwrap_or("no test of the model");
+    let test = match (&outcome.test, outcome.tested) {
+        (Some(test), _) => test,
+        (None, true) => "no test of the model",
+        (None, false) => "tests not run",
+    };
     format!("{}: {cases}; {test}", outcome.name)
 }
 
 /// How many are noticed, in a line.
 pub fn totals(outcomes: &[(Fault, Outcome)]) -> String {
     let by_cases = outcomes.iter().filter(|(_, o)| o.noticed_by().count() > 0);
-    let by_tests = outcomes.iter().filter(|(_, o)| o.test.is_some());
+    let tested = outcomes.iter().filter(|(_, o)| o.tested).count();
+    let by_tests = outcomes.iter().filter(|(_, o)| o.test.is_some()).count();
+    let tests = match tested {
+        0 => "the model's tests were not run".to_owned(),
+        all if all == outcomes.len() => format!("the model's tests {by_tests}"),
+        some => format!("the model's tests {by_tests} of the {some} that they were run on"),
+    };
     format!(
-        "{} planted faults: the catalogue notices {}, the model's tests {}.",
+        "{} planted faults: the catalogue notices {}; {tests}.",
         outcomes.len(),
         by_cases.count(),
-        by_tests.count()
     )
 }
 
@@ -45,11 +54,13 @@ pub fn page(outcomes: &[(Fault, Outcome)]) -> String {
         let ids: Vec<&str> = outcome.noticed_by().map(|case| case.id.as_str()).collect();
         let cases = match ids.as_slice() {
             [] => "none".to_owned(),
-            [few @ ..] if few.len() <= 4 => few.join(" "),
-            [a, b, c, rest @ ..] => format!("{a} {b} {c} and {} more", rest.len()),
-            [..] => String::new(),
+            [a, b, c, _, rest @ ..] if !rest.is_empty() => {
+                format!("{a} {b} {c} and {} more", rest.len() + 1)
+            }
+            few => few.join(" "),
         };
-        let test = outcome.test.as_deref().unwrap_or("none");
+        let unseen = if outcome.tested { "none" } else { "not run" };
+        let test = outcome.test.as_deref().unwrap_or(unseen);
         let _ = writeln!(
             text,
             "| `{}` | {} ({}) | {cases} | {test} |",
@@ -115,7 +126,11 @@ fn matrix(text: &mut String, outcomes: &[(Fault, Outcome)]) {
                 if notices { '#' } else { '·' }
             })
             .collect();
-        let test = if outcome.test.is_some() { '#' } else { '·' };
+        let test = match (&outcome.test, outcome.tested) {
+            (Some(_), _) => '#',
+            (None, true) => '·',
+            (None, false) => '?',
+        };
         let _ = writeln!(text, "{:width$} {marks} {test}", fault.name);
     }
     text.push_str("```\n");
@@ -143,6 +158,7 @@ mod tests {
         let outcome = Outcome {
             name: name.to_owned(),
             fingerprint: 1,
+            tested: true,
             cases: vec![case("H01", false), case("H10", noticed)],
             test: noticed.then(|| "laws: mirror".to_owned()),
         };
@@ -153,7 +169,7 @@ mod tests {
     fn a_page_says_what_noticed_and_why_not() {
         let outcomes = [tried("sign", true), tried("silent", false)];
         let text = page(&outcomes);
-        assert!(text.contains("2 planted faults: the catalogue notices 1, the model's tests 1."));
+        assert!(text.contains("2 planted faults: the catalogue notices 1; the model's tests 1."));
         assert!(text.contains("| `sign` | a sign (model/src/frozen.rs) | H10 | laws: mirror |"));
         assert!(text.contains("- `silent` is not noticed by the hard cases: nothing changes"));
         assert!(text.contains("- `silent` is not noticed by the model's tests: a hole"));

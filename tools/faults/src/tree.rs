@@ -6,7 +6,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What a build of the model's tests and the hard cases does not need.
+/// What stands in the root and a build of the model's tests and the hard cases
+/// does not need.
 const LEFT_OUT: [&str; 5] = [".git", "target", "out", "docs", "bench"];
 
 /// What the outcome of a fault depends on.
@@ -71,13 +72,15 @@ fn files(root: &Path) -> io::Result<Vec<PathBuf>> {
     while let Some(folder) = folders.pop() {
         for entry in fs::read_dir(root.join(&folder))? {
             let entry = entry?;
-            let name = entry.file_name();
-            if LEFT_OUT.iter().any(|left_out| name == *left_out) {
+            let path = folder.join(entry.file_name());
+            if LEFT_OUT.iter().any(|left_out| path == Path::new(left_out)) {
                 continue;
             }
-            let path = folder.join(&name);
             if entry.file_type()?.is_dir() {
-                folders.push(path);
+                // What a build has made says so.
+                if !entry.path().join("CACHEDIR.TAG").exists() {
+                    folders.push(path);
+                }
             } else {
                 found.push(path);
             }

@@ -93,16 +93,22 @@ struct Cuff {
     longest_s: f64,
 }
 
-/// Above this ωh the swing of brace against leg is slower and later than it is
-/// by more than the step resolves: the midpoint rule's frequency is off by
-/// (ωh)²/12, which is 5 % there.
-const MOST_RADIANS: f64 = std::f64::consts::FRAC_PI_4;
+/// Above this ωh the swing of brace against leg runs away from the true one: the
+/// midpoint rule's frequency is off by (ωh)²/12, and at a damping ratio of a
+/// hundredth that adds up to a tenth of a radian before the swing has decayed.
+const MOST_RADIANS: f64 = 0.1;
+
+/// Above this bh/J what the damper decays changes its sign at every step.
+const MOST_DECAY: f64 = 2.0;
 
 impl Cuff {
-    /// ωh of the swing of the brace alone against the leg, in the longest step.
-    fn radians_per_step(&self) -> f64 {
+    /// ωh and bh/J of the brace alone against the leg, in the longest step.
+    fn rates_per_step(&self) -> (f64, f64) {
         let mobility = 1.0 / self.inertia_kg_m2 + 1.0 / self.leg_kg_m2;
-        (self.stiffness * mobility).sqrt() * self.longest_s
+        (
+            (self.stiffness * mobility).sqrt() * self.longest_s,
+            self.damping * mobility * self.longest_s,
+        )
     }
 
     /// The cuff's torque on the leg at mid-step is this plus
@@ -254,11 +260,13 @@ impl Chain for Cuff {
 
     fn warnings(&self, warnings: &mut Vec<String>) {
         self.left.warnings(warnings);
-        let radians = self.radians_per_step();
-        if radians > MOST_RADIANS {
+        let (radians, decay) = self.rates_per_step();
+        if radians > MOST_RADIANS || decay > MOST_DECAY {
             warnings.push(format!(
-                "step long against the cuff: ω·h = {radians:.2} for the brace on stiffness_nm_per_rad = {}, above π/4;                  torques at brace and leg are not those of such a cuff: choose a shorter step, a softer cuff or a                  larger brace_inertia_kg_m2",
-                self.stiffness
+                "step long against the cuff: for a brace of {} kg·m² on {} N·m/rad and {} N·m·s/rad ω·h = {radians:.2} \
+                 (at most {MOST_RADIANS}) and b·h/J = {decay:.2} (at most {MOST_DECAY}); torques at brace and leg are \
+                 not those of such a cuff: choose more substeps, a softer cuff or a larger brace_inertia_kg_m2",
+                self.inertia_kg_m2, self.stiffness, self.damping
             ));
         }
     }

@@ -89,6 +89,7 @@ pub fn all() -> Vec<Case> {
         rounding::free_period(),
         rounding::subnormal_decay(),
         rounding::break_at_a_sample(),
+        rounding::slip_without_lead(),
     ]
 }
 

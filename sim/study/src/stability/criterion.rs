@@ -30,7 +30,7 @@ pub fn common_bounds() -> [String; 3] {
         ),
         format!(
             "physical, exact-events: |work − stored − dissipated| within {} of the largest |work| + stored so far, \
-             which is at least Ts²/2kr",
+             which is at least Ts²/2kr, where no step has {EVENTS_PER_STEP} events",
             words::Number(&BALANCE, "")
         ),
     ]

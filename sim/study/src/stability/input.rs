@@ -398,4 +398,45 @@ mod tests {
         };
         assert_eq!(sine.to_string(), "φ = 0.003 rad · sin(2π · 1 Hz · t -90°)");
     }
+
+    #[test]
+    fn the_rows_of_the_catalogue_can_be_smoothed() {
+        let mut seen = 0;
+        for case in crate::stability::catalogue::all() {
+            for trial in crate::stability::Subject::all()
+                .into_iter()
+                .flat_map(case.trials)
+            {
+                if let Input::Sampled {
+                    shaft: shaft @ Shaft::Rows { .. },
+                    duration_s,
+                    ..
+                } = &trial.input
+                {
+                    let motion = shaft.motion();
+                    assert!(motion.at(0.5 * duration_s).phi_rad.abs() > 0.1);
+                    assert_eq!(motion.piece(*duration_s).end_s, *duration_s);
+                    seen += 1;
+                }
+            }
+        }
+        assert!(seen > 0);
+    }
+
+    #[test]
+    fn bursts_begin_and_come_again_when_they_should() {
+        let lost = |every, from_s| Lost {
+            ticks: 2,
+            every,
+            from_s,
+        };
+        let taken = |lost: Lost| {
+            (1..=9)
+                .filter(|n| lost.takes(*n, 1.0))
+                .collect::<Vec<u64>>()
+        };
+        assert_eq!(taken(lost(4, 0.0)), [1, 2, 5, 6, 9]);
+        assert_eq!(taken(lost(0, 3.0)), [4, 5]);
+        assert!(taken(Lost::NONE).is_empty());
+    }
 }

@@ -24,6 +24,10 @@ use crepitus_scene::scene::Precision;
 /// Between two looks at whoever watches, in steps.
 const STEPS_A_LOOK: u64 = 65_536;
 
+/// The most events that a step reports.
+#[expect(clippy::cast_possible_truncation, reason = "eight")]
+const MOST_EVENTS: u32 = EVENTS_PER_STEP as u32;
+
 /// Up to this ωn·h the books follow damping well enough.
 const BOOKED_RADIANS: f64 = 0.05;
 
@@ -206,7 +210,10 @@ impl<F: Real, E> Look<'_, F, E> {
                 unseen = 0;
             }
         }
-        seen.imbalance = self.books.as_ref().map(Books::worst);
+        // Behind the cap nobody knows what happened when.
+        let is_capped = seen.tally.most_in_step >= MOST_EVENTS;
+        let known = self.books.as_ref().filter(|_| !is_capped);
+        seen.imbalance = known.map(Books::worst);
         if let Some(books) = &self.books {
             seen.work_j = books.work_j();
         }
@@ -264,8 +271,8 @@ impl<F: Real, E> Look<'_, F, E> {
             let (theta, v) = (joint.theta_rad().to_f64(), joint.theta_dot_rad_s().to_f64());
             finite &= theta.is_finite() && v.is_finite();
             // At the cap a break that is due waits for the next step.
-            let capped = u64::from(in_step) >= u64::try_from(EVENTS_PER_STEP).unwrap_or(u64::MAX);
-            above |= self.frozen && !capped && stiffness_nm_per_rad * theta.abs() > limit_nm;
+            let is_capped = in_step >= MOST_EVENTS;
+            above |= self.frozen && !is_capped && stiffness_nm_per_rad * theta.abs() > limit_nm;
             if v != 0.0 && v.abs() < smallest_normal::<F>() {
                 seen.subnormals += 1;
             }

@@ -96,6 +96,23 @@ pub(super) fn rendered_section(s: &Summary) -> Option<Section> {
     Some(section("Work of the rendered torque", rows))
 }
 
+/// The impacts in the gear: what each hands over, which takes no time. None if
+/// there is no gap to strike across.
+pub(super) fn impacts_section(s: &Summary) -> Option<Section> {
+    let impacts = s.impacts?;
+    let impulse = |nms: f64| format!("{nms:.3e} N·m·s");
+    let mut rows = vec![("how many", impacts.count.to_string())];
+    if impacts.count > 0 {
+        rows.push(("largest impulse", impulse(impacts.largest_nms)));
+        rows.push(("mean impulse", impulse(impacts.mean_nms)));
+        rows.push((
+            "largest at the hand in a tick",
+            impulse(impacts.hand_largest_nms),
+        ));
+    }
+    Some(section("Impacts in the gear", rows))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

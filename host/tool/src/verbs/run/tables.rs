@@ -102,6 +102,7 @@ pub(super) fn sections(s: &Summary, specs: &[&[ParameterSpec]]) -> Vec<Section> 
         ));
     }
     sections.extend(plant::rendered_section(s));
+    sections.extend(plant::impacts_section(s));
     sections.extend(
         s.effects
             .iter()

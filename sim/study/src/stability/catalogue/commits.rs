@@ -1,11 +1,12 @@
 //! Parameters that change under way, where a change is easily got wrong.
 
-use super::tools::{changed, joint, paper_joint, rendered, trial};
+use super::tools::{changed, joint, paper_joint, rendered, slip_s, trial};
 use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Criterion, Limits};
 use crate::stability::input::{Input, Lost, Rendered, Shaft};
 use crepitus_model::presets::PRESETS;
 use crepitus_model::{Convention, Parameters};
+use crepitus_scene::scene::Precision;
 
 pub(super) fn equal_torques_ramp() -> Case {
     Case {
@@ -21,22 +22,36 @@ pub(super) fn equal_torques_ramp() -> Case {
             if subject.convention != Convention::Frozen {
                 return Vec::new();
             }
-            let near = |n: u8| {
-                let static_torque_nm = 0.3 + 0.37 * (f64::from(n) * 1.7).sin().abs();
-                Parameters {
-                    kinetic_torque_nm: static_torque_nm * (1.0 - 1e-9 * f64::from(n % 3)),
-                    static_torque_nm,
-                    ..Parameters::default()
-                }
+            // Found by a search: along these the sum Tk + (Tk′ − Tk)·f is rounded
+            // above Ts + (Ts′ − Ts)·f.
+            let pairs = match subject.precision {
+                Precision::F32 => [
+                    (0.139_999_991_6, 0.14, 0.461),
+                    (0.077_999_981_28, 0.078, 0.399),
+                    (0.015_999_992_32, 0.016, 0.146),
+                ],
+                Precision::F64 => [
+                    (0.173_999_999_999_999_96, 0.174, 0.892),
+                    (0.151_999_999_999_999_94, 0.152, 0.495),
+                    (0.142_999_999_999_999_85, 0.143, 0.927),
+                ],
             };
-            let changes: Vec<_> = (1..100)
-                .map(|n| (0.02 + 7.3e-3 * f64::from(n), near(n)))
-                .collect();
+            let torques = |kinetic_torque_nm, static_torque_nm| Parameters {
+                kinetic_torque_nm,
+                static_torque_nm,
+                ..Parameters::default()
+            };
+            let mut changes = Vec::new();
+            for (n, (kinetic_nm, static_nm, equal_nm)) in (0_u8..).zip(pairs) {
+                let at_s = 0.04 * f64::from(n);
+                changes.push((at_s, torques(kinetic_nm, static_nm)));
+                changes.push((at_s + 0.02, torques(equal_nm, equal_nm)));
+            }
             let settings = crepitus_model::Settings {
-                parameters: near(0),
+                parameters: torques(0.3, 0.3),
                 ..paper_joint(subject.convention)
             };
-            let input = changed(Shaft::Constant(1.0), 0.75, &changes);
+            let input = changed(Shaft::Constant(1.0), 0.13, &changes);
             vec![trial(settings, input, [Criterion::Survives])]
         },
     }
@@ -99,8 +114,10 @@ pub(super) fn stronger_in_a_slip() -> Case {
             }
             let soft_and_strong = [0.01, 10.0, 0.0, 0.9, 1.0];
             let stiff_and_strong = [0.01, 4000.0, 0.0, 0.9, 1.0];
+            let stiffer_and_strong = [0.01, 900.0, 0.0, 0.95, 1.0];
             let paper = Parameters::default().values();
-            [
+            let mut trials = [
+                (paper, stiffer_and_strong),
                 (paper, soft_and_strong),
                 (paper, stiff_and_strong),
                 ([0.01, 100.0, 0.0, 0.2, 0.4], stiff_and_strong),
@@ -120,7 +137,20 @@ pub(super) fn stronger_in_a_slip() -> Case {
                     [Criterion::SlipEnergy { most }],
                 )
             })
-            .to_vec()
+            .to_vec();
+            // Four times the inertia, one tick after the break: the slip keeps
+            // the end that it began with.
+            let heavy = joint(subject.convention, [0.04, 400.0, 0.0, 0.2, 0.4]).parameters;
+            let slip = Criterion::SlipTime {
+                slip_s: slip_s(&Parameters::default(), 0.97),
+                within: Limits {
+                    f64: 1e-9,
+                    f32: 1e-6,
+                },
+            };
+            let input = changed(Shaft::Constant(0.97), 0.033, &[(1.04e-3, heavy)]);
+            trials.push(trial(paper_joint(subject.convention), input, [slip]));
+            trials
         },
     }
 }

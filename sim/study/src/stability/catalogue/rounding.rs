@@ -1,6 +1,6 @@
 //! Where the last digits decide.
 
-use super::tools::{TICK_S, at_tick, exactly, joint, paper_joint, slip_s, trial};
+use super::tools::{LOCATED, TICK_S, at_tick, events, exactly, joint, paper_joint, slip_s, trial};
 use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Counted, Criterion, Limits};
 use crate::stability::input::{Input, Shaft};
@@ -8,6 +8,7 @@ use crate::stability::subject::{Rung, Subject};
 use crepitus_model::presets::PRESETS;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters};
+use crepitus_scene::scene::Precision;
 
 pub(super) fn free_period() -> Case {
     Case {
@@ -101,6 +102,55 @@ pub(super) fn break_at_a_sample() -> Case {
                 }
             }
             trials
+        },
+    }
+}
+
+pub(super) fn slip_without_lead() -> Case {
+    // A stick of `paper` that is held at its limit while the hand brakes, and
+    // breaks in the instant in which the true torque reaches Tk.
+    const HELD: &[(f64, f64, f64)] = &[
+        (0.0, 5.015_864_687_484_201, 5.015_864_687_484_201),
+        (6e-4, -7.562_768_377_573_861, -7.562_768_377_573_861),
+        (1.2e-3, 0.047_103_171_072_371_33, 0.047_103_171_072_371_33),
+        (1.8e-3, 7.216_582_485_415_388, 7.216_582_485_415_388),
+        (2.4e-3, 0.0, 0.0),
+        (3e-3, -1.468_880_445_545_090_1, -1.468_880_445_545_090_1),
+        (3.6e-3, 0.0, 0.0),
+        (4.2e-3, -2.843_622_718_732_403_2, -2.843_622_718_732_403_2),
+        (4.8e-3, 5.047_445_017_779_298, 5.047_445_017_779_298),
+    ];
+    Case {
+        id: "H55",
+        name: "slip-without-lead",
+        title: "A slip begins with equal velocities and equal accelerations",
+        hard: "The velocities touch where the slip begins, and part with the third derivative only. Who takes a touch \
+               for a match ends the slip where it began; who waits for them to part by a bound that is too wide misses \
+               the match that soon follows.",
+        source: "found by a random search, kept in model/tests/invariances.rs; events by the reference",
+        long: false,
+        must: located,
+        trials: |subject| {
+            if subject.convention != Convention::Paper || subject.precision != Precision::F64 {
+                return Vec::new();
+            }
+            let values = [
+                0.000_547_687_392_378_403_7,
+                1_835.059_038_387_849_8,
+                0.0,
+                0.012_793_380_822_306_502,
+                0.033_641_039_952_803_445,
+            ];
+            [1e-5, 5e-5, 1e-4]
+                .map(|step_s| {
+                    let input = Input::Sampled {
+                        shaft: Shaft::Knots(HELD),
+                        duration_s: 4.8e-3,
+                        step_s,
+                    };
+                    trial(joint(subject.convention, values), input, [events(LOCATED)])
+                })
+                .to_vec()
         },
     }
 }
