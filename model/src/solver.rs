@@ -271,6 +271,12 @@ mod tests {
         assert_eq!(refused(Convention::Physical), [0; 11]);
     }
 
+    struct Never;
+    impl<F: Real> JointVisitor<F> for Never {
+        type Output = ();
+        fn visit<J: StickSlip<F>>(self, _: J) {}
+    }
+
     #[test]
     fn the_cubic_path_is_refused_in_single_precision_alone() {
         for solver in Solver::ALL {
@@ -279,11 +285,6 @@ mod tests {
             assert_eq!(single.is_some(), is_hermite, "{solver:?}");
             assert_eq!(solver.refusal_in::<f64>(Convention::Physical), None);
             assert_eq!(solver.needs_exact_motion(), is_hermite);
-        }
-        struct Never;
-        impl<F: Real> JointVisitor<F> for Never {
-            type Output = ();
-            fn visit<J: StickSlip<F>>(self, _: J) {}
         }
         let settings = Settings {
             convention: Convention::Physical,
