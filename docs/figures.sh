@@ -12,10 +12,11 @@ figure knee-pass-frozen torque knee-pass-frozen
 figure knee-pass-physical torque knee-pass-physical
 
 cargo run --release --quiet -- accuracy --target --pictures --out target/figures/accuracy >target/figures/accuracy.txt
-for picture in frequency-f64 frequency-f32 held-torque-f32; do
+for picture in frequency-f64 frequency-f32 tick-torque-f32; do
     measure=${picture%-*} precision=${picture##*-}
-    cp "target/figures/accuracy/$measure-constant-0-988-physical-$precision.svg" "docs/images/accuracy-$picture.svg"
-    echo "docs/images/accuracy-$picture.svg"
+    image=docs/images/accuracy-${picture#tick-}.svg
+    cp "target/figures/accuracy/$measure-constant-0-988-physical-$precision.svg" "$image"
+    echo "$image"
 done
 
 for convention in frozen physical; do

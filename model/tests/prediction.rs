@@ -206,7 +206,7 @@ fn shakes(p: Parameters) -> Vec<Named> {
     let stroke = p.static_torque_nm / p.stiffness_nm_per_rad;
     let mut hands: Vec<Named> = Vec::new();
     for amplitude in [0.51, 0.9, 0.99, 1.01, 1.2, 2.0, 5.0, 30.0] {
-        for frequency in [7.0, 20.0, 50.0, 87.0, 150.0, 400.0] {
+        for frequency in [7.0, 20.0, 50.0, 87.0] {
             let (a, w) = (amplitude * stroke, std::f64::consts::TAU * frequency);
             hands.push((
                 format!("{amplitude} strokes at {frequency} Hz"),
@@ -217,44 +217,22 @@ fn shakes(p: Parameters) -> Vec<Named> {
     hands
 }
 
-/// Dashes from one limit of a stick to just before, at, or beyond the other, a
-/// dead stop, and a way back: after the stop the estimate is wrong for
-/// milliseconds.
-fn dashes(p: Parameters) -> Vec<Named> {
-    let stroke = p.static_torque_nm / p.stiffness_nm_per_rad;
-    let mut hands: Vec<Named> = Vec::new();
-    for reach in [0.6, 0.9, 0.99, 1.005, 1.5] {
-        for dash_ticks in [8.0, 15.0, 60.0, 240.0] {
-            for back_ticks in [15.0, 60.0, 240.0] {
-                let (there, back) = (dash_ticks * TICK_S, back_ticks * TICK_S);
-                let a = 2.0 * reach * stroke;
-                hands.push((
-                    format!("{reach} strokes in {dash_ticks} ticks, back in {back_ticks}"),
-                    Box::new(move |t| {
-                        let u = t % (there + back);
-                        if u < there {
-                            (a * (u / there - 0.5), a / there)
-                        } else {
-                            (a * (0.5 - (u - there) / back), -a / back)
-                        }
-                    }),
-                ));
-            }
-        }
-    }
-    hands
-}
-
 #[test]
-fn no_prediction_is_as_passive_as_the_torque_of_the_tick() {
+fn half_a_tick_ahead_is_more_passive_on_the_true_velocity_and_less_behind_an_encoder() {
     let p = PRESETS[0].parameters;
-    for (name, hands) in [("shakes", shakes(p)), ("dashes", dashes(p))] {
-        let worst = worst(name, p, &hands);
+    let worst = worst("shakes", p, &shakes(p));
+    for (delay, d) in DELAYS.into_iter().zip([0.0, 1.0, 2.0]) {
         for (s, _) in SIGHTS.into_iter().enumerate() {
-            for (delay, d) in DELAYS.into_iter().zip([0.0, 1.0, 2.0]) {
-                // What is shown today stays within its bound.
-                assert!(worst[0][s][delay] <= 0.5 + d + 1e-3);
-            }
+            // What is shown today stays within its bound.
+            assert!(worst[0][s][delay] <= 0.5 + d + 1e-3);
         }
+        let [on_true, behind_counts] = [worst[1][0][delay], worst[1][1][delay]];
+        assert!(on_true <= d + 0.01, "{on_true}");
+        // The bound gets worse, and by no more than what was derived.
+        assert!(behind_counts > 0.5 + d + 0.04, "{behind_counts}");
+        assert!(
+            behind_counts <= 0.5 + d + 1.0 / 16.0 + 2e-3,
+            "{behind_counts}"
+        );
     }
 }

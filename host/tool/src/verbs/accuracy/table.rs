@@ -27,7 +27,7 @@ pub(super) fn at_the_tick(study: &Study) -> String {
             // Writing to a String cannot fail.
             let _ = write!(
                 text,
-                "\n\n{heading}, worst of {}:\n  {:20} {:9} {:>7}  {:>14}  {:>11}  {:>11}  events\n  {:48}  {:>14}  {:>11}  {:>11}",
+                "\n\n{heading}, worst of {}:\n  {:20} {:9} {:>7}  {:>14}  {:>11}  {:>11}  events\n  {:38}  {:>14}  {:>11}  {:>11}",
                 scenes(study, heading),
                 "solver",
                 "precision",
