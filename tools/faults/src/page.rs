@@ -81,7 +81,7 @@ fn unseen(text: &mut String, outcomes: &[(Fault, Outcome)]) {
                 &fault.unseen_by_cases,
             ),
             (
-                outcome.test.is_none(),
+                outcome.tested && outcome.test.is_none(),
                 "the model's tests",
                 &fault.unseen_by_tests,
             ),
@@ -173,6 +173,13 @@ mod tests {
         assert!(text.contains("| `sign` | a sign (model/src/frozen.rs) | H10 | laws: mirror |"));
         assert!(text.contains("- `silent` is not noticed by the hard cases: nothing changes"));
         assert!(text.contains("- `silent` is not noticed by the model's tests: a hole"));
+        let mut later = tried("later", true);
+        (later.1.tested, later.1.test) = (false, None);
+        let untested = page(&[later]);
+        assert!(
+            untested.contains("the model's tests were not run") && untested.contains("| not run |")
+        );
+        assert!(!untested.contains("a hole"), "{untested}");
         assert!(
             text.contains("H      1 tests\n       0 tests\nsign   # #\nsilent · ·\n"),
             "{text}"

@@ -111,6 +111,6 @@ pub fn located(subject: Subject) -> bool {
     match subject.solver {
         Rung::Reference | Rung::Ladder(Solver::ExactEvents) => true,
         Rung::Ladder(Solver::ExactBreak) => subject.convention == Convention::Frozen,
-        _ => false,
+        Rung::Ladder(_) => false,
     }
 }

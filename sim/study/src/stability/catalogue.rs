@@ -144,7 +144,7 @@ mod tests {
         assert_eq!(find("h01").unwrap().name, "constant-speed");
         assert_eq!(find("constant-speed").unwrap().id, "H01");
         assert_eq!(find("constant-sped").unwrap_err()[0], "constant-speed");
-        assert!(find("encoder").unwrap_err().len() > 1);
+        assert!(find("velocity").unwrap_err().len() > 1);
         assert_eq!(find("xyzzy").unwrap_err().len(), all().len());
         assert_eq!(distance("kitten", "sitting"), 3);
     }

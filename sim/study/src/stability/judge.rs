@@ -148,6 +148,17 @@ pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
             f64::from_whole(*most),
             "steps",
         ),
+        Criterion::Refused => match seen.accepted.first() {
+            Some(what) => Finding::Failed(Failure::Broken(what), None),
+            None => number(0.0, 0.0, ""),
+        },
+        _ => of_a_device(criterion, seen, precision),
+    }
+}
+
+/// Holds a criterion of a joint in a device against what was seen.
+fn of_a_device(criterion: &Criterion, seen: &Observation, precision: Precision) -> Finding {
+    match criterion {
         Criterion::TorqueStep { most_nm } => number(seen.largest_step_nm, *most_nm, "N·m"),
         Criterion::EnergyRise { most } => number(seen.energy_rise, most.of(precision), ""),
         Criterion::Slew { beyond } => number(seen.slew, 1.0 + beyond.of(precision), ""),
@@ -172,10 +183,7 @@ pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
             }
         }
         Criterion::Returned { most } => number(seen.returned, *most, ""),
-        Criterion::Refused => match seen.accepted.first() {
-            Some(what) => Finding::Failed(Failure::Broken(what), None),
-            None => number(0.0, 0.0, ""),
-        },
+        _ => Finding::Failed(Failure::Broken("no criterion of a device"), None),
     }
 }
 

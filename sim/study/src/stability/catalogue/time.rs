@@ -37,7 +37,7 @@ pub(super) fn step_length() -> Case {
                     Solver::ExactInterpolated | Solver::ExactEvents | Solver::Rk4Events,
                 ) => true,
                 Rung::Ladder(Solver::ExactBreak) => subject.convention == Convention::Frozen,
-                _ => false,
+                Rung::Ladder(_) => false,
             };
             let within = Limits::both(if locates { 5e-7 } else { 5e-4 });
             [1e-3, 2e-4, 5e-5, 2e-5]

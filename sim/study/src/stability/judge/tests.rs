@@ -252,7 +252,7 @@ fn bits_hands_and_refusals_are_compared() {
 #[test]
 fn a_device_is_held_to_its_rules() {
     let first = Criterion::FirstBreakAfter {
-        from_s: 0.25,
+        from_s: 0.265,
         at_s: 0.271,
         within_s: Limits::both(1e-6),
     };
