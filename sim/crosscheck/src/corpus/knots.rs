@@ -32,7 +32,7 @@ pub(super) fn draw(rng: &mut Rng, scale: Scale) -> (Motion, f64) {
     times.dedup_by(|b, a| *b - *a <= 1e-12 * duration_s);
     let mut left = 0.0;
     let mut knots = Vec::with_capacity(times.len());
-    let mut velocity = |rng: &mut Rng, before: f64| match rng.u32(0..10) {
+    let velocity = |rng: &mut Rng, before: f64| match rng.u32(0..10) {
         0 | 1 => 0.0,
         2 => before,
         _ => uniform(rng, -1.5, 1.5) * speed_rad_s,
