@@ -120,23 +120,34 @@ impl Motion {
         Self::Sequence(pieces)
     }
 
-    /// A smoothed recording.
+    /// A smoothed recording, which goes straight on where it ends, as the
+    /// spline does.
     pub fn recording(segments: &[CubicSegment]) -> Self {
-        Self::Sequence(
-            segments
-                .iter()
-                .map(|s| Piece {
-                    start_s: s.start_s,
-                    end_s: s.end_s,
-                    jump: false,
-                    curve: Curve::Polynomial([s.c[0], s.c[1], s.c[2], s.c[3], 0.0, 0.0]),
-                })
-                .collect(),
-        )
+        let piece = |s: &CubicSegment| Piece {
+            start_s: s.start_s,
+            end_s: s.end_s,
+            jump: false,
+            curve: Curve::Polynomial([s.c[0], s.c[1], s.c[2], s.c[3], 0.0, 0.0]),
+        };
+        let straight_on = segments.last().map(|last| Piece {
+            start_s: last.end_s,
+            end_s: f64::INFINITY,
+            jump: false,
+            curve: Curve::Polynomial([
+                last.angle_rad(last.end_s),
+                last.omega_rad_s(last.end_s),
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+            ]),
+        });
+        Self::Sequence(segments.iter().map(piece).chain(straight_on).collect())
     }
 
     /// The piece in which `time_s` lies; a piece begins at its first instant,
-    /// so at a knot this is the piece after it.
+    /// so at a knot this is the piece after it. It always ends after `time_s`:
+    /// who goes from piece to piece comes to every time.
     pub fn piece(&self, time_s: f64) -> Piece {
         match self {
             Self::Single(piece) => *piece,

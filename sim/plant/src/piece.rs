@@ -67,6 +67,19 @@ impl Piece {
         matches!(self.curve, Curve::Polynomial([_, _, _, c3, c4, c5]) if (c3, c4, c5) == (0.0, 0.0, 0.0))
     }
 
+    /// The time that the curve counts from where it is computed at `time_s`, s:
+    /// what its terms, or its phase, are rounded by grows with it.
+    pub fn age_s(&self, time_s: f64) -> f64 {
+        match self.curve {
+            Curve::Polynomial(_) => (time_s - self.start_s).abs(),
+            Curve::Sine {
+                frequency_hz,
+                phase_turns,
+                ..
+            } => (frequency_hz * time_s + phase_turns).abs() / frequency_hz,
+        }
+    }
+
     /// Whether the velocity is constant.
     pub fn is_steady(&self) -> bool {
         self.is_parabolic() && matches!(self.curve, Curve::Polynomial([_, _, c2, ..]) if c2 == 0.0)

@@ -9,6 +9,7 @@ mod coupled;
 mod device;
 mod energy;
 mod event_driven;
+mod lead;
 mod probe;
 mod sensor;
 mod stepping;
@@ -18,8 +19,8 @@ mod tally;
 pub use coupled::FELT_COLUMN;
 pub use probe::{StepTime, step_times};
 pub use summary::{
-    CycleSummary, EffectSummary, EnergySummary, EventCounts, ParameterValue, SUMMARY_VERSION,
-    Summary, TorqueSummary,
+    CycleSummary, EffectSummary, EnergySummary, EventCounts, LeadSummary, ParameterValue,
+    SUMMARY_VERSION, Summary, TorqueSummary,
 };
 
 use crate::scene::{Precision, Scene, SolverChoice};

@@ -1,10 +1,21 @@
 //! When a stick of the reference solver breaks.
 
+use super::ahead::PhaseEnd;
 use super::first_root::{Sample, first_root};
 use super::{Reference, SLACK};
 use crepitus_model::locate::{ExactEvents, StickPath, earlier, first_break};
 use crepitus_model::{Convention, Sense};
 use crepitus_plant::ShaftState;
+use std::ops::ControlFlow;
+
+/// A torque that is looked for: its sense, its size, and whether the object's
+/// inertia and damping are part of it.
+#[derive(Clone, Copy)]
+struct Mark {
+    sense: Sense,
+    limit_nm: f64,
+    inertial: bool,
+}
 
 impl Reference<'_> {
     /// The torque of a stick and its first derivative: the spring's, with the
@@ -28,95 +39,152 @@ impl Reference<'_> {
         )
     }
 
-    /// When s·T first reaches `limit_nm` on a piece of any shape.
-    fn reaches(
+    /// When s·T first reaches a mark, on a piece of any shape.
+    fn reaches<B>(
         &self,
         anchor: (f64, f64),
-        inertial: bool,
-        (sense, limit_nm): (Sense, f64),
+        mark: Mark,
         (from_s, to_s): (f64, f64),
-    ) -> Option<f64> {
+        poll: &mut impl FnMut() -> ControlFlow<B>,
+    ) -> ControlFlow<B, Option<f64>> {
+        let Mark {
+            sense,
+            limit_nm,
+            inertial,
+        } = mark;
         let p = &self.settings.parameters;
+        let kr = p.stiffness_nm_per_rad;
         let bounds = self.piece.bounds(from_s, to_s);
-        let mut bound = p.stiffness_nm_per_rad * bounds.omega_dot;
+        let mut bound = kr * bounds.omega_dot;
         if inertial {
             bound +=
                 p.damping_nms_per_rad * bounds.omega_ddot + p.inertia_kg_m2 * bounds.omega_dddot;
         }
-        first_root(from_s, to_s, |time_s| {
-            let (torque, rate) = self.torque_and_rate(anchor, inertial, &self.piece.at(time_s));
+        first_root(from_s, to_s, poll, |time_s| {
+            let shaft = self.piece.at(time_s);
+            let (torque, rate) = self.torque_and_rate(anchor, inertial, &shaft);
+            // The angle is rounded, too.
+            let noise = 2.0 * f64::EPSILON * (limit_nm + torque.abs() + kr * shaft.phi_rad.abs());
             Sample {
                 value: limit_nm - sense.of_signed(torque),
                 slope: -sense.of_signed(rate),
                 bound,
-                noise: 2.0 * f64::EPSILON * (limit_nm + torque.abs()),
-                slack: SLACK * limit_nm,
+                noise,
+                slack: noise.max(SLACK * limit_nm),
             }
         })
     }
 
-    /// The first time up to `to_s` at which |T| reaches the static limit.
-    fn reaches_limit(&self, anchor: (f64, f64), to_s: f64) -> Option<(f64, Sense)> {
-        let limit = self.settings.parameters.static_torque_nm;
-        let physical = self.settings.convention == Convention::Physical;
-        let from_s = self.time_s;
+    /// The first time at which |T| reaches the static limit.
+    fn reaches_limit<B>(
+        &self,
+        anchor: (f64, f64),
+        (from_s, to_s): (f64, f64),
+        poll: &mut impl FnMut() -> ControlFlow<B>,
+    ) -> ControlFlow<B, Option<(f64, Sense)>> {
+        let limit_nm = self.settings.parameters.static_torque_nm;
+        let inertial = self.settings.convention == Convention::Physical;
+        let shaft = self.piece.at(from_s);
+        let (torque_nm, rate) = self.torque_and_rate(anchor, inertial, &shaft);
         if self.piece.is_parabolic() {
             // So is the torque, whose root the model knows.
-            let (torque_nm, rate) = self.torque_and_rate(anchor, physical, &self.now);
             let path = StickPath {
                 torque_nm,
                 rate,
-                curvature: self.settings.parameters.stiffness_nm_per_rad * self.now.omega_dot,
+                curvature: self.settings.parameters.stiffness_nm_per_rad * shaft.omega_dot,
             };
-            return first_break::<f64, ExactEvents>(&path, limit, to_s - from_s)
-                .map(|(after_s, sense)| (from_s + after_s, sense));
+            return ControlFlow::Continue(
+                first_break::<f64, ExactEvents>(&path, limit_nm, to_s - from_s)
+                    .map(|(after_s, sense)| (from_s + after_s, sense)),
+            );
         }
-        let at = |sense| {
-            self.reaches(anchor, physical, (sense, limit), (from_s, to_s))
-                .map(|t| (t, sense))
+        let mut at = |sense, to_s| {
+            let mark = Mark {
+                sense,
+                limit_nm,
+                inertial,
+            };
+            self.reaches(anchor, mark, (from_s, to_s), poll)
+                .map_continue(|found| found.map(|time_s| (time_s, sense)))
         };
-        earlier(at(Sense::Positive), at(Sense::Negative))
+        // First where it is going; then the other way, no further than that.
+        let ahead = if rate < 0.0 {
+            Sense::Negative
+        } else {
+            Sense::Positive
+        };
+        let first = at(ahead, to_s)?;
+        let other = at(ahead.opposite(), first.map_or(to_s, |(time_s, _)| time_s))?;
+        ControlFlow::Continue(earlier(first, other))
     }
 
-    /// The next break of a stick up to `to_s`.
-    pub(super) fn find_break(&self, theta: f64, phi: f64, to_s: f64) -> Option<(f64, Sense)> {
+    /// The next break of a stick.
+    pub(super) fn find_break<B>(
+        &self,
+        theta: f64,
+        phi: f64,
+        span_s: (f64, f64),
+        poll: &mut impl FnMut() -> ControlFlow<B>,
+    ) -> ControlFlow<B, Option<PhaseEnd>> {
         let anchor = (theta, phi);
-        let first = self.reaches_limit(anchor, to_s)?;
-        if self.settings.convention != Convention::Paper {
-            return Some(first);
-        }
-        let shaft = self.piece.at(first.0);
-        if self.slips(theta, phi, &shaft, first.1) {
-            return Some(first);
-        }
-        earlier(
-            self.held_break(anchor, Sense::Positive, to_s),
-            self.held_break(anchor, Sense::Negative, to_s),
-        )
+        let found = match self.reaches_limit(anchor, span_s, poll)? {
+            Some((time_s, sense))
+                if self.settings.convention == Convention::Paper
+                    && !self.slips(theta, phi, &self.piece.at(time_s), sense) =>
+            {
+                let forth = self.held_break(anchor, Sense::Positive, span_s, poll)?;
+                let back = self.held_break(anchor, Sense::Negative, span_s, poll)?;
+                earlier(forth, back)
+            }
+            found => found,
+        };
+        ControlFlow::Continue(found.map(|(time_s, sense)| PhaseEnd { time_s, sense }))
     }
 
-    /// Whether the true torque of a stick is at least Tk in `sense`.
-    fn slips(&self, theta: f64, phi: f64, shaft: &ShaftState, sense: Sense) -> bool {
-        let (torque, _) = self.torque_and_rate((theta, phi), true, shaft);
+    /// Whether the true torque of a stick is at least Tk in `sense`, to
+    /// rounding: the shaft overtakes an object that slips.
+    pub(super) fn slips(&self, theta: f64, phi: f64, shaft: &ShaftState, sense: Sense) -> bool {
         let kinetic = self.settings.parameters.kinetic_torque_nm;
-        sense.of_signed(torque) >= kinetic * (1.0 - SLACK)
+        let (spring, _) = self.torque_and_rate((theta, phi), false, shaft);
+        let (torque, _) = self.torque_and_rate((theta, phi), true, shaft);
+        let rounding = 8.0 * f64::EPSILON * (kinetic + spring.abs() + (torque - spring).abs());
+        sense.of_signed(torque) >= kinetic - rounding
     }
 
     /// The next break in `sense` of a `paper` stick: a slip cannot begin while
     /// the shaft brakes too hard for it, and until the true torque reaches Tk
     /// the stick is held at its limit.
-    fn held_break(&self, anchor: (f64, f64), sense: Sense, to_s: f64) -> Option<(f64, Sense)> {
-        let limit = self.settings.parameters.static_torque_nm;
-        let kinetic = self.settings.parameters.kinetic_torque_nm;
-        let mut time_s = self.time_s;
+    fn held_break<B>(
+        &self,
+        anchor: (f64, f64),
+        sense: Sense,
+        (from_s, to_s): (f64, f64),
+        poll: &mut impl FnMut() -> ControlFlow<B>,
+    ) -> ControlFlow<B, Option<(f64, Sense)>> {
+        let p = &self.settings.parameters;
+        let mark = |limit_nm, inertial| Mark {
+            sense,
+            limit_nm,
+            inertial,
+        };
+        let limit = p.static_torque_nm;
+        let mut time_s = from_s;
         loop {
             // At the limit, or below it again since the spring came back.
-            time_s = self.reaches(anchor, false, (sense, limit), (time_s, to_s))?;
-            time_s = self.reaches(anchor, true, (sense, kinetic), (time_s, to_s))?;
-            let (torque, _) = self.torque_and_rate(anchor, false, &self.piece.at(time_s));
+            let spring = self.reaches(anchor, mark(limit, false), (time_s, to_s), poll)?;
+            let Some(at_limit_s) = spring else {
+                return ControlFlow::Continue(None);
+            };
+            let kinetic = mark(p.kinetic_torque_nm, true);
+            let Some(slips_s) = self.reaches(anchor, kinetic, (at_limit_s, to_s), poll)? else {
+                return ControlFlow::Continue(None);
+            };
+            let (torque, _) = self.torque_and_rate(anchor, false, &self.piece.at(slips_s));
             if sense.of_signed(torque) >= limit * (1.0 - SLACK) {
-                return Some((time_s, sense));
+                return ControlFlow::Continue(Some((slips_s, sense)));
             }
+            time_s = slips_s;
+            poll()?;
         }
     }
 }

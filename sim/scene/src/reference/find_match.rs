@@ -1,7 +1,10 @@
 //! When a slip of the reference solver meets the shaft's velocity.
 
 use super::first_root::{Sample, first_root};
+use super::rules::ROUNDINGS;
 use super::{Reference, Slip};
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
 
 /// A slip at a steady speed that began with the velocity of the shaft: one that
 /// begins like it ends like it. At a constant speed every slip does.
@@ -18,51 +21,77 @@ impl SteadySlip {
     pub(super) fn for_state(&self, x: f64, v: f64) -> Option<(f64, f64)> {
         (x == self.x && v == self.v).then_some((self.duration_s, self.x_end))
     }
-
-    /// Whether `slip` is this one again.
-    fn repeats(&self, slip: &Slip, reference: &Reference<'_>) -> bool {
-        slip.x == self.x && slip.v == self.v && reference.is_steady(slip)
-    }
 }
 
 impl Reference<'_> {
-    /// The next velocity match of a slip up to `to_s`.
-    pub(super) fn find_match(&mut self, slip: &Slip, to_s: f64) -> Option<f64> {
-        if let Some(steady) = self.steady.filter(|s| s.repeats(slip, self)) {
-            let time_s = slip.start_s + steady.duration_s;
-            if time_s <= to_s {
-                return Some(time_s);
-            }
+    /// The next velocity match of a slip between two times.
+    pub(super) fn find_match<B>(
+        &mut self,
+        slip: &Slip,
+        (from_s, to_s): (f64, f64),
+        poll: &mut impl FnMut() -> ControlFlow<B>,
+    ) -> ControlFlow<B, Option<f64>> {
+        if self.is_steady(slip) && self.settings.parameters.damping_nms_per_rad == 0.0 {
+            let duration_s = self.undamped_duration_s(slip);
+            self.keep(slip, duration_s, -slip.x);
+            let time_s = duration_s.map(|duration_s| slip.start_s + duration_s);
+            return ControlFlow::Continue(time_s.filter(|time_s| *time_s <= to_s));
         }
-        let time_s = self.search(slip, to_s)?;
-        if self.is_steady(slip) {
-            self.steady = Some(SteadySlip {
-                x: slip.x,
-                v: slip.v,
-                duration_s: time_s - slip.start_s,
-                x_end: self.swing(slip, time_s).0,
-            });
+        let found = self.search(slip, (from_s, to_s), poll)?;
+        if let Some(time_s) = found
+            && self.is_steady(slip)
+        {
+            self.keep(
+                slip,
+                Some(time_s - slip.start_s),
+                self.swing(slip, time_s).0,
+            );
         }
-        Some(time_s)
+        ControlFlow::Continue(found)
     }
 
-    fn search(&self, slip: &Slip, to_s: f64) -> Option<f64> {
-        let from_s = self.time_s.max(slip.apart_s);
-        if from_s > to_s {
+    /// A slip without damping at a steady speed: (Ω, ωn·x) turns until its
+    /// velocity is Ω again, by 2(π − atan(ωn·|x|/|Ω|)).
+    ///
+    /// None where the object does not leave the shaft's velocity, or only
+    /// comes back to touch it.
+    fn undamped_duration_s(&self, slip: &Slip) -> Option<f64> {
+        let lead = slip.sense.of_signed(slip.x);
+        if lead <= ROUNDINGS * f64::EPSILON * self.kinetic_angle_rad {
             return None;
         }
-        let motion_bound = self.piece.bounds(from_s, to_s).omega_ddot;
-        first_root(from_s, to_s, |time_s| {
+        let lag = (self.natural_rad_s * lead).atan2(slip.sense.of_signed(slip.v));
+        Some(2.0 * (PI - lag) / self.natural_rad_s)
+    }
+
+    fn keep(&mut self, slip: &Slip, duration_s: Option<f64>, x_end: f64) {
+        self.steady = duration_s.map(|duration_s| SteadySlip {
+            x: slip.x,
+            v: slip.v,
+            duration_s,
+            x_end,
+        });
+    }
+
+    fn search<B>(
+        &self,
+        slip: &Slip,
+        (from_s, to_s): (f64, f64),
+        poll: &mut impl FnMut() -> ControlFlow<B>,
+    ) -> ControlFlow<B, Option<f64>> {
+        let bounds = self.piece.bounds(from_s, to_s);
+        first_root(from_s, to_s, poll, |time_s| {
             let (x, v) = self.swing(slip, time_s);
             let s = self.piece.at(time_s);
-            let speed = s.omega_rad_s.abs() + self.oscillator.speed_bound(x, v);
-            let noise = 2.0 * f64::EPSILON * speed;
+            // Of the shaft's terms, and of its time.
+            let shaft = s.omega_rad_s.abs() + bounds.omega_dot * self.piece.age_s(time_s);
+            let noise = 2.0 * f64::EPSILON * (shaft + self.oscillator.speed_bound(x, v));
             Sample {
                 value: slip.sense.of_signed(s.omega_rad_s - v),
                 slope: slip
                     .sense
                     .of_signed(s.omega_dot - self.oscillator.acceleration(x, v)),
-                bound: motion_bound + self.oscillator.jerk_bound(x, v),
+                bound: bounds.omega_ddot + self.oscillator.jerk_bound(x, v),
                 noise,
                 slack: noise,
             }
@@ -71,10 +100,12 @@ impl Reference<'_> {
 
     /// θ − s·Tk/kr of the object where the slip ends now, rad.
     pub(super) fn met_at(&self, slip: &Slip) -> f64 {
-        match self.steady.filter(|s| s.repeats(slip, self)) {
-            Some(steady) if slip.start_s + steady.duration_s == self.time_s => steady.x_end,
-            _ => self.swing(slip, self.time_s).0,
-        }
+        self.steady
+            .and_then(|steady| steady.for_state(slip.x, slip.v))
+            .filter(|(duration_s, _)| {
+                self.is_steady(slip) && slip.start_s + duration_s == self.time_s
+            })
+            .map_or_else(|| self.swing(slip, self.time_s).0, |(_, x_end)| x_end)
     }
 
     /// Whether the shaft has kept, since the slip began, the constant velocity
@@ -82,7 +113,6 @@ impl Reference<'_> {
     fn is_steady(&self, slip: &Slip) -> bool {
         self.piece.is_steady()
             && slip.start_s >= self.piece.start_s
-            && slip.apart_s == slip.start_s
             && slip.v == self.piece.angle_and_velocity(slip.start_s).1
     }
 }

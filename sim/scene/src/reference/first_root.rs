@@ -4,6 +4,17 @@
 //! d = (ġ + √(ġ² + 2M·g))/M. The search goes there, looks again, and cannot
 //! step over a root however short the excursion below zero is. Near a simple
 //! root this is Newton's step from the one side.
+//!
+//! Within rounding of zero the sign of g says nothing. A root there counts
+//! once g has fallen below zero by more than rounding, and its time is that of
+//! Newton's step into the band; a g that leaves the band upwards has touched
+//! zero without crossing it. So a slip that begins at g = 0 needs no special
+//! case, nor does one whose velocities meet and part again.
+
+use std::ops::ControlFlow;
+
+/// How many evaluations go by between two calls of `poll`.
+const POLL_EVERY: u32 = 1 << 12;
 
 /// A function at one time.
 #[derive(Clone, Copy, Debug)]
@@ -16,47 +27,72 @@ pub(super) struct Sample {
     pub(super) bound: f64,
     /// What of `value` may be rounding.
     pub(super) noise: f64,
-    /// How far below zero still counts as at zero, where the slope decides.
+    /// How far below zero still counts as at zero; at least `noise`.
     pub(super) slack: f64,
 }
 
-/// The first time in [`from_s`, `to_s`] at which `sample` falls to zero.
+impl Sample {
+    /// How far ahead g surely stays above `-below`, from the parabola that
+    /// bounds it from below; infinite where nothing bends it down.
+    fn clear_s(&self, below: f64) -> f64 {
+        let height = self.value + below;
+        let root = (self.slope * self.slope + 2.0 * self.bound * height).sqrt();
+        if self.slope > 0.0 {
+            (self.slope + root) / self.bound
+        } else {
+            // 0/0: at rest for ever, so never below.
+            let ahead_s = 2.0 * height / (root - self.slope);
+            if ahead_s.is_nan() {
+                f64::INFINITY
+            } else {
+                ahead_s
+            }
+        }
+    }
+}
+
+/// The first time in [`from_s`, `to_s`] at which `sample` falls below zero.
 ///
 /// A function that begins at zero and does not fall is not at a root; one that
 /// begins below zero by more than its slack is, at once.
-pub(super) fn first_root(
+///
+/// # Errors
+/// What `poll` breaks with; it is called now and then, so that no search is
+/// without an end.
+pub(super) fn first_root<B>(
     from_s: f64,
     to_s: f64,
+    poll: &mut impl FnMut() -> ControlFlow<B>,
     mut sample: impl FnMut(f64) -> Sample,
-) -> Option<f64> {
+) -> ControlFlow<B, Option<f64>> {
     let mut time_s = from_s;
+    // Where g falls to zero, if it is at zero now and falls.
+    let mut root_s = None;
+    let mut count = 0_u32;
     loop {
         let g = sample(time_s);
         if g.value < -g.slack {
-            return Some(time_s);
+            return ControlFlow::Continue(Some(root_s.unwrap_or(time_s)));
         }
-        let advance_s = if g.value <= g.noise {
-            if g.slope < 0.0 {
-                return Some((time_s + g.value.max(0.0) / -g.slope).min(to_s));
-            }
-            // Leaving zero: the parabola is back there at 2ġ/M.
-            2.0 * g.slope / g.bound
+        let ahead_s = if g.value > g.noise {
+            root_s = None;
+            g.clear_s(0.0)
         } else {
-            let root = (g.slope * g.slope + 2.0 * g.bound * g.value).sqrt();
-            if g.slope > 0.0 {
-                (g.slope + root) / g.bound
-            } else {
-                2.0 * g.value / (root - g.slope)
+            if g.slope >= 0.0 {
+                root_s = None;
+            } else if root_s.is_none() {
+                root_s = Some((time_s - g.value / g.slope).max(from_s).min(to_s));
             }
+            g.clear_s(2.0 * g.slack)
         };
-        // 0/0: at zero for ever, so never below it.
-        if advance_s.is_nan() {
-            return None;
-        }
         // Progress by at least one representable time: the search ends.
-        time_s = (time_s + advance_s).max(time_s.next_up());
+        time_s = (time_s + ahead_s).max(time_s.next_up());
         if time_s > to_s {
-            return None;
+            return ControlFlow::Continue(None);
+        }
+        count = count.wrapping_add(1);
+        if count.is_multiple_of(POLL_EVERY) {
+            poll()?;
         }
     }
 }
@@ -64,6 +100,18 @@ pub(super) fn first_root(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn search(from_s: f64, to_s: f64, sample: impl FnMut(f64) -> Sample) -> Option<f64> {
+        match first_root(
+            from_s,
+            to_s,
+            &mut || ControlFlow::<()>::Continue(()),
+            sample,
+        ) {
+            ControlFlow::Continue(found) => found,
+            ControlFlow::Break(()) => None,
+        }
+    }
 
     /// g = a − cos t, whose first root is acos a.
     fn cosine(a: f64) -> impl FnMut(f64) -> Sample {
@@ -80,15 +128,15 @@ mod tests {
     fn finds_an_excursion_of_a_millionth() {
         // Below zero only for 2·√(2·1e-12) around 2π.
         let a: f64 = 1.0 - 1e-12;
-        let root = first_root(0.5, 20.0, cosine(a)).unwrap();
+        let root = search(0.5, 20.0, cosine(a)).unwrap();
         let expected = std::f64::consts::TAU - a.acos();
         assert!((root - expected).abs() < 1e-9, "{root} {expected}");
     }
 
     #[test]
     fn does_not_find_what_is_not_there() {
-        assert_eq!(first_root(0.5, 20.0, cosine(1.0 + 1e-12)), None);
-        let root = first_root(0.5, 5.0, cosine(0.5)).unwrap();
+        assert_eq!(search(0.5, 20.0, cosine(1.0 + 1e-12)), None);
+        let root = search(0.5, 5.0, cosine(0.5)).unwrap();
         assert!(
             (root - 5.0 * std::f64::consts::FRAC_PI_3).abs() > 0.1,
             "that is the second: {root}"
@@ -96,7 +144,13 @@ mod tests {
     }
 
     #[test]
-    fn a_start_at_zero_is_judged_by_its_slope() {
+    fn a_touch_is_no_root_and_a_start_at_zero_is_none() {
+        // 1 − cos t touches zero at 0, 2π, 4π …
+        assert_eq!(search(0.0, 100.0, cosine(1.0)), None);
+    }
+
+    #[test]
+    fn a_start_at_zero_is_judged_by_where_it_goes() {
         let line = |slope: f64| {
             move |t: f64| Sample {
                 value: slope * t,
@@ -106,8 +160,35 @@ mod tests {
                 slack: 1e-9,
             }
         };
-        assert_eq!(first_root(0.0, 1.0, line(1.0)), None);
-        assert_eq!(first_root(0.0, 1.0, line(-1.0)), Some(0.0));
-        assert_eq!(first_root(0.0, 1.0, line(0.0)), None);
+        assert_eq!(search(0.0, 1.0, line(1.0)), None);
+        assert_eq!(search(0.0, 1.0, line(-1.0)), Some(0.0));
+        assert_eq!(search(0.0, 1.0, line(0.0)), None);
+    }
+
+    #[test]
+    fn a_long_search_asks_whether_it_may_go_on() {
+        // Bounds a million times too large make it crawl.
+        let crawl = |t: f64| Sample {
+            value: 1.0 + t,
+            slope: 1.0,
+            bound: 1e12,
+            noise: 0.0,
+            slack: 0.0,
+        };
+        let mut polls = 0;
+        let found = first_root(
+            0.0,
+            1e9,
+            &mut || {
+                polls += 1;
+                if polls == 3 {
+                    ControlFlow::Break("enough")
+                } else {
+                    ControlFlow::Continue(())
+                }
+            },
+            crawl,
+        );
+        assert_eq!((found, polls), (ControlFlow::Break("enough"), 3));
     }
 }

@@ -4,10 +4,22 @@
 //! where the last one began, so the cycle repeats to the end of the stretch.
 //! Its length is known once; the rest is multiplication.
 
-use super::{Reference, State};
+use super::{Follow, Reference, Slip, State};
 use crepitus_model::{Convention, Event, EventKind, Phase, Sense};
+use std::ops::ControlFlow;
+
+/// A cycle that goes on repeating.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Repeat {
+    /// When the first began, s.
+    origin_s: f64,
+    /// How many are over.
+    count: f64,
+    cycle: Cycle,
+}
 
 /// One cycle: a stick, the break, the slip, the next stick.
+#[derive(Clone, Copy, Debug)]
 struct Cycle {
     stick_s: f64,
     slip_s: f64,
@@ -15,40 +27,109 @@ struct Cycle {
     on_stick: Event<f64>,
 }
 
+impl Repeat {
+    /// When the stick of the present cycle breaks, s.
+    fn break_s(&self) -> f64 {
+        self.origin_s + (self.count * self.length_s() + self.cycle.stick_s)
+    }
+
+    /// When its slip ends, s.
+    fn end_s(&self) -> f64 {
+        self.origin_s + (self.count + 1.0) * self.length_s()
+    }
+
+    fn length_s(&self) -> f64 {
+        self.cycle.stick_s + self.cycle.slip_s
+    }
+}
+
 impl Reference<'_> {
-    /// From the beginning of a stick, carries out all whole cycles up to
-    /// `horizon_s` in which the shaft keeps its velocity.
-    pub(super) fn repeat_cycles(&mut self, horizon_s: f64, on_event: &mut impl FnMut(Event<f64>)) {
-        let Some(cycle) = self.cycle() else {
-            return;
+    /// At the beginning of a stick: from now on it is one cycle after the
+    /// other, if it comes back to where it began.
+    pub(super) fn begin_repeating(&mut self) {
+        self.repeat = self.cycle().map(|cycle| Repeat {
+            origin_s: self.time_s,
+            count: 0.0,
+            cycle,
+        });
+        // A cycle too short for the time to tell is none.
+        self.repeat = self
+            .repeat
+            .filter(|r| r.break_s() > r.origin_s && r.end_s() > r.break_s());
+    }
+
+    /// Carries out what is left of the present cycle up to `horizon_s`, and
+    /// all whole cycles after it.
+    pub(super) fn next_of_cycle<F: Follow>(
+        &mut self,
+        horizon_s: f64,
+        follower: &mut F,
+    ) -> ControlFlow<F::Stop, bool> {
+        let Some(mut repeat) = self.repeat else {
+            return ControlFlow::Continue(false);
         };
-        let start_s = self.time_s;
-        let length_s = cycle.stick_s + cycle.slip_s;
-        let (mut count, mut end_s) = (0.0, start_s);
+        let cycle = repeat.cycle;
+        let mut slips = matches!(self.state, State::Slip(_));
+        let mut reached_s = None;
         loop {
-            let next_s = start_s + (count + 1.0) * length_s;
-            // Written so that a cycle without length, or NaN, ends it.
-            if !(next_s > end_s && next_s <= horizon_s) {
+            let next_s = if slips {
+                repeat.end_s()
+            } else {
+                repeat.break_s()
+            };
+            if next_s > horizon_s {
                 break;
             }
-            on_event(Event {
-                fraction: start_s + (count * length_s + cycle.stick_s),
-                ..cycle.on_break
-            });
-            on_event(Event {
+            let event = if slips {
+                cycle.on_stick
+            } else {
+                cycle.on_break
+            };
+            follower.event(Event {
                 fraction: next_s,
-                ..cycle.on_stick
-            });
-            count += 1.0;
-            end_s = next_s;
+                ..event
+            })?;
+            if slips {
+                repeat.count += 1.0;
+            }
+            slips = !slips;
+            reached_s = Some(next_s);
         }
-        if count > 0.0 {
-            self.go_to(end_s);
-            self.state = State::Stick {
+        let Some(time_s) = reached_s else {
+            return ControlFlow::Continue(false);
+        };
+        self.go_to(time_s);
+        self.repeat = Some(repeat);
+        let state = if slips {
+            self.slip_of(&repeat)
+        } else {
+            State::Stick {
                 theta: cycle.on_stick.theta_rad,
                 phi: self.now.phi_rad,
-            };
-        }
+            }
+        };
+        self.change(state);
+        ControlFlow::Continue(true)
+    }
+
+    /// The slip of the present cycle.
+    fn slip_of(&self, repeat: &Repeat) -> State {
+        let event = repeat.cycle.on_break;
+        let sense = match event.to {
+            Phase::Slip(sense) => sense,
+            Phase::Stick => Sense::Positive,
+        };
+        let end_s = match self.settings.convention {
+            Convention::Frozen => repeat.end_s(),
+            Convention::Paper | Convention::Physical => f64::INFINITY,
+        };
+        State::Slip(Slip {
+            sense,
+            start_s: repeat.break_s(),
+            end_s,
+            x: event.theta_rad - sense.of_signed(self.kinetic_angle_rad),
+            v: event.omega_rad_s,
+        })
     }
 
     /// The cycle that begins with the stick that begins now, if it repeats.

@@ -74,7 +74,7 @@ fn with_sensor<F: Real, S: Sensor<F> + 'static>(
         }));
     };
     let maker = Maker {
-        books: Books::new(*crepitus.settings, step_s, shaft.omega_rad_s),
+        books: Books::new::<F>(*crepitus.settings, step_s, shaft.omega_rad_s),
         sensor,
         seen,
     };
@@ -141,10 +141,7 @@ impl<F: Real, J: StickSlip<F>, S: Sensor<F>> Device for Rendering<F, J, S> {
             jump_nm += record.torque_after_nm - record.torque_before_nm;
             on_event(&record);
         });
-        let joint = &self.joint;
-        self.books.end_step(&seen, joint.phase(), || {
-            (joint.theta_rad(), joint.torque_nm())
-        });
+        self.books.end_step(&seen, &self.joint);
         self.seen = Seen {
             omega_rad_s: seen.omega_end_rad_s.to_f64(),
             delta_phi_rad: seen.delta_phi_rad.to_f64(),

@@ -1,17 +1,27 @@
 //! A run of the `reference` solver: from event to event, rows read off in
 //! between.
 
+use super::lead::Lead;
 use super::tally::{StickEnd, Tally};
 use super::{Observer, RunError, Totals, steps};
-use crate::reference::Reference;
+use crate::reference::{Follow, Reference};
 use crate::scene::Scene;
 use crate::trace::EventRecord;
 use crate::walk::Clock;
 use crepitus_model::{Event, Phase, Settings};
 use crepitus_plant::{Motion, ShaftState};
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 
 /// How many rows go by between two reports of progress.
 const PROGRESS_ROWS: u64 = 1 << 12;
+
+/// How often a slip is looked at in a swing of the object, however far apart
+/// the rows are.
+const LOOKS_PER_SWING: f64 = 64.0;
+
+/// The most looks between two rows.
+const MOST_LOOKS: f64 = 1e6;
 
 pub(super) fn simulate<O: Observer>(
     scene: &Scene,
@@ -33,9 +43,7 @@ pub(super) fn simulate<O: Observer>(
         let time_s = clock.time_s(n);
         row.clear();
         if let Some((reference, books)) = &mut joint {
-            let mut result = Ok(());
-            reference.advance(time_s, |event| books.pass_on(event, observer, &mut result));
-            result.map_err(RunError::Observer)?;
+            books.follow(time_s, reference, observer)?;
             books.end_row(time_s, reference);
             let shaft = reference.shaft();
             fastest_rad_s = fastest_rad_s.max(shaft.omega_rad_s.abs());
@@ -67,9 +75,7 @@ pub(super) fn simulate<O: Observer>(
     // What is left after the last row has events, too.
     let end_s = scene.duration_s.max(clock.time_s(rows));
     if let Some((reference, books)) = &mut joint {
-        let mut result = Ok(());
-        reference.advance(end_s, |event| books.pass_on(event, observer, &mut result));
-        result.map_err(RunError::Observer)?;
+        books.follow(end_s, reference, observer)?;
         books.end_row(end_s, reference);
     }
     let tally = joint.map(|(reference, mut books)| {
@@ -98,36 +104,73 @@ struct Books<'a> {
     phi_start_rad: f64,
     /// The last point that is booked: its time, angle and stick.
     booked: (f64, f64, StickEnd),
+    /// Until when the run has been looked at, s, and how far to go to the next
+    /// look.
+    looked_s: f64,
+    look_s: f64,
 }
 
 impl<'a> Books<'a> {
     fn new(settings: Settings, motion: &'a Motion, first: &ShaftState) -> Self {
+        let look_s = TAU / settings.parameters.natural_rad_s() / LOOKS_PER_SWING;
+        let lead = Lead::new(&settings, look_s, false);
         Self {
-            tally: Tally::new(settings, first.omega_rad_s),
+            looked_s: 0.0,
+            look_s,
+            tally: Tally::new(settings, first.omega_rad_s, lead),
             motion,
             phi_start_rad: first.phi_rad,
             booked: (0.0, first.phi_rad, stick_end(0.0, first)),
         }
     }
 
-    /// Books an event, whose `fraction` is its time, and tells the observer.
-    fn pass_on<O: Observer>(
+    /// Goes on to `to_s`, with looks at slips on the way.
+    fn follow<O: Observer>(
         &mut self,
-        event: Event<f64>,
+        to_s: f64,
+        reference: &mut Reference<'_>,
         observer: &mut O,
-        result: &mut Result<(), O::Error>,
-    ) {
+    ) -> Result<(), RunError<O::Error>> {
+        let (from_s, span_s) = (self.looked_s, to_s - self.looked_s);
+        let looks = (span_s / self.look_s).ceil().clamp(1.0, MOST_LOOKS);
+        let mut look = 1.0;
+        while look <= looks {
+            let time_s = if look < looks {
+                from_s + span_s * (look / looks)
+            } else {
+                to_s
+            };
+            let mut booked = Booked {
+                books: self,
+                observer,
+            };
+            if let ControlFlow::Break(error) = reference.follow(time_s, &mut booked) {
+                return Err(RunError::Observer(error));
+            }
+            if let Phase::Slip(_) = reference.phase() {
+                self.tally.lead.look_for(
+                    time_s - self.looked_s,
+                    f64::from(reference.phase().sign()),
+                    reference.shaft().omega_rad_s,
+                    reference.theta_dot_rad_s(),
+                );
+            }
+            self.looked_s = time_s;
+            look += 1.0;
+        }
+        Ok(())
+    }
+
+    /// Books an event, whose `fraction` is its time.
+    fn book(&mut self, event: &Event<f64>) {
         let time_s = event.fraction;
         let shaft = self.motion.at(time_s);
         if event.from == Phase::Stick {
             self.book_stick(time_s, event.theta_rad, &shaft);
         }
         self.tally
-            .event(time_s, shaft.phi_rad - self.phi_start_rad, &event);
+            .event(time_s, shaft.phi_rad - self.phi_start_rad, event);
         self.booked = (time_s, shaft.phi_rad, stick_end(event.theta_rad, &shaft));
-        if result.is_ok() {
-            *result = observer.event(&EventRecord::new(time_s, &event));
-        }
     }
 
     /// Books the time up to a row, or to the end.
@@ -145,6 +188,35 @@ impl<'a> Books<'a> {
         self.tally
             .stick(time_s - from_s, shaft.phi_rad - from_rad, start, end);
         self.booked = (time_s, shaft.phi_rad, end);
+    }
+}
+
+/// Books what happens and tells the observer, who may end the run.
+struct Booked<'b, 'a, O> {
+    books: &'b mut Books<'a>,
+    observer: &'b mut O,
+}
+
+impl<O: Observer> Follow for Booked<'_, '_, O> {
+    type Stop = O::Error;
+
+    fn event(&mut self, event: Event<f64>) -> ControlFlow<O::Error> {
+        self.books.book(&event);
+        flow(
+            self.observer
+                .event(&EventRecord::new(event.fraction, &event)),
+        )
+    }
+
+    fn poll(&mut self, time_s: f64) -> ControlFlow<O::Error> {
+        flow(self.observer.progress(time_s))
+    }
+}
+
+fn flow<E>(result: Result<(), E>) -> ControlFlow<E> {
+    match result {
+        Ok(()) => ControlFlow::Continue(()),
+        Err(error) => ControlFlow::Break(error),
     }
 }
 

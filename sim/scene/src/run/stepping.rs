@@ -1,5 +1,6 @@
 //! A run in fixed steps: true motion → sensor → joint.
 
+use super::lead::Lead;
 use super::sensor::{Encoded, Ideal, Sensor};
 use super::tally::{StickEnd, Tally};
 use super::{Diverged, Observer, RunError, Totals, steps};
@@ -110,7 +111,7 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
         let (steps, every) = steps(scene);
         let step_s = super::step_s(scene);
         let mut walk = Walk::new(&scene.motion, step_s);
-        let mut books = Books::new(settings, step_s, walk.now().omega_rad_s);
+        let mut books = Books::new::<F>(settings, step_s, walk.now().omega_rad_s);
         let mut row = Vec::new();
         let mut fastest_rad_s = walk.now().omega_rad_s.abs();
         books.tally.shown(joint.torque_nm().to_f64());
@@ -158,9 +159,7 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
                 }
             });
             result.map_err(RunError::Observer)?;
-            books.end_step(&seen, joint.phase(), || {
-                (joint.theta_rad(), joint.torque_nm())
-            });
+            books.end_step(&seen, &joint);
         }
         let (theta, theta_dot) = (joint.theta_rad(), joint.theta_dot_rad_s());
         books.tally.finish(
@@ -192,9 +191,11 @@ pub(super) struct Books {
 }
 
 impl Books {
-    pub(super) fn new(settings: Settings, step_s: f64, omega_rad_s: f64) -> Self {
+    /// Of a joint in precision `F`.
+    pub(super) fn new<F: Real>(settings: Settings, step_s: f64, omega_rad_s: f64) -> Self {
+        let lead = Lead::new(&settings, step_s, F::IS_SINGLE);
         Self {
-            tally: Tally::new(settings, omega_rad_s),
+            tally: Tally::new(settings, omega_rad_s, lead),
             step_s,
             phi_rad: 0.0,
             booked: 0.0,
@@ -227,16 +228,19 @@ impl Books {
 
     /// Books the rest of a step.
     #[inline]
-    pub(super) fn end_step<F: Real>(
-        &mut self,
-        seen: &ShaftStep<F>,
-        phase: Phase,
-        theta_and_torque: impl FnOnce() -> (F, F),
-    ) {
-        if phase == Phase::Stick {
-            let (theta, torque) = theta_and_torque();
-            self.tally.shown(torque.to_f64());
-            self.book_stick(seen, 1.0, theta.to_f64());
+    pub(super) fn end_step<F: Real, J: StickSlip<F>>(&mut self, seen: &ShaftStep<F>, joint: &J) {
+        match joint.phase() {
+            Phase::Stick => {
+                self.tally.shown(joint.torque_nm().to_f64());
+                self.book_stick(seen, 1.0, joint.theta_rad().to_f64());
+            }
+            Phase::Slip(_) => {
+                if self.tally.lead.is_due() {
+                    let (omega, v) = (seen.omega_end_rad_s, joint.theta_dot_rad_s());
+                    let sign = f64::from(joint.phase().sign());
+                    self.tally.lead.look(sign, omega.to_f64(), v.to_f64());
+                }
+            }
         }
         self.booked = 0.0;
         self.phi_rad += seen.delta_phi_rad.to_f64();

@@ -4,7 +4,7 @@ use super::coupled::PlantTotals;
 use super::tally::Tally;
 use super::{Totals, step_s};
 use crate::scene::{Crepitus, SCENE_VERSION, Scene, SolverChoice};
-use crepitus_model::Parameters;
+use crepitus_model::{Convention, Parameters};
 use crepitus_plant::effect::{Effect, Part};
 use serde::Serialize;
 
@@ -56,6 +56,8 @@ pub struct Summary {
     pub torque: Option<TorqueSummary>,
     /// The energy balance of the object.
     pub energy: Option<EnergySummary>,
+    /// Slips in which the shaft fell behind the object.
+    pub lead: Option<LeadSummary>,
     /// What the hand feels, if there is a plant and a hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hand_torque: Option<TorqueSummary>,
@@ -166,6 +168,21 @@ pub struct EnergySummary {
     pub residual_relative: f64,
 }
 
+/// Slips in which the shaft was slower than the object in the sense of the
+/// slip, s·(Ω − θ̇) < 0, by more than rounding: friction pushed it along.
+///
+/// Under `paper` and `physical` that is a missed event; under `frozen` it is
+/// what the convention does when the hand slows down in a slip.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LeadSummary {
+    /// For how long, s.
+    pub behind_s: f64,
+    /// Energy that friction gave meanwhile, J.
+    pub behind_j: f64,
+    /// By how much at worst, rad/s.
+    pub worst_behind_rad_s: f64,
+}
+
 /// The energy balance of a plant, J:
 /// sum of what was given = sum of what is stored, lost and rendered + residual.
 #[derive(Clone, Debug, Serialize)]
@@ -269,6 +286,11 @@ pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64) -> Summary 
             viscous_j: t.energy.viscous_j,
             residual_j: t.energy.residual_j(),
             residual_relative: t.energy.relative_residual(),
+        }),
+        lead: tally.map(|t| LeadSummary {
+            behind_s: t.lead.behind_s,
+            behind_j: t.lead.behind_j,
+            worst_behind_rad_s: t.lead.worst_rad_s,
         }),
         hand_torque: totals.plant.as_ref().and_then(|p| hand_torque(p, totals)),
         plant_energy: totals.plant.as_ref().map(|p| plant_energy(p, tally)),
@@ -411,10 +433,25 @@ fn run_warnings(scene: &Scene, totals: &Totals) -> Vec<String> {
             totals.end_s
         ));
     }
+    warnings.extend(lead_warning(scene, totals));
     if let (Some(crepitus), SolverChoice::Ladder { step_s, .. }) = (&scene.crepitus, scene.solver) {
         warnings.extend(step_warnings(crepitus, step_s, totals.fastest_rad_s));
     }
     warnings
+}
+
+/// Slips that went on after their end.
+fn lead_warning(scene: &Scene, totals: &Totals) -> Option<String> {
+    let convention = scene.crepitus?.settings.convention;
+    let lead = totals.tally.as_ref()?.lead;
+    let missed = convention != Convention::Frozen && lead.behind_s > 0.0;
+    missed.then(|| {
+        format!(
+            "for {:.3e} s the shaft was slower than the object it slips over, by up to {:.3e} rad/s: the solver \
+             missed the end of a slip, and friction gave {:.3e} J",
+            lead.behind_s, lead.worst_rad_s, lead.behind_j
+        )
+    })
 }
 
 /// Steps too long to see what happens within them.

@@ -14,6 +14,7 @@
 //! error leaves.
 
 use super::energy::Energy;
+use super::lead::Lead;
 use crepitus_model::oscillator::Oscillator;
 use crepitus_model::{Convention, Event, EventKind, Phase, Sense, Settings};
 
@@ -56,6 +57,7 @@ pub(super) struct Tally {
     pub(super) cycles: Cycles,
     pub(super) torque: TorqueTally,
     pub(super) energy: Energy,
+    pub(super) lead: Lead,
 }
 
 /// The beginning of the phase that goes on.
@@ -71,7 +73,7 @@ struct PhaseStart {
 impl Tally {
     /// A run that begins in stick at θ = 0 with the shaft at `omega_rad_s`;
     /// angles of the shaft count from here.
-    pub(super) fn new(settings: Settings, omega_rad_s: f64) -> Self {
+    pub(super) fn new(settings: Settings, omega_rad_s: f64, lead: Lead) -> Self {
         Self {
             oscillator: Oscillator::of(&settings.parameters),
             start: PhaseStart {
@@ -90,6 +92,7 @@ impl Tally {
                 square: 0.0,
             },
             energy: Energy::new(&settings.parameters, omega_rad_s),
+            lead,
             settings,
         }
     }
