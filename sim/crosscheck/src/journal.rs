@@ -12,6 +12,7 @@ use crepitus_model::Convention;
 use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::Path;
+use std::time::Duration;
 
 /// Cases of a piece.
 pub const PIECE: u64 = 250;
@@ -212,9 +213,14 @@ impl Tally {
 ///
 /// # Errors
 /// Where no child process can be started.
-pub fn run_piece(program: &Path, piece: u64, mut progress: impl FnMut()) -> io::Result<Tally> {
+pub fn run_piece(
+    program: &Path,
+    limit: Duration,
+    piece: u64,
+    mut progress: impl FnMut(),
+) -> io::Result<Tally> {
     let mut tally = Tally::new(piece);
-    for answer in Watched::new(program, piece * PIECE, (piece + 1) * PIECE) {
+    for answer in Watched::new(program, limit, piece * PIECE, (piece + 1) * PIECE) {
         let (number, answer) = answer?;
         let case = Case::new(number);
         tally.add(&case, &compare(&case, &answer));

@@ -7,11 +7,13 @@ use crepitus_crosscheck::corpus::Case;
 use crepitus_crosscheck::journal::{self, PIECE};
 use crepitus_crosscheck::summary::Summary;
 use crepitus_crosscheck::theirs::Theirs;
+use crepitus_crosscheck::watched::LIMIT;
 use crepitus_crosscheck::wire;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 /// Compares the reference solver with a second one on random cases.
 #[derive(Parser)]
@@ -36,6 +38,9 @@ enum Verb {
         /// The journal, which grows by every piece.
         #[arg(long, default_value = JOURNAL)]
         out: PathBuf,
+        /// Seconds that the reference may take for one case.
+        #[arg(long, default_value_t = LIMIT.as_secs())]
+        limit_s: u64,
     },
     /// Adds up a journal and prints its tables.
     Summary {
@@ -64,7 +69,12 @@ const JOURNAL: &str = "sim/crosscheck/corpus.csv";
 
 fn main() -> ExitCode {
     let result = match Cli::parse().verb {
-        Verb::Corpus { from, to, out } => corpus(from, to, &out),
+        Verb::Corpus {
+            from,
+            to,
+            out,
+            limit_s,
+        } => corpus(from, to, &out, Duration::from_secs(limit_s)),
         Verb::Summary { out } => summary(&out),
         Verb::Case { number } => show::case(number),
         Verb::Reference { from, to } => reference(from, to),
@@ -79,7 +89,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn corpus(from: u64, to: u64, out: &Path) -> io::Result<bool> {
+fn corpus(from: u64, to: u64, out: &Path, limit: Duration) -> io::Result<bool> {
     let mut pieces = journal::read(out)?;
     // What a cut left half written goes.
     journal::rewrite(out, &pieces)?;
@@ -94,7 +104,7 @@ fn corpus(from: u64, to: u64, out: &Path) -> io::Result<bool> {
             bar.inc(PIECE);
             continue;
         }
-        let tally = journal::run_piece(&program, piece, || bar.inc(1))?;
+        let tally = journal::run_piece(&program, limit, piece, || bar.inc(1))?;
         journal::append(out, tally.rows())?;
         pieces.push(tally.rows().to_vec());
     }
@@ -120,6 +130,12 @@ fn report(pieces: &[Vec<journal::Row>]) -> bool {
 }
 
 fn reference(from: u64, to: u64) -> io::Result<bool> {
+    // The parent holds our input open. Where it has gone, a case that never
+    // ends must not go on without it.
+    std::thread::spawn(|| {
+        let _ = io::copy(&mut io::stdin(), &mut io::sink());
+        std::process::exit(1);
+    });
     let mut out = io::stdout().lock();
     for number in from..to {
         wire::write(&mut out, number, &Theirs::of(&Case::new(number)))?;

@@ -31,9 +31,14 @@ impl Rounding {
         }
     }
 
+    /// Whether anything is changed.
+    pub fn is_some(&self) -> bool {
+        self.units > 0.0
+    }
+
     /// A change of something of this size.
     pub fn change(&mut self, size: f64) -> f64 {
-        if self.units == 0.0 {
+        if !self.is_some() {
             return 0.0;
         }
         let unit = f64::EPSILON / 2.0;

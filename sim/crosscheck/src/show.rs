@@ -2,7 +2,7 @@
 
 use crepitus_crosscheck::compare::{compare, ours};
 use crepitus_crosscheck::corpus::{Case, MOST_EVENTS};
-use crepitus_crosscheck::watched::{Answer, Watched};
+use crepitus_crosscheck::watched::{Answer, LIMIT, Watched};
 use crepitus_model::parameters::PARAMETERS;
 use crepitus_plant::Motion;
 use std::io;
@@ -37,7 +37,8 @@ pub(crate) fn case(number: u64) -> io::Result<bool> {
         }
         motion => println!("  {motion:?}"),
     }
-    let Some(answer) = Watched::new(&std::env::current_exe()?, number, number + 1).next() else {
+    let Some(answer) = Watched::new(&std::env::current_exe()?, LIMIT, number, number + 1).next()
+    else {
         return Ok(false);
     };
     let (_, answer) = answer?;

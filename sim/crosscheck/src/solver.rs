@@ -292,12 +292,14 @@ impl Solver<'_> {
         at_end
     }
 
-    /// The angle as an f64 solver might have it.
+    /// The angle and the time as an f64 solver might have them. A stick
+    /// follows φ, which is as large as it becomes in this piece.
     fn round_state(&mut self) {
-        let shaft = self.piece.at(self.time_s.to_f64());
         let joint = &self.joint;
+        let at = |time_s: Dd| self.piece.at(time_s.to_f64()).phi_rad.abs();
         let size = (self.theta.to_f64().abs())
-            .max(shaft.phi_rad.abs())
+            .max(at(self.time_s))
+            .max(at(self.horizon_s()))
             .max((joint.static_nm / joint.stiffness).to_f64());
         self.theta += Dd::new(self.rounding.change(size));
         let later = self.rounding.change(self.time_s.to_f64());
@@ -361,6 +363,13 @@ impl Solver<'_> {
             gap: start.gap,
         };
         self.round_state();
+        if self.rounding.is_some()
+            && self.time_s < self.horizon_s()
+            && let Gap::Opening(_) = start.gap
+        {
+            // Equal velocities at a rounded time: Ω may change fast.
+            self.v = self.shaft_now().0;
+        }
         Ok(())
     }
 }

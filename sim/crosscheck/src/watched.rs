@@ -13,7 +13,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-/// How long one case may take. Cases take milliseconds; on a machine that is
+/// How long one case may take by default. Cases take milliseconds; on a machine that is
 /// busy with other work they may take a thousand times that.
 pub const LIMIT: Duration = Duration::from_secs(10);
 
@@ -22,7 +22,7 @@ pub const LIMIT: Duration = Duration::from_secs(10);
 pub enum Answer {
     /// It was solved.
     Solved(Theirs),
-    /// No answer within [`LIMIT`].
+    /// No answer in time.
     Hung,
     /// The process ended without an answer.
     Died,
@@ -31,6 +31,7 @@ pub enum Answer {
 /// The answers to a range of cases, in order.
 pub struct Watched {
     program: PathBuf,
+    limit: Duration,
     next: u64,
     end: u64,
     child: Option<(Child, Receiver<(u64, Theirs)>)>,
@@ -38,10 +39,11 @@ pub struct Watched {
 
 impl Watched {
     /// Cases `from..to`, by the program `program`, whose verb `reference`
-    /// writes them.
-    pub fn new(program: &Path, from: u64, to: u64) -> Self {
+    /// writes them; each within `limit`.
+    pub fn new(program: &Path, limit: Duration, from: u64, to: u64) -> Self {
         Self {
             program: program.to_owned(),
+            limit,
             next: from,
             end: to,
             child: None,
@@ -53,7 +55,8 @@ impl Watched {
             .arg("reference")
             .args(["--from", &self.next.to_string()])
             .args(["--to", &self.end.to_string()])
-            .stdin(Stdio::null())
+            // Held open: a child whose parent has gone ends by itself.
+            .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()?;
@@ -100,7 +103,7 @@ impl Iterator for Watched {
         let (_, receiver) = self.child.as_ref()?;
         let case = self.next;
         self.next += 1;
-        let answer = match receiver.recv_timeout(LIMIT) {
+        let answer = match receiver.recv_timeout(self.limit) {
             Ok((number, theirs)) if number == case => Answer::Solved(theirs),
             Ok(_) | Err(RecvTimeoutError::Disconnected) => {
                 self.stop();

@@ -5,7 +5,7 @@ use crepitus_crosscheck::compare::compare;
 use crepitus_crosscheck::corpus::Case;
 use crepitus_crosscheck::journal::{self, PIECE, Tally};
 use crepitus_crosscheck::summary::Summary;
-use crepitus_crosscheck::watched::{Answer, Watched};
+use crepitus_crosscheck::watched::{Answer, LIMIT, Watched};
 use crepitus_model::Convention;
 use std::path::{Path, PathBuf};
 
@@ -51,7 +51,7 @@ fn the_committed_journal_adds_up_and_nothing_disagrees() {
 fn the_first_piece_comes_out_as_committed() {
     let pieces = journal::read(&committed()).unwrap();
     let mut tally = Tally::new(0);
-    for answer in Watched::new(program(), 0, PIECE) {
+    for answer in Watched::new(program(), LIMIT, 0, PIECE) {
         let (number, answer) = answer.unwrap();
         let case = Case::new(number);
         let comparison = compare(&case, &answer);
@@ -69,7 +69,7 @@ fn the_first_piece_comes_out_as_committed() {
 #[test]
 fn a_child_that_hangs_or_dies_is_reported_and_the_next_case_goes_on() {
     // `false` ends at once without an answer, for every case.
-    let answers: Vec<_> = Watched::new(Path::new("/bin/false"), 5, 8)
+    let answers: Vec<_> = Watched::new(Path::new("/bin/false"), LIMIT, 5, 8)
         .map(|answer| answer.unwrap())
         .collect();
     assert_eq!(

@@ -12,13 +12,14 @@ use crepitus_model::Convention;
 
 impl Solver<'_> {
     /// The shaft at this instant: Ω and Ω̇ just after.
-    fn shaft_now(&self) -> (Dd, Dd) {
+    pub(super) fn shaft_now(&self) -> (Dd, Dd) {
         let shaft = self.shaft(self.reach_s());
         (shaft.omega.value(Dd::ZERO), shaft.omega_dot.value(Dd::ZERO))
     }
 
     /// A stick at θ = 0, which may be impossible.
     pub(super) fn start(&mut self) -> Result<(), Unsolved> {
+        self.round_state();
         self.break_by_acceleration(Cause::Start, None)
     }
 
