@@ -17,7 +17,7 @@ mod summary;
 mod tally;
 
 pub use coupled::FELT_COLUMN;
-pub use probe::{StepTime, step_times};
+pub use probe::{AddedTime, StepTime, step_times};
 pub use summary::{
     CycleSummary, EffectSummary, EnergySummary, EventCounts, LeadSummary, ParameterValue,
     SUMMARY_VERSION, Summary, TorqueSummary,
@@ -162,13 +162,13 @@ pub fn run<O: Observer>(scene: &Scene, observer: &mut O) -> Result<Summary, RunE
     Ok(summary::summarise(scene, &totals, wall_s))
 }
 
-/// Times each effect of `scene`, in a few thousand steps with it and without
-/// it, and notes the costs in its `summary`.
+/// Times each effect of `scene` in CPU time, in a few thousand steps with it
+/// and without it, and notes the costs in its `summary`.
 pub fn measure_costs(scene: &Scene, summary: &mut Summary) {
     for cost in probe::costs(scene) {
         for effect in &mut summary.effects {
             if effect.name == cost.effect {
-                effect.ns_per_step = Some(cost.ns_per_step);
+                effect.added = Some(cost.added);
             }
         }
     }

@@ -11,6 +11,7 @@ pub use solver::{Precision, SolverChoice};
 use crate::document::{Document, Range, Section};
 use crate::error::SceneError;
 use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::turn_back::most_rad_per_count;
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use crepitus_plant::actuator::Actuator;
 use crepitus_plant::assembly::{Assembled, Listed, assemble, assemble_with};
@@ -159,6 +160,8 @@ impl Scene {
         let mut warnings = motion.warnings;
         if let Some(crepitus) = &effects.crepitus {
             warnings.extend(sampled_motion_warning(crepitus, motion.ripple_rad_s2));
+            let encoder = effects.encoder.as_ref();
+            warnings.extend(encoder.and_then(|encoder| guard_warning(crepitus, encoder)));
         }
         let scene = Self {
             file: file.to_owned(),
@@ -298,6 +301,26 @@ fn sampled_motion_warning(crepitus: &Crepitus, ripple_rad_s2: Option<f64>) -> Op
              by up to {ripple_nm:.2} N·m (Ts is {} N·m): the joint feels the sampling; a lower cutoff_hz or \
              \"frozen\" avoids it",
             settings.parameters.static_torque_nm
+        )
+    })
+}
+
+/// A joint that a device with this encoder would refuse.
+fn guard_warning(crepitus: &Crepitus, encoder: &EncoderSettings) -> Option<String> {
+    let settings = &crepitus.settings;
+    let (count_rad, most_rad) = (encoder.rad_per_count(), most_rad_per_count(settings));
+    (settings.convention == Convention::Frozen && count_rad > most_rad).then(|| {
+        let p = &settings.parameters;
+        format!(
+            "the device refuses kinetic_torque_nm = {} with static_torque_nm = {}, stiffness_nm_per_rad = {} and \
+             an encoder of {} lines: a hand that turns back inside a slip would get more energy than the slip takes \
+             out of the spring; one count is {:.1} µrad, and may be {:.1} µrad",
+            p.kinetic_torque_nm,
+            p.static_torque_nm,
+            p.stiffness_nm_per_rad,
+            encoder.lines,
+            count_rad * 1e6,
+            most_rad * 1e6
         )
     })
 }

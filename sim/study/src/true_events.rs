@@ -36,11 +36,13 @@ impl TimedEvent {
     }
 }
 
-/// A true event with the torque on both sides of it.
+/// A true event with the torque on both sides of it and the object after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrueEvent {
     /// The event.
     pub event: TimedEvent,
+    /// Angle θ of the object just after, rad.
+    pub theta_rad: f64,
     /// Torque shown just before, N·m.
     pub torque_before_nm: f64,
     /// Torque shown just after, N·m.
@@ -58,6 +60,7 @@ pub fn true_events(
         events.push(TrueEvent {
             // The reference has no step: its fraction is the time.
             event: TimedEvent::new(event.fraction, &event),
+            theta_rad: event.theta_rad,
             torque_before_nm: event.torque_before_nm,
             torque_after_nm: event.torque_after_nm,
         });

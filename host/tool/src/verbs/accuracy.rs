@@ -1,5 +1,5 @@
 //! `crepitus accuracy`: what accuracy costs in time, and the cheapest solver
-//! that is accurate enough.
+//! that is accurate enough, on the host or on the target.
 
 mod answer;
 mod page;

@@ -1,8 +1,8 @@
 //! When a stick of the reference solver breaks.
 
+use super::Reference;
 use super::ahead::PhaseEnd;
 use super::first_root::{Sample, first_root};
-use super::{Reference, SLACK};
 use crepitus_model::locate::{ExactEvents, StickPath, earlier, first_break};
 use crepitus_model::{Convention, Sense};
 use crepitus_plant::ShaftState;
@@ -60,6 +60,7 @@ impl Reference<'_> {
             bound +=
                 p.damping_nms_per_rad * bounds.omega_ddot + p.inertia_kg_m2 * bounds.omega_dddot;
         }
+        let slack = self.limit_slack_nm(&self.now);
         first_root(from_s, to_s, poll, |time_s| {
             let shaft = self.piece.at(time_s);
             let (torque, rate) = self.torque_and_rate(anchor, inertial, &shaft);
@@ -70,7 +71,7 @@ impl Reference<'_> {
                 slope: -sense.of_signed(rate),
                 bound,
                 noise,
-                slack: noise.max(SLACK * limit_nm),
+                slack: noise.max(slack),
             }
         })
     }
@@ -180,7 +181,7 @@ impl Reference<'_> {
                 return ControlFlow::Continue(None);
             };
             let (torque, _) = self.torque_and_rate(anchor, false, &self.piece.at(slips_s));
-            if sense.of_signed(torque) >= limit * (1.0 - SLACK) {
+            if sense.of_signed(torque) >= limit - self.limit_slack_nm(&self.now) {
                 return ControlFlow::Continue(Some((slips_s, sense)));
             }
             time_s = slips_s;

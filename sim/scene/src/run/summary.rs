@@ -2,7 +2,7 @@
 
 use super::coupled::PlantTotals;
 use super::tally::Tally;
-use super::{Totals, step_s};
+use super::{AddedTime, Totals, step_s};
 use crate::scene::{Crepitus, SCENE_VERSION, Scene, SolverChoice};
 use crepitus_model::{Convention, Parameters};
 use crepitus_plant::effect::{Effect, Part};
@@ -79,8 +79,9 @@ pub struct EffectSummary {
     pub name: &'static str,
     /// Its state variables.
     pub states: &'static [&'static str],
-    /// Time that it costs, ns per step, once measured; never for `reference`.
-    pub ns_per_step: Option<f64>,
+    /// What it costs, once measured; never for `reference`.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub added: Option<AddedTime>,
     /// Its parameters.
     pub parameters: Vec<ParameterValue>,
     /// Its choices by name.
@@ -365,7 +366,7 @@ fn effects(scene: &Scene) -> Vec<EffectSummary> {
             EffectSummary {
                 name: effect.name,
                 states: effect.states,
-                ns_per_step: None,
+                added: None,
                 parameters: effect
                     .parameters
                     .iter()

@@ -82,6 +82,7 @@ fn ties(sampling: &Sampling<'_>, events: &[TrueEvent]) -> Vec<Tie> {
         event,
         torque_before_nm,
         torque_after_nm,
+        ..
     } in events
     {
         let phase_s = event.time_s - phase_start_s;

@@ -1,5 +1,6 @@
 //! The whole study: every rung × precision × step on every scene.
 
+use crate::accuracy::held_torque::HeldTorque;
 use crate::accuracy::measure::{Accuracy, Target, measure};
 use crate::accuracy::orders::orders;
 use crate::accuracy::point::Point;
@@ -114,6 +115,8 @@ fn at_step<W: Watcher>(
 ) -> Result<Vec<Point>, StudyError<W::Error>> {
     let steps = f64::from_whole(sampling.steps());
     let torque = ReferenceTorque::new(scene, sampling, truth);
+    let held = HeldTorque::new(scene, sampling, truth);
+    let held_floor_nm = held.floor_nm();
     work.did(REFERENCE_WEIGHT * steps)?;
     let end_s = sampling.end_s();
     let events: Vec<TimedEvent> = truth
@@ -126,6 +129,7 @@ fn at_step<W: Watcher>(
         sampling,
         events: &events,
         torque: &torque,
+        held: &held,
     };
     let mut accuracies = Vec::with_capacity(contestants.len());
     for &(solver, precision) in contestants {
@@ -140,8 +144,9 @@ fn at_step<W: Watcher>(
     Ok(contestants
         .iter()
         .zip(accuracies.into_iter().zip(costs))
-        .map(|(&contestant, (accuracy, cost))| {
-            point(
+        .map(|(&contestant, (accuracy, cost))| Point {
+            held_floor_nm,
+            ..point(
                 scene,
                 sampling.step_s(),
                 contestant,
@@ -174,8 +179,11 @@ fn point(
         rms_event_error_s: accuracy.event_errors.rms_s,
         max_interval_error_s: accuracy.event_errors.max_interval_s,
         frequency_error_rel: accuracy.event_errors.frequency_rel,
-        rms_torque_error_nm: accuracy.rms_torque_error_nm,
-        max_torque_error_nm: accuracy.max_torque_error_nm,
+        rms_held_torque_error_nm: accuracy.rms_held_torque_error_nm,
+        max_held_torque_error_nm: accuracy.max_held_torque_error_nm,
+        held_floor_nm: f64::NAN,
+        rms_tick_torque_error_nm: accuracy.rms_tick_torque_error_nm,
+        max_tick_torque_error_nm: accuracy.max_tick_torque_error_nm,
         ns_per_step: cost.ns_per_step,
         us_per_simulated_s: cost.ns_per_step * 1e-3 / step_s,
         time_spread: cost.spread,

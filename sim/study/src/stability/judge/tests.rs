@@ -34,6 +34,7 @@ fn truth() -> Vec<TrueEvent> {
         .map(|(event, torque_after_nm)| TrueEvent {
             event,
             torque_before_nm: 0.4,
+            theta_rad: 0.0,
             torque_after_nm,
         })
         .collect()
