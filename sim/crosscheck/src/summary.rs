@@ -117,3 +117,62 @@ impl Summary {
         text
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::journal::{self, Tally};
+
+    /// Two whole pieces that agree in everything.
+    fn pieces() -> Vec<Vec<Row>> {
+        (0..2)
+            .map(|piece| {
+                let mut rows = Tally::new(piece).rows().to_vec();
+                rows[0].counts.cases = PIECE;
+                rows[0].counts.agreed = PIECE;
+                rows
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_sound_journal_adds_up() {
+        let summary = Summary::of(&pieces());
+        assert!(summary.faults.is_empty(), "{:?}", summary.faults);
+        let all = summary.sum(|_, _| true);
+        assert_eq!((all.cases, all.agreed), (2 * PIECE, 2 * PIECE));
+        assert!(summary.markdown().contains("| **all** | all | 500 |"));
+    }
+
+    #[test]
+    fn whatever_is_missing_is_noticed() {
+        let change: [fn(&mut Vec<Vec<Row>>); 4] = [
+            |p| p[1][0].counts.cases -= 1,
+            |p| p[1][0].counts.agreed -= 1,
+            |p| p[1][0].counts.law_broken = 1,
+            |p| drop(p.remove(0)),
+        ];
+        for change in change {
+            let mut changed = pieces();
+            change(&mut changed);
+            assert!(!Summary::of(&changed).faults.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_file_without_a_row_lacks_the_piece() {
+        let path = std::env::temp_dir().join(format!("crosscheck-{}.csv", std::process::id()));
+        journal::rewrite(&path, &pieces()).unwrap();
+        assert_eq!(journal::read(&path).unwrap(), pieces());
+        let text = std::fs::read_to_string(&path).unwrap();
+        let without: Vec<&str> = text
+            .lines()
+            .enumerate()
+            .filter(|(i, _)| *i != 20)
+            .map(|(_, l)| l)
+            .collect();
+        std::fs::write(&path, without.join("\n")).unwrap();
+        assert_eq!(journal::read(&path).unwrap(), pieces()[..1]);
+        std::fs::remove_file(path).unwrap();
+    }
+}
