@@ -26,10 +26,11 @@ use crepitus_plant::Motion;
 
 /// Solutions with rounding.
 pub const TRIALS: u64 = 8;
-/// Rounding of every number in them, units of 2⁻⁵³.
-pub const UNITS: f64 = 4.0;
+/// Rounding of every number in them, units of 2⁻⁵³: what a torque may be
+/// beyond the limit and still count as at it is tens of roundings too.
+pub const UNITS: f64 = 32.0;
 /// How much of their differences is allowed.
-pub const MARGIN: f64 = 8.0;
+pub const MARGIN: f64 = 2.0;
 
 /// Why rounding decides a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +43,8 @@ pub enum Doubt {
     Graze,
     /// Rounding of earlier events has grown.
     Grown,
+    /// Ts = 0: there is no friction, and the torque is 0 whatever happens.
+    NoFriction,
     /// Even 31 digits do not decide.
     Unsolved(&'static str),
 }
@@ -54,6 +57,7 @@ impl Doubt {
             Self::AtBoundary => "at-boundary",
             Self::Graze => "graze",
             Self::Grown => "grown",
+            Self::NoFriction => "no-friction",
             Self::Unsolved(why) => why,
         }
     }
@@ -101,6 +105,8 @@ pub struct Comparison {
     /// The worst |Δt|/(t + 1/ωn) of events that agree within the plain
     /// tolerance.
     pub worst: f64,
+    /// What conditioning allows at the first event that does not agree, s.
+    pub allowed_s: f64,
     /// Whether the sign law is broken.
     pub law_broken: bool,
 }
@@ -146,6 +152,7 @@ pub fn compare(case: &Case, answer: &Answer) -> Comparison {
         events: 0,
         conditioned: false,
         worst: 0.0,
+        allowed_s: 0.0,
         law_broken: false,
     };
     let theirs = match answer {
@@ -184,7 +191,9 @@ pub fn compare(case: &Case, answer: &Answer) -> Comparison {
         comparison.conditioned = true;
         (at, difference) = pair.first_difference(&mut 0.0);
         if let Some(real) = &difference {
-            comparison.verdict = if at >= alike && !pair.rule_decides(at) {
+            comparison.verdict = if case.settings.parameters.static_torque_nm == 0.0 {
+                Verdict::Undecidable(Doubt::NoFriction)
+            } else if at >= alike && !pair.rule_decides(at) {
                 Verdict::Undecidable(pair.doubt(alike))
             } else {
                 Verdict::Disagreed(real.clone())
@@ -192,6 +201,7 @@ pub fn compare(case: &Case, answer: &Answer) -> Comparison {
         }
     }
     comparison.events = at;
+    comparison.allowed_s = MARGIN * pair.spread(at).time_s;
     comparison
 }
 

@@ -11,7 +11,7 @@
 
 use crate::circle::sin_cos_turns;
 use crate::double_double::Dd;
-use crate::series::{Series, reciprocal};
+use crate::series::{Series, number, reciprocal};
 use crepitus_plant::piece::{Curve, Piece};
 
 /// Terms of a sine's series; with w·h ≤ 1 the remainder of Ω̇ is below 10⁻³⁶.
@@ -44,6 +44,23 @@ pub fn longest_s(piece: &Piece) -> f64 {
     match piece.curve {
         Curve::Polynomial(_) => f64::INFINITY,
         Curve::Sine { frequency_hz, .. } => 1.0 / (std::f64::consts::TAU * frequency_hz.abs()),
+    }
+}
+
+/// The size of the terms that Ω is the sum of, rad/s: what its rounding in
+/// f64 is relative to.
+pub fn speed_size_rad_s(piece: &Piece, time_s: Dd) -> f64 {
+    match piece.curve {
+        Curve::Polynomial(c) => {
+            let tau = (time_s.to_f64() - piece.start_s).abs();
+            let terms = c.iter().enumerate().skip(1).rev();
+            terms.fold(0.0, |sum, (k, c)| sum * tau + number(k) * c.abs())
+        }
+        Curve::Sine {
+            amplitude_rad,
+            frequency_hz,
+            ..
+        } => (std::f64::consts::TAU * amplitude_rad * frequency_hz).abs(),
     }
 }
 

@@ -17,7 +17,7 @@ use crate::double_double::Dd;
 use crate::event::{Cause, Event, History, Unsolved};
 use crate::rounding::Rounding;
 use crate::series::Series;
-use crate::shaft::{Changes, Shaft, longest_s};
+use crate::shaft::{Changes, Shaft, longest_s, speed_size_rad_s};
 use crate::swing::Object;
 use crepitus_model::{Convention, EventKind, Restart, Settings};
 use crepitus_plant::{Motion, Piece};
@@ -368,7 +368,8 @@ impl Solver<'_> {
             && let Gap::Opening(_) = start.gap
         {
             // Equal velocities at a rounded time: Ω may change fast.
-            self.v = self.shaft_now().0;
+            let size = speed_size_rad_s(&self.piece, self.time_s);
+            self.v = self.shaft_now().0 + Dd::new(self.rounding.change(size));
         }
         Ok(())
     }

@@ -19,6 +19,7 @@ mod find_break;
 mod find_match;
 mod first_root;
 mod follow;
+mod parabola;
 mod repeat;
 mod rules;
 mod swing;

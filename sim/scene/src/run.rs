@@ -16,7 +16,7 @@ mod stepping;
 mod summary;
 mod tally;
 
-pub use coupled::FELT_COLUMN;
+pub use coupled::{FELT_COLUMN, STRUCK_COLUMN};
 pub use probe::{AddedTime, StepTime, step_times};
 pub use summary::{
     CycleSummary, EffectSummary, EnergySummary, EventCounts, LeadSummary, ParameterValue,
@@ -107,6 +107,8 @@ pub(crate) struct Totals {
     end_s: f64,
     tally: Option<tally::Tally>,
     fastest_rad_s: f64,
+    /// Steps with as many events as a step may have.
+    crowded_steps: u64,
     plant: Option<coupled::PlantTotals>,
 }
 
@@ -134,6 +136,9 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         columns.extend(plant.columns().into_iter().map(number));
         if scene.is_held() {
             columns.push(number(coupled::FELT_COLUMN));
+            if plant.impacts().is_some() {
+                columns.push(number(coupled::STRUCK_COLUMN));
+            }
         }
     }
     columns

@@ -132,24 +132,43 @@ impl Scene {
             stepped.push("encoder");
         }
         if solver == SolverChoice::Reference && !stepped.is_empty() {
-            let tables: Vec<_> = stepped.iter().map(|n| format!("[effects.{n}]")).collect();
             return Err(solver_section.key_error(
                 "kind",
                 format!(
                     "\"reference\" has no step, and knows the stick-slip object alone: choose another solver, or \
                      leave out {}",
-                    tables.join(", ")
+                    tables(&stepped)
                 ),
             ));
         }
         check_released(&root, motion.kind, &effects.listed)?;
-        if let (Some(crepitus), SolverChoice::Ladder { solver, .. }) = (&effects.crepitus, solver)
-            && let Some(reason) = solver.refusal(crepitus.settings.convention)
+        if let SolverChoice::Ladder {
+            solver: rung,
+            precision,
+            ..
+        } = solver
         {
-            return Err(solver_section.key_error(
-                "kind",
-                format!("\"{}\" is refused: {reason}", solver.name()),
-            ));
+            let refuse = |key: &str, reason: &str| {
+                solver_section.key_error(key, format!("\"{}\" is refused: {reason}", rung.name()))
+            };
+            if let Some(crepitus) = &effects.crepitus
+                && let Some(reason) = rung.refusal(crepitus.settings.convention)
+            {
+                return Err(refuse("kind", reason));
+            }
+            if precision == Precision::F32
+                && let Some(reason) = rung.single_refusal()
+            {
+                return Err(refuse("precision", reason));
+            }
+            if rung.needs_exact_motion() && !stepped.is_empty() {
+                let reason = format!(
+                    "it takes the shaft's acceleration from the prescribed motion, and what a sensor or a plant \
+                     makes of that motion is not exact enough: choose another solver, or leave out {}",
+                    tables(&stepped)
+                );
+                return Err(refuse("kind", &reason));
+            }
         }
         if substeps > 1 && effects.listed.is_empty() {
             return Err(solver_section.key_error(
@@ -242,6 +261,12 @@ impl Scene {
     pub fn is_held(&self) -> bool {
         self.motion_kind != MotionKind::Released
     }
+}
+
+/// Effects as a scene file names them.
+fn tables(effects: &[&str]) -> String {
+    let tables: Vec<_> = effects.iter().map(|n| format!("[effects.{n}]")).collect();
+    tables.join(", ")
 }
 
 /// A leg that nobody holds has to be there, and not to be held.

@@ -97,8 +97,26 @@ fn every_error_names_line_key_and_what_is_allowed() {
             [
                 "line 10",
                 "`solver.kind`",
-                "exact-events, rk4-events and reference",
+                "exact-events, rk4-events, exact-hermite and reference",
             ],
+        ),
+        (
+            refused("exact-events", "exact-hermite"),
+            ["line 10", "`solver.kind`", "no acceleration of the shaft"],
+        ),
+        (
+            refused(
+                "exact-events\"",
+                "exact-hermite\"\nprecision = \"f32\"\n[effects.crepitus]\nconvention = \"physical\"",
+            ),
+            ["line 11", "`solver.precision`", "use precision \"f64\""],
+        ),
+        (
+            refused(
+                "exact-events\"\nstep_s = 5e-5",
+                "exact-hermite\"\nstep_s = 5e-5\n[effects.encoder]",
+            ),
+            ["line 10", "`solver.kind`", "leave out [effects.encoder]"],
         ),
         (
             refused("step_s = 5e-5\n", ""),

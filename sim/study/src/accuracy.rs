@@ -16,10 +16,11 @@
 //! | the torque to compare with, at the ends of steps and within them | [`reference_torque`], [`held_torque`] |
 //! | how a run is measured and how it is timed | [`measure`], [`timing`] |
 //! | what a step costs on the device's core | [`target`] |
-//! | orders of convergence | [`orders`] |
+//! | orders of convergence, and on motions of other kinds | [`orders`], [`convergence`] |
 //! | limits, and the cheapest rung that keeps them | [`need`], [`mod@answer`] |
 
 pub mod answer;
+pub mod convergence;
 pub mod held_torque;
 pub mod measure;
 pub mod need;

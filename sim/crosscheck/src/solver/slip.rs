@@ -10,7 +10,7 @@ use crate::double_double::Dd;
 use crate::event::{Cause, Unsolved};
 use crate::first_fall::{Fall, Root, first_fall};
 use crate::series::Series;
-use crate::shaft::Shaft;
+use crate::shaft::{Shaft, speed_size_rad_s};
 use crate::swing::Swing;
 use crepitus_model::Convention;
 
@@ -75,9 +75,11 @@ impl Solver<'_> {
     fn swing_on(&mut self, swing: &Swing, center: Dd, gap: Gap) -> bool {
         let (x, v) = (swing.x.end(), swing.v.end());
         let object = &self.joint.object;
-        let (reach, natural) = (object.reach_rad_s(x, v), object.natural_rad_s());
-        self.theta = center + x + Dd::new(self.rounding.change(reach / natural));
-        self.v = v + Dd::new(self.rounding.change(reach));
+        // What is compared are two velocities, each rounded in its own size.
+        let size = object.reach_rad_s(x, v) + speed_size_rad_s(&self.piece, self.time_s);
+        let natural = object.natural_rad_s();
+        self.theta = center + x + Dd::new(self.rounding.change(size / natural));
+        self.v = v + Dd::new(self.rounding.change(size));
         if let Phase::Slip { sense, .. } = self.phase {
             self.phase = Phase::Slip { sense, gap };
         }

@@ -3,7 +3,8 @@
 use super::Reference;
 use super::ahead::PhaseEnd;
 use super::first_root::{Sample, first_root};
-use crepitus_model::locate::{ExactEvents, StickPath, earlier, first_break};
+use super::parabola::Parabola;
+use crepitus_model::locate::earlier;
 use crepitus_model::{Convention, Sense};
 use crepitus_plant::ShaftState;
 use std::ops::ControlFlow;
@@ -88,16 +89,20 @@ impl Reference<'_> {
         let shaft = self.piece.at(from_s);
         let (torque_nm, rate) = self.torque_and_rate(anchor, inertial, &shaft);
         if self.piece.is_parabolic() {
-            // So is the torque, whose root the model knows.
-            let path = StickPath {
-                torque_nm,
-                rate,
-                curvature: self.settings.parameters.stiffness_nm_per_rad * shaft.omega_dot,
+            // So is the torque.
+            let curvature = self.settings.parameters.stiffness_nm_per_rad * shaft.omega_dot;
+            let slack = self.limit_slack_nm(&shaft);
+            let at = |sense: Sense| {
+                Parabola {
+                    left: limit_nm - sense.of_signed(torque_nm),
+                    rate: sense.of_signed(rate),
+                    curvature: sense.of_signed(curvature),
+                }
+                .first_root(slack)
+                .map(|after_s| (from_s + after_s, sense))
+                .filter(|(time_s, _)| *time_s <= to_s)
             };
-            return ControlFlow::Continue(
-                first_break::<f64, ExactEvents>(&path, limit_nm, to_s - from_s)
-                    .map(|(after_s, sense)| (from_s + after_s, sense)),
-            );
+            return ControlFlow::Continue(earlier(at(Sense::Positive), at(Sense::Negative)));
         }
         let mut at = |sense, to_s| {
             let mark = Mark {

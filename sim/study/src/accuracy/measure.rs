@@ -198,6 +198,7 @@ fn judge(target: &Target<'_>, seen: &Seen) -> Accuracy {
 mod tests {
     use super::*;
     use crate::accuracy::scenes::standard;
+    use std::convert::Infallible;
 
     /// 1 s of a standard scene.
     fn accuracy(name: &str, convention: &str, solver: Solver, step_s: f64) -> Accuracy {
@@ -211,7 +212,8 @@ mod tests {
         };
         let truth = scene.true_events();
         let sampling = Sampling::new(&scene.motion, scene.duration_s, step_s);
-        let torque = ReferenceTorque::new(&scene, &sampling, &truth);
+        let torque =
+            ReferenceTorque::new(&scene, &sampling, &truth, || Ok::<_, Infallible>(())).unwrap();
         let events: Vec<_> = truth.iter().map(|e| e.event).collect();
         let target = Target {
             scene: &scene,

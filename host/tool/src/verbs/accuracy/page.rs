@@ -116,14 +116,16 @@ fn convergence(study: &Study) -> Vec<Section> {
             solver,
             frequency,
             event_time,
+            event_time_rms,
         } = orders;
         let title = format!("Measured orders in f64: {scene}, {convention}");
         let row = (
             (*solver).to_owned(),
             format!(
-                "frequency {}, event time {}",
+                "frequency {}, event time {} (root mean square {})",
                 order(*frequency),
-                order(*event_time)
+                order(*event_time),
+                order(*event_time_rms)
             ),
         );
         match sections.last_mut().filter(|s| s.title == title) {

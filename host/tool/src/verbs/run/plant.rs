@@ -16,6 +16,12 @@ pub(super) fn in_brief(s: &Summary) -> Vec<String> {
             nm(t.mean_nm)
         ));
     }
+    if let Some(i) = s.impacts.filter(|i| i.count > 0) {
+        lines.push(format!(
+            "  {} impacts in the gear of up to {:.2e} N·m·s, at the hand {:.2e} N·m·s in a tick",
+            i.count, i.largest_nms, i.hand_largest_nms
+        ));
+    }
     if let Some(e) = &s.plant_energy {
         lines.push(format!(
             "  energy of the plant balances to {}",

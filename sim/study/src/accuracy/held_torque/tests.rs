@@ -8,6 +8,7 @@ use crepitus_model::{Parameters, Settings};
 use crepitus_plant::motion::VelocityKnot;
 use crepitus_scene::reference::Reference;
 use crepitus_scene::scene::Precision;
+use std::convert::Infallible;
 
 const TICK_S: f64 = 5e-5;
 
@@ -33,7 +34,8 @@ fn accuracy(scene: &StudyScene, solver: Solver, step_s: f64) -> Accuracy {
         scene,
         sampling: &sampling,
         events: &events,
-        torque: &ReferenceTorque::new(scene, &sampling, &truth),
+        torque: &ReferenceTorque::new(scene, &sampling, &truth, || Ok::<_, Infallible>(()))
+            .unwrap(),
         held: &HeldTorque::new(scene, &sampling, &truth),
     };
     measure(&target, solver, Precision::F64).unwrap()

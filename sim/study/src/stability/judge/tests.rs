@@ -8,7 +8,7 @@ use crepitus_model::{Convention, EventKind, Sense};
 use crepitus_scene::scene::Precision;
 
 const SUBJECT: Subject = Subject {
-    solver: Solver::ExactEvents,
+    solver: Rung::Ladder(Solver::ExactEvents),
     convention: Convention::Physical,
     precision: Precision::F64,
 };
