@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! |Δt| ≤ 10⁻¹²·t + 10⁻¹¹·min(1/ωn, duration)
-//! |Δθ| ≤ 10⁻¹¹·max(|θ|, Ts/kr) + 2⁻⁵⁰·|φ| + |θ̇|·(bound of Δt)
+//! |Δθ| ≤ 10⁻¹¹·max(|θ|, Ts/kr) + 2⁻⁴⁹·|φ| + |θ̇|·(bound of Δt)
 //! |ΔT| ≤ 10⁻¹¹·Ts + kr·(bound of Δθ)
 //! ```
 //! Where that fails, the case is solved [`TRIALS`] times more with
@@ -16,6 +16,7 @@
 //! differs is **real**.
 
 use crate::corpus::{Case, MOST_EVENTS};
+use crate::double_double::Dd;
 use crate::event::{Cause, History, Unsolved};
 use crate::rounding::Rounding;
 use crate::solver::{Problem, solve, solve_rounded};
@@ -210,6 +211,16 @@ fn scale_s(case: &Case) -> f64 {
     (1.0 / case.settings.parameters.natural_rad_s()).min(case.duration_s)
 }
 
+/// Whether an error is more than allowed, or no number.
+fn is_beyond(error: f64, bound: f64) -> bool {
+    error.is_nan() || error > bound
+}
+
+/// |x − y|.
+fn apart(x: Dd, y: Dd) -> f64 {
+    (x - y).abs().to_f64()
+}
+
 impl Pair<'_> {
     fn spread(&self, at: usize) -> Spread {
         let last = self.spreads.len().saturating_sub(1);
@@ -225,19 +236,15 @@ impl Pair<'_> {
         let (ours, theirs) = (&self.ours.events, self.theirs);
         let p = &self.case.settings.parameters;
         let least = ours.len().min(theirs.len());
-        for at in 0..least {
-            let (a, b) = (&ours[at], &theirs[at]);
+        for (at, (a, b)) in ours.iter().zip(theirs).enumerate() {
             if (a.kind, a.from, a.to) != (b.kind, b.from.sign(), b.to.sign()) {
                 return (at, Some(Difference::Sequence));
             }
             let time_s = a.time_s.to_f64();
             let time_bound = self.time_bound_s(at, time_s);
             let spread = self.spread(at);
-            let off = |x: crate::double_double::Dd, y: f64| {
-                (x - crate::double_double::Dd::new(y)).abs().to_f64()
-            };
-            let error = off(a.time_s, b.fraction);
-            if !(error <= time_bound) {
+            let error = apart(a.time_s, Dd::new(b.fraction));
+            if is_beyond(error, time_bound) {
                 return (at, Some(Difference::Time(error)));
             }
             *worst = worst.max(error / (time_s + 1.0 / p.natural_rad_s()));
@@ -247,23 +254,23 @@ impl Pair<'_> {
                 + 8.0 * f64::EPSILON * phi
                 + a.theta_dot_rad_s.to_f64().abs() * time_bound
                 + MARGIN * spread.theta_rad;
-            let error = off(a.theta_rad, b.theta_rad);
-            if !(error <= theta_bound) {
+            let error = apart(a.theta_rad, Dd::new(b.theta_rad));
+            if is_beyond(error, theta_bound) {
                 return (at, Some(Difference::Theta(error)));
             }
             let torque_bound = 1e-11 * p.static_torque_nm
                 + p.stiffness_nm_per_rad * theta_bound
                 + MARGIN * spread.torque_nm;
-            let error = off(a.torque_after_nm, b.torque_after_nm);
-            if !(error <= torque_bound) {
+            let error = apart(a.torque_after_nm, Dd::new(b.torque_after_nm));
+            if is_beyond(error, torque_bound) {
                 return (at, Some(Difference::TorqueAfter(error)));
             }
             // At the start and at jumps there is no one torque before.
             if let Some(before) = a.torque_before_nm
                 && a.cause != Cause::VelocityJump
             {
-                let error = off(before, b.torque_before_nm);
-                if !(error <= torque_bound) {
+                let error = apart(before, Dd::new(b.torque_before_nm));
+                if is_beyond(error, torque_bound) {
                     return (at, Some(Difference::TorqueBefore(error)));
                 }
             }
@@ -299,14 +306,11 @@ impl Pair<'_> {
                 alike = alike.min(same);
             }
             for ((spread, a), b) in spreads.iter_mut().zip(ours).zip(&rounded).take(same) {
-                let off = |x: crate::double_double::Dd, y: crate::double_double::Dd| {
-                    (x - y).abs().to_f64()
-                };
-                spread.time_s = spread.time_s.max(off(a.time_s, b.time_s));
-                spread.theta_rad = spread.theta_rad.max(off(a.theta_rad, b.theta_rad));
+                spread.time_s = spread.time_s.max(apart(a.time_s, b.time_s));
+                spread.theta_rad = spread.theta_rad.max(apart(a.theta_rad, b.theta_rad));
                 spread.torque_nm = spread
                     .torque_nm
-                    .max(off(a.torque_after_nm, b.torque_after_nm));
+                    .max(apart(a.torque_after_nm, b.torque_after_nm));
             }
         }
         spreads.truncate(alike);

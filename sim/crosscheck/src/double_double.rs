@@ -185,7 +185,7 @@ impl Sub for Dd {
     type Output = Self;
     #[inline]
     fn sub(self, other: Self) -> Self {
-        self + -other
+        Add::add(self, -other)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crepitus_crosscheck::compare::{compare, ours};
 use crepitus_crosscheck::corpus::{Case, MOST_EVENTS};
+use crepitus_crosscheck::double_double::Dd;
 use crepitus_crosscheck::watched::{Answer, LIMIT, Watched};
 use crepitus_model::parameters::PARAMETERS;
 use crepitus_plant::Motion;
@@ -75,7 +76,7 @@ pub(crate) fn case(number: u64) -> io::Result<bool> {
                 e.time_s.to_f64(),
                 e.theta_rad.to_f64(),
                 e.omega_rad_s.to_f64(),
-                e.torque_before_nm.map_or(f64::NAN, |t| t.to_f64()),
+                e.torque_before_nm.map_or(f64::NAN, Dd::to_f64),
                 e.torque_after_nm.to_f64(),
                 e.cause,
                 e.half_width_s,

@@ -383,6 +383,7 @@ struct Certain {
 }
 
 /// The beginning of a slip.
+#[derive(Clone, Copy, Debug)]
 struct SlipStart {
     cause: Cause,
     from: f64,

@@ -40,8 +40,8 @@ impl Summary {
                         "the cases of a row of piece {expected} do not add up"
                     ));
                 }
-                let notable = (c.undecidable + c.disagreed + c.law_broken) as usize;
-                if c.notable.len() != notable {
+                let notable = c.undecidable + c.disagreed + c.law_broken;
+                if c.notable.len() as u64 != notable {
                     faults.push(format!("piece {expected} does not name every notable case"));
                 }
                 for (convention, motion, sum) in &mut cells {

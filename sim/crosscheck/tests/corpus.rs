@@ -70,7 +70,7 @@ fn the_first_piece_comes_out_as_committed() {
 fn a_child_that_hangs_or_dies_is_reported_and_the_next_case_goes_on() {
     // `false` ends at once without an answer, for every case.
     let answers: Vec<_> = Watched::new(Path::new("/bin/false"), LIMIT, 5, 8)
-        .map(|answer| answer.unwrap())
+        .map(Result::unwrap)
         .collect();
     assert_eq!(
         answers,

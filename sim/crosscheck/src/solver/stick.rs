@@ -13,6 +13,7 @@ use crate::series::Series;
 use crepitus_model::Convention;
 
 /// How a series that may begin at zero leaves it.
+#[allow(clippy::large_enum_variant, reason = "on the stack for one step")]
 pub(super) enum Leaving {
     /// Above zero; divided by the power of σ that is zero at the start.
     Above(Series),
