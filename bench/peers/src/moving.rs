@@ -92,3 +92,37 @@ fn settings(convention: Convention, quick: bool) -> Vec<Setting> {
     }
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::{hand_sine, recorded_knee};
+    use crate::work::{Delivery, Task};
+
+    #[test]
+    fn a_library_finds_the_events_of_the_reference() {
+        let mut out = Delivery::new();
+        let peer = Peer::ALL.iter().find(|p| p.name == "ivp 0.6.0 dop853");
+        for (hand, limit_s) in [(hand_sine(), 1e-8), (recorded_knee().unwrap(), 1e-6)] {
+            for convention in [Convention::Frozen, Convention::Physical] {
+                crate::ours::reference_events(convention, &hand)(Task::Events, &mut out).unwrap();
+                let truth = out.events.clone();
+                for stick_by in [StickBy::Position, StickBy::Integration] {
+                    let setting = Setting {
+                        tolerance: 1e-11,
+                        slip_limit_s: Some(0.95e-3),
+                        stick_by,
+                    };
+                    let mut runner = peer.unwrap().build(&hand, convention, setting).unwrap();
+                    runner(Task::Events, &mut out).unwrap();
+                    let case = format!("{}, {convention:?}, {stick_by:?}", hand.name);
+                    assert!(truth.len() > 5, "{case}");
+                    assert_eq!(out.events.len(), truth.len(), "{case}");
+                    for (found_s, true_s) in out.events.iter().zip(&truth) {
+                        assert!((found_s - true_s).abs() < limit_s, "{case}, {true_s} s");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -2,8 +2,7 @@
 //!
 //! A solver that searches again from each row for the next event pays for the rows in events.
 
-use crate::measure::{Times, summarise};
-use crate::measure::{repeats, time};
+use crate::measure::{Times, repeats, summarise, time};
 use crate::motion::Hand;
 use crate::ours;
 use crate::work::{Delivery, Runner, Task};

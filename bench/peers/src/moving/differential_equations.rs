@@ -85,15 +85,15 @@ impl<const O: usize, const S: usize, const I: usize> Integrator for Phase<'_, O,
             phases: self.phases,
             begun_s: from_s,
         };
-        let left_s = self.phases.duration_s() - from_s;
+        let duration_s = self.phases.duration_s();
         method.h_max = step.longest_s;
         method.h0 = step.first_s.unwrap_or(0.0);
         method
-            .init(&system, 0.0, left_s, &y)
+            .init(&system, 0.0, duration_s, &y)
             .map_err(|e| format!("{e:?}"))?;
         solution.t.clear();
         solution.y.clear();
-        let mut detector = EventSolout::new(&system, 0.0, left_s);
+        let mut detector = EventSolout::new(&system, 0.0, duration_s);
         // The first call only looks at the sign; without it the first step has no event.
         detector.solout(0.0, 0.0, &y, &y, method, solution);
         loop {
@@ -111,7 +111,7 @@ impl<const O: usize, const S: usize, const I: usize> Integrator for Phase<'_, O,
                     step_s: method.h(),
                 }));
             }
-            if until_s >= left_s {
+            if from_s + until_s >= duration_s {
                 return Ok(None);
             }
         }

@@ -9,46 +9,54 @@ use ivp::solout::SolOut;
 
 /// The method of order 5.
 pub(super) fn dopri5(phases: Phases, setting: Setting) -> Runner {
-    runner(phases, setting, move |system, y, step, left_s, watch| {
-        DOPRI5::builder()
-            .max_steps(usize::MAX)
-            .maybe_first_step(step.first_s)
-            .max_step(step.longest_s)
-            .build()
-            .solve(
-                system,
-                0.0,
-                y,
-                left_s,
-                setting.tolerance.into(),
-                setting.tolerance.into(),
-                Some(watch),
-            )
-            .map(|_| ())
-            .map_err(|e| format!("{e:?}"))
-    })
+    runner(
+        phases,
+        setting,
+        move |system, y, step, duration_s, watch| {
+            DOPRI5::builder()
+                .max_steps(usize::MAX)
+                .maybe_first_step(step.first_s)
+                .max_step(step.longest_s)
+                .build()
+                .solve(
+                    system,
+                    0.0,
+                    y,
+                    duration_s,
+                    setting.tolerance.into(),
+                    setting.tolerance.into(),
+                    Some(watch),
+                )
+                .map(|_| ())
+                .map_err(|e| format!("{e:?}"))
+        },
+    )
 }
 
 /// The method of order 8.
 pub(super) fn dop853(phases: Phases, setting: Setting) -> Runner {
-    runner(phases, setting, move |system, y, step, left_s, watch| {
-        DOP853::builder()
-            .max_steps(usize::MAX)
-            .maybe_first_step(step.first_s)
-            .max_step(step.longest_s)
-            .build()
-            .solve(
-                system,
-                0.0,
-                y,
-                left_s,
-                setting.tolerance.into(),
-                setting.tolerance.into(),
-                Some(watch),
-            )
-            .map(|_| ())
-            .map_err(|e| format!("{e:?}"))
-    })
+    runner(
+        phases,
+        setting,
+        move |system, y, step, duration_s, watch| {
+            DOP853::builder()
+                .max_steps(usize::MAX)
+                .maybe_first_step(step.first_s)
+                .max_step(step.longest_s)
+                .build()
+                .solve(
+                    system,
+                    0.0,
+                    y,
+                    duration_s,
+                    setting.tolerance.into(),
+                    setting.tolerance.into(),
+                    Some(watch),
+                )
+                .map(|_| ())
+                .map_err(|e| format!("{e:?}"))
+        },
+    )
 }
 
 /// A phase, whose time begins at zero.
@@ -92,7 +100,11 @@ impl SolOut for Watch<'_> {
             return ControlFlag::Continue;
         };
         if !(before > 0.0 && after <= 0.0) {
-            return ControlFlag::Continue;
+            return if system.begun_s + *to_s >= system.phases.duration_s() {
+                ControlFlag::Interrupt
+            } else {
+                ControlFlag::Continue
+            };
         }
         let mut at = [0.0; 2];
         let time_s = falls_at((from_s, *to_s), (before, after), |t| {
@@ -122,21 +134,18 @@ where
             phases: self.phases,
             begun_s: from_s,
         };
-        let left_s = self.phases.duration_s() - from_s;
-        if left_s <= 0.0 {
-            return Ok(None);
-        }
+        let duration_s = self.phases.duration_s();
         // The library takes the whole length for "no limit".
         let step = Step {
-            first_s: step.first_s.map(|h| h.min(left_s)),
-            longest_s: step.longest_s.min(left_s),
+            longest_s: step.longest_s.min(duration_s),
+            ..step
         };
         let mut watch = Watch {
             system,
             before: 0.0,
             end: None,
         };
-        (self.solve)(&system, &y, step, left_s, &mut watch)?;
+        (self.solve)(&system, &y, step, duration_s, &mut watch)?;
         Ok(watch.end)
     }
 }

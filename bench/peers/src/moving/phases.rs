@@ -179,6 +179,9 @@ impl Phases {
             let Some(end) = integrator.phase(from_s, y, step)? else {
                 return Ok(());
             };
+            if end.time_s > self.duration_s {
+                return Ok(());
+            }
             if !sticks {
                 slip_step_s = Some(end.step_s);
             }
