@@ -12,8 +12,8 @@ figure knee-pass-frozen torque knee-pass-frozen
 figure knee-pass-physical torque knee-pass-physical
 
 cargo run --release --quiet -- accuracy --target --pictures --out target/figures/accuracy >target/figures/accuracy.txt
-for picture in frequency-f64 frequency-f32 torque-f32; do
-    measure=${picture%-*} precision=${picture#*-}
+for picture in frequency-f64 frequency-f32 held-torque-f32; do
+    measure=${picture%-*} precision=${picture##*-}
     cp "target/figures/accuracy/$measure-constant-0-988-physical-$precision.svg" "docs/images/accuracy-$picture.svg"
     echo "docs/images/accuracy-$picture.svg"
 done

@@ -55,31 +55,36 @@ fn a_study_becomes_three_files() {
         header.join(","),
         "scene,convention,solver,precision,step_s,events,events_true,unmatched,\
          max_event_error_s,rms_event_error_s,max_interval_error_s,frequency_error_rel,\
-         rms_torque_error_nm,max_torque_error_nm,ns_per_step,us_per_simulated_s,time_spread,\
-         cycles_per_step,worst_cycles,instructions_per_step"
+         rms_held_torque_error_nm,max_held_torque_error_nm,held_floor_nm,\
+         rms_tick_torque_error_nm,max_tick_torque_error_nm,ns_per_step,us_per_simulated_s,\
+         time_spread,cycles_per_step,worst_cycles,instructions_per_step"
     );
-    // Ten rungs, two precisions, five steps.
-    assert_eq!(rows.len(), 100);
+    // Ten rungs in two precisions, one in f64 alone, five steps.
+    assert_eq!(rows.len(), 105);
     for row in &rows {
         assert_eq!(row.len(), header.len());
         assert_eq!(row[..2], ["short-physical", "physical"]);
         for cell in &row[4..] {
             number(cell);
         }
-        assert!(number(&row[14]) > 0.0, "{row:?}");
-        let per_second = number(&row[14]) * 1e-3 / number(&row[4]);
-        assert!((number(&row[15]) / per_second - 1.0).abs() < 1e-9);
+        assert!(number(&row[17]) > 0.0, "{row:?}");
+        let per_second = number(&row[17]) * 1e-3 / number(&row[4]);
+        assert!((number(&row[18]) / per_second - 1.0).abs() < 1e-9);
     }
     let exact = rows
         .iter()
         .find(|r| r[2..4] == ["exact-events", "f64"] && number(&r[4]) == 5e-5)
         .expect("the device's tick is studied");
     assert_eq!((exact[5].as_str(), exact[7].as_str()), ("31", "0"));
-    assert!(number(&exact[8]) < 1e-13 && number(&exact[12]) < 1e-10);
+    assert!(number(&exact[8]) < 1e-13 && number(&exact[15]) < 1e-10);
+    // Exact at the ticks, and off by 8 mN·m for being held between them.
+    let (held, floor) = (number(&exact[12]), number(&exact[14]));
+    assert!((held - 8e-3).abs() < 2e-4, "{held}");
+    assert!((held / floor - 3_f64.sqrt()).abs() < 0.05, "{floor}");
 
     let summary = summary(&out);
     assert_eq!(summary["scenes"][0]["events_true"], 31);
-    assert_eq!(summary["points"], 100);
+    assert_eq!(summary["points"], 105);
     assert!(summary["wall_s"].as_f64().unwrap() > 0.0);
     let orders = summary["orders"].as_array().unwrap();
     let order = |solver: &str| {
@@ -123,7 +128,7 @@ fn what_has_no_meaning_is_listed_with_its_reason() {
     assert!(!rows.is_empty() && rows.iter().all(|r| r[2] != "rk4"));
 }
 
-/// Errors of a rung in f32 at a step, measured again: torque, interval,
+/// Errors of a rung in f32 at a step, measured again: held torque, interval,
 /// unmatched.
 fn measured_again(scene: &Path, solver: &str, step: &str) -> (f64, f64, f64) {
     let home = tempfile::tempdir().unwrap();
@@ -150,10 +155,10 @@ fn a_need_gets_the_cheapest_that_meets_it() {
     let home = tempfile::tempdir().unwrap();
     let scene = short_scene(home.path(), "physical");
     let scene_name = scene.to_str().unwrap();
-    let (torque, interval) = (5e-3, 2e-5);
+    let (torque, interval) = (9e-3, 2e-5);
     let arguments = [
         "--need",
-        "torque=5e-3,interval=2e-5",
+        "torque=9e-3,interval=2e-5",
         "--rate",
         "20000",
         "--quick",
@@ -244,6 +249,38 @@ fn a_need_that_nothing_meets_fails_with_the_nearest() {
 }
 
 #[test]
+fn a_torque_that_cannot_be_held_is_said_to_be_so_and_can_be_asked_for_at_the_tick() {
+    let home = tempfile::tempdir().unwrap();
+    let scene = short_scene(home.path(), "physical");
+    let ask = |need| {
+        let scene = scene.to_str().unwrap();
+        accuracy(&[
+            "--need", need, "--rate", "20000", "--quick", "--scene", scene,
+        ])
+    };
+    let output = ask("torque=4e-3");
+    assert_eq!(output.status.code(), Some(1));
+    let text = stdout(&output);
+    assert!(
+        text.contains("rms error of the held torque at most 4e-3 N·m"),
+        "{text}"
+    );
+    assert!(
+        text.contains("No solver could: any torque that is held for 50 µs is off by 4.6e-3"),
+        "{text}"
+    );
+    // Between the floor and what solvers reach it is only not met.
+    let text = stdout(&ask("torque=5e-3"));
+    assert!(
+        text.contains("Nothing studied meets it") && !text.contains("No solver could"),
+        "{text}"
+    );
+    let output = ask("torque-at-tick=4e-3");
+    assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
+    assert!(stdout(&output).contains("rms torque error at the tick"));
+}
+
+#[test]
 fn bad_usage_says_what_is_allowed() {
     let home = tempfile::tempdir().unwrap();
     let frozen = short_scene(home.path(), "frozen");
@@ -272,6 +309,14 @@ fn bad_usage_says_what_is_allowed() {
                 frozen,
             ],
             "this scene is studied under frozen",
+        ),
+        (
+            vec!["--need", "torque=1", "--target", "--rate", "10000"],
+            "expected --rate 20000 or no --rate",
+        ),
+        (
+            vec!["--need", "torque=1", "--target", "--precision", "f64"],
+            "the target computes in f32",
         ),
         (vec!["--rate", "20000"], "--need"),
         (vec!["--scene", "no-such-scene"], "no such scene ships"),
@@ -370,6 +415,54 @@ fn the_target_adds_cycles_to_points_summary_and_report() {
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.contains("On the device’s core") || report.contains("On the device's core"));
     assert!(report.contains(label));
+}
+
+#[test]
+fn on_the_target_its_cycles_choose() {
+    let home = tempfile::tempdir().unwrap();
+    let scene = short_scene(home.path(), "frozen");
+    let arguments = [
+        "--need",
+        "torque=9e-3,frequency=1e-6",
+        "--target",
+        "--quick",
+        "--scene",
+        scene.to_str().unwrap(),
+    ];
+    let output = accuracy(&[&["--json"], &arguments[..]].concat());
+    if has_no_target(&output) {
+        return;
+    }
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let told = json(&output);
+    assert_eq!(told["chosen_by"], "target cycles");
+    let answer = &told["answer"];
+    // As accurate as `exact-break`, and cheaper on the target whatever the
+    // host says.
+    let (chosen, runner_up) = (&answer["chosen"], &answer["runner_up"]);
+    assert_eq!(chosen["solver"], "exact-interpolated");
+    assert_eq!(chosen["step_s"], 5e-5);
+    assert_eq!(runner_up["solver"], "exact-break");
+    let mean = |candidate: &Value| candidate["cycles"]["mean"].as_f64().unwrap();
+    assert!(mean(chosen) < mean(runner_up), "{answer}");
+    assert!(chosen["cycles"]["worst"].as_f64().unwrap() <= 1_680.0);
+    let failed: Vec<_> = answer["failed"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|c| &c["solver"])
+        .collect();
+    assert_eq!(failed, ["exact"]);
+    let text = stdout(&accuracy(&arguments));
+    for part in [
+        "modelled cycles, 0 wait states; not measured on hardware",
+        "must fit 20 % of a tick, 1680 cycles",
+        "Use exact-interpolated with a step of 50 µs",
+        "The runner-up is exact-break",
+        "These fail:\n  exact, ",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
 }
 
 #[test]

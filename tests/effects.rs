@@ -91,7 +91,7 @@ fn a_study_is_what_single_runs_say() {
     assert_eq!(
         header.join(","),
         "change,effect,along,states,added_states,ns_per_step,time_spread,added_ns_per_step,\
-         added_rms_nm,added_peak_nm,rms_nm,peak_nm,rms_10_50_hz_nm,rms_50_250_hz_nm,rms_250_450_hz_nm,events,\
+         added_ns_resolution,added_rms_nm,added_peak_nm,rms_nm,peak_nm,rms_10_50_hz_nm,rms_50_250_hz_nm,rms_250_450_hz_nm,events,\
          added_events,failure"
     );
     assert_eq!(rows.len(), 1 + EFFECTS.len());
@@ -120,6 +120,13 @@ fn a_study_is_what_single_runs_say() {
         assert!((number(&cell(row, "rms_nm")) - own.0).abs() <= 1e-12 * own.0);
         assert_eq!(number(&cell(row, "peak_nm")), own.1);
         assert!(number(&cell(row, "ns_per_step")) > 0.0);
+        // A cost is above what the timings can tell, or it is not given.
+        let added = number(&cell(row, "added_ns_per_step"));
+        let resolution = number(&cell(row, "added_ns_resolution"));
+        assert!(
+            resolution > 0.0 && (added.is_nan() || added > resolution),
+            "{row:?}"
+        );
     }
 
     let summary = summary(&out);

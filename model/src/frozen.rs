@@ -16,7 +16,7 @@ use crate::event::{EVENTS_PER_STEP, Event};
 use crate::locate::{Locate, StickPath, first_break};
 use crate::phase::{EventKind, Phase, Sense};
 use crate::real::Real;
-use crate::shaft::{ShaftPath, ShaftStep};
+use crate::shaft::{Linear, ShaftPath, ShaftStep};
 use crate::stick_slip::StickSlip;
 use crate::ticks::Ticks;
 
@@ -61,7 +61,7 @@ struct Slip<F> {
     limit_rad: F,
 }
 
-impl<F: Real, L: Locate<F>> Frozen<F, L> {
+impl<F: Real, L: Locate<F, Shape = Linear>> Frozen<F, L> {
     /// An object in stick at θ = 0 on a shaft that moves with `omega_rad_s`.
     pub fn new(active: Active<F>, omega_rad_s: F) -> Self {
         Self {
@@ -299,7 +299,7 @@ impl<F: Real> Place<F> {
 /// Where and in which sense a stick at `theta` breaks after `from_s`.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "as `first_break`")]
-fn find_break<F: Real, L: Locate<F>>(
+fn find_break<F: Real, L: Locate<F, Shape = Linear>>(
     active: &Active<F>,
     path: &ShaftPath<F>,
     theta: F,
@@ -308,7 +308,8 @@ fn find_break<F: Real, L: Locate<F>>(
     let stick = StickPath {
         torque_nm: active.stiffness * theta,
         rate: active.stiffness * path.rate(from_s),
-        curvature: active.stiffness * path.omega_dot,
+        curvature: active.stiffness * path.omega_dot(from_s),
+        shape: Linear,
     };
     first_break::<F, L>(&stick, active.static_nm, active.step_s - from_s)
 }
@@ -333,7 +334,7 @@ impl<F: Real> Slip<F> {
     }
 }
 
-impl<F: Real, L: Locate<F>> StickSlip<F> for Frozen<F, L> {
+impl<F: Real, L: Locate<F, Shape = Linear>> StickSlip<F> for Frozen<F, L> {
     #[inline]
     fn step(&mut self, shaft: &ShaftStep<F>, on_event: impl FnMut(Event<F>)) {
         if self.ticks_left == 0

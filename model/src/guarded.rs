@@ -13,6 +13,17 @@
 //!        └ hold_ticks ┘   slew            shaft seen again
 //! ```
 //!
+//! A held torque T pushes a hand that retreats by x meanwhile, and returns T·x.
+//! The new stick must not hold that energy a second time, so it begins with
+//! less, by as much as the spring would have unwound:
+//!
+//! ```text
+//! |T′| = max(0, |T| − kr·x)      T·x ≤ (T² − T′²)/2kr + ½·kr·x²
+//! ```
+//!
+//! With x² ≤ N·h·∫Ω² dt over the N ticks of the gap, a gap returns no more than
+//! a spring that is sampled once in N ticks: ½·N·kr·h·∫Ω² dt.
+//!
 //! A tick costs at most `CATCH_UP_TICKS` + 1 steps of the joint, and each of
 //! these at most [`EVENTS_PER_STEP`] events.
 
@@ -221,11 +232,24 @@ impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
         }
     }
 
+    /// The held torque less what the spring loses where the shaft has gone
+    /// back by this travel, N·m; never beyond zero.
+    fn unwound_nm(&self, travel_rad: F) -> F {
+        let held_nm = self.held_nm;
+        let change_nm = self.joint.active().stiffness * travel_rad;
+        if held_nm < F::ZERO {
+            (held_nm + F::ZERO.at_least(change_nm)).at_most(F::ZERO)
+        } else {
+            (held_nm + F::ZERO.at_most(change_nm)).at_least(F::ZERO)
+        }
+    }
+
     /// The first good sample after missing ones.
     fn catch_up(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
         if self.missed > CATCH_UP_TICKS {
             self.counters.restarts = self.counters.restarts.saturating_add(1);
-            self.joint.restart(self.held_nm, shaft.omega_end_rad_s);
+            let torque_nm = self.unwound_nm(shaft.delta_phi_rad);
+            self.joint.restart(torque_nm, shaft.omega_end_rad_s);
             return;
         }
         let ticks = self.missed + 1;
@@ -257,6 +281,8 @@ impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frozen::Frozen;
+    use crate::locate::ExactEvents;
     use crate::{Active, Phase, Settings};
     use std::vec::Vec;
 
@@ -355,5 +381,50 @@ mod tests {
                 assert!((travel - 2e-4).abs() < 1e-10);
             }
         }
+    }
+
+    /// The torque after a gap of `missing` ticks in which a stick that showed
+    /// `held_nm` travelled by `travel_rad`.
+    fn after_a_gap(held_nm: f32, missing: u32, travel_rad: f32) -> f32 {
+        let active = Active::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
+        let mut joint = Guarded::new(
+            Frozen::<f32, ExactEvents>::new(active, 0.0),
+            InputLimits::device(TICK_S),
+            0.0,
+        );
+        joint.joint_mut().restart(held_nm, 0.0);
+        for _ in 0..missing {
+            joint.tick(&Sample::Lost, |_| panic!("no event without a shaft"));
+        }
+        let seen = ShaftStep {
+            delta_phi_rad: travel_rad,
+            ..ShaftStep::default()
+        };
+        joint.tick(&Sample::Taken(seen), |_| panic!("a stick begins"));
+        joint.torque_nm()
+    }
+
+    #[test]
+    fn a_hand_that_retreats_in_a_gap_finds_less_in_the_spring() {
+        for missing in [4, 10, 19, 20] {
+            for (held, travel, expected) in [
+                // Back by as much as unwinds a quarter, all, and more than all.
+                (0.3, -1.875e-4, 0.225),
+                (0.3, -7.5e-4, 0.0),
+                (0.3, -2e-3, 0.0),
+                // Forward: what was shown goes on.
+                (0.3, 2e-3, 0.3),
+                (0.3, 0.0, 0.3),
+                (0.0, -1e-3, 0.0),
+            ] {
+                let found = after_a_gap(held, missing, travel);
+                assert!((found - expected).abs() < 1e-6, "{held} {travel}: {found}");
+                let mirrored = after_a_gap(-held, missing, -travel);
+                assert_eq!(mirrored, -found);
+            }
+        }
+        // Some of it was let go of before.
+        let found = after_a_gap(0.3, 40, -1.25e-4);
+        assert!((found - (0.3 - 0.1 - 0.05)).abs() < 1e-6, "{found}");
     }
 }

@@ -7,35 +7,46 @@
 mod end_of_step;
 mod exact;
 mod exact_break;
+mod hermite;
 mod interpolated;
 
 pub use end_of_step::EndOfStep;
 pub use exact::ExactEvents;
 pub use exact_break::ExactBreak;
+pub use hermite::ExactHermite;
 pub use interpolated::Interpolated;
 
 use crate::oscillator::Oscillator;
 use crate::phase::Sense;
 use crate::propagate::Propagate;
 use crate::real::Real;
+use crate::shaft::{Linear, VelocityShape};
 
 /// The torque of a stick over what is left of a step: the parabola
-/// T(u) = torque + rate·u + curvature·u²/2.
+/// T(u) = torque + rate·u + curvature·u²/2, or with a quadratic Ω the cubic
+/// that has kr·Ω̈·u³/6 in addition.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StickPath<F> {
+pub struct StickPath<F, V = Linear> {
     /// T at the start, N·m.
     pub torque_nm: F,
     /// Ṫ at the start, N·m/s.
     pub rate: F,
-    /// T̈, N·m/s².
+    /// T̈ at the start, N·m/s².
     pub curvature: F,
+    /// The third derivative, N·m/s³.
+    pub shape: V,
 }
 
-impl<F: Real> StickPath<F> {
+impl<F: Real, V: VelocityShape<F>> StickPath<F, V> {
     /// T(u), N·m.
     #[inline]
     pub fn at(&self, time_s: F) -> F {
-        self.torque_nm + time_s * (self.rate + F::HALF * self.curvature * time_s)
+        let slope = self.rate + F::HALF * self.curvature * time_s;
+        self.torque_nm
+            + time_s
+                * self
+                    .shape
+                    .plus(slope, || F::from_f64(1.0 / 6.0) * time_s * time_s)
     }
 
     /// The same path, begun `time_s` later.
@@ -43,15 +54,18 @@ impl<F: Real> StickPath<F> {
     pub fn from(&self, time_s: F) -> Self {
         Self {
             torque_nm: self.at(time_s),
-            rate: self.rate + self.curvature * time_s,
-            curvature: self.curvature,
+            rate: self.shape.plus(self.rate + self.curvature * time_s, || {
+                F::HALF * time_s * time_s
+            }),
+            curvature: self.shape.plus(self.curvature, || time_s),
+            shape: self.shape,
         }
     }
 }
 
 /// A slip over what is left of a step.
 #[derive(Clone, Copy, Debug)]
-pub struct SlipPath<'a, F, P> {
+pub struct SlipPath<'a, F, P, V = Linear> {
     /// Moves the object.
     pub propagator: &'a P,
     /// Accelerations and their bound.
@@ -64,17 +78,21 @@ pub struct SlipPath<'a, F, P> {
     pub v: F,
     /// Ω at the start, rad/s.
     pub omega: F,
-    /// Ω̇, rad/s².
+    /// Ω̇ at the start, rad/s².
     pub omega_dot: F,
+    /// What Ω̇ does.
+    pub shape: V,
 }
 
-impl<F: Real, P: Propagate<F>> SlipPath<'_, F, P> {
+impl<F: Real, P: Propagate<F>, V: VelocityShape<F>> SlipPath<'_, F, P, V> {
     /// The speed s·(Ω − v) by which the shaft overtakes the object when that
     /// moves with `v`, `time_s` later.
     #[inline]
     pub fn overtaking(&self, time_s: F, v: F) -> F {
-        self.sense
-            .of_signed(self.omega + self.omega_dot * time_s - v)
+        let omega = self.shape.plus(self.omega + self.omega_dot * time_s, || {
+            F::HALF * time_s * time_s
+        });
+        self.sense.of_signed(omega - v)
     }
 
     /// Whether the shaft has fallen back to the object at the end of the
@@ -96,21 +114,33 @@ impl<F: Real, P: Propagate<F>> SlipPath<'_, F, P> {
 
 /// Finds the end of a phase.
 pub trait Locate<F: Real>: 'static {
+    /// The path that the shaft is taken to follow within the step.
+    type Shape: VelocityShape<F>;
+
     /// The first time in [0, `length_s`] at which s·T reaches `limit_nm`
     /// outwards; 0 if it is beyond the limit from the start.
-    fn break_time(path: &StickPath<F>, sense: Sense, limit_nm: F, length_s: F) -> Option<F>;
+    fn break_time(
+        path: &StickPath<F, Self::Shape>,
+        sense: Sense,
+        limit_nm: F,
+        length_s: F,
+    ) -> Option<F>;
 
     /// The first time in [0, `length_s`] at which the shaft's velocity falls
     /// to the object's, which is `v_end` when all of it has passed.
-    fn match_time<P: Propagate<F>>(slip: &SlipPath<'_, F, P>, length_s: F, v_end: F) -> Option<F>;
+    fn match_time<P: Propagate<F>>(
+        slip: &SlipPath<'_, F, P, Self::Shape>,
+        length_s: F,
+        v_end: F,
+    ) -> Option<F>;
 }
 
-/// The earlier of the two breaks that a stick path can have within
+/// The earlier of the breaks in either sense that a stick path can have within
 /// `length_s`: its time and sense.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "a call takes a tenth of its time")]
 pub fn first_break<F: Real, L: Locate<F>>(
-    stick: &StickPath<F>,
+    stick: &StickPath<F, L::Shape>,
     limit_nm: F,
     length_s: F,
 ) -> Option<(F, Sense)> {
@@ -130,6 +160,7 @@ pub fn earlier<F: Real>(a: Option<(F, Sense)>, b: Option<(F, Sense)>) -> Option<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shaft::Quadratic;
 
     #[test]
     fn the_earlier_of_two_breaks_wins() {
@@ -149,6 +180,7 @@ mod tests {
             torque_nm: 0.1,
             rate: -2.0,
             curvature: 8.0,
+            shape: Linear,
         };
         assert!((path.at(0.5) - 0.1).abs() < 1e-15);
         let later = path.from(0.5);
@@ -156,6 +188,21 @@ mod tests {
             (later.torque_nm, later.rate, later.curvature),
             (path.at(0.5), 2.0, 8.0)
         );
+        assert!((later.at(0.25) - path.at(0.75)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_torque_is_a_cubic_wherever_one_begins() {
+        let path = StickPath {
+            torque_nm: 0.1,
+            rate: -2.0,
+            curvature: 8.0,
+            shape: Quadratic { omega_ddot: 12.0 },
+        };
+        // 0.1 − 1 + 1 + 2/8.
+        assert!((path.at(0.5) - 0.35).abs() < 1e-15);
+        let later = path.from(0.5);
+        assert_eq!((later.rate, later.curvature), (3.5, 14.0));
         assert!((later.at(0.25) - path.at(0.75)).abs() < 1e-15);
     }
 
@@ -173,6 +220,7 @@ mod tests {
                 v: sense.of_signed(v),
                 omega: sense.of_signed(omega),
                 omega_dot: 0.0,
+                shape: Linear,
             };
             slip.has_met(1e-3, sense.of_signed(v_end))
         })

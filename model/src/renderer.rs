@@ -15,6 +15,7 @@ use crate::guarded::{Counters, Guarded, InputLimits, Sample};
 use crate::locate::Locate;
 use crate::ramp::Ramp;
 use crate::real::Real;
+use crate::shaft::Linear;
 use crate::stick_slip::StickSlip;
 use crate::turn_back::TurnBack;
 
@@ -41,7 +42,7 @@ pub struct Renderer<F, L> {
     turn_back: TurnBack<F>,
 }
 
-impl<F: Real, L: Locate<F>> Renderer<F, L> {
+impl<F: Real, L: Locate<F, Shape = Linear>> Renderer<F, L> {
     /// A joint in stick at θ = 0 on a shaft that moves with `omega_rad_s`,
     /// seen by an encoder with this angle of one count.
     pub fn new(

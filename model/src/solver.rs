@@ -8,10 +8,11 @@
 use crate::active::Active;
 use crate::frozen::Frozen;
 use crate::implicit_euler::ImplicitEuler;
-use crate::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
+use crate::locate::{EndOfStep, ExactBreak, ExactEvents, ExactHermite, Interpolated, Locate};
 use crate::propagate::{Euler, Exact, Propagate, Rk4, SemiImplicitEuler, Verlet};
 use crate::real::Real;
 use crate::settings::{Convention, Settings, SettingsError, Validated};
+use crate::shaft::Linear;
 use crate::stick_slip::StickSlip;
 use crate::velocity_match::{Paper, Physical, StickTorque, VelocityMatch};
 
@@ -39,11 +40,14 @@ pub enum Solver {
     ExactEvents,
     /// Runge-Kutta of fourth order, both events located.
     Rk4Events,
+    /// Exact propagator, both events located on the shaft's cubic path; f64
+    /// only, and on exact angles only.
+    ExactHermite,
 }
 
 impl Solver {
     /// All rungs.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Euler,
         Self::SemiImplicitEuler,
         Self::Verlet,
@@ -54,6 +58,7 @@ impl Solver {
         Self::ExactInterpolated,
         Self::ExactEvents,
         Self::Rk4Events,
+        Self::ExactHermite,
     ];
 
     /// Name in scene files and on the command line.
@@ -69,6 +74,7 @@ impl Solver {
             Self::ExactInterpolated => "exact-interpolated",
             Self::ExactEvents => "exact-events",
             Self::Rk4Events => "rk4-events",
+            Self::ExactHermite => "exact-hermite",
         }
     }
 
@@ -92,8 +98,34 @@ impl Solver {
                 "the set-valued step needs the object's inertia in the torque of a stick, which \
                  \"paper\" leaves out; use \"physical\"",
             ),
+            (Self::ExactHermite, Convention::Frozen) => Some(
+                "under \"frozen\" the torque of a stick has no acceleration of the shaft in it, and \
+                 exact-events is of second order already",
+            ),
             _ => None,
         }
+    }
+
+    /// Why this rung cannot compute in f32, if it cannot.
+    pub fn single_refusal(self) -> Option<&'static str> {
+        (self == Self::ExactHermite).then_some(
+            "the shaft's acceleration comes from its travel over the step squared; in f32 rounding makes \
+             1e-2 rad/s² of that at 50 µs and 1 rad/s, a hundred times what the cubic path corrects on a hand's \
+             motion; use precision \"f64\"",
+        )
+    }
+
+    /// Why this rung cannot compute in F under a convention, if it cannot.
+    pub fn refusal_in<F: Real>(self, convention: Convention) -> Option<&'static str> {
+        self.refusal(convention)
+            .or_else(|| self.single_refusal().filter(|_| F::IS_SINGLE))
+    }
+
+    /// Whether this rung needs the prescribed motion itself: an encoder's
+    /// counts, or the rounding of a plant's integration, it would take for
+    /// acceleration.
+    pub fn needs_exact_motion(self) -> bool {
+        self == Self::ExactHermite
     }
 }
 
@@ -111,7 +143,8 @@ pub trait JointVisitor<F: Real> {
 ///
 /// # Errors
 /// [`SettingsError::Step`] if the step is not positive and finite,
-/// [`SettingsError::Solver`] if the rung has no meaning under the convention.
+/// [`SettingsError::Solver`] if the rung has no meaning under the convention,
+/// or cannot compute in F.
 pub fn with_joint<F: Real, V: JointVisitor<F>>(
     settings: &Validated<Settings>,
     solver: Solver,
@@ -127,7 +160,7 @@ pub fn with_joint<F: Real, V: JointVisitor<F>>(
         solver: solver.name(),
         reason,
     };
-    if let Some(reason) = solver.refusal(settings.convention) {
+    if let Some(reason) = solver.refusal_in::<F>(settings.convention) {
         return Err(refused(reason));
     }
     Ok(match settings.convention {
@@ -149,7 +182,7 @@ struct Start<F> {
 }
 
 impl<F: Real> Start<F> {
-    fn frozen<L: Locate<F>, V: JointVisitor<F>>(self, visitor: V) -> V::Output {
+    fn frozen<L: Locate<F, Shape = Linear>, V: JointVisitor<F>>(self, visitor: V) -> V::Output {
         visitor.visit(Frozen::<F, L>::new(self.active, self.omega_rad_s))
     }
 
@@ -171,7 +204,13 @@ impl<F: Real> Start<F> {
             Solver::Exact => self.rung::<C, Exact<F>, EndOfStep, V>(visitor),
             Solver::ExactBreak => self.rung::<C, Exact<F>, ExactBreak, V>(visitor),
             Solver::ExactInterpolated => self.rung::<C, Exact<F>, Interpolated, V>(visitor),
-            Solver::ExactEvents => self.rung::<C, Exact<F>, ExactEvents, V>(visitor),
+            // It is refused in f32, so that no firmware links it.
+            Solver::ExactHermite if !F::IS_SINGLE => {
+                self.rung::<C, Exact<F>, ExactHermite, V>(visitor)
+            }
+            Solver::ExactEvents | Solver::ExactHermite => {
+                self.rung::<C, Exact<F>, ExactEvents, V>(visitor)
+            }
             Solver::Rk4Events => self.rung::<C, Rk4<F>, ExactEvents, V>(visitor),
         }
     }
@@ -206,6 +245,7 @@ mod tests {
                 "exact-interpolated",
                 "exact-events",
                 "rk4-events",
+                "exact-hermite",
             ]
         );
     }
@@ -220,8 +260,44 @@ mod tests {
             })
         };
         // `frozen` integrates nothing, `paper` leaves out the inertia.
-        assert_eq!(refused(Convention::Frozen), [1, 1, 1, 1, 1, 0, 0, 0, 0, 1]);
-        assert_eq!(refused(Convention::Paper), [0, 0, 0, 0, 1, 0, 0, 0, 0, 0]);
-        assert_eq!(refused(Convention::Physical), [0; 10]);
+        assert_eq!(
+            refused(Convention::Frozen),
+            [1, 1, 1, 1, 1, 0, 0, 0, 0, 1, 1]
+        );
+        assert_eq!(
+            refused(Convention::Paper),
+            [0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]
+        );
+        assert_eq!(refused(Convention::Physical), [0; 11]);
+    }
+
+    #[test]
+    fn the_cubic_path_is_refused_in_single_precision_alone() {
+        for solver in Solver::ALL {
+            let is_hermite = solver == Solver::ExactHermite;
+            let single = solver.refusal_in::<f32>(Convention::Physical);
+            assert_eq!(single.is_some(), is_hermite, "{solver:?}");
+            assert_eq!(solver.refusal_in::<f64>(Convention::Physical), None);
+            assert_eq!(solver.needs_exact_motion(), is_hermite);
+        }
+        struct Never;
+        impl<F: Real> JointVisitor<F> for Never {
+            type Output = ();
+            fn visit<J: StickSlip<F>>(self, _: J) {}
+        }
+        let settings = Settings {
+            convention: Convention::Physical,
+            ..Settings::default()
+        };
+        let settings = settings.validate().unwrap();
+        let built = with_joint::<f32, _>(&settings, Solver::ExactHermite, 5e-5, 0.0, Never);
+        assert!(matches!(
+            built,
+            Err(SettingsError::Solver {
+                solver: "exact-hermite",
+                ..
+            })
+        ));
+        assert!(with_joint::<f64, _>(&settings, Solver::ExactHermite, 5e-5, 0.0, Never).is_ok());
     }
 }

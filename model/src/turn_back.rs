@@ -15,12 +15,48 @@
 //! ```
 //!
 //! over any time, with d the ticks between sample and torque and h the tick:
-//! what the spring holds, and what a sampled spring gives away. The two counts
-//! need no term of their own while they are below (Ts − Tk)/kr, since each
-//! slip first dissipates 2·Tk·(Ts − Tk)/kr; all presets keep that.
+//! what the spring holds, and what a sampled spring gives away.
+//!
+//! # Where it holds
+//!
+//! Until the guard is sure, a hand that turns back is pushed: by three counts,
+//! and while the torque lags by about another. What that returns has to be less
+//! than what the slip has taken out of the spring, which begins it with Ts and
+//! ends it with the restart torque Tr:
+//!
+//! ```text
+//! 4·Δ·Tk ≤ (Ts² − Tr²)/2kr         with Tr = 2Tk − Ts:   2·Δ ≤ (Ts − Tk)/kr
+//! ```
+//!
+//! [`most_rad_per_count`] is the largest count Δ that keeps this; the presets
+//! keep it by a factor of 2.6 and more.
 
 use crate::phase::Phase;
 use crate::real::Real;
+use crate::settings::{Restart, Settings};
+
+/// The counts that a hand may go back in a slip before its torque is gone: two
+/// are allowed, the third is noticed, and in the time of a fourth the torque
+/// goes.
+const UNGUARDED_COUNTS: f64 = 4.0;
+
+/// The largest angle of one count with which the guard keeps its bound, rad:
+/// (Ts² − Tr²)/(8·kr·Tk). Infinite where slip shows no torque.
+pub fn most_rad_per_count(settings: &Settings) -> f64 {
+    let p = &settings.parameters;
+    let restart_nm = match settings.restart {
+        Restart::Elastic => p.restart_torque_nm(),
+        Restart::FromKinetic => p.kinetic_torque_nm,
+    };
+    if p.kinetic_torque_nm == 0.0 {
+        return f64::INFINITY;
+    }
+    let (static_nm, kinetic_nm) = (p.static_torque_nm, p.kinetic_torque_nm);
+    // As a product: the difference of two squares would lose digits.
+    let taken_j =
+        (static_nm - restart_nm) * (static_nm + restart_nm) / (2.0 * p.stiffness_nm_per_rad);
+    taken_j / (UNGUARDED_COUNTS * kinetic_nm)
+}
 
 /// Watches the shaft inside slips.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +109,9 @@ impl<F: Real> TurnBack<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Sense;
+    use crate::encoder::EncoderSettings;
+    use crate::presets::PRESETS;
+    use crate::{Parameters, Sense};
 
     const COUNT: f64 = 1e-5;
 
@@ -120,5 +158,44 @@ mod tests {
         assert!(guard.is_turned());
         guard.moved(-COUNT, slip, 3);
         assert!(!guard.is_turned());
+    }
+
+    fn most(kinetic_nm: f64, restart: Restart) -> f64 {
+        most_rad_per_count(&Settings {
+            parameters: Parameters {
+                kinetic_torque_nm: kinetic_nm,
+                ..Parameters::default()
+            },
+            restart,
+            ..Settings::default()
+        })
+    }
+
+    #[test]
+    fn two_counts_are_to_be_below_the_drop_over_the_stiffness() {
+        for kinetic in [0.01, 0.1, 0.2, 0.3, 0.39] {
+            let two_counts = (0.4 - kinetic) / 400.0;
+            let elastic = most(kinetic, Restart::Elastic);
+            assert!((2.0 * elastic - two_counts).abs() < 1e-12 * two_counts);
+            // A stick from Tk loses less to a slip, by (Ts + Tk)/4Tk.
+            let from_kinetic = most(kinetic, Restart::FromKinetic);
+            let less = elastic * (0.4 + kinetic) / (4.0 * kinetic);
+            assert!((from_kinetic - less).abs() < 1e-12 * less);
+        }
+        assert_eq!(most(0.4, Restart::Elastic), 0.0);
+        assert_eq!(most(0.0, Restart::Elastic), f64::INFINITY);
+    }
+
+    #[test]
+    fn presets_are_far_from_the_limit() {
+        let count_rad = EncoderSettings::default().rad_per_count();
+        for preset in &PRESETS {
+            let settings = Settings {
+                parameters: preset.parameters,
+                ..Settings::default()
+            };
+            let margin = most_rad_per_count(&settings) / count_rad;
+            assert!(margin > 2.5, "{}: {margin}", preset.name);
+        }
     }
 }

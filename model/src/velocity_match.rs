@@ -15,7 +15,7 @@ use crate::locate::{Locate, SlipPath, StickPath, earlier, first_break};
 use crate::phase::{EventKind, Phase, Sense};
 use crate::propagate::Propagate;
 use crate::real::Real;
-use crate::shaft::{ShaftPath, ShaftStep};
+use crate::shaft::{ShaftPath, ShaftStep, VelocityShape};
 use crate::stick_slip::StickSlip;
 
 /// What the torque of a stick contains beside the spring's.
@@ -136,15 +136,22 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
     }
 
     /// The stick's torque from `here` on.
-    fn stick_path(&self, path: &ShaftPath<F>, theta: F, here: &Here<F>) -> StickPath<F> {
+    fn stick_path(
+        &self,
+        path: &ShaftPath<F, L::Shape>,
+        theta: F,
+        here: &Here<F>,
+    ) -> StickPath<F, L::Shape> {
         let a = &self.active;
-        let still = C::inertial(a, here.omega, path.omega_dot);
-        // The inertial part grows by its own change of Ω: linear, so exact.
-        let grown = C::inertial(a, here.omega + path.omega_dot, path.omega_dot);
+        let (omega_dot, shape) = (path.omega_dot(here.time_s), path.shape());
+        let still = C::inertial(a, here.omega, omega_dot);
+        // The inertial part grows by its own change of Ω and Ω̇: linear, so exact.
+        let grown = C::inertial(a, here.omega + omega_dot, shape.plus(omega_dot, || F::ONE));
         StickPath {
             torque_nm: a.stiffness * theta + still,
             rate: a.stiffness * path.rate(here.time_s) + (grown - still),
-            curvature: a.stiffness * path.omega_dot,
+            curvature: shape.plus(a.stiffness * omega_dot, || C::inertial(a, F::ONE, F::ZERO)),
+            shape: shape.times(a.stiffness),
         }
     }
 
@@ -162,12 +169,18 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
     }
 
     /// The first break in what is left of the step.
-    fn find_break(&self, path: &ShaftPath<F>, theta: F, here: &Here<F>) -> Option<(F, Sense)> {
+    fn find_break(
+        &self,
+        path: &ShaftPath<F, L::Shape>,
+        theta: F,
+        here: &Here<F>,
+    ) -> Option<(F, Sense)> {
         let stick = self.stick_path(path, theta, here);
         let length_s = self.active.step_s - here.time_s;
         let (after_s, sense) = first_break::<F, L>(&stick, self.active.static_nm, length_s)?;
-        let omega = path.omega(here.time_s + after_s);
-        if self.slips(sense, stick.at(after_s), omega, path.omega_dot) {
+        let break_s = here.time_s + after_s;
+        let (omega, omega_dot) = (path.omega(break_s), path.omega_dot(break_s));
+        if self.slips(sense, stick.at(after_s), omega, omega_dot) {
             return Some((after_s, sense));
         }
         earlier(
@@ -182,11 +195,11 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
     fn held_break(
         &self,
         sense: Sense,
-        stick: &StickPath<F>,
-        path: &ShaftPath<F>,
+        stick: &StickPath<F, L::Shape>,
+        path: &ShaftPath<F, L::Shape>,
         here: &Here<F>,
     ) -> Option<(F, Sense)> {
-        // A parabola is above a limit in two stretches at most.
+        // A parabola or a cubic is above a limit in two stretches at most.
         const STRETCHES: u32 = 2;
         let a = &self.active;
         let length_s = a.step_s - here.time_s;
@@ -194,14 +207,17 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
         for _ in 0..STRETCHES {
             let left_s = length_s - from_s;
             from_s += L::break_time(&stick.from(from_s), sense, a.static_nm, left_s)?;
-            let omega = path.omega(here.time_s + from_s);
-            if self.slips(sense, stick.at(from_s), omega, path.omega_dot) {
+            let now_s = here.time_s + from_s;
+            let (omega, omega_dot) = (path.omega(now_s), path.omega_dot(now_s));
+            if self.slips(sense, stick.at(from_s), omega, omega_dot) {
                 return Some((from_s, sense));
             }
+            let shape = path.shape();
             let mut truth = stick.from(from_s);
-            truth.torque_nm += Physical::inertial(a, omega, path.omega_dot)
-                - C::inertial(a, omega, path.omega_dot);
-            truth.rate += a.damping * path.omega_dot;
+            truth.torque_nm +=
+                Physical::inertial(a, omega, omega_dot) - C::inertial(a, omega, omega_dot);
+            truth.rate += shape.plus(a.damping * omega_dot, || a.inertia);
+            truth.curvature = shape.plus(truth.curvature, || a.damping);
             from_s += L::break_time(&truth, sense, a.kinetic_nm, length_s - from_s)?;
             if sense.of_signed(stick.at(from_s)) >= a.static_nm * (F::ONE - F::LIMIT_SLACK) {
                 return Some((from_s, sense));
@@ -235,7 +251,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
     /// The velocity match of a slip at `here`, object at x.
     fn meet(
         &mut self,
-        path: &ShaftPath<F>,
+        path: &ShaftPath<F, L::Shape>,
         sense: Sense,
         x: F,
         here: &Here<F>,
@@ -244,11 +260,12 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
         let a = &self.active;
         let theta = x + sense.of_signed(a.kinetic_angle_rad);
         let stick = self.stick_path(path, theta, here);
+        let omega_dot = path.omega_dot(here.time_s);
         let limit = a.static_nm;
         let beyond = stick.torque_nm.abs() > limit + a.limit_slack_nm(here.omega);
         // The sense in which it slips on, if stick cannot hold it.
         let slips = Sense::of(stick.torque_nm)
-            .filter(|s| beyond && self.slips(*s, stick.torque_nm, here.omega, path.omega_dot));
+            .filter(|s| beyond && self.slips(*s, stick.torque_nm, here.omega, omega_dot));
         if let Some(other) = slips
             && other != sense
         {
@@ -288,12 +305,12 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
         } else {
             theta - excess / a.stiffness
         };
-        self.state = self.stick(Compensated::new(theta), here.omega, path.omega_dot);
+        self.state = self.stick(Compensated::new(theta), here.omega, omega_dot);
     }
 
     /// The place `time_s` into the step, which rounding may have put beyond its
     /// end.
-    fn at(&self, path: &ShaftPath<F>, time_s: F) -> Here<F> {
+    fn at(&self, path: &ShaftPath<F, L::Shape>, time_s: F) -> Here<F> {
         let time_s = time_s.at_most(self.active.step_s);
         Here {
             time_s,
@@ -316,7 +333,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
 {
     fn step(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
         let step_s = self.active.step_s;
-        let path = ShaftPath::new(shaft, &self.active);
+        let path = ShaftPath::<F, L::Shape>::new(shaft, &self.active);
         let mut here = Here {
             time_s: F::ZERO,
             omega: shaft.omega_start_rad_s,
@@ -343,14 +360,15 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
                         } else {
                             path.travel(here.time_s, step_s)
                         });
-                        self.state = self.stick(theta, shaft.omega_end_rad_s, path.omega_dot);
+                        self.state =
+                            self.stick(theta, shaft.omega_end_rad_s, path.omega_dot(step_s));
                         break;
                     };
                     let from_s = here.time_s;
                     here = self.at(&path, from_s + after_s);
                     if after_s > F::ZERO {
                         theta.add(path.travel(from_s, here.time_s));
-                        self.state = self.stick(theta, here.omega, path.omega_dot);
+                        self.state = self.stick(theta, here.omega, path.omega_dot(here.time_s));
                     }
                     self.begin_slip(sense, (theta.value(), here.omega), &here, &mut on_event);
                 }
@@ -367,7 +385,8 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
                         x,
                         v,
                         omega: here.omega,
-                        omega_dot: path.omega_dot,
+                        omega_dot: path.omega_dot(here.time_s),
+                        shape: path.shape(),
                     };
                     let found = if may_change {
                         L::match_time(&slip, left_s, end.1)

@@ -240,7 +240,7 @@ fn the_mirrored_motion_gives_the_mirrored_torque_to_the_bit() {
             .collect();
         for convention in Convention::ALL {
             for solver in Solver::ALL {
-                if solver.refusal(convention).is_some() {
+                if solver.refusal_in::<F>(convention).is_some() {
                     continue;
                 }
                 let settings = Settings {

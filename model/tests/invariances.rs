@@ -129,7 +129,7 @@ proptest! {
     ) {
         knots[0] = 0.0;
         for solver in Solver::ALL {
-            if solver.refusal(settings.convention).is_none() {
+            if solver.refusal_in::<f32>(settings.convention).is_none() {
                 let (at_once, later) = (
                     run::<f32>(&settings, solver, &knots, 5, 0),
                     run::<f32>(&settings, solver, &knots, 5, rest),

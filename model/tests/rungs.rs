@@ -97,7 +97,7 @@ fn steps_off(solver: Solver) -> f64 {
         Solver::Euler | Solver::ImplicitEuler => 300.0,
         Solver::ExactEvents | Solver::ExactBreak => 1.1,
         Solver::ExactInterpolated => 1e-2,
-        Solver::Rk4Events => 1e-6,
+        Solver::Rk4Events | Solver::ExactHermite => 1e-6,
         _ => 40.0,
     }
 }

@@ -165,12 +165,16 @@ pub const PARAMETERS: [Parameter; PARAMETER_COUNT] = [
 pub mod id {
     /// `crepitus.render`.
     pub const CREPITUS: usize = 0;
+    /// `crepitus.stiffness_nm_per_rad`.
+    pub const STIFFNESS: usize = 2;
     /// `crepitus.restart`.
     pub const RESTART: usize = 5;
     /// `crepitus.kinetic_torque_nm`.
     pub const KINETIC_TORQUE: usize = 3;
     /// `crepitus.static_torque_nm`.
     pub const STATIC_TORQUE: usize = 4;
+    /// `encoder.lines`.
+    pub const LINES: usize = 6;
     /// `limits.torque_nm`.
     pub const TORQUE_LIMIT: usize = 26;
 }
@@ -289,9 +293,11 @@ mod tests {
     fn ids_are_the_places_that_code_believes() {
         for (id, name) in [
             (id::CREPITUS, "crepitus.render"),
+            (id::STIFFNESS, "crepitus.stiffness_nm_per_rad"),
             (id::RESTART, "crepitus.restart"),
             (id::KINETIC_TORQUE, "crepitus.kinetic_torque_nm"),
             (id::STATIC_TORQUE, "crepitus.static_torque_nm"),
+            (id::LINES, "encoder.lines"),
             (id::TORQUE_LIMIT, "limits.torque_nm"),
         ] {
             assert_eq!(Parameter::find(name).map(|(place, _)| place), Some(id));

@@ -8,6 +8,7 @@ use crepitus_model::device_limits::LimitSettings;
 use crepitus_model::encoder::EncoderSettings;
 use crepitus_model::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::parameters::{DAMPING, Parameters, Tabled};
+use crepitus_model::turn_back::most_rad_per_count;
 use crepitus_model::{Convention, Restart, Settings, Validated};
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
@@ -23,7 +24,9 @@ pub enum ValueError {
         /// The parameter.
         id: u8,
     },
-    /// The kinetic torque is above the static torque.
+    /// The kinetic torque is above the static torque, or so close below it that
+    /// the turn-back guard cannot keep the bound of returned energy with this
+    /// stiffness and encoder.
     KineticAboveStatic,
     /// The static torque is above the device's largest torque.
     StaticAboveLimit,
@@ -108,16 +111,15 @@ impl DeviceSettings {
                 static_torque_nm,
             },
             convention: Convention::Frozen,
-            restart: if is_on(restart) {
-                Restart::FromKinetic
-            } else {
-                Restart::Elastic
-            },
+            restart: restart_of(restart),
         };
         // All that `validate` refuses has been refused above, by id.
         let settings = settings
             .validate()
             .map_err(|_| ValueError::KineticAboveStatic)?;
+        if values.rad_per_count() > values.guarded_rad_per_count() {
+            return Err(ValueError::KineticAboveStatic);
+        }
         Ok(Self {
             crepitus: is_on(crepitus).then_some(settings),
             encoder: EncoderSettings {
@@ -155,7 +157,62 @@ impl DeviceSettings {
     }
 }
 
+fn restart_of(choice: f64) -> Restart {
+    if choice == 0.0 {
+        Restart::Elastic
+    } else {
+        Restart::FromKinetic
+    }
+}
+
 impl Values {
+    /// Angle of one count of the encoder at the joint, rad.
+    pub fn rad_per_count(&self) -> f64 {
+        let [
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            lines,
+            gear_ratio,
+            velocity_bandwidth_hz,
+            ..,
+        ] = self.0;
+        EncoderSettings {
+            lines,
+            gear_ratio,
+            velocity_bandwidth_hz,
+        }
+        .rad_per_count()
+    }
+
+    /// The largest angle of one count with which the turn-back guard keeps the
+    /// bound of returned energy at this joint, rad.
+    pub fn guarded_rad_per_count(&self) -> f64 {
+        let [
+            _,
+            inertia_kg_m2,
+            stiffness_nm_per_rad,
+            kinetic_torque_nm,
+            static_torque_nm,
+            restart,
+            ..,
+        ] = self.0;
+        most_rad_per_count(&Settings {
+            parameters: Parameters {
+                inertia_kg_m2,
+                stiffness_nm_per_rad,
+                damping_nms_per_rad: DAMPING.default,
+                kinetic_torque_nm,
+                static_torque_nm,
+            },
+            convention: Convention::Frozen,
+            restart: restart_of(restart),
+        })
+    }
+
     /// With the joint's numbers: a preset, for example.
     #[must_use]
     pub fn with_crepitus(mut self, parameters: &Parameters) -> Self {
@@ -260,6 +317,39 @@ mod tests {
         );
         values.set(id::TORQUE_LIMIT, 6.0);
         assert!(DeviceSettings::of(&values).is_ok());
+    }
+
+    #[test]
+    fn what_the_turn_back_guard_cannot_guard_is_refused() {
+        let with = |changes: &[(usize, f64)]| {
+            let mut values = Values::default();
+            for &(id, value) in changes {
+                values.set(id, value);
+            }
+            DeviceSettings::of(&values).map(|_| ())
+        };
+        let refused = Err(ValueError::KineticAboveStatic);
+        // Two counts are 71.3 µrad; the drop over the stiffness of the default
+        // is 500 µrad, and at the limit just so much.
+        let two_counts = 2.0 * EncoderSettings::default().rad_per_count();
+        let at_limit = 0.4 - 400.0 * two_counts;
+        assert_eq!(with(&[(id::KINETIC_TORQUE, at_limit - 1e-9)]), Ok(()));
+        assert_eq!(with(&[(id::KINETIC_TORQUE, at_limit + 1e-9)]), refused);
+        assert_eq!(with(&[(id::STIFFNESS, 0.2 / two_counts - 1e-3)]), Ok(()));
+        assert_eq!(with(&[(id::STIFFNESS, 0.2 / two_counts + 1e-3)]), refused);
+        // A coarser encoder of the same joint.
+        assert_eq!(with(&[(id::LINES, 73.1)]), Ok(()));
+        assert_eq!(with(&[(id::LINES, 73.0)]), refused);
+        // A stick that begins at Tk loses less to a slip.
+        let near = (id::KINETIC_TORQUE, at_limit - 1e-3);
+        assert_eq!(with(&[near]), Ok(()));
+        assert_eq!(with(&[near, (id::RESTART, 1.0)]), refused);
+        // Ts = Tk takes nothing; without torque in slip there is no push.
+        assert_eq!(with(&[(id::KINETIC_TORQUE, 0.4)]), refused);
+        assert_eq!(
+            with(&[(id::KINETIC_TORQUE, 0.0), (id::STIFFNESS, 5000.0)]),
+            Ok(())
+        );
     }
 
     #[test]

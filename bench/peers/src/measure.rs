@@ -5,7 +5,7 @@
 //! would flatter whoever is fast. Both are kept.
 
 use crate::work::{Delivery, Runner, SAMPLES, Task, Work, sample_s};
-use rustix::time::{ClockId, clock_gettime};
+use crepitus_scene::cpu_time;
 use serde::Serialize;
 use std::hint::black_box;
 use std::time::Instant;
@@ -120,8 +120,6 @@ pub fn summarise(times: &[Times]) -> Summary {
     }
 }
 
-#[expect(clippy::cast_precision_loss, reason = "below 2^53 ns for 100 days")]
 fn cpu_s() -> f64 {
-    let now = clock_gettime(ClockId::ThreadCPUTime);
-    now.tv_sec as f64 + 1e-9 * now.tv_nsec as f64
+    cpu_time::now().as_secs_f64()
 }

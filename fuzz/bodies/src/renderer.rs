@@ -16,6 +16,7 @@ use crate::shaft::Shaft;
 use crepitus_model::encoder::EncoderSettings;
 use crepitus_model::guarded::InputLimits;
 use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
+use crepitus_model::shaft::Linear;
 use crepitus_model::{Active, Convention, Frozen, Phase, Real, Renderer, ShaftStep, StickSlip};
 
 const SLEW_NM_PER_S: f64 = 100.0;
@@ -41,7 +42,7 @@ pub fn body(data: &[u8]) {
     }
 }
 
-fn run<F: Real, L: Locate<F>>(mut bytes: Bytes<'_>) {
+fn run<F: Real, L: Locate<F, Shape = Linear>>(mut bytes: Bytes<'_>) {
     let step_s = bytes.between(1e-6, LONGEST_TICK_S);
     let active = |bytes: &mut Bytes<'_>| {
         let settings = rung::settings(bytes, Convention::Frozen);
@@ -66,7 +67,10 @@ fn run<F: Real, L: Locate<F>>(mut bytes: Bytes<'_>) {
 }
 
 /// One tick.
-fn tick<F: Real, L: Locate<F>>(renderer: &mut Renderer<F, L>, step: Option<&ShaftStep<f64>>) {
+fn tick<F: Real, L: Locate<F, Shape = Linear>>(
+    renderer: &mut Renderer<F, L>,
+    step: Option<&ShaftStep<f64>>,
+) {
     let before = Stored::of(renderer.joint());
     let counters = renderer.counters();
     let mut events = Events::from(renderer.joint().phase());
@@ -100,7 +104,7 @@ struct Stored {
 }
 
 impl Stored {
-    fn of<F: Real, L: Locate<F>>(joint: &Frozen<F, L>) -> Self {
+    fn of<F: Real, L: Locate<F, Shape = Linear>>(joint: &Frozen<F, L>) -> Self {
         let a = joint.active();
         let theta = joint.theta_rad().to_f64();
         let spring_j = 0.5 * a.stiffness.to_f64() * theta * theta;
@@ -119,7 +123,7 @@ impl Stored {
     }
 
     /// The laws of an adjustment, `joint` being what it has become.
-    fn check<F: Real, L: Locate<F>>(&self, joint: &Frozen<F, L>) {
+    fn check<F: Real, L: Locate<F, Shape = Linear>>(&self, joint: &Frozen<F, L>) {
         let after = Self::of(joint);
         let eps = F::EPSILON.to_f64();
         let scale_j = self.energy_j + self.static_j.max(after.static_j);

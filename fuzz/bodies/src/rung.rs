@@ -23,9 +23,10 @@ impl Rung {
         let solvers: Vec<_> = solvers
             .filter(|s| s.refusal(convention).is_none())
             .collect();
+        let solver = bytes.choice(&solvers);
         Self {
-            solver: bytes.choice(&solvers),
-            double: bytes.choice(&[false, true]),
+            solver,
+            double: bytes.choice(&[false, true]) || solver.single_refusal().is_some(),
             step_s: step_s(bytes),
             settings: settings(bytes, convention),
         }

@@ -92,12 +92,27 @@ impl Refused {
                     write!(f, ": it is {}", allowed_text(parameter))?;
                 }
             }
-            ValueError::KineticAboveStatic => write!(
-                f,
-                "{} is above {}: lower the first or raise the second",
-                self.setting(id::KINETIC_TORQUE),
-                self.setting(id::STATIC_TORQUE)
-            )?,
+            ValueError::KineticAboveStatic => match self.counts_unguarded() {
+                Some((count_rad, most_rad)) => write!(
+                    f,
+                    "{} is too close to {}, with {} and {}: a hand that turns back inside a slip would get \
+                     more energy than the slip takes out of the spring. One count of the encoder is \
+                     {:.1} µrad, and may be {:.1} µrad: lower the kinetic torque or the stiffness, or raise \
+                     the static torque",
+                    self.setting(id::KINETIC_TORQUE),
+                    self.setting(id::STATIC_TORQUE),
+                    self.setting(id::STIFFNESS),
+                    self.setting(id::LINES),
+                    count_rad * 1e6,
+                    most_rad * 1e6
+                )?,
+                None => write!(
+                    f,
+                    "{} is above {}: lower the first or raise the second",
+                    self.setting(id::KINETIC_TORQUE),
+                    self.setting(id::STATIC_TORQUE)
+                )?,
+            },
             ValueError::StaticAboveLimit => {
                 write!(
                     f,
@@ -120,6 +135,18 @@ impl Refused {
             )?,
         }
         f.write_str("; nothing was changed")
+    }
+
+    /// Where the kinetic torque is not above the static one, but the encoder
+    /// too coarse for the turn-back guard: the angle of one count, and the
+    /// largest allowed, rad.
+    fn counts_unguarded(&self) -> Option<(f64, f64)> {
+        let values = self.values?;
+        if values.get(id::KINETIC_TORQUE)? > values.get(id::STATIC_TORQUE)? {
+            return None;
+        }
+        let (count_rad, most_rad) = (values.rad_per_count(), values.guarded_rad_per_count());
+        (count_rad > most_rad).then_some((count_rad, most_rad))
     }
 
     /// "crepitus.static_torque_nm = 9".

@@ -92,17 +92,17 @@ fn caption(plant: &Plant, has_fast: bool) -> String {
     } else {
         String::new()
     };
-    let impacts = plant
+    let peaks = plant
         .hand
         .shown()
         .beyond
         .map_or_else(String::new, |beyond| {
             format!(
-                " Impacts of up to {} N·m go beyond the axes, and shift the means around them.",
+                " Peaks of up to {} N·m go beyond the axes, and shift the means around them.",
                 rounded(beyond)
             )
         });
-    whole + &fast + &impacts
+    whole + &fast + &peaks
 }
 
 fn draw(area: &Area, figures: &Figures, course: &Course, last: bool, title: &str) -> Drawn {

@@ -19,7 +19,7 @@ pub(crate) struct Course {
 pub(crate) struct Shown {
     pub(crate) low: f64,
     pub(crate) high: f64,
-    /// The largest magnitude beyond, where a few impacts would squeeze all
+    /// The largest magnitude beyond, where a few peaks would squeeze all
     /// else.
     pub(crate) beyond: Option<f64>,
 }
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn impacts_do_not_squeeze_the_rest() {
+    fn peaks_do_not_squeeze_the_rest() {
         let wave = |i: u32| (f64::from(i) * 0.01).sin();
         let calm = course(wave).shown();
         assert_eq!(calm.beyond, None);
@@ -162,7 +162,7 @@ mod tests {
         let hit = course(|i| if i % 1000 == 500 { 700.0 } else { wave(i) }).shown();
         assert_eq!(hit.beyond, Some(700.0));
         assert!(hit.high < 1.1, "{hit:?}");
-        // A rise that stays is no impact.
+        // A rise that stays is no peak.
         let step = course(|i| if i < 5000 { 0.0 } else { 700.0 + wave(i) });
         assert_eq!(step.shown().beyond, None);
     }

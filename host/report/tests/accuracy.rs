@@ -67,8 +67,8 @@ fn page_with(
 #[test]
 fn a_whole_study() {
     let page = page("study", &study::all(), &text("What accuracy costs in time"));
-    // Seven pairs, three measures, two precisions.
-    assert_eq!(count(&page, "role=\"img\""), 7 * 3 * 2);
+    // Seven pairs, four measures, two precisions.
+    assert_eq!(count(&page, "role=\"img\""), 7 * 4 * 2);
     // The frozen and the physical 0.988 are open, the others folded.
     assert_eq!(count(&page, "<details"), 5);
     let frozen = page.find("constant-0.988, frozen").expect("first");
@@ -78,6 +78,8 @@ fn a_whole_study() {
     assert!(page.contains("0.1 ms imperceptible"));
     assert!(page.contains("5 mN·m worth having"));
     assert!(page.contains("At the device's tick, 50 µs"));
+    assert!(page.contains("Held torque: the RMS error against the cost"));
+    assert!(page.contains("nearer than 4.7·10⁻³ N·m"));
     // Steps that can be read in print.
     for step in [">1 ms</text>", ">50 µs</text>", ">2 µs</text>"] {
         assert!(page.contains(step), "{step}");
@@ -121,7 +123,7 @@ fn what_the_target_says_has_its_diagram_and_its_table() {
     let page = page_with("target", &points, Some(&target), &text("On the target"));
     assert!(marked >= 2);
     assert_eq!(count(&page, "% of a tick)</title>"), marked);
-    assert_eq!(count(&page, "role=\"img\""), 7 * 3 * 2 + 1);
+    assert_eq!(count(&page, "role=\"img\""), 7 * 4 * 2 + 1);
     assert!(page.contains("not measured on hardware"));
     assert!(page.contains("bone-shaping") && page.contains("extremes"));
     let pictures = pictures(&points).unwrap();
@@ -156,7 +158,7 @@ fn wrong_points_are_in_the_list_and_in_no_curve() {
     let wrong = points.iter().filter(|point| point.unmatched > 0).count();
     assert_eq!(wrong, 5);
     let page = page("euler", &points, &text("Euler alone"));
-    // Three curves of the four points that are left.
+    // Four curves of the four points that are left.
     let curves: Vec<&str> = page
         .split("<polyline")
         .skip(1)
@@ -170,10 +172,10 @@ fn wrong_points_are_in_the_list_and_in_no_curve() {
         .map(|list| list.split(' ').count())
         .filter(|number| *number > 2)
         .collect();
-    assert_eq!(long, [4, 4, 4]);
+    assert_eq!(long, [4, 4, 4, 4]);
     // Nor has one a sign.
     assert!(!page.contains("step 1 ms: error"));
-    assert_eq!(count(&page, "step 20 µs: error"), 3);
+    assert_eq!(count(&page, "step 20 µs: error"), 4);
     assert!(page.contains("wrong events"));
     let first = points.first().expect("a point");
     assert!(page.contains(&format!("1 ms: {} of 637", first.events)));
@@ -192,7 +194,7 @@ fn errors_that_are_no_number_are_listed() {
     assert!(page.contains("no frequency error"));
     assert!(page.contains("Not drawn: no point has this error."));
     assert!(page.contains("the error is 0, or below"));
-    assert_eq!(count(&page, "role=\"img\""), 4);
+    assert_eq!(count(&page, "role=\"img\""), 6);
 }
 
 #[test]
@@ -224,7 +226,7 @@ fn no_points_and_odd_points() {
     let mut one = study::pair("constant-0.988", "frozen");
     one.truncate(1);
     let single = page("one-point", &one, &text("One point"));
-    assert_eq!(count(&single, "role=\"img\""), 3);
+    assert_eq!(count(&single, "role=\"img\""), 4);
     for value in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
         one[0].us_per_simulated_s = value;
         one[0].ns_per_step = value;
@@ -235,10 +237,11 @@ fn no_points_and_odd_points() {
     one[0] = study::pair("constant-0.988", "frozen").remove(0);
     for value in [0.0, f64::MIN_POSITIVE, 1e-18, f64::MAX] {
         one[0].max_event_error_s = value;
-        one[0].rms_torque_error_nm = value;
+        one[0].rms_held_torque_error_nm = value;
+        one[0].rms_tick_torque_error_nm = value;
         one[0].frequency_error_rel = value;
         let page = page("extreme", &one, &text("Extreme"));
-        assert_eq!(count(&page, "role=\"img\""), 3);
+        assert_eq!(count(&page, "role=\"img\""), 4);
     }
     let mut many = Vec::new();
     for (i, name) in [
@@ -280,11 +283,11 @@ fn words_are_escaped() {
 #[test]
 fn pictures_are_documents_with_their_legend() {
     let pictures = pictures(&study::all()).expect("drawn");
-    assert_eq!(pictures.len(), 42);
+    assert_eq!(pictures.len(), 56);
     let mut names: Vec<&str> = pictures.iter().map(|p| p.name.as_str()).collect();
     names.sort_unstable();
     names.dedup();
-    assert_eq!(names.len(), 42);
+    assert_eq!(names.len(), 56);
     let picture = pictures
         .iter()
         .find(|p| p.name == "event-time-constant-0-988-physical-f64")

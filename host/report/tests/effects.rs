@@ -10,6 +10,7 @@ use std::path::Path;
 
 use crepitus_report::Section;
 use crepitus_report::effects::{EffectsText, html, pictures};
+use crepitus_scene::run::AddedTime;
 use crepitus_study::effects::answer::{Dropped, Subset};
 use crepitus_study::effects::influence::{Difference, Torque};
 use crepitus_study::effects::results::{Added, Outcome, Ran};
@@ -31,7 +32,10 @@ fn ran(rms_nm: f64, ns: f64) -> Outcome {
             peak_nm: 2.0 * rms_nm,
             events: -7,
             states: 2,
-            ns_per_step: ns,
+            time: AddedTime {
+                ns_per_step: (ns > 1.0).then_some(ns),
+                ns_resolution: if ns.is_finite() { 1.0 } else { f64::NAN },
+            },
         }),
     })
 }
@@ -179,6 +183,8 @@ fn every_kind_of_row_is_shown() {
         "<title>without crepitus: 0.2 N·m RMS, 10 ns a step</title>",
         "50–250 Hz",
         "−7",
+        "<title>without friction-compensation: 0.003 N·m RMS, a cost below what can be measured (1 ns a step)</title>",
+        "&lt; 1</td>",
         "an absent effect, added",
     ] {
         assert!(page.contains(part), "{part}");

@@ -427,7 +427,7 @@ fn few_and_coarse_rows_of_a_coupled_run() {
 }
 
 #[test]
-fn what_never_moves_has_no_chart_and_impacts_do_not_hide_the_rest() {
+fn what_never_moves_has_no_chart_and_peaks_do_not_hide_the_rest() {
     let names = ["shaping_nm", "gear_friction_nm", "hand_torque_nm"];
     let columns = plant::columns(Run::columns(false, false), &names);
     let mut collector = Collector::new(&setup(&columns, 10_000, 1e-3));
@@ -438,9 +438,9 @@ fn what_never_moves_has_no_chart_and_impacts_do_not_hide_the_rest() {
         row[5] += hit;
         collector.row(&row);
     }
-    let page = page("impacts", &text("Impacts"), &collector.finish());
+    let page = page("peaks", &text("Peaks"), &collector.finish());
     // Motion, hand, spectrum, gear: no energy either.
     assert_eq!(count(&page, "<svg "), 4);
     assert!(page.contains("Zero all the time: Bone shaping"));
-    assert!(page.contains("Impacts of up to 69"));
+    assert!(page.contains("Peaks of up to 69"));
 }

@@ -54,7 +54,7 @@ fn a_whole_matrix_with_its_stories() {
     let page = page("whole", &matrix, &stories, &text("Which hard cases hold"));
     // Conventions, then rungs; f32 above f64.
     assert_eq!(count(&page, "class=\"convention\""), 3);
-    assert_eq!(count(&page, "class=\"rung"), 4 + 9 + 10);
+    assert_eq!(count(&page, "class=\"rung"), 5 + 10 + 11);
     let cells: usize = matrix.rows.iter().map(|row| row.cells.len()).sum();
     let drawn = page.matches("<td class=\"h").count()
         + page.matches("<td class=\"degrades").count()

@@ -147,19 +147,23 @@ Examples:
   crepitus accuracy --quick
   crepitus accuracy --quick --target
   crepitus accuracy --scene slow-examination --out /tmp/accuracy
-  crepitus accuracy --need torque=5e-3,interval=5e-4 --rate 20000
+  crepitus accuracy --need torque=1e-2,interval=5e-4 --rate 20000
+  crepitus accuracy --need torque=1e-2 --target
   crepitus accuracy --need frequency=1e-6 --convention physical --precision f64
 
 Every solver, in f32 and f64 and at steps from 1 ms to 2 µs, is compared with the reference \
-on four constant speeds and a hand-like sine, and timed on this machine. With --target it is also \
+on four constant speeds and a hand-like sine, and timed on this machine in CPU time. With --target it is also \
 run on an emulated STM32F405: modelled cycles, 0 wait states; not measured on hardware. The worst \
 cycles are the worst observed, over inputs with breaks, matches and reversals.
 
-A NEED is a list of limits that must hold on every scene: torque (rms torque error, N·m), \
-peak-torque (largest torque error, N·m), event (worst event-time error, s), interval (worst \
+A NEED is a list of limits that must hold on every scene: torque (rms error of the torque as the \
+device holds it for a step, over continuous time, N·m), peak-torque (the largest such error, N·m), \
+torque-at-tick and peak-torque-at-tick (the same at the ends of steps alone, N·m), event (worst event-time error, s), interval (worst \
 interval error, s), frequency (relative error of the cycle frequency). The answer is the \
-cheapest solver that meets them; where none does the exit code is 1. With --need, files are \
-written only if --out is given.")]
+cheapest solver that meets them on this host; with --target the one with the fewest mean cycles on \
+the target at its tick of 50 µs in f32, equal means decided by the worst, whose worst step fits a \
+fifth of the tick. Where none does the exit code is 1. With --need, files are written only if --out \
+is given.")]
 pub(crate) struct AccuracyArguments {
     /// Study the motion and the crepitus of this scene instead: a file, or the name of one that
     /// ships. Its solver and its encoder play no part.
@@ -176,15 +180,15 @@ pub(crate) struct AccuracyArguments {
 
     /// Also run every solver, and every effect of the device, on an emulated STM32F405: cycles and
     /// instructions of a step. Builds firmware/ladder, unless CREPITUS_IMAGES names a folder with
-    /// it.
-    #[arg(long, conflicts_with = "need")]
+    /// it. With --need these cycles choose.
+    #[arg(long)]
     pub(crate) target: bool,
 
     /// Write each diagram of the report as an SVG file of its own, too.
     #[arg(long)]
     pub(crate) pictures: bool,
 
-    /// Which solver is the cheapest that is accurate enough? For example torque=5e-3,interval=5e-4.
+    /// Which solver is the cheapest that is accurate enough? For example torque=1e-2,interval=5e-4.
     #[arg(long, value_name = "NEED")]
     pub(crate) need: Option<String>,
 

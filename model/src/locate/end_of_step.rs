@@ -6,12 +6,15 @@ use super::{Locate, SlipPath, StickPath};
 use crate::phase::Sense;
 use crate::propagate::Propagate;
 use crate::real::Real;
+use crate::shaft::Linear;
 
 /// Switching at the end of the step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EndOfStep;
 
 impl<F: Real> Locate<F> for EndOfStep {
+    type Shape = Linear;
+
     #[inline]
     fn break_time(path: &StickPath<F>, sense: Sense, limit_nm: F, length_s: F) -> Option<F> {
         (sense.of_signed(path.at(length_s)) > limit_nm).then_some(length_s)

@@ -10,6 +10,7 @@ use super::{Locate, SlipPath, StickPath};
 use crate::phase::Sense;
 use crate::propagate::Propagate;
 use crate::real::Real;
+use crate::shaft::{Linear, VelocityShape};
 
 /// Both events located.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,9 +19,11 @@ pub struct ExactEvents;
 /// The most trial points of one search. Five or six find a match of ordinary
 /// slope; a near miss halves its distance with each, so this reaches rounding
 /// in f64 as well.
-const SEARCH_STEPS: u32 = 64;
+pub(super) const SEARCH_STEPS: u32 = 64;
 
 impl<F: Real> Locate<F> for ExactEvents {
+    type Shape = Linear;
+
     #[inline]
     fn break_time(path: &StickPath<F>, sense: Sense, limit_nm: F, length_s: F) -> Option<F> {
         let left = limit_nm - sense.of_signed(path.torque_nm);
@@ -59,42 +62,60 @@ impl<F: Real> Locate<F> for ExactEvents {
     }
 
     fn match_time<P: Propagate<F>>(slip: &SlipPath<'_, F, P>, length_s: F, v_end: F) -> Option<F> {
-        let start = slip.overtaking(F::ZERO, slip.v);
-        let end = slip.overtaking(length_s, v_end);
-        let bound = slip.oscillator.jerk_bound(slip.x, slip.v);
-        // A curve that bends by less than `bound` dips below its chord by at
-        // most bound·h²/8.
-        let dip = bound * length_s * length_s * F::from_f64(0.125);
-        if start > dip && end > dip {
-            return None;
-        }
-        search(slip, length_s, bound)
+        first_match(slip, length_s, v_end)
     }
+}
+
+/// The first velocity match in [0, `length_s`], on a path of either shape.
+#[inline]
+pub(super) fn first_match<F: Real, P: Propagate<F>, V: VelocityShape<F>>(
+    slip: &SlipPath<'_, F, P, V>,
+    length_s: F,
+    v_end: F,
+) -> Option<F> {
+    let start = slip.overtaking(F::ZERO, slip.v);
+    let end = slip.overtaking(length_s, v_end);
+    let bound = slip.shape.bound(slip.oscillator.jerk_bound(slip.x, slip.v));
+    // A curve that bends by less than `bound` dips below its chord by at most
+    // bound·h²/8.
+    let dip = bound * length_s * length_s * F::from_f64(0.125);
+    if start > dip && end > dip {
+        return None;
+    }
+    search(slip, length_s, bound)
 }
 
 /// The first root of g(u) = s·(Ω(u) − v(u)) in [0, `length_s`], where |g̈| ≤
 /// `bound`.
-fn search<F: Real, P: Propagate<F>>(slip: &SlipPath<'_, F, P>, length_s: F, bound: F) -> Option<F> {
+fn search<F: Real, P: Propagate<F>, V: VelocityShape<F>>(
+    slip: &SlipPath<'_, F, P, V>,
+    length_s: F,
+    bound: F,
+) -> Option<F> {
     let rounding = F::TWO * F::TWO * F::EPSILON;
     let mut time_s = F::ZERO;
     let (mut x, mut v) = (slip.x, slip.v);
     for _ in 0..SEARCH_STEPS {
-        let gained = slip.omega_dot * time_s;
+        let gained = slip
+            .shape
+            .plus(slip.omega_dot * time_s, || F::HALF * time_s * time_s);
+        let omega_dot = slip.shape.plus(slip.omega_dot, || time_s);
         let omega = slip.omega + gained;
         let v_dot = slip.oscillator.acceleration(x, v);
         let g = slip.sense.of_signed(omega - v).at_least(F::ZERO);
-        let g_dot = slip.sense.of_signed(slip.omega_dot - v_dot);
+        let g_dot = slip.sense.of_signed(omega_dot - v_dot);
         // Ω may be the small difference of two large numbers.
         let size = slip.omega.abs() + gained.abs() + slip.oscillator.speed_bound(x, v);
         let noise = rounding * size;
         let advance = if g <= noise {
-            if g_dot.abs() <= rounding * (slip.omega_dot.abs() + v_dot.abs()) {
+            if g_dot.abs() <= rounding * (omega_dot.abs() + v_dot.abs()) {
                 // A touch: the velocities meet without crossing. Leave it, if
                 // they part again: g ≥ g̈·d²/2 − |g⃛|·d³/6 stays above zero up
                 // to d = 3·g̈/|g⃛|.
-                let parting = slip
-                    .sense
-                    .of_signed(-slip.oscillator.acceleration(v, v_dot));
+                let bend = slip
+                    .shape
+                    .plus(-slip.oscillator.acceleration(v, v_dot), || F::ONE);
+                let parting = slip.sense.of_signed(bend);
                 if parting <= F::ZERO {
                     return Some(time_s);
                 }
@@ -137,6 +158,7 @@ mod tests {
             torque_nm: s * torque_nm,
             rate: s * rate,
             curvature: s * curvature,
+            shape: Linear,
         };
         let found = ExactEvents::break_time(&path(1.0), Sense::Positive, limit, 1.0);
         let mirrored = ExactEvents::break_time(&path(-1.0), Sense::Negative, limit, 1.0);
@@ -216,6 +238,7 @@ mod tests {
             v: 1.0,
             omega: 1.0 + lead,
             omega_dot: rate,
+            shape: Linear,
         };
         let (_, v_end) = propagator.part(0.0, 1.0, length_s);
         ExactEvents::match_time(&slip, length_s, v_end)

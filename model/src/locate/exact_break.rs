@@ -8,12 +8,15 @@ use super::{EndOfStep, ExactEvents, Locate, SlipPath, StickPath};
 use crate::phase::Sense;
 use crate::propagate::Propagate;
 use crate::real::Real;
+use crate::shaft::Linear;
 
 /// The break located, the match not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExactBreak;
 
 impl<F: Real> Locate<F> for ExactBreak {
+    type Shape = Linear;
+
     #[inline]
     fn break_time(path: &StickPath<F>, sense: Sense, limit_nm: F, length_s: F) -> Option<F> {
         ExactEvents::break_time(path, sense, limit_nm, length_s)

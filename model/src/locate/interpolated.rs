@@ -9,12 +9,15 @@ use super::{Locate, SlipPath, StickPath};
 use crate::phase::Sense;
 use crate::propagate::Propagate;
 use crate::real::Real;
+use crate::shaft::Linear;
 
 /// Both events interpolated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Interpolated;
 
 impl<F: Real> Locate<F> for Interpolated {
+    type Shape = Linear;
+
     #[inline]
     fn break_time(path: &StickPath<F>, sense: Sense, limit_nm: F, length_s: F) -> Option<F> {
         let start = limit_nm - sense.of_signed(path.torque_nm);

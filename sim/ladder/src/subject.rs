@@ -42,7 +42,7 @@ impl Subject {
         let rungs = Convention::ALL.into_iter().flat_map(|convention| {
             Solver::ALL
                 .into_iter()
-                .filter(move |solver| solver.refusal(convention).is_none())
+                .filter(move |solver| solver.refusal_in::<f32>(convention).is_none())
                 .map(move |solver| Self::Rung(convention, solver))
         });
         rungs.chain(DEVICE)

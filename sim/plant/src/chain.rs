@@ -145,6 +145,30 @@ pub struct Settled {
     pub shaft_rad_s: f64,
     /// Impulse of an impact on a body whose velocity is prescribed, N·m·s.
     pub impulse_nms: f64,
+    /// Change of a free body's velocity in an impact, rad/s.
+    pub struck_rad_s: f64,
+}
+
+/// The impacts of a run. Each takes no time: it has an impulse, and no torque
+/// that would not depend on the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Impacts {
+    /// How many.
+    pub count: u64,
+    /// The largest impulse between the two that met, N·m·s.
+    pub largest_nms: f64,
+    /// The sum of their magnitudes, N·m·s.
+    pub sum_nms: f64,
+}
+
+impl Impacts {
+    /// Notes an impact of this impulse, N·m·s.
+    pub fn note(&mut self, impulse_nms: f64) {
+        let size = impulse_nms.abs();
+        self.count += 1;
+        self.largest_nms = self.largest_nms.max(size);
+        self.sum_nms += size;
+    }
 }
 
 /// The sense of a number that is not zero.
@@ -208,6 +232,9 @@ pub trait Chain: Send {
     /// Writes them.
     fn write(&self, body: &Body, row: &mut Vec<f64>);
 
+    /// The impacts so far, if a part of the chain can have any.
+    fn impacts(&self) -> Option<Impacts>;
+
     /// What was odd.
     fn warnings(&self, warnings: &mut Vec<String>);
 }
@@ -235,7 +262,7 @@ impl Chain for Shaft {
     fn settle(&mut self, _: &Step, _: &Body, _: &mut Body, flow: Flow, _: Option<f64>) -> Settled {
         Settled {
             shaft_rad_s: flow.omega_rad_s,
-            impulse_nms: 0.0,
+            ..Settled::default()
         }
     }
 
@@ -264,6 +291,10 @@ impl Chain for Shaft {
     fn columns(&self, _: &mut Vec<&'static str>) {}
 
     fn write(&self, _: &Body, _: &mut Vec<f64>) {}
+
+    fn impacts(&self) -> Option<Impacts> {
+        None
+    }
 
     fn warnings(&self, _: &mut Vec<String>) {}
 }

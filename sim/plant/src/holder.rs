@@ -67,6 +67,10 @@ pub trait Holder: Send {
     /// Positive opposes growing angle.
     fn felt_nms(&self) -> f64;
 
+    /// The part of that which came in impacts, N·m·s: at once, so that no torque
+    /// can be said of it.
+    fn struck_nms(&self) -> f64;
+
     /// Inertia that it adds to the right end, kg·m².
     fn inertia_kg_m2(&self) -> f64;
 
@@ -85,6 +89,7 @@ pub trait Holder: Send {
 pub struct Prescribed {
     motion: MotionStep,
     felt_nms: f64,
+    struck_nms: f64,
     work_j: f64,
 }
 
@@ -98,6 +103,7 @@ impl Prescribed {
                 to: start,
             },
             felt_nms: 0.0,
+            struck_nms: 0.0,
             work_j: 0.0,
         }
     }
@@ -145,6 +151,7 @@ impl Holder for Prescribed {
         rigid_kg_m2: f64,
     ) {
         self.felt_nms -= flow.torque_nm * stretch.length_s + settled.impulse_nms;
+        self.struck_nms -= settled.impulse_nms;
         self.work_j -= flow.torque_nm * stretch.length_s * flow.omega_rad_s
             + settled.impulse_nms * next.omega_rad_s;
         *body = next;
@@ -156,6 +163,10 @@ impl Holder for Prescribed {
 
     fn felt_nms(&self) -> f64 {
         self.felt_nms
+    }
+
+    fn struck_nms(&self) -> f64 {
+        self.struck_nms
     }
 
     fn inertia_kg_m2(&self) -> f64 {
@@ -197,6 +208,10 @@ impl Holder for Released {
     }
 
     fn felt_nms(&self) -> f64 {
+        0.0
+    }
+
+    fn struck_nms(&self) -> f64 {
         0.0
     }
 

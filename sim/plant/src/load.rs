@@ -1,7 +1,7 @@
 //! Torque on the body at the right end of a chain, and inertia that moves with
 //! it: the simplest part, and most effects of a leg are one.
 
-use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, Weight};
+use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight};
 use crate::ledger::{Account, Ledger};
 
 /// A torque that depends on the body's motion, and an inertia.
@@ -157,6 +157,10 @@ impl<L: Load> Chain for Loaded<L> {
             self.load.weight().map_or(0.0, |own| own(body.angle_rad))
         });
         row.push(-torque_nm);
+    }
+
+    fn impacts(&self) -> Option<Impacts> {
+        self.left.impacts()
     }
 
     fn warnings(&self, warnings: &mut Vec<String>) {

@@ -1,7 +1,7 @@
 //! A plant: actuator, chain and holder, stepped together.
 
 use crate::actuator::{Actuator, Commanded};
-use crate::chain::{Body, Chain, Flow, Step, Verdict};
+use crate::chain::{Body, Chain, Flow, Impacts, Step, Verdict};
 use crate::holder::{Holder, MotionStep, Stretch};
 use crate::ledger::Ledger;
 
@@ -208,6 +208,16 @@ impl<A: Actuator> Plant<A> {
     /// [`Holder::felt_nms`].
     pub fn felt_nms(&self) -> f64 {
         self.holder.felt_nms()
+    }
+
+    /// The part of that which came in impacts, N·m·s.
+    pub fn struck_nms(&self) -> f64 {
+        self.holder.struck_nms()
+    }
+
+    /// The impacts so far; none if no part of it can have any.
+    pub fn impacts(&self) -> Option<Impacts> {
+        self.chain.impacts()
     }
 
     /// Work that the actuator has taken out of the mechanics so far, J.

@@ -15,8 +15,10 @@
 //! | the motion step by step, for who steps a plant himself | [`walk`] |
 //! | columns, rows and events | [`trace`] |
 //! | the files of a run, written whole or not at all | [`output`] |
+//! | the clock of every cost | [`cpu_time`] |
 //! | the event-driven solver without a step | [`mod@reference`] |
 
+pub mod cpu_time;
 mod document;
 pub mod error;
 pub mod output;

@@ -19,21 +19,24 @@ mod find_break;
 mod find_match;
 mod first_root;
 mod follow;
+mod parabola;
 mod repeat;
 mod rules;
+mod swing;
 
 pub use follow::Follow;
 
 use ahead::Ahead;
-use crepitus_model::oscillator::Oscillator;
-use crepitus_model::{Convention, Event, Phase, Real, Sense, Settings, Validated};
+use crepitus_model::{Convention, Event, Phase, Sense, Settings, Validated};
 use crepitus_plant::{Motion, Piece, ShaftState};
 use find_match::SteadySlip;
 use repeat::Repeat;
 use std::ops::ControlFlow;
+use swing::Swing;
 
-/// How near to the static limit counts as at it, as in the model.
-const SLACK: f64 = <f64 as Real>::LIMIT_SLACK;
+/// How many roundings of what a torque is made of count as at a limit. The
+/// stepping solvers allow 1e-9 of the limit, as their errors add up.
+const LIMIT_ROUNDINGS: f64 = 64.0;
 
 /// How many turns of the loop over pieces and events go by between two polls.
 const POLL_EVERY: u32 = 1 << 10;
@@ -43,7 +46,7 @@ const POLL_EVERY: u32 = 1 << 10;
 pub struct Reference<'a> {
     motion: &'a Motion,
     settings: Settings,
-    oscillator: Oscillator<f64>,
+    swing: Swing,
     /// Tk/kr, rad.
     kinetic_angle_rad: f64,
     /// ωn, rad/s, and √(J·kr), N·m·s/rad.
@@ -53,6 +56,8 @@ pub struct Reference<'a> {
     time_s: f64,
     /// The shaft now; just after a knot, at it.
     now: ShaftState,
+    /// The shaft just before the present piece began.
+    before_piece: ShaftState,
     state: State,
     /// What the search knows of the end of this phase.
     ahead: Ahead,
@@ -97,7 +102,7 @@ impl<'a> Reference<'a> {
         Self {
             motion,
             settings: **settings,
-            oscillator: Oscillator::of(p),
+            swing: Swing::of(p),
             kinetic_angle_rad: p.kinetic_torque_nm / p.stiffness_nm_per_rad,
             natural_rad_s: p.natural_rad_s(),
             impedance: p.impedance_nms_per_rad(),
@@ -106,6 +111,7 @@ impl<'a> Reference<'a> {
             piece,
             time_s: 0.0,
             now: piece.at(0.0),
+            before_piece: piece.at(0.0),
             state: State::Stick {
                 theta: 0.0,
                 phi: piece.at(0.0).phi_rad,
@@ -143,6 +149,7 @@ impl<'a> Reference<'a> {
             if self.piece.end_s > to_s {
                 return ControlFlow::Continue(());
             }
+            self.before_piece = self.now;
             self.piece = self.motion.piece(self.piece.end_s);
             self.now = self.piece.at(self.time_s);
             self.repeat = None;
@@ -217,9 +224,15 @@ impl<'a> Reference<'a> {
         match self.state {
             State::Stick { theta, phi } => {
                 let shaft = self.now;
-                let before = self.stick_torque(theta, phi, &shaft);
+                let torque = self.stick_torque(theta, phi, &shaft);
+                // A kink of the velocity may break it by a jump of the torque.
+                let before = if self.time_s > self.piece.start_s {
+                    torque
+                } else {
+                    self.stick_torque(theta, phi, &self.before_piece)
+                };
                 let theta =
-                    self.break_angle(end.sense, before, &shaft, theta + (shaft.phi_rad - phi));
+                    self.break_angle(end.sense, torque, &shaft, theta + (shaft.phi_rad - phi));
                 self.begin_slip(end.sense, (theta, shaft.omega_rad_s), before, follower)?;
             }
             State::Slip(slip) => self.end_slip(&slip, follower)?,
@@ -249,6 +262,20 @@ impl<'a> Reference<'a> {
         p.inertia_kg_m2 * shaft.omega_dot + p.damping_nms_per_rad * shaft.omega_rad_s
     }
 
+    /// By how much rounding can move a stick's torque, N·m: of the swing that
+    /// leads to it, of the angle, and of the time.
+    fn limit_slack_nm(&self, shaft: &ShaftState) -> f64 {
+        let p = &self.settings.parameters;
+        let kr = p.stiffness_nm_per_rad;
+        let turned = shaft.phi_rad.abs() + shaft.omega_rad_s.abs() * self.piece.age_s(self.time_s);
+        let size = p.static_torque_nm
+            + self.impedance * shaft.omega_rad_s.abs()
+            + p.inertia_kg_m2 * shaft.omega_dot.abs()
+            + p.damping_nms_per_rad * shaft.omega_rad_s.abs()
+            + kr * turned;
+        LIMIT_ROUNDINGS * f64::EPSILON * size
+    }
+
     fn slip_torque(&self, sense: Sense) -> f64 {
         sense.of_signed(self.settings.parameters.kinetic_torque_nm)
     }
@@ -260,8 +287,6 @@ impl<'a> Reference<'a> {
 
     /// (x, v) of a slip.
     fn swing(&self, slip: &Slip, time_s: f64) -> (f64, f64) {
-        self.oscillator
-            .transition(time_s - slip.start_s)
-            .apply(slip.x, slip.v)
+        self.swing.after(slip.x, slip.v, time_s - slip.start_s)
     }
 }

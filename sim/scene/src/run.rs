@@ -16,8 +16,8 @@ mod stepping;
 mod summary;
 mod tally;
 
-pub use coupled::FELT_COLUMN;
-pub use probe::{StepTime, step_times};
+pub use coupled::{FELT_COLUMN, STRUCK_COLUMN};
+pub use probe::{AddedTime, StepTime, step_times};
 pub use summary::{
     CycleSummary, EffectSummary, EnergySummary, EventCounts, LeadSummary, ParameterValue,
     SUMMARY_VERSION, Summary, TorqueSummary,
@@ -107,6 +107,8 @@ pub(crate) struct Totals {
     end_s: f64,
     tally: Option<tally::Tally>,
     fastest_rad_s: f64,
+    /// Steps with as many events as a step may have.
+    crowded_steps: u64,
     plant: Option<coupled::PlantTotals>,
 }
 
@@ -134,6 +136,9 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         columns.extend(plant.columns().into_iter().map(number));
         if scene.is_held() {
             columns.push(number(coupled::FELT_COLUMN));
+            if plant.impacts().is_some() {
+                columns.push(number(coupled::STRUCK_COLUMN));
+            }
         }
     }
     columns
@@ -162,13 +167,13 @@ pub fn run<O: Observer>(scene: &Scene, observer: &mut O) -> Result<Summary, RunE
     Ok(summary::summarise(scene, &totals, wall_s))
 }
 
-/// Times each effect of `scene`, in a few thousand steps with it and without
-/// it, and notes the costs in its `summary`.
+/// Times each effect of `scene` in CPU time, in a few thousand steps with it
+/// and without it, and notes the costs in its `summary`.
 pub fn measure_costs(scene: &Scene, summary: &mut Summary) {
     for cost in probe::costs(scene) {
         for effect in &mut summary.effects {
             if effect.name == cost.effect {
-                effect.ns_per_step = Some(cost.ns_per_step);
+                effect.added = Some(cost.added);
             }
         }
     }

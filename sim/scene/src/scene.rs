@@ -11,6 +11,7 @@ pub use solver::{Precision, SolverChoice};
 use crate::document::{Document, Range, Section};
 use crate::error::SceneError;
 use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::turn_back::most_rad_per_count;
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use crepitus_plant::actuator::Actuator;
 use crepitus_plant::assembly::{Assembled, Listed, assemble, assemble_with};
@@ -131,24 +132,43 @@ impl Scene {
             stepped.push("encoder");
         }
         if solver == SolverChoice::Reference && !stepped.is_empty() {
-            let tables: Vec<_> = stepped.iter().map(|n| format!("[effects.{n}]")).collect();
             return Err(solver_section.key_error(
                 "kind",
                 format!(
                     "\"reference\" has no step, and knows the stick-slip object alone: choose another solver, or \
                      leave out {}",
-                    tables.join(", ")
+                    tables(&stepped)
                 ),
             ));
         }
         check_released(&root, motion.kind, &effects.listed)?;
-        if let (Some(crepitus), SolverChoice::Ladder { solver, .. }) = (&effects.crepitus, solver)
-            && let Some(reason) = solver.refusal(crepitus.settings.convention)
+        if let SolverChoice::Ladder {
+            solver: rung,
+            precision,
+            ..
+        } = solver
         {
-            return Err(solver_section.key_error(
-                "kind",
-                format!("\"{}\" is refused: {reason}", solver.name()),
-            ));
+            let refuse = |key: &str, reason: &str| {
+                solver_section.key_error(key, format!("\"{}\" is refused: {reason}", rung.name()))
+            };
+            if let Some(crepitus) = &effects.crepitus
+                && let Some(reason) = rung.refusal(crepitus.settings.convention)
+            {
+                return Err(refuse("kind", reason));
+            }
+            if precision == Precision::F32
+                && let Some(reason) = rung.single_refusal()
+            {
+                return Err(refuse("precision", reason));
+            }
+            if rung.needs_exact_motion() && !stepped.is_empty() {
+                let reason = format!(
+                    "it takes the shaft's acceleration from the prescribed motion, and what a sensor or a plant \
+                     makes of that motion is not exact enough: choose another solver, or leave out {}",
+                    tables(&stepped)
+                );
+                return Err(refuse("kind", &reason));
+            }
         }
         if substeps > 1 && effects.listed.is_empty() {
             return Err(solver_section.key_error(
@@ -159,6 +179,8 @@ impl Scene {
         let mut warnings = motion.warnings;
         if let Some(crepitus) = &effects.crepitus {
             warnings.extend(sampled_motion_warning(crepitus, motion.ripple_rad_s2));
+            let encoder = effects.encoder.as_ref();
+            warnings.extend(encoder.and_then(|encoder| guard_warning(crepitus, encoder)));
         }
         let scene = Self {
             file: file.to_owned(),
@@ -241,6 +263,12 @@ impl Scene {
     }
 }
 
+/// Effects as a scene file names them.
+fn tables(effects: &[&str]) -> String {
+    let tables: Vec<_> = effects.iter().map(|n| format!("[effects.{n}]")).collect();
+    tables.join(", ")
+}
+
 /// A leg that nobody holds has to be there, and not to be held.
 fn check_released(
     root: &Section<'_>,
@@ -298,6 +326,26 @@ fn sampled_motion_warning(crepitus: &Crepitus, ripple_rad_s2: Option<f64>) -> Op
              by up to {ripple_nm:.2} N·m (Ts is {} N·m): the joint feels the sampling; a lower cutoff_hz or \
              \"frozen\" avoids it",
             settings.parameters.static_torque_nm
+        )
+    })
+}
+
+/// A joint that a device with this encoder would refuse.
+fn guard_warning(crepitus: &Crepitus, encoder: &EncoderSettings) -> Option<String> {
+    let settings = &crepitus.settings;
+    let (count_rad, most_rad) = (encoder.rad_per_count(), most_rad_per_count(settings));
+    (settings.convention == Convention::Frozen && count_rad > most_rad).then(|| {
+        let p = &settings.parameters;
+        format!(
+            "the device refuses kinetic_torque_nm = {} with static_torque_nm = {}, stiffness_nm_per_rad = {} and \
+             an encoder of {} lines: a hand that turns back inside a slip would get more energy than the slip takes \
+             out of the spring; one count is {:.1} µrad, and may be {:.1} µrad",
+            p.kinetic_torque_nm,
+            p.static_torque_nm,
+            p.stiffness_nm_per_rad,
+            encoder.lines,
+            count_rad * 1e6,
+            most_rad * 1e6
         )
     })
 }

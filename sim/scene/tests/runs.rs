@@ -279,6 +279,37 @@ fn steps_too_long_to_see_are_warned_of() {
 }
 
 #[test]
+fn a_joint_that_the_device_refuses_is_warned_of() {
+    // Two counts of 512 lines are 71.35 µrad; (Ts − Tk)/kr is 72 and 70.
+    for (stiffness, lines, refused) in [
+        ("2777.7", "512", false),
+        ("2857.2", "512", true),
+        ("2857.2", "1024", false),
+        ("4000.0", "512", true),
+    ] {
+        let joint = format!(
+            "{}\nstiffness_nm_per_rad = {stiffness}\ninertia_kg_m2 = 0.07",
+            crepitus("frozen")
+        );
+        let encoder = format!("[effects.encoder]\nlines = {lines}");
+        let effects = format!("{joint}\n{encoder}");
+        let (_, summary) = simulate(&scene(0.1, ONE_RAD_S, EXACT_EVENTS, &effects));
+        let is_warned = |summary: &Summary| {
+            let warnings = &summary.warnings;
+            warnings.iter().any(|w| w.contains("the device refuses"))
+        };
+        assert_eq!(is_warned(&summary), refused, "{:?}", summary.warnings);
+        // Without an encoder there is no count, and under another convention
+        // no such slip.
+        let (_, summary) = simulate(&scene(0.1, ONE_RAD_S, EXACT_EVENTS, &joint));
+        assert!(!is_warned(&summary));
+        let physical = effects.replace("frozen", "physical");
+        let (_, summary) = simulate(&scene(0.1, ONE_RAD_S, EXACT_EVENTS, &physical));
+        assert!(!is_warned(&summary));
+    }
+}
+
+#[test]
 fn a_duration_that_is_no_whole_number_of_steps_is_said() {
     let (keep, summary) = simulate(&scene(
         0.00012,

@@ -97,8 +97,26 @@ fn every_error_names_line_key_and_what_is_allowed() {
             [
                 "line 10",
                 "`solver.kind`",
-                "exact-events, rk4-events and reference",
+                "exact-events, rk4-events, exact-hermite and reference",
             ],
+        ),
+        (
+            refused("exact-events", "exact-hermite"),
+            ["line 10", "`solver.kind`", "no acceleration of the shaft"],
+        ),
+        (
+            refused(
+                "exact-events\"\nstep_s = 5e-5\n\n[effects.crepitus]\n",
+                "exact-hermite\"\nstep_s = 5e-5\nprecision = \"f32\"\n[effects.crepitus]\nconvention = \"physical\"\n",
+            ),
+            ["line 12", "`solver.precision`", "use precision \"f64\""],
+        ),
+        (
+            refused(
+                "exact-events\"\nstep_s = 5e-5\n\n[effects.crepitus]\n",
+                "exact-hermite\"\nstep_s = 5e-5\n[effects.encoder]\n[effects.crepitus]\nconvention = \"physical\"\n",
+            ),
+            ["line 10", "`solver.kind`", "leave out [effects.encoder]"],
         ),
         (
             refused("step_s = 5e-5\n", ""),

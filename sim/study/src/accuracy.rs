@@ -13,13 +13,15 @@
 //! | what is studied | [`scenes`] |
 //! | the whole study and its results | [`study`], [`results`] |
 //! | one point of the diagram, and its file | [`point`], [`points_csv`] |
-//! | the torque to compare with | [`reference_torque`] |
+//! | the torque to compare with, at the ends of steps and within them | [`reference_torque`], [`held_torque`] |
 //! | how a run is measured and how it is timed | [`measure`], [`timing`] |
 //! | what a step costs on the device's core | [`target`] |
-//! | orders of convergence | [`orders`] |
+//! | orders of convergence, and on motions of other kinds | [`orders`], [`convergence`] |
 //! | limits, and the cheapest rung that keeps them | [`need`], [`mod@answer`] |
 
 pub mod answer;
+pub mod convergence;
+pub mod held_torque;
 pub mod measure;
 pub mod need;
 pub mod orders;

@@ -2,7 +2,12 @@
 
 use crepitus_model::{Event, EventKind, Phase, Real, Sense, Settings, Validated};
 use crepitus_plant::Motion;
-use crepitus_scene::reference::Reference;
+use crepitus_scene::reference::{Follow, Reference};
+use std::convert::Infallible;
+use std::ops::ControlFlow;
+
+/// How many events go by between two questions whether to go on.
+const ASK_EVERY: usize = 1 << 12;
 
 /// An event as it is compared: when, what, and which way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,11 +41,13 @@ impl TimedEvent {
     }
 }
 
-/// A true event with the torque on both sides of it.
+/// A true event with the torque on both sides of it and the object after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrueEvent {
     /// The event.
     pub event: TimedEvent,
+    /// Angle θ of the object just after, rad.
+    pub theta_rad: f64,
     /// Torque shown just before, N·m.
     pub torque_before_nm: f64,
     /// Torque shown just after, N·m.
@@ -53,14 +60,64 @@ pub fn true_events(
     motion: &Motion,
     duration_s: f64,
 ) -> Vec<TrueEvent> {
-    let mut events = Vec::new();
-    Reference::new(settings, motion).advance(duration_s, |event| {
-        events.push(TrueEvent {
+    match true_events_while(settings, motion, duration_s, || Ok::<_, Infallible>(())) {
+        Ok(events) => events,
+    }
+}
+
+/// As [`true_events`], and asks `go_on` now and then.
+///
+/// # Errors
+/// What `go_on` returns.
+pub fn true_events_while<E>(
+    settings: &Validated<Settings>,
+    motion: &Motion,
+    duration_s: f64,
+    go_on: impl FnMut() -> Result<(), E>,
+) -> Result<Vec<TrueEvent>, E> {
+    let mut collected = Collected {
+        events: Vec::new(),
+        go_on,
+    };
+    match Reference::new(settings, motion).follow(duration_s, &mut collected) {
+        ControlFlow::Continue(()) => Ok(collected.events),
+        ControlFlow::Break(error) => Err(error),
+    }
+}
+
+/// Collects events as long as it may.
+struct Collected<G> {
+    events: Vec<TrueEvent>,
+    go_on: G,
+}
+
+impl<E, G: FnMut() -> Result<(), E>> Collected<G> {
+    fn ask(&mut self) -> ControlFlow<E> {
+        match (self.go_on)() {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => ControlFlow::Break(error),
+        }
+    }
+}
+
+impl<E, G: FnMut() -> Result<(), E>> Follow for Collected<G> {
+    type Stop = E;
+
+    fn event(&mut self, event: Event<f64>) -> ControlFlow<E> {
+        self.events.push(TrueEvent {
             // The reference has no step: its fraction is the time.
             event: TimedEvent::new(event.fraction, &event),
+            theta_rad: event.theta_rad,
             torque_before_nm: event.torque_before_nm,
             torque_after_nm: event.torque_after_nm,
         });
-    });
-    events
+        if self.events.len().is_multiple_of(ASK_EVERY) {
+            self.ask()?;
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn poll(&mut self, _: f64) -> ControlFlow<E> {
+        self.ask()
+    }
 }

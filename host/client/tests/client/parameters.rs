@@ -82,6 +82,15 @@ fn what_is_not_allowed_is_refused_with_what_is() {
              lower the first or raise the second; nothing was changed",
         ),
         (
+            &[(id::KINETIC_TORQUE, 0.38), (id::STIFFNESS, 4000.0)],
+            ValueError::KineticAboveStatic,
+            "crepitus.kinetic_torque_nm = 0.38 is too close to crepitus.static_torque_nm = 0.4, with \
+             crepitus.stiffness_nm_per_rad = 4000 and encoder.lines = 512: a hand that turns back \
+             inside a slip would get more energy than the slip takes out of the spring. One count \
+             of the encoder is 35.7 µrad, and may be 2.5 µrad: lower the kinetic torque or the \
+             stiffness, or raise the static torque; nothing was changed",
+        ),
+        (
             &[(id::STATIC_TORQUE, 5.0)],
             ValueError::StaticAboveLimit,
             "crepitus.static_torque_nm = 5 is above limits.torque_nm = 4.5: lower the first or \

@@ -66,7 +66,8 @@ fn rows_of(pair: &Pair, rung: &'static str, precision: &'static str) -> Vec<Row>
             .filter(|point| unfit(point, measure) == Some(Unfit::NoNumber));
         let reason = match measure {
             Measure::EventTime => "no event-time error, or no cost",
-            Measure::Torque => "no torque error, or no cost",
+            Measure::HeldTorque => "no held torque error, or no cost",
+            Measure::TickTorque => "no torque error at the tick, or no cost",
             Measure::Frequency => "no frequency error, or no cost",
         };
         row(

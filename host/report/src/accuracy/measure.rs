@@ -1,4 +1,4 @@
-//! The three errors that diagrams show.
+//! The errors that diagrams show.
 
 use crepitus_study::accuracy::Point;
 
@@ -6,7 +6,8 @@ use crepitus_study::accuracy::Point;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Measure {
     EventTime,
-    Torque,
+    HeldTorque,
+    TickTorque,
     Frequency,
 }
 
@@ -40,12 +41,18 @@ const TORQUE: [PerceptualLine; 2] = [
 ];
 
 impl Measure {
-    pub(crate) const ALL: [Self; 3] = [Self::EventTime, Self::Torque, Self::Frequency];
+    pub(crate) const ALL: [Self; 4] = [
+        Self::EventTime,
+        Self::HeldTorque,
+        Self::TickTorque,
+        Self::Frequency,
+    ];
 
     pub(crate) fn of(self, point: &Point) -> f64 {
         match self {
             Self::EventTime => point.max_event_error_s,
-            Self::Torque => point.rms_torque_error_nm,
+            Self::HeldTorque => point.rms_held_torque_error_nm,
+            Self::TickTorque => point.rms_tick_torque_error_nm,
             Self::Frequency => point.frequency_error_rel,
         }
     }
@@ -54,7 +61,8 @@ impl Measure {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::EventTime => "event-time",
-            Self::Torque => "torque",
+            Self::HeldTorque => "held-torque",
+            Self::TickTorque => "tick-torque",
             Self::Frequency => "frequency",
         }
     }
@@ -62,7 +70,8 @@ impl Measure {
     pub(crate) fn title(self) -> &'static str {
         match self {
             Self::EventTime => "Event time: the worst error against the cost",
-            Self::Torque => "Torque: the RMS error against the cost",
+            Self::HeldTorque => "Held torque: the RMS error against the cost",
+            Self::TickTorque => "Torque at the tick: the RMS error against the cost",
             Self::Frequency => "Cycle frequency: the relative error against the cost",
         }
     }
@@ -70,7 +79,8 @@ impl Measure {
     pub(crate) fn axis(self) -> &'static str {
         match self {
             Self::EventTime => "Worst event-time error (s)",
-            Self::Torque => "RMS torque error (N·m)",
+            Self::HeldTorque => "RMS error of the held torque (N·m)",
+            Self::TickTorque => "RMS torque error at the tick (N·m)",
             Self::Frequency => "Relative frequency error",
         }
     }
@@ -79,7 +89,7 @@ impl Measure {
     pub(crate) fn unit(self) -> &'static str {
         match self {
             Self::EventTime => " s",
-            Self::Torque => " N·m",
+            Self::HeldTorque | Self::TickTorque => " N·m",
             Self::Frequency => "",
         }
     }
@@ -88,7 +98,7 @@ impl Measure {
     pub(crate) fn lines(self) -> &'static [PerceptualLine] {
         match self {
             Self::EventTime => &EVENT_TIME,
-            Self::Torque => &TORQUE,
+            Self::HeldTorque | Self::TickTorque => &TORQUE,
             Self::Frequency => &[],
         }
     }
@@ -99,8 +109,14 @@ impl Measure {
                 "How far the worst break, stick or reversal is from where it belongs. Below 0.5 ms \
                  a better time is still worth having; below 0.1 ms nobody feels it."
             }
-            Self::Torque => {
-                "The torque's error at the ends of steps, as root mean square: a jump of the \
+            Self::HeldTorque => {
+                "What a device shows that holds each torque for a step, against the true torque \
+                 at every time between, as root mean square. An event that falls within a step \
+                 comes late however exactly its time is known, so all solvers that find it meet \
+                 at one line."
+            }
+            Self::TickTorque => {
+                "The torque's error at the ends of steps alone, as root mean square: a jump of the \
                  torque that comes late counts in full while it is late. Below 5 mN·m less is \
                  still worth having; below 1 mN·m nobody feels it."
             }

@@ -60,7 +60,8 @@ pub(crate) fn table(study: &Study, pair: &Pair) -> Markup {
                             th.number scope="col" { "ns a step" }
                             th.number scope="col" { "× cheapest" }
                             th.number scope="col" { "worst event error (s)" }
-                            th.number scope="col" { "RMS torque error (N·m)" }
+                            th.number scope="col" { "held torque, RMS error (N·m)" }
+                            th.number scope="col" { "torque at the tick, RMS error (N·m)" }
                             th.number scope="col" { "frequency error" }
                             th.number scope="col" { "digits" }
                         } }
@@ -68,12 +69,27 @@ pub(crate) fn table(study: &Study, pair: &Pair) -> Markup {
                     }
                 }
                 p.caption {
-                    "Time of one core per step, beside it over that of the cheapest rung at the "
-                    "same precision. Digits: correct digits of the cycle frequency, −log₁₀ of its "
+                    "CPU time per step, beside it over that of the cheapest rung at the "
+                    "same precision. "
+                    (floor(&rows))
+                    "Digits: correct digits of the cycle frequency, −log₁₀ of its "
                     "relative error."
                 }
             }
         }
+    }
+}
+
+/// The least that any held torque is off here, if it is known.
+fn floor(rows: &[Row]) -> String {
+    let floor_nm = rows.first().map_or(f64::NAN, |row| row.point.held_floor_nm);
+    if floor_nm.is_finite() {
+        format!(
+            "No torque that is held for a tick can be nearer than {} N·m to the true one. ",
+            scientific(floor_nm)
+        )
+    } else {
+        String::new()
     }
 }
 
@@ -89,12 +105,13 @@ fn line(row: &Row) -> Markup {
             td.number { (nanoseconds(point.ns_per_step)) }
             td.number { (nanoseconds(row.ratio)) }
             @if point.unmatched > 0 {
-                td.wrong colspan="4" {
+                td.wrong colspan="5" {
                     "wrong events: " (found(point))
                 }
             } @else {
                 td.number { (scientific(Measure::EventTime.of(point))) }
-                td.number { (scientific(Measure::Torque.of(point))) }
+                td.number { (scientific(Measure::HeldTorque.of(point))) }
+                td.number { (scientific(Measure::TickTorque.of(point))) }
                 td.number { (scientific(frequency)) }
                 td.number { (digits(frequency)) }
             }

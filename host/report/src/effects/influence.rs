@@ -1,5 +1,7 @@
 //! Influence against cost: a sign an effect, both axes logarithmic.
 
+use crepitus_scene::cpu_time::CLOCK;
+use crepitus_scene::run::AddedTime;
 use crepitus_study::effects::results::Added;
 use crepitus_study::effects::{EffectsStudy, Row};
 
@@ -18,31 +20,20 @@ const SIZE: (u32, u32) = (960, 520);
 /// Room for the names of the perceptual lines at the right.
 const RIGHT: u32 = 176;
 
-/// A cost below this share of the scene's whole step is lost in the timings,
-/// however quiet the machine.
-const NOISE: f64 = 0.01;
 /// A smaller influence than this is none, N·m.
 const NOTHING_NM: f64 = 1e-7;
 
-/// What the axes can show.
+/// Where stands what the axes cannot show.
 struct Floor {
-    /// A cost up to this is lost in the timings, ns; where it stands.
-    least_ns: f64,
+    /// A cost that is below what the timings can tell, ns.
     ns: f64,
+    /// An influence that is none, N·m.
     nm: f64,
 }
 
 impl Floor {
-    fn hides(&self, added: &Added) -> bool {
-        added.ns_per_step <= self.least_ns
-    }
-
     fn place(&self, added: &Added) -> (f64, f64) {
-        let ns = if self.hides(added) {
-            self.ns
-        } else {
-            added.ns_per_step
-        };
+        let ns = added.time.ns_per_step.unwrap_or(self.ns);
         (ns, added.rms_nm.max(self.nm))
     }
 }
@@ -53,7 +44,7 @@ pub(super) fn figure(study: &EffectsStudy) -> Result<Option<Figure>, ReportError
         .rows
         .iter()
         .filter_map(|row| Some((row, row.added()?)))
-        .filter(|(_, added)| added.ns_per_step.is_finite() && added.rms_nm.is_finite())
+        .filter(|(_, added)| added.time.ns_resolution.is_finite() && added.rms_nm.is_finite())
         .collect();
     if rows.is_empty() {
         return Ok(None);
@@ -61,7 +52,7 @@ pub(super) fn figure(study: &EffectsStudy) -> Result<Option<Figure>, ReportError
     let svg = svg_with(
         SIZE,
         "RMS torque that each effect adds at the hand, against its cost",
-        |area| draw(area, study, &rows),
+        |area| draw(area, &rows),
     )?;
     Ok(Some(Figure {
         name: "influence-and-cost",
@@ -74,17 +65,15 @@ pub(super) fn figure(study: &EffectsStudy) -> Result<Option<Figure>, ReportError
         }],
         caption: format!(
             "Up: how much an effect changes the torque at the hand, as the RMS of the difference between the run with \
-             it and the run without. Right: the time that it adds to a step. What stands up and to the left gives \
-             much for little. A sign with an arrow to the left: no cost above {} % of the scene's step, less than these \
-             timings can tell; with an arrow down: no influence at all. +1, +2: with the effects that need it, or that \
-             it needs.",
-            rounded(100.0 * noise(study))
+             it and the run without. Right: what it adds to a step, {CLOCK}. What stands up and to the left gives \
+             much for little. A sign with an arrow to the left: the cost is below what these timings can tell; with \
+             an arrow down: no influence at all. +1, +2: with the effects that need it, or that it needs."
         ),
     }))
 }
 
-fn draw(area: &Area, study: &EffectsStudy, rows: &[(&Row, &Added)]) -> Result<String, Fault> {
-    let (x, y, floor) = axes(study, rows);
+fn draw(area: &Area, rows: &[(&Row, &Added)]) -> Result<String, Fault> {
+    let (x, y, floor) = axes(rows);
     let mut plot = Panel {
         x,
         y,
@@ -95,7 +84,7 @@ fn draw(area: &Area, study: &EffectsStudy, rows: &[(&Row, &Added)]) -> Result<St
     .on(area)?;
     plot.grid()?;
     let mut over = Overlay::default();
-    for line in Measure::Torque.lines() {
+    for line in Measure::HeldTorque.lines() {
         plot.across(line.value, LEVEL, 5)?;
         let (x, y) = plot.at((plot.x().high(), line.value));
         over.text((x + 28, y), Anchor::Start, LEVEL, line.label);
@@ -109,7 +98,7 @@ fn draw(area: &Area, study: &EffectsStudy, rows: &[(&Row, &Added)]) -> Result<St
         .map(|((_, added), name)| spots::Sign {
             at: plot.at(floor.place(added)),
             name,
-            arrow: floor.hides(added),
+            arrow: added.time.is_below_resolution(),
         })
         .collect();
     for ((row, added), sign) in rows.iter().zip(&signs) {
@@ -121,10 +110,10 @@ fn draw(area: &Area, study: &EffectsStudy, rows: &[(&Row, &Added)]) -> Result<St
             over.arrow_down(sign.at, hand.ink);
         }
         let title = format!(
-            "{}: {} N·m RMS, {} ns a step",
+            "{}: {} N·m RMS, {}",
             row.name(),
             rounded(added.rms_nm),
-            rounded(added.ns_per_step)
+            cost(&added.time)
         );
         over.marker(sign.at, hand, true, &title);
     }
@@ -137,35 +126,34 @@ fn draw(area: &Area, study: &EffectsStudy, rows: &[(&Row, &Added)]) -> Result<St
     Ok(over.finish())
 }
 
-/// The share of the scene's step below which a cost is lost in the timings.
-fn noise(study: &EffectsStudy) -> f64 {
-    study.time_spread().max(NOISE)
+/// A cost in words; of one that is lost in the timings its bound.
+fn cost(added: &AddedTime) -> String {
+    match added.ns_per_step {
+        Some(ns) => format!("{} ns a step", rounded(ns)),
+        None => format!(
+            "a cost below what can be measured ({} ns a step)",
+            rounded(added.ns_resolution)
+        ),
+    }
 }
 
 /// Both axes, and where what is next to nothing stands on them.
-fn axes(study: &EffectsStudy, rows: &[(&Row, &Added)]) -> (Axis, Axis, Floor) {
-    let step_ns = study.whole().map_or(f64::NAN, |row| row.ns_per_step);
-    let least_ns = if step_ns.is_finite() {
-        (noise(study) * step_ns).max(1e-3)
-    } else {
-        1.0
-    };
-    let costs = rows.iter().map(|(_, a)| a.ns_per_step);
-    let (least, most) = extent(costs.filter(|ns| *ns > least_ns));
+fn axes(rows: &[(&Row, &Added)]) -> (Axis, Axis, Floor) {
+    let costs = rows.iter().filter_map(|(_, a)| a.time.ns_per_step);
+    let (least, most) = extent(costs);
     let (least, most) = if least <= most {
         (least, most)
     } else {
-        (least_ns, 10.0 * least_ns)
+        (1.0, 10.0)
     };
-    let hidden = rows.iter().any(|(_, a)| a.ns_per_step <= least_ns);
+    let hidden = rows.iter().any(|(_, a)| a.time.is_below_resolution());
     let floor_ns = if hidden { least / 3.0 } else { least };
-    let lines = Measure::Torque.lines().iter().map(|line| line.value);
+    let lines = Measure::HeldTorque.lines().iter().map(|line| line.value);
     let influences = rows.iter().map(|(_, a)| a.rms_nm);
     let (low, high) = extent(influences.filter(|nm| *nm > NOTHING_NM).chain(lines));
     let nothing = rows.iter().any(|(_, a)| a.rms_nm <= NOTHING_NM);
     let floor_nm = if nothing { low / 4.0 } else { low };
     let floor = Floor {
-        least_ns,
         ns: floor_ns,
         nm: floor_nm,
     };

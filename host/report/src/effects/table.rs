@@ -1,5 +1,7 @@
 //! The table: a row a variant.
 
+use crepitus_scene::cpu_time::CLOCK;
+use crepitus_scene::run::AddedTime;
 use crepitus_study::effects::influence::BANDS_HZ;
 use crepitus_study::effects::results::{Added, Outcome, Ran};
 use crepitus_study::effects::{EffectsStudy, Row};
@@ -44,9 +46,10 @@ pub(super) fn table(study: &EffectsStudy) -> Markup {
             p.caption {
                 "What an effect adds is the run with it less the run without it, tick by tick: for an effect of the "
                 "scene the scene less the variant, for an absent one the variant less the scene. In parentheses what "
-                "leaves or comes with it. Bands are the RMS of the torque within each. Times are those of "
+                "leaves or comes with it. Bands are the RMS of the torque within each. Times are " (CLOCK) " on "
                 "one core of one machine, the fastest of " (count(u64::from(study.timings)))
-                " in which all variants take turns: their ratios mean more than the numbers."
+                " in which all variants take turns: their ratios mean more than the numbers. < x: the "
+                "difference is below what can be measured, x ns."
             }
         }
     }
@@ -95,12 +98,21 @@ fn feels(ran: &Ran) -> Markup {
 fn costs(row: &Row, added: Option<&Added>) -> Markup {
     html! {
         @if let Some(added) = added {
-            td.number { (rounded(added.ns_per_step)) }
+            td.number { (cost(&added.time)) }
             td.number { (signed(added.states)) }
         } @else {
             td.number { "–" }
             td.number { (row.states) }
         }
+    }
+}
+
+/// Of a cost that is lost in the timings its bound.
+fn cost(added: &AddedTime) -> String {
+    match added.ns_per_step {
+        Some(ns) => rounded(ns),
+        None if added.is_below_resolution() => format!("< {}", rounded(added.ns_resolution)),
+        None => "–".to_owned(),
     }
 }
 

@@ -4,7 +4,7 @@
 use crepitus_model::Convention;
 use crepitus_model::solver::Solver;
 use crepitus_scene::scene::Precision;
-use crepitus_study::stability::{Cell, Matrix, Row, Subject};
+use crepitus_study::stability::{Cell, Matrix, Row, Rung, Subject};
 
 /// See the module.
 #[derive(Debug)]
@@ -18,7 +18,7 @@ pub(super) struct Columns {
 #[derive(Debug)]
 pub(super) struct Group {
     pub(super) convention: Convention,
-    pub(super) rungs: Vec<Solver>,
+    pub(super) rungs: Vec<Rung>,
 }
 
 impl Columns {
@@ -56,10 +56,12 @@ impl Columns {
         self.precisions.sort_by_key(|p| *p != Precision::F32);
         self.precisions.truncate(1);
         for group in &mut self.groups {
+            // It has no f32.
+            group.rungs.retain(|rung| *rung != Rung::Reference);
             if group.convention == Convention::Paper && group.rungs.len() > 2 {
-                group
-                    .rungs
-                    .retain(|rung| matches!(rung, Solver::Exact | Solver::ExactEvents));
+                group.rungs.retain(|rung| {
+                    matches!(rung, Rung::Ladder(Solver::Exact | Solver::ExactEvents))
+                });
             }
         }
         self
@@ -70,7 +72,7 @@ impl Columns {
 pub(super) fn cell(
     row: &Row,
     convention: Convention,
-    solver: Solver,
+    solver: Rung,
     precision: Precision,
 ) -> Option<&Cell> {
     let subject = Subject {

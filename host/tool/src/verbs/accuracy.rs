@@ -1,7 +1,8 @@
 //! `crepitus accuracy`: what accuracy costs in time, and the cheapest solver
-//! that is accurate enough.
+//! that is accurate enough, on the host or on the target.
 
 mod answer;
+mod orders_table;
 mod page;
 mod plan;
 mod summary;
@@ -13,7 +14,7 @@ use crate::cli::AccuracyArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::studying::{self, Watch};
 use crepitus_scene::output::Folder;
-use crepitus_study::accuracy::{Need, Study, points_csv, study};
+use crepitus_study::accuracy::{Need, Study, convergence, points_csv, study};
 use serde_json::json;
 use std::path::PathBuf;
 use summary::Summary;
@@ -44,6 +45,14 @@ pub(crate) fn accuracy(arguments: &AccuracyArguments, as_json: bool) -> Result<(
         let scenes = &studied.plan.scenes;
         target::add(&mut study, scenes, arguments.quick, &mut ladder)?;
     }
+    let by_motion = if arguments.scene.is_none() && need.is_none() {
+        convergence::motions().and_then(|motions| convergence::orders_on(&motions))
+    } else {
+        Ok(Vec::new())
+    };
+    let by_motion =
+        by_motion.map_err(|e| Failure::Work(format!("the orders cannot be measured: {e}")))?;
+    study.orders.extend_from_slice(&by_motion);
     let summary = Summary::new(arguments.quick, &studied, &study);
     if let (Some(folder), Some(out)) = (folder, &out) {
         studying::write(folder, out, files(&study, &summary, arguments.pictures)?)?;
@@ -55,8 +64,9 @@ pub(crate) fn accuracy(arguments: &AccuracyArguments, as_json: bool) -> Result<(
             let report = out.unwrap_or_default().join("report.html");
             let target = study.target.as_ref().map(target::table);
             print(&format!(
-                "{}\n{}\nreport: {}\n",
+                "{}\n{}{}\nreport: {}\n",
                 table::at_the_tick(&study),
+                orders_table::by_motion(&by_motion),
                 target.map_or_else(String::new, |table| format!("\n{table}")),
                 report.display()
             ))

@@ -66,6 +66,17 @@ fn values_that_contradict_each_other_are_refused() {
                 0.5,
                 ValueError::KineticAboveStatic,
             ),
+            // Two counts above (Ts − Tk)/kr: more than the guard can guard.
+            (
+                "crepitus.kinetic_torque_nm",
+                0.38,
+                ValueError::KineticAboveStatic,
+            ),
+            (
+                "crepitus.stiffness_nm_per_rad",
+                4000.0,
+                ValueError::KineticAboveStatic,
+            ),
             (
                 "crepitus.static_torque_nm",
                 4.6,

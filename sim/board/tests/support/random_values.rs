@@ -1,6 +1,7 @@
 //! Parameters that somebody might set, and some that nobody may.
 
 use crate::support::set;
+use crepitus_model::encoder::EncoderSettings;
 use crepitus_protocol::Values;
 use crepitus_protocol::parameters::PARAMETERS;
 use fastrand::Rng;
@@ -10,15 +11,21 @@ pub(crate) fn allowed(rng: &mut Rng, base: &Values) -> Values {
     let mut values = *base;
     let between = |rng: &mut Rng, low: f64, high: f64| low + (high - low) * rng.f64();
     let switch = |rng: &mut Rng| f64::from(u8::from(rng.bool()));
-    let static_nm = between(rng, 0.05, 2.0);
+    let static_nm = between(rng, 0.2, 2.0);
+    let stiffness = between(rng, 100.0, 800.0);
+    // As near to it as the turn-back guard allows, also for a stick that
+    // begins at Tk: Ts² − Tk² = 8·kr·Δ·Tk.
+    let counts_nm = stiffness * EncoderSettings::default().rad_per_count();
+    let most_nm = (16.0 * counts_nm * counts_nm + static_nm * static_nm).sqrt() - 4.0 * counts_nm;
+    let most_share = most_nm.min(static_nm - 2.0 * counts_nm) / static_nm;
     let numbers = [
         ("crepitus.render", f64::from(u8::from(rng.u8(0..8) > 0))),
         ("crepitus.inertia_kg_m2", between(rng, 5e-4, 0.05)),
-        ("crepitus.stiffness_nm_per_rad", between(rng, 100.0, 800.0)),
+        ("crepitus.stiffness_nm_per_rad", stiffness),
         ("crepitus.static_torque_nm", static_nm),
         (
             "crepitus.kinetic_torque_nm",
-            static_nm * between(rng, 0.5, 1.0),
+            static_nm * between(rng, 0.5, most_share * (1.0 - 1e-9)),
         ),
         ("crepitus.restart", switch(rng)),
         ("friction-compensation.render", switch(rng)),

@@ -37,7 +37,7 @@ fn the_target_reproduces_the_golden_bits() {
     let (mut runs, mut steps) = (0, 0);
     for solver in [Solver::ExactEvents, Solver::ExactBreak] {
         let of = subject::Subject {
-            solver,
+            solver: subject::Rung::Ladder(solver),
             convention: Convention::Frozen,
             precision: Precision::F32,
         };

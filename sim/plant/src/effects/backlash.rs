@@ -14,7 +14,7 @@
 //!
 //! β is 1.0°: average no-load backlash of the GP 32 A.
 
-use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, Weight, sense_of};
+use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight, sense_of};
 use crate::effect::{Effect, Need, Part, numbers};
 use crate::ledger::{Account, Ledger};
 use crepitus_model::Sense;
@@ -61,6 +61,7 @@ pub const EFFECT: Effect = Effect {
             closed: false,
             found: None,
             lost_j: 0.0,
+            impacts: Impacts::default(),
         })
     }),
 };
@@ -85,6 +86,7 @@ struct Backlash {
     closed: bool,
     found: Option<f64>,
     lost_j: f64,
+    impacts: Impacts,
 }
 
 impl Backlash {
@@ -145,10 +147,12 @@ impl Backlash {
         if self.right_kg_m2.is_finite() {
             let sum = rotor_kg_m2 + self.right_kg_m2;
             self.lost_j += 0.5 * rotor_kg_m2 * self.right_kg_m2 / sum * slip * slip;
+            self.impacts.note(rotor_kg_m2 * self.right_kg_m2 / sum * slip);
             joint.omega_rad_s += rotor_kg_m2 / sum * slip;
             0.0
         } else {
             self.lost_j += 0.5 * rotor_kg_m2 * slip * slip;
+            self.impacts.note(rotor_kg_m2 * slip);
             rotor_kg_m2 * slip
         }
     }
@@ -222,7 +226,9 @@ impl Chain for Backlash {
         let closed = ends_at.is_some() && ends_at == self.found;
         if closed || self.gap_rad.abs() > self.half_rad {
             let sense = sense_of(self.gap_rad);
+            let before_rad_s = next.omega_rad_s;
             settled.impulse_nms += self.impact(sense, rotor_next.omega_rad_s, next);
+            settled.struck_rad_s += next.omega_rad_s - before_rad_s;
         }
         settled
     }
@@ -274,6 +280,10 @@ impl Chain for Backlash {
     fn write(&self, body: &Body, row: &mut Vec<f64>) {
         self.left.write(&self.rotor(body), row);
         row.push(self.gap_rad);
+    }
+
+    fn impacts(&self) -> Option<Impacts> {
+        Some(self.impacts)
     }
 
     fn warnings(&self, warnings: &mut Vec<String>) {

@@ -15,7 +15,7 @@
 //! through its tail. The brace turns about the knee's axis only; it cannot
 //! pull the shank along its length.
 
-use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, Weight};
+use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight};
 use crate::effect::{Effect, Part, numbers};
 use crate::ledger::{Account, Ledger};
 use crepitus_model::parameters::ParameterSpec;
@@ -67,6 +67,8 @@ pub const EFFECT: Effect = Effect {
             push: Push::default(),
             torque_nm: 0.0,
             lost_j: 0.0,
+            leg_kg_m2: f64::INFINITY,
+            longest_s: 0.0,
         })
     }),
 };
@@ -84,9 +86,31 @@ struct Cuff {
     /// Torque on the leg in the last step.
     torque_nm: f64,
     lost_j: f64,
+    /// Inertia that moves rigidly with the leg, kg·m²; infinite where the
+    /// motion is prescribed.
+    leg_kg_m2: f64,
+    /// The longest step so far, s.
+    longest_s: f64,
 }
 
+/// Above this ωh the swing of brace against leg runs away from the true one: the
+/// midpoint rule's frequency is off by (ωh)²/12, and at a damping ratio of a
+/// hundredth that adds up to a tenth of a radian before the swing has decayed.
+const MOST_RADIANS: f64 = 0.1;
+
+/// Above this bh/J what the damper decays changes its sign at every step.
+const MOST_DECAY: f64 = 2.0;
+
 impl Cuff {
+    /// ωh and bh/J of the brace alone against the leg, in the longest step.
+    fn rates_per_step(&self) -> (f64, f64) {
+        let mobility = 1.0 / self.inertia_kg_m2 + 1.0 / self.leg_kg_m2;
+        (
+            (self.stiffness * mobility).sqrt() * self.longest_s,
+            self.damping * mobility * self.longest_s,
+        )
+    }
+
     /// The cuff's torque on the leg at mid-step is this plus
     /// `slope`·(brace − leg).
     fn spring(&self, step: &Step, leg: &Body) -> (f64, f64) {
@@ -164,12 +188,17 @@ impl Chain for Cuff {
         let (elastic, slope) = self.spring(step, body);
         self.torque_nm = elastic + slope * slip;
         self.lost_j += self.damping * slip * slip * step.length_s;
+        self.longest_s = self.longest_s.max(step.length_s);
         let mut next = self.brace.after(step.length_s, left.omega_rad_s);
         let settled = self
             .left
             .settle(step, &self.brace, &mut next, left, ends_at);
         self.brace = next;
-        settled
+        Settled {
+            // The cuff gives way: the leg does not move at once.
+            struck_rad_s: 0.0,
+            ..settled
+        }
     }
 
     fn shaft(&self, _: &Body) -> Body {
@@ -184,7 +213,8 @@ impl Chain for Cuff {
         0.0
     }
 
-    fn attach(&mut self, _: f64) {
+    fn attach(&mut self, right_kg_m2: f64) {
+        self.leg_kg_m2 = right_kg_m2;
         self.left.attach(self.inertia_kg_m2);
     }
 
@@ -224,7 +254,20 @@ impl Chain for Cuff {
         row.push(-self.torque_nm);
     }
 
+    fn impacts(&self) -> Option<Impacts> {
+        self.left.impacts()
+    }
+
     fn warnings(&self, warnings: &mut Vec<String>) {
         self.left.warnings(warnings);
+        let (radians, decay) = self.rates_per_step();
+        if radians > MOST_RADIANS || decay > MOST_DECAY {
+            warnings.push(format!(
+                "step long against the cuff: for a brace of {} kg·m² on {} N·m/rad and {} N·m·s/rad ω·h = {radians:.2} \
+                 (at most {MOST_RADIANS}) and b·h/J = {decay:.2} (at most {MOST_DECAY}); torques at brace and leg are \
+                 not those of such a cuff: choose more substeps, a softer cuff or a larger brace_inertia_kg_m2",
+                self.inertia_kg_m2, self.stiffness, self.damping
+            ));
+        }
     }
 }

@@ -15,7 +15,7 @@
 //! the actuator's torque as the step begins; that of the rotor's own inertia
 //! is not counted in.
 
-use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, Weight, sense_of};
+use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight, sense_of};
 use crate::effect::{Effect, Part, numbers};
 use crate::ledger::{Account, Ledger};
 use crepitus_model::Sense;
@@ -254,6 +254,10 @@ impl Chain for Drivetrain {
     fn write(&self, body: &Body, row: &mut Vec<f64>) {
         self.left.write(body, row);
         row.push(self.shown_nm);
+    }
+
+    fn impacts(&self) -> Option<Impacts> {
+        self.left.impacts()
     }
 
     fn warnings(&self, warnings: &mut Vec<String>) {

@@ -80,6 +80,7 @@ pub const EFFECT: Effect = Effect {
             },
             intended: context.start,
             felt_nms: 0.0,
+            struck_nms: 0.0,
             given_j: 0.0,
             lost_j: 0.0,
         };
@@ -106,6 +107,7 @@ struct Arm {
     motion: MotionStep,
     intended: Body,
     felt_nms: f64,
+    struck_nms: f64,
     given_j: f64,
     lost_j: f64,
 }
@@ -210,7 +212,7 @@ impl<L: Lift> Holder for Hand<L> {
         body: &mut Body,
         next: Body,
         flow: Flow,
-        _: &Settled,
+        settled: &Settled,
         _: f64,
     ) {
         let intent = self.intent(stretch);
@@ -224,12 +226,17 @@ impl<L: Lift> Holder for Hand<L> {
         // With the jump of an impact, which the mean of the step has not.
         arm.felt_nms +=
             (pull + intent.lift_nm) * h - arm.inertia_kg_m2 * (next.omega_rad_s - body.omega_rad_s);
+        arm.struck_nms -= arm.inertia_kg_m2 * settled.struck_rad_s;
         self.lift.did(intent.lift_nm * w * h);
         *body = next;
     }
 
     fn felt_nms(&self) -> f64 {
         self.arm.felt_nms
+    }
+
+    fn struck_nms(&self) -> f64 {
+        self.arm.struck_nms
     }
 
     fn inertia_kg_m2(&self) -> f64 {

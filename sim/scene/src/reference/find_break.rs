@@ -1,9 +1,10 @@
 //! When a stick of the reference solver breaks.
 
+use super::Reference;
 use super::ahead::PhaseEnd;
 use super::first_root::{Sample, first_root};
-use super::{Reference, SLACK};
-use crepitus_model::locate::{ExactEvents, StickPath, earlier, first_break};
+use super::parabola::Parabola;
+use crepitus_model::locate::earlier;
 use crepitus_model::{Convention, Sense};
 use crepitus_plant::ShaftState;
 use std::ops::ControlFlow;
@@ -60,6 +61,7 @@ impl Reference<'_> {
             bound +=
                 p.damping_nms_per_rad * bounds.omega_ddot + p.inertia_kg_m2 * bounds.omega_dddot;
         }
+        let slack = self.limit_slack_nm(&self.now);
         first_root(from_s, to_s, poll, |time_s| {
             let shaft = self.piece.at(time_s);
             let (torque, rate) = self.torque_and_rate(anchor, inertial, &shaft);
@@ -70,7 +72,7 @@ impl Reference<'_> {
                 slope: -sense.of_signed(rate),
                 bound,
                 noise,
-                slack: noise.max(SLACK * limit_nm),
+                slack: noise.max(slack),
             }
         })
     }
@@ -87,16 +89,20 @@ impl Reference<'_> {
         let shaft = self.piece.at(from_s);
         let (torque_nm, rate) = self.torque_and_rate(anchor, inertial, &shaft);
         if self.piece.is_parabolic() {
-            // So is the torque, whose root the model knows.
-            let path = StickPath {
-                torque_nm,
-                rate,
-                curvature: self.settings.parameters.stiffness_nm_per_rad * shaft.omega_dot,
+            // So is the torque.
+            let curvature = self.settings.parameters.stiffness_nm_per_rad * shaft.omega_dot;
+            let slack = self.limit_slack_nm(&shaft);
+            let at = |sense: Sense| {
+                Parabola {
+                    left: limit_nm - sense.of_signed(torque_nm),
+                    rate: sense.of_signed(rate),
+                    curvature: sense.of_signed(curvature),
+                }
+                .first_root(slack)
+                .map(|after_s| (from_s + after_s, sense))
+                .filter(|(time_s, _)| *time_s <= to_s)
             };
-            return ControlFlow::Continue(
-                first_break::<f64, ExactEvents>(&path, limit_nm, to_s - from_s)
-                    .map(|(after_s, sense)| (from_s + after_s, sense)),
-            );
+            return ControlFlow::Continue(earlier(at(Sense::Positive), at(Sense::Negative)));
         }
         let mut at = |sense, to_s| {
             let mark = Mark {
@@ -180,7 +186,7 @@ impl Reference<'_> {
                 return ControlFlow::Continue(None);
             };
             let (torque, _) = self.torque_and_rate(anchor, false, &self.piece.at(slips_s));
-            if sense.of_signed(torque) >= limit * (1.0 - SLACK) {
+            if sense.of_signed(torque) >= limit - self.limit_slack_nm(&self.now) {
                 return ControlFlow::Continue(Some((slips_s, sense)));
             }
             time_s = slips_s;

@@ -85,13 +85,13 @@ impl Reference<'_> {
             let s = self.piece.at(time_s);
             // Of the shaft's terms, and of its time.
             let shaft = s.omega_rad_s.abs() + bounds.omega_dot * self.piece.age_s(time_s);
-            let noise = 2.0 * f64::EPSILON * (shaft + self.oscillator.speed_bound(x, v));
+            let noise = 2.0 * f64::EPSILON * (shaft + self.swing.oscillator().speed_bound(x, v));
             Sample {
                 value: slip.sense.of_signed(s.omega_rad_s - v),
                 slope: slip
                     .sense
-                    .of_signed(s.omega_dot - self.oscillator.acceleration(x, v)),
-                bound: bounds.omega_ddot + self.oscillator.jerk_bound(x, v),
+                    .of_signed(s.omega_dot - self.swing.oscillator().acceleration(x, v)),
+                bound: bounds.omega_ddot + self.swing.oscillator().jerk_bound(x, v),
                 noise,
                 slack: noise,
             }

@@ -1,6 +1,6 @@
 //! What happens at an event: the rules of the three conventions.
 
-use super::{Follow, Reference, SLACK, Slip, State};
+use super::{Follow, Reference, Slip, State};
 use crepitus_model::{Convention, Event, EventKind, Phase, Restart, Sense};
 use crepitus_plant::ShaftState;
 use std::ops::ControlFlow;
@@ -20,7 +20,7 @@ impl Reference<'_> {
     ) -> f64 {
         let p = &self.settings.parameters;
         let limit = sense.of_signed(p.static_torque_nm);
-        if (torque - limit).abs() > SLACK * p.static_torque_nm {
+        if (torque - limit).abs() > self.limit_slack_nm(shaft) {
             return theta;
         }
         let inertial = match self.settings.convention {
@@ -115,7 +115,7 @@ impl Reference<'_> {
         let limit = p.static_torque_nm;
         // Stick cannot hold it, and the shaft can overtake it the other way. In
         // its own sense it cannot: the shaft has just fallen behind.
-        if required.abs() > limit * (1.0 + SLACK)
+        if required.abs() > limit + self.limit_slack_nm(&shaft)
             && sense.of_signed(required) < 0.0
             && self.slips(theta, shaft.phi_rad, &shaft, sense.opposite())
         {
@@ -160,10 +160,7 @@ impl Reference<'_> {
         let shaft = self.shaft();
         let (theta, v, before) = match self.state {
             State::Stick { theta, phi } => {
-                let left = self
-                    .motion
-                    .piece(self.piece.start_s.next_down())
-                    .at(self.time_s);
+                let left = self.before_piece;
                 (
                     theta + (shaft.phi_rad - phi),
                     left.omega_rad_s,

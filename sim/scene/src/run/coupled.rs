@@ -10,6 +10,7 @@ use crate::walk::Walk;
 use crepitus_model::Real;
 use crepitus_model::solver::Solver;
 use crepitus_plant::assembly::{Assembled, NamedStage};
+use crepitus_plant::chain::Impacts;
 use crepitus_plant::holder::MotionStep;
 use crepitus_plant::ledger::Ledger;
 use crepitus_plant::{Motion, Plant};
@@ -22,6 +23,10 @@ pub(super) struct PlantTotals {
     pub(super) rendering: Rendering,
     /// What the hand felt; none if nobody holds the leg.
     pub(super) felt: Option<Felt>,
+    /// The impacts, if a part of the plant can have any.
+    pub(super) impacts: Option<Impacts>,
+    /// The largest impulse of impacts that the hand felt in a tick, N·m·s.
+    pub(super) struck_nms: f64,
     pub(super) warnings: Vec<String>,
 }
 
@@ -35,7 +40,7 @@ pub(super) struct Rendering {
     pub(super) absorbed: f64,
 }
 
-/// The torque that the hand feels, mean of each tick.
+/// The torque that the hand feels, mean of each tick, without impacts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Felt {
     pub(super) min_nm: f64,
@@ -65,6 +70,10 @@ impl Felt {
 /// The name of the column of what the hand feels: a scene with a plant has it
 /// unless nobody holds the leg.
 pub const FELT_COLUMN: &str = "hand_torque_nm";
+
+/// The name of the column of the impulse that the hand gets from impacts in a
+/// tick, which [`FELT_COLUMN`] leaves out: a plant that can have impacts has it.
+pub const STRUCK_COLUMN: &str = "hand_impact_nms";
 
 /// A stage, what it adds now, and the work of that.
 struct Stage {
@@ -120,6 +129,8 @@ impl Run {
         let is_felt = scene.is_held();
         let mut felt = Felt::new();
         let mut felt_nm = self.first_felt_nm;
+        let has_impacts = self.plant.impacts().is_some();
+        let (mut struck_nms, mut most_struck_nms) = (0.0, 0.0_f64);
         let mut held = 0.0;
         let mut fastest_rad_s: f64 = 0.0;
         let mut row = Vec::new();
@@ -136,6 +147,9 @@ impl Run {
                 self.plant.write(&mut row);
                 if is_felt {
                     row.push(felt_nm);
+                    if has_impacts {
+                        row.push(struck_nms);
+                    }
                 }
                 observer.row(&row).map_err(RunError::Observer)?;
             }
@@ -154,8 +168,11 @@ impl Run {
             let model_nm = self.device.torque_nm();
             self.command(model_nm);
             let felt_before = self.plant.felt_nms();
+            let struck_before = self.plant.struck_nms();
             self.advance(&mut walk, parts);
-            felt_nm = (self.plant.felt_nms() - felt_before) / self.tick_s;
+            struck_nms = self.plant.struck_nms() - struck_before;
+            most_struck_nms = most_struck_nms.max(struck_nms.abs());
+            felt_nm = (self.plant.felt_nms() - felt_before - struck_nms) / self.tick_s;
             felt.note(felt_nm);
             let after = self.plant.shaft();
             let turned = after.angle_rad - before.angle_rad;
@@ -173,11 +190,13 @@ impl Run {
             result.map_err(RunError::Observer)?;
             time_s = walk.time_s();
         }
+        let (tally, crowded_steps) = self.device.finish(time_s).unzip();
         Ok(Totals {
             steps,
             end_s: time_s,
-            tally: self.device.finish(time_s),
+            tally,
             fastest_rad_s,
+            crowded_steps: crowded_steps.unwrap_or(0),
             plant: Some(PlantTotals {
                 balance: self.plant.balance(),
                 rendering: Rendering {
@@ -190,6 +209,8 @@ impl Run {
                     absorbed: self.plant.absorbed_j(),
                 },
                 felt: is_felt.then_some(felt),
+                impacts: self.plant.impacts(),
+                struck_nms: most_struck_nms,
                 warnings: self.plant.warnings(),
             }),
         })
@@ -231,7 +252,7 @@ fn first_felt_nm(scene: &Scene) -> Result<f64, crepitus_model::SettingsError> {
         from,
         to,
     });
-    Ok(plant.felt_nms() / tick_s)
+    Ok((plant.felt_nms() - plant.struck_nms()) / tick_s)
 }
 
 fn diverged(scene: &Scene, by_s: f64) -> Diverged {

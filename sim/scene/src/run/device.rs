@@ -35,8 +35,9 @@ pub(super) trait Device {
     /// Whether its state is still numbers.
     fn is_finite(&self) -> bool;
 
-    /// Closes the books of the object, if there is one.
-    fn finish(self: Box<Self>, time_s: f64) -> Option<Tally>;
+    /// Closes the books of the object, if there is one, and tells in how many
+    /// steps it had as many events as a step may have.
+    fn finish(self: Box<Self>, time_s: f64) -> Option<(Tally, u64)>;
 }
 
 /// The device that a scene calls for, on a shaft that begins like this.
@@ -163,13 +164,14 @@ impl<F: Real, J: StickSlip<F>, S: Sensor<F>> Device for Rendering<F, J, S> {
         self.joint.theta_rad().is_finite() && self.joint.theta_dot_rad_s().is_finite()
     }
 
-    fn finish(mut self: Box<Self>, time_s: f64) -> Option<Tally> {
+    fn finish(mut self: Box<Self>, time_s: f64) -> Option<(Tally, u64)> {
         let (theta, theta_dot) = (self.joint.theta_rad(), self.joint.theta_dot_rad_s());
         let phi_rad = self.books.phi_rad;
         self.books
             .tally
             .finish(time_s, phi_rad, theta.to_f64(), theta_dot.to_f64());
-        Some(self.books.tally)
+        let crowded = self.books.crowded_steps;
+        Some((self.books.tally, crowded))
     }
 }
 
@@ -206,7 +208,7 @@ impl<F: Real, S: Sensor<F>> Device for Watching<F, S> {
         true
     }
 
-    fn finish(self: Box<Self>, _: f64) -> Option<Tally> {
+    fn finish(self: Box<Self>, _: f64) -> Option<(Tally, u64)> {
         None
     }
 }

@@ -93,6 +93,7 @@ pub(super) fn simulate<O: Observer>(
         end_s,
         tally,
         fastest_rad_s,
+        crowded_steps: 0,
         plant: None,
     })
 }

@@ -1,11 +1,12 @@
-//! What a step of a scene costs: its first steps, timed a few times. What
-//! is compared takes turns, so that a drift of the machine's speed hits all
-//! alike.
+//! What a step of a scene costs: its first steps, timed a few times in CPU
+//! time. What is compared takes turns, so that a drift of the machine's speed
+//! hits all alike.
 
 use super::{Blind, simulate, step_s};
+use crate::cpu_time;
 use crate::scene::{Scene, SolverChoice};
+use serde::Serialize;
 use std::convert::Infallible;
-use std::time::Instant;
 
 /// The most steps of one timing: a few tenths of a millisecond of a joint
 /// alone.
@@ -13,13 +14,17 @@ const STEPS: f64 = 20_000.0;
 /// Timings of which the fastest counts, for the summary of a run.
 const TIMINGS: u32 = 5;
 
-/// Cost of one effect, ns per step.
+/// A difference of two times below this share of the longer one cannot be
+/// told from none, however quiet the machine.
+const LEAST_RESOLUTION: f64 = 0.01;
+
+/// Cost of one effect.
 pub(super) struct Cost {
     pub(super) effect: &'static str,
-    pub(super) ns_per_step: f64,
+    pub(super) added: AddedTime,
 }
 
-/// The time of a step.
+/// The CPU time of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepTime {
     /// Of the fastest timing, ns; infinite for a scene that cannot run.
@@ -29,9 +34,60 @@ pub struct StepTime {
     pub spread: f64,
 }
 
-/// The time of a step of each scene, without outputs, from so many `timings`
-/// in which the scenes take turns. `after_each` is called after each timing and
-/// may end it all.
+impl StepTime {
+    /// The time of a step that nobody knows.
+    pub const UNKNOWN: Self = Self {
+        ns: f64::NAN,
+        spread: f64::NAN,
+    };
+}
+
+/// What something adds to a step: the time with it less the time without it,
+/// as far as the timings can tell.
+///
+/// Both times have a spread, so the difference has the resolution
+/// √(Δ₁² + Δ₂²), at least 1 % of the longer time. A smaller difference, and
+/// one below zero, is not a cost that was measured: only its bound is known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AddedTime {
+    /// CPU time, ns a step; none where it is below the resolution or not
+    /// known. Never zero or less.
+    pub ns_per_step: Option<f64>,
+    /// The smallest difference that these timings can tell, ns a step; NaN
+    /// where one of the times is not known.
+    pub ns_resolution: f64,
+}
+
+impl AddedTime {
+    /// What `with` takes more than `without`.
+    pub fn between(with: StepTime, without: StepTime) -> Self {
+        let difference = with.ns - without.ns;
+        if !difference.is_finite() {
+            return Self {
+                ns_per_step: None,
+                ns_resolution: f64::NAN,
+            };
+        }
+        let noise = |time: StepTime| time.ns * time.spread;
+        let resolution = noise(with)
+            .hypot(noise(without))
+            .max(LEAST_RESOLUTION * with.ns.max(without.ns));
+        Self {
+            ns_per_step: (difference > resolution).then_some(difference),
+            ns_resolution: resolution,
+        }
+    }
+
+    /// Whether both times are known, and their difference is too small to be
+    /// told from none.
+    pub fn is_below_resolution(&self) -> bool {
+        self.ns_per_step.is_none() && self.ns_resolution.is_finite()
+    }
+}
+
+/// The CPU time of a step of each scene, without outputs, from so many
+/// `timings` in which the scenes take turns. `after_each` is called after each
+/// timing and may end it all.
 ///
 /// # Errors
 /// What `after_each` returns.
@@ -85,9 +141,11 @@ pub(super) fn costs(scene: &Scene) -> Vec<Cost> {
             }
             let without = with.without(effect)?;
             let Ok(times) = step_times(&[with, without], TIMINGS, || Ok::<(), Infallible>(()));
+            let mut times = times.into_iter();
+            let mut next = || times.next().unwrap_or(StepTime::UNKNOWN);
             Some(Cost {
                 effect: effect.name,
-                ns_per_step: (times[0].ns - times[1].ns).max(0.0),
+                added: AddedTime::between(next(), next()),
             })
         })
         .collect()
@@ -95,10 +153,46 @@ pub(super) fn costs(scene: &Scene) -> Vec<Cost> {
 
 #[expect(clippy::cast_precision_loss, reason = "a few thousand")]
 fn time(scene: &Scene) -> f64 {
-    let begun = Instant::now();
+    let begun = cpu_time::now();
     let steps = match simulate(scene, &mut Blind) {
         Ok(totals) => totals.steps,
         Err(_) => return f64::INFINITY,
     };
-    begun.elapsed().as_secs_f64() * 1e9 / steps as f64
+    cpu_time::since(begun).as_secs_f64() * 1e9 / steps as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn time(ns: f64, spread: f64) -> StepTime {
+        StepTime { ns, spread }
+    }
+
+    #[test]
+    fn a_cost_is_a_difference_that_the_timings_can_tell() {
+        let added = AddedTime::between(time(100.0, 0.03), time(90.0, 0.05));
+        assert_eq!(added.ns_per_step, Some(10.0));
+        assert!((added.ns_resolution - 3.0_f64.hypot(4.5)).abs() < 1e-12);
+        assert!(!added.is_below_resolution());
+    }
+
+    #[test]
+    fn below_that_and_below_zero_only_the_bound_is_known() {
+        for (with, without) in [(100.0, 99.5), (100.0, 100.0), (90.0, 100.0), (1.0, 1e6)] {
+            let added = AddedTime::between(time(with, 0.0), time(without, 0.0));
+            assert_eq!(added.ns_per_step, None, "{with} {without}");
+            assert!(added.is_below_resolution());
+            assert_eq!(added.ns_resolution, 0.01 * with.max(without));
+        }
+    }
+
+    #[test]
+    fn a_scene_that_does_not_run_has_no_cost_and_no_bound() {
+        for unknown in [f64::NAN, f64::INFINITY] {
+            let added = AddedTime::between(time(10.0, 0.0), time(unknown, f64::NAN));
+            assert_eq!(added.ns_per_step, None);
+            assert!(added.ns_resolution.is_nan() && !added.is_below_resolution());
+        }
+    }
 }

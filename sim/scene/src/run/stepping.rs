@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::trace::EventRecord;
 use crate::walk::Walk;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
-use crepitus_model::{Event, Phase, Real, Settings, ShaftStep, StickSlip};
+use crepitus_model::{EVENTS_PER_STEP, Event, Phase, Real, Settings, ShaftStep, StickSlip};
 
 /// How many steps go by between two reports of progress.
 pub(super) const PROGRESS_STEPS: u64 = 1 << 16;
@@ -86,6 +86,7 @@ fn bare<F: Real, O: Observer, S: Sensor<F>>(
         end_s: walk.time_s(),
         tally: None,
         fastest_rad_s,
+        crowded_steps: 0,
         plant: None,
     })
 }
@@ -173,6 +174,7 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
             end_s: walk.time_s(),
             tally: Some(books.tally),
             fastest_rad_s,
+            crowded_steps: books.crowded_steps,
             plant: None,
         })
     }
@@ -188,6 +190,10 @@ pub(super) struct Books {
     /// The last point of the step that is booked, as a fraction of it.
     booked: f64,
     stick: StickEnd,
+    /// Events of the step that goes on.
+    in_step: usize,
+    /// Steps with as many events as a step may have: more may have followed.
+    pub(super) crowded_steps: u64,
 }
 
 impl Books {
@@ -204,6 +210,8 @@ impl Books {
                 omega_rad_s,
                 omega_dot: 0.0,
             },
+            in_step: 0,
+            crowded_steps: 0,
         }
     }
 
@@ -221,6 +229,7 @@ impl Books {
             self.book_stick(seen, event.fraction, event.theta_rad);
         }
         self.tally.event(time_s, self.phi_rad + travel, &event);
+        self.in_step += 1;
         self.booked = event.fraction;
         self.stick = self.stick_end(seen, event.fraction, event.theta_rad);
         EventRecord::new(time_s, &event)
@@ -242,6 +251,8 @@ impl Books {
                 }
             }
         }
+        self.crowded_steps += u64::from(self.in_step >= EVENTS_PER_STEP);
+        self.in_step = 0;
         self.booked = 0.0;
         self.phi_rad += seen.delta_phi_rad.to_f64();
     }

@@ -2,9 +2,9 @@
 
 use super::coupled::PlantTotals;
 use super::tally::Tally;
-use super::{Totals, step_s};
+use super::{AddedTime, Totals, step_s};
 use crate::scene::{Crepitus, SCENE_VERSION, Scene, SolverChoice};
-use crepitus_model::{Convention, Parameters};
+use crepitus_model::{Convention, EVENTS_PER_STEP, Parameters};
 use crepitus_plant::effect::{Effect, Part};
 use serde::Serialize;
 
@@ -61,6 +61,9 @@ pub struct Summary {
     /// What the hand feels, if there is a plant and a hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hand_torque: Option<TorqueSummary>,
+    /// The impacts of the plant, if a part of it can have any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub impacts: Option<ImpactSummary>,
     /// The energy balance of the plant, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plant_energy: Option<PlantEnergySummary>,
@@ -79,8 +82,9 @@ pub struct EffectSummary {
     pub name: &'static str,
     /// Its state variables.
     pub states: &'static [&'static str],
-    /// Time that it costs, ns per step, once measured; never for `reference`.
-    pub ns_per_step: Option<f64>,
+    /// What it costs, once measured; never for `reference`.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub added: Option<AddedTime>,
     /// Its parameters.
     pub parameters: Vec<ParameterValue>,
     /// Its choices by name.
@@ -144,6 +148,19 @@ pub struct TorqueSummary {
     pub max_nm: f64,
     /// Root mean square over time.
     pub rms_nm: f64,
+}
+
+/// Impacts: each takes no time, so it has an impulse and no torque.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ImpactSummary {
+    /// How many.
+    pub count: u64,
+    /// The largest impulse between rotor and joint, N·m·s.
+    pub largest_nms: f64,
+    /// The mean of their magnitudes, N·m·s; 0 if there is none.
+    pub mean_nms: f64,
+    /// The largest impulse that the hand felt in a tick, N·m·s.
+    pub hand_largest_nms: f64,
 }
 
 /// Terms of the energy balance, J:
@@ -270,7 +287,7 @@ pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64) -> Summary 
             sticks: t.events[1],
             reverses: t.events[2],
         }),
-        cycles: tally.map(cycles),
+        cycles: tally.map(|t| cycles(t, totals.crowded_steps > 0)),
         torque: tally.map(|t| TorqueSummary {
             min_nm: t.torque.min_nm,
             mean_nm: t.torque.integral / totals.end_s,
@@ -293,6 +310,7 @@ pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64) -> Summary 
             worst_behind_rad_s: t.lead.worst_rad_s,
         }),
         hand_torque: totals.plant.as_ref().and_then(|p| hand_torque(p, totals)),
+        impacts: totals.plant.as_ref().and_then(impacts),
         plant_energy: totals.plant.as_ref().map(|p| plant_energy(p, tally)),
         wall_s,
         real_time_factor: totals.end_s / wall_s,
@@ -308,6 +326,16 @@ fn hand_torque(plant: &PlantTotals, totals: &Totals) -> Option<TorqueSummary> {
         mean_nm: felt.sum / ticks,
         max_nm: felt.max_nm,
         rms_nm: (felt.squares / ticks).sqrt(),
+    })
+}
+
+#[expect(clippy::cast_precision_loss, reason = "below 2^53")]
+fn impacts(plant: &PlantTotals) -> Option<ImpactSummary> {
+    plant.impacts.map(|impacts| ImpactSummary {
+        count: impacts.count,
+        largest_nms: impacts.largest_nms,
+        mean_nms: impacts.sum_nms / impacts.count.max(1) as f64,
+        hand_largest_nms: plant.struck_nms,
     })
 }
 
@@ -343,9 +371,11 @@ fn plant_energy(plant: &PlantTotals, tally: Option<&Tally>) -> PlantEnergySummar
     }
 }
 
-fn cycles(tally: &Tally) -> CycleSummary {
+/// Cycles of a run whose steps `were_crowded`: what it counted is then not what
+/// there was, and no frequency follows from it.
+fn cycles(tally: &Tally, were_crowded: bool) -> CycleSummary {
     let c = tally.cycles;
-    let any = c.count > 0;
+    let any = c.count > 0 && !were_crowded;
     #[expect(clippy::cast_precision_loss, reason = "nearest is meant")]
     let count = c.count as f64;
     CycleSummary {
@@ -365,7 +395,7 @@ fn effects(scene: &Scene) -> Vec<EffectSummary> {
             EffectSummary {
                 name: effect.name,
                 states: effect.states,
-                ns_per_step: None,
+                added: None,
                 parameters: effect
                     .parameters
                     .iter()
@@ -424,6 +454,15 @@ fn run_warnings(scene: &Scene, totals: &Totals) -> Vec<String> {
         .as_ref()
         .map(|p| p.warnings.clone())
         .unwrap_or_default();
+    if let Some(plant) = &totals.plant {
+        warnings.extend(balance_warning(plant.balance.relative_residual()));
+    }
+    if totals.crowded_steps > 0 {
+        warnings.push(format!(
+            "{} steps had {EVENTS_PER_STEP} events, the most that a step takes in, and more may have followed: events              and cycles are not those of the joint, and no frequency is given; choose a shorter step",
+            totals.crowded_steps
+        ));
+    }
     let missed_s = scene.duration_s - totals.end_s;
     if missed_s > 1e-9 * scene.duration_s {
         warnings.push(format!(
@@ -450,6 +489,22 @@ fn lead_warning(scene: &Scene, totals: &Totals) -> Option<String> {
             "for {:.3e} s the shaft was slower than the object it slips over, by up to {:.3e} rad/s: the solver \
              missed the end of a slip, and friction gave {:.3e} J",
             lead.behind_s, lead.worst_rad_s, lead.behind_j
+        )
+    })
+}
+
+/// The share of a plant's energy that may be missing: a tenth of a percent of
+/// all that moved.
+const MOST_MISSING: f64 = 1e-3;
+
+/// An energy balance that does not close.
+fn balance_warning(share: f64) -> Option<String> {
+    // Written so that NaN warns.
+    let closes = share.abs() <= MOST_MISSING;
+    (!closes).then(|| {
+        format!(
+            "the energy of the plant balances to {:.1e} of all that moved only, above {MOST_MISSING:e}: the step is too              long for a part of it, and its torques are not to be trusted; choose a shorter step",
+            share.abs()
         )
     })
 }

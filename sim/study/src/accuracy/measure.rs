@@ -1,6 +1,7 @@
 //! One rung at one step over a whole scene: its events and its torque against
 //! the reference's.
 
+use crate::accuracy::held_torque::HeldTorque;
 use crate::accuracy::reference_torque::ReferenceTorque;
 use crate::accuracy::scenes::StudyScene;
 use crate::event_errors::EventErrors;
@@ -22,6 +23,8 @@ pub struct Target<'a> {
     pub events: &'a [TimedEvent],
     /// The reference's torque at the ends of steps.
     pub torque: &'a ReferenceTorque,
+    /// The reference's torque within steps.
+    pub held: &'a HeldTorque,
 }
 
 /// How accurate a rung is.
@@ -33,10 +36,14 @@ pub struct Accuracy {
     pub unmatched: u64,
     /// Errors of the matched events.
     pub event_errors: EventErrors,
+    /// Root mean square error of the held torque over continuous time, N·m.
+    pub rms_held_torque_error_nm: f64,
+    /// Largest error of the held torque at any time, N·m.
+    pub max_held_torque_error_nm: f64,
     /// Root mean square torque error at the ends of steps, N·m.
-    pub rms_torque_error_nm: f64,
+    pub rms_tick_torque_error_nm: f64,
     /// Largest torque error at the end of a step, N·m.
-    pub max_torque_error_nm: f64,
+    pub max_tick_torque_error_nm: f64,
 }
 
 /// Runs a rung over the whole scene. A result that is not finite has all its
@@ -76,10 +83,28 @@ struct Seen {
     events: Vec<TimedEvent>,
     /// Events beyond those that are kept.
     more_events: u64,
-    /// Sum of squared torque errors, (N·m)².
+    held: Errors,
+    at_ticks: Errors,
+    finite: bool,
+}
+
+/// Torque errors of equal weight.
+#[derive(Clone, Copy, Debug, Default)]
+struct Errors {
+    /// Sum of the squares, (N·m)².
     squares: f64,
     max_nm: f64,
-    finite: bool,
+}
+
+impl Errors {
+    fn add(&mut self, square: f64, largest_nm: f64) {
+        self.squares += square;
+        self.max_nm = largest_nm.max(self.max_nm);
+    }
+
+    fn rms_nm(&self, steps: u64) -> f64 {
+        (self.squares / f64::from_whole(steps)).sqrt()
+    }
 }
 
 struct Look<'a>(&'a Target<'a>);
@@ -92,6 +117,7 @@ impl<F: Real> JointVisitor<F> for Look<'_> {
             sampling,
             events,
             torque,
+            held,
             ..
         } = self.0;
         // A rung that chatters has lost already; its events need no memory.
@@ -109,6 +135,11 @@ impl<F: Real> JointVisitor<F> for Look<'_> {
                 break;
             }
             for shaft in &chunk {
+                if let Some(tick) = held.tick(index) {
+                    let shown_nm = joint.torque_nm().to_f64();
+                    seen.held
+                        .add(tick.mean_square(shown_nm), tick.largest_nm(shown_nm));
+                }
                 joint.step(shaft, |event| {
                     if seen.events.len() < most {
                         let time_s = sampling.time_s(n, event.fraction.to_f64());
@@ -118,15 +149,15 @@ impl<F: Real> JointVisitor<F> for Look<'_> {
                     }
                 });
                 let error_nm = torque.error_nm::<F>(index, joint.torque_nm().to_f64(), &mut tie);
-                seen.squares += error_nm * error_nm;
-                seen.max_nm = error_nm.max(seen.max_nm);
+                seen.at_ticks.add(error_nm * error_nm, error_nm);
                 n += 1;
                 index += 1;
             }
             // The torque of a slip is Tk whatever has become of the object.
             seen.finite &= joint.theta_rad().is_finite()
                 && joint.theta_dot_rad_s().is_finite()
-                && seen.squares.is_finite();
+                && seen.at_ticks.squares.is_finite()
+                && seen.held.squares.is_finite();
         }
         seen.finite &= seen.events.iter().all(|e| e.time_s.is_finite());
         seen
@@ -145,8 +176,10 @@ fn judge(target: &Target<'_>, seen: &Seen) -> Accuracy {
             events: found,
             unmatched: all.saturating_add(found).max(1),
             event_errors: EventErrors::UNKNOWN,
-            rms_torque_error_nm: f64::NAN,
-            max_torque_error_nm: f64::NAN,
+            rms_held_torque_error_nm: f64::NAN,
+            max_held_torque_error_nm: f64::NAN,
+            rms_tick_torque_error_nm: f64::NAN,
+            max_tick_torque_error_nm: f64::NAN,
         };
     }
     let matching = match_events(events, &seen.events, sampling.step_s(), sampling.end_s());
@@ -154,8 +187,10 @@ fn judge(target: &Target<'_>, seen: &Seen) -> Accuracy {
         events: found,
         unmatched: matching.unmatched.saturating_add(seen.more_events),
         event_errors: EventErrors::new(events, &seen.events, &matching),
-        rms_torque_error_nm: (seen.squares / f64::from_whole(sampling.steps())).sqrt(),
-        max_torque_error_nm: seen.max_nm,
+        rms_held_torque_error_nm: seen.held.rms_nm(sampling.steps()),
+        max_held_torque_error_nm: seen.held.max_nm,
+        rms_tick_torque_error_nm: seen.at_ticks.rms_nm(sampling.steps()),
+        max_tick_torque_error_nm: seen.at_ticks.max_nm,
     }
 }
 
@@ -163,6 +198,7 @@ fn judge(target: &Target<'_>, seen: &Seen) -> Accuracy {
 mod tests {
     use super::*;
     use crate::accuracy::scenes::standard;
+    use std::convert::Infallible;
 
     /// 1 s of a standard scene.
     fn accuracy(name: &str, convention: &str, solver: Solver, step_s: f64) -> Accuracy {
@@ -176,13 +212,15 @@ mod tests {
         };
         let truth = scene.true_events();
         let sampling = Sampling::new(&scene.motion, scene.duration_s, step_s);
-        let torque = ReferenceTorque::new(&scene, &sampling, &truth);
+        let torque =
+            ReferenceTorque::new(&scene, &sampling, &truth, || Ok::<_, Infallible>(())).unwrap();
         let events: Vec<_> = truth.iter().map(|e| e.event).collect();
         let target = Target {
             scene: &scene,
             sampling: &sampling,
             events: &events,
             torque: &torque,
+            held: &HeldTorque::new(&scene, &sampling, &truth),
         };
         measure(&target, solver, Precision::F64).unwrap()
     }
@@ -198,7 +236,7 @@ mod tests {
             assert_eq!(a.unmatched, 0);
             assert!(a.events > 60, "{a:?}");
             assert!(a.event_errors.max_s < 1e-12, "{a:?}");
-            assert!(a.max_torque_error_nm < 1e-9, "{a:?}");
+            assert!(a.max_tick_torque_error_nm < 1e-9, "{a:?}");
         }
     }
 
@@ -210,7 +248,10 @@ mod tests {
             a.event_errors.max_s > 1e-5 && a.event_errors.max_s < 5e-3,
             "{a:?}"
         );
-        assert!(a.max_torque_error_nm > 0.1, "{a:?}");
-        assert!(a.rms_torque_error_nm < a.max_torque_error_nm / 5.0, "{a:?}");
+        assert!(a.max_tick_torque_error_nm > 0.1, "{a:?}");
+        assert!(
+            a.rms_tick_torque_error_nm < a.max_tick_torque_error_nm / 5.0,
+            "{a:?}"
+        );
     }
 }

@@ -1,5 +1,9 @@
 //! A need: limits that a solver's errors have to keep, and how they are
-//! written: `torque=5e-3,interval=5e-4`.
+//! written: `torque=1e-2,interval=5e-4`.
+//!
+//! `torque` is what a device shows, which holds each torque for a step;
+//! `torque-at-tick` compares at the ends of steps alone, as if the torque were
+//! continuous.
 
 use crate::accuracy::point::Point;
 use crate::limits::{self, Limited};
@@ -18,10 +22,14 @@ pub type NeedError = limits::LimitsError<Criterion>;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Criterion {
-    /// Root mean square torque error.
+    /// Root mean square error of the torque as it is held for a step.
     Torque,
-    /// Largest torque error.
+    /// Largest error of the held torque.
     PeakTorque,
+    /// Root mean square torque error at the ends of steps alone.
+    TorqueAtTick,
+    /// Largest torque error at the end of a step.
+    PeakTorqueAtTick,
     /// Worst error of an event's time.
     Event,
     /// Worst error of the time between neighbouring events.
@@ -34,17 +42,21 @@ impl Limited for Criterion {
     const ALL: &'static [Self] = &[
         Self::Torque,
         Self::PeakTorque,
+        Self::TorqueAtTick,
+        Self::PeakTorqueAtTick,
         Self::Event,
         Self::Interval,
         Self::Frequency,
     ];
     const LIMITS: &'static str = "need";
-    const EXAMPLE: &'static str = "torque=5e-3,interval=5e-4";
+    const EXAMPLE: &'static str = "torque=1e-2,interval=5e-4";
 
     fn key(self) -> &'static str {
         match self {
             Self::Torque => "torque",
             Self::PeakTorque => "peak-torque",
+            Self::TorqueAtTick => "torque-at-tick",
+            Self::PeakTorqueAtTick => "peak-torque-at-tick",
             Self::Event => "event",
             Self::Interval => "interval",
             Self::Frequency => "frequency",
@@ -53,8 +65,10 @@ impl Limited for Criterion {
 
     fn meaning(self) -> &'static str {
         match self {
-            Self::Torque => "rms torque error",
-            Self::PeakTorque => "largest torque error",
+            Self::Torque => "rms error of the held torque",
+            Self::PeakTorque => "largest error of the held torque",
+            Self::TorqueAtTick => "rms torque error at the tick",
+            Self::PeakTorqueAtTick => "largest torque error at the tick",
             Self::Event => "worst event-time error",
             Self::Interval => "worst interval error",
             Self::Frequency => "relative error of the cycle frequency",
@@ -63,7 +77,7 @@ impl Limited for Criterion {
 
     fn unit(self) -> &'static str {
         match self {
-            Self::Torque | Self::PeakTorque => "N·m",
+            Self::Torque | Self::PeakTorque | Self::TorqueAtTick | Self::PeakTorqueAtTick => "N·m",
             Self::Event | Self::Interval => "s",
             Self::Frequency => "",
         }
@@ -74,8 +88,10 @@ impl Criterion {
     /// The error of a point.
     pub fn error(self, point: &Point) -> f64 {
         match self {
-            Self::Torque => point.rms_torque_error_nm,
-            Self::PeakTorque => point.max_torque_error_nm,
+            Self::Torque => point.rms_held_torque_error_nm,
+            Self::PeakTorque => point.max_held_torque_error_nm,
+            Self::TorqueAtTick => point.rms_tick_torque_error_nm,
+            Self::PeakTorqueAtTick => point.max_tick_torque_error_nm,
             Self::Event => point.max_event_error_s,
             Self::Interval => point.max_interval_error_s,
             Self::Frequency => point.frequency_error_rel,
@@ -87,7 +103,11 @@ impl Criterion {
     pub(crate) fn judged(self, point: &Point) -> f64 {
         let error = self.error(point);
         match self {
-            Self::Torque | Self::PeakTorque if error.is_nan() => f64::INFINITY,
+            Self::Torque | Self::PeakTorque | Self::TorqueAtTick | Self::PeakTorqueAtTick
+                if error.is_nan() =>
+            {
+                f64::INFINITY
+            }
             Self::Event | Self::Interval | Self::Frequency if error.is_nan() => 0.0,
             _ => error,
         }
@@ -104,7 +124,10 @@ mod tests {
             ("", "empty"),
             ("torque", "KEY=VALUE"),
             ("torque=1e-3,", "KEY=VALUE"),
-            ("speed=1", "peak-torque (largest torque error, N·m)"),
+            (
+                "speed=1",
+                "torque-at-tick (rms torque error at the tick, N·m)",
+            ),
             ("torque=0", "above 0, in N·m"),
             ("torque=-1", "above 0"),
             ("event=NaN", "above 0, in s"),

@@ -2,13 +2,19 @@
 //!
 //! Fitted by least squares over the f64 points at steps of at least 20 µs
 //! whose events all match. An error at the level of rounding says nothing
-//! about the method and is left out; where all are, the method is exact.
+//! about the method and is left out; where all are, the method is exact. A rung
+//! that divides an angle by the step squared shows the rounding of that angle
+//! instead of its order below a quarter of a millisecond.
 
 use crate::accuracy::point::Point;
+use crepitus_model::solver::Solver;
 use serde::Serialize;
 
 /// The shortest step of a fit, s.
 const SHORTEST_STEP_S: f64 = 2e-5;
+
+/// The shortest step of a fit of a rung that needs the exact motion, s.
+const SHORTEST_EXACT_STEP_S: f64 = 2.5e-4;
 
 /// The fewest points that a slope is fitted to.
 const LEAST_POINTS: usize = 3;
@@ -29,6 +35,8 @@ pub struct Orders {
     pub frequency: Order,
     /// Of the worst error of an event's time.
     pub event_time: Order,
+    /// Of the root mean square error of the events' times.
+    pub event_time_rms: Order,
 }
 
 /// A measured order.
@@ -72,7 +80,7 @@ pub fn orders(points: &[Point]) -> Vec<Orders> {
             .iter()
             .filter(|p| is_same(&p.scene, p.convention, p.solver))
             .filter(|p| p.precision == "f64" && p.unmatched == 0)
-            .filter(|p| p.step_s >= SHORTEST_STEP_S * (1.0 - 1e-9))
+            .filter(|p| p.step_s >= shortest_step_s(p.solver) * (1.0 - 1e-9))
             .collect();
         let order_of = |error: fn(&Point) -> f64| {
             let errors: Vec<_> = matched.iter().map(|p| (p.step_s, error(p))).collect();
@@ -84,13 +92,24 @@ pub fn orders(points: &[Point]) -> Vec<Orders> {
             solver: point.solver,
             frequency: order_of(|p| p.frequency_error_rel),
             event_time: order_of(|p| p.max_event_error_s),
+            event_time_rms: order_of(|p| p.rms_event_error_s),
         });
     }
     orders
 }
 
+/// The shortest step of a fit of the rung of this name, s.
+pub(super) fn shortest_step_s(name: &str) -> f64 {
+    let needs_exact = |s: &Solver| s.name() == name && s.needs_exact_motion();
+    if Solver::ALL.iter().any(needs_exact) {
+        SHORTEST_EXACT_STEP_S
+    } else {
+        SHORTEST_STEP_S
+    }
+}
+
 /// The order of (step, error) pairs; NaN errors are no points.
-fn order(errors: &[(f64, f64)]) -> Order {
+pub(super) fn order(errors: &[(f64, f64)]) -> Order {
     let known = errors.iter().filter(|(_, e)| !e.is_nan()).count();
     let above: Vec<(f64, f64)> = errors
         .iter()
@@ -168,6 +187,17 @@ mod tests {
             }
         });
         assert!(is(o.frequency, 2.0, 4), "{o:?}");
+    }
+
+    #[test]
+    fn the_rounding_of_an_angle_is_no_convergence() {
+        let o = measured(|p| {
+            p.solver = "exact-hermite";
+            if p.step_s < 2e-4 {
+                p.max_event_error_s = 1e-19 / p.step_s / p.step_s;
+            }
+        });
+        assert_eq!(o.event_time, Order::TooFewPoints { points: 2 });
     }
 
     #[test]

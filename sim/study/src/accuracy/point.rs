@@ -33,13 +33,21 @@ pub struct Point {
     pub max_interval_error_s: f64,
     /// Relative error of the cycle frequency; NaN without a complete cycle.
     pub frequency_error_rel: f64,
+    /// Root mean square error of the torque held for a step, over continuous
+    /// time, N·m; see [`held_torque`](crate::accuracy::held_torque).
+    pub rms_held_torque_error_nm: f64,
+    /// Largest error of the held torque at any time, N·m.
+    pub max_held_torque_error_nm: f64,
+    /// The least root mean square error that any torque held for a step can
+    /// have here, N·m.
+    pub held_floor_nm: f64,
     /// Root mean square torque error at the ends of steps, N·m.
-    pub rms_torque_error_nm: f64,
+    pub rms_tick_torque_error_nm: f64,
     /// Largest torque error at the end of a step, N·m.
-    pub max_torque_error_nm: f64,
-    /// Host time per step, ns: median of interleaved repeats.
+    pub max_tick_torque_error_nm: f64,
+    /// CPU time of the host per step, ns: median of interleaved repeats.
     pub ns_per_step: f64,
-    /// Host time per simulated second, µs.
+    /// CPU time of the host per simulated second, µs.
     pub us_per_simulated_s: f64,
     /// Spread of the repeats: (third quartile − first quartile)/median.
     pub time_spread: f64,
@@ -70,8 +78,11 @@ pub(crate) mod tests {
             rms_event_error_s: 5e-6,
             max_interval_error_s: 1e-5,
             frequency_error_rel: 1e-6,
-            rms_torque_error_nm: 1e-4,
-            max_torque_error_nm: 1e-2,
+            rms_held_torque_error_nm: 1e-4,
+            max_held_torque_error_nm: 1e-2,
+            held_floor_nm: 5e-5,
+            rms_tick_torque_error_nm: 1e-5,
+            max_tick_torque_error_nm: 1e-3,
             ns_per_step: 4.0,
             us_per_simulated_s: 4e-3 / step_s,
             time_spread: 0.01,

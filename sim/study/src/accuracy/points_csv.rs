@@ -6,8 +6,9 @@ use std::fmt::Write;
 
 /// The header, in the order of the fields of [`Point`].
 pub const HEADER: &str = "scene,convention,solver,precision,step_s,events,events_true,unmatched,\
-max_event_error_s,rms_event_error_s,max_interval_error_s,frequency_error_rel,rms_torque_error_nm,\
-max_torque_error_nm,ns_per_step,us_per_simulated_s,time_spread,cycles_per_step,worst_cycles,\
+max_event_error_s,rms_event_error_s,max_interval_error_s,frequency_error_rel,\
+rms_held_torque_error_nm,max_held_torque_error_nm,held_floor_nm,rms_tick_torque_error_nm,\
+max_tick_torque_error_nm,ns_per_step,us_per_simulated_s,time_spread,cycles_per_step,worst_cycles,\
 instructions_per_step";
 
 /// The file.
@@ -27,8 +28,11 @@ pub fn points_csv(points: &[Point]) -> String {
             p.rms_event_error_s,
             p.max_interval_error_s,
             p.frequency_error_rel,
-            p.rms_torque_error_nm,
-            p.max_torque_error_nm,
+            p.rms_held_torque_error_nm,
+            p.max_held_torque_error_nm,
+            p.held_floor_nm,
+            p.rms_tick_torque_error_nm,
+            p.max_tick_torque_error_nm,
             p.ns_per_step,
             p.us_per_simulated_s,
             p.time_spread,
@@ -62,7 +66,7 @@ mod tests {
     #[test]
     fn rows_have_the_columns_and_read_back() {
         let mut p = point("exact", 5e-5);
-        p.rms_torque_error_nm = 0.1 + 0.2;
+        p.rms_held_torque_error_nm = 0.1 + 0.2;
         p.frequency_error_rel = f64::NAN;
         let text = points_csv(&[p.clone()]);
         let mut lines = text.lines();
@@ -72,7 +76,7 @@ mod tests {
         let cell = |name| row[header.iter().position(|h| *h == name).unwrap()];
         assert_eq!(cell("solver"), "exact");
         assert_eq!(cell("step_s").parse(), Ok(5e-5));
-        assert_eq!(cell("rms_torque_error_nm").parse(), Ok(0.1 + 0.2));
+        assert_eq!(cell("rms_held_torque_error_nm").parse(), Ok(0.1 + 0.2));
         assert!(cell("frequency_error_rel").parse::<f64>().unwrap().is_nan());
         assert_eq!(cell("time_spread").parse(), Ok(p.time_spread));
     }

@@ -12,6 +12,9 @@ use crate::true_events::TrueEvent;
 use crepitus_model::Real;
 use crepitus_scene::reference::Reference;
 
+/// How many steps go by between two questions whether to go on.
+const ASK_EVERY: u64 = 1 << 16;
+
 /// How many roundings of the phase's length count as simultaneous.
 const ROUNDINGS: f64 = 4.0;
 
@@ -35,18 +38,30 @@ struct Tie {
 }
 
 impl ReferenceTorque {
-    /// Runs the reference along the steps of `sampling`.
-    pub fn new(scene: &StudyScene, sampling: &Sampling<'_>, events: &[TrueEvent]) -> Self {
+    /// Runs the reference along the steps of `sampling`, and asks `go_on` now
+    /// and then.
+    ///
+    /// # Errors
+    /// What `go_on` returns.
+    pub fn new<E>(
+        scene: &StudyScene,
+        sampling: &Sampling<'_>,
+        events: &[TrueEvent],
+        mut go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<Self, E> {
         let mut reference = Reference::new(&scene.settings, &scene.motion);
         let mut at_ends_nm = Vec::new();
         for n in 1..=sampling.steps() {
             reference.advance(sampling.time_s(n, 0.0), |_| {});
             at_ends_nm.push(reference.torque_nm());
+            if n.is_multiple_of(ASK_EVERY) {
+                go_on()?;
+            }
         }
-        Self {
+        Ok(Self {
             at_ends_nm,
             ties: ties(sampling, events),
-        }
+        })
     }
 
     /// The error of `shown_nm` after `step`, in a joint of precision `F`;
@@ -82,6 +97,7 @@ fn ties(sampling: &Sampling<'_>, events: &[TrueEvent]) -> Vec<Tie> {
         event,
         torque_before_nm,
         torque_after_nm,
+        ..
     } in events
     {
         let phase_s = event.time_s - phase_start_s;
@@ -109,6 +125,7 @@ fn ties(sampling: &Sampling<'_>, events: &[TrueEvent]) -> Vec<Tie> {
 mod tests {
     use super::*;
     use crate::accuracy::scenes::standard;
+    use std::convert::Infallible;
 
     #[test]
     fn a_break_on_the_end_of_a_step_has_two_right_torques() {
@@ -119,7 +136,8 @@ mod tests {
             .unwrap();
         let events = scene.true_events();
         let sampling = Sampling::new(&scene.motion, 0.1, 5e-5);
-        let torque = ReferenceTorque::new(&scene, &sampling, &events);
+        let torque =
+            ReferenceTorque::new(&scene, &sampling, &events, || Ok::<_, Infallible>(())).unwrap();
         // The first break: after 40 ticks the torque is 0.4 or 0.2 N·m.
         let error = |step, shown| torque.error_nm::<f64>(step, shown, &mut 0);
         assert!(error(39, 0.4) < 1e-15 && error(39, 0.2) < 1e-15);

@@ -6,7 +6,7 @@
 //! device ticks; 0.12 and 0.988 are incommensurate with every step, so that no
 //! rung looks good by luck there.
 
-use crate::true_events::{TrueEvent, true_events};
+use crate::true_events::{TrueEvent, true_events, true_events_while};
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use crepitus_plant::Motion;
 use crepitus_scene::Scene;
@@ -50,6 +50,17 @@ impl StudyScene {
         true_events(&self.settings, &self.motion, self.duration_s)
     }
 
+    /// As [`Self::true_events`], and asks `go_on` now and then.
+    ///
+    /// # Errors
+    /// What `go_on` returns.
+    pub fn true_events_while<E>(
+        &self,
+        go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<Vec<TrueEvent>, E> {
+        true_events_while(&self.settings, &self.motion, self.duration_s, go_on)
+    }
+
     /// The convention's name.
     pub fn convention(&self) -> &'static str {
         self.settings.convention.name()
@@ -86,7 +97,7 @@ pub fn standard() -> Result<Vec<StudyScene>, SettingsError> {
                 title: format!("{speed} rad/s for {CONSTANT_S} s"),
                 motion: Motion::constant(speed),
                 duration_s: CONSTANT_S,
-                settings: settings(convention)?,
+                settings: paper(convention)?,
             });
         }
     }
@@ -96,14 +107,14 @@ pub fn standard() -> Result<Vec<StudyScene>, SettingsError> {
             title: format!("sine of {SINE_DEG}° at {SINE_HZ} Hz from rest for {SINE_S} s"),
             motion: Motion::sine(SINE_DEG.to_radians(), SINE_HZ, -90.0),
             duration_s: SINE_S,
-            settings: settings(convention)?,
+            settings: paper(convention)?,
         });
     }
     Ok(scenes)
 }
 
 /// The paper's parameters under a convention.
-fn settings(convention: Convention) -> Result<Validated<Settings>, SettingsError> {
+pub(super) fn paper(convention: Convention) -> Result<Validated<Settings>, SettingsError> {
     Settings {
         convention,
         ..Settings::default()

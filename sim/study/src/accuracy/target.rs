@@ -29,6 +29,11 @@ use serde::Serialize;
 /// Core cycles of a tick of the device: 50 µs at 168 MHz.
 pub const TICK_CYCLES: f64 = 8_400.0;
 
+/// The share of a tick that the worst observed step of a rung may take where
+/// the target chooses: a fifth, 1,680 cycles. Sampling, guard, compensation,
+/// limits, current loop and link share the rest.
+pub const STEP_SHARE: f64 = 0.2;
+
 /// What the numbers are.
 pub const LABEL: &str = "modelled cycles, 0 wait states; not measured on hardware";
 

@@ -3,17 +3,20 @@
 //! Only the stepping is timed: the step, its event closure, and the torque it
 //! leaves, which is what a tick of the device asks for. The motion is sampled
 //! beforehand, and a few thousand steps at a time are brought into the cache
-//! before the clock starts. All rungs of a scene and step take turns within
-//! each repeat, every second time in the opposite order, so that a machine
-//! that slows down or speeds up meanwhile does it to all alike.
+//! before the clock starts. The clock is the CPU time of the thread, less what
+//! reading it costs: on a busy machine wall time would count the others' work.
+//! All rungs of a scene and step take turns within each repeat, every second
+//! time in the opposite order, so that a machine that slows down or speeds up
+//! meanwhile does it to all alike.
 
 use crate::accuracy::scenes::StudyScene;
 use crate::sampling::{CHUNK_STEPS, Sampling};
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{Real, SettingsError, ShaftStep, StickSlip};
+use crepitus_scene::cpu_time;
 use crepitus_scene::scene::Precision;
 use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The most steps that one repeat times.
 const MOST_STEPS: u64 = 40_000;
@@ -27,7 +30,7 @@ pub type Contestant = (Solver, Precision);
 /// Cost of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// Median of the repeats, ns.
+    /// Median of the repeats, ns of CPU time.
     pub ns_per_step: f64,
     /// (third quartile − first quartile)/median of the repeats.
     pub spread: f64,
@@ -71,6 +74,8 @@ pub fn time<E: From<SettingsError>>(
 struct Track<'a> {
     scene: &'a StudyScene,
     step_s: f64,
+    /// What reading the clock adds to each chunk.
+    reading: Duration,
     single: Vec<ShaftStep<f32>>,
     double: Vec<ShaftStep<f64>>,
 }
@@ -86,6 +91,7 @@ impl<'a> Track<'a> {
         Self {
             scene,
             step_s: sampling.step_s(),
+            reading: cpu_time::reading_cost(),
             single,
             double,
         }
@@ -108,7 +114,10 @@ impl<'a> Track<'a> {
                 solver,
                 self.step_s,
                 omega,
-                Timed(steps),
+                Timed {
+                    steps,
+                    reading: self.reading,
+                },
             )?;
             timed += length;
         }
@@ -116,7 +125,10 @@ impl<'a> Track<'a> {
     }
 }
 
-struct Timed<'a, F>(&'a [ShaftStep<F>]);
+struct Timed<'a, F> {
+    steps: &'a [ShaftStep<F>],
+    reading: Duration,
+}
 
 impl<F: Real> JointVisitor<F> for Timed<'_, F> {
     type Output = Duration;
@@ -124,18 +136,18 @@ impl<F: Real> JointVisitor<F> for Timed<'_, F> {
     fn visit<J: StickSlip<F>>(self, mut joint: J) -> Duration {
         let mut total = Duration::ZERO;
         let mut cached = Vec::with_capacity(CHUNK_STEPS);
-        for part in self.0.chunks(CHUNK_STEPS) {
+        for part in self.steps.chunks(CHUNK_STEPS) {
             cached.clear();
             cached.extend_from_slice(part);
             let steps = black_box(cached.as_slice());
-            let begun = Instant::now();
+            let begun = cpu_time::now();
             for shaft in steps {
                 joint.step(shaft, |event| {
                     black_box(event);
                 });
                 black_box(joint.torque_nm());
             }
-            total += begun.elapsed();
+            total += cpu_time::since(begun).saturating_sub(self.reading);
         }
         total
     }

@@ -1,12 +1,14 @@
 //! `effects.csv`: one row a variant, the scene first. Numbers read back to
-//! the same bits; what is not known is `nan`.
+//! the same bits; what is not known is `nan`. Times are CPU time.
+//! `added_ns_per_step` is `nan` where it is not above `added_ns_resolution`, the
+//! smallest difference that the timings can tell: it is never zero or less.
 
 use super::results::{EffectsStudy, Row};
 use std::fmt::Write;
 
 /// The header.
 pub const HEADER: &str = "change,effect,along,states,added_states,ns_per_step,time_spread,added_ns_per_step,\
-added_rms_nm,added_peak_nm,rms_nm,peak_nm,rms_10_50_hz_nm,rms_50_250_hz_nm,rms_250_450_hz_nm,\
+added_ns_resolution,added_rms_nm,added_peak_nm,rms_nm,peak_nm,rms_10_50_hz_nm,rms_50_250_hz_nm,rms_250_450_hz_nm,\
 events,added_events,failure";
 
 /// The file.
@@ -34,7 +36,8 @@ fn push(text: &mut String, row: &Row) {
         Number(row.time_spread),
     );
     let numbers = [
-        added.map(|a| a.ns_per_step),
+        added.and_then(|a| a.time.ns_per_step),
+        added.map(|a| a.time.ns_resolution),
         added.map(|a| a.rms_nm),
         added.map(|a| a.peak_nm),
         ran.map(|r| r.torque.rms_nm),
@@ -85,6 +88,7 @@ mod tests {
     use super::super::results::{Added, Outcome, Ran};
     use super::super::variant::Change;
     use super::*;
+    use crepitus_scene::run::AddedTime;
 
     #[test]
     fn rows_have_the_columns_and_read_back() {
@@ -107,7 +111,10 @@ mod tests {
                     peak_nm: 0.2,
                     events: -3,
                     states: 1,
-                    ns_per_step: -0.5,
+                    time: AddedTime {
+                        ns_per_step: None,
+                        ns_resolution: 0.5,
+                    },
                 }),
             }),
         };
@@ -121,6 +128,10 @@ mod tests {
         assert_eq!(cell("rms_nm").parse(), Ok(1.0 / 3.0));
         assert_eq!(cell("ns_per_step").parse(), Ok(0.1 + 0.2));
         assert_eq!(cell("rms_50_250_hz_nm"), "nan");
+        assert_eq!(
+            (cell("added_ns_per_step"), cell("added_ns_resolution")),
+            ("nan", "0.5")
+        );
         assert_eq!((cell("events"), cell("added_events")), ("7", "-3"));
 
         row.outcome = Outcome::Failed {

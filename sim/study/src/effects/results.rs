@@ -5,6 +5,7 @@ use super::build_up::Rung;
 use super::influence::Torque;
 use super::variant::Change;
 use crate::stability::story::Story;
+use crepitus_scene::run::AddedTime;
 use serde::Serialize;
 
 /// A study's results.
@@ -53,7 +54,7 @@ pub struct Row {
     pub along: Vec<&'static str>,
     /// State variables.
     pub states: usize,
-    /// Time of a step without outputs, ns, on the machine of the study.
+    /// CPU time of a step without outputs, ns, on the machine of the study.
     pub ns_per_step: f64,
     /// How much longer than the fastest timing the fastest quarter of them took
     /// at most, as a share.
@@ -99,9 +100,11 @@ pub struct Added {
     pub events: i64,
     /// State variables.
     pub states: i64,
-    /// Time of a step, ns. Below zero where a run is cheaper with it: then it
-    /// spares other work, or hides in the noise of the timing.
-    pub ns_per_step: f64,
+    /// CPU time of a step. Where a run is not longer with it than the timings
+    /// can tell only the bound is known: the effect spares as much work as it
+    /// makes, or it hides in the noise.
+    #[serde(flatten)]
+    pub time: AddedTime,
 }
 
 impl Row {

@@ -13,7 +13,7 @@ use super::window::{Candidate, Profile, SHOWN, story};
 use crate::watcher::Watcher;
 use crepitus_model::Real;
 use crepitus_scene::Scene;
-use crepitus_scene::run::{StepTime, step_count, step_s, step_times};
+use crepitus_scene::run::{AddedTime, StepTime, step_count, step_s, step_times};
 use std::time::Instant;
 
 /// Timings of which the fastest counts: enough that a busy machine is quiet
@@ -83,7 +83,7 @@ pub fn run<W: Watcher>(
         outcome: Outcome::Ran(own),
     }];
     for ((variant, heard), time) in variants.iter().zip(&heard).zip(times) {
-        rows.push(row(variant, heard, time, &whole, &rows[0]));
+        rows.push(row(variant, heard, (time, scene_time), &whole, &rows[0]));
     }
     let answer = find(plan, &whole, &meter, watcher).map_err(EffectsError::Watcher)?;
     let candidates = candidates(&variants, &heard, &rows[1..]);
@@ -190,12 +190,6 @@ fn hear(variant: &Variant, whole: &Felt, meter: &Meter) -> Result<Heard, String>
     })
 }
 
-/// The time of a step that nobody knows.
-const UNKNOWN: StepTime = StepTime {
-    ns: f64::NAN,
-    spread: f64::NAN,
-};
-
 /// The times of the scene and of its variants; unknown for one that there is
 /// not.
 fn times<W: Watcher>(
@@ -207,11 +201,11 @@ fn times<W: Watcher>(
     let mut scenes = vec![scene.clone()];
     scenes.extend(variants.iter().filter_map(|v| v.scene.clone()));
     let mut times = step_times(&scenes, TIMINGS, || meter.tell(watcher))?.into_iter();
-    let scene = times.next().unwrap_or(UNKNOWN);
+    let scene = times.next().unwrap_or(StepTime::UNKNOWN);
     let variants = variants
         .iter()
         .map(|v| v.scene.as_ref().and_then(|_| times.next()))
-        .map(|time| time.unwrap_or(UNKNOWN))
+        .map(|time| time.unwrap_or(StepTime::UNKNOWN))
         .collect();
     Ok((scene, variants))
 }
@@ -219,17 +213,21 @@ fn times<W: Watcher>(
 fn row(
     variant: &Variant,
     heard: &Result<Heard, String>,
-    time: StepTime,
+    (time, scene_time): (StepTime, StepTime),
     whole: &Felt,
     scene: &Row,
 ) -> Row {
-    let time = if heard.is_ok() { time } else { UNKNOWN };
+    let time = if heard.is_ok() {
+        time
+    } else {
+        StepTime::UNKNOWN
+    };
     let states = variant.scene.as_ref().map_or(0, states);
     // With the effect less without it.
-    let (sign, factor) = if variant.change == Change::With {
-        (1, 1.0)
+    let (sign, added_time) = if variant.change == Change::With {
+        (1, AddedTime::between(time, scene_time))
     } else {
-        (-1, -1.0)
+        (-1, AddedTime::between(scene_time, time))
     };
     let outcome = match heard {
         Ok(heard) => Outcome::Ran(Ran {
@@ -238,7 +236,7 @@ fn row(
                 peak_nm: heard.difference.peak,
                 events: sign * signed(heard.ran.events, whole.events),
                 states: sign * signed(count(states), count(scene.states)),
-                ns_per_step: factor * (time.ns - scene.ns_per_step),
+                time: added_time,
             }),
             ..heard.ran
         }),

@@ -2,7 +2,7 @@
 
 use super::criterion::Criterion;
 use super::input::Input;
-use super::subject::Subject;
+use super::subject::{Rung, Subject};
 use super::text::Plain;
 use crepitus_model::parameters::PARAMETERS;
 use crepitus_model::solver::Solver;
@@ -71,10 +71,31 @@ impl Case {
         self.collect(|trial| trial.criteria.iter().map(ToString::to_string).collect())
     }
 
+    /// What this subject is put through; nothing where the case says nothing
+    /// about it. A rung that needs the exact motion is given no other; the
+    /// reference, what it has a meaning for: a motion that is prescribed and
+    /// not sampled.
+    pub fn trials_of(&self, subject: Subject) -> Vec<Trial> {
+        let mut trials = (self.trials)(subject);
+        if subject.solver.needs_exact_motion() {
+            trials.retain(|trial| trial.input.is_exact());
+        }
+        if subject.solver == Rung::Reference {
+            trials.retain(|trial| trial.input.suits_the_reference());
+            for trial in &mut trials {
+                trial.criteria.retain(Criterion::suits_the_reference);
+                if trial.criteria.is_empty() {
+                    trial.criteria.push(Criterion::Survives);
+                }
+            }
+        }
+        trials
+    }
+
     fn collect(&self, texts: impl Fn(&Trial) -> Vec<String>) -> Vec<String> {
         let mut all = Vec::new();
         for subject in Subject::all() {
-            for text in (self.trials)(subject).iter().flat_map(&texts) {
+            for text in self.trials_of(subject).iter().flat_map(&texts) {
                 if !all.contains(&text) {
                     all.push(text);
                 }
@@ -84,12 +105,12 @@ impl Case {
     }
 }
 
-/// Who must hold unless a case says otherwise: `exact-events` everywhere, and
-/// under `frozen` also `exact-break`, which is the same there.
+/// Who must hold unless a case says otherwise: `exact-events` and the reference
+/// everywhere, and under `frozen` also `exact-break`, which is the same there.
 pub fn located(subject: Subject) -> bool {
     match subject.solver {
-        Solver::ExactEvents => true,
-        Solver::ExactBreak => subject.convention == Convention::Frozen,
+        Rung::Reference | Rung::Ladder(Solver::ExactEvents) => true,
+        Rung::Ladder(Solver::ExactBreak) => subject.convention == Convention::Frozen,
         _ => false,
     }
 }

@@ -2,19 +2,23 @@
 //! numbers.
 //!
 //! H01 to H36 have the numbers of the report on numerics that the design rests
-//! on. A case that ends in `L` is the long sibling of the one before it: hours
+//! on; from H38 on are those that planted faults asked for. A case that ends in `L` is the long sibling of the one before it: hours
 //! of simulated time. To add a case, write a function like its neighbours in
 //! the file of its theme and give it a line in [`all`]; tests, matrix and
 //! report follow.
 
 mod arithmetic;
+mod commits;
 mod damping;
 mod device;
 mod encoder;
+mod ends;
 mod extremes;
+mod gaps;
 mod motions;
 mod refusals;
 mod reversals;
+mod rounding;
 mod steady;
 mod ties;
 mod time;
@@ -68,6 +72,24 @@ pub fn all() -> Vec<Case> {
         arithmetic::precisions(),
         arithmetic::golden(),
         device::shaking_hand(),
+        gaps::gap_under_load(),
+        gaps::losses_with_the_motion(),
+        gaps::velocity_outliers(),
+        gaps::encoder_bursts(),
+        gaps::late_estimate(),
+        commits::equal_torques_ramp(),
+        commits::softer_under_load(),
+        commits::stronger_in_a_slip(),
+        commits::commits_while_blind(),
+        commits::guard_memory(),
+        ends::motion_ends_with_the_run(),
+        ends::dead_object(),
+        ends::event_cap(),
+        ends::from_kinetic(),
+        rounding::free_period(),
+        rounding::subnormal_decay(),
+        rounding::break_at_a_sample(),
+        rounding::slip_without_lead(),
     ]
 }
 

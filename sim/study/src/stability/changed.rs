@@ -9,8 +9,10 @@ use crate::sampling::Sampling;
 use crate::true_events::TimedEvent;
 use crepitus_model::locate::Locate;
 use crepitus_model::ramp::Ramp;
+use crepitus_model::shaft::Linear;
 use crepitus_model::{
-    Active, Frozen, Phase, Real, Settings, SettingsError, ShaftStep, StickSlip, Validated,
+    Active, EventKind, Frozen, Phase, Real, Settings, SettingsError, ShaftStep, StickSlip,
+    Validated,
 };
 
 /// The device's slew limit, N·m/s.
@@ -25,13 +27,13 @@ pub(super) struct Changed<'a> {
 
 impl Changed<'_> {
     pub(super) fn observe<F: Real>(self, subject: Subject) -> Result<Observation, SettingsError> {
-        with_locator::<F, _>(subject.solver, self)
+        with_locator::<F, _>(subject, self)
     }
 }
 
 /// The energy that a frozen object stores: its spring's, and in a slip, where
 /// it moves by itself, its motion's, J.
-pub(super) fn stored_j<F: Real, L: Locate<F>>(joint: &Frozen<F, L>) -> f64 {
+pub(super) fn stored_j<F: Real, L: Locate<F, Shape = Linear>>(joint: &Frozen<F, L>) -> f64 {
     let (a, theta) = (joint.active(), joint.theta_rad().to_f64());
     let spring = 0.5 * a.stiffness.to_f64() * theta * theta;
     match joint.phase() {
@@ -45,7 +47,7 @@ pub(super) fn stored_j<F: Real, L: Locate<F>>(joint: &Frozen<F, L>) -> f64 {
 impl<F: Real> WithLocator<F> for Changed<'_> {
     type Output = Result<Observation, SettingsError>;
 
-    fn run<L: Locate<F>>(self) -> Self::Output {
+    fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
         let step_s = self.sampling.step_s();
         let active = Active::<F>::new(&self.settings, step_s)?;
         let mut joint = Frozen::<F, L>::new(active, F::ZERO);
@@ -54,6 +56,7 @@ impl<F: Real> WithLocator<F> for Changed<'_> {
             step_s,
             ..Observation::default()
         };
+        let mut slip_j = None;
         let mut changes = self.changes.iter().peekable();
         let mut walk = self.sampling.walk_from(0);
         let mut chunk = Vec::new();
@@ -71,17 +74,18 @@ impl<F: Real> WithLocator<F> for Changed<'_> {
                 let next = Active::new(&next.validate()?, step_s)?;
                 ramp = Ramp::new(*joint.active(), next, SLEW_NM_PER_S);
             }
-            tick(&mut joint, &mut ramp, shaft, now_s, &mut seen);
+            tick(&mut joint, &mut ramp, shaft, now_s, &mut slip_j, &mut seen);
         }
     }
 }
 
 /// One tick: the adjustment that is due, and the step.
-fn tick<F: Real, L: Locate<F>>(
+fn tick<F: Real, L: Locate<F, Shape = Linear>>(
     joint: &mut Frozen<F, L>,
     ramp: &mut Ramp<F>,
     shaft: &ShaftStep<F>,
     now_s: f64,
+    slip_j: &mut Option<f64>,
     seen: &mut Observation,
 ) {
     let before_nm = joint.torque_nm().to_f64();
@@ -93,8 +97,19 @@ fn tick<F: Real, L: Locate<F>>(
     }
     let step_s = seen.step_s;
     let mut events = 0;
+    let stiffness = joint.active().stiffness.to_f64();
     joint.step(shaft, |event| {
         events += 1;
+        let spring_j = 0.5 * stiffness * event.theta_rad.to_f64().powi(2);
+        match event.kind {
+            EventKind::Break => *slip_j = Some(spring_j),
+            EventKind::Stick | EventKind::Reverse => {
+                if let Some(held_j) = slip_j.take() {
+                    let excess = (spring_j - held_j) / held_j.max(f64::MIN_POSITIVE);
+                    seen.slip_energy = seen.slip_energy.max(excess);
+                }
+            }
+        }
         seen.tally.add(&TimedEvent::new(
             now_s + event.fraction.to_f64() * step_s,
             &event,

@@ -3,11 +3,13 @@
 mod words;
 
 use super::input::Input;
+use crepitus_model::EVENTS_PER_STEP;
 use crepitus_scene::scene::Precision;
 
 /// What holds in every trial beside its own criteria: nothing is infinite or
 /// no number, and no torque is above Ts by more than this share; under
-/// `frozen` no angle of a stick is above Ts/kr by more.
+/// `frozen` no angle of a stick is above Ts/kr by more, unless its step had as
+/// many events as a step may have.
 pub const BOUND_SLACK: f64 = 1e-5;
 
 /// How much of (work + stored energy) may be missing under `physical` with
@@ -23,10 +25,12 @@ pub fn common_bounds() -> [String; 3] {
         format!(
             "finite, and |T| ≤ Ts · (1 + {BOUND_SLACK:e}), after every step and at every event"
         ),
-        format!("frozen: |θ| ≤ Ts/kr · (1 + {BOUND_SLACK:e}) in every stick"),
+        format!(
+            "frozen: |θ| ≤ Ts/kr · (1 + {BOUND_SLACK:e}) in every stick, but after a step of {EVENTS_PER_STEP} events"
+        ),
         format!(
             "physical, exact-events: |work − stored − dissipated| within {} of the largest |work| + stored so far, \
-             which is at least Ts²/2kr",
+             which is at least Ts²/2kr, where no step has {EVENTS_PER_STEP} events",
             words::Number(&BALANCE, "")
         ),
     ]
@@ -198,6 +202,27 @@ pub enum Criterion {
         /// Share of the limit beyond it: rounding only.
         beyond: Limits,
     },
+    /// The first event after this time is a break, and comes when it should.
+    FirstBreakAfter {
+        /// Since the start, s.
+        from_s: f64,
+        /// When it is due, s.
+        at_s: f64,
+        /// Seconds.
+        within_s: Limits,
+    },
+    /// No slip ends with more energy in the spring than it held at the break.
+    SlipEnergy {
+        /// Relative: rounding only.
+        most: Limits,
+    },
+    /// Ticks in which the turn-back guard has switched the torque off.
+    GuardTicks {
+        /// At least.
+        least: u64,
+        /// At most.
+        most: u64,
+    },
     /// Energy that the hand gets back over any time, as a share of the bound
     /// Ts²/2kr, sampling's (½ + d)·kr·h·∫Ω²dt being granted.
     Returned {
@@ -209,6 +234,20 @@ pub enum Criterion {
 }
 
 impl Criterion {
+    /// Whether it says something about a solver that has no steps, and that the
+    /// true events come from.
+    pub fn suits_the_reference(&self) -> bool {
+        !matches!(
+            self,
+            Self::Events { .. }
+                | Self::EventTorques { .. }
+                | Self::EventsPerStep { .. }
+                | Self::TorqueBits(_)
+                | Self::TorqueStep { .. }
+                | Self::Subnormals { .. }
+        )
+    }
+
     /// The other input that a criterion compares with.
     pub fn twin(&self) -> Option<&Input> {
         match self {

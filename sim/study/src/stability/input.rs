@@ -4,7 +4,8 @@ mod words;
 
 use crepitus_model::{Parameters, Settings};
 use crepitus_plant::Motion;
-use crepitus_plant::motion::VelocityKnot;
+use crepitus_plant::motion::{Strokes, VelocityKnot};
+use crepitus_plant::recording::{Samples, smooth};
 
 /// A prescribed motion of the shaft.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +24,17 @@ pub enum Shaft {
     /// Velocity linear between knots: time s, Ω just before and just after it,
     /// rad/s.
     Knots(&'static [(f64, f64, f64)]),
+    /// Minimum-jerk strokes there and back, with a pause after each.
+    Strokes(Strokes),
+    /// A recording: time s and angle rad of each row, smoothed.
+    Rows {
+        /// The rows.
+        rows: &'static [(f64, f64)],
+        /// Sign of the angles, 1 or −1.
+        sign: f64,
+        /// Cutoff of the low-pass, Hz.
+        cutoff_hz: f64,
+    },
 }
 
 /// What a joint is driven with.
@@ -123,6 +135,8 @@ pub enum Input {
         /// The step, s.
         step_s: f64,
     },
+    /// A frozen joint as the device renders it, with what it meets there.
+    Rendered(Rendered),
     /// Settings and steps that must be refused.
     Refusals(Vec<Attempt>),
 }
@@ -148,6 +162,67 @@ pub enum Fault {
         /// To, s.
         to_s: f64,
     },
+    /// None is taken while the shaft moves backwards.
+    Retreating,
+    /// Every so many samples the velocity at the end of one is 20 rad/s off:
+    /// slow enough for a shaft, but no shaft gets there in a tick.
+    Jumps {
+        /// Steps from one to the next.
+        every: u64,
+    },
+}
+
+/// What a joint meets in a device, beside its hand.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rendered {
+    /// The motion.
+    pub shaft: Shaft,
+    /// Whether the joint sees counts of the device's encoder, or the truth.
+    pub counts: bool,
+    /// The samples that are lost.
+    pub lost: Lost,
+    /// A commit every so many ticks; 0 for none.
+    pub commit_every: u64,
+    /// To what, in turn.
+    pub commits: Vec<Parameters>,
+    /// How long, s.
+    pub duration_s: f64,
+    /// The step, s.
+    pub step_s: f64,
+}
+
+/// Which samples are lost: so many of every so many, from a time on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lost {
+    /// Samples in a row; 0 for none.
+    pub ticks: u64,
+    /// From one burst to the next, in ticks; 0 for one burst only.
+    pub every: u64,
+    /// When the first begins, s.
+    pub from_s: f64,
+}
+
+impl Lost {
+    /// None.
+    pub const NONE: Self = Self {
+        ticks: 0,
+        every: 0,
+        from_s: 0.0,
+    };
+
+    /// Whether sample `n`, counted from 1, is lost.
+    pub(super) fn takes(&self, n: u64, step_s: f64) -> bool {
+        let first = crepitus_model::Real::whole((self.from_s / step_s).round()) + 1;
+        let Some(since) = n.checked_sub(first) else {
+            return false;
+        };
+        let place = if self.every == 0 {
+            since
+        } else {
+            since % self.every
+        };
+        place < self.ticks
+    }
 }
 
 /// New parameters at a time.
@@ -213,6 +288,21 @@ impl Shaft {
                     .collect();
                 Motion::velocity_knots(&knots)
             }
+            Self::Strokes(strokes) => Motion::Strokes(*strokes),
+            Self::Rows {
+                rows,
+                sign,
+                cutoff_hz,
+            } => {
+                let samples = Samples {
+                    time_s: rows.iter().map(|row| row.0).collect(),
+                    angle_rad: rows.iter().map(|row| sign * row.1).collect(),
+                    warnings: Vec::new(),
+                };
+                // The catalogue's rows can be smoothed; a test says so.
+                smooth(&samples, *cutoff_hz)
+                    .map_or_else(|_| Motion::rest(0.0), |pieces| Motion::recording(&pieces))
+            }
         }
     }
 }
@@ -241,13 +331,25 @@ impl Input {
             }
             | Self::Shaken {
                 duration_s, step_s, ..
-            } => Some((duration_s, step_s)),
+            }
+            | Self::Rendered(Rendered {
+                duration_s, step_s, ..
+            }) => Some((duration_s, step_s)),
             Self::Encoder {
                 duration_s,
                 rate_hz,
                 ..
             } => Some((duration_s, 1.0 / rate_hz)),
             Self::Refusals(_) => None,
+        }
+    }
+
+    /// Whether it has a meaning without samples. A recording that ends with the
+    /// run is left out until the reference is known to end there, too.
+    pub(super) fn suits_the_reference(&self) -> bool {
+        match self {
+            Self::Sampled { shaft, .. } => !matches!(shaft, Shaft::Rows { .. }),
+            _ => false,
         }
     }
 
@@ -258,6 +360,12 @@ impl Input {
             Self::Encoder { lost, .. } => *lost > 0.0,
             _ => false,
         }
+    }
+
+    /// Whether each step is that of the motion, as far as f64 goes: no counts of
+    /// an encoder, and nothing made up for.
+    pub(super) fn is_exact(&self) -> bool {
+        !matches!(self, Self::Encoder { .. } | Self::Faulty { .. })
     }
 
     /// Steps of a run; 0 where nothing runs.
@@ -289,5 +397,46 @@ mod tests {
             phase_deg: -90.0,
         };
         assert_eq!(sine.to_string(), "φ = 0.003 rad · sin(2π · 1 Hz · t -90°)");
+    }
+
+    #[test]
+    fn the_rows_of_the_catalogue_can_be_smoothed() {
+        let mut seen = 0;
+        for case in crate::stability::catalogue::all() {
+            for trial in crate::stability::Subject::all()
+                .into_iter()
+                .flat_map(case.trials)
+            {
+                if let Input::Sampled {
+                    shaft: shaft @ Shaft::Rows { .. },
+                    duration_s,
+                    ..
+                } = &trial.input
+                {
+                    let motion = shaft.motion();
+                    assert!(motion.at(0.5 * duration_s).phi_rad.abs() > 0.1);
+                    assert_eq!(motion.piece(*duration_s).end_s, *duration_s);
+                    seen += 1;
+                }
+            }
+        }
+        assert!(seen > 0);
+    }
+
+    #[test]
+    fn bursts_begin_and_come_again_when_they_should() {
+        let lost = |every, from_s| Lost {
+            ticks: 2,
+            every,
+            from_s,
+        };
+        let taken = |lost: Lost| {
+            (1..=9)
+                .filter(|n| lost.takes(*n, 1.0))
+                .collect::<Vec<u64>>()
+        };
+        assert_eq!(taken(lost(4, 0.0)), [1, 2, 5, 6, 9]);
+        assert_eq!(taken(lost(0, 3.0)), [4, 5]);
+        assert!(taken(Lost::NONE).is_empty());
     }
 }

@@ -2,13 +2,13 @@
 
 use super::criterion::{BALANCE, BOUND_SLACK, Counted, Criterion};
 use super::observation::Observation;
-use super::subject::Subject;
+use super::subject::{Rung, Subject};
 use super::verdict::{Failure, Margin, Verdict};
 use crate::event_errors::EventErrors;
 use crate::matching::match_events;
 use crate::true_events::{TimedEvent, TrueEvent};
-use crepitus_model::Real;
 use crepitus_model::solver::Solver;
+use crepitus_model::{EventKind, Real};
 use crepitus_scene::scene::Precision;
 
 /// A cycle rate off by more than this factor is another motion.
@@ -61,7 +61,7 @@ pub(super) fn common(evidence: &Evidence<'_>) -> Option<Finding> {
     let limit = BALANCE.of(evidence.subject.precision);
     let missing = seen
         .imbalance
-        .filter(|_| evidence.subject.solver == Solver::ExactEvents)?;
+        .filter(|_| evidence.subject.solver == Rung::Ladder(Solver::ExactEvents))?;
     (missing.is_nan() || missing > limit).then_some(number(missing, limit, ""))
 }
 
@@ -151,6 +151,26 @@ pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
         Criterion::TorqueStep { most_nm } => number(seen.largest_step_nm, *most_nm, "N·m"),
         Criterion::EnergyRise { most } => number(seen.energy_rise, most.of(precision), ""),
         Criterion::Slew { beyond } => number(seen.slew, 1.0 + beyond.of(precision), ""),
+        Criterion::FirstBreakAfter {
+            from_s,
+            at_s,
+            within_s,
+        } => match seen.events.iter().find(|event| event.time_s > *from_s) {
+            Some(first) if first.kind == EventKind::Break => {
+                number((first.time_s - at_s).abs(), within_s.of(precision), "s")
+            }
+            _ => Finding::Failed(Failure::Broken("no break, or not first"), None),
+        },
+        Criterion::SlipEnergy { most } => number(seen.slip_energy, most.of(precision), ""),
+        Criterion::GuardTicks { least, most } => {
+            let found = seen.guard_ticks;
+            if (*least..=*most).contains(&found) {
+                number(0.0, 0.0, "")
+            } else {
+                let failure = Failure::Broken("torque off for another number of ticks");
+                Finding::Failed(failure, None)
+            }
+        }
         Criterion::Returned { most } => number(seen.returned, *most, ""),
         Criterion::Refused => match seen.accepted.first() {
             Some(what) => Finding::Failed(Failure::Broken(what), None),

@@ -1,8 +1,10 @@
 //! The four rungs of `frozen`, whose joint a device changes while it runs:
 //! such a joint is built by its own type and not by its rung's name.
 
+use super::subject::{Rung, Subject};
 use crepitus_model::Real;
 use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
+use crepitus_model::shaft::Linear;
 use crepitus_model::solver::Solver;
 
 /// What to do once the locator is known.
@@ -11,15 +13,15 @@ pub(super) trait WithLocator<F: Real> {
     type Output;
 
     /// Called with the locator as a type.
-    fn run<L: Locate<F>>(self) -> Self::Output;
+    fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output;
 }
 
 /// Runs with the locator of a rung of `frozen`.
-pub(super) fn with_locator<F: Real, W: WithLocator<F>>(solver: Solver, with: W) -> W::Output {
-    match solver {
-        Solver::ExactBreak => with.run::<ExactBreak>(),
-        Solver::ExactInterpolated => with.run::<Interpolated>(),
-        Solver::ExactEvents => with.run::<ExactEvents>(),
+pub(super) fn with_locator<F: Real, W: WithLocator<F>>(subject: Subject, with: W) -> W::Output {
+    match subject.solver {
+        Rung::Ladder(Solver::ExactBreak) => with.run::<ExactBreak>(),
+        Rung::Ladder(Solver::ExactInterpolated) => with.run::<Interpolated>(),
+        Rung::Ladder(Solver::ExactEvents) => with.run::<ExactEvents>(),
         _ => with.run::<EndOfStep>(),
     }
 }

@@ -83,7 +83,7 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Matrix, StudyErro
         let mut truths = Truths::default();
         let mut cells = Vec::new();
         for &subject in &plan.subjects {
-            let trials = (case.trials)(subject);
+            let trials = case.trials_of(subject);
             if trials.is_empty() {
                 continue;
             }
@@ -265,7 +265,7 @@ fn total_work(plan: &Plan) -> f64 {
     let mut total = 0.0;
     for case in &plan.cases {
         for &subject in &plan.subjects {
-            for trial in (case.trials)(subject) {
+            for trial in case.trials_of(subject) {
                 total += work_of(&trial.input);
                 total += trial
                     .criteria

@@ -52,6 +52,11 @@ pub(super) struct Observation {
     pub(super) slew: f64,
     /// Largest energy returned to the hand, as a share of the bound.
     pub(super) returned: f64,
+    /// Largest relative excess of the spring's energy at the end of a slip over
+    /// that at its break.
+    pub(super) slip_energy: f64,
+    /// Ticks in which the turn-back guard showed no torque.
+    pub(super) guard_ticks: u64,
     /// What should have been refused and was not.
     pub(super) accepted: Vec<&'static str>,
 }

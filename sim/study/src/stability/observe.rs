@@ -5,21 +5,28 @@ use super::changed::Changed;
 use super::criterion::BOUND_SLACK;
 use super::input::{Attempt, Input};
 use super::observation::{MOST_KEPT, Observation};
+use super::rendered::RenderedRun;
 use super::shaken::Shaken;
 use super::sighted::Sighted;
 use super::source::{Source, first_omega_rad_s, motion, source};
-use super::subject::Subject;
+use super::subject::{Rung, Subject};
+use super::without_steps::without_steps;
 use crate::sampling::{CHUNK_STEPS, Sampling};
 use crate::true_events::TimedEvent;
 use crate::watcher::StudyError;
-use crepitus_model::solver::{JointVisitor, with_joint};
+use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
-    Convention, Event, EventKind, Parameters, Phase, Real, Settings, ShaftStep, StickSlip,
+    Convention, EVENTS_PER_STEP, Event, EventKind, Parameters, Phase, Real, Settings, ShaftStep,
+    StickSlip,
 };
 use crepitus_scene::scene::Precision;
 
 /// Between two looks at whoever watches, in steps.
 const STEPS_A_LOOK: u64 = 65_536;
+
+/// The most events that a step reports.
+#[expect(clippy::cast_possible_truncation, reason = "eight")]
+const MOST_EVENTS: u32 = EVENTS_PER_STEP as u32;
 
 /// Up to this ωn·h the books follow damping well enough.
 const BOOKED_RADIANS: f64 = 0.05;
@@ -37,14 +44,18 @@ pub(super) fn observe<E>(
     if let Input::Refusals(attempts) = input {
         return Ok(attempt(subject, attempts));
     }
+    let Rung::Ladder(solver) = subject.solver else {
+        return Ok(without_steps(settings, input, late_s)?);
+    };
     match subject.precision {
-        Precision::F32 => run::<f32, E>(subject, settings, input, late_s, go_on),
-        Precision::F64 => run::<f64, E>(subject, settings, input, late_s, go_on),
+        Precision::F32 => run::<f32, E>(subject, solver, settings, input, late_s, go_on),
+        Precision::F64 => run::<f64, E>(subject, solver, settings, input, late_s, go_on),
     }
 }
 
 fn run<F: Real, E>(
     subject: Subject,
+    solver: Solver,
     settings: &Settings,
     input: &Input,
     late_s: f64,
@@ -72,6 +83,15 @@ fn run<F: Real, E>(
             };
             return Ok(shaken.observe::<F>(subject)?);
         }
+        Input::Rendered(rendered) => {
+            let run = RenderedRun {
+                settings,
+                sampling,
+                rendered,
+                late_s,
+            };
+            return Ok(run.observe::<F>(subject)?);
+        }
         _ => {}
     }
     let omega_rad_s = first_omega_rad_s(input, &motion);
@@ -91,7 +111,7 @@ fn run<F: Real, E>(
         go_on,
     };
     let omega = F::from_f64(omega_rad_s);
-    with_joint::<F, _>(&settings, subject.solver, step_s, omega, look)?.map_err(StudyError::Watcher)
+    with_joint::<F, _>(&settings, solver, step_s, omega, look)?.map_err(StudyError::Watcher)
 }
 
 /// Tries to build each joint.
@@ -103,7 +123,10 @@ fn attempt(subject: Subject, attempts: &[Attempt]) -> Observation {
     }
     let accepts = |attempt: &&Attempt| {
         attempt.settings.validate().is_ok_and(|settings| {
-            let (solver, step_s) = (subject.solver, attempt.step_s);
+            let Rung::Ladder(solver) = subject.solver else {
+                return true;
+            };
+            let step_s = attempt.step_s;
             match subject.precision {
                 Precision::F32 => {
                     with_joint::<f32, _>(&settings, solver, step_s, 1.0, Built).is_ok()
@@ -187,7 +210,10 @@ impl<F: Real, E> Look<'_, F, E> {
                 unseen = 0;
             }
         }
-        seen.imbalance = self.books.as_ref().map(Books::worst);
+        // Behind the cap nobody knows what happened when.
+        let is_capped = seen.tally.most_in_step >= MOST_EVENTS;
+        let known = self.books.as_ref().filter(|_| !is_capped);
+        seen.imbalance = known.map(Books::worst);
         if let Some(books) = &self.books {
             seen.work_j = books.work_j();
         }
@@ -244,7 +270,9 @@ impl<F: Real, E> Look<'_, F, E> {
         if !self.frozen || stick {
             let (theta, v) = (joint.theta_rad().to_f64(), joint.theta_dot_rad_s().to_f64());
             finite &= theta.is_finite() && v.is_finite();
-            above |= self.frozen && stiffness_nm_per_rad * theta.abs() > limit_nm;
+            // At the cap a break that is due waits for the next step.
+            let is_capped = in_step >= MOST_EVENTS;
+            above |= self.frozen && !is_capped && stiffness_nm_per_rad * theta.abs() > limit_nm;
             if v != 0.0 && v.abs() < smallest_normal::<F>() {
                 seen.subnormals += 1;
             }
@@ -310,7 +338,7 @@ fn note<F: Real>(
 /// torque.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "it was an f32")]
-fn bits<F: Real>(torque_nm: f64) -> u64 {
+pub(super) fn bits<F: Real>(torque_nm: f64) -> u64 {
     let torque_nm = torque_nm + 0.0;
     if F::NAME == <f32 as Real>::NAME {
         u64::from((torque_nm as f32).to_bits())

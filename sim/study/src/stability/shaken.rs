@@ -9,6 +9,7 @@ use crate::sampling::Sampling;
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::guarded::InputLimits;
 use crepitus_model::locate::Locate;
+use crepitus_model::shaft::Linear;
 use crepitus_model::{
     Active, EnergyObserver, Real, Renderer, Sample, Settings, SettingsError, Validated,
 };
@@ -66,7 +67,7 @@ impl Shaken<'_> {
         subject: Subject,
         on_tick: impl FnMut(&Tick),
     ) -> Result<Returned, SettingsError> {
-        with_locator::<F, _>(subject.solver, Watched(self, on_tick))
+        with_locator::<F, _>(subject, Watched(self, on_tick))
     }
 }
 
@@ -75,7 +76,7 @@ struct Watched<'a, W>(Shaken<'a>, W);
 impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
     type Output = Result<Returned, SettingsError>;
 
-    fn run<L: Locate<F>>(self) -> Self::Output {
+    fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
         let Self(shaken, mut on_tick) = self;
         let step_s = shaken.sampling.step_s();
         let active = Active::<F>::new(&shaken.settings, step_s)?;

@@ -1,6 +1,6 @@
 //! The steps of an input, made as the joint takes them.
 
-use super::input::{Fault, Input, Shaft};
+use super::input::{Fault, Input, Rendered, Shaft};
 use super::random::Random;
 use super::sighted::lost;
 use crate::sampling::{CHUNK_STEPS, Sampling, Walk};
@@ -28,7 +28,8 @@ pub(super) fn motion(input: &Input) -> Motion {
         Input::Sampled { shaft, .. }
         | Input::Encoder { shaft, .. }
         | Input::Faulty { shaft, .. }
-        | Input::Changed { shaft, .. } => shaft.motion(),
+        | Input::Changed { shaft, .. }
+        | Input::Rendered(Rendered { shaft, .. }) => shaft.motion(),
         Input::Repeated { omega_rad_s, .. } => Shaft::Constant(*omega_rad_s).motion(),
         Input::Shaken { shake, .. } => shake.motion(),
         Input::White { .. } | Input::Hand { .. } | Input::Refusals(_) => Motion::constant(0.0),
@@ -126,10 +127,12 @@ pub(super) fn source<'a, F: Real>(
             travel: F::ZERO,
         }),
         // These have runs of their own.
-        Input::Changed { .. } | Input::Shaken { .. } | Input::Refusals(_) => Box::new(Same {
-            step: ShaftStep::default(),
-            left: 0,
-        }),
+        Input::Changed { .. } | Input::Shaken { .. } | Input::Rendered(_) | Input::Refusals(_) => {
+            Box::new(Same {
+                step: ShaftStep::default(),
+                left: 0,
+            })
+        }
     })
 }
 
@@ -218,6 +221,11 @@ impl<F: Real> Faulty<'_, F> {
                 .then(|| impossible(shaft, self.n / every)),
             Fault::Blind { from_s } => (now_s >= from_s).then(lost),
             Fault::Gap { from_s, to_s } => (from_s..to_s).contains(&now_s).then(lost),
+            Fault::Retreating => (shaft.delta_phi_rad < F::ZERO).then(lost),
+            Fault::Jumps { every } => self.n.is_multiple_of(every).then(|| ShaftStep {
+                omega_end_rad_s: shaft.omega_end_rad_s + F::from_f64(20.0),
+                ..*shaft
+            }),
         }
     }
 }

@@ -5,11 +5,69 @@ use crepitus_model::Convention;
 use crepitus_model::solver::Solver;
 use crepitus_scene::scene::Precision;
 
+/// What computes: a rung of the ladder, in steps, or the event-driven
+/// reference, without.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rung {
+    /// In steps.
+    Ladder(Solver),
+    /// Event by event on the true motion, in f64.
+    Reference,
+}
+
+impl Rung {
+    /// All of them, the reference last.
+    pub fn all() -> Vec<Self> {
+        let ladder = Solver::ALL.map(Self::Ladder);
+        [&ladder[..], &[Self::Reference]].concat()
+    }
+
+    /// Name in scene files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ladder(solver) => solver.name(),
+            Self::Reference => "reference",
+        }
+    }
+
+    /// Why it has no meaning under a convention, if it has none.
+    pub fn refusal(self, convention: Convention) -> Option<&'static str> {
+        match self {
+            Self::Ladder(solver) => solver.refusal(convention),
+            Self::Reference => None,
+        }
+    }
+
+    /// Whether it needs the prescribed motion itself.
+    pub fn needs_exact_motion(self) -> bool {
+        match self {
+            Self::Ladder(solver) => solver.needs_exact_motion(),
+            Self::Reference => false,
+        }
+    }
+
+    /// The precisions that it computes in.
+    fn precisions(self) -> &'static [Precision] {
+        match self.single_refusal() {
+            None => &Precision::ALL,
+            Some(_) => &[Precision::F64],
+        }
+    }
+
+    /// Why it has no meaning in f32, if it has none.
+    pub fn single_refusal(self) -> Option<&'static str> {
+        match self {
+            Self::Ladder(solver) => solver.single_refusal(),
+            Self::Reference => Some("it is the measure of all others, in f64"),
+        }
+    }
+}
+
 /// A rung under a convention, in a precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subject {
     /// The rung.
-    pub solver: Solver,
+    pub solver: Rung,
     /// How a slip ends.
     pub convention: Convention,
     /// What it computes in.
@@ -21,11 +79,11 @@ impl Subject {
     pub fn all() -> Vec<Self> {
         let mut all = Vec::new();
         for convention in Convention::ALL {
-            for solver in Solver::ALL {
+            for solver in Rung::all() {
                 if solver.refusal(convention).is_some() {
                     continue;
                 }
-                all.extend(Precision::ALL.map(|precision| Self {
+                all.extend(solver.precisions().iter().map(|&precision| Self {
                     solver,
                     convention,
                     precision,
@@ -38,7 +96,7 @@ impl Subject {
     /// What the firmware renders: `frozen`, the break located, in f32.
     pub fn is_firmware(self) -> bool {
         self.convention == Convention::Frozen
-            && self.solver == Solver::ExactEvents
+            && self.solver == Rung::Ladder(Solver::ExactEvents)
             && self.precision == Precision::F32
     }
 }

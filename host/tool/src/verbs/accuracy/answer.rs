@@ -1,9 +1,13 @@
 //! The answer to a need, in sentences.
 
+mod on_target;
+
 use super::plan::Studied;
-use super::words;
+use super::{target, words};
 use crate::failure::{Failure, print, print_json};
+use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::answer::{Answer, Candidate, Mark};
+use crepitus_study::accuracy::target::STEP_SHARE;
 use crepitus_study::accuracy::{Need, Question, Study, answer};
 use crepitus_study::limits::Limited;
 use serde_json::json;
@@ -22,11 +26,13 @@ pub(super) fn tell(
         convention: studied.convention.name(),
         precision: studied.precision.name(),
         step_s: studied.step_s,
+        target: study.target.as_ref(),
     };
     let answer = answer(&study.points, need, &question);
     if as_json {
         print_json(&json!({
             "need": need, "question": question, "answer": answer, "out": out,
+            "chosen_by": if question.target.is_some() { "target cycles" } else { CLOCK },
         }))?;
     } else {
         print(&in_words(need, &question, study, &answer))?;
@@ -40,9 +46,15 @@ pub(super) fn tell(
 
 fn in_words(need: &Need, question: &Question<'_>, study: &Study, answer: &Answer) -> String {
     let mut text = asked(need, question, study);
+    if let Some(target) = question.target {
+        text.push_str(&target::chooses_by(target));
+    }
     // Writing to a String cannot fail.
     let _ = match (&answer.chosen, &answer.nearest) {
-        (Some(chosen), _) => write!(text, "{}", recommended(chosen, answer)),
+        (Some(chosen), _) => match &chosen.cycles {
+            Some(cycles) => write!(text, "{}", on_target::recommended(chosen, cycles, answer)),
+            None => write!(text, "{}", recommended(chosen, answer)),
+        },
         (None, Some(nearest)) => writeln!(
             text,
             "Nothing studied meets it. The nearest is {}: {}.",
@@ -54,6 +66,16 @@ fn in_words(need: &Need, question: &Question<'_>, study: &Study, answer: &Answer
             "No scene is long enough for the step: nothing was studied."
         ),
     };
+    if let Some(why) = &answer.unreachable {
+        let _ = writeln!(
+            text,
+            "No solver could: any torque that is held for {} is off by {} N·m RMS at least on {}. Ask for a higher \
+             --rate, for more torque, or for torque-at-tick.",
+            words::step(why.step_s),
+            words::error(why.floor_nm),
+            why.scene
+        );
+    }
     if !answer.longest.is_empty() && answer.chosen.is_some() {
         text.push_str("The longest studied step at which each meets it:\n");
         for longest in &answer.longest {
@@ -79,7 +101,9 @@ fn in_words(need: &Need, question: &Question<'_>, study: &Study, answer: &Answer
             text.push('\n');
         }
     }
-    if !answer.cheaper.is_empty() {
+    if question.target.is_some() {
+        on_target::failed(&mut text, &answer.failed);
+    } else if !answer.cheaper.is_empty() {
         text.push_str("Why not a cheaper one:\n");
         for c in &answer.cheaper {
             let _ = writeln!(
@@ -125,22 +149,14 @@ fn asked(need: &Need, question: &Question<'_>, study: &Study) -> String {
 
 fn recommended(chosen: &Candidate, answer: &Answer) -> String {
     let mut text = format!(
-        "Use {} ({} Hz). It costs {} ns a step, {} µs per simulated second: {} % of one core.\n",
+        "Use {} ({} Hz). It costs {} ns a step, {} µs per simulated second: {} % of one core ({CLOCK}).\n",
         at_step(chosen),
         words::plain(1.0 / chosen.step_s),
         words::plain(chosen.ns_per_step),
         words::plain(chosen.us_per_simulated_s),
         words::plain(chosen.core_share() * 100.0),
     );
-    if let Some(mark) = chosen.tightest() {
-        let _ = writeln!(
-            text,
-            "It is tightest in the {}: {}, {} % of the limit.",
-            mark.limit.criterion.meaning(),
-            value(mark),
-            words::plain(mark.ratio() * 100.0)
-        );
-    }
+    tightest(&mut text, chosen);
     if !answer.equals.is_empty() {
         let names: Vec<_> = answer.equals.iter().map(at_step).collect();
         let _ = writeln!(
@@ -163,9 +179,22 @@ fn recommended(chosen: &Candidate, answer: &Answer) -> String {
                 .mark(mark.limit.criterion)
                 .map_or_else(|| "not known".to_owned(), value)
         ),
-        _ => writeln!(text, "No dearer one is better where it is tightest."),
+        _ => writeln!(text, "No costlier one is better where it is tightest."),
     };
     text
+}
+
+fn tightest(text: &mut String, chosen: &Candidate) {
+    if let Some(mark) = chosen.tightest() {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "It is tightest in the {}: {}, {} % of the limit.",
+            mark.limit.criterion.meaning(),
+            value(mark),
+            words::plain(mark.ratio() * 100.0)
+        );
+    }
 }
 
 /// `exact-break with a step of 50 µs`.
@@ -201,6 +230,15 @@ fn why_not(c: &Candidate) -> String {
             mark.limit.criterion.meaning(),
             value(mark),
             words::plain(mark.ratio())
+        ));
+    }
+    if let Some(cycles) = c.cycles.as_ref().filter(|cycles| !cycles.fits()) {
+        reasons.push(format!(
+            "its worst step, {} cycles on {}, takes {:.1} % of a tick, and {:.0} % is allowed",
+            cycles.worst,
+            cycles.worst_on,
+            100.0 * cycles.worst_share(),
+            100.0 * STEP_SHARE
         ));
     }
     reasons.join("; ")

@@ -5,6 +5,7 @@ use super::words;
 use crate::failure::Failure;
 use crepitus_report::Section;
 use crepitus_report::accuracy::{self, AccuracyText};
+use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::orders::{Order, Orders};
 use crepitus_study::accuracy::{Point, Study};
 
@@ -53,11 +54,12 @@ fn notes(study: &Study) -> Vec<String> {
         "Events are matched one to one in the order of time, by kind and sense. Where interior events have no \
          partner a solver has not simulated the same thing: such points are in no curve and are listed beside it."
             .to_owned(),
-        "Torque is compared at the ends of steps. It jumps at an event, so a step's end that falls between the true \
-         event and the found one counts with the whole jump."
+        "Held torque is what a device shows, from the end of one step to the end of the next, against the true torque \
+         over continuous time. Torque at the tick is compared at the ends of steps alone: it jumps at an event, so a \
+         step's end that falls between the true event and the found one counts with the whole jump."
             .to_owned(),
         format!(
-            "Time is that of the stepping alone: the step, its events and the torque it leaves, with the motion \
+            "Time is {CLOCK}, of the stepping alone: the step, its events and the torque it leaves, with the motion \
              prepared beforehand; the median of {} repeats in which all solvers take turns.",
             study.timing_repeats
         ),
@@ -114,14 +116,16 @@ fn convergence(study: &Study) -> Vec<Section> {
             solver,
             frequency,
             event_time,
+            event_time_rms,
         } = orders;
         let title = format!("Measured orders in f64: {scene}, {convention}");
         let row = (
             (*solver).to_owned(),
             format!(
-                "frequency {}, event time {}",
+                "frequency {}, event time {} (root mean square {})",
                 order(*frequency),
-                order(*event_time)
+                order(*event_time),
+                order(*event_time_rms)
             ),
         );
         match sections.last_mut().filter(|s| s.title == title) {

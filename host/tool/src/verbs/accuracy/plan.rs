@@ -7,6 +7,7 @@ use crepitus_model::Convention;
 use crepitus_scene::Overrides;
 use crepitus_scene::scene::Precision;
 use crepitus_study::accuracy::study::{FULL_REPEATS, FULL_STEPS_S, QUICK_REPEATS, QUICK_STEPS_S};
+use crepitus_study::accuracy::target::inputs::TICK_S;
 use crepitus_study::accuracy::{Plan, StudyScene, scenes};
 
 /// Rates that a device or a simulation may have, Hz.
@@ -31,7 +32,7 @@ pub(super) fn plan(arguments: &AccuracyArguments) -> Result<Studied, Failure> {
     } else {
         Precision::F32
     };
-    let step_s = arguments.rate.map(step_of).transpose()?;
+    let step_s = step_s(arguments, precision)?;
     let mut steps_s = steps(arguments)?;
     let mut precisions = vec![Precision::F32, Precision::F64];
     if arguments.need.is_some() && arguments.out.is_none() {
@@ -101,6 +102,27 @@ fn convention(arguments: &AccuracyArguments, scenes: &[StudyScene]) -> Result<Co
                 names.join(", ")
             ))
         })
+}
+
+/// The one step of the need. Where the target chooses, that of its tick.
+fn step_s(arguments: &AccuracyArguments, precision: Precision) -> Result<Option<f64>, Failure> {
+    let step_s = arguments.rate.map(step_of).transpose()?;
+    if !(arguments.target && arguments.need.is_some()) {
+        return Ok(step_s);
+    }
+    if precision != Precision::F32 {
+        return Err(Failure::Input(
+            "--need --target: the target computes in f32; leave --precision out".to_owned(),
+        ));
+    }
+    match step_s {
+        Some(step_s) if (step_s - TICK_S).abs() > 1e-6 * TICK_S => Err(Failure::Input(format!(
+            "--need --target: the cycles of a step are those of the device's tick; expected --rate {:.0} or no --rate",
+            1.0 / TICK_S
+        ))),
+        Some(step_s) => Ok(Some(step_s)),
+        None => Ok(Some(TICK_S)),
+    }
 }
 
 fn step_of(rate_hz: f64) -> Result<f64, Failure> {

@@ -1,6 +1,7 @@
 //! `summary.json` of a study.
 
 use super::plan::Studied;
+use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::Study;
 use serde::Serialize;
 
@@ -15,6 +16,8 @@ pub(super) struct Summary<'a> {
     pub(super) crepitus_version: &'static str,
     /// Where the times were measured.
     host: String,
+    /// Which clock they are of.
+    clock: &'static str,
     quick: bool,
     precisions: Vec<&'static str>,
     points: usize,
@@ -28,6 +31,7 @@ impl<'a> Summary<'a> {
             version: SUMMARY_VERSION,
             crepitus_version: env!("CARGO_PKG_VERSION"),
             host: format!("{} {}", std::env::consts::ARCH, std::env::consts::OS),
+            clock: CLOCK,
             quick,
             precisions: studied.plan.precisions.iter().map(|p| p.name()).collect(),
             points: study.points.len(),
@@ -42,6 +46,6 @@ impl<'a> Summary<'a> {
         } else {
             "a release build"
         };
-        format!("{}, {build}", self.host)
+        format!("{}, {CLOCK}, {build}", self.host)
     }
 }

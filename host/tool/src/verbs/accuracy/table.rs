@@ -27,23 +27,29 @@ pub(super) fn at_the_tick(study: &Study) -> String {
             // Writing to a String cannot fail.
             let _ = write!(
                 text,
-                "\n\n{heading}, worst of {}:\n  {:20} {:9} {:>7}  {:>17}  {:>16}  events",
+                "\n\n{heading}, worst of {}:\n  {:20} {:9} {:>7}  {:>14}  {:>11}  {:>11}  events\n  {:48}  {:>14}  {:>11}  {:>11}",
                 scenes(study, heading),
                 "solver",
                 "precision",
                 "ns/step",
-                "event error, s",
-                "rms torque, N·m"
+                "event error",
+                "rms torque",
+                "rms torque",
+                "",
+                "s",
+                "held, N·m",
+                "at tick, N·m"
             );
         }
         let _ = write!(
             text,
-            "\n  {:20} {:9} {:>7.1}  {:>17}  {:>16}  {}",
+            "\n  {:20} {:9} {:>7.1}  {:>14}  {:>11}  {:>11}  {}",
             row.solver,
             row.precision,
             row.ns_per_step,
             words::error(row.event_s),
-            words::error(row.torque_nm),
+            words::error(row.held_nm),
+            words::error(row.at_tick_nm),
             if row.unmatched == 0 {
                 "all matched".to_owned()
             } else {
@@ -52,6 +58,7 @@ pub(super) fn at_the_tick(study: &Study) -> String {
         );
     }
     text.push('\n');
+    text.push_str(&floor(study, step_s));
     for refused in &study.refused {
         let _ = write!(
             text,
@@ -63,6 +70,24 @@ pub(super) fn at_the_tick(study: &Study) -> String {
         text.push_str("\n(the reasons are in summary.json)");
     }
     text
+}
+
+/// The least that any held torque is off.
+fn floor(study: &Study, step_s: f64) -> String {
+    study
+        .points
+        .iter()
+        .filter(|p| p.step_s == step_s && p.held_floor_nm.is_finite())
+        .max_by(|a, b| a.held_floor_nm.total_cmp(&b.held_floor_nm))
+        .map_or_else(String::new, |worst| {
+            format!(
+                "\nTorque that is held for {} is off by {} N·m RMS at least, whatever the solver ({}, {}).",
+                words::step(step_s),
+                words::error(worst.held_floor_nm),
+                worst.scene,
+                worst.convention
+            )
+        })
 }
 
 fn scenes(study: &Study, convention: &str) -> String {
@@ -86,7 +111,8 @@ struct Row {
     /// Mean over the scenes, ns.
     ns_per_step: f64,
     event_s: f64,
-    torque_nm: f64,
+    held_nm: f64,
+    at_tick_nm: f64,
     unmatched: u64,
 }
 
@@ -98,7 +124,8 @@ fn rows(study: &Study, step_s: f64) -> Vec<Row> {
                 *count += 1.0;
                 row.ns_per_step += (p.ns_per_step - row.ns_per_step) / *count;
                 row.event_s = worse(row.event_s, p.max_event_error_s);
-                row.torque_nm = worse(row.torque_nm, p.rms_torque_error_nm);
+                row.held_nm = worse(row.held_nm, p.rms_held_torque_error_nm);
+                row.at_tick_nm = worse(row.at_tick_nm, p.rms_tick_torque_error_nm);
                 row.unmatched += p.unmatched;
             }
             None => rows.push((Row::of(p), 1.0)),
@@ -122,7 +149,8 @@ impl Row {
             precision: p.precision,
             ns_per_step: p.ns_per_step,
             event_s: p.max_event_error_s,
-            torque_nm: p.rms_torque_error_nm,
+            held_nm: p.rms_held_torque_error_nm,
+            at_tick_nm: p.rms_tick_torque_error_nm,
             unmatched: p.unmatched,
         }
     }

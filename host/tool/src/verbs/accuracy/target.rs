@@ -41,6 +41,17 @@ pub(super) fn add(
     )
 }
 
+/// Where the target chooses, what it chooses by.
+pub(super) fn chooses_by(on: &OnTarget) -> String {
+    format!(
+        "By mean cycles on the target ({}), equal means by the worst observed; that must fit {:.0} % of a tick, {:.0} \
+         cycles.\n",
+        on.label,
+        100.0 * target::STEP_SHARE,
+        target::STEP_SHARE * on.tick_cycles
+    )
+}
+
 /// As a table, for the terminal and for a page of the book.
 pub(super) fn table(on: &OnTarget) -> String {
     let mut text = format!(

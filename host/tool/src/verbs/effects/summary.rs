@@ -2,6 +2,7 @@
 //! two.
 
 use super::table::torque;
+use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::effects::variant::Change;
 use crepitus_study::effects::{EffectsStudy, Row};
 use serde::Serialize;
@@ -20,6 +21,8 @@ pub(super) struct Summary<'a> {
     pub(super) crepitus_version: &'static str,
     /// Where the times were measured.
     host: String,
+    /// Which clock they are of.
+    clock: &'static str,
     pub(super) conclusion: String,
     #[serde(flatten)]
     study: &'a EffectsStudy,
@@ -31,6 +34,7 @@ impl<'a> Summary<'a> {
             version: SUMMARY_VERSION,
             crepitus_version: env!("CARGO_PKG_VERSION"),
             host: format!("{} {}", std::env::consts::ARCH, std::env::consts::OS),
+            clock: CLOCK,
             conclusion: conclusion(study),
             study,
         }
@@ -43,7 +47,7 @@ impl<'a> Summary<'a> {
         } else {
             "a release build"
         };
-        format!("one core, {}, {build}", self.host)
+        format!("one core, {}, {CLOCK}, {build}", self.host)
     }
 }
 
@@ -98,17 +102,17 @@ fn conclusion(study: &EffectsStudy) -> String {
 
 /// The effect of the scene that takes the most time.
 fn dearest(rows: &[&Row]) -> Option<String> {
-    let cost = |row: &Row| row.added().map_or(f64::NEG_INFINITY, |a| a.ns_per_step);
-    let dearest = rows
+    let measured = |row: &Row| row.added()?.time.ns_per_step;
+    let (dearest, cost) = rows
         .iter()
-        .filter(|row| row.change == Change::Without && cost(row).is_finite())
-        .max_by(|a, b| cost(a).total_cmp(&cost(b)))?;
-    let added = dearest.added()?;
+        .filter(|row| row.change == Change::Without)
+        .filter_map(|row| Some((row, measured(row)?)))
+        .max_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(format!(
-        "The dearest is {}: {:.0} of {:.0} ns a step here.",
+        "The costliest is {}: {:.0} of {:.0} ns a step here.",
         dearest.effect,
-        added.ns_per_step,
-        added.ns_per_step + dearest.ns_per_step
+        cost,
+        cost + dearest.ns_per_step
     ))
 }
 
@@ -119,8 +123,8 @@ pub(super) fn unsteady(study: &EffectsStudy) -> Option<String> {
     let spread = study.time_spread();
     (spread > UNSTEADY).then(|| {
         format!(
-            "The machine was busy: three quarters of the timings took over {:.0} % longer than the fastest, so a cost below \
-             that share of a step may be none.",
+            "The machine was busy: three quarters of the timings took over {:.0} % longer than the fastest, so small \
+             costs could not be measured.",
             100.0 * spread
         )
     })

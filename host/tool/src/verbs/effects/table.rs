@@ -1,5 +1,7 @@
 //! The study as a table for the terminal.
 
+use crepitus_scene::cpu_time::CLOCK;
+use crepitus_scene::run::AddedTime;
 use crepitus_study::effects::{EffectsStudy, Row};
 use std::fmt::Write;
 
@@ -55,7 +57,7 @@ pub(super) fn table(study: &EffectsStudy) -> String {
                     milli(ran.torque.rms_nm),
                     ran.events,
                     row.ns_per_step,
-                    cell(added.map(|a| format!("{:+.0}", a.ns_per_step))),
+                    cell(added.map(|a| cost(&a.time))),
                     cell(Some(match added {
                         Some(a) => signed(a.states),
                         None => row.states.to_string(),
@@ -64,7 +66,21 @@ pub(super) fn table(study: &EffectsStudy) -> String {
             }
         };
     }
+    let _ = writeln!(
+        text,
+        "\nCosts are {CLOCK}. \"<x\": the difference is below what can be measured, x ns."
+    );
     text
+}
+
+/// What an effect adds to a step, ns; of a cost that is lost in the timings
+/// its bound.
+fn cost(added: &AddedTime) -> String {
+    match added.ns_per_step {
+        Some(ns) => format!("+{ns:.0}"),
+        None if added.is_below_resolution() => format!("<{:.0}", added.ns_resolution.ceil()),
+        None => "–".to_owned(),
+    }
 }
 
 /// A torque in mN·m.
@@ -111,6 +127,19 @@ fn micro(step_s: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_cost_is_never_negative() {
+        let text = |ns_per_step, ns_resolution| {
+            cost(&AddedTime {
+                ns_per_step,
+                ns_resolution,
+            })
+        };
+        assert_eq!(text(Some(12.4), 1.0), "+12");
+        assert_eq!(text(None, 2.3), "<3");
+        assert_eq!(text(None, f64::NAN), "–");
+    }
 
     #[test]
     fn torques_are_short() {

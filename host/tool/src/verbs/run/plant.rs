@@ -16,6 +16,12 @@ pub(super) fn in_brief(s: &Summary) -> Vec<String> {
             nm(t.mean_nm)
         ));
     }
+    if let Some(i) = s.impacts.filter(|i| i.count > 0) {
+        lines.push(format!(
+            "  {} impacts in the gear of up to {:.2e} N·m·s, at the hand {:.2e} N·m·s in a tick",
+            i.count, i.largest_nms, i.hand_largest_nms
+        ));
+    }
     if let Some(e) = &s.plant_energy {
         lines.push(format!(
             "  energy of the plant balances to {}",
@@ -88,6 +94,23 @@ pub(super) fn rendered_section(s: &Summary) -> Option<Section> {
         millijoule(rendering.absorbed_j),
     ));
     Some(section("Work of the rendered torque", rows))
+}
+
+/// The impacts in the gear: what each hands over, which takes no time. None if
+/// there is no gap to strike across.
+pub(super) fn impacts_section(s: &Summary) -> Option<Section> {
+    let impacts = s.impacts?;
+    let impulse = |nms: f64| format!("{nms:.3e} N·m·s");
+    let mut rows = vec![("how many", impacts.count.to_string())];
+    if impacts.count > 0 {
+        rows.push(("largest impulse", impulse(impacts.largest_nms)));
+        rows.push(("mean impulse", impulse(impacts.mean_nms)));
+        rows.push((
+            "largest at the hand in a tick",
+            impulse(impacts.hand_largest_nms),
+        ));
+    }
+    Some(section("Impacts in the gear", rows))
 }
 
 #[cfg(test)]

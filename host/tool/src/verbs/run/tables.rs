@@ -6,7 +6,8 @@ use crate::sections::{millijoule, nm, section, torque_section};
 use crepitus_model::parameters::ParameterSpec;
 use crepitus_report::Section;
 use crepitus_scene::Summary;
-use crepitus_scene::run::EffectSummary;
+use crepitus_scene::cpu_time::CLOCK;
+use crepitus_scene::run::{AddedTime, EffectSummary};
 
 /// What happened, in a few lines.
 pub(super) fn in_brief(s: &Summary) -> String {
@@ -101,6 +102,7 @@ pub(super) fn sections(s: &Summary, specs: &[&[ParameterSpec]]) -> Vec<Section> 
         ));
     }
     sections.extend(plant::rendered_section(s));
+    sections.extend(plant::impacts_section(s));
     sections.extend(
         s.effects
             .iter()
@@ -171,12 +173,24 @@ fn effect_section(effect: &EffectSummary, specs: &[ParameterSpec]) -> Section {
             effect.states.join(", ")
         },
     ));
-    if let Some(ns) = effect.ns_per_step {
-        rows.push(("cost".to_owned(), format!("{ns:.1} ns per step")));
+    if let Some(added) = effect.added {
+        rows.push(("cost".to_owned(), cost(&added)));
     }
     Section {
         title: format!("Effect: {}", effect.name),
         rows,
+    }
+}
+
+/// CPU time of a step; of a cost that is lost in the timings its bound.
+fn cost(added: &AddedTime) -> String {
+    match added.ns_per_step {
+        Some(ns) => format!("{ns:.1} ns per step of {CLOCK}"),
+        None if added.is_below_resolution() => format!(
+            "below what can be measured ({:.1} ns per step)",
+            added.ns_resolution
+        ),
+        None => "not known".to_owned(),
     }
 }
 

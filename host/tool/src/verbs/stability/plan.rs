@@ -3,8 +3,8 @@
 use crate::cli::StabilityArguments;
 use crate::failure::Failure;
 use crepitus_model::Convention;
-use crepitus_model::solver::Solver;
-use crepitus_study::stability::{Case, Plan, Subject, catalogue};
+use crepitus_scene::scene::Precision;
+use crepitus_study::stability::{Case, Plan, Rung, Subject, catalogue};
 
 pub(super) fn plan(arguments: &StabilityArguments) -> Result<Plan, Failure> {
     Ok(Plan {
@@ -40,7 +40,7 @@ fn cases(arguments: &StabilityArguments) -> Result<Vec<Case>, Failure> {
 }
 
 fn subjects(arguments: &StabilityArguments) -> Result<Vec<Subject>, Failure> {
-    let solvers = chosen("solver", &arguments.solvers, &Solver::ALL, Solver::name)?;
+    let solvers = chosen("solver", &arguments.solvers, &Rung::all(), Rung::name)?;
     let conventions = chosen(
         "convention",
         &arguments.conventions,
@@ -57,18 +57,24 @@ fn subjects(arguments: &StabilityArguments) -> Result<Vec<Subject>, Failure> {
         })
         .collect();
     if subjects.is_empty() {
-        // Only a refusal leaves nobody: every precision has every rung.
+        // Only a refusal leaves nobody.
+        let single = arguments.precision.as_deref() == Some(Precision::F32.name());
         let pairs = conventions
             .iter()
             .flat_map(|c| solvers.iter().map(|s| (*s, *c)));
         let reasons: Vec<String> = pairs
             .filter_map(|(solver, convention)| {
-                let reason = solver.refusal(convention)?;
-                Some(format!(
-                    "{} has no meaning under {}: {reason}",
-                    solver.name(),
-                    convention.name()
-                ))
+                let name = solver.name();
+                match solver.refusal(convention) {
+                    Some(reason) => Some(format!(
+                        "{name} has no meaning under {}: {reason}",
+                        convention.name()
+                    )),
+                    None => solver
+                        .single_refusal()
+                        .filter(|_| single)
+                        .map(|reason| format!("{name} is refused in f32: {reason}")),
+                }
             })
             .collect();
         return Err(Failure::Input(reasons.join("\n")));

@@ -1,9 +1,9 @@
-//! A panel's scale: an impact that lasts a tick must not flatten the rest.
+//! A panel's scale: a peak that lasts a tick must not flatten the rest.
 
 use super::trend::Trend;
 use crate::stability::story::{Panel, Scale};
 
-/// Values outside the middle of so many of all are impacts.
+/// Values outside the middle of so many of all are peaks.
 const MIDDLE: f64 = 0.99;
 
 /// A line that goes this many times beyond the middle is cut off.
@@ -32,7 +32,7 @@ pub(super) fn panel(name: &str, trend: &Trend, own: &[f64], other: &[f64]) -> Pa
     let room = 0.15 * size(middle);
     let farthest = if -whole.0 > whole.1 { whole.0 } else { whole.1 };
     Panel {
-        heading: format!("{name}; an impact of {farthest:.1} N·m goes beyond the scale")
+        heading: format!("{name}; a peak of {farthest:.1} N·m goes beyond the scale")
             .replace("of -", "of \u{2212}"),
         y: y.within(middle.0 - room, middle.1 + room),
         ..Panel::default()
@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_impact_is_told_and_does_not_set_the_scale() {
+    fn a_peak_is_told_and_does_not_set_the_scale() {
         let grating: Vec<f64> = (0..1000).map(|n| (f64::from(n) * 0.1).sin()).collect();
         let plain = panel("with hand", &Trend::of(&grating), &grating, &grating);
         assert_eq!((plain.heading.as_str(), plain.y.range), ("with hand", None));
@@ -69,7 +69,7 @@ mod tests {
         hit[500] = -40.0;
         let told = panel("without cuff", &Trend::of(&grating), &grating, &hit);
         assert!(
-            told.heading.contains("impact of −40.0 N·m"),
+            told.heading.contains("peak of −40.0 N·m"),
             "{}",
             told.heading
         );

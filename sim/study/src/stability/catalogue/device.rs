@@ -1,23 +1,13 @@
 //! What a joint meets in a device: samples that are none, parameters that
 //! change under way, and a hand that turns back.
 
-use super::tools::{TICK_S, joint, paper_joint, trial};
+use super::tools::{TICK_S, changed, faulty, joint, paper_joint, trial};
 use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Counted, Criterion, Limits};
-use crate::stability::input::{Change, Fault, Input, Shaft, Shake};
+use crate::stability::input::{Fault, Input, Shaft, Shake};
 use crepitus_model::encoder::EncoderSettings;
 use crepitus_model::presets::PRESETS;
 use crepitus_model::{Convention, Parameters};
-
-/// A motion at the device's tick, with a fault.
-fn faulty(shaft: Shaft, fault: Fault, duration_s: f64) -> Input {
-    Input::Faulty {
-        shaft,
-        fault,
-        duration_s,
-        step_s: TICK_S,
-    }
-}
 
 pub(super) fn impossible_samples() -> Case {
     Case {
@@ -84,23 +74,21 @@ pub(super) fn gap() -> Case {
                 least: 60,
                 most: 62,
             };
+            // Put down at 0.6 s with nothing on the spring: 0.4 N·m later it breaks.
+            let first = Criterion::FirstBreakAfter {
+                from_s: 0.500_1,
+                at_s: 0.6 + p.static_torque_nm / p.stiffness_nm_per_rad,
+                within_s: Limits {
+                    f64: 1e-9,
+                    f32: 1e-6,
+                },
+            };
             vec![trial(
                 settings,
                 faulty(Shaft::Constant(1.0), fault, 2.0),
-                [Criterion::TorqueStep { most_nm }, breaks],
+                [Criterion::TorqueStep { most_nm }, breaks, first],
             )]
         },
-    }
-}
-
-/// Commits at the device's tick.
-fn changed(shaft: Shaft, duration_s: f64, changes: &[(f64, Parameters)]) -> Input {
-    let change = |&(at_s, parameters): &(f64, Parameters)| Change { at_s, parameters };
-    Input::Changed {
-        shaft,
-        changes: changes.iter().map(change).collect(),
-        duration_s,
-        step_s: TICK_S,
     }
 }
 

@@ -4,7 +4,7 @@ use super::tools::{TICK_S, cycle_hz, paper_joint, trial};
 use crate::stability::case::{Case, Trial, located};
 use crate::stability::criterion::{Criterion, Limits};
 use crate::stability::input::{Input, Shaft};
-use crate::stability::subject::Subject;
+use crate::stability::subject::{Rung, Subject};
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters};
 use crepitus_scene::scene::Precision;
@@ -32,8 +32,11 @@ pub(super) fn step_length() -> Case {
         must: located,
         trials: |subject| {
             let locates = match subject.solver {
-                Solver::ExactInterpolated | Solver::ExactEvents | Solver::Rk4Events => true,
-                Solver::ExactBreak => subject.convention == Convention::Frozen,
+                Rung::Reference
+                | Rung::Ladder(
+                    Solver::ExactInterpolated | Solver::ExactEvents | Solver::Rk4Events,
+                ) => true,
+                Rung::Ladder(Solver::ExactBreak) => subject.convention == Convention::Frozen,
                 _ => false,
             };
             let within = Limits::both(if locates { 5e-7 } else { 5e-4 });

@@ -2,7 +2,7 @@
 
 use crate::stability::case::Trial;
 use crate::stability::criterion::{Counted, Criterion, Limits};
-use crate::stability::input::{Input, Shaft};
+use crate::stability::input::{Change, Fault, Input, Lost, Rendered, Shaft};
 use crepitus_model::{Convention, Parameters, Settings};
 
 /// The device's tick, s.
@@ -55,6 +55,40 @@ pub(super) fn paper_joint(convention: Convention) -> Settings {
 pub(super) fn at_tick(shaft: Shaft, duration_s: f64) -> Input {
     Input::Sampled {
         shaft,
+        duration_s,
+        step_s: TICK_S,
+    }
+}
+
+/// A motion at the device's tick, with a fault.
+pub(super) fn faulty(shaft: Shaft, fault: Fault, duration_s: f64) -> Input {
+    Input::Faulty {
+        shaft,
+        fault,
+        duration_s,
+        step_s: TICK_S,
+    }
+}
+
+/// Commits at the device's tick.
+pub(super) fn changed(shaft: Shaft, duration_s: f64, changes: &[(f64, Parameters)]) -> Input {
+    let change = |&(at_s, parameters): &(f64, Parameters)| Change { at_s, parameters };
+    Input::Changed {
+        shaft,
+        changes: changes.iter().map(change).collect(),
+        duration_s,
+        step_s: TICK_S,
+    }
+}
+
+/// A joint as the device renders it, with nothing lost and nothing committed.
+pub(super) fn rendered(shaft: Shaft, duration_s: f64) -> Rendered {
+    Rendered {
+        shaft,
+        counts: false,
+        lost: Lost::NONE,
+        commit_every: 0,
+        commits: Vec::new(),
         duration_s,
         step_s: TICK_S,
     }

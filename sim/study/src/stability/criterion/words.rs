@@ -142,6 +142,32 @@ fn of_a_device(criterion: &Criterion, f: &mut fmt::Formatter<'_>) -> fmt::Result
             Plain(SLEW_NM_PER_S),
             Number(beyond, "")
         ),
+        Criterion::FirstBreakAfter {
+            from_s,
+            at_s,
+            within_s,
+        } => write!(
+            f,
+            "the first event after {} is a break at {} within {}",
+            Time(*from_s),
+            Time(*at_s),
+            Number(within_s, "s")
+        ),
+        Criterion::SlipEnergy { most } => write!(
+            f,
+            "no slip ends with more energy in the spring than at its break, by more than {} of it",
+            Number(most, "")
+        ),
+        Criterion::GuardTicks { least, most } if least == most => {
+            write!(
+                f,
+                "the turn-back guard switches the torque off for {most} ticks"
+            )
+        }
+        Criterion::GuardTicks { least, most } => write!(
+            f,
+            "the turn-back guard switches the torque off for {least} to {most} ticks"
+        ),
         Criterion::Returned { most } => write!(
             f,
             "the hand gets back at most {most:.4} Ts²/2kr + (½ + d) kr h ∫Ω² dt"

@@ -1,6 +1,6 @@
 //! Inputs as people read them: text and number stand once.
 
-use super::{Change, Fault, Input, Shaft, Shake};
+use super::{Change, Fault, Input, Rendered, Shaft, Shake};
 use crate::stability::text::{Plain, Time};
 use crepitus_model::Parameters;
 use crepitus_model::parameters::PARAMETERS;
@@ -35,6 +35,26 @@ impl fmt::Display for Shaft {
                     if left != right {
                         write!(f, "|{}", Plain(right))?;
                     }
+                }
+                Ok(())
+            }
+            Self::Strokes(strokes) => write!(
+                f,
+                "minimum-jerk strokes from {} to {} rad at {} rad/s with a pause of {}",
+                Plain(strokes.from_rad),
+                Plain(strokes.to_rad),
+                Plain(strokes.peak_speed_rad_s),
+                Time(strokes.pause_s)
+            ),
+            Self::Rows {
+                rows,
+                sign,
+                cutoff_hz,
+            } => {
+                write!(f, "recording smoothed at {cutoff_hz} Hz (t s: rad)")?;
+                for (i, (time_s, angle_rad)) in rows.iter().enumerate() {
+                    let comma = if i == 0 { "" } else { "," };
+                    write!(f, "{comma} {}: {}", Plain(*time_s), Plain(sign * angle_rad))?;
                 }
                 Ok(())
             }
@@ -100,6 +120,7 @@ impl fmt::Display for Input {
                 }
             }
             Self::Shaken { shake, .. } => write!(f, "{shake}")?,
+            Self::Rendered(rendered) => write!(f, "{rendered}")?,
             Self::Refusals(attempts) => {
                 for (i, attempt) in attempts.iter().enumerate() {
                     let comma = if i == 0 { "" } else { ", " };
@@ -127,14 +148,56 @@ impl fmt::Display for Fault {
             Self::Gap { from_s, to_s } => {
                 write!(f, "no sample from {} to {}", Time(from_s), Time(to_s))
             }
+            Self::Retreating => f.write_str("no sample while the shaft moves backwards"),
+            Self::Jumps { every } => {
+                write!(f, "every {every}th sample ends 20 rad/s too fast")
+            }
         }
     }
 }
 
-impl fmt::Display for Change {
+impl fmt::Display for Rendered {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "at {}", Time(self.at_s))?;
-        let (old, new) = (Parameters::default(), &self.parameters);
+        let Self {
+            shaft,
+            counts,
+            lost,
+            ..
+        } = self;
+        write!(f, "{shaft}, rendered as on the device")?;
+        if *counts {
+            f.write_str(", seen through the encoder")?;
+        }
+        if lost.ticks > 0 {
+            write!(f, ", {} samples in a row lost", lost.ticks)?;
+            if lost.every > 0 {
+                write!(f, " of every {}", lost.every)?;
+            }
+            if lost.from_s > 0.0 {
+                write!(f, " from {} on", Time(lost.from_s))?;
+            }
+        }
+        if self.commit_every > 0 {
+            let ticks = match self.commit_every {
+                1 => "every tick".to_owned(),
+                n => format!("every {n} ticks"),
+            };
+            write!(f, ", a commit {ticks}, in turn")?;
+            for (i, parameters) in self.commits.iter().enumerate() {
+                let comma = if i == 0 { "" } else { "," };
+                write!(f, "{comma}{}", Named(parameters))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Parameters in words, where they differ from the paper's.
+struct Named<'a>(&'a Parameters);
+
+impl fmt::Display for Named<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (old, new) = (Parameters::default(), self.0);
         for ((spec, value), paper) in PARAMETERS.iter().zip(new.values()).zip(old.values()) {
             if value != paper {
                 write!(f, " {} = {} {}", spec.symbol, Plain(value), spec.unit)?;
@@ -144,6 +207,12 @@ impl fmt::Display for Change {
             f.write_str(" the paper's")?;
         }
         Ok(())
+    }
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "at {}{}", Time(self.at_s), Named(&self.parameters))
     }
 }
 

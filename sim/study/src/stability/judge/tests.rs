@@ -8,7 +8,7 @@ use crepitus_model::{Convention, EventKind, Sense};
 use crepitus_scene::scene::Precision;
 
 const SUBJECT: Subject = Subject {
-    solver: Solver::ExactEvents,
+    solver: Rung::Ladder(Solver::ExactEvents),
     convention: Convention::Physical,
     precision: Precision::F64,
 };
@@ -34,6 +34,7 @@ fn truth() -> Vec<TrueEvent> {
         .map(|(event, torque_after_nm)| TrueEvent {
             event,
             torque_before_nm: 0.4,
+            theta_rad: 0.0,
             torque_after_nm,
         })
         .collect()
@@ -246,4 +247,28 @@ fn bits_hands_and_refusals_are_compared() {
     after(&Criterion::Subnormals { most: 10 }, |run| {
         run.subnormals = 11;
     });
+}
+
+#[test]
+fn a_device_is_held_to_its_rules() {
+    let first = Criterion::FirstBreakAfter {
+        from_s: 0.25,
+        at_s: 0.271,
+        within_s: Limits::both(1e-6),
+    };
+    let late = after(&first, |run| run.events[18].time_s += 1e-5);
+    assert!(matches!(late, Verdict::Degrades { .. }), "{late}");
+    let other = after(&first, |run| run.events[18].kind = EventKind::Stick);
+    assert!(other.to_string().contains("no break"), "{other}");
+    after(&first, |run| run.events.truncate(18));
+    let most = Limits::both(1e-9);
+    after(&Criterion::SlipEnergy { most }, |run| {
+        run.slip_energy = 1e-8
+    });
+    after(&Criterion::GuardTicks { least: 0, most: 0 }, |run| {
+        run.guard_ticks = 1;
+    });
+    let run = seen(&truth());
+    let some = Criterion::GuardTicks { least: 1, most: 9 };
+    assert!(!find(&some, &run, None).holds());
 }

@@ -5,7 +5,7 @@ use super::{Mark, Panel, Scale, Series, Story};
 use crate::sampling::Sampling;
 use crate::stability::input::Shake;
 use crate::stability::shaken::{Returned, Shaken, Tick};
-use crate::stability::subject::Subject;
+use crate::stability::subject::{Rung, Subject};
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Settings, SettingsError};
 use crepitus_scene::scene::Precision;
@@ -27,7 +27,7 @@ const SWEPT_HZ: f64 = 50.0;
 
 /// What the device renders.
 const DEVICE: Subject = Subject {
-    solver: Solver::ExactEvents,
+    solver: Rung::Ladder(Solver::ExactEvents),
     convention: Convention::Frozen,
     precision: Precision::F32,
 };

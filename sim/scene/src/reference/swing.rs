@@ -1,0 +1,133 @@
+//! The free motion of the object, for as long as a slip lasts.
+//!
+//! The model keeps the change over a step, C − 1, which is what a short step
+//! needs. Over a long one a damped object forgets where it began: there C
+//! itself, with its common factor e^(−a·u), keeps the digits of what is left.
+
+use crepitus_model::Parameters;
+use crepitus_model::oscillator::Oscillator;
+
+/// Up to this a·u the change over the time is the exact one to use.
+const SHORT: f64 = 0.5;
+
+/// The object's free motion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Swing {
+    oscillator: Oscillator<f64>,
+    /// ωn², rad²/s².
+    natural_squared: f64,
+    /// a = c/2J, 1/s.
+    decay: f64,
+    /// Whether it swings at all: below critical damping.
+    swings: bool,
+    /// √|ωn² − a²|, rad/s.
+    root: f64,
+}
+
+impl Swing {
+    pub(super) fn of(parameters: &Parameters) -> Self {
+        let natural = parameters.natural_rad_s();
+        let decay = 0.5 * parameters.damping_nms_per_rad / parameters.inertia_kg_m2;
+        let discriminant = (natural - decay) * (natural + decay);
+        Self {
+            oscillator: Oscillator::of(parameters),
+            natural_squared: parameters.stiffness_nm_per_rad / parameters.inertia_kg_m2,
+            decay,
+            swings: discriminant > 0.0,
+            root: discriminant.abs().sqrt(),
+        }
+    }
+
+    /// The oscillator, for its bounds.
+    pub(super) fn oscillator(&self) -> &Oscillator<f64> {
+        &self.oscillator
+    }
+
+    /// (x, v) after `time_s` ≥ 0.
+    pub(super) fn after(&self, x: f64, v: f64, time_s: f64) -> (f64, f64) {
+        if self.decay * time_s <= SHORT {
+            return self.oscillator.transition(time_s).apply(x, v);
+        }
+        // S, and C − a·S and C + a·S.
+        let (sine, less, more) = if self.swings {
+            let left = (-(self.decay * time_s)).exp();
+            let (sin, cos) = (self.root * time_s).sin_cos();
+            let sine = left * sin / self.root;
+            (
+                sine,
+                left * cos - self.decay * sine,
+                left * cos + self.decay * sine,
+            )
+        } else {
+            self.overdamped(time_s)
+        };
+        (
+            more * x + sine * v,
+            less * v - self.natural_squared * sine * x,
+        )
+    }
+
+    /// Two decaying exponentials, without the difference of like numbers.
+    fn overdamped(&self, time_s: f64) -> (f64, f64, f64) {
+        let fast = self.decay + self.root;
+        let slow = self.natural_squared / fast;
+        let (e_fast, e_slow) = ((-(fast * time_s)).exp(), (-(slow * time_s)).exp());
+        if self.root * time_s < SHORT {
+            let apart = 2.0 * self.root * time_s;
+            // (e^2ru − 1)/2r, which is u where the roots are one.
+            let grown = if apart > 0.0 {
+                apart.exp_m1() / apart * time_s
+            } else {
+                time_s
+            };
+            let sine = e_fast * grown;
+            let cosine = 0.5 * (e_fast + e_slow);
+            return (sine, cosine - self.decay * sine, cosine + self.decay * sine);
+        }
+        let sine = 0.5 * (e_slow - e_fast) / self.root;
+        (
+            sine,
+            0.5 * (e_fast * fast - e_slow * slow) / self.root,
+            0.5 * (e_slow * fast - e_fast * slow) / self.root,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_time_is_many_short_ones() {
+        for ratio in [0.0, 1e-3, 0.3, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 1.5, 30.0] {
+            let mut p = Parameters::default();
+            p.damping_nms_per_rad = 2.0 * ratio * p.impedance_nms_per_rad();
+            let swing = Swing::of(&p);
+            // Ten swings; each step is short, and loses only its own rounding.
+            let (mut x, mut v) = (1e-3, 0.7);
+            for n in 1..=1000_u32 {
+                (x, v) = swing.after(x, v, 1e-4);
+                let long = swing.after(1e-3, 0.7, 1e-4 * f64::from(n));
+                let scale = v.abs() + p.natural_rad_s() * x.abs();
+                assert!(
+                    (long.0 - x).abs() * p.natural_rad_s() + (long.1 - v).abs() <= 1e-11 * scale,
+                    "ζ = {ratio}, step {n}: {long:?} {:?}",
+                    (x, v)
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_left_after_a_long_decay_has_all_its_digits() {
+        let mut p = Parameters::default();
+        p.damping_nms_per_rad = 2.0 * 0.2 * p.impedance_nms_per_rad();
+        let swing = Swing::of(&p);
+        let half = swing.after(1e-3, 31.0, 0.5);
+        let whole = swing.after(1e-3, 31.0, 1.0);
+        let twice = swing.after(half.0, half.1, 0.5);
+        assert!(whole.1.abs() < 1e-15 && whole.1 != 0.0);
+        assert!((whole.1 / twice.1 - 1.0).abs() < 1e-12);
+        assert!((whole.0 / twice.0 - 1.0).abs() < 1e-12);
+    }
+}

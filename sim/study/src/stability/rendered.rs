@@ -1,0 +1,172 @@
+//! A frozen joint as the device renders it, with samples that are lost and
+//! parameters that are committed under way.
+
+use super::changed::SLEW_NM_PER_S;
+use super::input::Rendered;
+use super::locators::{WithLocator, with_locator};
+use super::observation::Observation;
+use super::observe::bits;
+use super::subject::Subject;
+use crate::sampling::{Sampling, Walk};
+use crate::true_events::TimedEvent;
+use crepitus_model::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::guarded::InputLimits;
+use crepitus_model::locate::Locate;
+use crepitus_model::shaft::Linear;
+use crepitus_model::{
+    Active, Event, Real, Renderer, Sample, Settings, SettingsError, ShaftStep, StickSlip, Validated,
+};
+use crepitus_plant::encoder::Encoder;
+
+/// A joint in a device and what it meets.
+pub(super) struct RenderedRun<'a> {
+    pub(super) settings: Validated<Settings>,
+    pub(super) sampling: Sampling<'a>,
+    pub(super) rendered: &'a Rendered,
+    /// From when on the late torque counts, s.
+    pub(super) late_s: f64,
+}
+
+impl RenderedRun<'_> {
+    pub(super) fn observe<F: Real>(self, subject: Subject) -> Result<Observation, SettingsError> {
+        with_locator::<F, _>(subject, self)
+    }
+
+    /// The numbers that are committed, in turn.
+    fn commits<F: Real>(&self) -> Result<Vec<Active<F>>, SettingsError> {
+        let step_s = self.sampling.step_s();
+        let active = |&parameters| {
+            let next = Settings {
+                parameters,
+                ..*self.settings
+            };
+            Active::new(&next.validate()?, step_s)
+        };
+        self.rendered.commits.iter().map(active).collect()
+    }
+}
+
+impl<F: Real> WithLocator<F> for RenderedRun<'_> {
+    type Output = Result<Observation, SettingsError>;
+
+    fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
+        let (step_s, rendered) = (self.sampling.step_s(), self.rendered);
+        let commits = self.commits::<F>()?;
+        let mut sight = Sight::new(self.sampling.walk_from(0), rendered.counts, step_s)?;
+        let mut renderer = Renderer::<F, L>::new(
+            Active::new(&self.settings, step_s)?,
+            InputLimits::device(step_s),
+            F::from_f64(EncoderSettings::default().rad_per_count()),
+            sight.omega(),
+        );
+        let late_step = (self.late_s / step_s).ceil().whole();
+        let mut seen = Observation {
+            step_s,
+            ..Observation::default()
+        };
+        let mut next = commits.iter().cycle();
+        for n in 1..=self.sampling.steps() {
+            if rendered.commit_every > 0
+                && n.is_multiple_of(rendered.commit_every)
+                && let Some(active) = next.next()
+            {
+                renderer.commit(*active, SLEW_NM_PER_S);
+            }
+            let sample = sight.look(rendered.lost.takes(n, step_s));
+            let (since, sampling) = (seen.steps.saturating_sub(sight.missed), &self.sampling);
+            let span = f64::from_whole(sight.missed + 1);
+            let tally = &mut seen.tally;
+            let shown = renderer.tick(&sample, |event: Event<F>| {
+                let time_s = sampling.time_s(since, span * event.fraction.to_f64());
+                tally.add(&TimedEvent::new(time_s, &event));
+            });
+            sight.missed = match sample {
+                Sample::Lost => sight.missed + 1,
+                Sample::Taken(_) => 0,
+            };
+            let limit_nm = renderer.joint().active().static_nm.to_f64();
+            note::<F>(&mut seen, shown.torque_nm.to_f64(), limit_nm, late_step);
+            seen.guard_ticks += u64::from(shown.turned_back);
+        }
+        Ok(seen)
+    }
+}
+
+/// Notes the torque that a tick shows.
+fn note<F: Real>(seen: &mut Observation, torque_nm: f64, limit_nm: f64, late_step: u64) {
+    let now_s = f64::from_whole(seen.steps) * seen.step_s;
+    seen.steps += 1;
+    if !torque_nm.is_finite() {
+        seen.overflow_s.get_or_insert(now_s);
+    }
+    if torque_nm.abs() > limit_nm {
+        seen.above_s.get_or_insert(now_s);
+    }
+    if seen.steps > late_step {
+        seen.late_torque.add(torque_nm);
+    }
+    let moved_nm = (torque_nm - seen.last_torque_nm).abs();
+    seen.largest_step_nm = seen.largest_step_nm.max(moved_nm);
+    seen.last_torque_nm = torque_nm;
+    seen.torque.add(torque_nm);
+    seen.torque_bits.add(bits::<F>(torque_nm));
+    seen.mirrored_bits.add(bits::<F>(-torque_nm));
+    seen.peak = seen.peak.max(torque_nm.abs() / limit_nm);
+}
+
+/// What the joint sees of the shaft: the truth, or the encoder's counts.
+struct Sight<'a, F> {
+    walk: Walk<'a>,
+    chunk: Vec<ShaftStep<F>>,
+    encoder: Encoder,
+    reader: EncoderReader<F>,
+    counts: bool,
+    /// Samples lost since the last that was taken, and their travel, rad.
+    missed: u64,
+    travel: F,
+}
+
+impl<'a, F: Real> Sight<'a, F> {
+    fn new(walk: Walk<'a>, counts: bool, step_s: f64) -> Result<Self, SettingsError> {
+        let settings = EncoderSettings::default();
+        let encoder = Encoder::new(&settings);
+        let (angle_rad, omega_rad_s) = walk.now();
+        let omega = F::from_f64(omega_rad_s);
+        let first = encoder.count(angle_rad);
+        Ok(Self {
+            walk,
+            chunk: Vec::new(),
+            reader: EncoderReader::new(&settings, step_s, first, omega)?,
+            encoder,
+            counts,
+            missed: 0,
+            travel: F::ZERO,
+        })
+    }
+
+    fn omega(&self) -> F {
+        self.reader.omega_rad_s()
+    }
+
+    /// The next sample, if it is not lost.
+    fn look(&mut self, is_lost: bool) -> Sample<F> {
+        self.walk.fill(&mut self.chunk, 1);
+        let Some(shaft) = self.chunk.first() else {
+            return Sample::Lost;
+        };
+        self.travel += shaft.delta_phi_rad;
+        if is_lost {
+            self.reader.miss();
+            return Sample::Lost;
+        }
+        let travel = std::mem::take(&mut self.travel);
+        Sample::Taken(if self.counts {
+            self.reader.read(self.encoder.count(self.walk.now().0))
+        } else {
+            ShaftStep {
+                delta_phi_rad: travel,
+                ..*shaft
+            }
+        })
+    }
+}

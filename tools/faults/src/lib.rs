@@ -1,0 +1,19 @@
+//! Planted faults: does a check notice when the model is wrong?
+//!
+//! ```text
+//! faults.toml ─> scratch copy of the sources, each fault behind a switch, built once
+//!                  ├─> the hard cases, one fault in force ─┐
+//!                  └─> the model's tests, likewise        ─┴─> docs/planted-faults.md
+//! ```
+//!
+//! A fault replaces an expression in an exact text that stands once in its
+//! file. The work tree is never changed: the faults are planted in a copy.
+//! There each is one branch of an `if`, so that one build serves them all
+//! (mutant schemata: Untch, Offutt and Harrold 1993).
+
+pub mod fault;
+pub mod outcome;
+pub mod page;
+pub mod process;
+pub mod tree;
+pub mod trial;

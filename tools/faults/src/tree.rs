@@ -1,0 +1,91 @@
+//! The scratch copy of the sources that faults are planted in.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What stands in the root and a build of the model's tests and the hard cases
+/// does not need.
+const LEFT_OUT: [&str; 5] = [".git", "target", "out", "docs", "bench"];
+
+/// What the outcome of a fault depends on.
+const DECIDES: [&str; 5] = ["model", "sim/ladder", "sim/plant", "sim/scene", "sim/study"];
+
+/// Makes `to` a copy of the sources in `from`, with other texts for some files.
+/// A file that is already the same is left alone, so that it is not built
+/// again.
+///
+/// # Errors
+/// What the file system says.
+pub fn copy(from: &Path, to: &Path, others: &BTreeMap<PathBuf, String>) -> io::Result<()> {
+    fs::create_dir_all(to)?;
+    for file in files(from)? {
+        let bytes = match others.get(&file) {
+            Some(text) => text.clone().into_bytes(),
+            None => fs::read(from.join(&file))?,
+        };
+        write_if_changed(&to.join(&file), &bytes)?;
+    }
+    // What has gone from the sources must not be built.
+    for file in files(to)? {
+        if !from.join(&file).exists() {
+            fs::remove_file(to.join(&file))?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes a file unless it holds these bytes already.
+///
+/// # Errors
+/// What the file system says.
+pub fn write_if_changed(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if fs::read(path).is_ok_and(|old| old == bytes) {
+        return Ok(());
+    }
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    fs::write(path, bytes)
+}
+
+/// A number that changes with the sources that outcomes depend on.
+///
+/// # Errors
+/// What the file system says.
+pub fn fingerprint(root: &Path) -> io::Result<u64> {
+    let mut hasher = DefaultHasher::new();
+    for folder in DECIDES {
+        for file in files(&root.join(folder))? {
+            file.hash(&mut hasher);
+            fs::read(root.join(folder).join(&file))?.hash(&mut hasher);
+        }
+    }
+    Ok(hasher.finish())
+}
+
+/// All files below a folder, relative to it, in order.
+fn files(root: &Path) -> io::Result<Vec<PathBuf>> {
+    let (mut found, mut folders) = (Vec::new(), vec![PathBuf::new()]);
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(root.join(&folder))? {
+            let entry = entry?;
+            let path = folder.join(entry.file_name());
+            if LEFT_OUT.iter().any(|left_out| path == Path::new(left_out)) {
+                continue;
+            }
+            if entry.file_type()?.is_dir() {
+                // What a build has made says so.
+                if !entry.path().join("CACHEDIR.TAG").exists() {
+                    folders.push(path);
+                }
+            } else {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}

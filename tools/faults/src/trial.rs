@@ -1,0 +1,270 @@
+//! The copy with all faults in it, built once, and one fault at a time in
+//! force.
+
+use crate::fault::{Fault, FaultError, plant};
+use crate::outcome::{CaseOutcome, Outcome, failed_test, read_cases};
+use crate::process::{End, run};
+use crate::tree::copy;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+/// Longer than any build takes, with waiting for its turn.
+const BUILD: Duration = Duration::from_hours(1);
+
+/// Many times what the slowest program takes on a slow machine.
+const RUN: Duration = Duration::from_mins(10);
+
+/// The variable that says which fault is in force; 0 is none.
+const SWITCH: &str = "CREPITUS_FAULT";
+
+/// The crate that all faults are in.
+const CRATE: &str = "model/src/lib.rs";
+
+/// What the copy's model has beside the faults.
+const PLANTED: &str = "
+/// The planted fault that is in force.
+#[allow(missing_docs)]
+pub mod planted {
+    extern crate std;
+
+    #[inline]
+    pub fn is(number: u32) -> bool {
+        static NOW: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
+        let now = NOW.get_or_init(|| {
+            let given = std::env::var(\"CREPITUS_FAULT\").ok();
+            given.and_then(|text| text.parse().ok()).unwrap_or(0)
+        });
+        *now == number
+    }
+}
+";
+
+/// Why a fault could not be tried.
+#[derive(Debug, thiserror::Error)]
+pub enum TrialError {
+    /// It does not apply.
+    #[error(transparent)]
+    Fault(#[from] FaultError),
+    /// A file or a program.
+    #[error("{what}: {source}")]
+    Io {
+        /// Which.
+        what: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// The sources with the faults do not build.
+    #[error("the sources with the faults do not build: see {}", .0.display())]
+    Build(PathBuf),
+    /// Without any fault something fails.
+    #[error("without a fault this fails: {0}")]
+    Baseline(String),
+}
+
+/// Adds what it was about to an error of the file system.
+fn io(what: &Path) -> impl FnOnce(io::Error) -> TrialError + '_ {
+    move |source| TrialError::Io {
+        what: what.display().to_string(),
+        source,
+    }
+}
+
+/// The programs that notice faults.
+#[derive(Clone, Debug)]
+pub struct Workshop {
+    scratch: PathBuf,
+    tree: PathBuf,
+    cases: PathBuf,
+    tests: Vec<Program>,
+    /// Every case, in the order of the catalogue.
+    all: Vec<String>,
+}
+
+#[derive(Clone, Debug)]
+struct Program {
+    name: String,
+    path: PathBuf,
+}
+
+#[derive(Deserialize)]
+struct Message {
+    executable: Option<PathBuf>,
+    target: Option<Target>,
+}
+
+#[derive(Deserialize)]
+struct Target {
+    name: String,
+}
+
+impl Workshop {
+    /// Copies the sources in `root`, plants all faults, builds the hard cases
+    /// and, `with_tests`, the model's tests, and makes sure that everything
+    /// holds while none is in force.
+    ///
+    /// # Errors
+    /// [`TrialError`] if a fault does not apply, the copy does not build, or
+    /// something fails without a fault.
+    pub fn open(
+        root: &Path,
+        scratch: &Path,
+        cargo: &str,
+        faults: &[Fault],
+        with_tests: bool,
+    ) -> Result<Self, TrialError> {
+        let tree = scratch.join("tree");
+        let mut planted: BTreeMap<PathBuf, String> = BTreeMap::new();
+        let mut by_file: BTreeMap<&str, Vec<(usize, &Fault)>> = BTreeMap::new();
+        for (n, fault) in faults.iter().enumerate() {
+            by_file.entry(&fault.file).or_default().push((n + 1, fault));
+        }
+        for (file, here) in by_file {
+            let path = root.join(file);
+            let source = fs::read_to_string(&path).map_err(io(&path))?;
+            planted.insert(PathBuf::from(file), plant(&source, &here)?);
+        }
+        let path = root.join(CRATE);
+        let source = fs::read_to_string(&path).map_err(io(&path))?;
+        planted.insert(PathBuf::from(CRATE), source + PLANTED);
+        copy(root, &tree, &planted).map_err(io(&tree))?;
+
+        let mut workshop = Self {
+            scratch: scratch.to_owned(),
+            tree,
+            cases: PathBuf::new(),
+            tests: Vec::new(),
+            all: Vec::new(),
+        };
+        let example = ["build", "-p", "crepitus-study", "--example", "broken_cases"];
+        let built = workshop.build(cargo, &example)?;
+        workshop.cases = match built.into_iter().find(|b| b.name == "broken_cases") {
+            Some(program) => program.path,
+            None => return Err(TrialError::Build(workshop.scratch.join("build.txt"))),
+        };
+        if with_tests {
+            workshop.tests =
+                workshop.build(cargo, &["test", "-p", "crepitus-model", "--no-run"])?;
+        }
+        workshop.baseline()?;
+        Ok(workshop)
+    }
+
+    /// Tries the hard cases on fault `number`, counted from 1.
+    ///
+    /// # Errors
+    /// [`TrialError::Io`] if the program cannot be run.
+    pub fn try_cases(
+        &self,
+        number: usize,
+        fault: &Fault,
+        fingerprint: u64,
+    ) -> Result<Outcome, TrialError> {
+        let (end, text) = self.run_cases(number)?;
+        Ok(Outcome {
+            name: fault.name.clone(),
+            fingerprint,
+            cases: self.read(&text, end),
+            tested: false,
+            test: None,
+        })
+    }
+
+    /// Tries the model's tests on fault `number`.
+    ///
+    /// # Errors
+    /// [`TrialError::Io`] if a program cannot be run.
+    pub fn try_tests(&self, number: usize, outcome: &mut Outcome) -> Result<(), TrialError> {
+        outcome.test = self.run_tests(number)?;
+        outcome.tested = true;
+        Ok(())
+    }
+
+    fn read(&self, text: &str, end: End) -> Vec<CaseOutcome> {
+        read_cases(text, end == End::Success, &self.all)
+    }
+
+    fn baseline(&mut self) -> Result<(), TrialError> {
+        let (end, text) = self.run_cases(0)?;
+        let line = text.lines().find(|line| !line.ends_with(" holds"));
+        if let Some(line) = line {
+            return Err(TrialError::Baseline(line.to_owned()));
+        }
+        let ids = text.lines().filter_map(|line| line.split_once(' '));
+        self.all = ids.map(|(id, _)| id.to_owned()).collect();
+        if end != End::Success || self.all.is_empty() {
+            return Err(TrialError::Baseline("broken_cases".to_owned()));
+        }
+        match self.run_tests(0)? {
+            Some(test) => Err(TrialError::Baseline(test)),
+            None => Ok(()),
+        }
+    }
+
+    /// The hard cases with fault `number` in force.
+    fn run_cases(&self, number: usize) -> Result<(End, String), TrialError> {
+        let mut command = Command::new(&self.cases);
+        self.run(&mut command, number)
+    }
+
+    /// The model's tests, program by program, until one fails: its name.
+    fn run_tests(&self, number: usize) -> Result<Option<String>, TrialError> {
+        for Program { name, path } in &self.tests {
+            let mut command = Command::new(path);
+            command
+                .current_dir(self.tree.join("model"))
+                .env("PROPTEST_RNG_SEED", "1")
+                .env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "1");
+            let (end, text) = self.run(&mut command, number)?;
+            let which = match end {
+                End::Success => continue,
+                End::Timeout => "hangs",
+                End::Failure => failed_test(&text).unwrap_or("ends early"),
+            };
+            return Ok(Some(format!(
+                "{}: {which}",
+                name.trim_start_matches("crepitus_")
+            )));
+        }
+        Ok(None)
+    }
+
+    fn run(&self, command: &mut Command, number: usize) -> Result<(End, String), TrialError> {
+        let log = self.scratch.join("run.txt");
+        command.env(SWITCH, number.to_string());
+        let end = run(command, &log, RUN).map_err(io(&log))?;
+        Ok((end, fs::read_to_string(&log).map_err(io(&log))?))
+    }
+
+    /// Builds, and says which programs came of it.
+    fn build(&self, cargo: &str, arguments: &[&str]) -> Result<Vec<Program>, TrialError> {
+        let log = self.scratch.join("build.txt");
+        let target = std::env::var_os("CARGO_TARGET_DIR")
+            .map_or_else(|| self.scratch.join("target"), PathBuf::from);
+        let mut command = Command::new(cargo);
+        command
+            .args(arguments)
+            .args(["--quiet", "--message-format", "json"])
+            .current_dir(&self.tree)
+            .env("CARGO_TARGET_DIR", target);
+        let end = run(&mut command, &log, BUILD).map_err(io(Path::new(cargo)))?;
+        let text = fs::read_to_string(&log).map_err(io(&log))?;
+        if end != End::Success {
+            return Err(TrialError::Build(log));
+        }
+        Ok(text
+            .lines()
+            .filter_map(|line| serde_json::from_str::<Message>(line).ok())
+            .filter_map(|message| {
+                Some(Program {
+                    name: message.target?.name,
+                    path: message.executable?,
+                })
+            })
+            .collect())
+    }
+}
