@@ -1,8 +1,9 @@
 //! Our solvers: `exact-events` in steps, and `reference` from event to event.
 
+use crate::motion::Hand;
 use crate::work::{DURATION_S, Delivery, Mode, OMEGA, RATE_HZ, Runner, SAMPLES, Sampler, Task};
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
-use crepitus_model::{Convention, Settings, ShaftStep, StickSlip, Validated};
+use crepitus_model::{Convention, Event, Settings, ShaftStep, StickSlip, Validated};
 use crepitus_plant::Motion;
 use crepitus_scene::reference::Reference;
 use std::hint::black_box;
@@ -53,6 +54,30 @@ pub fn reference(convention: Convention) -> Runner {
             });
             mode = mode.next();
         }
+        Ok(())
+    })
+}
+
+/// `reference` from event to event on a moving hand.
+pub fn reference_events(convention: Convention, hand: &Hand) -> Runner {
+    reference_rows(convention, hand, hand.duration_s, 0)
+}
+
+/// The same with the torque at each of `rows` rows, `spacing_s` apart.
+#[expect(clippy::cast_precision_loss, reason = "at most 100,000 rows")]
+pub fn reference_rows(convention: Convention, hand: &Hand, spacing_s: f64, rows: usize) -> Runner {
+    let settings = settings(convention);
+    let (motion, duration_s) = (hand.motion.clone(), hand.duration_s);
+    Box::new(move |_, out| {
+        let Delivery { events, torque } = out;
+        events.clear();
+        let mut note = |event: Event<f64>| events.push(event.fraction);
+        let mut reference = Reference::new(black_box(&settings), black_box(&motion));
+        for (n, torque) in torque[..rows].iter_mut().enumerate() {
+            reference.advance((n + 1) as f64 * spacing_s, &mut note);
+            *torque = reference.torque_nm();
+        }
+        reference.advance(duration_s, &mut note);
         Ok(())
     })
 }

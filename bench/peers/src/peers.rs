@@ -6,6 +6,7 @@
 
 mod differential_equations;
 mod diffsol;
+pub(crate) mod falls_at;
 mod ivp;
 
 use crate::work::{Mode, Runner, Work};

@@ -6,6 +6,7 @@
 //! much. The callback gets the library's interpolant but not its event search, which is private:
 //! that is done here (Illinois' rule on the interpolant, to below 1e-13 s).
 
+use super::falls_at::falls_at;
 use super::{Setting, Steps};
 use crate::work::{DURATION_S, Delivery, Mode, Runner, START, Sampler, Task, Work};
 use ivp::methods::{DOP853, DOPRI5};
@@ -84,34 +85,16 @@ impl Watch<'_> {
     /// Where the event function falls through zero.
     fn locate(
         &self,
-        (mut left_s, mut right_s): (f64, f64),
-        (mut left, mut right): (f64, f64),
+        span_s: (f64, f64),
+        values: (f64, f64),
         interpolant: &StepInterpolant<'_>,
     ) -> (f64, [f64; 2]) {
-        const CLOSE_S: f64 = 1e-13;
         let mut y = [0.0; 2];
-        let mut last_s = right_s;
-        loop {
-            let time_s = (left_s * right - right_s * left) / (right - left);
+        let time_s = falls_at(span_s, values, |time_s| {
             interpolant.interpolate(time_s, &mut y);
-            let value = self.system.work.event(self.system.mode, &y);
-            if (time_s - last_s).abs() <= CLOSE_S || value == 0.0 {
-                return (time_s, y);
-            }
-            let was_left = last_s == left_s;
-            last_s = time_s;
-            if value > 0.0 {
-                (left_s, left) = (time_s, value);
-                if was_left {
-                    right /= 2.0;
-                }
-            } else {
-                (right_s, right) = (time_s, value);
-                if !was_left {
-                    left /= 2.0;
-                }
-            }
-        }
+            self.system.work.event(self.system.mode, &y)
+        });
+        (time_s, y)
     }
 }
 

@@ -1,0 +1,173 @@
+//! Motions of a hand under which events are timed.
+//!
+//! At a constant speed every cycle is like the one before, and a solver that knows it multiplies.
+//! Under a hand each event has to be searched for.
+
+use crepitus_plant::Motion;
+use crepitus_plant::piece::Piece;
+use crepitus_plant::recording::{self, AngleUnit, Samples, Source};
+use std::cell::Cell;
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::rc::Rc;
+
+/// Low-pass of a recorded knee, Hz: what a scene uses if it does not say.
+const CUTOFF_HZ: f64 = 6.0;
+
+/// A hand that moves the shaft.
+#[derive(Clone)]
+pub struct Hand {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// What it is and where it comes from.
+    pub source: String,
+    /// The motion.
+    pub motion: Rc<Motion>,
+    /// Duration, s.
+    pub duration_s: f64,
+    /// Time in which the hand may turn back, s.
+    pub turn_s: f64,
+    /// Errors of an event that may be asked for, s; the next one where none reaches the one before.
+    pub event_limits_s: &'static [f64],
+}
+
+/// Name of the knee pass.
+pub const HAND_SINE: &str = "hand-sine";
+/// Name of the recorded knee.
+pub const RECORDED_KNEE: &str = "recorded-knee";
+
+/// The knee pass of `scenes/knee-pass-*.toml`: 45° at 0.25 Hz, from full extension.
+pub fn hand_sine() -> Hand {
+    Hand {
+        name: HAND_SINE,
+        source: "45° at 0.25 Hz for 10 s".into(),
+        motion: Rc::new(Motion::sine(45f64.to_radians(), 0.25, -90.0)),
+        duration_s: 10.0,
+        turn_s: 0.25,
+        event_limits_s: &[1e-9],
+    }
+}
+
+/// A walk: the recording beside the repository, or a synthetic one where that is missing.
+///
+/// # Errors
+/// What is wrong with the recording.
+pub fn recorded_knee() -> Result<Hand, String> {
+    const FILE: &str = "opensim_walk_100hz.csv";
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let path = path.join(FILE);
+    let (samples, source) = if path.exists() {
+        let samples = recording::read(&Source {
+            path: &path,
+            time_column: "time_s",
+            angle_column: "knee_flexion_deg",
+            unit: AngleUnit::Deg,
+        });
+        (samples.map_err(|e| e.to_string())?, format!("{FILE}, "))
+    } else {
+        (synthetic_walk(), "synthetic (no recording found), ".into())
+    };
+    let segments = recording::smooth(&samples, CUTOFF_HZ).map_err(|e| e.to_string())?;
+    let duration_s = samples.duration_s();
+    Ok(Hand {
+        name: RECORDED_KNEE,
+        source: format!("{source}{duration_s:.2} s below {CUTOFF_HZ} Hz"),
+        motion: Rc::new(Motion::recording(&segments)),
+        duration_s,
+        turn_s: 1.0 / (16.0 * CUTOFF_HZ),
+        event_limits_s: &[1e-9, 1e-7],
+    })
+}
+
+/// Two strides in 2.4 s from a few harmonics, sampled at 100 Hz.
+fn synthetic_walk() -> Samples {
+    // Amplitude, deg, and phase, turns, of each harmonic of the stride.
+    const HARMONICS: [(f64, f64); 4] = [(18.0, 0.62), (13.0, 0.15), (3.5, 0.60), (1.0, 0.20)];
+    let time_s: Vec<f64> = (0..=240).map(|n| f64::from(n) * 0.01).collect();
+    let angle = |t: f64| {
+        let mut turns = 0.0;
+        let swing: f64 = HARMONICS
+            .iter()
+            .map(|(amplitude, phase)| {
+                turns += t / 1.2;
+                amplitude * (TAU * (turns + phase)).sin()
+            })
+            .sum();
+        (27.0 + swing).to_radians()
+    };
+    Samples {
+        angle_rad: time_s.iter().map(|&t| angle(t)).collect(),
+        time_s,
+        warnings: Vec::new(),
+    }
+}
+
+/// The same pieces for who integrates: it remembers the piece that it was asked for last.
+#[derive(Clone)]
+pub struct Cursor {
+    pieces: Rc<[Piece]>,
+    at: Cell<usize>,
+}
+
+impl Cursor {
+    /// Begins with the first piece.
+    ///
+    /// # Errors
+    /// A motion without a list of pieces.
+    pub fn new(motion: &Motion) -> Result<Self, String> {
+        let pieces: Rc<[Piece]> = match motion {
+            Motion::Single(piece) => [*piece].into(),
+            Motion::Sequence(pieces) if !pieces.is_empty() => pieces.as_slice().into(),
+            _ => return Err("a motion without a list of pieces".into()),
+        };
+        Ok(Self {
+            pieces,
+            at: Cell::new(0),
+        })
+    }
+
+    /// The piece at a time, s: near the last one, so it is found in a step or two.
+    #[inline]
+    pub fn piece(&self, time_s: f64) -> &Piece {
+        let mut at = self.at.get();
+        while at > 0 && time_s < self.pieces[at].start_s {
+            at -= 1;
+        }
+        while at + 1 < self.pieces.len() && time_s >= self.pieces[at].end_s {
+            at += 1;
+        }
+        self.at.set(at);
+        &self.pieces[at]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cursor_gives_what_the_motion_gives_forth_and_back() {
+        let segments = recording::smooth(&synthetic_walk(), CUTOFF_HZ).unwrap();
+        let motion = Motion::recording(&segments);
+        let cursor = Cursor::new(&motion).unwrap();
+        for n in (0..=2400).chain((0..2400).rev().step_by(7)) {
+            let time_s = f64::from(n) * 1e-3;
+            assert_eq!(
+                cursor.piece(time_s).at(time_s),
+                motion.at(time_s),
+                "{time_s}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_synthetic_walk_is_one_that_a_knee_can_do() {
+        let samples = synthetic_walk();
+        let deg = samples.angle_rad.iter().map(|a| a.to_degrees());
+        let (least, most) = deg.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
+        assert!(
+            least > -10.0 && (50.0..75.0).contains(&most),
+            "{least} {most}"
+        );
+    }
+}
