@@ -123,7 +123,7 @@ fn a_part_of_the_matrix_has_only_its_columns() {
     }
     let page = page("part", &part, &[], &text("A part"));
     assert_eq!(count(&page, "class=\"convention\""), 1);
-    assert_eq!(count(&page, "class=\"rung"), 10);
+    assert_eq!(count(&page, "class=\"rung"), 11);
     assert!(!page.contains(">f32<"));
     let picture = pictures(&part, &[]).expect("drawn").remove(0);
     assert!(picture.svg.contains("case, f64"));

@@ -120,21 +120,14 @@ struct Bench<'a> {
 
 impl Bench<'_> {
     fn workshop(&mut self) -> Result<&Workshop, TrialError> {
-        let open = match self.workshop.take() {
-            Some(open) => open,
-            None => {
-                let all = self.faults.len();
-                eprintln!("building with {all} faults; with none in force, all must hold");
-                let cargo = std::env::var("CREPITUS_CARGO").unwrap_or_else(|_| "cargo".to_owned());
-                let tests = !self.arguments.cases_only;
-                Workshop::open(
-                    &self.arguments.root,
-                    self.scratch,
-                    &cargo,
-                    self.faults,
-                    tests,
-                )?
-            }
+        let open = if let Some(open) = self.workshop.take() {
+            open
+        } else {
+            let all = self.faults.len();
+            eprintln!("building with {all} faults; with none in force, all must hold");
+            let cargo = std::env::var("CREPITUS_CARGO").unwrap_or_else(|_| "cargo".to_owned());
+            let (root, tests) = (&self.arguments.root, !self.arguments.cases_only);
+            Workshop::open(root, self.scratch, &cargo, self.faults, tests)?
         };
         Ok(self.workshop.insert(open))
     }
@@ -149,13 +142,12 @@ impl Bench<'_> {
         folder: &Path,
     ) -> Result<Outcome, Box<dyn Error>> {
         let (begun, all) = (Instant::now(), self.faults.len());
-        let mut outcome = match known {
-            Some(outcome) => outcome,
-            None => {
-                let outcome = self.workshop()?.try_cases(number, fault, print)?;
-                outcome.save(folder)?;
-                outcome
-            }
+        let mut outcome = if let Some(outcome) = known {
+            outcome
+        } else {
+            let outcome = self.workshop()?.try_cases(number, fault, print)?;
+            outcome.save(folder)?;
+            outcome
         };
         if !outcome.tested && !self.arguments.cases_only {
             self.workshop()?.try_tests(number, &mut outcome)?;

@@ -263,7 +263,7 @@ fn a_device_is_held_to_its_rules() {
     after(&first, |run| run.events.truncate(18));
     let most = Limits::both(1e-9);
     after(&Criterion::SlipEnergy { most }, |run| {
-        run.slip_energy = 1e-8
+        run.slip_energy = 1e-8;
     });
     after(&Criterion::GuardTicks { least: 0, most: 0 }, |run| {
         run.guard_ticks = 1;
