@@ -29,9 +29,8 @@ const RATIO: f64 = 0.8;
 /// Number of steps; the shortest is 24 µs.
 const STEPS: i32 = 24;
 
-/// Duration of a motion, s; of the sine, three times there and back.
+/// Duration of each motion, s.
 const DURATION_S: f64 = 4.0;
-const SINE_S: f64 = 12.0;
 
 /// One rung at one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,7 +88,7 @@ pub fn motions() -> Result<Vec<StudyScene>, SettingsError> {
                 name: name.to_owned(),
                 title: title.to_owned(),
                 motion: motion.clone(),
-                duration_s: if name == "sine" { SINE_S } else { DURATION_S },
+                duration_s: DURATION_S,
                 settings: paper(convention)?,
             });
         }
