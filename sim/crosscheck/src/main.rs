@@ -33,7 +33,7 @@ enum Verb {
         #[arg(long, default_value_t = 0)]
         from: u64,
         /// End of the cases; the piece that holds the last is run to its end.
-        #[arg(long, default_value_t = 12_000)]
+        #[arg(long, default_value_t = 10_000)]
         to: u64,
         /// The journal, which grows by every piece.
         #[arg(long, default_value = JOURNAL)]
