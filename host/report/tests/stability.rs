@@ -54,7 +54,7 @@ fn a_whole_matrix_with_its_stories() {
     let page = page("whole", &matrix, &stories, &text("Which hard cases hold"));
     // Conventions, then rungs; f32 above f64.
     assert_eq!(count(&page, "class=\"convention\""), 3);
-    assert_eq!(count(&page, "class=\"rung"), 5 + 10 + 11);
+    assert_eq!(count(&page, "class=\"rung"), 5 + 11 + 12);
     let cells: usize = matrix.rows.iter().map(|row| row.cells.len()).sum();
     let drawn = page.matches("<td class=\"h").count()
         + page.matches("<td class=\"degrades").count()
@@ -123,7 +123,7 @@ fn a_part_of_the_matrix_has_only_its_columns() {
     }
     let page = page("part", &part, &[], &text("A part"));
     assert_eq!(count(&page, "class=\"convention\""), 1);
-    assert_eq!(count(&page, "class=\"rung"), 11);
+    assert_eq!(count(&page, "class=\"rung"), 12);
     assert!(!page.contains(">f32<"));
     let picture = pictures(&part, &[]).expect("drawn").remove(0);
     assert!(picture.svg.contains("case, f64"));

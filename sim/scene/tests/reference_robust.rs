@@ -3,7 +3,7 @@
 
 use crepitus_model::{Convention, Event, EventKind, Parameters, Phase, Sense, Settings};
 use crepitus_plant::Motion;
-use crepitus_plant::motion::VelocityKnot;
+use crepitus_plant::motion::{Strokes, VelocityKnot};
 use crepitus_scene::reference::{Follow, Reference};
 use crepitus_scene::{Observer, Overrides, Scene, run, trace::EventRecord};
 use std::ops::ControlFlow;
@@ -162,6 +162,26 @@ fn a_touch_is_no_event_for_as_long_as_the_shaft_keeps_its_speed() {
             assert_eq!(events[0].kind, EventKind::Break);
         }
     }
+}
+
+/// An object that has decayed to nothing while the shaft paused sticks as the
+/// shaft starts back, and not a window of the search later.
+#[test]
+fn a_dead_object_sticks_as_the_shaft_starts_back() {
+    let settings = joint(Convention::Physical, 0.2, 0.4, 1.0 + 1e-10);
+    let motion = Motion::Strokes(Strokes {
+        from_rad: 0.0,
+        to_rad: 0.5,
+        peak_speed_rad_s: 0.4,
+        pause_s: 10.0,
+    });
+    let events = events(&settings, &motion, 30.0);
+    let back_s = 1.875 * 0.5 / 0.4 + 10.0;
+    let stick = events.iter().find(|e| e.kind == EventKind::Stick).unwrap();
+    assert!(
+        stick.fraction <= back_s + 1e-9 && stick.omega_rad_s.abs() < 1e-12,
+        "{stick:?}, the shaft starts back at {back_s} s"
+    );
 }
 
 /// Motions on which the velocities meet, touch, and part.

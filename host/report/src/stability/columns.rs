@@ -55,9 +55,11 @@ impl Columns {
     pub(super) fn pictured(mut self) -> Self {
         self.precisions.sort_by_key(|p| *p != Precision::F32);
         self.precisions.truncate(1);
+        let is_single = self.precisions.first() == Some(&Precision::F32);
         for group in &mut self.groups {
-            // It has no f32.
-            group.rungs.retain(|rung| *rung != Rung::Reference);
+            group
+                .rungs
+                .retain(|rung| !is_single || rung.single_refusal().is_none());
             if group.convention == Convention::Paper && group.rungs.len() > 2 {
                 group.rungs.retain(|rung| {
                     matches!(rung, Rung::Ladder(Solver::Exact | Solver::ExactEvents))

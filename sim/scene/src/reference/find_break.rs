@@ -2,7 +2,7 @@
 
 use super::Reference;
 use super::ahead::PhaseEnd;
-use super::first_root::{Sample, first_root};
+use super::first_root::{Sample, Touch, first_root};
 use super::parabola::Parabola;
 use crepitus_model::locate::earlier;
 use crepitus_model::{Convention, Sense};
@@ -62,7 +62,7 @@ impl Reference<'_> {
                 p.damping_nms_per_rad * bounds.omega_ddot + p.inertia_kg_m2 * bounds.omega_dddot;
         }
         let slack = self.limit_slack_nm(&self.now);
-        first_root(from_s, to_s, poll, |time_s| {
+        first_root(from_s, to_s, Touch::Passes, poll, |time_s| {
             let shaft = self.piece.at(time_s);
             let (torque, rate) = self.torque_and_rate(anchor, inertial, &shaft);
             // The angle is rounded, too.

@@ -1,6 +1,6 @@
 //! When a slip of the reference solver meets the shaft's velocity.
 
-use super::first_root::{Sample, first_root};
+use super::first_root::{Sample, Touch, first_root};
 use super::rules::ROUNDINGS;
 use super::{Reference, Slip};
 use std::f64::consts::PI;
@@ -80,7 +80,15 @@ impl Reference<'_> {
         poll: &mut impl FnMut() -> ControlFlow<B>,
     ) -> ControlFlow<B, Option<f64>> {
         let bounds = self.piece.bounds(from_s, to_s);
-        first_root(from_s, to_s, poll, |time_s| {
+        // With Ts = Tk a stick would break where it begins.
+        let touch = if self.touches() {
+            Touch::Passes
+        } else {
+            Touch::Counts {
+                from_above: from_s > slip.start_s,
+            }
+        };
+        first_root(from_s, to_s, touch, poll, |time_s| {
             let (x, v) = self.swing(slip, time_s);
             let s = self.piece.at(time_s);
             // Of the shaft's terms, and of its time.

@@ -5,11 +5,11 @@
 //! step over a root however short the excursion below zero is. Near a simple
 //! root this is Newton's step from the one side.
 //!
-//! Within rounding of zero the sign of g says nothing. A root there counts
-//! once g has fallen below zero by more than rounding, and its time is that of
-//! Newton's step into the band; a g that leaves the band upwards has touched
-//! zero without crossing it. So a slip that begins at g = 0 needs no special
-//! case, nor does one whose velocities meet and part again.
+//! Within rounding of zero the sign of g says nothing. Where a touch passes, a
+//! root counts once g has fallen below zero by more than rounding, and its time
+//! is that of Newton's step into the band; a g that leaves the band upwards has
+//! touched zero without crossing it. Where a touch counts, it is enough that g
+//! comes down into the band. A g that begins in the band has to leave it first.
 
 use std::ops::ControlFlow;
 
@@ -40,18 +40,31 @@ impl Sample {
         if self.slope > 0.0 {
             (self.slope + root) / self.bound
         } else {
-            // 0/0: at rest for ever, so never below.
             let ahead_s = 2.0 * height / (root - self.slope);
-            if ahead_s.is_nan() {
-                f64::INFINITY
-            } else {
+            if !ahead_s.is_nan() {
                 ahead_s
+            } else if self.bound > 0.0 {
+                // 0/0: at zero, and it may bend down at once.
+                0.0
+            } else {
+                // At rest for ever, so never below.
+                f64::INFINITY
             }
         }
     }
 }
 
-/// The first time in [`from_s`, `to_s`] at which `sample` falls below zero.
+/// What it means that g comes down to zero, as far as rounding tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Touch {
+    /// Nothing, until it is below.
+    Passes,
+    /// It is the root, for a g that comes from above; whether it does at the
+    /// start of the search, too.
+    Counts { from_above: bool },
+}
+
+/// The first time in [`from_s`, `to_s`] at which `sample` falls to zero.
 ///
 /// A function that begins at zero and does not fall is not at a root; one that
 /// begins below zero by more than its slack is, at once.
@@ -62,13 +75,16 @@ impl Sample {
 pub(super) fn first_root<B>(
     from_s: f64,
     to_s: f64,
+    touch: Touch,
     poll: &mut impl FnMut() -> ControlFlow<B>,
     mut sample: impl FnMut(f64) -> Sample,
 ) -> ControlFlow<B, Option<f64>> {
     let mut time_s = from_s;
+    let mut from_above = touch == Touch::Counts { from_above: true };
     // Where g falls to zero, if it is at zero now and falls.
     let mut root_s = None;
     let mut count = 0_u32;
+    let least_s = f64::EPSILON * (to_s - from_s);
     loop {
         let g = sample(time_s);
         if g.value < -g.slack {
@@ -76,6 +92,7 @@ pub(super) fn first_root<B>(
         }
         let ahead_s = if g.value > g.noise {
             root_s = None;
+            from_above = touch != Touch::Passes;
             g.clear_s(0.0)
         } else {
             if g.slope >= 0.0 {
@@ -83,10 +100,14 @@ pub(super) fn first_root<B>(
             } else if root_s.is_none() {
                 root_s = Some((time_s - g.value / g.slope).max(from_s).min(to_s));
             }
+            if from_above && root_s.is_some() {
+                return ControlFlow::Continue(root_s);
+            }
             g.clear_s(2.0 * g.slack)
         };
-        // Progress by at least one representable time: the search ends.
-        time_s = (time_s + ahead_s).max(time_s.next_up());
+        // Progress by at least one representable time, and not by one of those
+        // that lie densely around zero: the search ends.
+        time_s = (time_s + ahead_s.max(least_s)).max(time_s.next_up());
         if time_s > to_s {
             return ControlFlow::Continue(None);
         }
@@ -102,12 +123,17 @@ mod tests {
     use super::*;
 
     fn search(from_s: f64, to_s: f64, sample: impl FnMut(f64) -> Sample) -> Option<f64> {
-        match first_root(
-            from_s,
-            to_s,
-            &mut || ControlFlow::<()>::Continue(()),
-            sample,
-        ) {
+        search_with(Touch::Passes, from_s, to_s, sample)
+    }
+
+    fn search_with(
+        touch: Touch,
+        from_s: f64,
+        to_s: f64,
+        sample: impl FnMut(f64) -> Sample,
+    ) -> Option<f64> {
+        let mut go_on = || ControlFlow::<()>::Continue(());
+        match first_root(from_s, to_s, touch, &mut go_on, sample) {
             ControlFlow::Continue(found) => found,
             ControlFlow::Break(()) => None,
         }
@@ -147,6 +173,20 @@ mod tests {
     fn a_touch_is_no_root_and_a_start_at_zero_is_none() {
         // 1 − cos t touches zero at 0, 2π, 4π …
         assert_eq!(search(0.0, 100.0, cosine(1.0)), None);
+        // Where it counts the first is that at 2π, from above.
+        let counts = |from_above| Touch::Counts { from_above };
+        let root = search_with(counts(false), 0.0, 100.0, cosine(1.0)).unwrap();
+        assert!((root - std::f64::consts::TAU).abs() < 1e-7, "{root}");
+        // In the band from the start and falling: it depends on from where.
+        let falls = |t: f64| Sample {
+            value: 1e-17 - 1e-20 * t,
+            slope: -1e-20,
+            bound: 0.0,
+            noise: 1e-16,
+            slack: 1e-16,
+        };
+        assert_eq!(search_with(counts(false), 0.0, 1.0, falls), None);
+        assert!(search_with(counts(true), 0.0, 1.0, falls).is_some());
     }
 
     #[test]
@@ -165,6 +205,21 @@ mod tests {
         assert_eq!(search(0.0, 1.0, line(0.0)), None);
     }
 
+    /// A dead object on a shaft that starts from rest: g = −t² with g, ġ and
+    /// what rounding could hide all exactly 0 at the start.
+    #[test]
+    fn a_start_from_rest_without_any_rounding_is_not_stepped_over() {
+        let start = |t: f64| Sample {
+            value: -(t * t),
+            slope: -2.0 * t,
+            bound: 2.0,
+            noise: f64::EPSILON * t,
+            slack: f64::EPSILON * t,
+        };
+        let root = search(0.0, 1.0, start).unwrap();
+        assert!(root < 1e-12, "{root:e}");
+    }
+
     #[test]
     fn a_long_search_asks_whether_it_may_go_on() {
         // Bounds a million times too large make it crawl.
@@ -179,6 +234,7 @@ mod tests {
         let found = first_root(
             0.0,
             1e9,
+            Touch::Passes,
             &mut || {
                 polls += 1;
                 if polls == 3 {

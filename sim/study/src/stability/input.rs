@@ -293,7 +293,7 @@ mod tests {
                 {
                     let motion = shaft.motion();
                     assert!(motion.at(0.5 * duration_s).phi_rad.abs() > 0.1);
-                    assert_eq!(motion.piece(*duration_s).end_s, *duration_s);
+                    assert!(motion.piece(*duration_s).end_s > *duration_s);
                     seen += 1;
                 }
             }
