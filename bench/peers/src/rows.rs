@@ -16,6 +16,8 @@ const SPACINGS_S: [f64; 5] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4];
 const COARSE_S: f64 = 1e-1;
 /// Times that the events may take with coarse rows, of their time without.
 const COARSE_RATIO: f64 = 1.3;
+/// From this spacing down the rows cost more than the scatter of the events' time, s.
+const FINE_S: f64 = 1e-3;
 /// How much the times of a row may differ.
 const ROW_RATIO: f64 = 2.0;
 
@@ -89,7 +91,7 @@ impl Rows {
                 ));
             }
         }
-        let fine = self.spacings.iter().filter(|s| s.spacing_s < COARSE_S);
+        let fine = self.spacings.iter().filter(|s| s.spacing_s <= FINE_S);
         let (least, most) = fine
             .map(|s| self.row_s(s))
             .fold((f64::INFINITY, 0.0), |(a, b), x| (x.min(a), x.max(b)));
@@ -144,7 +146,7 @@ pub fn markdown(all: &[Rows]) -> String {
         let _ = write!(text, "| {} | {:.1} |", rows.name, 1e6 * rows.events_s);
         for s in &rows.spacings {
             let total_us = 1e6 * s.total_s;
-            if s.spacing_s < COARSE_S {
+            if s.spacing_s <= FINE_S {
                 let _ = write!(text, " {total_us:.1} ({:.1}) |", 1e9 * rows.row_s(s));
             } else {
                 let _ = write!(text, " {total_us:.1} |");

@@ -31,7 +31,12 @@ impl Reference<'_> {
         (from_s, to_s): (f64, f64),
         poll: &mut impl FnMut() -> ControlFlow<B>,
     ) -> ControlFlow<B, Option<f64>> {
-        if self.is_steady(slip) && self.settings.parameters.damping_nms_per_rad == 0.0 {
+        let lead = slip.sense.of_signed(slip.x);
+        // One that begins backwards ends where it begins, as the search finds.
+        if self.is_steady(slip)
+            && self.settings.parameters.damping_nms_per_rad == 0.0
+            && lead >= -self.least_lead_rad()
+        {
             let duration_s = self.undamped_duration_s(slip);
             self.keep(slip, duration_s, -slip.x);
             let time_s = duration_s.map(|duration_s| slip.start_s + duration_s);
@@ -57,11 +62,17 @@ impl Reference<'_> {
     /// comes back to touch it.
     fn undamped_duration_s(&self, slip: &Slip) -> Option<f64> {
         let lead = slip.sense.of_signed(slip.x);
-        if lead <= ROUNDINGS * f64::EPSILON * self.kinetic_angle_rad {
+        if lead <= self.least_lead_rad() {
             return None;
         }
         let lag = (self.natural_rad_s * lead).atan2(slip.sense.of_signed(slip.v));
         Some(2.0 * (PI - lag) / self.natural_rad_s)
+    }
+
+    /// The |x| at the start of a slip that rounding can make of none, rad.
+    fn least_lead_rad(&self) -> f64 {
+        let p = &self.settings.parameters;
+        ROUNDINGS * f64::EPSILON * p.static_torque_nm / p.stiffness_nm_per_rad
     }
 
     fn keep(&mut self, slip: &Slip, duration_s: Option<f64>, x_end: f64) {
