@@ -274,7 +274,11 @@ mod tests {
                 zeros.push(zeros[0] * (1.0 + 1e-9 * rng.f64()));
             }
             zeros.sort_by(f64::total_cmp);
-            let sign = if zeros.len() % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if zeros.len().is_multiple_of(2) {
+                1.0
+            } else {
+                -1.0
+            };
             match (first_fall(&with_zeros(&zeros, sign)), zeros[0] <= 1.0) {
                 (Fall::At(root), true) => {
                     let error = (root.at.to_f64() - zeros[0]).abs();

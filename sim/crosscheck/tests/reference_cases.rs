@@ -176,8 +176,10 @@ fn every_event_of_every_case() {
         let knots = text(&json["drive"]["kind"]) == "piecewise_linear_velocity";
         let rounded = if knots { 1e5 } else { 1.0 };
         let within = |error: f64, bound: f64| error <= bound * rounded;
-        if !(within(time, 1e-21) && within(theta, 1e-23))
-            || !(within(before, 1e-20) && within(after, 1e-20))
+        if !(within(time, 1e-21)
+            && within(theta, 1e-23)
+            && within(before, 1e-20)
+            && within(after, 1e-20))
         {
             wrong.push(format!("{name}: {worst:?}"));
         }

@@ -100,7 +100,6 @@ impl Solver<'_> {
                     })
                 }
             }
-            Phase::Slip { .. } => Ok(()),
             Phase::Stick { .. } | Phase::Held(_) if jumps => {
                 let before =
                     spring + joint.stick_inertia * dot_left + joint.stick_damping * omega_left;
@@ -115,7 +114,7 @@ impl Solver<'_> {
                     certain: Certain::default(),
                 })
             }
-            Phase::Held(_) => Ok(()),
+            Phase::Slip { .. } | Phase::Held(_) => Ok(()),
             Phase::Stick { .. } => {
                 let before =
                     spring + joint.stick_inertia * dot_left + joint.stick_damping * omega_left;
