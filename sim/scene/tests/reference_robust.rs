@@ -164,6 +164,17 @@ fn a_touch_is_no_event_for_as_long_as_the_shaft_keeps_its_speed() {
     }
 }
 
+/// The same where the search has to find it: a knot that changes nothing takes
+/// away the closed form of a steady slip.
+#[test]
+fn a_touch_is_no_event_beyond_a_knot_either() {
+    let motion = knots(&[(0.0, 1.0, 1.0), (0.01, 1.0, 1.0), (0.05, 1.0, 1.0)]);
+    for convention in [Convention::Paper, Convention::Physical] {
+        let events = events(&joint(convention, 0.3, 0.3, 0.0), &motion, 1.0);
+        assert_eq!(events.len(), 1, "{convention:?} {events:?}");
+    }
+}
+
 /// An object that has decayed to nothing while the shaft paused sticks as the
 /// shaft starts back, and not a window of the search later.
 #[test]
