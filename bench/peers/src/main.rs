@@ -191,7 +191,7 @@ fn moving(hands: &[motion::Hand], options: &Options, out: &mut work::Delivery) -
     }
 }
 
-/// What rows of output cost the reference on moving hands.
+/// Cost of output rows for the reference on moving hands.
 fn rows(hands: &[motion::Hand], options: &Options, out: &mut work::Delivery) -> Part {
     let mut all = Vec::new();
     for hand in hands {

@@ -19,7 +19,7 @@ const CUTOFF_HZ: f64 = 6.0;
 pub struct Hand {
     /// Name on the command line.
     pub name: &'static str,
-    /// What it is and where it comes from.
+    /// Description and source of the motion.
     pub source: String,
     /// The motion.
     pub motion: Rc<Motion>,
@@ -51,7 +51,7 @@ pub fn hand_sine() -> Hand {
 /// A walk: the recording beside the repository, or a synthetic one where that is missing.
 ///
 /// # Errors
-/// What is wrong with the recording.
+/// Error message of a recording that cannot be read.
 pub fn recorded_knee() -> Result<Hand, String> {
     const FILE: &str = "opensim_walk_100hz.csv";
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");

@@ -18,14 +18,14 @@ use crate::work::Runner;
 use crepitus_model::Convention;
 use phases::{Phases, StickBy};
 
-/// How a library is set.
+/// Settings of a library.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Setting {
     /// Relative tolerance, and absolute, both components being of order one.
     pub tolerance: f64,
     /// The longest step of a slip, s; none where there is no limit.
     pub slip_limit_s: Option<f64>,
-    /// Where the angle of a stick comes from.
+    /// Source of the angle in a stick.
     pub stick_by: StickBy,
 }
 

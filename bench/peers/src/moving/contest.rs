@@ -1,4 +1,4 @@
-//! Who takes part on a moving hand, the search for settings, and the rounds.
+//! Contestants on a moving hand: the search for settings, and the timed rounds.
 
 use super::{Peer, Setting, settings};
 use crate::measure::{Summary, Times, repeats, summarise, time};
@@ -35,7 +35,7 @@ pub struct Entrant {
     pub event_error_s: Option<f64>,
     /// The limit that it is within, s; none if it is within none.
     pub within_s: Option<f64>,
-    /// How fast.
+    /// CPU time of the work.
     pub time: Option<Summary>,
     #[serde(skip)]
     runner: Option<Runner>,
@@ -82,7 +82,7 @@ impl Case {
     /// The cheapest setting within the tightest limit that the peer reaches; else the one that
     /// comes nearest.
     fn best(&self, peer: &Peer, quick: bool, out: &mut Delivery) -> Entrant {
-        /// How many of the cheapest are timed again.
+        /// Number of the cheapest settings that are timed again.
         const SHORT_LIST: usize = 5;
         let mut tried: Vec<(Entrant, f64)> = settings(self.convention, quick)
             .into_iter()
@@ -163,7 +163,7 @@ impl Case {
         })
     }
 
-    /// What does not hold, in words.
+    /// Messages of the checks that fail.
     pub fn failures(&self) -> Vec<String> {
         let mut failures: Vec<String> = self
             .ratios()

@@ -65,7 +65,7 @@ pub(super) fn bdf(phases: Phases, setting: Setting) -> Result<Runner, String> {
 struct Phase<'p, 'a, E, S, R> {
     solver: S,
     phases: &'p Phases,
-    /// What the method needs where a phase begins.
+    /// State that the method needs at the start of a phase.
     restarted: R,
     /// How much a step may grow.
     growth: f64,
