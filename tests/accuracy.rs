@@ -56,7 +56,7 @@ fn a_study_becomes_three_files() {
         "scene,convention,solver,precision,step_s,events,events_true,unmatched,\
          max_event_error_s,rms_event_error_s,max_interval_error_s,frequency_error_rel,\
          rms_held_torque_error_nm,max_held_torque_error_nm,held_floor_nm,\
-         rms_tick_torque_error_nm,max_tick_torque_error_nm,ns_per_step,us_per_simulated_s,\
+         rms_tick_torque_error_nm,max_tick_torque_error_nm,behind_s,behind_j,ns_per_step,us_per_simulated_s,\
          time_spread,cycles_per_step,worst_cycles,instructions_per_step"
     );
     // Ten rungs in two precisions, one in f64 alone, five steps.
@@ -67,9 +67,11 @@ fn a_study_becomes_three_files() {
         for cell in &row[4..] {
             number(cell);
         }
-        assert!(number(&row[17]) > 0.0, "{row:?}");
-        let per_second = number(&row[17]) * 1e-3 / number(&row[4]);
-        assert!((number(&row[18]) / per_second - 1.0).abs() < 1e-9);
+        // No rung goes on with a slip after its end.
+        assert_eq!(row[17..19], ["0.0", "0.0"], "{row:?}");
+        assert!(number(&row[19]) > 0.0, "{row:?}");
+        let per_second = number(&row[19]) * 1e-3 / number(&row[4]);
+        assert!((number(&row[20]) / per_second - 1.0).abs() < 1e-9);
     }
     let exact = rows
         .iter()

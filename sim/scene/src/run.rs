@@ -17,6 +17,7 @@ mod summary;
 mod tally;
 
 pub use coupled::{FELT_COLUMN, STRUCK_COLUMN};
+pub use lead::Lead;
 pub use probe::{AddedTime, StepTime, step_times};
 pub use summary::{
     CycleSummary, EffectSummary, EnergySummary, EventCounts, LeadSummary, ParameterValue,

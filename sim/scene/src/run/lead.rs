@@ -22,7 +22,7 @@ const ROUNDING_F32: f64 = 1e-4;
 
 /// How long, and how far, the shaft was behind.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lead {
+pub struct Lead {
     kinetic_nm: f64,
     rounding: f64,
     step_s: f64,
@@ -30,16 +30,16 @@ pub(super) struct Lead {
     stride: u32,
     left: u32,
     /// Time in slips with the shaft behind, s.
-    pub(super) behind_s: f64,
+    pub behind_s: f64,
     /// Energy that friction gave in that time, J.
-    pub(super) behind_j: f64,
+    pub behind_j: f64,
     /// Worst Ω − θ̇ against the sense, rad/s.
-    pub(super) worst_rad_s: f64,
+    pub worst_rad_s: f64,
 }
 
 impl Lead {
     /// For looks `step_s` apart at a joint in single precision or double.
-    pub(super) fn new(settings: &Settings, step_s: f64, is_single: bool) -> Self {
+    pub fn new(settings: &Settings, step_s: f64, is_single: bool) -> Self {
         let stride = match settings.convention {
             Convention::Frozen => {
                 let swing_s = TAU / settings.parameters.natural_rad_s();
@@ -65,7 +65,7 @@ impl Lead {
 
     /// At the end of a step in a slip: whether it is time for a look.
     #[inline]
-    pub(super) fn is_due(&mut self) -> bool {
+    pub fn is_due(&mut self) -> bool {
         self.left -= 1;
         let due = self.left == 0;
         if due {
@@ -76,13 +76,13 @@ impl Lead {
 
     /// A look at a slip of sense `sign`.
     #[inline]
-    pub(super) fn look(&mut self, sign: f64, omega_rad_s: f64, theta_dot_rad_s: f64) {
+    pub fn look(&mut self, sign: f64, omega_rad_s: f64, theta_dot_rad_s: f64) {
         let dt_s = self.step_s * f64::from(self.stride);
         self.look_for(dt_s, sign, omega_rad_s, theta_dot_rad_s);
     }
 
     /// A look that stands for `dt_s`.
-    pub(super) fn look_for(
+    pub fn look_for(
         &mut self,
         dt_s: f64,
         sign: f64,

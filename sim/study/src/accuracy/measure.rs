@@ -9,7 +9,8 @@ use crate::matching::match_events;
 use crate::sampling::{CHUNK_STEPS, Sampling};
 use crate::true_events::TimedEvent;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
-use crepitus_model::{Real, SettingsError, StickSlip};
+use crepitus_model::{Phase, Real, SettingsError, StickSlip};
+use crepitus_scene::run::Lead;
 use crepitus_scene::scene::Precision;
 
 /// What the rungs of one scene at one step are measured against.
@@ -44,6 +45,11 @@ pub struct Accuracy {
     pub rms_tick_torque_error_nm: f64,
     /// Largest torque error at the end of a step, N·m.
     pub max_tick_torque_error_nm: f64,
+    /// Time in slips in which the shaft was behind the object, s; NaN where
+    /// the result is not finite.
+    pub behind_s: f64,
+    /// Energy that friction gave in that time, J.
+    pub behind_j: f64,
 }
 
 /// Runs a rung over the whole scene. A result that is not finite has all its
@@ -78,13 +84,14 @@ fn see<F: Real>(target: &Target<'_>, solver: Solver) -> Result<Seen, SettingsErr
 }
 
 /// What was seen of a run.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Seen {
     events: Vec<TimedEvent>,
     /// Events beyond those that are kept.
     more_events: u64,
     held: Errors,
     at_ticks: Errors,
+    lead: Lead,
     finite: bool,
 }
 
@@ -114,6 +121,7 @@ impl<F: Real> JointVisitor<F> for Look<'_> {
 
     fn visit<J: StickSlip<F>>(self, mut joint: J) -> Seen {
         let Target {
+            scene,
             sampling,
             events,
             torque,
@@ -123,8 +131,12 @@ impl<F: Real> JointVisitor<F> for Look<'_> {
         // A rung that chatters has lost already; its events need no memory.
         let most = 4 * events.len() + 10_000;
         let mut seen = Seen {
+            events: Vec::new(),
+            more_events: 0,
+            held: Errors::default(),
+            at_ticks: Errors::default(),
+            lead: Lead::new(&scene.settings, sampling.step_s(), F::IS_SINGLE),
             finite: true,
-            ..Seen::default()
         };
         let mut walk = sampling.walk_from(0);
         let mut chunk = Vec::with_capacity(CHUNK_STEPS);
@@ -150,6 +162,15 @@ impl<F: Real> JointVisitor<F> for Look<'_> {
                 });
                 let error_nm = torque.error_nm::<F>(index, joint.torque_nm().to_f64(), &mut tie);
                 seen.at_ticks.add(error_nm * error_nm, error_nm);
+                if let Phase::Slip(sense) = joint.phase()
+                    && seen.lead.is_due()
+                {
+                    seen.lead.look(
+                        sense.of_signed(1.0),
+                        shaft.omega_end_rad_s.to_f64(),
+                        joint.theta_dot_rad_s().to_f64(),
+                    );
+                }
                 n += 1;
                 index += 1;
             }
@@ -180,6 +201,8 @@ fn judge(target: &Target<'_>, seen: &Seen) -> Accuracy {
             max_held_torque_error_nm: f64::NAN,
             rms_tick_torque_error_nm: f64::NAN,
             max_tick_torque_error_nm: f64::NAN,
+            behind_s: f64::NAN,
+            behind_j: f64::NAN,
         };
     }
     let matching = match_events(events, &seen.events, sampling.step_s(), sampling.end_s());
@@ -191,6 +214,8 @@ fn judge(target: &Target<'_>, seen: &Seen) -> Accuracy {
         max_held_torque_error_nm: seen.held.max_nm,
         rms_tick_torque_error_nm: seen.at_ticks.rms_nm(sampling.steps()),
         max_tick_torque_error_nm: seen.at_ticks.max_nm,
+        behind_s: seen.lead.behind_s,
+        behind_j: seen.lead.behind_j,
     }
 }
 

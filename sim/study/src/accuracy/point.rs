@@ -45,6 +45,12 @@ pub struct Point {
     pub rms_tick_torque_error_nm: f64,
     /// Largest torque error at the end of a step, N·m.
     pub max_tick_torque_error_nm: f64,
+    /// Time in slips in which the shaft was behind the object, s. Under
+    /// `paper` and `physical` a slip that lasts so has missed its end; a
+    /// `frozen` one may when the hand slows.
+    pub behind_s: f64,
+    /// Energy that friction gave in that time, J.
+    pub behind_j: f64,
     /// CPU time of the host per step, ns: median of interleaved repeats.
     pub ns_per_step: f64,
     /// CPU time of the host per simulated second, µs.
@@ -83,6 +89,8 @@ pub(crate) mod tests {
             held_floor_nm: 5e-5,
             rms_tick_torque_error_nm: 1e-5,
             max_tick_torque_error_nm: 1e-3,
+            behind_s: 0.0,
+            behind_j: 0.0,
             ns_per_step: 4.0,
             us_per_simulated_s: 4e-3 / step_s,
             time_spread: 0.01,

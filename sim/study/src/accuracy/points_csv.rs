@@ -8,7 +8,7 @@ use std::fmt::Write;
 pub const HEADER: &str = "scene,convention,solver,precision,step_s,events,events_true,unmatched,\
 max_event_error_s,rms_event_error_s,max_interval_error_s,frequency_error_rel,\
 rms_held_torque_error_nm,max_held_torque_error_nm,held_floor_nm,rms_tick_torque_error_nm,\
-max_tick_torque_error_nm,ns_per_step,us_per_simulated_s,time_spread,cycles_per_step,worst_cycles,\
+max_tick_torque_error_nm,behind_s,behind_j,ns_per_step,us_per_simulated_s,time_spread,cycles_per_step,worst_cycles,\
 instructions_per_step";
 
 /// The file.
@@ -33,6 +33,8 @@ pub fn points_csv(points: &[Point]) -> String {
             p.held_floor_nm,
             p.rms_tick_torque_error_nm,
             p.max_tick_torque_error_nm,
+            p.behind_s,
+            p.behind_j,
             p.ns_per_step,
             p.us_per_simulated_s,
             p.time_spread,

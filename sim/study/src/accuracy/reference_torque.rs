@@ -9,8 +9,9 @@
 use crate::accuracy::scenes::StudyScene;
 use crate::sampling::Sampling;
 use crate::true_events::TrueEvent;
-use crepitus_model::Real;
+use crepitus_model::{Phase, Real};
 use crepitus_scene::reference::Reference;
+use crepitus_scene::run::Lead;
 
 /// How many steps go by between two questions whether to go on.
 const ASK_EVERY: u64 = 1 << 16;
@@ -19,12 +20,14 @@ const ASK_EVERY: u64 = 1 << 16;
 const ROUNDINGS: f64 = 4.0;
 
 /// True torque at the end of every step.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct ReferenceTorque {
     /// At the end of step 0, 1, …, N·m.
     at_ends_nm: Vec<f64>,
     /// Steps whose end is simultaneous with an event in f32, in order.
     ties: Vec<Tie>,
+    /// By how much the shaft led the object at the ends of steps.
+    pub lead: Lead,
 }
 
 /// A step whose end falls on an event.
@@ -51,9 +54,19 @@ impl ReferenceTorque {
     ) -> Result<Self, E> {
         let mut reference = Reference::new(&scene.settings, &scene.motion);
         let mut at_ends_nm = Vec::new();
+        let mut lead = Lead::new(&scene.settings, sampling.step_s(), false);
         for n in 1..=sampling.steps() {
             reference.advance(sampling.time_s(n, 0.0), |_| {});
             at_ends_nm.push(reference.torque_nm());
+            if let Phase::Slip(sense) = reference.phase()
+                && lead.is_due()
+            {
+                lead.look(
+                    sense.of_signed(1.0),
+                    reference.shaft().omega_rad_s,
+                    reference.theta_dot_rad_s(),
+                );
+            }
             if n.is_multiple_of(ASK_EVERY) {
                 go_on()?;
             }
@@ -61,6 +74,7 @@ impl ReferenceTorque {
         Ok(Self {
             at_ends_nm,
             ties: ties(sampling, events),
+            lead,
         })
     }
 

@@ -43,6 +43,10 @@ pub struct StudiedScene {
     pub duration_s: f64,
     /// Events of the reference.
     pub events_true: usize,
+    /// Time in slips of the reference in which the shaft was behind the object,
+    /// s, at the shortest step: 0 under `paper` and `physical`, where it would
+    /// be a missed event.
+    pub reference_behind_s: f64,
 }
 
 /// A rung that has no meaning under a convention.

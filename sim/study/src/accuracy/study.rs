@@ -13,6 +13,7 @@ use crate::true_events::{TimedEvent, TrueEvent};
 use crate::watcher::{StudyError, Watcher};
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Real};
+use crepitus_scene::run::Lead;
 use crepitus_scene::scene::Precision;
 use std::time::Instant;
 
@@ -72,13 +73,14 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError
     for scene in &plan.scenes {
         let truth = scene.true_events_while(|| work.did(0.0))?;
         let contestants = contestants(plan, scene.settings.convention);
-        study.scenes.push(StudiedScene {
+        let mut studied = StudiedScene {
             name: scene.name.clone(),
             title: scene.title.clone(),
             convention: scene.convention(),
             duration_s: scene.duration_s,
             events_true: truth.len(),
-        });
+            reference_behind_s: 0.0,
+        };
         // By contestant, so that a curve's points stand together.
         let mut curves = vec![Vec::new(); contestants.len()];
         for &step_s in &falling(&plan.steps_s) {
@@ -92,11 +94,14 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError
                 });
                 continue;
             }
-            let points = at_step(scene, &truth, &sampling, &contestants, plan, &mut work)?;
+            let (points, lead) =
+                at_step(scene, &truth, &sampling, &contestants, plan, &mut work)?;
+            studied.reference_behind_s = lead.behind_s;
             for (curve, point) in curves.iter_mut().zip(points) {
                 curve.push(point);
             }
         }
+        study.scenes.push(studied);
         study.points.extend(curves.into_iter().flatten());
     }
     study.orders = orders(&study.points);
@@ -104,7 +109,8 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError
     Ok(study)
 }
 
-/// All contestants on one scene at one step, in their order.
+/// All contestants on one scene at one step, in their order, and how the
+/// reference's slips went.
 fn at_step<W: Watcher>(
     scene: &StudyScene,
     truth: &[TrueEvent],
@@ -112,7 +118,7 @@ fn at_step<W: Watcher>(
     contestants: &[Contestant],
     plan: &Plan,
     work: &mut Work<'_, W>,
-) -> Result<Vec<Point>, StudyError<W::Error>> {
+) -> Result<(Vec<Point>, Lead), StudyError<W::Error>> {
     let steps = f64::from_whole(sampling.steps());
     let torque = ReferenceTorque::new(scene, sampling, truth, || work.did(0.0))?;
     let held = HeldTorque::new(scene, sampling, truth);
@@ -141,7 +147,7 @@ fn at_step<W: Watcher>(
         work.did(turn)
     })?;
     let events_true = u64::try_from(events.len()).unwrap_or(u64::MAX);
-    Ok(contestants
+    let points = contestants
         .iter()
         .zip(accuracies.into_iter().zip(costs))
         .map(|(&contestant, (accuracy, cost))| Point {
@@ -155,7 +161,8 @@ fn at_step<W: Watcher>(
                 events_true,
             )
         })
-        .collect())
+        .collect();
+    Ok((points, torque.lead))
 }
 
 fn point(
@@ -184,6 +191,8 @@ fn point(
         held_floor_nm: f64::NAN,
         rms_tick_torque_error_nm: accuracy.rms_tick_torque_error_nm,
         max_tick_torque_error_nm: accuracy.max_tick_torque_error_nm,
+        behind_s: accuracy.behind_s,
+        behind_j: accuracy.behind_j,
         ns_per_step: cost.ns_per_step,
         us_per_simulated_s: cost.ns_per_step * 1e-3 / step_s,
         time_spread: cost.spread,

@@ -222,13 +222,9 @@ impl Input {
         }
     }
 
-    /// Whether it has a meaning without samples. A recording that ends with the
-    /// run is left out until the reference is known to end there, too.
+    /// Whether it has a meaning without samples.
     pub(super) fn suits_the_reference(&self) -> bool {
-        match self {
-            Self::Sampled { shaft, .. } => !matches!(shaft, Shaft::Rows { .. }),
-            _ => false,
-        }
+        matches!(self, Self::Sampled { .. })
     }
 
     /// Whether the joint needs the check of its input that the device has.

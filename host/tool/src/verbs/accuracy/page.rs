@@ -3,6 +3,7 @@
 use super::summary::Summary;
 use super::words;
 use crate::failure::Failure;
+use crepitus_model::Convention;
 use crepitus_report::Section;
 use crepitus_report::accuracy::{self, AccuracyText};
 use crepitus_scene::cpu_time::CLOCK;
@@ -65,6 +66,47 @@ fn notes(study: &Study) -> Vec<String> {
         ),
     ];
     notes.extend(unsteady(&study.points));
+    notes.extend(missed_ends(study));
+    notes
+}
+
+/// Slips that went on after their end: what no energy balance sees.
+fn missed_ends(study: &Study) -> Vec<String> {
+    let may_be_behind = Convention::Frozen.name();
+    let mut notes: Vec<String> = study
+        .scenes
+        .iter()
+        .filter(|s| s.convention != may_be_behind && s.reference_behind_s > 0.0)
+        .map(|s| {
+            format!(
+                "Do not trust {}, {}: in slips of the reference itself the shaft is slower than the object for {} s, \
+                 so it missed the end of a slip.",
+                s.name,
+                s.convention,
+                words::plain(s.reference_behind_s)
+            )
+        })
+        .collect();
+    let behind = |p: &&Point| p.convention != may_be_behind && p.behind_s > 0.0;
+    if let Some(worst) = study
+        .points
+        .iter()
+        .filter(behind)
+        .max_by(|a, b| a.behind_s.total_cmp(&b.behind_s))
+    {
+        notes.push(format!(
+            "At {} of {} points a slip went on after its end, with the shaft slower than the object; for longest with \
+             {} at a step of {} on {}, {}: {} s, in which friction gave {} J.",
+            study.points.iter().filter(behind).count(),
+            study.points.len(),
+            worst.solver,
+            words::step(worst.step_s),
+            worst.scene,
+            worst.convention,
+            words::plain(worst.behind_s),
+            words::plain(worst.behind_j)
+        ));
+    }
     notes
 }
 
