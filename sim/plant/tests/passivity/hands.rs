@@ -205,7 +205,7 @@ impl Loser {
         };
         if self.left == 0 && self.rests == 0 && begins {
             self.left = self.rng.u32(low..=high);
-            self.rests = self.left + self.rng.u32(1..200);
+            self.rests = self.left + self.rng.u32(1..20);
         }
         let is_lost = self.left > 0;
         self.left = self.left.saturating_sub(1);
