@@ -29,10 +29,9 @@
 //! | how a slip is carried forward | [`propagate`], [`oscillator`] |
 //! | how the end of a phase is found | [`locate`] |
 //! | which of these a scene or a firmware selects | [`solver`] |
-//! | what the device adds: no input poisons it, parameters change under way | [`renderer`], [`guarded`], [`ramp`], [`turn_back`] |
+//! | what a device renders, from sample to torque; every stage a file | [`render`] |
 //! | what the hand gets back of its work | [`energy_observer`] |
 //! | counts of the motor encoder to angle and speed | [`encoder`] |
-//! | what the drive adds to that torque: part of the gear's friction, the ringing of a bone | [`friction_compensation`], [`bone_shaping`] |
 //! | how the motor's current follows | [`current_loop`] |
 //! | what a device never does | [`device_limits`] |
 #![no_std]
@@ -60,16 +59,13 @@
 extern crate std;
 
 pub mod active;
-pub mod bone_shaping;
 pub mod compensated;
 pub mod current_loop;
 pub mod device_limits;
 pub mod encoder;
 pub mod energy_observer;
 mod event;
-pub mod friction_compensation;
 pub mod frozen;
-pub mod guarded;
 pub mod implicit_euler;
 pub mod locate;
 pub mod oscillator;
@@ -77,29 +73,29 @@ pub mod parameters;
 mod phase;
 pub mod presets;
 pub mod propagate;
-pub mod ramp;
 pub mod real;
-pub mod renderer;
+pub mod render;
 pub mod settings;
 pub mod shaft;
 pub mod solver;
 pub mod stick_slip;
 pub mod ticks;
-pub mod turn_back;
 pub mod velocity_match;
 
 pub use active::Active;
-pub use bone_shaping::BoneShaping;
 pub use current_loop::CurrentLoop;
 pub use energy_observer::EnergyObserver;
 pub use event::{EVENTS_PER_STEP, Event};
-pub use friction_compensation::FrictionCompensation;
 pub use frozen::Frozen;
-pub use guarded::{Guarded, Sample};
 pub use parameters::{Parameters, Tabled};
 pub use phase::{EventKind, Phase, Sense};
 pub use real::Real;
-pub use renderer::Renderer;
+pub use render::Pipeline;
+pub use render::bone_shaping::BoneShaping;
+pub use render::crepitus::{Crepitus, Renderer};
+pub use render::friction_compensation::FrictionCompensation;
+pub use render::guarded::Guarded;
+pub use render::input_check::Sample;
 pub use settings::{Convention, Restart, Settings, SettingsError, Validated};
 pub use shaft::ShaftStep;
 pub use stick_slip::StickSlip;

@@ -11,9 +11,9 @@
 
 mod support;
 
-use crepitus_model::guarded::InputLimits;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::ExactEvents;
-use crepitus_model::ramp::Ramp;
+use crepitus_model::render::ramp::Ramp;
 use crepitus_model::{
     Active, Frozen, Parameters, Phase, Real, Renderer, Restart, Sample, Settings, ShaftStep,
     StickSlip,
@@ -142,7 +142,7 @@ fn a_static_limit_lowered_below_the_torque_breaks_the_stick() {
         ..Parameters::default()
     };
     let mut renderer =
-        Renderer::<f32, ExactEvents>::new(base, InputLimits::device(TICK_S), 3.6e-5, 0.0);
+        Renderer::<f32, ExactEvents>::of(base, InputLimits::device(TICK_S), 3.6e-5, 0.0);
     let move_by = |omega: f32| {
         Sample::Taken(ShaftStep {
             delta_phi_rad: omega * 5e-5,
@@ -151,15 +151,15 @@ fn a_static_limit_lowered_below_the_torque_breaks_the_stick() {
         })
     };
     for _ in 0..18 {
-        renderer.tick(&move_by(1.0), |_| {});
+        renderer.render(&move_by(1.0), |_| {});
     }
-    let shown = renderer.tick(&move_by(0.0), |_| {});
+    let shown = renderer.render(&move_by(0.0), |_| {});
     assert!((shown.torque_nm - 0.36).abs() < 1e-5 && !shown.settling);
     renderer.commit(active(weak, Restart::Elastic), SLEW_NM_PER_S);
     let mut breaks_at = None;
     for tick in 1..=60 {
         let mut events = Vec::new();
-        let shown = renderer.tick(&move_by(0.0), |e| events.push(e.to));
+        let shown = renderer.render(&move_by(0.0), |e| events.push(e.to));
         assert!(shown.torque_nm.abs() <= renderer.joint().active().static_nm);
         // 0.2 N·m at 5 mN·m a tick.
         assert_eq!(shown.settling, tick < 40, "{tick}");

@@ -18,7 +18,7 @@
 mod support;
 
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::guarded::InputLimits;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::ExactEvents;
 use crepitus_model::presets::PRESETS;
 use crepitus_model::{Active, EnergyObserver, Parameters, Renderer, Sample, Settings, ShaftStep};
@@ -53,7 +53,7 @@ fn books(parameters: Parameters, delay: usize, sight: Sight, angles_rad: &[f64])
     let count = |phi: f64| (phi / encoder.rad_per_count()).floor() as i32;
     let mut reader =
         EncoderReader::<f32>::new(&encoder, TICK_S, count(angles_rad[0]), 0.0).unwrap();
-    let mut renderer = Renderer::<f32, ExactEvents>::new(
+    let mut renderer = Renderer::<f32, ExactEvents>::of(
         active,
         InputLimits::device(TICK_S),
         encoder.rad_per_count() as f32,
@@ -77,7 +77,7 @@ fn books(parameters: Parameters, delay: usize, sight: Sight, angles_rad: &[f64])
                 }
             }
         };
-        let shown = renderer.tick(&Sample::Taken(shaft), |_| {});
+        let shown = renderer.render(&Sample::Taken(shaft), |_| {});
         hand.tick(delta_phi, f64::from(shown.torque_nm));
         unguarded.tick(delta_phi, f64::from(shown.model_torque_nm));
     }

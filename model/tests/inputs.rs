@@ -10,7 +10,7 @@
 
 mod support;
 
-use crepitus_model::guarded::{CATCH_UP_TICKS, InputLimits};
+use crepitus_model::render::input_check::{CATCH_UP_TICKS, InputLimits};
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
     Convention, EVENTS_PER_STEP, Guarded, Phase, Real, Sample, Settings, ShaftStep, StickSlip,

@@ -2,9 +2,10 @@
 //! a gap, tell apart.
 #![allow(missing_docs)]
 
-use crepitus_model::guarded::InputLimits;
+use crepitus_model::render::Limit;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::ExactEvents;
-use crepitus_model::ramp::Ramp;
+use crepitus_model::render::ramp::Ramp;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
     Active, Convention, Frozen, Guarded, Parameters, Renderer, Sample, Settings, ShaftStep,
@@ -82,21 +83,21 @@ fn after_a_gap_nothing_comes_back_of_a_torque_that_was_switched_off() {
             omega_end_rad_s: 1.0,
         })
     };
-    let mut joint = Renderer::<f32, ExactEvents>::new(
+    let mut joint = Renderer::<f32, ExactEvents>::of(
         active(Parameters::default()),
         InputLimits::device(TICK_S),
         COUNT_RAD,
         1.0,
     );
     for _ in 0..40 {
-        joint.tick(&moved(5e-5), |_| {});
+        joint.render(&moved(5e-5), |_| {});
     }
-    assert!(joint.tick(&moved(-3.0 * COUNT_RAD), |_| {}).turned_back);
+    assert!(joint.render(&moved(-3.0 * COUNT_RAD), |_| {}).limit == Limit::TurnedBack);
     for _ in 0..10 {
-        assert_eq!(joint.tick(&Sample::Lost, |_| {}).torque_nm, 0.0);
+        assert_eq!(joint.render(&Sample::Lost, |_| {}).torque_nm, 0.0);
     }
-    let shown = joint.tick(&moved(0.0), |_| {});
-    assert!(!shown.holding);
+    let shown = joint.render(&moved(0.0), |_| {});
+    assert_eq!(shown.limit, Limit::None);
     assert_eq!(shown.torque_nm, 0.0);
 }
 

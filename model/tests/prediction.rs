@@ -24,7 +24,8 @@
 )]
 
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::guarded::InputLimits;
+use crepitus_model::render::Limit;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::ExactEvents;
 use crepitus_model::presets::PRESETS;
 use crepitus_model::{Active, Parameters, Phase, Renderer, Sample, Settings, ShaftStep, StickSlip};
@@ -62,7 +63,7 @@ const SHOWN: [Shown; 3] = [Shown::Joint, Shown::HalfTick, Shown::NextTick];
 fn next_tick(renderer: &Renderer<f32, ExactEvents>, omega: f32) -> f64 {
     let mut ahead = renderer.clone();
     let (mut from, mut torque_nm, mut sum) = (0.0, ahead.joint().torque_nm(), 0.0);
-    ahead.tick(
+    ahead.render(
         &Sample::Taken(ShaftStep {
             delta_phi_rad: omega * TICK_S as f32,
             omega_start_rad_s: omega,
@@ -88,7 +89,7 @@ fn ticks(p: Parameters, sight: Sight, hand: Hand<'_>, seconds: f64) -> Vec<(f64,
     let count = |phi: f64| (phi / encoder.rad_per_count()).floor() as i32;
     let (mut phi, mut omega) = hand(0.0);
     let mut reader = EncoderReader::<f32>::new(&encoder, TICK_S, count(phi), 0.0).unwrap();
-    let mut renderer = Renderer::<f32, ExactEvents>::new(
+    let mut renderer = Renderer::<f32, ExactEvents>::of(
         active,
         InputLimits::device(TICK_S),
         encoder.rad_per_count() as f32,
@@ -108,10 +109,10 @@ fn ticks(p: Parameters, sight: Sight, hand: Hand<'_>, seconds: f64) -> Vec<(f64,
             },
         };
         (phi, omega) = (next, omega_next);
-        let torque = renderer.tick(&Sample::Taken(shaft), |_| {});
+        let torque = renderer.render(&Sample::Taken(shaft), |_| {});
         let joint = f64::from(torque.torque_nm);
         shown = [joint; 3];
-        if !torque.turned_back && !torque.holding {
+        if torque.limit == Limit::None {
             let known = shaft.omega_end_rad_s;
             if renderer.joint().phase() == Phase::Stick {
                 let ahead = p.stiffness_nm_per_rad * f64::from(known) * TICK_S / 2.0;

@@ -1,27 +1,31 @@
-//! `render_torque`: the torque to show.
+//! `render_torque`: the [pipeline](crepitus_model::render) with the stages that
+//! the firmware links, and how a commit changes them.
 //!
-//! ```text
-//! joint ─> guard ──────────(+)──(+)──> limits ─> torque
-//!                           │    │
-//! friction compensation ─ slew   bone
-//! ```
-//!
-//! The joint runs in every tick, torque or not. While the bridge floats
-//! nothing is asked of the motor; from arming on, what may be asked for grows
-//! with the slew limit, so a stick that is full of torque does not jolt.
+//! The joint runs in every tick, torque or not.
 
 use crate::drive::prepare::{JointPlan, RenderingPlan};
 use crate::drive::sampler::Sampled;
-use crepitus_model::guarded::InputLimits;
 use crepitus_model::locate::ExactEvents;
-use crepitus_model::{
-    BoneShaping, EventKind, FrictionCompensation, Real, Renderer, Sample, StickSlip,
-};
+use crepitus_model::render::additions::{RingingBone, SlewedCompensation};
+use crepitus_model::render::input_check::{InputCheck, InputLimits};
+use crepitus_model::render::limits::TorqueLimits;
+use crepitus_model::render::{Limit, Pipeline, Seen, Shown};
+use crepitus_model::{Crepitus, EventKind, Real};
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{LimitReason, TICK_S};
 
-/// The joint that the firmware renders.
-pub type Joint = Renderer<f32, ExactEvents>;
+/// The symptoms of the device.
+pub type Symptoms = Option<Crepitus<f32, ExactEvents>>;
+
+/// The stages of the device.
+pub type Stages = Pipeline<
+    f32,
+    InputCheck<f32>,
+    Symptoms,
+    SlewedCompensation<f32>,
+    RingingBone<f32>,
+    TorqueLimits<f32>,
+>;
 
 /// The torque of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,38 +43,27 @@ pub struct Rendered {
 /// Renders, once a tick.
 #[derive(Clone, Debug)]
 pub struct Rendering {
-    joint: Option<Joint>,
-    /// It goes once it has settled.
+    stages: Stages,
+    /// The joint goes once it has settled.
     is_leaving: bool,
     is_settling: bool,
-    compensation: Option<FrictionCompensation<f32>>,
-    /// What compensation adds now, N·m.
-    compensating_nm: f32,
-    bone: Option<BoneShaping<f32>>,
-    /// What is left of the ringing of a bone that was exchanged, N·m.
-    fading_nm: f32,
-    rung_nm: f32,
-    torque_limit_nm: f32,
-    slew_nm: f32,
-    /// What may be asked for as yet, N·m.
-    allowance_nm: f32,
 }
 
 impl Rendering {
     /// From the first numbers.
     pub fn new(plan: &RenderingPlan) -> Self {
+        let limits = InputLimits::device(TICK_S);
+        let slew_nm = plan.slew_nm;
         let mut rendering = Self {
-            joint: None,
+            stages: Stages::new(
+                InputCheck::new(&limits, f32::from_f64(TICK_S), 0.0),
+                None,
+                SlewedCompensation::new(None, slew_nm),
+                RingingBone::new(None, slew_nm),
+                TorqueLimits::new(plan.torque_limit_nm, slew_nm),
+            ),
             is_leaving: false,
             is_settling: false,
-            compensation: None,
-            compensating_nm: 0.0,
-            bone: None,
-            fading_nm: 0.0,
-            rung_nm: 0.0,
-            torque_limit_nm: 0.0,
-            slew_nm: 0.0,
-            allowance_nm: 0.0,
         };
         rendering.take_over(plan, 0.0);
         rendering
@@ -78,30 +71,29 @@ impl Rendering {
 
     /// From the next tick on, these numbers.
     pub fn take_over(&mut self, plan: &RenderingPlan, omega_rad_s: f32) {
+        let stages = &mut self.stages;
         self.is_leaving = false;
         match plan.joint {
             JointPlan::Absent => {}
             JointPlan::Begin(silent, ramp) => {
                 let limits = InputLimits::device(TICK_S);
-                let mut joint = Joint::new(silent, limits, plan.rad_per_count, omega_rad_s);
+                let mut joint = Crepitus::new(silent, limits, plan.rad_per_count, omega_rad_s);
                 joint.follow(ramp);
-                self.joint = Some(joint);
+                stages.symptoms = Some(joint);
             }
             JointPlan::Follow(ramp) | JointPlan::Leave(ramp) => {
                 self.is_leaving = matches!(plan.joint, JointPlan::Leave(_));
-                if let Some(joint) = &mut self.joint {
+                if let Some(joint) = &mut stages.symptoms {
                     joint.follow(ramp);
                 }
             }
         }
-        self.compensation = plan.compensation;
+        stages.compensation.change(plan.compensation, plan.slew_nm);
+        stages.bone.set_slew(plan.slew_nm);
         if let Some(bone) = plan.bone {
-            self.fading_nm += self.rung_nm;
-            self.rung_nm = 0.0;
-            self.bone = bone;
+            stages.bone.exchange(bone);
         }
-        self.torque_limit_nm = plan.torque_limit_nm;
-        self.slew_nm = plan.slew_nm;
+        stages.limits.change(plan.torque_limit_nm, plan.slew_nm);
     }
 
     /// Whether numbers still move, after a tick: the next commit waits.
@@ -111,117 +103,47 @@ impl Rendering {
 
     /// One tick.
     pub fn tick(&mut self, sampled: &Sampled, is_energised: bool) -> Rendered {
+        let seen = Seen {
+            sample: sampled.shaft,
+            omega_rad_s: sampled.omega_rad_s,
+        };
         let mut flags = SampleFlags::default();
-        let (mut model_nm, mut shown_nm, mut reason) = (0.0, 0.0, LimitReason::None);
-        let mut jump_nm = 0.0;
-        if let Some(joint) = &mut self.joint {
-            let shown = joint.tick(&sampled.shaft, |event| {
-                jump_nm += event.torque_after_nm - event.torque_before_nm;
-                flags = flags.with(
-                    match event.kind {
-                        EventKind::Break => SampleFlags::BREAK,
-                        EventKind::Stick | EventKind::Reverse => SampleFlags::STICK,
-                    },
-                    true,
-                );
-            });
-            (model_nm, shown_nm) = (shown.model_torque_nm, shown.torque_nm);
-            if shown.turned_back {
-                reason = LimitReason::TurnedBack;
-            } else if shown.holding {
-                reason = LimitReason::Holding;
-            }
-            flags = flags
-                .with_phase(joint.joint().phase().sign())
-                .with(SampleFlags::SETTLING, shown.settling);
-            if self.is_leaving && !shown.settling {
-                self.joint = None;
-                self.is_leaving = false;
-            }
-            self.is_settling = shown.settling;
+        self.stages.limits.set_energised(is_energised);
+        let shown = self.stages.tick(&seen, |event| {
+            flags = flags.with(
+                match event.kind {
+                    EventKind::Break => SampleFlags::BREAK,
+                    EventKind::Stick | EventKind::Reverse => SampleFlags::STICK,
+                },
+                true,
+            );
+        });
+        if self.is_leaving && !shown.settling {
+            self.stages.symptoms = None;
+            self.is_leaving = false;
         }
-        let (wanted_nm, slewed) = self.with_what_is_added(shown_nm, jump_nm, sampled);
-        if slewed && reason == LimitReason::None {
-            reason = LimitReason::Slew;
-        }
-        let (torque_nm, reason) = self.limited(wanted_nm, is_energised, reason);
+        self.is_settling = shown.settling;
         Rendered {
             tick: sampled.tick,
-            torque_nm,
-            model_torque_nm: model_nm,
-            flags: flags
-                .with(SampleFlags::LOST, sampled.lost_ticks > 0)
-                .with_limit(reason),
+            torque_nm: shown.torque_nm,
+            model_torque_nm: shown.model_torque_nm,
+            flags: with(flags, &shown).with(SampleFlags::LOST, sampled.lost_ticks > 0),
         }
     }
+}
 
-    /// Compensation and bone; and whether the slew limit was felt.
-    fn with_what_is_added(
-        &mut self,
-        shown_nm: f32,
-        jump_nm: f32,
-        sampled: &Sampled,
-    ) -> (f32, bool) {
-        let mut slewed = false;
-        let mut total_nm = shown_nm;
-        if self.compensation.is_some() || self.compensating_nm != 0.0 {
-            let target_nm = self
-                .compensation
-                .as_ref()
-                .map_or(0.0, |c| c.torque_nm(sampled.omega_rad_s));
-            let step_nm = target_nm - self.compensating_nm;
-            slewed = step_nm.abs() > self.slew_nm;
-            self.compensating_nm = if slewed {
-                self.compensating_nm + self.slew_nm.copysign(step_nm)
-            } else {
-                target_nm
-            };
-            total_nm += self.compensating_nm;
-        }
-        if let Some(bone) = &mut self.bone {
-            let travel_rad = match sampled.shaft {
-                Sample::Taken(step) => step.delta_phi_rad,
-                Sample::Lost => 0.0,
-            };
-            bone.ring(jump_nm);
-            self.rung_nm = bone.tick(travel_rad);
-            total_nm += self.rung_nm;
-        }
-        if self.fading_nm != 0.0 {
-            let left_nm = (self.fading_nm.abs() - self.slew_nm).at_least(0.0);
-            self.fading_nm = left_nm.copysign(self.fading_nm);
-            total_nm += self.fading_nm;
-        }
-        (total_nm, slewed)
-    }
-
-    /// Within what may be asked for, and why it may not be more.
-    fn limited(
-        &mut self,
-        wanted_nm: f32,
-        is_energised: bool,
-        reason: LimitReason,
-    ) -> (f32, LimitReason) {
-        if !is_energised {
-            self.allowance_nm = 0.0;
-            return (0.0, LimitReason::NotArmed);
-        }
-        let most_nm = if self.allowance_nm > self.torque_limit_nm {
-            // It was lowered, and is followed as torque is: no jolt.
-            (self.allowance_nm - self.slew_nm).at_least(self.torque_limit_nm)
-        } else {
-            (self.allowance_nm + self.slew_nm).at_most(self.torque_limit_nm)
-        };
-        self.allowance_nm = most_nm;
-        // A torque that is no number passes, and is noticed by what follows.
-        if wanted_nm.abs() <= most_nm || wanted_nm.is_nan() {
-            return (wanted_nm, reason);
-        }
-        let limit = if most_nm == self.torque_limit_nm {
-            LimitReason::Torque
-        } else {
-            LimitReason::Slew
-        };
-        (most_nm.copysign(wanted_nm), limit)
-    }
+/// Phase, ramp and limit of a tick.
+#[inline]
+fn with(flags: SampleFlags, shown: &Shown<f32>) -> SampleFlags {
+    flags
+        .with_phase(shown.phase.sign())
+        .with(SampleFlags::SETTLING, shown.settling)
+        .with_limit(match shown.limit {
+            Limit::None => LimitReason::None,
+            Limit::Torque => LimitReason::Torque,
+            Limit::Slew => LimitReason::Slew,
+            Limit::TurnedBack => LimitReason::TurnedBack,
+            Limit::Holding => LimitReason::Holding,
+            Limit::NotArmed => LimitReason::NotArmed,
+        })
 }

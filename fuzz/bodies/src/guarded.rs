@@ -11,7 +11,7 @@ use crate::bytes::Bytes;
 use crate::laws::{self, Events};
 use crate::rung::Rung;
 use crate::shaft::Shaft;
-use crepitus_model::guarded::{CATCH_UP_TICKS, InputLimits};
+use crepitus_model::render::input_check::{CATCH_UP_TICKS, InputLimits};
 use crepitus_model::solver::{JointVisitor, with_joint};
 use crepitus_model::{EVENTS_PER_STEP, Guarded, Real, Sample, ShaftStep, StickSlip};
 

@@ -14,7 +14,8 @@ use crate::laws::{self, Events};
 use crate::rung;
 use crate::shaft::Shaft;
 use crepitus_model::encoder::EncoderSettings;
-use crepitus_model::guarded::InputLimits;
+use crepitus_model::render::Limit;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
 use crepitus_model::shaft::Linear;
 use crepitus_model::{Active, Convention, Frozen, Phase, Real, Renderer, ShaftStep, StickSlip};
@@ -51,7 +52,7 @@ fn run<F: Real, L: Locate<F, Shape = Linear>>(mut bytes: Bytes<'_>) {
     let count_rad = F::from_f64(EncoderSettings::default().rad_per_count());
     let limits = InputLimits::device(step_s);
     let first = active(&mut bytes);
-    let mut renderer = Renderer::<F, L>::new(first, limits, count_rad, F::ZERO);
+    let mut renderer = Renderer::<F, L>::of(first, limits, count_rad, F::ZERO);
     let mut shaft = Shaft::default();
     let mut ticks = 0;
     while !bytes.is_empty() && ticks < MOST_TICKS {
@@ -74,7 +75,7 @@ fn tick<F: Real, L: Locate<F, Shape = Linear>>(
     let before = Stored::of(renderer.joint());
     let counters = renderer.counters();
     let mut events = Events::from(renderer.joint().phase());
-    let shown = renderer.tick(&sample(step), |event| events.see(&event));
+    let shown = renderer.render(&sample(step), |event| events.see(&event));
 
     let joint = renderer.joint();
     let limit = joint.active().static_nm;
@@ -82,7 +83,7 @@ fn tick<F: Real, L: Locate<F, Shape = Linear>>(
     laws::state(joint);
     assert!(shown.torque_nm.abs() <= limit, "{shown:?}, Ts {limit:?}");
     assert_eq!(shown.model_torque_nm, joint.torque_nm());
-    assert!(!shown.turned_back || shown.torque_nm == F::ZERO);
+    assert!(shown.limit != Limit::TurnedBack || shown.torque_nm == F::ZERO);
     events.within(limit);
     if renderer.counters().restarts == counters.restarts {
         events.end(joint, MOST_EVENTS);

@@ -5,7 +5,7 @@ mod support;
 use crepitus_board::Start;
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::locate::ExactEvents;
-use crepitus_model::ramp::Ramp;
+use crepitus_model::render::ramp::Ramp;
 use crepitus_model::{Active, Frozen, Settings, StickSlip};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::host::{Answer, Ask};

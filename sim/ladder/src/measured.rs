@@ -115,7 +115,7 @@ impl Measured for Rendered {
         let mut seen = Seen::default();
         let shown = self
             .renderer
-            .tick(&input.sample(), |event| seen.event(&event));
+            .render(&input.sample(), |event| seen.event(&event));
         seen.with(shown.torque_nm)
     }
 }

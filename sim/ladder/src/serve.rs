@@ -5,13 +5,13 @@ use crate::measured::{Joint, Measured, Rendered, step};
 use crate::plan::Plan;
 use crate::subject::Subject;
 use core::hint::black_box;
-use crepitus_model::bone_shaping::BoneShapingSettings;
+use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::current_loop::CurrentLoopSettings;
 use crepitus_model::device_limits::LimitSettings;
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::energy_observer::MOST_DELAY_TICKS;
-use crepitus_model::friction_compensation::FrictionCompensationSettings;
-use crepitus_model::guarded::InputLimits;
+use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::real::Real;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
@@ -64,7 +64,7 @@ impl Here<'_> {
                 let active = |which| Active::<f32>::new(&plan.settings(which)?, step_s);
                 let actives = [active(0)?, active(1)?];
                 let rendered = Rendered {
-                    renderer: Renderer::new(
+                    renderer: Renderer::of(
                         actives[0],
                         InputLimits::device(step_s),
                         f32::from_f64(EncoderSettings::default().rad_per_count()),

@@ -11,7 +11,7 @@ pub use solver::{Precision, SolverChoice};
 use crate::document::{Document, Range, Section};
 use crate::error::SceneError;
 use crepitus_model::encoder::EncoderSettings;
-use crepitus_model::turn_back::most_rad_per_count;
+use crepitus_model::render::turn_back::most_rad_per_count;
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use crepitus_plant::actuator::Actuator;
 use crepitus_plant::assembly::{Assembled, Listed, assemble, assemble_with};

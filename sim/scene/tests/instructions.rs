@@ -144,8 +144,8 @@ fn is_of(effect: &Effect, function: &str) -> bool {
         "crepitus" => "crepitus_model::frozen",
         "encoder" => "crepitus_model::encoder",
         "motor" => "crepitus_model::current_loop",
-        "friction-compensation" => "crepitus_model::friction_compensation",
-        "bone-shaping" => "crepitus_model::bone_shaping",
+        "friction-compensation" => "crepitus_model::render::friction_compensation",
+        "bone-shaping" => "crepitus_model::render::bone_shaping",
         _ => "no such function",
     };
     let winding = effect.name == "motor" && function.contains("crepitus_plant::winding");

@@ -1,10 +1,10 @@
 //! `bone-shaping`: the ringing of a bone, struck by the model's events. The
 //! law, its limits and its budget of energy are the firmware's:
-//! `crepitus_model::bone_shaping`.
+//! `crepitus_model::render::bone_shaping`.
 
 use crate::effect::{Effect, Need, Part, Seen, Stage, numbers};
 use crepitus_model::Real;
-use crepitus_model::bone_shaping::{BoneShaping, BoneShapingSettings};
+use crepitus_model::render::bone_shaping::{BoneShaping, BoneShapingSettings};
 use crepitus_model::parameters::Tabled;
 
 /// Ticks between a sample and the torque that answers it: with a motor half a

@@ -1,10 +1,10 @@
 //! `friction-compensation`: the device's feed-forward against the gear's dry
-//! friction. The law is the firmware's: `crepitus_model::friction_compensation`
+//! friction. The law is the firmware's: `crepitus_model::render::friction_compensation`
 //! has its equation, sources, and what it may give to the hand.
 
 use crate::effect::{Effect, Need, Part, Seen, Stage, numbers};
 use crepitus_model::Real;
-use crepitus_model::friction_compensation::{FrictionCompensation, FrictionCompensationSettings};
+use crepitus_model::render::friction_compensation::{FrictionCompensation, FrictionCompensationSettings};
 use crepitus_model::parameters::Tabled;
 
 /// The effect.

@@ -19,7 +19,7 @@ mod rig;
 
 use crepitus_model::encoder::EncoderSettings;
 use crepitus_model::presets::PRESETS;
-use crepitus_model::turn_back::most_rad_per_count;
+use crepitus_model::render::turn_back::most_rad_per_count;
 use crepitus_model::{Parameters, Restart, Settings};
 use fastrand::Rng;
 use hands::{Hand, Loser, Losses, TurnsBack};

@@ -2,7 +2,7 @@
 //! energy.
 
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::guarded::InputLimits;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::ExactEvents;
 use crepitus_model::{
     Active, EnergyObserver, Phase, Renderer, Sample, Settings, ShaftStep, StickSlip, Validated,
@@ -129,7 +129,7 @@ impl Rig {
     pub(crate) fn new(settings: &Settings, sight: Sight, acts: Acts) -> Self {
         let settings = settings.validate().expect("allowed");
         let encoder = EncoderSettings::default();
-        let renderer = Renderer::new(
+        let renderer = Renderer::of(
             Active::<f32>::new(&settings, TICK_S).expect("a tick"),
             InputLimits::device(TICK_S),
             single(encoder.rad_per_count()),
@@ -166,7 +166,7 @@ impl Rig {
         self.angle_rad += travel_rad;
         self.squares += travel_rad * travel_rad;
         let sample = self.sample(omega_rad_s, is_lost);
-        let shown = self.renderer.tick(&sample, |_| {});
+        let shown = self.renderer.render(&sample, |_| {});
         self.torque_nm = f64::from(shown.torque_nm);
         if let Some(work_j) = acting {
             self.observer.acted(travel_rad, work_j, !is_lost);

@@ -8,7 +8,7 @@ use super::subject::Subject;
 use crate::sampling::Sampling;
 use crate::true_events::TimedEvent;
 use crepitus_model::locate::Locate;
-use crepitus_model::ramp::Ramp;
+use crepitus_model::render::ramp::Ramp;
 use crepitus_model::shaft::Linear;
 use crepitus_model::{
     Active, EventKind, Frozen, Phase, Real, Settings, SettingsError, ShaftStep, StickSlip,

@@ -10,7 +10,8 @@ use super::subject::Subject;
 use crate::sampling::{Sampling, Walk};
 use crate::true_events::TimedEvent;
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::guarded::InputLimits;
+use crepitus_model::render::Limit;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::Locate;
 use crepitus_model::shaft::Linear;
 use crepitus_model::{
@@ -53,7 +54,7 @@ impl<F: Real> WithLocator<F> for RenderedRun<'_> {
         let (step_s, rendered) = (self.sampling.step_s(), self.rendered);
         let commits = self.commits::<F>()?;
         let mut sight = Sight::new(self.sampling.walk_from(0), rendered.counts, step_s)?;
-        let mut renderer = Renderer::<F, L>::new(
+        let mut renderer = Renderer::<F, L>::of(
             Active::new(&self.settings, step_s)?,
             InputLimits::device(step_s),
             F::from_f64(EncoderSettings::default().rad_per_count()),
@@ -76,7 +77,7 @@ impl<F: Real> WithLocator<F> for RenderedRun<'_> {
             let (since, sampling) = (seen.steps.saturating_sub(sight.missed), &self.sampling);
             let span = f64::from_whole(sight.missed + 1);
             let tally = &mut seen.tally;
-            let shown = renderer.tick(&sample, |event: Event<F>| {
+            let shown = renderer.render(&sample, |event: Event<F>| {
                 let time_s = sampling.time_s(since, span * event.fraction.to_f64());
                 tally.add(&TimedEvent::new(time_s, &event));
             });
@@ -86,7 +87,7 @@ impl<F: Real> WithLocator<F> for RenderedRun<'_> {
             };
             let limit_nm = renderer.joint().active().static_nm.to_f64();
             note::<F>(&mut seen, shown.torque_nm.to_f64(), limit_nm, late_step);
-            seen.guard_ticks += u64::from(shown.turned_back);
+            seen.guard_ticks += u64::from(shown.limit == Limit::TurnedBack);
         }
         Ok(seen)
     }

@@ -7,7 +7,7 @@ use super::observation::Observation;
 use super::subject::Subject;
 use crate::sampling::Sampling;
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::guarded::InputLimits;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::Locate;
 use crepitus_model::shaft::Linear;
 use crepitus_model::{
@@ -87,7 +87,7 @@ impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
         let omega = F::from_f64(omega_rad_s);
         let first = encoder.count(angle_rad);
         let mut reader = EncoderReader::<F>::new(&settings, step_s, first, omega)?;
-        let mut renderer = Renderer::<F, L>::new(
+        let mut renderer = Renderer::<F, L>::of(
             active,
             InputLimits::device(step_s),
             F::from_f64(settings.rad_per_count()),
@@ -106,7 +106,7 @@ impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
                 Some(shaft) => *shaft,
                 None => break,
             };
-            let shown = renderer.tick(&Sample::Taken(shaft), |_| {});
+            let shown = renderer.render(&Sample::Taken(shaft), |_| {});
             let (shown_nm, model_nm) = (shown.torque_nm.to_f64(), shown.model_torque_nm.to_f64());
             hand.tick(travel_rad, shown_nm);
             unguarded.tick(travel_rad, model_nm);

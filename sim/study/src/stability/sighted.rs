@@ -1,7 +1,7 @@
 //! A joint behind the check of its input, stepped like any other: a step that
 //! is no number is a sample that was not taken.
 
-use crepitus_model::guarded::{InputLimits, Sample};
+use crepitus_model::render::input_check::{InputLimits, Sample};
 use crepitus_model::{Active, Event, Guarded, Phase, Real, ShaftStep, StickSlip};
 
 /// The step of a sample that was not taken.

@@ -6,7 +6,7 @@ use crate::sampling::Sampling;
 use crate::stability::changed::SLEW_NM_PER_S;
 use crepitus_model::locate::ExactEvents;
 use crepitus_model::oscillator::Oscillator;
-use crepitus_model::ramp::Ramp;
+use crepitus_model::render::ramp::Ramp;
 use crepitus_model::{
     Active, Frozen, Parameters, Settings, SettingsError, ShaftStep, StickSlip, Validated,
 };

@@ -1,0 +1,279 @@
+//! What a device renders: one pipeline from a sample of the shaft to a torque.
+//!
+//! ```text
+//!            Check          Symptom                       Addition   Addition   Limits
+//! sample ─> InputCheck ─> Crepitus ─ turn-back guard ─(+)──(+)────> TorqueLimits ─> torque
+//!                            ↑                         │    │
+//!                  commit ─ Ramp      SlewedCompensation    RingingBone
+//! ```
+//!
+//! Each place takes any type of its trait. `()` is an absent stage: it has no
+//! state and costs no instruction. An `Option` is one that is switched while
+//! the device runs. The drive and every run of a scene with a device use the
+//! same stages; a bare solver on its own stands in [`Bare`].
+//!
+//! Every reason why less than what the model asks for is shown has a name, a
+//! [`Limit`]; the last one that acts is reported.
+
+pub mod additions;
+pub mod bone_shaping;
+pub mod crepitus;
+pub mod friction_compensation;
+pub mod guarded;
+pub mod held;
+pub mod input_check;
+pub mod limits;
+pub mod ramp;
+pub mod turn_back;
+
+use crate::event::Event;
+use crate::phase::Phase;
+use crate::real::Real;
+use crate::shaft::ShaftStep;
+use crate::stick_slip::StickSlip;
+use core::marker::PhantomData;
+use input_check::{Checked, Sample};
+
+/// Why the torque shown is not the one that the model asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Limit {
+    /// It is.
+    #[default]
+    None,
+    /// The joint's largest torque.
+    Torque,
+    /// Torque grows at most as fast as this: after arming, or of what
+    /// compensates friction.
+    Slew,
+    /// The hand has turned back inside a slip: nothing is shown until it ends.
+    TurnedBack,
+    /// The shaft is out of sight: the last torque is held, then released.
+    Holding,
+    /// There is no torque: the device is not armed.
+    NotArmed,
+}
+
+/// What a tick shows, as far as the stages have come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shown<F> {
+    /// The torque to show, N·m: T > 0 opposes growing angle.
+    pub torque_nm: F,
+    /// What the symptoms ask for before any guard or limit, N·m.
+    pub model_torque_nm: F,
+    /// Sum of the jumps of the symptoms' torque in this tick, N·m.
+    pub jump_nm: F,
+    /// What the stick-slip object does; stick without one.
+    pub phase: Phase,
+    /// Parameters are on their way.
+    pub settling: bool,
+    /// Why it is not more.
+    pub limit: Limit,
+}
+
+impl<F: Real> Shown<F> {
+    /// Nothing.
+    #[inline]
+    pub fn nothing() -> Self {
+        Self {
+            torque_nm: F::ZERO,
+            model_torque_nm: F::ZERO,
+            jump_nm: F::ZERO,
+            phase: Phase::Stick,
+            settling: false,
+            limit: Limit::None,
+        }
+    }
+}
+
+/// What a tick knows of the shaft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen<F> {
+    /// Its motion since the last sample that was taken.
+    pub sample: Sample<F>,
+    /// Its velocity as far as known, rad/s; also where this sample is lost.
+    pub omega_rad_s: F,
+}
+
+/// Decides what symptoms may believe of a sample.
+pub trait Check<F> {
+    /// Takes in a sample.
+    fn check(&mut self, sample: &Sample<F>) -> Checked<F>;
+}
+
+/// Renders a disorder.
+pub trait Symptom<F> {
+    /// One tick: its torque, and in `shown` what else there is to say. Events
+    /// come in the order of time; an event's fraction is that of the time since
+    /// the last good sample.
+    fn tick(
+        &mut self,
+        input: &Checked<F>,
+        shown: &mut Shown<F>,
+        on_event: &mut impl FnMut(Event<F>),
+    ) -> Torque<F>;
+}
+
+/// The torque of symptoms, N·m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Torque<F> {
+    /// What is to be shown.
+    pub shown_nm: F,
+    /// What it would be without a guard.
+    pub model_nm: F,
+}
+
+/// Adds to the torque of the symptoms.
+pub trait Addition<F> {
+    /// One tick.
+    fn tick(&mut self, seen: &Seen<F>, shown: &mut Shown<F>);
+}
+
+/// Holds the torque within what is allowed.
+pub trait Limits<F> {
+    /// One tick.
+    fn tick(&mut self, shown: &mut Shown<F>);
+}
+
+/// The stages of a device, in their order.
+#[derive(Clone, Debug)]
+pub struct Pipeline<F, I, S, C = (), B = (), L = ()> {
+    /// The check of its input.
+    pub check: I,
+    /// The symptoms.
+    pub symptoms: S,
+    /// What works against the device's own friction.
+    pub compensation: C,
+    /// What the jumps of the symptoms strike.
+    pub bone: B,
+    /// What it may not do.
+    pub limits: L,
+    precision: PhantomData<F>,
+}
+
+impl<F: Real, I: Check<F>, S: Symptom<F>, C: Addition<F>, B: Addition<F>, L: Limits<F>>
+    Pipeline<F, I, S, C, B, L>
+{
+    /// Of these stages.
+    pub fn new(check: I, symptoms: S, compensation: C, bone: B, limits: L) -> Self {
+        Self {
+            check,
+            symptoms,
+            compensation,
+            bone,
+            limits,
+            precision: PhantomData,
+        }
+    }
+
+    /// One tick.
+    #[inline]
+    pub fn tick(&mut self, seen: &Seen<F>, mut on_event: impl FnMut(Event<F>)) -> Shown<F> {
+        let mut shown = Shown::nothing();
+        let input = self.check.check(&seen.sample);
+        let torque = self.symptoms.tick(&input, &mut shown, &mut on_event);
+        shown.torque_nm = torque.shown_nm;
+        shown.model_torque_nm = torque.model_nm;
+        self.compensation.tick(seen, &mut shown);
+        self.bone.tick(seen, &mut shown);
+        self.limits.tick(&mut shown);
+        shown
+    }
+}
+
+/// A solver of the ladder on its own: every sample is a step, and none is made
+/// up for.
+#[derive(Clone, Debug)]
+pub struct Bare<J>(pub J);
+
+impl<F: Real, J: StickSlip<F>> Symptom<F> for Bare<J> {
+    #[inline]
+    fn tick(
+        &mut self,
+        input: &Checked<F>,
+        shown: &mut Shown<F>,
+        on_event: &mut impl FnMut(Event<F>),
+    ) -> Torque<F> {
+        if let Checked::Step(shaft) = input {
+            self.0.step(shaft, |event| {
+                shown.jump_nm += event.torque_after_nm - event.torque_before_nm;
+                on_event(event);
+            });
+        }
+        shown.phase = self.0.phase();
+        let torque_nm = self.0.torque_nm();
+        Torque {
+            shown_nm: torque_nm,
+            model_nm: torque_nm,
+        }
+    }
+}
+
+impl<F: Real> Check<F> for () {
+    #[inline]
+    fn check(&mut self, sample: &Sample<F>) -> Checked<F> {
+        match sample {
+            Sample::Taken(shaft) => Checked::Step(*shaft),
+            Sample::Lost => Checked::Missing(1),
+        }
+    }
+}
+
+impl<F: Real> Symptom<F> for () {
+    #[inline]
+    fn tick(
+        &mut self,
+        _: &Checked<F>,
+        _: &mut Shown<F>,
+        _: &mut impl FnMut(Event<F>),
+    ) -> Torque<F> {
+        Torque {
+            shown_nm: F::ZERO,
+            model_nm: F::ZERO,
+        }
+    }
+}
+
+impl<F: Real, S: Symptom<F>> Symptom<F> for Option<S> {
+    #[inline]
+    fn tick(
+        &mut self,
+        input: &Checked<F>,
+        shown: &mut Shown<F>,
+        on_event: &mut impl FnMut(Event<F>),
+    ) -> Torque<F> {
+        match self {
+            Some(symptom) => symptom.tick(input, shown, on_event),
+            None => Symptom::tick(&mut (), input, shown, on_event),
+        }
+    }
+}
+
+impl<F> Addition<F> for () {
+    #[inline]
+    fn tick(&mut self, _: &Seen<F>, _: &mut Shown<F>) {}
+}
+
+impl<F, A: Addition<F>> Addition<F> for Option<A> {
+    #[inline]
+    fn tick(&mut self, seen: &Seen<F>, shown: &mut Shown<F>) {
+        if let Some(addition) = self {
+            addition.tick(seen, shown);
+        }
+    }
+}
+
+impl<F> Limits<F> for () {
+    #[inline]
+    fn tick(&mut self, _: &mut Shown<F>) {}
+}
+
+impl<F: Real> Seen<F> {
+    /// A sample that was taken.
+    #[inline]
+    pub fn taken(shaft: &ShaftStep<F>) -> Self {
+        Self {
+            sample: Sample::Taken(*shaft),
+            omega_rad_s: shaft.omega_end_rad_s,
+        }
+    }
+}

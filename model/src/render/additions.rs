@@ -1,0 +1,148 @@
+//! How the device adds to the torque of its symptoms while parameters change
+//! under way: no switch makes a jolt.
+
+use super::bone_shaping::BoneShaping;
+use super::friction_compensation::FrictionCompensation;
+use super::input_check::Sample;
+use super::{Addition, Limit, Seen, Shown};
+use crate::real::Real;
+
+/// Friction compensation that follows its law at most as fast as the slew
+/// limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlewedCompensation<F> {
+    law: Option<FrictionCompensation<F>>,
+    /// How far it moves in a tick, N·m.
+    slew_nm: F,
+    /// What it adds now, N·m.
+    now_nm: F,
+}
+
+impl<F: Real> SlewedCompensation<F> {
+    /// Nothing is added yet.
+    pub fn new(law: Option<FrictionCompensation<F>>, slew_nm: F) -> Self {
+        Self {
+            law,
+            slew_nm,
+            now_nm: F::ZERO,
+        }
+    }
+
+    /// From the next tick on towards this law, or none.
+    pub fn change(&mut self, law: Option<FrictionCompensation<F>>, slew_nm: F) {
+        self.law = law;
+        self.slew_nm = slew_nm;
+    }
+
+    /// What it adds now, N·m.
+    pub fn torque_nm(&self) -> F {
+        self.now_nm
+    }
+}
+
+impl<F: Real> Addition<F> for SlewedCompensation<F> {
+    #[inline]
+    fn tick(&mut self, seen: &Seen<F>, shown: &mut Shown<F>) {
+        let target_nm = match &self.law {
+            Some(law) => law.torque_nm(seen.omega_rad_s),
+            None if self.now_nm == F::ZERO => return,
+            None => F::ZERO,
+        };
+        let step_nm = target_nm - self.now_nm;
+        self.now_nm = if step_nm.abs() > self.slew_nm {
+            if shown.limit == Limit::None {
+                shown.limit = Limit::Slew;
+            }
+            self.now_nm + step_nm.within(self.slew_nm)
+        } else {
+            target_nm
+        };
+        shown.torque_nm += self.now_nm;
+    }
+}
+
+/// A bone that rings; one that is exchanged fades out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RingingBone<F> {
+    bone: Option<BoneShaping<F>>,
+    /// How far a bone that is gone fades in a tick, N·m.
+    slew_nm: F,
+    /// What is left of the ringing of a bone that was exchanged, N·m.
+    fading_nm: F,
+    rung_nm: F,
+}
+
+impl<F: Real> RingingBone<F> {
+    /// At rest.
+    pub fn new(bone: Option<BoneShaping<F>>, slew_nm: F) -> Self {
+        Self {
+            bone,
+            slew_nm,
+            fading_nm: F::ZERO,
+            rung_nm: F::ZERO,
+        }
+    }
+
+    /// From the next tick on, another bone, or none.
+    pub fn exchange(&mut self, bone: Option<BoneShaping<F>>) {
+        self.fading_nm += self.rung_nm;
+        self.rung_nm = F::ZERO;
+        self.bone = bone;
+    }
+
+    /// From the next tick on, this slew limit.
+    pub fn set_slew(&mut self, slew_nm: F) {
+        self.slew_nm = slew_nm;
+    }
+
+    /// What it adds now, N·m.
+    pub fn torque_nm(&self) -> F {
+        self.rung_nm + self.fading_nm
+    }
+}
+
+impl<F: Real> Addition<F> for RingingBone<F> {
+    #[inline]
+    fn tick(&mut self, seen: &Seen<F>, shown: &mut Shown<F>) {
+        if let Some(bone) = &mut self.bone {
+            self.rung_nm = rung_nm(bone, seen, shown.jump_nm);
+            shown.torque_nm += self.rung_nm;
+        }
+        if self.fading_nm != F::ZERO {
+            let left_nm = (self.fading_nm.abs() - self.slew_nm).at_least(F::ZERO);
+            self.fading_nm = if self.fading_nm < F::ZERO {
+                -left_nm
+            } else {
+                left_nm
+            };
+            shown.torque_nm += self.fading_nm;
+        }
+    }
+}
+
+/// Without a device around it, the law alone.
+impl<F: Real> Addition<F> for FrictionCompensation<F> {
+    #[inline]
+    fn tick(&mut self, seen: &Seen<F>, shown: &mut Shown<F>) {
+        shown.torque_nm += self.torque_nm(seen.omega_rad_s);
+    }
+}
+
+/// Without a device around it, the bone alone.
+impl<F: Real> Addition<F> for BoneShaping<F> {
+    #[inline]
+    fn tick(&mut self, seen: &Seen<F>, shown: &mut Shown<F>) {
+        shown.torque_nm += rung_nm(self, seen, shown.jump_nm);
+    }
+}
+
+/// Strikes the bone with the jumps of a tick.
+#[inline]
+fn rung_nm<F: Real>(bone: &mut BoneShaping<F>, seen: &Seen<F>, jump_nm: F) -> F {
+    let travel_rad = match seen.sample {
+        Sample::Taken(step) => step.delta_phi_rad,
+        Sample::Lost => F::ZERO,
+    };
+    bone.ring(jump_nm);
+    bone.tick(travel_rad)
+}

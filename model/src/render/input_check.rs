@@ -1,0 +1,201 @@
+//! What is believed of a sample.
+//!
+//! A sample that is no number, or that no shaft can make, never reaches a
+//! symptom; neither does one that was not taken at all. A few missing ticks are
+//! made up for when the shaft is seen again; after more, symptoms are told
+//! where it is now, and not how it came there.
+
+use super::Check;
+use crate::real::Real;
+use crate::shaft::ShaftStep;
+
+/// The most missing ticks that are made up for, step by step.
+pub const CATCH_UP_TICKS: u32 = 3;
+
+/// What a tick brings from the sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sample<F> {
+    /// The shaft's motion since the last sample that was taken.
+    Taken(ShaftStep<F>),
+    /// Nothing.
+    Lost,
+}
+
+/// What symptoms are given of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Checked<F> {
+    /// One step of the shaft.
+    Step(ShaftStep<F>),
+    /// The shaft is seen again after a few missing ticks.
+    CatchUp(Gap<F>),
+    /// The shaft is seen again after more than can be made up for; the step
+    /// says how far it has moved since, and how fast it is now.
+    Resume(ShaftStep<F>),
+    /// The shaft is out of sight, for so many ticks by now.
+    Missing(u32),
+}
+
+/// A gap of at most [`CATCH_UP_TICKS`], and the step that ends it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap<F> {
+    /// The motion since the last good sample.
+    pub shaft: ShaftStep<F>,
+    /// Ticks that are missing.
+    pub missed: u32,
+    /// Velocity at the last good sample, rad/s.
+    pub omega_rad_s: F,
+}
+
+impl<F: Real> Gap<F> {
+    /// Its steps, along a straight line of the velocity that meets both ends,
+    /// each with the ticks before it.
+    #[inline]
+    pub fn steps(&self) -> impl Iterator<Item = (F, ShaftStep<F>)> {
+        let ticks = self.missed.saturating_add(1);
+        let part = self.part();
+        let (from, to) = (self.omega_rad_s, self.shaft.omega_end_rad_s);
+        let rise = (to - from) * part;
+        let travel_rad = self.shaft.delta_phi_rad * part;
+        (0..ticks).map(move |n| {
+            let passed = F::from_whole(u64::from(n));
+            let omega = from + rise * passed;
+            let piece = ShaftStep {
+                delta_phi_rad: travel_rad,
+                omega_start_rad_s: omega,
+                // To the bit at both ends: a rounding error would be a jump.
+                omega_end_rad_s: if n.saturating_add(1) == ticks {
+                    to
+                } else {
+                    omega + rise
+                },
+            };
+            (passed, piece)
+        })
+    }
+
+    /// A tick's share of it.
+    #[inline]
+    pub fn part(&self) -> F {
+        F::ONE / F::from_whole(u64::from(self.missed.saturating_add(1)))
+    }
+}
+
+/// What is believed of a shaft, and how to go on without one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InputLimits<F> {
+    /// The fastest shaft that is believed, rad/s.
+    pub speed_rad_s: F,
+    /// The largest change of its velocity in one tick, rad/s.
+    pub jump_rad_s: F,
+    /// How many ticks the last torque is held.
+    pub hold_ticks: u32,
+    /// How far the torque falls in a tick after that, N·m.
+    pub release_nm: F,
+}
+
+impl<F: Real> InputLimits<F> {
+    /// The device's: seven times the fastest its motor can turn the joint
+    /// (420 deg/s), a millisecond of hold at 20 kHz, and release at
+    /// 100 N·m/s.
+    pub fn device(step_s: f64) -> Self {
+        Self {
+            speed_rad_s: F::from_f64(50.0),
+            jump_rad_s: F::from_f64(10.0),
+            hold_ticks: 20,
+            release_nm: F::from_f64(100.0 * step_s),
+        }
+    }
+}
+
+/// What samples were not used; counters stop at their largest value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct InputCounters {
+    /// Samples that were not taken.
+    pub lost: u32,
+    /// Samples that were refused: no numbers, or no motion of a shaft.
+    pub refused: u32,
+}
+
+/// The check of a device's input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InputCheck<F> {
+    speed_rad_s: F,
+    jump_rad_s: F,
+    /// Travel of a tick that is believed, rad.
+    reach_rad: F,
+    counters: InputCounters,
+    /// Ticks since the last good sample.
+    missed: u32,
+    omega_rad_s: F,
+}
+
+impl<F: Real> InputCheck<F> {
+    /// For ticks of `step_s` and a shaft that moves with `omega_rad_s`.
+    pub fn new(limits: &InputLimits<F>, step_s: F, omega_rad_s: F) -> Self {
+        Self {
+            speed_rad_s: limits.speed_rad_s,
+            jump_rad_s: limits.jump_rad_s,
+            // Twice: the speed within a gap may have been above that at its
+            // ends, and a count comes whole.
+            reach_rad: F::TWO * limits.speed_rad_s * step_s,
+            counters: InputCounters::default(),
+            missed: 0,
+            omega_rad_s,
+        }
+    }
+
+    /// What was not used so far.
+    pub fn counters(&self) -> InputCounters {
+        self.counters
+    }
+
+    /// Whether a shaft can have made this step. A NaN passes no comparison.
+    #[inline]
+    fn believes(&self, shaft: &ShaftStep<F>) -> bool {
+        let mut reach = self.reach_rad;
+        if self.missed > 0 {
+            reach = reach * F::from_whole(u64::from(self.missed).saturating_add(1));
+        }
+        shaft.omega_start_rad_s.abs() <= self.speed_rad_s
+            && shaft.omega_end_rad_s.abs() <= self.speed_rad_s
+            && (shaft.omega_end_rad_s - shaft.omega_start_rad_s).abs() <= self.jump_rad_s
+            && shaft.delta_phi_rad.abs() <= reach
+    }
+
+    /// A tick without a shaft.
+    fn miss(&mut self) -> Checked<F> {
+        self.missed = self.missed.saturating_add(1);
+        Checked::Missing(self.missed)
+    }
+}
+
+impl<F: Real> Check<F> for InputCheck<F> {
+    #[inline]
+    fn check(&mut self, sample: &Sample<F>) -> Checked<F> {
+        match sample {
+            Sample::Taken(shaft) if self.believes(shaft) => {
+                let missed = core::mem::take(&mut self.missed);
+                let omega_rad_s = core::mem::replace(&mut self.omega_rad_s, shaft.omega_end_rad_s);
+                if missed == 0 {
+                    Checked::Step(*shaft)
+                } else if missed <= CATCH_UP_TICKS {
+                    Checked::CatchUp(Gap {
+                        shaft: *shaft,
+                        missed,
+                        omega_rad_s,
+                    })
+                } else {
+                    Checked::Resume(*shaft)
+                }
+            }
+            Sample::Taken(_) => {
+                self.counters.refused = self.counters.refused.saturating_add(1);
+                self.miss()
+            }
+            Sample::Lost => {
+                self.counters.lost = self.counters.lost.saturating_add(1);
+                self.miss()
+            }
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! What a device may ask of its motor.
+//!
+//! While the bridge floats nothing is asked; from arming on, what may be asked
+//! for grows with the slew limit up to the joint's largest torque, so a stick
+//! that is full of torque does not jolt.
+
+use super::{Limit, Limits, Shown};
+use crate::real::Real;
+
+/// The largest torque, and how fast it may be reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorqueLimits<F> {
+    most_nm: F,
+    /// How much may be asked for more in a tick, N·m.
+    slew_nm: F,
+    /// What may be asked for as yet, N·m.
+    allowance_nm: F,
+    is_energised: bool,
+}
+
+impl<F: Real> TorqueLimits<F> {
+    /// Of a device that is not armed.
+    pub fn new(most_nm: F, slew_nm: F) -> Self {
+        Self {
+            most_nm,
+            slew_nm,
+            allowance_nm: F::ZERO,
+            is_energised: false,
+        }
+    }
+
+    /// Of a device that was armed long ago.
+    pub fn armed(most_nm: F, slew_nm: F) -> Self {
+        Self {
+            allowance_nm: most_nm,
+            is_energised: true,
+            ..Self::new(most_nm, slew_nm)
+        }
+    }
+
+    /// From the next tick on, these numbers.
+    pub fn change(&mut self, most_nm: F, slew_nm: F) {
+        self.most_nm = most_nm;
+        self.slew_nm = slew_nm;
+    }
+
+    /// Whether the bridge is driven in the next tick.
+    #[inline]
+    pub fn set_energised(&mut self, is_energised: bool) {
+        self.is_energised = is_energised;
+    }
+}
+
+impl<F: Real> Limits<F> for TorqueLimits<F> {
+    #[inline]
+    fn tick(&mut self, shown: &mut Shown<F>) {
+        if !self.is_energised {
+            self.allowance_nm = F::ZERO;
+            shown.torque_nm = F::ZERO;
+            shown.limit = Limit::NotArmed;
+            return;
+        }
+        let most_nm = if self.allowance_nm > self.most_nm {
+            // It was lowered, and is followed as torque is: no jolt.
+            (self.allowance_nm - self.slew_nm).at_least(self.most_nm)
+        } else {
+            (self.allowance_nm + self.slew_nm).at_most(self.most_nm)
+        };
+        self.allowance_nm = most_nm;
+        // A torque that is no number is above nothing: it passes, and is noticed
+        // by what follows.
+        if shown.torque_nm.abs() > most_nm {
+            self.cut(shown);
+        }
+    }
+}
+
+impl<F: Real> TorqueLimits<F> {
+    /// Shows no more than the allowance.
+    fn cut(&self, shown: &mut Shown<F>) {
+        let (wanted_nm, most_nm) = (shown.torque_nm, self.allowance_nm);
+        shown.limit = if most_nm < self.most_nm || most_nm > self.most_nm {
+            Limit::Slew
+        } else {
+            Limit::Torque
+        };
+        shown.torque_nm = if wanted_nm < F::ZERO { -most_nm } else { most_nm };
+    }
+}
