@@ -11,8 +11,8 @@
 
 mod support;
 
-use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::ExactEvents;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::render::ramp::Ramp;
 use crepitus_model::{
     Active, Frozen, Parameters, Phase, Real, Renderer, Restart, Sample, Settings, ShaftStep,

@@ -10,11 +10,11 @@
 
 mod support;
 
-use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::current_loop::CurrentLoopSettings;
 use crepitus_model::energy_observer::MOST_DELAY_TICKS;
-use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::locate::ExactEvents;
+use crepitus_model::render::bone_shaping::BoneShapingSettings;
+use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::{
     Active, BoneShaping, CurrentLoop, FrictionCompensation, Frozen, Real, Settings, ShaftStep,
     StickSlip, Tabled,

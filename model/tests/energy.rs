@@ -18,9 +18,9 @@
 mod support;
 
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::ExactEvents;
 use crepitus_model::presets::PRESETS;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::{Active, EnergyObserver, Parameters, Renderer, Sample, Settings, ShaftStep};
 use proptest::prelude::*;
 

@@ -2,9 +2,9 @@
 //! a gap, tell apart.
 #![allow(missing_docs)]
 
+use crepitus_model::locate::ExactEvents;
 use crepitus_model::render::Limit;
 use crepitus_model::render::input_check::InputLimits;
-use crepitus_model::locate::ExactEvents;
 use crepitus_model::render::ramp::Ramp;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{

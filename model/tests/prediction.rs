@@ -24,10 +24,10 @@
 )]
 
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::render::Limit;
-use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::ExactEvents;
 use crepitus_model::presets::PRESETS;
+use crepitus_model::render::Limit;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::{Active, Parameters, Phase, Renderer, Sample, Settings, ShaftStep, StickSlip};
 
 const TICK_S: f64 = 5e-5;

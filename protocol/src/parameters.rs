@@ -7,14 +7,14 @@
 //! meaning; new parameters are appended.
 
 use crate::settings::ValueError;
-use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::current_loop::CurrentLoopSettings;
 use crepitus_model::device_limits::{LimitSettings, TORQUE_CONSTANT};
 use crepitus_model::encoder::ENCODER_PARAMETERS;
-use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::parameters::{
     INERTIA, KINETIC_TORQUE, ParameterSpec, STATIC_TORQUE, STIFFNESS, Tabled,
 };
+use crepitus_model::render::bone_shaping::BoneShapingSettings;
+use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};

@@ -2,12 +2,12 @@
 //! checked: what people set, before it becomes what a tick uses.
 
 use crate::parameters::{PARAMETER_COUNT, Values, id};
-use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::current_loop::CurrentLoopSettings;
 use crepitus_model::device_limits::LimitSettings;
 use crepitus_model::encoder::EncoderSettings;
-use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::parameters::{DAMPING, Parameters, Tabled};
+use crepitus_model::render::bone_shaping::BoneShapingSettings;
+use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::render::turn_back::most_rad_per_count;
 use crepitus_model::{Convention, Restart, Settings, Validated};
 use postcard::experimental::max_size::MaxSize;

@@ -5,10 +5,10 @@
 //! for the idle loop: the tick finds a [`Prepared`] and takes it over whole,
 //! between two blocks of telemetry.
 
-use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::current_loop::{CurrentLoop, CurrentLoopSettings};
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::energy_observer::MOST_DELAY_TICKS;
+use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::render::ramp::Ramp;
 use crepitus_model::{
     Active, BoneShaping, FrictionCompensation, Settings, SettingsError, Validated,

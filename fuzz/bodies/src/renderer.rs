@@ -14,9 +14,9 @@ use crate::laws::{self, Events};
 use crate::rung;
 use crate::shaft::Shaft;
 use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
 use crepitus_model::render::Limit;
 use crepitus_model::render::input_check::InputLimits;
-use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
 use crepitus_model::shaft::Linear;
 use crepitus_model::{Active, Convention, Frozen, Phase, Real, Renderer, ShaftStep, StickSlip};
 

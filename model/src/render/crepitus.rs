@@ -100,9 +100,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Symptom<F> for Crepitus<F, L> {
         let joint = self.held.joint();
         let model_nm = joint.torque_nm();
         match input {
-            Checked::Step(shaft)
-            | Checked::Resume(shaft)
-            | Checked::CatchUp(Gap { shaft, .. }) => {
+            Checked::Step(shaft) | Checked::Resume(shaft) | Checked::CatchUp(Gap { shaft, .. }) => {
                 self.turn_back
                     .moved(shaft.delta_phi_rad, joint.phase(), joint.slip_number());
             }
@@ -129,12 +127,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Symptom<F> for Crepitus<F, L> {
 
 impl<F: Real, L: Locate<F, Shape = Linear>> Renderer<F, L> {
     /// See [`Crepitus::new`].
-    pub fn of(
-        active: Active<F>,
-        limits: InputLimits<F>,
-        rad_per_count: F,
-        omega_rad_s: F,
-    ) -> Self {
+    pub fn of(active: Active<F>, limits: InputLimits<F>, rad_per_count: F, omega_rad_s: F) -> Self {
         let step_s = active.step_s;
         Self::new(
             InputCheck::new(&limits, step_s, omega_rad_s),

@@ -99,9 +99,9 @@ impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
 mod tests {
     use super::*;
     use crate::frozen::Frozen;
+    use crate::locate::ExactEvents;
     use crate::render::input_check::CATCH_UP_TICKS;
     use crate::shaft::ShaftStep;
-    use crate::locate::ExactEvents;
     use crate::{Active, Phase, Settings};
     use std::vec::Vec;
 

@@ -84,6 +84,10 @@ impl<F: Real> TorqueLimits<F> {
         } else {
             Limit::Torque
         };
-        shown.torque_nm = if wanted_nm < F::ZERO { -most_nm } else { most_nm };
+        shown.torque_nm = if wanted_nm < F::ZERO {
+            -most_nm
+        } else {
+            most_nm
+        };
     }
 }

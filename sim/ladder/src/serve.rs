@@ -5,15 +5,15 @@ use crate::measured::{Joint, Measured, Rendered, step};
 use crate::plan::Plan;
 use crate::subject::Subject;
 use core::hint::black_box;
-use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::current_loop::CurrentLoopSettings;
 use crepitus_model::device_limits::LimitSettings;
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::energy_observer::MOST_DELAY_TICKS;
-use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
-use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::real::Real;
+use crepitus_model::render::bone_shaping::BoneShapingSettings;
+use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
     Active, BoneShaping, CurrentLoop, FrictionCompensation, Guarded, Renderer, SettingsError,

@@ -15,6 +15,7 @@ mod sensor;
 mod stepping;
 mod summary;
 mod tally;
+mod watch;
 
 pub use coupled::{FELT_COLUMN, STRUCK_COLUMN};
 pub use lead::Lead;
@@ -31,6 +32,7 @@ use crepitus_model::{Real, SettingsError};
 use crepitus_plant::assembly::Assembled;
 use std::convert::Infallible;
 use std::time::Instant;
+use watch::{Ended, Watch, watched};
 
 /// Sees a run go by.
 pub trait Observer {
@@ -163,7 +165,7 @@ pub fn rows(scene: &Scene) -> u64 {
 /// What the observer returns, or settings that cannot work together.
 pub fn run<O: Observer>(scene: &Scene, observer: &mut O) -> Result<Summary, RunError<O::Error>> {
     let begun = Instant::now();
-    let totals = simulate(scene, observer)?;
+    let totals = watched(observer, |watch| simulate(scene, watch))?;
     let wall_s = begun.elapsed().as_secs_f64();
     Ok(summary::summarise(scene, &totals, wall_s))
 }
@@ -181,30 +183,30 @@ pub fn measure_costs(scene: &Scene, summary: &mut Summary) {
 }
 
 /// Runs `scene` without timing anything.
-fn simulate<O: Observer>(scene: &Scene, observer: &mut O) -> Result<Totals, RunError<O::Error>> {
+fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, Ended> {
     match scene.solver {
-        SolverChoice::Reference => event_driven::simulate(scene, observer),
+        SolverChoice::Reference => event_driven::simulate(scene, watch),
         SolverChoice::Ladder {
             solver,
             step_s,
             precision,
         } => match precision {
-            Precision::F32 => step_through::<f32, O>(scene, solver, step_s, observer),
-            Precision::F64 => step_through::<f64, O>(scene, solver, step_s, observer),
+            Precision::F32 => step_through::<f32>(scene, solver, step_s, watch),
+            Precision::F64 => step_through::<f64>(scene, solver, step_s, watch),
         },
     }
 }
 
-fn step_through<F: Real, O: Observer>(
+fn step_through<F: Real>(
     scene: &Scene,
     solver: Solver,
     step_s: f64,
-    observer: &mut O,
-) -> Result<Totals, RunError<O::Error>> {
+    watch: &mut dyn Watch,
+) -> Result<Totals, Ended> {
     if scene.is_coupled() {
-        coupled::simulate::<F, O>(scene, solver, observer)
+        coupled::simulate::<F>(scene, solver, watch)
     } else {
-        stepping::simulate::<F, O>(scene, solver, step_s, observer)
+        stepping::simulate::<F>(scene, solver, step_s, watch)
     }
 }
 

@@ -2,8 +2,8 @@
 //! energy.
 
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::ExactEvents;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::{
     Active, EnergyObserver, Phase, Renderer, Sample, Settings, ShaftStep, StickSlip, Validated,
 };

@@ -3,7 +3,8 @@
 
 use super::device::{Device, device};
 use super::stepping::{CHECK_STEPS, PROGRESS_STEPS};
-use super::{Diverged, Observer, RunError, Totals, step_s, steps};
+use super::watch::{Ended, Watch};
+use super::{Diverged, RunError, Totals, step_s, steps};
 use crate::scene::Scene;
 use crate::trace::EventRecord;
 use crate::walk::Walk;
@@ -83,11 +84,11 @@ struct Stage {
 }
 
 /// Runs a scene with a plant.
-pub(super) fn simulate<F: Real, O: Observer>(
+pub(super) fn simulate<F: Real>(
     scene: &Scene,
     solver: Solver,
-    observer: &mut O,
-) -> Result<Totals, RunError<O::Error>> {
+    watch: &mut dyn Watch,
+) -> Result<Totals, Ended> {
     let tick_s = step_s(scene);
     let Assembled { plant, stages } = scene.assemble()?;
     let shaft = plant.shaft();
@@ -105,7 +106,7 @@ pub(super) fn simulate<F: Real, O: Observer>(
             .collect(),
         tick_s,
     };
-    run.go(scene, observer)
+    run.go(scene, watch)
 }
 
 struct Run {
@@ -118,12 +119,9 @@ struct Run {
 }
 
 impl Run {
-    fn go<O: Observer>(
-        mut self,
-        scene: &Scene,
-        observer: &mut O,
-    ) -> Result<Totals, RunError<O::Error>> {
+    fn go(mut self, scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, Ended> {
         let (steps, every) = steps(scene);
+        let wants_rows = watch.wants_rows();
         let parts = scene.substeps;
         let mut walk = Walk::new(&scene.motion, self.tick_s / f64::from(parts));
         let is_felt = scene.is_held();
@@ -139,7 +137,7 @@ impl Run {
         loop {
             let before = self.plant.shaft();
             fastest_rad_s = fastest_rad_s.max(before.omega_rad_s.abs());
-            if O::WANTS_ROWS && n % every == 0 {
+            if wants_rows && n % every == 0 {
                 row.clear();
                 row.extend([time_s, before.angle_rad, before.omega_rad_s]);
                 self.device.write(&mut row);
@@ -151,7 +149,7 @@ impl Run {
                         row.push(struck_nms);
                     }
                 }
-                observer.row(&row).map_err(RunError::Observer)?;
+                watch.row(&row)?;
             }
             if (n % CHECK_STEPS == 0 || n == steps)
                 && !(self.device.is_finite() && before.angle_rad.is_finite())
@@ -159,7 +157,7 @@ impl Run {
                 return Err(RunError::Diverged(diverged(scene, time_s)));
             }
             if n % PROGRESS_STEPS == 0 {
-                observer.progress(time_s).map_err(RunError::Observer)?;
+                watch.progress(time_s)?;
             }
             if n == steps {
                 break;
@@ -184,10 +182,10 @@ impl Run {
             self.device
                 .tick(time_s, &before, &after, &mut |event: &EventRecord| {
                     if result.is_ok() {
-                        result = observer.event(event);
+                        result = watch.event(event);
                     }
                 });
-            result.map_err(RunError::Observer)?;
+            result?;
             time_s = walk.time_s();
         }
         let (tally, crowded_steps) = self.device.finish(time_s).unzip();

@@ -3,7 +3,8 @@
 
 use super::lead::Lead;
 use super::tally::{StickEnd, Tally};
-use super::{Observer, RunError, Totals, steps};
+use super::watch::{Ended, Stopped, Watch};
+use super::{Totals, steps};
 use crate::reference::{Follow, Reference};
 use crate::scene::Scene;
 use crate::trace::EventRecord;
@@ -23,11 +24,9 @@ const LOOKS_PER_SWING: f64 = 64.0;
 /// The most looks between two rows.
 const MOST_LOOKS: f64 = 1e6;
 
-pub(super) fn simulate<O: Observer>(
-    scene: &Scene,
-    observer: &mut O,
-) -> Result<Totals, RunError<O::Error>> {
+pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, Ended> {
     let (rows, _) = steps(scene);
+    let wants_rows = watch.wants_rows();
     let clock = Clock::new(scene.trace_step_s);
     let first = scene.motion.at(0.0);
     let mut fastest_rad_s = first.omega_rad_s.abs();
@@ -43,11 +42,11 @@ pub(super) fn simulate<O: Observer>(
         let time_s = clock.time_s(n);
         row.clear();
         if let Some((reference, books)) = &mut joint {
-            books.follow(time_s, reference, observer)?;
+            books.follow(time_s, reference, watch)?;
             books.end_row(time_s, reference);
             let shaft = reference.shaft();
             fastest_rad_s = fastest_rad_s.max(shaft.omega_rad_s.abs());
-            if O::WANTS_ROWS {
+            if wants_rows {
                 row.extend([
                     time_s,
                     shaft.phi_rad,
@@ -61,21 +60,21 @@ pub(super) fn simulate<O: Observer>(
         } else {
             let shaft = scene.motion.at(time_s);
             fastest_rad_s = fastest_rad_s.max(shaft.omega_rad_s.abs());
-            if O::WANTS_ROWS {
+            if wants_rows {
                 row.extend([time_s, shaft.phi_rad, shaft.omega_rad_s]);
             }
         }
-        if O::WANTS_ROWS {
-            observer.row(&row).map_err(RunError::Observer)?;
+        if wants_rows {
+            watch.row(&row)?;
         }
         if n.is_multiple_of(PROGRESS_ROWS) {
-            observer.progress(time_s).map_err(RunError::Observer)?;
+            watch.progress(time_s)?;
         }
     }
     // What is left after the last row has events, too.
     let end_s = scene.duration_s.max(clock.time_s(rows));
     if let Some((reference, books)) = &mut joint {
-        books.follow(end_s, reference, observer)?;
+        books.follow(end_s, reference, watch)?;
         books.end_row(end_s, reference);
     }
     let tally = joint.map(|(reference, mut books)| {
@@ -126,12 +125,12 @@ impl<'a> Books<'a> {
     }
 
     /// Goes on to `to_s`, with looks at slips on the way.
-    fn follow<O: Observer>(
+    fn follow(
         &mut self,
         to_s: f64,
         reference: &mut Reference<'_>,
-        observer: &mut O,
-    ) -> Result<(), RunError<O::Error>> {
+        watch: &mut dyn Watch,
+    ) -> Result<(), Ended> {
         let (from_s, span_s) = (self.looked_s, to_s - self.looked_s);
         let looks = (span_s / self.look_s).ceil().clamp(1.0, MOST_LOOKS);
         let mut look = 1.0;
@@ -141,12 +140,9 @@ impl<'a> Books<'a> {
             } else {
                 to_s
             };
-            let mut booked = Booked {
-                books: self,
-                observer,
-            };
-            if let ControlFlow::Break(error) = reference.follow(time_s, &mut booked) {
-                return Err(RunError::Observer(error));
+            let mut booked = Booked { books: self, watch };
+            if let ControlFlow::Break(stopped) = reference.follow(time_s, &mut booked) {
+                return Err(stopped.into());
             }
             if let Phase::Slip(_) = reference.phase() {
                 self.tally.lead.look_for(
@@ -192,25 +188,22 @@ impl<'a> Books<'a> {
     }
 }
 
-/// Books what happens and tells the observer, who may end the run.
-struct Booked<'b, 'a, O> {
+/// Books what happens and tells whoever watches, who may end the run.
+struct Booked<'b, 'a> {
     books: &'b mut Books<'a>,
-    observer: &'b mut O,
+    watch: &'b mut dyn Watch,
 }
 
-impl<O: Observer> Follow for Booked<'_, '_, O> {
-    type Stop = O::Error;
+impl Follow for Booked<'_, '_> {
+    type Stop = Stopped;
 
-    fn event(&mut self, event: Event<f64>) -> ControlFlow<O::Error> {
+    fn event(&mut self, event: Event<f64>) -> ControlFlow<Stopped> {
         self.books.book(&event);
-        flow(
-            self.observer
-                .event(&EventRecord::new(event.fraction, &event)),
-        )
+        flow(self.watch.event(&EventRecord::new(event.fraction, &event)))
     }
 
-    fn poll(&mut self, time_s: f64) -> ControlFlow<O::Error> {
-        flow(self.observer.progress(time_s))
+    fn poll(&mut self, time_s: f64) -> ControlFlow<Stopped> {
+        flow(self.watch.progress(time_s))
     }
 }
 

@@ -82,13 +82,7 @@ impl Lead {
     }
 
     /// A look that stands for `dt_s`.
-    pub fn look_for(
-        &mut self,
-        dt_s: f64,
-        sign: f64,
-        omega_rad_s: f64,
-        theta_dot_rad_s: f64,
-    ) {
+    pub fn look_for(&mut self, dt_s: f64, sign: f64, omega_rad_s: f64, theta_dot_rad_s: f64) {
         let behind_rad_s = -sign * (omega_rad_s - theta_dot_rad_s);
         if behind_rad_s > self.rounding * (omega_rad_s.abs() + theta_dot_rad_s.abs()) {
             self.behind_s += dt_s;

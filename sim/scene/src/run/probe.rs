@@ -2,6 +2,7 @@
 //! time. What is compared takes turns, so that a drift of the machine's speed
 //! hits all alike.
 
+use super::watch::watched;
 use super::{Blind, simulate, step_s};
 use crate::cpu_time;
 use crate::scene::{Scene, SolverChoice};
@@ -154,7 +155,7 @@ pub(super) fn costs(scene: &Scene) -> Vec<Cost> {
 #[expect(clippy::cast_precision_loss, reason = "a few thousand")]
 fn time(scene: &Scene) -> f64 {
     let begun = cpu_time::now();
-    let steps = match simulate(scene, &mut Blind) {
+    let steps = match watched(&mut Blind, |watch| simulate(scene, watch)) {
         Ok(totals) => totals.steps,
         Err(_) => return f64::INFINITY,
     };

@@ -3,7 +3,8 @@
 use super::lead::Lead;
 use super::sensor::{Encoded, Ideal, Sensor};
 use super::tally::{StickEnd, Tally};
-use super::{Diverged, Observer, RunError, Totals, steps};
+use super::watch::{Ended, Watch};
+use super::{Diverged, RunError, Totals, steps};
 use crate::scene::Scene;
 use crate::trace::EventRecord;
 use crate::walk::Walk;
@@ -17,35 +18,35 @@ pub(super) const PROGRESS_STEPS: u64 = 1 << 16;
 pub(super) const CHECK_STEPS: u64 = 1 << 10;
 
 /// Chooses the types that the scene calls for, and runs.
-pub(super) fn simulate<F: Real, O: Observer>(
+pub(super) fn simulate<F: Real>(
     scene: &Scene,
     solver: Solver,
     step_s: f64,
-    observer: &mut O,
-) -> Result<Totals, RunError<O::Error>> {
+    watch: &mut dyn Watch,
+) -> Result<Totals, Ended> {
     match &scene.encoder {
-        None => with_sensor::<F, O, _>(scene, solver, step_s, observer, Ideal),
+        None => with_sensor::<F, _>(scene, solver, step_s, watch, Ideal),
         Some(encoder) => {
             let sensor = Encoded::new(encoder, step_s, &scene.start())?;
-            with_sensor::<F, O, _>(scene, solver, step_s, observer, sensor)
+            with_sensor::<F, _>(scene, solver, step_s, watch, sensor)
         }
     }
 }
 
-fn with_sensor<F: Real, O: Observer, S: Sensor<F>>(
+fn with_sensor<F: Real, S: Sensor<F>>(
     scene: &Scene,
     solver: Solver,
     step_s: f64,
-    observer: &mut O,
+    watch: &mut dyn Watch,
     sensor: S,
-) -> Result<Totals, RunError<O::Error>> {
+) -> Result<Totals, Ended> {
     let Some(crepitus) = &scene.crepitus else {
-        return bare(scene, observer, sensor);
+        return bare(scene, watch, sensor);
     };
     let omega = F::from_f64(scene.start().omega_rad_s);
     let run = Run {
         scene,
-        observer,
+        watch,
         settings: *crepitus.settings,
         sensor,
     };
@@ -53,26 +54,25 @@ fn with_sensor<F: Real, O: Observer, S: Sensor<F>>(
 }
 
 /// A scene without a joint: the motion, and perhaps its sensor.
-fn bare<F: Real, O: Observer, S: Sensor<F>>(
+fn bare<F: Real, S: Sensor<F>>(
     scene: &Scene,
-    observer: &mut O,
+    watch: &mut dyn Watch,
     mut sensor: S,
-) -> Result<Totals, RunError<O::Error>> {
+) -> Result<Totals, Ended> {
     let (steps, every) = steps(scene);
+    let wants_rows = watch.wants_rows();
     let mut walk = Walk::new(&scene.motion, super::step_s(scene));
     let mut row = Vec::new();
     let mut fastest_rad_s = walk.now().omega_rad_s.abs();
     loop {
-        if O::WANTS_ROWS && walk.steps().is_multiple_of(every) {
+        if wants_rows && walk.steps().is_multiple_of(every) {
             row.clear();
             row.extend([walk.time_s(), walk.now().angle_rad, walk.now().omega_rad_s]);
             sensor.write(&mut row);
-            observer.row(&row).map_err(RunError::Observer)?;
+            watch.row(&row)?;
         }
         if walk.steps().is_multiple_of(PROGRESS_STEPS) {
-            observer
-                .progress(walk.time_s())
-                .map_err(RunError::Observer)?;
+            watch.progress(walk.time_s())?;
         }
         if walk.steps() == steps {
             break;
@@ -92,24 +92,25 @@ fn bare<F: Real, O: Observer, S: Sensor<F>>(
 }
 
 /// A scene with a joint.
-struct Run<'a, O, S> {
+struct Run<'a, S> {
     scene: &'a Scene,
-    observer: &'a mut O,
+    watch: &'a mut dyn Watch,
     settings: Settings,
     sensor: S,
 }
 
-impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
-    type Output = Result<Totals, RunError<O::Error>>;
+impl<F: Real, S: Sensor<F>> JointVisitor<F> for Run<'_, S> {
+    type Output = Result<Totals, Ended>;
 
     fn visit<J: StickSlip<F>>(self, mut joint: J) -> Self::Output {
         let Self {
             scene,
-            observer,
+            watch,
             settings,
             mut sensor,
         } = self;
         let (steps, every) = steps(scene);
+        let wants_rows = watch.wants_rows();
         let step_s = super::step_s(scene);
         let mut walk = Walk::new(&scene.motion, step_s);
         let mut books = Books::new::<F>(settings, step_s, walk.now().omega_rad_s);
@@ -117,7 +118,7 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
         let mut fastest_rad_s = walk.now().omega_rad_s.abs();
         books.tally.shown(joint.torque_nm().to_f64());
         loop {
-            if O::WANTS_ROWS && walk.steps().is_multiple_of(every) {
+            if wants_rows && walk.steps().is_multiple_of(every) {
                 row.clear();
                 row.extend([
                     walk.time_s(),
@@ -129,7 +130,7 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
                     joint.torque_nm().to_f64(),
                 ]);
                 sensor.write(&mut row);
-                observer.row(&row).map_err(RunError::Observer)?;
+                watch.row(&row)?;
             }
             if (walk.steps().is_multiple_of(CHECK_STEPS) || walk.steps() == steps)
                 && !(joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite())
@@ -141,9 +142,7 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
                 }));
             }
             if walk.steps().is_multiple_of(PROGRESS_STEPS) {
-                observer
-                    .progress(walk.time_s())
-                    .map_err(RunError::Observer)?;
+                watch.progress(walk.time_s())?;
             }
             if walk.steps() == steps {
                 break;
@@ -156,10 +155,10 @@ impl<F: Real, O: Observer, S: Sensor<F>> JointVisitor<F> for Run<'_, O, S> {
             joint.step(&seen, |event| {
                 let record = books.event(start_s, &seen, &event);
                 if result.is_ok() {
-                    result = observer.event(&record);
+                    result = watch.event(&record);
                 }
             });
-            result.map_err(RunError::Observer)?;
+            result?;
             books.end_step(&seen, &joint);
         }
         let (theta, theta_dot) = (joint.theta_rad(), joint.theta_dot_rad_s());

@@ -94,8 +94,7 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError
                 });
                 continue;
             }
-            let (points, lead) =
-                at_step(scene, &truth, &sampling, &contestants, plan, &mut work)?;
+            let (points, lead) = at_step(scene, &truth, &sampling, &contestants, plan, &mut work)?;
             studied.reference_behind_s = lead.behind_s;
             for (curve, point) in curves.iter_mut().zip(points) {
                 curve.push(point);

@@ -10,9 +10,9 @@ use super::subject::Subject;
 use crate::sampling::{Sampling, Walk};
 use crate::true_events::TimedEvent;
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::locate::Locate;
 use crepitus_model::render::Limit;
 use crepitus_model::render::input_check::InputLimits;
-use crepitus_model::locate::Locate;
 use crepitus_model::shaft::Linear;
 use crepitus_model::{
     Active, Event, Real, Renderer, Sample, Settings, SettingsError, ShaftStep, StickSlip, Validated,

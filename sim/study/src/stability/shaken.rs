@@ -7,8 +7,8 @@ use super::observation::Observation;
 use super::subject::Subject;
 use crate::sampling::Sampling;
 use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::locate::Locate;
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::shaft::Linear;
 use crepitus_model::{
     Active, EnergyObserver, Real, Renderer, Sample, Settings, SettingsError, Validated,
