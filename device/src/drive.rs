@@ -238,6 +238,11 @@ impl Drive {
         (!is_other).then(|| self.preparation.values())
     }
 
+    /// What it has rendered last.
+    pub fn rendered(&self) -> Option<&Rendered> {
+        self.rendered.as_ref()
+    }
+
     /// What it has counted.
     pub fn counters(&self) -> &Counters {
         &self.counters

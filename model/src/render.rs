@@ -34,23 +34,25 @@ use crate::stick_slip::StickSlip;
 use core::marker::PhantomData;
 use input_check::{Checked, Sample};
 
-/// Why the torque shown is not the one that the model asks for.
+/// Why the torque shown is not the one that the model asks for. The numbers
+/// are those of the wire, where the motor has 3 and 4.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(u8)]
 pub enum Limit {
     /// It is.
     #[default]
-    None,
+    None = 0,
     /// The joint's largest torque.
-    Torque,
+    Torque = 1,
     /// Torque grows at most as fast as this: after arming, or of what
     /// compensates friction.
-    Slew,
+    Slew = 2,
     /// The hand has turned back inside a slip: nothing is shown until it ends.
-    TurnedBack,
+    TurnedBack = 5,
     /// The shaft is out of sight: the last torque is held, then released.
-    Holding,
+    Holding = 6,
     /// There is no torque: the device is not armed.
-    NotArmed,
+    NotArmed = 7,
 }
 
 /// What a tick shows, as far as the stages have come.
@@ -62,6 +64,10 @@ pub struct Shown<F> {
     pub model_torque_nm: F,
     /// Sum of the jumps of the symptoms' torque in this tick, N·m.
     pub jump_nm: F,
+    /// What friction compensation has added, N·m.
+    pub compensation_nm: F,
+    /// What the ringing of a bone has added, N·m.
+    pub ringing_nm: F,
     /// What the stick-slip object does; stick without one.
     pub phase: Phase,
     /// Parameters are on their way.
@@ -71,6 +77,20 @@ pub struct Shown<F> {
 }
 
 impl<F: Real> Shown<F> {
+    /// The same in f64.
+    pub fn to_f64(&self) -> Shown<f64> {
+        Shown {
+            torque_nm: self.torque_nm.to_f64(),
+            model_torque_nm: self.model_torque_nm.to_f64(),
+            jump_nm: self.jump_nm.to_f64(),
+            compensation_nm: self.compensation_nm.to_f64(),
+            ringing_nm: self.ringing_nm.to_f64(),
+            phase: self.phase,
+            settling: self.settling,
+            limit: self.limit,
+        }
+    }
+
     /// Nothing.
     #[inline]
     pub fn nothing() -> Self {
@@ -78,6 +98,8 @@ impl<F: Real> Shown<F> {
             torque_nm: F::ZERO,
             model_torque_nm: F::ZERO,
             jump_nm: F::ZERO,
+            compensation_nm: F::ZERO,
+            ringing_nm: F::ZERO,
             phase: Phase::Stick,
             settling: false,
             limit: Limit::None,
@@ -173,6 +195,13 @@ impl<F: Real, I: Check<F>, S: Symptom<F>, C: Addition<F>, B: Addition<F>, L: Lim
         let torque = self.symptoms.tick(&input, &mut shown, &mut on_event);
         shown.torque_nm = torque.shown_nm;
         shown.model_torque_nm = torque.model_nm;
+        self.add(seen, shown)
+    }
+
+    /// The stages after the symptoms; on their own, what is shown before the
+    /// first tick.
+    #[inline]
+    pub fn add(&mut self, seen: &Seen<F>, mut shown: Shown<F>) -> Shown<F> {
         self.compensation.tick(seen, &mut shown);
         self.bone.tick(seen, &mut shown);
         self.limits.tick(&mut shown);

@@ -330,9 +330,12 @@ mod tests {
         };
         let refused = Err(ValueError::KineticAboveStatic);
         // Two counts are 71.3 µrad; the drop over the stiffness of the default
-        // is 500 µrad, and at the limit just so much.
+        // is 500 µrad. Near Ts the other condition counts: with x = Ts − Tk and
+        // restart at Ts − 2x it is 12·x² ≥ 8·kr·Δ·(Ts − x).
         let two_counts = 2.0 * EncoderSettings::default().rad_per_count();
-        let at_limit = 0.4 - 400.0 * two_counts;
+        let count_nm = 400.0 * two_counts / 2.0;
+        let drop = (count_nm * count_nm / 9.0 + 0.4 * count_nm * 2.0 / 3.0).sqrt() - count_nm / 3.0;
+        let at_limit = 0.4 - drop;
         assert_eq!(with(&[(id::KINETIC_TORQUE, at_limit - 1e-9)]), Ok(()));
         assert_eq!(with(&[(id::KINETIC_TORQUE, at_limit + 1e-9)]), refused);
         assert_eq!(with(&[(id::STIFFNESS, 0.2 / two_counts - 1e-3)]), Ok(()));

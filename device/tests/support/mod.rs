@@ -7,6 +7,7 @@ mod motor;
 
 use crepitus_device::comms::{self, Comms};
 use crepitus_device::drive::motor::Bridge;
+use crepitus_device::drive::rendering::Rendered;
 use crepitus_device::drive::{self, Drive};
 use crepitus_device::usb_port::HostBytes;
 use crepitus_protocol::frame::FRAME_BYTES;
@@ -61,6 +62,10 @@ pub(crate) struct Bench {
     pub(crate) number: u16,
     replies: Vec<Reply>,
     pub(crate) blocks: Vec<Block>,
+    /// Where the shaft is turned to in the next ticks, and how fast it is then.
+    pub(crate) script: VecDeque<(i32, f64)>,
+    /// What the drive has made of that.
+    pub(crate) rendered: Vec<Rendered>,
     ms: u32,
 }
 
@@ -78,6 +83,8 @@ impl Bench {
             number: 0,
             replies: Vec::new(),
             blocks: Vec::new(),
+            script: VecDeque::new(),
+            rendered: Vec::new(),
             ms: 0,
         }
     }
@@ -111,8 +118,13 @@ impl Bench {
     }
 
     fn tick(&mut self) {
+        let next = self.script.pop_front();
+        self.motor.turned = next.or(self.motor.turned);
         self.drive.sample_encoder(self.motor.counter());
         self.drive.render_torque();
+        if next.is_some() {
+            self.rendered.extend(self.drive.rendered());
+        }
         let outputs = self.drive.command_motor(&drive::command::Inputs {
             current_a: Some(self.motor.current_a()),
             enable_is_on: self.enable[0],

@@ -20,6 +20,8 @@ pub(crate) struct Motor {
     current_a: f64,
     /// Torque of a hand, N·m.
     pub(crate) hand_nm: f64,
+    /// Somebody else turns the shaft: where the counter is, and how fast.
+    pub(crate) turned: Option<(i32, f64)>,
 }
 
 impl Motor {
@@ -40,7 +42,10 @@ impl Motor {
     /// The 32-bit counter of the quadrature timer.
     pub(crate) fn counter(&self) -> u32 {
         #[expect(clippy::cast_possible_truncation, reason = "a small number")]
-        let counts = (self.angle_rad * COUNTS_PER_RAD).floor() as i32;
+        let counts = match self.turned {
+            Some((counts, _)) => counts,
+            None => (self.angle_rad * COUNTS_PER_RAD).floor() as i32,
+        };
         self.start.wrapping_add_signed(counts)
     }
 
@@ -57,6 +62,10 @@ impl Motor {
                         - NM_PER_A * self.omega_rad_s;
                     self.current_a += step_s * over / INDUCTANCE_H;
                 }
+            }
+            if let Some((_, omega_rad_s)) = self.turned {
+                self.omega_rad_s = omega_rad_s;
+                continue;
             }
             let torque_nm =
                 NM_PER_A * self.current_a + self.hand_nm - FRICTION_NMS * self.omega_rad_s;

@@ -105,6 +105,7 @@ Examples:
   crepitus run scenes/fig6-ideal-cycle.toml
   crepitus run slow-examination --out /tmp/exam --solver exact --step 1e-3
   crepitus run high-speed --set effects.crepitus.preset=fine --set duration_s=2
+  crepitus run passive-examination --as-device
 
 SCENE is a file, or the name of a scene that ships. Any key of the scene can be \
 set: PATH is its name with the tables before it, VALUE is written as in the file.")]
@@ -127,6 +128,10 @@ pub(crate) struct RunArguments {
     /// Another precision: f32 or f64.
     #[arg(long, value_name = "PRECISION")]
     pub(crate) precision: Option<String>,
+
+    /// Render as the device does: input check, turn-back guard, slew and torque limits.
+    #[arg(long)]
+    pub(crate) as_device: bool,
 
     /// Set a key of the scene.
     #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value)]

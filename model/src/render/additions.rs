@@ -33,11 +33,6 @@ impl<F: Real> SlewedCompensation<F> {
         self.law = law;
         self.slew_nm = slew_nm;
     }
-
-    /// What it adds now, N·m.
-    pub fn torque_nm(&self) -> F {
-        self.now_nm
-    }
 }
 
 impl<F: Real> Addition<F> for SlewedCompensation<F> {
@@ -57,6 +52,7 @@ impl<F: Real> Addition<F> for SlewedCompensation<F> {
         } else {
             target_nm
         };
+        shown.compensation_nm = self.now_nm;
         shown.torque_nm += self.now_nm;
     }
 }
@@ -94,11 +90,6 @@ impl<F: Real> RingingBone<F> {
     pub fn set_slew(&mut self, slew_nm: F) {
         self.slew_nm = slew_nm;
     }
-
-    /// What it adds now, N·m.
-    pub fn torque_nm(&self) -> F {
-        self.rung_nm + self.fading_nm
-    }
 }
 
 impl<F: Real> Addition<F> for RingingBone<F> {
@@ -106,6 +97,7 @@ impl<F: Real> Addition<F> for RingingBone<F> {
     fn tick(&mut self, seen: &Seen<F>, shown: &mut Shown<F>) {
         if let Some(bone) = &mut self.bone {
             self.rung_nm = rung_nm(bone, seen, shown.jump_nm);
+            shown.ringing_nm = self.rung_nm;
             shown.torque_nm += self.rung_nm;
         }
         if self.fading_nm != F::ZERO {
@@ -115,6 +107,7 @@ impl<F: Real> Addition<F> for RingingBone<F> {
             } else {
                 left_nm
             };
+            shown.ringing_nm += self.fading_nm;
             shown.torque_nm += self.fading_nm;
         }
     }
@@ -124,7 +117,8 @@ impl<F: Real> Addition<F> for RingingBone<F> {
 impl<F: Real> Addition<F> for FrictionCompensation<F> {
     #[inline]
     fn tick(&mut self, seen: &Seen<F>, shown: &mut Shown<F>) {
-        shown.torque_nm += self.torque_nm(seen.omega_rad_s);
+        shown.compensation_nm = self.torque_nm(seen.omega_rad_s);
+        shown.torque_nm += shown.compensation_nm;
     }
 }
 
@@ -132,7 +126,8 @@ impl<F: Real> Addition<F> for FrictionCompensation<F> {
 impl<F: Real> Addition<F> for BoneShaping<F> {
     #[inline]
     fn tick(&mut self, seen: &Seen<F>, shown: &mut Shown<F>) {
-        shown.torque_nm += rung_nm(self, seen, shown.jump_nm);
+        shown.ringing_nm = rung_nm(self, seen, shown.jump_nm);
+        shown.torque_nm += shown.ringing_nm;
     }
 }
 

@@ -51,14 +51,14 @@ pub struct Held<F, J> {
     release_nm: F,
     counters: JointCounters,
     is_holding: bool,
-    held_nm: F,
+    kept_nm: F,
 }
 
 impl<F: Real, J: StickSlip<F>> Held<F, J> {
     /// With these limits for how to go on without a shaft.
     pub fn new(joint: J, limits: &InputLimits<F>) -> Self {
         Self {
-            held_nm: joint.torque_nm(),
+            kept_nm: joint.torque_nm(),
             joint,
             hold_ticks: limits.hold_ticks,
             release_nm: limits.release_nm,
@@ -88,7 +88,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
     #[inline]
     pub fn torque_nm(&self) -> F {
         if self.is_holding {
-            self.joint.active().limited(self.held_nm)
+            self.joint.active().limited(self.kept_nm)
         } else {
             self.joint.torque_nm()
         }
@@ -102,7 +102,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
 
     /// Lets go of a torque that is held.
     pub fn let_go(&mut self) {
-        self.held_nm = F::ZERO;
+        self.kept_nm = F::ZERO;
     }
 
     /// What has happened so far.
@@ -125,13 +125,13 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
     /// The `ticks`-th tick in a row without a shaft.
     fn hold(&mut self, ticks: u32) {
         if !self.is_holding {
-            self.held_nm = self.joint.torque_nm();
+            self.kept_nm = self.joint.torque_nm();
             self.is_holding = true;
         }
         if ticks > self.hold_ticks {
             let less = self.release_nm;
-            let left = F::ZERO.at_least(self.held_nm.abs() - less);
-            self.held_nm = if self.held_nm < F::ZERO { -left } else { left };
+            let left = F::ZERO.at_least(self.kept_nm.abs() - less);
+            self.kept_nm = if self.kept_nm < F::ZERO { -left } else { left };
         }
     }
 
@@ -159,7 +159,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
     /// The held torque less what the spring loses where the shaft has gone
     /// back by this travel, N·m; never beyond zero.
     fn unwound_nm(&self, travel_rad: F) -> F {
-        let held_nm = self.held_nm;
+        let held_nm = self.kept_nm;
         let change_nm = self.joint.active().stiffness * travel_rad;
         if held_nm < F::ZERO {
             (held_nm + F::ZERO.at_least(change_nm)).at_most(F::ZERO)

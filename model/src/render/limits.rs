@@ -79,7 +79,7 @@ impl<F: Real> TorqueLimits<F> {
     /// Shows no more than the allowance.
     fn cut(&self, shown: &mut Shown<F>) {
         let (wanted_nm, most_nm) = (shown.torque_nm, self.allowance_nm);
-        shown.limit = if most_nm < self.most_nm || most_nm > self.most_nm {
+        shown.limit = if most_nm != self.most_nm {
             Limit::Slew
         } else {
             Limit::Torque

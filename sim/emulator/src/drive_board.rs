@@ -145,6 +145,13 @@ impl DriveBoard {
         }
     }
 
+    /// Goes on to the middle of a tick, if it is not there.
+    pub fn to_the_middle(&mut self) {
+        if !self.is_second {
+            self.half(None);
+        }
+    }
+
     /// Half a tick of everything.
     pub fn half(&mut self, mut watch: Option<&mut dyn Watch>) {
         self.go_in_step();

@@ -1,10 +1,10 @@
-//! A plant and the device's stages from the effects that a scene lists.
+//! A plant from the effects that a scene lists.
 //!
 //! Everything is decided here, once: what is not listed leaves no part behind.
 
 use crate::actuator::{Actuator, Commanded, Ideal};
 use crate::chain::{Chain, Shaft};
-use crate::effect::{Context, Effect, Given, Part, Stage};
+use crate::effect::{Context, Effect, Given, Part};
 use crate::holder::{Holder, Prescribed, Released};
 use crate::plant::Plant;
 use crepitus_model::SettingsError;
@@ -18,52 +18,24 @@ pub struct Listed {
     pub given: Given,
 }
 
-/// A stage of the device.
-pub struct NamedStage {
-    /// The effect that it belongs to.
-    pub effect: &'static str,
-    /// Its column in a trace.
-    pub column: &'static str,
-    /// The stage.
-    pub stage: Box<dyn Stage>,
-}
-
-/// What the effects of a scene make.
-pub struct Assembled {
-    /// The plant.
-    pub plant: Plant,
-    /// What the device adds to the model's torque, in this order.
-    pub stages: Vec<NamedStage>,
-}
-
 /// Assembles `listed`, which stand in the order of
 /// [`EFFECTS`](crate::effects::EFFECTS). Nobody holds a leg that is
 /// `released`.
 ///
 /// # Errors
-/// [`SettingsError`] if a number of the device is out of its range.
+/// [`SettingsError`] if a number of the motor is out of its range.
 pub fn assemble(
     listed: &[Listed],
     context: &Context,
     released: bool,
-) -> Result<Assembled, SettingsError> {
+) -> Result<Plant, SettingsError> {
     let mut actuator: Box<dyn Commanded> = Box::new(Ideal::default());
-    let mut stages = Vec::new();
     for Listed { effect, given } in listed {
-        match effect.part {
-            Part::Actuator(make) => actuator = make(given, context)?,
-            Part::Stage(make, column) => stages.push(NamedStage {
-                effect: effect.name,
-                column,
-                stage: make(given, context)?,
-            }),
-            Part::Joint | Part::Sensor | Part::Link(_) | Part::Holder(_) => {}
+        if let Part::Actuator(make) = effect.part {
+            actuator = make(given, context)?;
         }
     }
-    Ok(Assembled {
-        plant: assemble_with(listed, context, released, actuator),
-        stages,
-    })
+    Ok(assemble_with(listed, context, released, actuator))
 }
 
 /// The plant of `listed` with an actuator of its owner's: of the effects, those

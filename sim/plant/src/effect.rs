@@ -75,25 +75,6 @@ pub struct Context {
     pub start: Body,
 }
 
-/// Adds to the torque that the device commands, once a tick.
-pub trait Stage: Send {
-    /// What to add to the command, N·m.
-    fn tick(&mut self, seen: &Seen) -> f64;
-}
-
-/// What a stage of the device knows at a tick.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Seen {
-    /// Velocity of the shaft, rad/s.
-    pub omega_rad_s: f64,
-    /// Angle that it has turned since the last tick, rad.
-    pub delta_phi_rad: f64,
-    /// Sum of the jumps of the model's torque since then, N·m.
-    pub jump_nm: f64,
-}
-
-/// Makes a stage of the device.
-pub type MakeStage = fn(&Given, &Context) -> Result<Box<dyn Stage>, SettingsError>;
 /// Makes an actuator.
 pub type MakeActuator = fn(&Given, &Context) -> Result<Box<dyn Commanded>, SettingsError>;
 /// Lengthens the chain.
@@ -108,8 +89,9 @@ pub enum Part {
     Joint,
     /// What the device knows of the shaft.
     Sensor,
-    /// A stage of the device after the model; its column in a trace.
-    Stage(MakeStage, &'static str),
+    /// A stage of the device after the symptoms, which its
+    /// [pipeline](crepitus_model::render) renders; its column in a trace.
+    Stage(&'static str),
     /// What turns the command into torque.
     Actuator(MakeActuator),
     /// A part of the chain, right of those before it in the table.

@@ -26,6 +26,7 @@ pub(crate) enum Value {
     Text(String),
     /// A whole or a decimal number; scenes do not tell them apart.
     Number(f64),
+    Flag(bool),
     List(Vec<Node>),
     Table(BTreeMap<String, Node>),
     /// Something that no key of a scene takes: its type's name.
@@ -174,6 +175,7 @@ fn value_of(value: &DeValue<'_>, origin: &dyn Fn(usize) -> Origin) -> Value {
             Ok(x) => Value::Number(x),
             Err(_) => Value::Other("unreadable number"),
         },
+        DeValue::Boolean(flag) => Value::Flag(*flag),
         DeValue::Array(items) => Value::List(
             items
                 .iter()
@@ -184,6 +186,6 @@ fn value_of(value: &DeValue<'_>, origin: &dyn Fn(usize) -> Origin) -> Value {
                 .collect(),
         ),
         DeValue::Table(table) => Value::Table(table_of(table, origin)),
-        other => Value::Other(other.type_str()),
+        other @ DeValue::Datetime(_) => Value::Other(other.type_str()),
     }
 }

@@ -12,6 +12,7 @@ mod event_driven;
 mod lead;
 mod probe;
 mod sensor;
+mod stages;
 mod stepping;
 mod summary;
 mod tally;
@@ -29,7 +30,6 @@ use crate::scene::{Precision, Scene, SolverChoice};
 use crate::trace::{Column, ColumnKind, EventRecord};
 use crepitus_model::solver::Solver;
 use crepitus_model::{Real, SettingsError};
-use crepitus_plant::assembly::Assembled;
 use std::convert::Infallible;
 use std::time::Instant;
 use watch::{Ended, Watch, watched};
@@ -133,9 +133,12 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         columns.extend(<sensor::Encoded<f64> as sensor::Sensor<f64>>::COLUMNS);
     }
     if scene.is_coupled()
-        && let Ok(Assembled { plant, stages }) = scene.assemble()
+        && let Ok(plant) = scene.assemble()
     {
-        columns.extend(stages.iter().map(|s| number(s.column)));
+        columns.extend(stages::listed(scene).map(|(_, column)| number(column)));
+        if scene.is_device {
+            columns.extend(device::COLUMNS);
+        }
         columns.extend(plant.columns().into_iter().map(number));
         if scene.is_held() {
             columns.push(number(coupled::FELT_COLUMN));
@@ -145,6 +148,14 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         }
     }
     columns
+}
+
+/// Whether the stages of a scene's device can be built.
+///
+/// # Errors
+/// [`SettingsError`] if one of their numbers does not go with the step.
+pub(crate) fn check_stages(scene: &Scene) -> Result<(), SettingsError> {
+    stages::check(scene, step_s(scene))
 }
 
 /// How many steps a scene has; of `reference`, rows.

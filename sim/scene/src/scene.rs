@@ -1,5 +1,6 @@
 //! A scene: everything that decides a run, checked.
 
+mod device;
 mod effects;
 mod motion;
 mod solver;
@@ -10,11 +11,11 @@ pub use solver::{Precision, SolverChoice};
 
 use crate::document::{Document, Range, Section};
 use crate::error::SceneError;
+use crate::run;
 use crepitus_model::encoder::EncoderSettings;
-use crepitus_model::render::turn_back::most_rad_per_count;
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use crepitus_plant::actuator::Actuator;
-use crepitus_plant::assembly::{Assembled, Listed, assemble, assemble_with};
+use crepitus_plant::assembly::{Listed, assemble, assemble_with};
 use crepitus_plant::chain::Body;
 use crepitus_plant::effect::{Context, Effect, Given};
 use crepitus_plant::{Motion, Plant};
@@ -43,6 +44,8 @@ pub struct Scene {
     pub seed: Option<u64>,
     /// How the joint is integrated.
     pub solver: SolverChoice,
+    /// The drive's whole pipeline renders, not the solver alone.
+    pub is_device: bool,
     /// The stick-slip object, if the scene calls for it.
     pub crepitus: Option<Crepitus>,
     /// The encoder, if the scene calls for it.
@@ -75,6 +78,8 @@ pub struct Overrides {
     pub step: Option<String>,
     /// Another precision.
     pub precision: Option<String>,
+    /// Render as the device does.
+    pub as_device: bool,
     /// PATH=VALUE pairs.
     pub set: Vec<(String, String)>,
 }
@@ -123,6 +128,7 @@ impl Scene {
         let solver_section = root.section("solver")?;
         let (solver, substeps) = read_solver(&solver_section)?;
         let effects = effects::read(root.optional_section("effects")?.as_ref())?;
+        let is_device = root.optional_flag("device")?.unwrap_or(false);
         let output = root.optional_section("output")?;
         let trace_step_s = read_trace_step(output.as_ref(), &solver_section, solver, duration_s)?;
         root.finish()?;
@@ -142,35 +148,11 @@ impl Scene {
             ));
         }
         check_released(&root, motion.kind, &effects.listed)?;
-        if let SolverChoice::Ladder {
-            solver: rung,
-            precision,
-            ..
-        } = solver
-        {
-            let refuse = |key: &str, reason: &str| {
-                solver_section.key_error(key, format!("\"{}\" is refused: {reason}", rung.name()))
-            };
-            if let Some(crepitus) = &effects.crepitus
-                && let Some(reason) = rung.refusal(crepitus.settings.convention)
-            {
-                return Err(refuse("kind", reason));
-            }
-            if precision == Precision::F32
-                && let Some(reason) = rung.single_refusal()
-            {
-                return Err(refuse("precision", reason));
-            }
-            if rung.needs_exact_motion() && !stepped.is_empty() {
-                let reason = format!(
-                    "it takes the shaft's acceleration from the prescribed motion, and what a sensor or a plant \
-                     makes of that motion is not exact enough: choose another solver, or leave out {}",
-                    tables(&stepped)
-                );
-                return Err(refuse("kind", &reason));
-            }
+        if is_device {
+            device::check(&root, &effects, solver)?;
         }
-        if substeps > 1 && effects.listed.is_empty() {
+        check_rung(&solver_section, solver, &effects, &stepped)?;
+        if substeps > 1 && effects.listed.is_empty() && !is_device {
             return Err(solver_section.key_error(
                 "substeps",
                 "there is no plant to step: leave it out, or add an effect of the plant",
@@ -180,7 +162,7 @@ impl Scene {
         if let Some(crepitus) = &effects.crepitus {
             warnings.extend(sampled_motion_warning(crepitus, motion.ripple_rad_s2));
             let encoder = effects.encoder.as_ref();
-            warnings.extend(encoder.and_then(|encoder| guard_warning(crepitus, encoder)));
+            warnings.extend(encoder.and_then(|encoder| device::guard_refusal(crepitus, encoder)));
         }
         let scene = Self {
             file: file.to_owned(),
@@ -191,6 +173,7 @@ impl Scene {
             motion: motion.motion,
             seed: motion.seed,
             solver,
+            is_device,
             crepitus: effects.crepitus,
             encoder: effects.encoder,
             listed: effects.listed,
@@ -199,15 +182,16 @@ impl Scene {
             warnings,
         };
         scene.assemble().map_err(|e| root.error(e.to_string()))?;
+        run::check_stages(&scene).map_err(|e| root.error(e.to_string()))?;
         Ok(scene)
     }
 
-    /// The plant and the device's stages.
+    /// The plant.
     ///
     /// # Errors
-    /// [`SettingsError`] if a number of the device does not go with the step.
-    pub fn assemble(&self) -> Result<Assembled, SettingsError> {
-        let tick_s = crate::run::step_s(self);
+    /// [`SettingsError`] if a number of the motor does not go with the step.
+    pub fn assemble(&self) -> Result<Plant, SettingsError> {
+        let tick_s = run::step_s(self);
         assemble(&self.listed, &self.context(tick_s), !self.is_held())
     }
 
@@ -251,10 +235,10 @@ impl Scene {
             .map_or_else(|| Given::defaults(effect), |l| l.given.clone())
     }
 
-    /// Whether it has a plant, so that the shaft does what comes of it;
-    /// otherwise the motion prescribes it.
+    /// Whether it has a plant or a device, so that the shaft does what comes of
+    /// it; otherwise the motion prescribes it.
     pub fn is_coupled(&self) -> bool {
-        !self.listed.is_empty()
+        self.is_device || !self.listed.is_empty()
     }
 
     /// Whether the motion, or a hand after it, holds the leg.
@@ -267,6 +251,46 @@ impl Scene {
 fn tables(effects: &[&str]) -> String {
     let tables: Vec<_> = effects.iter().map(|n| format!("[effects.{n}]")).collect();
     tables.join(", ")
+}
+
+/// Refuses a rung for what it cannot do in this scene.
+fn check_rung(
+    section: &Section<'_>,
+    solver: SolverChoice,
+    effects: &effects::Effects,
+    stepped: &[&str],
+) -> Result<(), SceneError> {
+    let SolverChoice::Ladder {
+        solver: rung,
+        precision,
+        ..
+    } = solver
+    else {
+        return Ok(());
+    };
+    let refuse = |key: &str, reason: &str| {
+        let name = rung.name();
+        Err(section.key_error(key, format!("\"{name}\" is refused: {reason}")))
+    };
+    if let Some(crepitus) = &effects.crepitus
+        && let Some(reason) = rung.refusal(crepitus.settings.convention)
+    {
+        return refuse("kind", reason);
+    }
+    if precision == Precision::F32
+        && let Some(reason) = rung.single_refusal()
+    {
+        return refuse("precision", reason);
+    }
+    if rung.needs_exact_motion() && !stepped.is_empty() {
+        let reason = format!(
+            "it takes the shaft's acceleration from the prescribed motion, and what a sensor or a plant \
+             makes of that motion is not exact enough: choose another solver, or leave out {}",
+            tables(stepped)
+        );
+        return refuse("kind", &reason);
+    }
+    Ok(())
 }
 
 /// A leg that nobody holds has to be there, and not to be held.
@@ -310,6 +334,9 @@ impl Overrides {
             let flag = format!("--precision {precision}");
             document.set(&flag, "solver.precision", &quoted(precision))?;
         }
+        if self.as_device {
+            document.set("--as-device", "device", "true")?;
+        }
         Ok(())
     }
 }
@@ -326,26 +353,6 @@ fn sampled_motion_warning(crepitus: &Crepitus, ripple_rad_s2: Option<f64>) -> Op
              by up to {ripple_nm:.2} N·m (Ts is {} N·m): the joint feels the sampling; a lower cutoff_hz or \
              \"frozen\" avoids it",
             settings.parameters.static_torque_nm
-        )
-    })
-}
-
-/// A joint that a device with this encoder would refuse.
-fn guard_warning(crepitus: &Crepitus, encoder: &EncoderSettings) -> Option<String> {
-    let settings = &crepitus.settings;
-    let (count_rad, most_rad) = (encoder.rad_per_count(), most_rad_per_count(settings));
-    (settings.convention == Convention::Frozen && count_rad > most_rad).then(|| {
-        let p = &settings.parameters;
-        format!(
-            "the device refuses kinetic_torque_nm = {} with static_torque_nm = {}, stiffness_nm_per_rad = {} and \
-             an encoder of {} lines: a hand that turns back inside a slip would get more energy than the slip takes \
-             out of the spring; one count is {:.1} µrad, and may be {:.1} µrad",
-            p.kinetic_torque_nm,
-            p.static_torque_nm,
-            p.stiffness_nm_per_rad,
-            encoder.lines,
-            count_rad * 1e6,
-            most_rad * 1e6
         )
     })
 }

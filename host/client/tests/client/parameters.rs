@@ -87,7 +87,7 @@ fn what_is_not_allowed_is_refused_with_what_is() {
             "crepitus.kinetic_torque_nm = 0.38 is too close to crepitus.static_torque_nm = 0.4, with \
              crepitus.stiffness_nm_per_rad = 4000 and encoder.lines = 512: a hand that turns back \
              inside a slip would get more energy than the slip takes out of the spring. One count \
-             of the encoder is 35.7 µrad, and may be 2.5 µrad: lower the kinetic torque or the \
+             of the encoder is 35.7 µrad, and may be 0.4 µrad: lower the kinetic torque or the \
              stiffness, or raise the static torque; nothing was changed",
         ),
         (

@@ -45,6 +45,7 @@ fn read(arguments: &RunArguments) -> Result<Scene, Failure> {
         solver: arguments.solver.clone(),
         step: arguments.step.clone(),
         precision: arguments.precision.clone(),
+        as_device: arguments.as_device,
         set: arguments.set.clone(),
     };
     shipped::scene(&arguments.scene, &overrides)

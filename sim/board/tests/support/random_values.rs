@@ -1,7 +1,6 @@
 //! Parameters that somebody might set, and some that nobody may.
 
 use crate::support::set;
-use crepitus_model::encoder::EncoderSettings;
 use crepitus_protocol::Values;
 use crepitus_protocol::parameters::PARAMETERS;
 use fastrand::Rng;
@@ -13,20 +12,13 @@ pub(crate) fn allowed(rng: &mut Rng, base: &Values) -> Values {
     let switch = |rng: &mut Rng| f64::from(u8::from(rng.bool()));
     let static_nm = between(rng, 0.2, 2.0);
     let stiffness = between(rng, 100.0, 800.0);
-    // As near to it as the turn-back guard allows, also for a stick that
-    // begins at Tk: Ts² − Tk² = 8·kr·Δ·Tk.
-    let counts_nm = stiffness * EncoderSettings::default().rad_per_count();
-    let most_nm = (16.0 * counts_nm * counts_nm + static_nm * static_nm).sqrt() - 4.0 * counts_nm;
-    let most_share = most_nm.min(static_nm - 2.0 * counts_nm) / static_nm;
+    let mut share = between(rng, 0.5, 0.999);
     let numbers = [
         ("crepitus.render", f64::from(u8::from(rng.u8(0..8) > 0))),
         ("crepitus.inertia_kg_m2", between(rng, 5e-4, 0.05)),
         ("crepitus.stiffness_nm_per_rad", stiffness),
         ("crepitus.static_torque_nm", static_nm),
-        (
-            "crepitus.kinetic_torque_nm",
-            static_nm * between(rng, 0.5, most_share * (1.0 - 1e-9)),
-        ),
+        ("crepitus.kinetic_torque_nm", static_nm * share),
         ("crepitus.restart", switch(rng)),
         ("friction-compensation.render", switch(rng)),
         ("friction-compensation.share", rng.f64()),
@@ -37,6 +29,11 @@ pub(crate) fn allowed(rng: &mut Rng, base: &Values) -> Values {
     ];
     for (name, value) in numbers {
         set(&mut values, name, value);
+    }
+    // As near to Ts as the turn-back guard allows.
+    while values.rad_per_count() > values.guarded_rad_per_count() {
+        share = 0.5 + 0.9 * (share - 0.5);
+        set(&mut values, "crepitus.kinetic_torque_nm", static_nm * share);
     }
     values
 }

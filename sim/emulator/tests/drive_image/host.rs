@@ -162,6 +162,8 @@ impl Host {
     pub(crate) fn run_until_torque(&mut self) {
         for _ in 0..20_000 {
             if self.shows_torque() && self.board.is_driven() {
+                // How long it took to start decides in which half it is.
+                self.board.to_the_middle();
                 return;
             }
             self.run(1);

@@ -2,14 +2,9 @@
 //! law, its limits and its budget of energy are the firmware's:
 //! `crepitus_model::render::bone_shaping`.
 
-use crate::effect::{Effect, Need, Part, Seen, Stage, numbers};
-use crepitus_model::Real;
-use crepitus_model::render::bone_shaping::{BoneShaping, BoneShapingSettings};
+use crate::effect::{Effect, Need, Part};
+use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::parameters::Tabled;
-
-/// Ticks between a sample and the torque that answers it: with a motor half a
-/// tick to the next voltage, and a lag.
-const DELAY_TICKS: usize = 1;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
@@ -22,32 +17,5 @@ pub const EFFECT: Effect = Effect {
         effect: "crepitus",
         why: "it rings where the model's torque jumps",
     }],
-    part: Part::Stage(
-        |given, context| {
-            let settings = BoneShapingSettings::of(numbers(given));
-            Ok(if context.single {
-                Box::new(Shaping(BoneShaping::<f32>::new(
-                    &settings,
-                    context.tick_s,
-                    DELAY_TICKS,
-                )?))
-            } else {
-                Box::new(Shaping(BoneShaping::<f64>::new(
-                    &settings,
-                    context.tick_s,
-                    DELAY_TICKS,
-                )?))
-            })
-        },
-        "shaping_nm",
-    ),
+    part: Part::Stage("shaping_nm"),
 };
-
-struct Shaping<F>(BoneShaping<F>);
-
-impl<F: Real> Stage for Shaping<F> {
-    fn tick(&mut self, seen: &Seen) -> f64 {
-        self.0.ring(F::from_f64(seen.jump_nm));
-        self.0.tick(F::from_f64(seen.delta_phi_rad)).to_f64()
-    }
-}

@@ -121,8 +121,8 @@ impl Build {
 
     pub(crate) fn on(&self, motion: Motion) -> Rig {
         let context = self.context(&motion);
-        let assembled = assemble(&self.listed, &context, self.released);
-        let plant = assembled.expect("numbers within their ranges").plant;
+        let plant = assemble(&self.listed, &context, self.released);
+        let plant = plant.expect("numbers within their ranges");
         self.rig(plant, motion)
     }
 

@@ -148,6 +148,18 @@ impl<'a> Section<'a> {
             .ok_or_else(|| self.missing(key, &format!("a number {range}")))
     }
 
+    /// A boolean that may be left out.
+    pub(crate) fn optional_flag(&self, key: &str) -> Result<Option<bool>, SceneError> {
+        match self.ask(key) {
+            None => Ok(None),
+            Some(Node {
+                value: Value::Flag(flag),
+                ..
+            }) => Ok(Some(*flag)),
+            Some(node) => Err(self.wrong_type(key, node, "true or false")),
+        }
+    }
+
     /// A text that may be left out.
     pub(crate) fn optional_text(&self, key: &str) -> Result<Option<&'a str>, SceneError> {
         match self.ask(key) {
@@ -285,6 +297,7 @@ impl<'a> Section<'a> {
         let found = match &node.value {
             Value::Text(text) => format!("the text \"{text}\""),
             Value::Number(x) => format!("the number {}", Plain(*x)),
+            Value::Flag(_) => "a boolean".to_owned(),
             Value::List(_) => "a list".to_owned(),
             Value::Table(_) => "a table".to_owned(),
             Value::Other(kind) => format!("a {kind}"),

@@ -2,6 +2,7 @@
 //! shaft does what comes of it.
 
 use super::device::{Device, device};
+use super::stages;
 use super::stepping::{CHECK_STEPS, PROGRESS_STEPS};
 use super::watch::{Ended, Watch};
 use super::{Diverged, RunError, Totals, step_s, steps};
@@ -10,7 +11,6 @@ use crate::trace::EventRecord;
 use crate::walk::Walk;
 use crepitus_model::Real;
 use crepitus_model::solver::Solver;
-use crepitus_plant::assembly::{Assembled, NamedStage};
 use crepitus_plant::chain::Impacts;
 use crepitus_plant::holder::MotionStep;
 use crepitus_plant::ledger::Ledger;
@@ -37,6 +37,8 @@ pub(super) struct Rendering {
     pub(super) held: f64,
     /// Of what each stage adds.
     pub(super) stages: Vec<(&'static str, f64)>,
+    /// Of what guards and limits of a device take away; none without one.
+    pub(super) limits: Option<f64>,
     /// Of the torque that there was.
     pub(super) absorbed: f64,
 }
@@ -76,9 +78,9 @@ pub const FELT_COLUMN: &str = "hand_torque_nm";
 /// tick, which [`FELT_COLUMN`] leaves out: a plant that can have impacts has it.
 pub const STRUCK_COLUMN: &str = "hand_impact_nms";
 
-/// A stage, what it adds now, and the work of that.
+/// A stage behind the symptoms, what it adds now, and the work of that.
 struct Stage {
-    named: NamedStage,
+    effect: &'static str,
     added_nm: f64,
     work_j: f64,
 }
@@ -90,16 +92,15 @@ pub(super) fn simulate<F: Real>(
     watch: &mut dyn Watch,
 ) -> Result<Totals, Ended> {
     let tick_s = step_s(scene);
-    let Assembled { plant, stages } = scene.assemble()?;
+    let plant = scene.assemble()?;
     let shaft = plant.shaft();
     let run = Run {
         first_felt_nm: first_felt_nm(scene)?,
         device: device::<F>(scene, solver, tick_s, &shaft)?,
         plant,
-        stages: stages
-            .into_iter()
-            .map(|named| Stage {
-                named,
+        stages: stages::listed(scene)
+            .map(|(effect, _)| Stage {
+                effect,
                 added_nm: 0.0,
                 work_j: 0.0,
             })
@@ -129,7 +130,7 @@ impl Run {
         let mut felt_nm = self.first_felt_nm;
         let has_impacts = self.plant.impacts().is_some();
         let (mut struck_nms, mut most_struck_nms) = (0.0, 0.0_f64);
-        let mut held = 0.0;
+        let (mut held, mut limited) = (0.0, 0.0);
         let mut fastest_rad_s: f64 = 0.0;
         let mut row = Vec::new();
         let mut n = 0;
@@ -142,6 +143,10 @@ impl Run {
                 row.extend([time_s, before.angle_rad, before.omega_rad_s]);
                 self.device.write(&mut row);
                 row.extend(self.stages.iter().map(|s| s.added_nm));
+                if scene.is_device {
+                    let shown = self.device.shown();
+                    row.extend([shown.torque_nm, f64::from(shown.limit as u8)]);
+                }
                 self.plant.write(&mut row);
                 if is_felt {
                     row.push(felt_nm);
@@ -163,8 +168,7 @@ impl Run {
                 break;
             }
             n += 1;
-            let model_nm = self.device.torque_nm();
-            self.command(model_nm);
+            let (model_nm, taken_nm) = self.command();
             let felt_before = self.plant.felt_nms();
             let struck_before = self.plant.struck_nms();
             self.advance(&mut walk, parts);
@@ -175,6 +179,7 @@ impl Run {
             let after = self.plant.shaft();
             let turned = after.angle_rad - before.angle_rad;
             held += model_nm * turned;
+            limited += taken_nm * turned;
             for stage in &mut self.stages {
                 stage.work_j += stage.added_nm * turned;
             }
@@ -199,11 +204,8 @@ impl Run {
                 balance: self.plant.balance(),
                 rendering: Rendering {
                     held,
-                    stages: self
-                        .stages
-                        .iter()
-                        .map(|s| (s.named.effect, s.work_j))
-                        .collect(),
+                    stages: self.stages.iter().map(|s| (s.effect, s.work_j)).collect(),
+                    limits: scene.is_device.then_some(limited),
                     absorbed: self.plant.absorbed_j(),
                 },
                 felt: is_felt.then_some(felt),
@@ -214,18 +216,18 @@ impl Run {
         })
     }
 
-    /// What the device wants to show in the next tick.
+    /// Commands what the device shows in the next tick. The model's torque, and
+    /// what guards and limits add to it, N·m.
     #[inline]
-    fn command(&mut self, model_nm: f64) {
-        let mut command_nm = model_nm;
-        if !self.stages.is_empty() {
-            let seen = self.device.seen();
-            for stage in &mut self.stages {
-                stage.added_nm = stage.named.stage.tick(&seen);
-                command_nm += stage.added_nm;
-            }
+    fn command(&mut self) -> (f64, f64) {
+        let shown = self.device.shown();
+        for stage in &mut self.stages {
+            stage.added_nm = stages::added_nm(stage.effect, &shown);
         }
-        self.plant.command(command_nm);
+        self.plant.command(shown.torque_nm);
+        let added_nm = shown.compensation_nm + shown.ringing_nm;
+        let taken_nm = shown.torque_nm - shown.model_torque_nm - added_nm;
+        (shown.model_torque_nm, taken_nm)
     }
 
     /// The plant through one tick.
@@ -240,7 +242,7 @@ impl Run {
 /// What the hand feels in the first tick: a plant that is thrown away goes
 /// through it.
 fn first_felt_nm(scene: &Scene) -> Result<f64, crepitus_model::SettingsError> {
-    let mut plant = scene.assemble()?.plant;
+    let mut plant = scene.assemble()?;
     let tick_s = step_s(scene);
     let mut walk = Walk::new(&scene.motion, tick_s);
     plant.command(0.0);

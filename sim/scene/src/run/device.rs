@@ -1,24 +1,37 @@
-//! The device of a coupled run: sensor and joint, one tick at a time, behind
+//! The device of a coupled run: sensor and pipeline, one tick at a time, behind
 //! one call, so that the loop around them is the same for all.
 
 use super::sensor::{Encoded, Ideal, Sensor};
+use super::stages::{self, HasJoint, Rendering};
 use super::stepping::Books;
 use super::tally::Tally;
 use crate::scene::Scene;
-use crate::trace::EventRecord;
+use crate::trace::{Column, ColumnKind, EventRecord};
+use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
+use crepitus_model::render::input_check::Sample;
+use crepitus_model::render::{Bare, Seen, Shown};
+use crepitus_model::shaft::Linear;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
-use crepitus_model::{Real, SettingsError, StickSlip};
+use crepitus_model::{Real, Settings, SettingsError, StickSlip, Validated};
 use crepitus_plant::chain::Body;
-use crepitus_plant::effect::Seen;
-use std::marker::PhantomData;
+
+/// What a scene with a device shows of it: the torque that it commands, and the
+/// number of the [limit](crepitus_model::render::Limit) that held it back.
+pub(super) const COLUMNS: [Column; 2] = [
+    Column {
+        name: "shown_nm",
+        kind: ColumnKind::Number,
+    },
+    Column {
+        name: "limit",
+        kind: ColumnKind::Whole,
+    },
+];
 
 /// What a device renders on the shaft that it sees.
 pub(super) trait Device {
-    /// The model's torque, N·m.
-    fn torque_nm(&self) -> f64;
-
-    /// What it has seen of the shaft in the last tick.
-    fn seen(&self) -> Seen;
+    /// What it shows from now to the end of the next tick.
+    fn shown(&self) -> Shown<f64>;
 
     /// One tick, which began at `start_s` and in which the shaft moved so.
     fn tick(
@@ -47,13 +60,17 @@ pub(super) fn device<F: Real>(
     step_s: f64,
     shaft: &Body,
 ) -> Result<Box<dyn Device>, SettingsError> {
-    match &scene.encoder {
-        None => with_sensor::<F, _>(scene, solver, step_s, shaft, Ideal),
-        Some(encoder) => {
-            let sensor = Encoded::<F>::new(encoder, step_s, shaft)?;
-            with_sensor::<F, _>(scene, solver, step_s, shaft, sensor)
-        }
-    }
+    let Some(encoder) = &scene.encoder else {
+        return with_sensor::<F, _>(scene, solver, step_s, shaft, Ideal);
+    };
+    // A drive begins on a shaft at rest, whatever that does.
+    let moving = !scene.is_device;
+    let seen = Body {
+        omega_rad_s: if moving { shaft.omega_rad_s } else { 0.0 },
+        ..*shaft
+    };
+    let sensor = Encoded::<F>::new(encoder, step_s, &seen)?;
+    with_sensor::<F, _>(scene, solver, step_s, shaft, sensor)
 }
 
 fn with_sensor<F: Real, S: Sensor<F> + 'static>(
@@ -63,69 +80,137 @@ fn with_sensor<F: Real, S: Sensor<F> + 'static>(
     shaft: &Body,
     sensor: S,
 ) -> Result<Box<dyn Device>, SettingsError> {
-    let seen = Seen {
-        omega_rad_s: shaft.omega_rad_s,
-        ..Seen::default()
-    };
     let Some(crepitus) = &scene.crepitus else {
-        return Ok(Box::new(Watching {
-            sensor,
-            seen,
-            precision: PhantomData::<F>,
-        }));
+        return if scene.is_device {
+            Ok(watching(
+                scene,
+                shaft,
+                sensor,
+                stages::drive(scene, step_s, ())?,
+            ))
+        } else {
+            Ok(watching(
+                scene,
+                shaft,
+                sensor,
+                stages::bare(scene, step_s, ())?,
+            ))
+        };
     };
     let maker = Maker {
-        books: Books::new::<F>(*crepitus.settings, step_s, shaft.omega_rad_s),
+        scene,
+        settings: crepitus.settings,
+        step_s,
+        omega_rad_s: shaft.omega_rad_s,
         sensor,
-        seen,
     };
-    let omega = F::from_f64(shaft.omega_rad_s);
-    with_joint::<F, _>(&crepitus.settings, solver, step_s, omega, maker)
+    if !scene.is_device {
+        let omega = F::from_f64(shaft.omega_rad_s);
+        return with_joint::<F, _>(&crepitus.settings, solver, step_s, omega, maker)?;
+    }
+    match solver {
+        Solver::ExactBreak => maker.drive::<F, ExactBreak>(),
+        Solver::ExactInterpolated => maker.drive::<F, Interpolated>(),
+        Solver::ExactEvents => maker.drive::<F, ExactEvents>(),
+        _ => maker.drive::<F, EndOfStep>(),
+    }
+}
+
+/// A device that only looks.
+fn watching<F: Real, P: Rendering<F> + 'static, S: Sensor<F> + 'static>(
+    scene: &Scene,
+    shaft: &Body,
+    sensor: S,
+    mut stages: P,
+) -> Box<dyn Device> {
+    let shown = first(scene, &mut stages, F::ZERO, shaft.omega_rad_s);
+    Box::new(Watching {
+        stages,
+        sensor,
+        shown,
+    })
 }
 
 /// Boxes whatever joint the scene calls for.
-struct Maker<S> {
-    books: Books,
+struct Maker<'a, S> {
+    scene: &'a Scene,
+    settings: Validated<Settings>,
+    step_s: f64,
+    omega_rad_s: f64,
     sensor: S,
-    seen: Seen,
 }
 
-impl<F: Real, S: Sensor<F> + 'static> JointVisitor<F> for Maker<S> {
-    type Output = Box<dyn Device>;
+impl<S: 'static> Maker<'_, S> {
+    /// With the joint that the drive renders.
+    fn drive<F: Real, L: Locate<F, Shape = Linear>>(self) -> Result<Box<dyn Device>, SettingsError>
+    where
+        S: Sensor<F>,
+    {
+        let joint = stages::crepitus::<F, L>(self.scene, &self.settings, self.step_s)?;
+        let stages = stages::drive(self.scene, self.step_s, joint)?;
+        Ok(self.joined(stages))
+    }
 
-    fn visit<J: StickSlip<F>>(self, joint: J) -> Self::Output {
-        let Self {
-            mut books,
-            sensor,
-            seen,
-        } = self;
-        books.tally.shown(joint.torque_nm().to_f64());
-        Box::new(Rendering {
-            joint,
-            sensor,
+    fn joined<F: Real, P: HasJoint<F> + 'static>(self, mut stages: P) -> Box<dyn Device>
+    where
+        S: Sensor<F>,
+    {
+        let mut books = Books::new::<F>(*self.settings, self.step_s, self.omega_rad_s);
+        let torque_nm = stages.joint().torque_nm();
+        books.tally.shown(torque_nm.to_f64());
+        let shown = first::<F>(self.scene, &mut stages, torque_nm, self.omega_rad_s);
+        Box::new(Joined {
+            stages,
+            sensor: self.sensor,
             books,
-            seen,
-            precision: PhantomData::<F>,
+            shown,
         })
     }
 }
 
-/// A device with a joint.
-struct Rendering<F, J, S> {
-    joint: J,
-    sensor: S,
-    books: Books,
-    seen: Seen,
-    precision: PhantomData<F>,
+impl<F: Real, S: Sensor<F> + 'static> JointVisitor<F> for Maker<'_, S> {
+    type Output = Result<Box<dyn Device>, SettingsError>;
+
+    fn visit<J: StickSlip<F>>(self, joint: J) -> Self::Output {
+        let stages = stages::bare(self.scene, self.step_s, Bare(joint))?;
+        Ok(self.joined(stages))
+    }
 }
 
-impl<F: Real, J: StickSlip<F>, S: Sensor<F>> Device for Rendering<F, J, S> {
-    fn torque_nm(&self) -> f64 {
-        self.joint.torque_nm().to_f64()
+/// What is shown before the first tick: of a bare solver, what its stages make
+/// of the shaft as it begins; of a drive, which was there before, nothing.
+fn first<F: Real>(
+    scene: &Scene,
+    stages: &mut impl Rendering<F>,
+    torque_nm: F,
+    omega_rad_s: f64,
+) -> Shown<F> {
+    let shown = Shown {
+        torque_nm,
+        model_torque_nm: torque_nm,
+        ..Shown::nothing()
+    };
+    if scene.is_device {
+        return shown;
     }
+    let seen = Seen {
+        sample: Sample::Lost,
+        omega_rad_s: F::from_f64(omega_rad_s),
+    };
+    stages.add(&seen, shown)
+}
 
-    fn seen(&self) -> Seen {
-        self.seen
+/// A device with a joint.
+struct Joined<F, P, S> {
+    stages: P,
+    sensor: S,
+    books: Books,
+    shown: Shown<F>,
+}
+
+impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
+    fn shown(&self) -> Shown<f64> {
+        self.shown.to_f64()
     }
 
     fn tick(
@@ -136,36 +221,32 @@ impl<F: Real, J: StickSlip<F>, S: Sensor<F>> Device for Rendering<F, J, S> {
         on_event: &mut dyn FnMut(&EventRecord),
     ) {
         let seen = self.sensor.see(from, to);
-        let (books, mut jump_nm) = (&mut self.books, 0.0);
-        self.joint.step(&seen, |event| {
-            let record = books.event(start_s, &seen, &event);
-            jump_nm += record.torque_after_nm - record.torque_before_nm;
-            on_event(&record);
+        let books = &mut self.books;
+        self.shown = self.stages.tick(&Seen::taken(&seen), &mut |event| {
+            on_event(&books.event(start_s, &seen, &event));
         });
-        self.books.end_step(&seen, &self.joint);
-        self.seen = Seen {
-            omega_rad_s: seen.omega_end_rad_s.to_f64(),
-            delta_phi_rad: seen.delta_phi_rad.to_f64(),
-            jump_nm,
-        };
+        self.books.end_step(&seen, self.stages.joint());
     }
 
     fn write(&self, row: &mut Vec<f64>) {
+        let joint = self.stages.joint();
         row.extend([
-            f64::from(self.joint.phase().sign()),
-            self.joint.theta_rad().to_f64(),
-            self.joint.theta_dot_rad_s().to_f64(),
-            self.joint.torque_nm().to_f64(),
+            f64::from(joint.phase().sign()),
+            joint.theta_rad().to_f64(),
+            joint.theta_dot_rad_s().to_f64(),
+            joint.torque_nm().to_f64(),
         ]);
         self.sensor.write(row);
     }
 
     fn is_finite(&self) -> bool {
-        self.joint.theta_rad().is_finite() && self.joint.theta_dot_rad_s().is_finite()
+        let joint = self.stages.joint();
+        joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite()
     }
 
     fn finish(mut self: Box<Self>, time_s: f64) -> Option<(Tally, u64)> {
-        let (theta, theta_dot) = (self.joint.theta_rad(), self.joint.theta_dot_rad_s());
+        let joint = self.stages.joint();
+        let (theta, theta_dot) = (joint.theta_rad(), joint.theta_dot_rad_s());
         let phi_rad = self.books.phi_rad;
         self.books
             .tally
@@ -176,28 +257,20 @@ impl<F: Real, J: StickSlip<F>, S: Sensor<F>> Device for Rendering<F, J, S> {
 }
 
 /// A device that only looks.
-struct Watching<F, S> {
+struct Watching<F, P, S> {
+    stages: P,
     sensor: S,
-    seen: Seen,
-    precision: PhantomData<F>,
+    shown: Shown<F>,
 }
 
-impl<F: Real, S: Sensor<F>> Device for Watching<F, S> {
-    fn torque_nm(&self) -> f64 {
-        0.0
-    }
-
-    fn seen(&self) -> Seen {
-        self.seen
+impl<F: Real, P: Rendering<F>, S: Sensor<F>> Device for Watching<F, P, S> {
+    fn shown(&self) -> Shown<f64> {
+        self.shown.to_f64()
     }
 
     fn tick(&mut self, _: f64, from: &Body, to: &Body, _: &mut dyn FnMut(&EventRecord)) {
         let seen = self.sensor.see(from, to);
-        self.seen = Seen {
-            omega_rad_s: seen.omega_end_rad_s.to_f64(),
-            delta_phi_rad: seen.delta_phi_rad.to_f64(),
-            jump_nm: 0.0,
-        };
+        self.shown = self.stages.tick(&Seen::taken(&seen), &mut |_| {});
     }
 
     fn write(&self, row: &mut Vec<f64>) {

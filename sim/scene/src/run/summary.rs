@@ -238,6 +238,10 @@ pub struct RenderingSummary {
     pub sampling_j: f64,
     /// Of what each stage of the device adds.
     pub stages: Vec<StageWork>,
+    /// Of what its guards and limits take away; none in a scene without a
+    /// device.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limits_j: Option<f64>,
     /// Of the difference between the torque commanded and that of the motor.
     pub actuator_j: f64,
     /// Of the torque that there was.
@@ -365,7 +369,11 @@ fn plant_energy(plant: &PlantTotals, tally: Option<&Tally>) -> PlantEnergySummar
                 .iter()
                 .map(|&(effect, joule)| StageWork { effect, joule })
                 .collect(),
-            actuator_j: rendering.absorbed - rendering.held - stages_j,
+            limits_j: rendering.limits,
+            actuator_j: rendering.absorbed
+                - rendering.held
+                - stages_j
+                - rendering.limits.unwrap_or(0.0),
             absorbed_j: rendering.absorbed,
         },
     }

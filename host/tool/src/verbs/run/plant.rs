@@ -80,6 +80,9 @@ pub(super) fn rendered_section(s: &Summary) -> Option<Section> {
             millijoule(stage.joule),
         ));
     }
+    if let Some(limits_j) = rendering.limits_j {
+        rows.push(("the device’s guards and limits added", millijoule(limits_j)));
+    }
     if rows.is_empty() && rendering.absorbed_j == 0.0 {
         return None;
     }

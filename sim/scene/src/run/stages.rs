@@ -1,0 +1,183 @@
+//! The stages that a scene's device has around its joint: those of a bare
+//! solver, or all that the drive has.
+
+use crate::scene::Scene;
+use crepitus_model::device_limits::LimitSettings;
+use crepitus_model::energy_observer::MOST_DELAY_TICKS;
+use crepitus_model::locate::Locate;
+use crepitus_model::parameters::Tabled;
+use crepitus_model::render::additions::{RingingBone, SlewedCompensation};
+use crepitus_model::render::bone_shaping::BoneShapingSettings;
+use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
+use crepitus_model::render::input_check::{InputCheck, InputLimits};
+use crepitus_model::render::limits::TorqueLimits;
+use crepitus_model::render::{Addition, Bare, Check, Limits, Pipeline, Seen, Shown, Symptom};
+use crepitus_model::shaft::Linear;
+use crepitus_model::{
+    Active, BoneShaping, Crepitus, Event, FrictionCompensation, Frozen, Real, Settings,
+    SettingsError, StickSlip, Validated,
+};
+use crepitus_plant::effect::{Effect, Part, numbers};
+use crepitus_plant::effects::{bone_shaping, friction_compensation};
+
+/// Ticks between a sample and the torque that answers it, of a bare solver.
+const BARE_DELAY_TICKS: usize = 1;
+
+/// What stands behind the symptoms of a bare solver.
+pub(super) type BareStages<F, S> =
+    Pipeline<F, (), S, Option<FrictionCompensation<F>>, Option<BoneShaping<F>>>;
+
+/// What the drive has; its symptoms are always those of the firmware.
+pub(super) type DriveStages<F, S> =
+    Pipeline<F, InputCheck<F>, S, SlewedCompensation<F>, RingingBone<F>, TorqueLimits<F>>;
+
+/// Around a bare solver, or nothing.
+pub(super) fn bare<F: Real, S: Symptom<F>>(
+    scene: &Scene,
+    step_s: f64,
+    symptoms: S,
+) -> Result<BareStages<F, S>, SettingsError> {
+    Ok(Pipeline::new(
+        (),
+        symptoms,
+        compensation(scene)?,
+        bone(scene, step_s, BARE_DELAY_TICKS)?,
+        (),
+    ))
+}
+
+/// As the drive renders, armed long ago on a shaft at rest.
+pub(super) fn drive<F: Real, S: Symptom<F>>(
+    scene: &Scene,
+    step_s: f64,
+    symptoms: S,
+) -> Result<DriveStages<F, S>, SettingsError> {
+    let limits = LimitSettings::default();
+    let slew_nm = F::from_f64(limits.slew_nm_per_s * step_s);
+    Ok(Pipeline::new(
+        InputCheck::new(&InputLimits::device(step_s), F::from_f64(step_s), F::ZERO),
+        symptoms,
+        SlewedCompensation::new(compensation(scene)?, slew_nm),
+        RingingBone::new(bone(scene, step_s, MOST_DELAY_TICKS)?, slew_nm),
+        TorqueLimits::armed(F::from_f64(limits.torque_nm), slew_nm),
+    ))
+}
+
+/// The joint that the drive renders for these settings.
+pub(super) fn crepitus<F: Real, L: Locate<F, Shape = Linear>>(
+    scene: &Scene,
+    settings: &Validated<Settings>,
+    step_s: f64,
+) -> Result<Crepitus<F, L>, SettingsError> {
+    let encoder = scene.encoder.unwrap_or_default();
+    Ok(Crepitus::new(
+        Active::new(settings, step_s)?,
+        InputLimits::device(step_s),
+        F::from_f64(encoder.rad_per_count()),
+        F::ZERO,
+    ))
+}
+
+/// Whether the stages of a scene's device can be built at all.
+pub(super) fn check(scene: &Scene, step_s: f64) -> Result<(), SettingsError> {
+    compensation::<f64>(scene)?;
+    bone::<f64>(scene, step_s, MOST_DELAY_TICKS)?;
+    Ok(())
+}
+
+/// The stages behind the symptoms that a scene lists, with their columns, in
+/// the order in which they act.
+pub(super) fn listed(scene: &Scene) -> impl Iterator<Item = (&'static str, &'static str)> {
+    scene
+        .listed
+        .iter()
+        .filter_map(|listed| match listed.effect.part {
+            Part::Stage(column) => Some((listed.effect.name, column)),
+            _ => None,
+        })
+}
+
+/// What the stage of this effect adds, N·m.
+pub(super) fn added_nm(effect: &str, shown: &Shown<f64>) -> f64 {
+    if effect == friction_compensation::EFFECT.name {
+        shown.compensation_nm
+    } else {
+        shown.ringing_nm
+    }
+}
+
+fn given<const N: usize>(scene: &Scene, effect: &Effect) -> Option<[f64; N]> {
+    let listed = scene.listed.iter().find(|l| l.effect.name == effect.name)?;
+    Some(numbers(&listed.given))
+}
+
+fn compensation<F: Real>(scene: &Scene) -> Result<Option<FrictionCompensation<F>>, SettingsError> {
+    given(scene, &friction_compensation::EFFECT)
+        .map(|numbers| FrictionCompensation::new(&FrictionCompensationSettings::of(numbers)))
+        .transpose()
+}
+
+fn bone<F: Real>(
+    scene: &Scene,
+    step_s: f64,
+    delay_ticks: usize,
+) -> Result<Option<BoneShaping<F>>, SettingsError> {
+    given(scene, &bone_shaping::EFFECT)
+        .map(|numbers| BoneShaping::new(&BoneShapingSettings::of(numbers), step_s, delay_ticks))
+        .transpose()
+}
+
+/// A pipeline of any stages.
+pub(super) trait Rendering<F> {
+    /// See [`Pipeline::tick`].
+    fn tick(&mut self, seen: &Seen<F>, on_event: &mut dyn FnMut(Event<F>)) -> Shown<F>;
+
+    /// See [`Pipeline::add`].
+    fn add(&mut self, seen: &Seen<F>, shown: Shown<F>) -> Shown<F>;
+}
+
+impl<F: Real, I, S, C, B, L> Rendering<F> for Pipeline<F, I, S, C, B, L>
+where
+    I: Check<F>,
+    S: Symptom<F>,
+    C: Addition<F>,
+    B: Addition<F>,
+    L: Limits<F>,
+{
+    #[inline]
+    fn tick(&mut self, seen: &Seen<F>, on_event: &mut dyn FnMut(Event<F>)) -> Shown<F> {
+        Self::tick(self, seen, on_event)
+    }
+
+    #[inline]
+    fn add(&mut self, seen: &Seen<F>, shown: Shown<F>) -> Shown<F> {
+        Self::add(self, seen, shown)
+    }
+}
+
+/// A pipeline whose symptom is a stick-slip object.
+pub(super) trait HasJoint<F: Real>: Rendering<F> {
+    /// The object's type.
+    type Joint: StickSlip<F>;
+
+    /// The object.
+    fn joint(&self) -> &Self::Joint;
+}
+
+impl<F: Real, J: StickSlip<F>> HasJoint<F> for BareStages<F, Bare<J>> {
+    type Joint = J;
+
+    #[inline]
+    fn joint(&self) -> &J {
+        &self.symptoms.0
+    }
+}
+
+impl<F: Real, L: Locate<F, Shape = Linear>> HasJoint<F> for DriveStages<F, Crepitus<F, L>> {
+    type Joint = Frozen<F, L>;
+
+    #[inline]
+    fn joint(&self) -> &Self::Joint {
+        self.symptoms.joint()
+    }
+}

@@ -1,0 +1,72 @@
+//! What the drive would not render, in a scene that asks for a device.
+
+use super::effects::Effects;
+use super::{Crepitus, SolverChoice};
+use crate::document::Section;
+use crate::error::SceneError;
+use crepitus_model::Convention;
+use crepitus_model::device_limits::LimitSettings;
+use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::render::turn_back::most_rad_per_count;
+
+/// Refuses a scene that no device can render.
+pub(super) fn check(
+    root: &Section<'_>,
+    effects: &Effects,
+    solver: SolverChoice,
+) -> Result<(), SceneError> {
+    let refuse = |why: String| Err(root.key_error("device", why));
+    if solver == SolverChoice::Reference {
+        return refuse(
+            "\"reference\" has no step, and a device has: choose another solver".to_owned(),
+        );
+    }
+    let Some(crepitus) = &effects.crepitus else {
+        return Ok(());
+    };
+    let settings = &crepitus.settings;
+    if settings.convention != Convention::Frozen {
+        return refuse(format!(
+            "a device renders the convention \"frozen\" alone, not \"{}\"",
+            settings.convention.name()
+        ));
+    }
+    if settings.parameters.damping_nms_per_rad > 0.0 {
+        return refuse(
+            "a device renders a joint without damping: leave damping_nms_per_rad out".to_owned(),
+        );
+    }
+    let (static_nm, most_nm) = (
+        settings.parameters.static_torque_nm,
+        LimitSettings::default().torque_nm,
+    );
+    if static_nm > most_nm {
+        return refuse(format!(
+            "the device refuses static_torque_nm = {static_nm}: it shows {most_nm} N·m at most"
+        ));
+    }
+    match guard_refusal(crepitus, &effects.encoder.unwrap_or_default()) {
+        Some(why) => refuse(why),
+        None => Ok(()),
+    }
+}
+
+/// Why a device with this encoder would refuse a joint, if it would.
+pub(super) fn guard_refusal(crepitus: &Crepitus, encoder: &EncoderSettings) -> Option<String> {
+    let settings = &crepitus.settings;
+    let (count_rad, most_rad) = (encoder.rad_per_count(), most_rad_per_count(settings));
+    (settings.convention == Convention::Frozen && count_rad > most_rad).then(|| {
+        let p = &settings.parameters;
+        format!(
+            "the device refuses kinetic_torque_nm = {} with static_torque_nm = {}, stiffness_nm_per_rad = {} and \
+             an encoder of {} lines: a hand that turns back inside a slip would get more energy than the slip takes \
+             out of the spring; one count is {:.1} µrad, and may be {:.1} µrad",
+            p.kinetic_torque_nm,
+            p.static_torque_nm,
+            p.stiffness_nm_per_rad,
+            encoder.lines,
+            count_rad * 1e6,
+            most_rad * 1e6
+        )
+    })
+}
