@@ -131,7 +131,7 @@ pub trait Symptom<F> {
         &mut self,
         input: &Checked<F>,
         shown: &mut Shown<F>,
-        on_event: &mut impl FnMut(Event<F>),
+        on_event: impl FnMut(Event<F>),
     ) -> Torque<F>;
 }
 
@@ -189,10 +189,10 @@ impl<F: Real, I: Check<F>, S: Symptom<F>, C: Addition<F>, B: Addition<F>, L: Lim
 
     /// One tick.
     #[inline]
-    pub fn tick(&mut self, seen: &Seen<F>, mut on_event: impl FnMut(Event<F>)) -> Shown<F> {
+    pub fn tick(&mut self, seen: &Seen<F>, on_event: impl FnMut(Event<F>)) -> Shown<F> {
         let mut shown = Shown::nothing();
         let input = self.check.check(&seen.sample);
-        let torque = self.symptoms.tick(&input, &mut shown, &mut on_event);
+        let torque = self.symptoms.tick(&input, &mut shown, on_event);
         shown.torque_nm = torque.shown_nm;
         shown.model_torque_nm = torque.model_nm;
         self.add(seen, shown)
@@ -220,7 +220,7 @@ impl<F: Real, J: StickSlip<F>> Symptom<F> for Bare<J> {
         &mut self,
         input: &Checked<F>,
         shown: &mut Shown<F>,
-        on_event: &mut impl FnMut(Event<F>),
+        mut on_event: impl FnMut(Event<F>),
     ) -> Torque<F> {
         if let Checked::Step(shaft) = input {
             self.0.step(shaft, |event| {
@@ -253,7 +253,7 @@ impl<F: Real> Symptom<F> for () {
         &mut self,
         _: &Checked<F>,
         _: &mut Shown<F>,
-        _: &mut impl FnMut(Event<F>),
+        _: impl FnMut(Event<F>),
     ) -> Torque<F> {
         Torque {
             shown_nm: F::ZERO,
@@ -268,7 +268,7 @@ impl<F: Real, S: Symptom<F>> Symptom<F> for Option<S> {
         &mut self,
         input: &Checked<F>,
         shown: &mut Shown<F>,
-        on_event: &mut impl FnMut(Event<F>),
+        on_event: impl FnMut(Event<F>),
     ) -> Torque<F> {
         match self {
             Some(symptom) => symptom.tick(input, shown, on_event),

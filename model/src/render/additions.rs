@@ -101,15 +101,23 @@ impl<F: Real> Addition<F> for RingingBone<F> {
             shown.torque_nm += self.rung_nm;
         }
         if self.fading_nm != F::ZERO {
-            let left_nm = (self.fading_nm.abs() - self.slew_nm).at_least(F::ZERO);
-            self.fading_nm = if self.fading_nm < F::ZERO {
-                -left_nm
-            } else {
-                left_nm
-            };
-            shown.ringing_nm += self.fading_nm;
-            shown.torque_nm += self.fading_nm;
+            self.fade(shown);
         }
+    }
+}
+
+impl<F: Real> RingingBone<F> {
+    /// What is left of a bone that is gone.
+    #[cold]
+    fn fade(&mut self, shown: &mut Shown<F>) {
+        let left_nm = (self.fading_nm.abs() - self.slew_nm).at_least(F::ZERO);
+        self.fading_nm = if self.fading_nm < F::ZERO {
+            -left_nm
+        } else {
+            left_nm
+        };
+        shown.ringing_nm += self.fading_nm;
+        shown.torque_nm += self.fading_nm;
     }
 }
 

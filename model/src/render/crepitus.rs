@@ -9,7 +9,7 @@
 
 use super::guarded::Counters;
 use super::held::{Held, JointCounters};
-use super::input_check::{Checked, Gap, InputCheck, InputLimits, Sample};
+use super::input_check::{Checked, InputCheck, InputLimits, Sample};
 use super::ramp::Ramp;
 use super::turn_back::TurnBack;
 use super::{Limit, Pipeline, Seen, Shown, Symptom, Torque};
@@ -88,34 +88,33 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Symptom<F> for Crepitus<F, L> {
         &mut self,
         input: &Checked<F>,
         shown: &mut Shown<F>,
-        on_event: &mut impl FnMut(Event<F>),
+        mut on_event: impl FnMut(Event<F>),
     ) -> Torque<F> {
         if let Some(active) = self.ramp.advance() {
             self.held.joint_mut().adjust(active);
         }
-        self.held.follow(input, |event| {
-            shown.jump_nm += event.torque_after_nm - event.torque_before_nm;
+        let jump_nm = &mut shown.jump_nm;
+        self.held.follow(input, move |event| {
+            *jump_nm += event.torque_after_nm - event.torque_before_nm;
             on_event(event);
         });
         let joint = self.held.joint();
         let model_nm = joint.torque_nm();
-        match input {
-            Checked::Step(shaft) | Checked::Resume(shaft) | Checked::CatchUp(Gap { shaft, .. }) => {
-                self.turn_back
-                    .moved(shaft.delta_phi_rad, joint.phase(), joint.slip_number());
-            }
-            Checked::Missing(_) => {}
+        let is_missing = matches!(input, Checked::Missing(_));
+        if let Some(travel_rad) = input.travel_rad() {
+            self.turn_back
+                .moved(travel_rad, joint.phase(), joint.slip_number());
         }
         shown.phase = joint.phase();
         shown.settling = self.ramp.is_settling();
         let shown_nm = if self.turn_back.is_turned() {
             shown.limit = Limit::TurnedBack;
-            if self.held.is_holding() {
+            if is_missing {
                 // What is held is what was shown.
                 self.held.let_go();
             }
             F::ZERO
-        } else if self.held.is_holding() {
+        } else if is_missing {
             shown.limit = Limit::Holding;
             self.held.torque_nm()
         } else {

@@ -123,6 +123,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
     }
 
     /// The `ticks`-th tick in a row without a shaft.
+    #[cold]
     fn hold(&mut self, ticks: u32) {
         if !self.is_holding {
             self.kept_nm = self.joint.torque_nm();
@@ -144,7 +145,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
             omega_end_rad_s: shaft.omega_end_rad_s.settled(),
         };
         if self.joint.active().outlasts_a_stick(&shaft) {
-            self.counters.long_steps = self.counters.long_steps.saturating_add(1);
+            count(&mut self.counters.long_steps);
         }
         let mut events = 0;
         self.joint.step(&shaft, |event| {
@@ -152,7 +153,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
             on_event(event);
         });
         if events >= EVENTS_PER_STEP {
-            self.counters.crowded_steps = self.counters.crowded_steps.saturating_add(1);
+            count(&mut self.counters.crowded_steps);
         }
     }
 
@@ -169,13 +170,15 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
     }
 
     /// The first good sample after more missing ones than are made up for.
+    #[cold]
     fn resume(&mut self, shaft: &ShaftStep<F>) {
-        self.counters.restarts = self.counters.restarts.saturating_add(1);
+        count(&mut self.counters.restarts);
         let torque_nm = self.unwound_nm(shaft.delta_phi_rad);
         self.joint.restart(torque_nm, shaft.omega_end_rad_s);
     }
 
     /// The first good sample after a few missing ones.
+    #[cold]
     fn catch_up(&mut self, gap: &Gap<F>, mut on_event: impl FnMut(Event<F>)) {
         let part = gap.part();
         for (passed, piece) in gap.steps() {
@@ -187,4 +190,10 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
             });
         }
     }
+}
+
+/// Counts what is rare.
+#[cold]
+fn count(counter: &mut u32) {
+    *counter = counter.saturating_add(1);
 }

@@ -35,6 +35,20 @@ pub enum Checked<F> {
     Missing(u32),
 }
 
+impl<F: Real> Checked<F> {
+    /// How far the shaft has moved since it was seen last, rad; none while it
+    /// is out of sight.
+    #[inline]
+    pub fn travel_rad(&self) -> Option<F> {
+        match self {
+            Self::Step(shaft) | Self::Resume(shaft) | Self::CatchUp(Gap { shaft, .. }) => {
+                Some(shaft.delta_phi_rad)
+            }
+            Self::Missing(_) => None,
+        }
+    }
+}
+
 /// A gap of at most [`CATCH_UP_TICKS`], and the step that ends it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap<F> {
@@ -163,6 +177,7 @@ impl<F: Real> InputCheck<F> {
     }
 
     /// A tick without a shaft.
+    #[cold]
     fn miss(&mut self) -> Checked<F> {
         self.missed = self.missed.saturating_add(1);
         Checked::Missing(self.missed)

@@ -77,6 +77,7 @@ impl<F: Real> Limits<F> for TorqueLimits<F> {
 
 impl<F: Real> TorqueLimits<F> {
     /// Shows no more than the allowance.
+    #[cold]
     fn cut(&self, shown: &mut Shown<F>) {
         let (wanted_nm, most_nm) = (shown.torque_nm, self.allowance_nm);
         shown.limit = if most_nm != self.most_nm {
