@@ -249,12 +249,7 @@ impl<F: Real> Check<F> for () {
 
 impl<F: Real> Symptom<F> for () {
     #[inline]
-    fn tick(
-        &mut self,
-        _: &Checked<F>,
-        _: &mut Shown<F>,
-        _: impl FnMut(Event<F>),
-    ) -> Torque<F> {
+    fn tick(&mut self, _: &Checked<F>, _: &mut Shown<F>, _: impl FnMut(Event<F>)) -> Torque<F> {
         Torque {
             shown_nm: F::ZERO,
             model_nm: F::ZERO,

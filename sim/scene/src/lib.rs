@@ -18,6 +18,7 @@
 //! | the clock of every cost | [`cpu_time`] |
 //! | the event-driven solver without a step | [`mod@reference`] |
 
+pub mod any_joint;
 pub mod cpu_time;
 mod document;
 pub mod error;

@@ -26,10 +26,11 @@ pub use summary::{
     SUMMARY_VERSION, Summary, TorqueSummary,
 };
 
+use crate::any_joint::Precise;
 use crate::scene::{Precision, Scene, SolverChoice};
 use crate::trace::{Column, ColumnKind, EventRecord};
+use crepitus_model::SettingsError;
 use crepitus_model::solver::Solver;
-use crepitus_model::{Real, SettingsError};
 use std::convert::Infallible;
 use std::time::Instant;
 use watch::{Ended, Watch, watched};
@@ -208,7 +209,7 @@ fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, Ended> {
     }
 }
 
-fn step_through<F: Real>(
+fn step_through<F: Precise>(
     scene: &Scene,
     solver: Solver,
     step_s: f64,

@@ -6,10 +6,10 @@ use super::stages;
 use super::stepping::{CHECK_STEPS, PROGRESS_STEPS};
 use super::watch::{Ended, Watch};
 use super::{Diverged, RunError, Totals, step_s, steps};
+use crate::any_joint::Precise;
 use crate::scene::Scene;
 use crate::trace::EventRecord;
 use crate::walk::Walk;
-use crepitus_model::Real;
 use crepitus_model::solver::Solver;
 use crepitus_plant::chain::Impacts;
 use crepitus_plant::holder::MotionStep;
@@ -86,7 +86,7 @@ struct Stage {
 }
 
 /// Runs a scene with a plant.
-pub(super) fn simulate<F: Real>(
+pub(super) fn simulate<F: Precise>(
     scene: &Scene,
     solver: Solver,
     watch: &mut dyn Watch,

@@ -5,13 +5,14 @@ use super::sensor::{Encoded, Ideal, Sensor};
 use super::stages::{self, HasJoint, Rendering};
 use super::stepping::Books;
 use super::tally::Tally;
+use crate::any_joint::{AnyJoint, Precise};
 use crate::scene::Scene;
 use crate::trace::{Column, ColumnKind, EventRecord};
 use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
 use crepitus_model::render::input_check::Sample;
 use crepitus_model::render::{Bare, Seen, Shown};
 use crepitus_model::shaft::Linear;
-use crepitus_model::solver::{JointVisitor, Solver, with_joint};
+use crepitus_model::solver::Solver;
 use crepitus_model::{Real, Settings, SettingsError, StickSlip, Validated};
 use crepitus_plant::chain::Body;
 
@@ -54,7 +55,7 @@ pub(super) trait Device {
 }
 
 /// The device that a scene calls for, on a shaft that begins like this.
-pub(super) fn device<F: Real>(
+pub(super) fn device<F: Precise>(
     scene: &Scene,
     solver: Solver,
     step_s: f64,
@@ -73,7 +74,7 @@ pub(super) fn device<F: Real>(
     with_sensor::<F, _>(scene, solver, step_s, shaft, sensor)
 }
 
-fn with_sensor<F: Real, S: Sensor<F> + 'static>(
+fn with_sensor<F: Precise, S: Sensor<F> + 'static>(
     scene: &Scene,
     solver: Solver,
     step_s: f64,
@@ -106,7 +107,9 @@ fn with_sensor<F: Real, S: Sensor<F> + 'static>(
     };
     if !scene.is_device {
         let omega = F::from_f64(shaft.omega_rad_s);
-        return with_joint::<F, _>(&crepitus.settings, solver, step_s, omega, maker)?;
+        let joint = AnyJoint::new(&crepitus.settings, solver, step_s, omega)?;
+        let stages = stages::bare(scene, step_s, Bare(joint))?;
+        return Ok(maker.joined(stages));
     }
     match solver {
         Solver::ExactBreak => maker.drive::<F, ExactBreak>(),
@@ -165,15 +168,6 @@ impl<S: 'static> Maker<'_, S> {
             books,
             shown,
         })
-    }
-}
-
-impl<F: Real, S: Sensor<F> + 'static> JointVisitor<F> for Maker<'_, S> {
-    type Output = Result<Box<dyn Device>, SettingsError>;
-
-    fn visit<J: StickSlip<F>>(self, joint: J) -> Self::Output {
-        let stages = stages::bare(self.scene, self.step_s, Bare(joint))?;
-        Ok(self.joined(stages))
     }
 }
 

@@ -1,6 +1,7 @@
 //! The stages that a scene's device has around its joint: those of a bare
 //! solver, or all that the drive has.
 
+use crate::any_joint::AnyJoint;
 use crate::scene::Scene;
 use crepitus_model::device_limits::LimitSettings;
 use crepitus_model::energy_observer::MOST_DELAY_TICKS;
@@ -164,11 +165,11 @@ pub(super) trait HasJoint<F: Real>: Rendering<F> {
     fn joint(&self) -> &Self::Joint;
 }
 
-impl<F: Real, J: StickSlip<F>> HasJoint<F> for BareStages<F, Bare<J>> {
-    type Joint = J;
+impl<F: Real> HasJoint<F> for BareStages<F, Bare<AnyJoint<F>>> {
+    type Joint = AnyJoint<F>;
 
     #[inline]
-    fn joint(&self) -> &J {
+    fn joint(&self) -> &AnyJoint<F> {
         &self.symptoms.0
     }
 }

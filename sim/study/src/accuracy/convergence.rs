@@ -13,11 +13,12 @@ use crate::event_errors::EventErrors;
 use crate::matching::match_events;
 use crate::sampling::{CHUNK_STEPS, Sampling};
 use crate::true_events::TimedEvent;
-use crepitus_model::solver::{JointVisitor, Solver, with_joint};
+use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, SettingsError, StickSlip};
 use crepitus_plant::Motion;
 use crepitus_plant::motion::Strokes;
 use crepitus_plant::recording::{Samples, smooth};
+use crepitus_scene::any_joint::AnyJoint;
 
 /// The longest step, s: a quarter of the shortest slip.
 const LONGEST_STEP_S: f64 = 4e-3;
@@ -175,7 +176,7 @@ pub fn run_at(
         // A rung that chatters has lost already.
         most: 4 * truth.len() + 10_000,
     };
-    let found = with_joint::<f64, _>(&scene.settings, solver, step_s, omega, collect)?;
+    let found = collect.events(AnyJoint::new(&scene.settings, solver, step_s, omega)?);
     let matching = match_events(truth, &found, step_s, sampling.end_s());
     Ok(Run {
         step_s,
@@ -190,10 +191,8 @@ struct Collect<'a> {
     most: usize,
 }
 
-impl JointVisitor<f64> for Collect<'_> {
-    type Output = Vec<TimedEvent>;
-
-    fn visit<J: StickSlip<f64>>(self, mut joint: J) -> Vec<TimedEvent> {
+impl Collect<'_> {
+    fn events(&self, mut joint: AnyJoint<f64>) -> Vec<TimedEvent> {
         let mut events = Vec::new();
         let mut walk = self.sampling.walk_from(0);
         let mut chunk = Vec::with_capacity(CHUNK_STEPS);

@@ -8,8 +8,9 @@ use crate::event_errors::EventErrors;
 use crate::matching::match_events;
 use crate::sampling::{CHUNK_STEPS, Sampling};
 use crate::true_events::TimedEvent;
-use crepitus_model::solver::{JointVisitor, Solver, with_joint};
+use crepitus_model::solver::Solver;
 use crepitus_model::{Phase, Real, SettingsError, StickSlip};
+use crepitus_scene::any_joint::{AnyJoint, Precise};
 use crepitus_scene::run::Lead;
 use crepitus_scene::scene::Precision;
 
@@ -69,18 +70,13 @@ pub fn measure(
     Ok(judge(target, &seen))
 }
 
-fn see<F: Real>(target: &Target<'_>, solver: Solver) -> Result<Seen, SettingsError> {
+fn see<F: Precise>(target: &Target<'_>, solver: Solver) -> Result<Seen, SettingsError> {
     let Target {
         scene, sampling, ..
     } = target;
     let omega = F::from_f64(scene.motion.at(0.0).omega_rad_s);
-    with_joint::<F, _>(
-        &scene.settings,
-        solver,
-        sampling.step_s(),
-        omega,
-        Look(target),
-    )
+    let joint = AnyJoint::new(&scene.settings, solver, sampling.step_s(), omega)?;
+    Ok(look(target, joint))
 }
 
 /// What was seen of a run.
@@ -114,75 +110,70 @@ impl Errors {
     }
 }
 
-struct Look<'a>(&'a Target<'a>);
-
-impl<F: Real> JointVisitor<F> for Look<'_> {
-    type Output = Seen;
-
-    fn visit<J: StickSlip<F>>(self, mut joint: J) -> Seen {
-        let Target {
-            scene,
-            sampling,
-            events,
-            torque,
-            held,
-            ..
-        } = self.0;
-        // A rung that chatters has lost already; its events need no memory.
-        let most = 4 * events.len() + 10_000;
-        let mut seen = Seen {
-            events: Vec::new(),
-            more_events: 0,
-            held: Errors::default(),
-            at_ticks: Errors::default(),
-            lead: Lead::new(&scene.settings, sampling.step_s(), F::IS_SINGLE),
-            finite: true,
-        };
-        let mut walk = sampling.walk_from(0);
-        let mut chunk = Vec::with_capacity(CHUNK_STEPS);
-        let (mut n, mut index, mut tie) = (0_u64, 0_usize, 0_usize);
-        loop {
-            walk.fill(&mut chunk, CHUNK_STEPS);
-            if chunk.is_empty() {
-                break;
-            }
-            for shaft in &chunk {
-                if let Some(tick) = held.tick(index) {
-                    let shown_nm = joint.torque_nm().to_f64();
-                    seen.held
-                        .add(tick.mean_square(shown_nm), tick.largest_nm(shown_nm));
-                }
-                joint.step(shaft, |event| {
-                    if seen.events.len() < most {
-                        let time_s = sampling.time_s(n, event.fraction.to_f64());
-                        seen.events.push(TimedEvent::new(time_s, &event));
-                    } else {
-                        seen.more_events += 1;
-                    }
-                });
-                let error_nm = torque.error_nm::<F>(index, joint.torque_nm().to_f64(), &mut tie);
-                seen.at_ticks.add(error_nm * error_nm, error_nm);
-                if let Phase::Slip(sense) = joint.phase()
-                    && seen.lead.is_due()
-                {
-                    seen.lead.look(
-                        sense.of_signed(1.0),
-                        shaft.omega_end_rad_s.to_f64(),
-                        joint.theta_dot_rad_s().to_f64(),
-                    );
-                }
-                n += 1;
-                index += 1;
-            }
-            // The torque of a slip is Tk whatever has become of the object.
-            seen.finite &= joint.theta_rad().is_finite()
-                && joint.theta_dot_rad_s().is_finite()
-                && seen.at_ticks.squares.is_finite()
-                && seen.held.squares.is_finite();
+/// Runs a joint, and looks at every step.
+fn look<F: Precise>(target: &Target<'_>, mut joint: AnyJoint<F>) -> Seen {
+    let Target {
+        scene,
+        sampling,
+        events,
+        torque,
+        held,
+        ..
+    } = target;
+    // A rung that chatters has lost already; its events need no memory.
+    let most = 4 * events.len() + 10_000;
+    let mut seen = Seen {
+        events: Vec::new(),
+        more_events: 0,
+        held: Errors::default(),
+        at_ticks: Errors::default(),
+        lead: Lead::new(&scene.settings, sampling.step_s(), F::IS_SINGLE),
+        finite: true,
+    };
+    let mut walk = sampling.walk_from(0);
+    let mut chunk = Vec::with_capacity(CHUNK_STEPS);
+    let (mut n, mut index, mut tie) = (0_u64, 0_usize, 0_usize);
+    loop {
+        walk.fill(&mut chunk, CHUNK_STEPS);
+        if chunk.is_empty() {
+            break;
         }
-        seen.finite &= seen.events.iter().all(|e| e.time_s.is_finite());
-        seen
+        for shaft in &chunk {
+            if let Some(tick) = held.tick(index) {
+                let shown_nm = joint.torque_nm().to_f64();
+                seen.held
+                    .add(tick.mean_square(shown_nm), tick.largest_nm(shown_nm));
+            }
+            joint.step(shaft, |event| {
+                if seen.events.len() < most {
+                    let time_s = sampling.time_s(n, event.fraction.to_f64());
+                    seen.events.push(TimedEvent::new(time_s, &event));
+                } else {
+                    seen.more_events += 1;
+                }
+            });
+            let error_nm = torque.error_nm::<F>(index, joint.torque_nm().to_f64(), &mut tie);
+            seen.at_ticks.add(error_nm * error_nm, error_nm);
+            if let Phase::Slip(sense) = joint.phase()
+                && seen.lead.is_due()
+            {
+                seen.lead.look(
+                    sense.of_signed(1.0),
+                    shaft.omega_end_rad_s.to_f64(),
+                    joint.theta_dot_rad_s().to_f64(),
+                );
+            }
+            n += 1;
+            index += 1;
+        }
+        // The torque of a slip is Tk whatever has become of the object.
+        seen.finite &= joint.theta_rad().is_finite()
+            && joint.theta_dot_rad_s().is_finite()
+            && seen.at_ticks.squares.is_finite()
+            && seen.held.squares.is_finite();
     }
+    seen.finite &= seen.events.iter().all(|e| e.time_s.is_finite());
+    seen
 }
 
 fn judge(target: &Target<'_>, seen: &Seen) -> Accuracy {

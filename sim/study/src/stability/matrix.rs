@@ -5,7 +5,7 @@ use super::criterion::Criterion;
 use super::input::Input;
 use super::judge::{Evidence, common, judge, remark};
 use super::observation::Observation;
-use super::observe::observe;
+use super::observe::{Stopped, observe};
 use super::subject::Subject;
 use super::verdict::{Failure, Margin, Verdict};
 use crate::sampling::Sampling;
@@ -241,10 +241,20 @@ impl<W: Watcher> Work<'_, W> {
     ) -> Result<Observation, StudyError<W::Error>> {
         // A run that overflows ends early: its work is done all the same.
         let after = self.done + work_of(input);
+        let mut reason = None;
         let seen = observe(subject, settings, input, late_s, &mut |steps| {
             self.done += steps;
-            self.tell()
-        })?;
+            self.tell().map_err(|why| {
+                reason = Some(why);
+                Stopped
+            })
+        });
+        let seen = match (seen, reason) {
+            (_, Some(why)) => return Err(StudyError::Watcher(why)),
+            (Err(StudyError::Settings(error)), None) => return Err(error.into()),
+            (Err(StudyError::Watcher(Stopped)), None) => unreachable!("it has a reason"),
+            (Ok(seen), None) => seen,
+        };
         self.done = after;
         self.tell().map_err(StudyError::Watcher)?;
         Ok(seen)

@@ -14,11 +14,12 @@ use super::without_steps::without_steps;
 use crate::sampling::{CHUNK_STEPS, Sampling};
 use crate::true_events::TimedEvent;
 use crate::watcher::StudyError;
-use crepitus_model::solver::{JointVisitor, Solver, with_joint};
+use crepitus_model::solver::Solver;
 use crepitus_model::{
     Convention, EVENTS_PER_STEP, Event, EventKind, Parameters, Phase, Real, Settings, ShaftStep,
     StickSlip,
 };
+use crepitus_scene::any_joint::{AnyJoint, Precise};
 use crepitus_scene::scene::Precision;
 
 /// Between two looks at whoever watches, in steps.
@@ -34,13 +35,13 @@ const BOOKED_RADIANS: f64 = 0.05;
 /// Runs `subject` with `settings` through `input`; the late torque is that
 /// after `late_s`. `go_on` hears of the steps made since it was last called,
 /// and may end the run.
-pub(super) fn observe<E>(
+pub(super) fn observe(
     subject: Subject,
     settings: &Settings,
     input: &Input,
     late_s: f64,
-    go_on: &mut dyn FnMut(f64) -> Result<(), E>,
-) -> Result<Observation, StudyError<E>> {
+    go_on: &mut dyn FnMut(f64) -> Result<(), Stopped>,
+) -> Result<Observation, StudyError<Stopped>> {
     if let Input::Refusals(attempts) = input {
         return Ok(attempt(subject, attempts));
     }
@@ -48,19 +49,19 @@ pub(super) fn observe<E>(
         return Ok(without_steps(settings, input, late_s)?);
     };
     match subject.precision {
-        Precision::F32 => run::<f32, E>(subject, solver, settings, input, late_s, go_on),
-        Precision::F64 => run::<f64, E>(subject, solver, settings, input, late_s, go_on),
+        Precision::F32 => run::<f32>(subject, solver, settings, input, late_s, go_on),
+        Precision::F64 => run::<f64>(subject, solver, settings, input, late_s, go_on),
     }
 }
 
-fn run<F: Real, E>(
+fn run<F: Precise>(
     subject: Subject,
     solver: Solver,
     settings: &Settings,
     input: &Input,
     late_s: f64,
-    go_on: &mut dyn FnMut(f64) -> Result<(), E>,
-) -> Result<Observation, StudyError<E>> {
+    go_on: &mut dyn FnMut(f64) -> Result<(), Stopped>,
+) -> Result<Observation, StudyError<Stopped>> {
     let settings = settings.validate()?;
     let (duration_s, step_s) = input.duration_and_step_s().unwrap_or((0.0, 1.0));
     let motion = motion(input);
@@ -111,16 +112,12 @@ fn run<F: Real, E>(
         go_on,
     };
     let omega = F::from_f64(omega_rad_s);
-    with_joint::<F, _>(&settings, solver, step_s, omega, look)?.map_err(StudyError::Watcher)
+    let joint = AnyJoint::new(&settings, solver, step_s, omega)?;
+    look.guarded_or_not(joint).map_err(StudyError::Watcher)
 }
 
 /// Tries to build each joint.
 fn attempt(subject: Subject, attempts: &[Attempt]) -> Observation {
-    struct Built;
-    impl<F: Real> JointVisitor<F> for Built {
-        type Output = ();
-        fn visit<J: StickSlip<F>>(self, _: J) {}
-    }
     let accepts = |attempt: &&Attempt| {
         attempt.settings.validate().is_ok_and(|settings| {
             let Rung::Ladder(solver) = subject.solver else {
@@ -128,12 +125,8 @@ fn attempt(subject: Subject, attempts: &[Attempt]) -> Observation {
             };
             let step_s = attempt.step_s;
             match subject.precision {
-                Precision::F32 => {
-                    with_joint::<f32, _>(&settings, solver, step_s, 1.0, Built).is_ok()
-                }
-                Precision::F64 => {
-                    with_joint::<f64, _>(&settings, solver, step_s, 1.0, Built).is_ok()
-                }
+                Precision::F32 => AnyJoint::<f32>::new(&settings, solver, step_s, 1.0).is_ok(),
+                Precision::F64 => AnyJoint::<f64>::new(&settings, solver, step_s, 1.0).is_ok(),
             }
         })
     };
@@ -143,8 +136,11 @@ fn attempt(subject: Subject, attempts: &[Attempt]) -> Observation {
     }
 }
 
+/// Whoever was asked whether to go on said no, and knows why.
+pub(super) struct Stopped;
+
 /// Looks at a joint after every step.
-struct Look<'a, F, E> {
+struct Look<'a, F> {
     source: Box<dyn Source<F> + 'a>,
     sampling: Sampling<'a>,
     parameters: Parameters,
@@ -154,13 +150,11 @@ struct Look<'a, F, E> {
     late_step: f64,
     /// Velocity at the start, rad/s, if the input goes through the check.
     guard_from_rad_s: Option<F>,
-    go_on: &'a mut dyn FnMut(f64) -> Result<(), E>,
+    go_on: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
 }
 
-impl<F: Real, E> JointVisitor<F> for Look<'_, F, E> {
-    type Output = Result<Observation, E>;
-
-    fn visit<J: StickSlip<F>>(self, joint: J) -> Self::Output {
+impl<F: Real> Look<'_, F> {
+    fn guarded_or_not(self, joint: AnyJoint<F>) -> Result<Observation, Stopped> {
         match self.guard_from_rad_s {
             Some(omega_rad_s) => {
                 let step_s = self.sampling.step_s();
@@ -169,10 +163,8 @@ impl<F: Real, E> JointVisitor<F> for Look<'_, F, E> {
             None => self.look(joint),
         }
     }
-}
 
-impl<F: Real, E> Look<'_, F, E> {
-    fn look<J: StickSlip<F>>(mut self, mut joint: J) -> Result<Observation, E> {
+    fn look<J: StickSlip<F>>(mut self, mut joint: J) -> Result<Observation, Stopped> {
         let first_torque_nm = joint.torque_nm().to_f64();
         let mut seen = Observation {
             step_s: self.sampling.step_s(),

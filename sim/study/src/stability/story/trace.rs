@@ -2,9 +2,10 @@
 //! the run: torque, velocity of the object, breaks.
 
 use crate::sampling::{CHUNK_STEPS, Sampling};
-use crepitus_model::solver::{JointVisitor, Solver, with_joint};
+use crepitus_model::solver::Solver;
 use crepitus_model::{EventKind, Real, Settings, SettingsError, StickSlip, Validated};
 use crepitus_plant::Motion;
+use crepitus_scene::any_joint::AnyJoint;
 
 /// What is run.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +42,8 @@ impl Run<'_> {
     fn go(self, lines: bool) -> Result<Trace, SettingsError> {
         let omega_rad_s = self.motion.at(0.0).omega_rad_s;
         let record = Record { run: self, lines };
-        with_joint::<f64, _>(self.settings, self.solver, self.step_s, omega_rad_s, record)
+        let joint = AnyJoint::new(self.settings, self.solver, self.step_s, omega_rad_s)?;
+        Ok(record.trace(joint))
     }
 }
 
@@ -50,10 +52,8 @@ struct Record<'a> {
     lines: bool,
 }
 
-impl JointVisitor<f64> for Record<'_> {
-    type Output = Trace;
-
-    fn visit<J: StickSlip<f64>>(self, mut joint: J) -> Trace {
+impl Record<'_> {
+    fn trace(self, mut joint: AnyJoint<f64>) -> Trace {
         let sampling = Sampling::new(self.run.motion, self.run.duration_s, self.run.step_s);
         let mut trace = Trace::default();
         let mut walk = sampling.walk_from(0);
