@@ -14,6 +14,7 @@ mod csv_file;
 mod error;
 mod opensim_file;
 mod smooth;
+mod smoothing_spline;
 mod table;
 mod warning;
 

@@ -33,6 +33,7 @@
 //! Winter, "Biomechanics and Motor Control of Human Movement", for the dual pass and the
 //! customary 6 Hz in gait.
 
+use super::smoothing_spline::smoothed;
 use super::{MIN_SAMPLES, RecordingError, Samples};
 use std::f64::consts::TAU;
 
@@ -190,22 +191,13 @@ fn average(samples: &Samples, bin_s: f64) -> Vec<Knot> {
 
 /// The smoothing spline's values at the knots.
 fn low_pass(knots: &[Knot], omega_c: f64) -> Result<Vec<f64>, RecordingError> {
-    let failed = |reason: String| RecordingError::Spline { reason };
     let time: Vec<f64> = knots.iter().map(|knot| omega_c * knot.time_s).collect();
     let angle: Vec<f64> = knots.iter().map(|knot| knot.angle_rad).collect();
     let weight: Vec<f64> = knots.iter().map(|knot| omega_c * knot.weight_s).collect();
-    let values: Vec<f64> = csaps::CubicSmoothingSpline::new(&time, &angle)
-        .with_weights(&weight)
-        // p Σ w (y − f)² + (1 − p) ∫ f″²: equal parts.
-        .with_smooth(0.5)
-        .make()
-        .and_then(|spline| spline.evaluate(&time))
-        .map_err(|error| failed(error.to_string()))?
-        .iter()
-        .copied()
-        .collect();
+    let values = smoothed(&time, &angle, &weight);
     if values.iter().any(|value| !value.is_finite()) {
-        return Err(failed("its values are not finite".to_owned()));
+        let reason = "its values are not finite".to_owned();
+        return Err(RecordingError::Spline { reason });
     }
     Ok(values)
 }
