@@ -3,7 +3,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 figure() { # SCENE CHART PICTURE
-    cargo run --release --quiet -- run "$1" --pictures --out "target/figures/$1" >/dev/null
+    cargo run --profile dist --features emulator --quiet -- run "$1" --pictures --out "target/figures/$1" >/dev/null
     cp "target/figures/$1/$2.svg" "docs/images/$3.svg"
     echo "docs/images/$3.svg"
 }
@@ -11,7 +11,7 @@ figure slow-examination zoom-1 stick-slip-cycles
 figure knee-pass-frozen torque knee-pass-frozen
 figure knee-pass-physical torque knee-pass-physical
 
-cargo run --release --quiet -- accuracy --target --pictures --out target/figures/accuracy >target/figures/accuracy.txt
+cargo run --profile dist --features emulator --quiet -- accuracy --target --pictures --out target/figures/accuracy >target/figures/accuracy.txt
 for picture in frequency-f64 frequency-f32 tick-torque-f32; do
     measure=${picture%-*} precision=${picture##*-}
     image=docs/images/accuracy-${picture#tick-}.svg
@@ -32,19 +32,19 @@ awk 'NR == FNR { if (/^\|/) table = table $0 "\n"; next }
 cp target/figures/accuracy.md docs/accuracy.md
 echo docs/accuracy.md
 
-cargo run --release --quiet -- stability --pictures --out target/figures/stability >/dev/null
+cargo run --profile dist --features emulator --quiet -- stability --pictures --out target/figures/stability >/dev/null
 cp target/figures/stability/matrix.svg docs/images/stability-matrix.svg
 echo docs/images/stability-matrix.svg
 for story in implicit-euler restick-rules parameter-change turn-back-guard; do
     cp "target/figures/stability/$story.svg" "docs/images/$story.svg"
     echo "docs/images/$story.svg"
 done
-cargo run --release --quiet -- stability --list --long >docs/hard-cases.md
+cargo run --profile dist --features emulator --quiet -- stability --list --long >docs/hard-cases.md
 echo docs/hard-cases.md
 
 # The numbers of the page about effects are what these print.
 for scene in fig8-5-hand fig9-low-speed; do
-    cargo run --release --quiet -- effects "$scene" --pictures --out "target/figures/effects-$scene"
+    cargo run --profile dist --features emulator --quiet -- effects "$scene" --pictures --out "target/figures/effects-$scene"
     cp "target/figures/effects-$scene/build-up.svg" "docs/images/build-up-${scene%%-*}.svg"
     echo "docs/images/build-up-${scene%%-*}.svg"
 done

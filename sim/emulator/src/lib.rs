@@ -11,6 +11,7 @@
 //! | which cycles a task takes | [`cycles`] |
 //! | what a step of each solver costs | [`ladder`] |
 //! | where the images come from | [`firmware`], [`elf`] |
+//! | the same for a program that can do without | [`on_target`] |
 //!
 //! Time is exact and virtual: nothing reads a clock, and two runs of the same
 //! are the same to the last bit of memory.
@@ -22,20 +23,37 @@
 //! program has used in vain.
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "core")]
 mod chip;
+#[cfg(feature = "core")]
 pub mod cycles;
+#[cfg(feature = "core")]
 mod devices;
+#[cfg(feature = "core")]
 pub mod drive_board;
+#[cfg(feature = "core")]
 pub mod elf;
+#[cfg(feature = "core")]
 pub mod firmware;
+#[cfg(feature = "core")]
 pub mod ladder;
+#[cfg(feature = "core")]
 pub mod mcu;
+pub mod on_target;
+#[cfg(feature = "core")]
 pub mod stm32f405;
+#[cfg(feature = "core")]
 pub mod time;
 
+#[cfg(feature = "core")]
 pub use devices::usart::Character;
+#[cfg(feature = "core")]
 pub use drive_board::DriveBoard;
+#[cfg(feature = "core")]
 pub use elf::Image;
+#[cfg(feature = "core")]
 pub use mcu::{Mcu, Pin, Reset};
+#[cfg(feature = "core")]
 pub use stm32f405::Stm32f405;
+#[cfg(feature = "core")]
 pub use time::Time;

@@ -3,21 +3,16 @@
 use super::words;
 use crate::failure::Failure;
 use crate::studying::{Interrupted, Watch};
-use crepitus_emulator::firmware::{self, Program};
-use crepitus_emulator::ladder::{Ladder, LadderError};
+use crepitus_emulator::on_target::{self, OnTarget};
 use crepitus_study::accuracy::target::inputs::Lengths;
-use crepitus_study::accuracy::target::{self, OnTarget, Row, TargetError};
+use crepitus_study::accuracy::target::{self, Row, TargetError};
 use crepitus_study::accuracy::{Study, StudyScene};
 use std::fmt::Write;
 
 /// The program on an emulated core.
-pub(super) fn ladder() -> Result<Ladder, Failure> {
-    if firmware::is_to_be_built() {
-        eprintln!("building firmware/ladder, if it is not up to date");
-    }
-    let image = firmware::image(Program::Ladder)
-        .map_err(|error| Failure::Work(format!("--target: {error}")))?;
-    Ok(Ladder::new(&image))
+pub(super) fn ladder() -> Result<OnTarget, Failure> {
+    on_target::ladder(|| eprintln!("building firmware/ladder, if it is not up to date"))
+        .map_err(|error| Failure::Work(format!("--target: {error}")))
 }
 
 /// Adds cycles and instructions to a study.
@@ -25,16 +20,15 @@ pub(super) fn add(
     study: &mut Study,
     scenes: &[StudyScene],
     is_quick: bool,
-    ladder: &mut Ladder,
+    ladder: &mut OnTarget,
 ) -> Result<(), Failure> {
     let lengths = if is_quick {
         Lengths::QUICK
     } else {
         Lengths::FULL
     };
-    let run = |plan: &_, inputs: &[_]| Ok(ladder.run_and_compare(plan, inputs)?.calls);
-    target::add(study, scenes, lengths, run, &mut Watch::new()).map_err(
-        |error: TargetError<LadderError, Interrupted>| match error {
+    target::add(study, scenes, lengths, ladder, &mut Watch::new()).map_err(
+        |error: TargetError<String, Interrupted>| match error {
             TargetError::Study(error) => crate::studying::failed(error),
             other => Failure::Work(format!("--target: {other}")),
         },
@@ -42,7 +36,7 @@ pub(super) fn add(
 }
 
 /// Where the target chooses, what it chooses by.
-pub(super) fn chooses_by(on: &OnTarget) -> String {
+pub(super) fn chooses_by(on: &target::OnTarget) -> String {
     format!(
         "By mean cycles on the target ({}), equal means by the worst observed; that must fit {:.0} % of a tick, {:.0} \
          cycles.\n",
@@ -53,7 +47,7 @@ pub(super) fn chooses_by(on: &OnTarget) -> String {
 }
 
 /// As a table, for the terminal and for a page of the book.
-pub(super) fn table(on: &OnTarget) -> String {
+pub(super) fn table(on: &target::OnTarget) -> String {
     let mut text = format!(
         "A step on the target, in f32 at the device's tick ({}; a tick has {}):\n\n\
          | what | convention | frequency error | mean cycles | worst observed | on | mean instructions | most | worst, % of a tick |\n\

@@ -1,0 +1,53 @@
+//! Steps of the ladder on the target, for programs that can do without: the
+//! core is a large part of their build, behind the feature `core`.
+
+use crepitus_ladder::exchange::Input;
+use crepitus_ladder::{Call, Plan};
+
+/// Runs the steps of a plan, compares every output with the host's, and gives
+/// what each has cost; or says why not.
+pub type OnTarget = Box<dyn FnMut(&Plan, &[Input]) -> Result<Vec<Call>, String>>;
+
+/// Why there is no target.
+#[derive(Debug, thiserror::Error)]
+pub enum NoTarget {
+    /// The program was built without the core.
+    #[error(
+        "this program was built without the emulator; build it with `--features emulator`, as in \
+         `cargo run --release --features emulator -- accuracy --target`"
+    )]
+    NoCore,
+    /// There is no image.
+    #[error("{0}")]
+    NoImage(String),
+}
+
+/// The ladder on an emulated core; `on_build` is told if its image has to be
+/// built first.
+///
+/// # Errors
+/// [`NoTarget`].
+#[cfg(feature = "core")]
+pub fn ladder(on_build: impl FnOnce()) -> Result<OnTarget, NoTarget> {
+    use crate::firmware::{self, Program};
+    use crate::ladder::Ladder;
+    if firmware::is_to_be_built() {
+        on_build();
+    }
+    let image =
+        firmware::image(Program::Ladder).map_err(|error| NoTarget::NoImage(error.to_string()))?;
+    let mut ladder = Ladder::new(&image);
+    Ok(Box::new(move |plan, inputs| {
+        let run = ladder.run_and_compare(plan, inputs);
+        Ok(run.map_err(|error| error.to_string())?.calls)
+    }))
+}
+
+/// There is none in this program.
+///
+/// # Errors
+/// Always [`NoTarget::NoCore`].
+#[cfg(not(feature = "core"))]
+pub fn ladder(_: impl FnOnce()) -> Result<OnTarget, NoTarget> {
+    Err(NoTarget::NoCore)
+}
