@@ -64,7 +64,7 @@ pub(super) fn softer_under_load() -> Case {
         title: "The spring gets forty times softer under a stick",
         hard: "The angle stays, so the torque falls with the stiffness: a ramp that looks at Tk and Ts only has nothing \
                to do, takes one tick, and drops 0.35 N·m at once.",
-        source: "model/src/ramp.rs: n = Ts·ln(kr/kr′)/(slew·h)",
+        source: "model/src/render/ramp.rs: n = Ts·ln(kr/kr′)/(slew·h)",
         long: false,
         must: located,
         trials: |subject| {
@@ -233,7 +233,7 @@ pub(super) fn guard_memory() -> Case {
         title: "A hand that turns back a little in slip after slip, and one that turns back for good",
         hard: "Less than two counts are noise, in each slip anew: a guard that adds them up over slips switches off the \
                torque of a hand that holds still, and one that forgets to switch it on again takes the next stick away.",
-        source: "model/src/turn_back.rs: 2 counts of 35.7 µrad; 60 and 40 µrad in two slips, then 200 µrad in one",
+        source: "model/src/render/turn_back.rs: 2 counts of 35.7 µrad; 60 and 40 µrad in two slips, then 200 µrad in one",
         long: false,
         must: located,
         trials: |subject| {

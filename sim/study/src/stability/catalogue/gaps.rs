@@ -15,7 +15,7 @@ pub(super) fn gap_under_load() -> Case {
         hard: "Too many to make up for: the joint is put down anew, with the torque that was held and on a shaft that \
                moves. From 0 N·m instead the hand feels a blow, and a joint that is put down at rest takes the shaft's \
                next velocity for a jump and breaks.",
-        source: "model/src/guarded.rs: held for 20 ticks, then 100 N·m/s; 400 N·m/rad · 0.1 rad/s is 2 mN·m a tick",
+        source: "model/src/render/held.rs: held for 20 ticks, then 100 N·m/s; 400 N·m/rad · 0.1 rad/s is 2 mN·m a tick",
         long: false,
         must: located,
         trials: |subject| {
