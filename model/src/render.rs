@@ -301,3 +301,77 @@ impl<F: Real> Seen<F> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::locate::ExactEvents;
+    use crate::render::friction_compensation::FrictionCompensationSettings;
+    use crate::{Active, FrictionCompensation, Frozen, Settings};
+
+    type Joint = Bare<Frozen<f64, ExactEvents>>;
+
+    fn joint() -> Joint {
+        let active = Active::new(&Settings::default().validate().unwrap(), 5e-5).unwrap();
+        Bare(Frozen::new(active, 1.0))
+    }
+
+    fn steady() -> Seen<f64> {
+        Seen::taken(&ShaftStep {
+            delta_phi_rad: 5e-5,
+            omega_start_rad_s: 1.0,
+            omega_end_rad_s: 1.0,
+        })
+    }
+
+    #[test]
+    fn an_absent_stage_has_no_state_and_changes_no_bit() {
+        assert_eq!(
+            size_of::<Pipeline<f64, (), Joint>>(),
+            size_of::<Frozen<f64, ExactEvents>>()
+        );
+        let mut pipeline = Pipeline::new((), joint(), (), (), ());
+        let mut alone = joint().0;
+        let (mut ours, mut theirs) = (0, 0);
+        for _ in 0..2_000 {
+            let shown = pipeline.tick(&steady(), |_| ours += 1);
+            let Sample::Taken(step) = steady().sample else {
+                unreachable!()
+            };
+            alone.step(&step, |_| theirs += 1);
+            assert_eq!(shown.torque_nm.to_bits(), alone.torque_nm().to_bits());
+            assert_eq!(shown.model_torque_nm, shown.torque_nm);
+            assert_eq!((shown.phase, shown.limit), (alone.phase(), Limit::None));
+        }
+        assert!(ours > 4 && ours == theirs);
+    }
+
+    #[test]
+    fn a_switched_stage_acts_where_it_is() {
+        let law = || FrictionCompensation::new(&FrictionCompensationSettings::default()).unwrap();
+        let mut pipeline = Pipeline::new((), Some(joint()), Some(law()), (), ());
+        let shown = pipeline.tick(&steady(), |_| {});
+        assert_eq!(
+            shown.torque_nm,
+            shown.model_torque_nm + law().torque_nm(1.0)
+        );
+        pipeline.compensation = None;
+        let shown = pipeline.tick(&steady(), |_| {});
+        assert_eq!(shown.torque_nm, shown.model_torque_nm);
+        pipeline.symptoms = None;
+        let shown = pipeline.tick(&steady(), |_| panic!("nothing there"));
+        assert_eq!(shown, Shown::nothing());
+    }
+
+    #[test]
+    fn a_bare_solver_waits_for_its_next_sample() {
+        let mut pipeline = Pipeline::new((), joint(), (), (), ());
+        let before = pipeline.tick(&steady(), |_| {}).torque_nm;
+        let lost = Seen {
+            sample: Sample::Lost,
+            omega_rad_s: 1.0,
+        };
+        assert_eq!(pipeline.tick(&lost, |_| {}).torque_nm, before);
+        assert!(pipeline.tick(&steady(), |_| {}).torque_nm > before);
+    }
+}

@@ -150,3 +150,93 @@ fn rung_nm<F: Real>(bone: &mut BoneShaping<F>, seen: &Seen<F>, jump_nm: F) -> F 
     bone.ring(jump_nm);
     bone.tick(travel_rad)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ShaftStep;
+    use crate::render::bone_shaping::BoneShapingSettings;
+    use crate::render::friction_compensation::FrictionCompensationSettings;
+    use std::vec::Vec;
+
+    fn seen(omega_rad_s: f32) -> Seen<f32> {
+        Seen::taken(&ShaftStep {
+            delta_phi_rad: 0.0,
+            omega_start_rad_s: omega_rad_s,
+            omega_end_rad_s: omega_rad_s,
+        })
+    }
+
+    fn after(stage: &mut impl Addition<f32>, omega_rad_s: f32, jump_nm: f32) -> Shown<f32> {
+        let mut shown = Shown {
+            torque_nm: 1.0,
+            jump_nm,
+            ..Shown::nothing()
+        };
+        stage.tick(&seen(omega_rad_s), &mut shown);
+        shown
+    }
+
+    /// 0.4 N·m along.
+    fn law() -> FrictionCompensation<f32> {
+        FrictionCompensation::new(&FrictionCompensationSettings::default()).unwrap()
+    }
+
+    #[test]
+    fn compensation_comes_and_goes_within_the_slew_limit() {
+        let mut stage = SlewedCompensation::new(Some(law()), 0.3);
+        let first = after(&mut stage, 1.0, 0.0);
+        assert_eq!((first.torque_nm, first.limit), (0.7, Limit::Slew));
+        assert_eq!(first.compensation_nm, -0.3);
+        let second = after(&mut stage, 1.0, 0.0);
+        assert!((second.torque_nm - 0.6).abs() < 1e-6);
+        assert_eq!(second.limit, Limit::None);
+        stage.change(None, 0.3);
+        let leaving = after(&mut stage, 1.0, 0.0);
+        assert!((leaving.torque_nm - 0.9).abs() < 1e-6);
+        assert_eq!(leaving.limit, Limit::Slew);
+        assert_eq!(after(&mut stage, 1.0, 0.0).torque_nm, 1.0);
+        let gone = after(&mut stage, 1.0, 0.0);
+        assert_eq!((gone.torque_nm, gone.limit), (1.0, Limit::None));
+    }
+
+    #[test]
+    fn a_reason_from_before_is_not_replaced_by_the_slew_limit() {
+        let mut stage = SlewedCompensation::new(Some(law()), 0.1);
+        let mut shown = Shown {
+            limit: Limit::TurnedBack,
+            ..Shown::nothing()
+        };
+        stage.tick(&seen(1.0), &mut shown);
+        assert_eq!(shown.limit, Limit::TurnedBack);
+        assert_eq!(shown.compensation_nm, -0.1);
+    }
+
+    #[test]
+    fn a_bone_that_is_exchanged_fades_out() {
+        let bone = || BoneShaping::new(&BoneShapingSettings::default(), 5e-5, 1).unwrap();
+        let mut stage = RingingBone::<f32>::new(Some(bone()), 0.01);
+        after(&mut stage, 0.0, 0.4);
+        let ringing: Vec<f32> = (0..40)
+            .map(|_| after(&mut stage, 0.0, 0.0).ringing_nm)
+            .collect();
+        let last = ringing[39];
+        assert!(last.abs() > 0.1, "{last}");
+        stage.exchange(None);
+        let fading = after(&mut stage, 0.0, 0.0);
+        assert!((fading.ringing_nm - (last.abs() - 0.01).copysign(last)).abs() < 1e-6);
+        assert_eq!(fading.torque_nm, 1.0 + fading.ringing_nm);
+        let ticks = (0..100).take_while(|_| after(&mut stage, 0.0, 0.0).ringing_nm != 0.0);
+        assert!(ticks.count() < 60);
+        // The law alone does what a bone that nobody exchanges does.
+        let (mut alone, mut staged) = (bone(), RingingBone::<f32>::new(Some(bone()), 0.01));
+        for n in 0..50_u8 {
+            let jump_nm = if n == 3 { -0.2 } else { 0.0 };
+            let both = (
+                after(&mut alone, 0.0, jump_nm),
+                after(&mut staged, 0.0, jump_nm),
+            );
+            assert_eq!(both.0, both.1);
+        }
+    }
+}

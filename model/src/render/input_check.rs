@@ -214,3 +214,92 @@ impl<F: Real> Check<F> for InputCheck<F> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    const TICK_S: f64 = 5e-5;
+
+    fn check() -> InputCheck<f64> {
+        InputCheck::new(&InputLimits::device(TICK_S), TICK_S, 1.0)
+    }
+
+    fn moved(delta_phi_rad: f64, from: f64, to: f64) -> Sample<f64> {
+        Sample::Taken(ShaftStep {
+            delta_phi_rad,
+            omega_start_rad_s: from,
+            omega_end_rad_s: to,
+        })
+    }
+
+    #[test]
+    fn what_a_shaft_can_make_passes_as_it_is() {
+        let mut check = check();
+        for (travel, from, to) in [(5e-5, 1.0, 1.0), (-4.9e-3, 49.0, 40.0), (0.0, -50.0, -50.0)] {
+            let Sample::Taken(step) = moved(travel, from, to) else {
+                unreachable!()
+            };
+            assert_eq!(check.check(&Sample::Taken(step)), Checked::Step(step));
+        }
+        assert_eq!(check.counters(), InputCounters::default());
+    }
+
+    #[test]
+    fn what_no_shaft_makes_is_counted_and_missing() {
+        let bad = [
+            moved(f64::NAN, 1.0, 1.0),
+            moved(0.0, f64::NAN, 1.0),
+            moved(0.0, 1.0, f64::INFINITY),
+            // Too fast at either end, a jump, too far.
+            moved(0.0, 50.1, 45.0),
+            moved(0.0, 45.0, -50.1),
+            moved(0.0, -6.0, 4.1),
+            moved(5.1e-3, 1.0, 1.0),
+        ];
+        for sample in bad {
+            let mut check = check();
+            assert_eq!(check.check(&sample), Checked::Missing(1), "{sample:?}");
+            assert_eq!(check.check(&Sample::Lost), Checked::Missing(2));
+            let counters = InputCounters {
+                lost: 1,
+                refused: 1,
+            };
+            assert_eq!(check.counters(), counters);
+        }
+    }
+
+    #[test]
+    fn a_short_gap_is_made_up_for_and_a_long_one_is_not() {
+        for missing in 0..6_u32 {
+            let mut check = check();
+            for n in 1..=missing {
+                assert_eq!(check.check(&Sample::Lost), Checked::Missing(n));
+            }
+            // A travel that only a gap of its own length explains.
+            let travel = 0.9 * 5e-3 * f64::from(missing + 1);
+            let seen = check.check(&moved(travel, 1.0, 2.0));
+            assert_eq!(seen.travel_rad(), Some(travel));
+            match seen {
+                Checked::Step(_) => assert_eq!(missing, 0),
+                Checked::CatchUp(gap) => {
+                    assert!((1..=CATCH_UP_TICKS).contains(&missing));
+                    assert_eq!((gap.missed, gap.omega_rad_s), (missing, 1.0));
+                    let steps: Vec<_> = gap.steps().collect();
+                    assert_eq!(steps.len(), missing as usize + 1);
+                    let whole: f64 = steps.iter().map(|s| s.1.delta_phi_rad).sum();
+                    assert!((whole - travel).abs() < 1e-15);
+                }
+                Checked::Resume(_) => assert!(missing > CATCH_UP_TICKS),
+                Checked::Missing(_) => panic!("it was seen"),
+            }
+            // Afterwards it goes on from there.
+            assert!(matches!(
+                check.check(&moved(1e-4, 2.0, 2.0)),
+                Checked::Step(_)
+            ));
+        }
+        assert_eq!(Checked::<f64>::Missing(1).travel_rad(), None);
+    }
+}

@@ -92,3 +92,59 @@ impl<F: Real> TorqueLimits<F> {
         };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(torque_nm: f32) -> Shown<f32> {
+        Shown {
+            torque_nm,
+            ..Shown::nothing()
+        }
+    }
+
+    fn after(limits: &mut TorqueLimits<f32>, torque_nm: f32) -> (f32, Limit) {
+        let mut shown = shown(torque_nm);
+        limits.tick(&mut shown);
+        (shown.torque_nm, shown.limit)
+    }
+
+    #[test]
+    fn from_arming_on_what_may_be_asked_for_grows() {
+        let mut limits = TorqueLimits::new(1.0, 0.25);
+        assert_eq!(after(&mut limits, 0.5), (0.0, Limit::NotArmed));
+        limits.set_energised(true);
+        assert_eq!(after(&mut limits, -0.5), (-0.25, Limit::Slew));
+        assert_eq!(after(&mut limits, -0.5), (-0.5, Limit::None));
+        assert_eq!(after(&mut limits, 2.0), (0.75, Limit::Slew));
+        assert_eq!(after(&mut limits, 2.0), (1.0, Limit::Torque));
+        assert_eq!(after(&mut limits, -2.0), (-1.0, Limit::Torque));
+        // Disarmed, it begins again.
+        limits.set_energised(false);
+        assert_eq!(after(&mut limits, 0.1), (0.0, Limit::NotArmed));
+        limits.set_energised(true);
+        assert_eq!(after(&mut limits, 2.0), (0.25, Limit::Slew));
+    }
+
+    #[test]
+    fn a_limit_that_is_lowered_is_followed_without_a_jolt() {
+        let mut limits = TorqueLimits::armed(1.0, 0.25);
+        assert_eq!(after(&mut limits, 2.0), (1.0, Limit::Torque));
+        limits.change(0.4, 0.25);
+        assert_eq!(after(&mut limits, 2.0), (0.75, Limit::Slew));
+        assert_eq!(after(&mut limits, 2.0), (0.5, Limit::Slew));
+        assert_eq!(after(&mut limits, 2.0), (0.4, Limit::Torque));
+        assert_eq!(after(&mut limits, 0.4), (0.4, Limit::None));
+    }
+
+    #[test]
+    fn what_is_no_number_passes_and_a_reason_from_before_stays() {
+        let mut limits = TorqueLimits::armed(1.0, 0.25);
+        assert!(after(&mut limits, f32::NAN).0.is_nan());
+        let mut held = shown(0.3);
+        held.limit = Limit::Holding;
+        limits.tick(&mut held);
+        assert_eq!((held.torque_nm, held.limit), (0.3, Limit::Holding));
+    }
+}
