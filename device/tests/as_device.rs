@@ -30,13 +30,13 @@ struct Row {
 }
 
 /// Keeps rows.
-struct Rows {
+struct Keeper {
     places: [usize; 4],
     model: Option<usize>,
     rows: Vec<Row>,
 }
 
-impl Observer for Rows {
+impl Observer for Keeper {
     type Error = Infallible;
 
     fn row(&mut self, values: &[f64]) -> Result<(), Infallible> {
@@ -112,7 +112,7 @@ fn scene(file: &Path) -> Result<Scene, String> {
 fn rows(scene: &Scene) -> Vec<Row> {
     let columns = crepitus_scene::run::columns(scene);
     let place = |name| columns.iter().position(|c| c.name == name);
-    let mut rows = Rows {
+    let mut rows = Keeper {
         places: ["encoder_count", "omega_rad_s", "shown_nm", "limit"]
             .map(|name| place(name).expect(name)),
         model: place("torque_nm"),

@@ -80,10 +80,10 @@ impl<F: Real> TorqueLimits<F> {
     #[cold]
     fn cut(&self, shown: &mut Shown<F>) {
         let (wanted_nm, most_nm) = (shown.torque_nm, self.allowance_nm);
-        shown.limit = if most_nm != self.most_nm {
-            Limit::Slew
-        } else {
+        shown.limit = if most_nm == self.most_nm {
             Limit::Torque
+        } else {
+            Limit::Slew
         };
         shown.torque_nm = if wanted_nm < F::ZERO {
             -most_nm
