@@ -107,30 +107,88 @@ const PAGE: [Ink; 14] = [
     BAND,
 ];
 
-/// The style sheet: variables for light and dark, and the rules that apply
-/// them to the charts. Print is always light.
-pub(crate) fn style() -> String {
-    let mut light = String::new();
-    let mut dark = String::new();
+/// A variable of a style sheet: its name and its colours.
+#[derive(Clone, Debug)]
+pub(crate) struct Variable {
+    pub(crate) name: String,
+    pub(crate) light: &'static str,
+    pub(crate) dark: &'static str,
+}
+
+/// The variable of every role.
+fn variables() -> Vec<Variable> {
+    let inks = PAGE.iter().chain(&CURVES);
+    inks.map(|ink| Variable {
+        name: ink.name.to_owned(),
+        light: ink.light,
+        dark: ink.dark,
+    })
+    .collect()
+}
+
+/// The rules that turn markers of charts into colours.
+fn chart_rules() -> String {
     let mut rules = String::new();
     for ink in PAGE.iter().chain(&CURVES) {
-        let name = ink.name;
-        let marker = ink.hex();
+        let (name, marker) = (ink.name, ink.hex());
         // Writing to a String cannot fail.
-        let _ = write!(light, "--{name}:{};", ink.light);
-        let _ = write!(dark, "--{name}:{};", ink.dark);
         let _ = writeln!(
             rules,
             "svg [fill=\"{marker}\"]{{fill:var(--{name})}}\
-             svg [stroke=\"{marker}\"]{{stroke:var(--{name})}}\
-             .swatch-{name}{{background:var(--{name})}}\
-             .line-{name}{{border-color:var(--{name})}}"
+             svg [stroke=\"{marker}\"]{{stroke:var(--{name})}}"
         );
+    }
+    rules
+}
+
+/// The style sheet of a page: variables for light and dark, and the rules that
+/// apply them. Print is always light.
+pub(crate) fn style() -> String {
+    let mut rules = chart_rules();
+    for Ink { name, .. } in PAGE.iter().chain(&CURVES) {
+        let _ = writeln!(
+            rules,
+            ".swatch-{name}{{background:var(--{name})}}.line-{name}{{border-color:var(--{name})}}"
+        );
+    }
+    let (mut light, mut dark) = (String::new(), String::new());
+    for variable in variables() {
+        let name = &variable.name;
+        let _ = write!(light, "--{name}:{};", variable.light);
+        let _ = write!(dark, "--{name}:{};", variable.dark);
     }
     format!(
         ":root{{{light}}}\n\
          @media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{rules}"
     )
+}
+
+/// The style sheet of a picture: what `rules` and the charts ask for, with the
+/// colours themselves in place of variables, which only browsers know; and the
+/// same in dark for those.
+pub(crate) fn picture_style(rules: &str, more: &[Variable]) -> String {
+    let rules = chart_rules() + rules;
+    let mut variables = variables();
+    variables.extend_from_slice(more);
+    let with = |colour: fn(&Variable) -> &'static str| {
+        variables.iter().fold(rules.clone(), |rules, variable| {
+            rules.replace(&format!("var(--{})", variable.name), colour(variable))
+        })
+    };
+    format!(
+        "{}\n@media screen and (prefers-color-scheme:dark){{{}}}\n",
+        with(|variable| variable.light),
+        with(|variable| variable.dark)
+    )
+}
+
+/// The marker of the role with this name, as an attribute's value.
+pub(crate) fn marker_of(name: &str) -> String {
+    let inks = PAGE.iter().chain(&CURVES);
+    inks.clone()
+        .find(|ink| ink.name == name)
+        .unwrap_or(&TEXT)
+        .hex()
 }
 
 #[cfg(test)]

@@ -48,6 +48,10 @@ const LEGEND_HEIGHT: u32 = 34;
 /// Height of every further line of the legend, CSS pixels.
 const LEGEND_LINE: u32 = 22;
 
+/// What charts have beside their colours.
+const RULES: &str = "svg{font-family:system-ui,-apple-system,\"Segoe UI\",Roboto,\"Noto Sans\",sans-serif}\n\
+    svg polyline[stroke=\"#555551\"]{stroke-dasharray:24 16}\n";
+
 /// A chart as a document: what the page gave it by its style sheet it now
 /// brings along, and its legend stands above it.
 pub(crate) fn document(chart: &str, legend: &[Key]) -> String {
@@ -68,10 +72,10 @@ pub(crate) fn document(chart: &str, legend: &[Key]) -> String {
     );
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\">\n\
-         <style>{}\nsvg{{font-family:system-ui,-apple-system,\"Segoe UI\",Roboto,\"Noto Sans\",sans-serif}}\n\
-         svg polyline[stroke=\"#555551\"]{{stroke-dasharray:24 16}}\n</style>\n\
-         <rect width=\"100%\" height=\"100%\" style=\"fill:var(--paper)\"/>\n{entries}{chart}\n</svg>\n",
-        palette::style(),
+         <style>{}</style>\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n{entries}{chart}\n</svg>\n",
+        palette::picture_style(RULES, &[]),
+        palette::PAPER.hex(),
     )
 }
 
@@ -102,20 +106,24 @@ fn entries(legend: &[Key], width: f64) -> (String, u32) {
         let _ = match key.sign {
             Sign::Line(ink) => writeln!(
                 out,
-                "<line x1=\"{x}\" x2=\"{}\" y1=\"{middle}\" y2=\"{middle}\" style=\"stroke:var(--{ink});stroke-width:2.5\"/>",
+                "<line x1=\"{x}\" x2=\"{}\" y1=\"{middle}\" y2=\"{middle}\" stroke=\"{}\" stroke-width=\"2.5\"/>",
                 x + 18.0,
+                palette::marker_of(ink),
                 middle = y + 17.0
             ),
             Sign::Patch(ink) => writeln!(
                 out,
-                "<rect x=\"{x}\" y=\"{}\" width=\"18\" height=\"13\" style=\"fill:var(--{ink});stroke:var(--axis)\"/>",
-                y + 10.0
+                "<rect x=\"{x}\" y=\"{}\" width=\"18\" height=\"13\" fill=\"{}\" stroke=\"{}\"/>",
+                y + 10.0,
+                palette::marker_of(ink),
+                palette::AXIS.hex()
             ),
             Sign::Mark(mark) => writeln!(
                 out,
-                "<text x=\"{}\" y=\"{}\" font-size=\"13\" style=\"fill:var(--text)\">{mark}</text>",
+                "<text x=\"{}\" y=\"{}\" font-size=\"13\" fill=\"{}\">{mark}</text>",
                 x + 4.0,
-                y + 22.0
+                y + 22.0,
+                palette::TEXT.hex()
             ),
             Sign::Curve(hand) => writeln!(
                 out,
@@ -132,9 +140,10 @@ fn entries(legend: &[Key], width: f64) -> (String, u32) {
         };
         let _ = writeln!(
             out,
-            "<text x=\"{}\" y=\"{}\" font-size=\"14\" style=\"fill:var(--text)\">{}</text>",
+            "<text x=\"{}\" y=\"{}\" font-size=\"14\" fill=\"{}\">{}</text>",
             x + sign + 5.0,
             y + 22.0,
+            palette::TEXT.hex(),
             escaped(key.text)
         );
         x += room + sign - 18.0;

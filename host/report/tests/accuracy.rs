@@ -16,7 +16,7 @@ use crepitus_report::Section;
 use crepitus_report::accuracy::{AccuracyText, html, pictures};
 use crepitus_study::accuracy::Point;
 use crepitus_study::accuracy::target::{LABEL, OnTarget, Row};
-use markup::{assert_balanced, count};
+use markup::{assert_balanced, assert_drawn, count};
 
 fn text(title: &str) -> AccuracyText {
     let row = |name: &str, value: &str| (name.to_owned(), value.to_owned());
@@ -294,7 +294,7 @@ fn pictures_are_documents_with_their_legend() {
         .expect("a name");
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("accuracy.svg");
     std::fs::write(path, &picture.svg).expect("written");
-    assert_balanced(&picture.svg);
+    assert_drawn(&picture.svg);
     assert!(picture.svg.contains("xmlns=\"http://www.w3.org/2000/svg\""));
     assert!(picture.svg.contains("device's tick"));
 }

@@ -17,7 +17,7 @@ use crepitus_study::effects::results::{Added, Outcome, Ran};
 use crepitus_study::effects::variant::Change;
 use crepitus_study::effects::{Answer, EffectsStudy, Row};
 use crepitus_study::stability::story::{Panel, Scale, Series, Story};
-use markup::{assert_balanced, count};
+use markup::{assert_balanced, assert_drawn, count};
 
 fn ran(rms_nm: f64, ns: f64) -> Outcome {
     Outcome::Ran(Ran {
@@ -285,7 +285,7 @@ fn pictures_are_documents() {
     let names: Vec<&str> = pictures.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["influence-and-cost", "bands", "hand-torque"]);
     for picture in &pictures {
-        assert_balanced(&picture.svg);
+        assert_drawn(&picture.svg);
         assert!(picture.svg.contains("xmlns=\"http://www.w3.org/2000/svg\""));
     }
 }

@@ -16,7 +16,7 @@ use crepitus_report::{
 };
 use crepitus_scene::trace::Column;
 use fixture::{KINETIC, Motion, Run, STATIC, plant};
-use markup::{assert_balanced, count};
+use markup::{assert_balanced, assert_drawn, count};
 
 /// A run of this motion, with as many rows as it announces.
 fn collect(motion: Motion, rows: u32, step: f64, encoder: bool) -> Figures {
@@ -350,11 +350,11 @@ fn a_coupled_run_with_all_effects() {
     ] {
         assert!(page.contains(present), "{present}");
     }
-    let names: Vec<String> = pictures(&figures)
-        .expect("drawn")
-        .into_iter()
-        .map(|picture| picture.name)
-        .collect();
+    let pictures = pictures(&figures).expect("drawn");
+    for picture in &pictures {
+        assert_drawn(&picture.svg);
+    }
+    let names: Vec<String> = pictures.into_iter().map(|p| p.name).collect();
     for name in ["hand", "energy", "effects-9", "spectrum"] {
         assert!(names.iter().any(|n| n == name), "{name} of {names:?}");
     }

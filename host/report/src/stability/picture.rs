@@ -39,10 +39,10 @@ pub(super) fn svg(matrix: &Matrix) -> String {
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"Which hard cases hold on \
          which rung, {precision}\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" \
-         height=\"{height}\">\n<style>{}{}{STYLE}</style>\n\
-         <rect width=\"100%\" height=\"100%\" style=\"fill:var(--paper)\"/>\n",
-        palette::style(),
-        scale::style()
+         height=\"{height}\">\n<style>{}</style>\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
+        palette::picture_style(&(scale::rules() + STYLE), &scale::variables()),
+        palette::PAPER.hex()
     );
     // Writing to a String cannot fail.
     let _ = writeln!(
@@ -190,7 +190,8 @@ fn legend(out: &mut String, y: u32) {
     }
     let _ = write!(
         out,
-        "<path style=\"fill:var(--text)\" d=\"M{x} {}h7l-7 7z\"/>",
+        "<path fill=\"{}\" d=\"M{x} {}h7l-7 7z\"/>",
+        palette::TEXT.hex(),
         y + 3
     );
     words(out, x + 14, y, "must hold");

@@ -5,6 +5,7 @@
 use std::fmt::Write as _;
 
 use crate::number::power;
+use crate::palette::Variable;
 
 /// A colour of a cell, as a class of the style sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,32 +62,56 @@ pub(super) fn stretches() -> Vec<(Tone, String)> {
         .collect()
 }
 
-/// The style sheet: variables for light and dark, and the classes. Print is
-/// always light.
-pub(super) fn style() -> String {
-    let (mut light, mut dark, mut rules) = (String::new(), String::new(), String::new());
-    let tones = HOLDS.iter().map(|(_, tone)| *tone);
-    for tone in tones.chain([DEGRADES, FAILS]) {
-        let class = tone.class;
+fn tones() -> impl Iterator<Item = Tone> {
+    let tones = HOLDS.into_iter().map(|(_, tone)| tone);
+    tones.chain([DEGRADES, FAILS])
+}
+
+/// Ground and text of every tone.
+pub(super) fn variables() -> Vec<Variable> {
+    tones()
+        .flat_map(|tone| {
+            let ground = Variable {
+                name: tone.class.to_owned(),
+                light: tone.light.0,
+                dark: tone.dark.0,
+            };
+            let text = Variable {
+                name: format!("on-{}", tone.class),
+                light: tone.light.1,
+                dark: tone.dark.1,
+            };
+            [ground, text]
+        })
+        .collect()
+}
+
+/// The classes.
+pub(super) fn rules() -> String {
+    let mut rules = String::new();
+    for Tone { class, .. } in tones() {
         // Writing to a String cannot fail.
-        let _ = write!(
-            light,
-            "--{class}:{};--on-{class}:{};",
-            tone.light.0, tone.light.1
-        );
-        let _ = write!(
-            dark,
-            "--{class}:{};--on-{class}:{};",
-            tone.dark.0, tone.dark.1
-        );
         let _ = writeln!(
             rules,
             ".{class}{{background-color:var(--{class});color:var(--on-{class});fill:var(--{class})}}\
              text.on-{class}{{fill:var(--on-{class})}}path.on-{class}{{fill:var(--on-{class})}}"
         );
     }
+    rules
+}
+
+/// The style sheet: variables for light and dark, and the classes. Print is
+/// always light.
+pub(super) fn style() -> String {
+    let (mut light, mut dark) = (String::new(), String::new());
+    for variable in variables() {
+        let name = &variable.name;
+        let _ = write!(light, "--{name}:{};", variable.light);
+        let _ = write!(dark, "--{name}:{};", variable.dark);
+    }
     format!(
-        ":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{rules}"
+        ":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{}",
+        rules()
     )
 }
 
