@@ -133,7 +133,8 @@ impl<F: Real> Addition<F> for FrictionCompensation<F> {
 
 /// Without a device around it, the bone alone.
 impl<F: Real> Addition<F> for BoneShaping<F> {
-    #[inline]
+    // As above.
+    #[inline(never)]
     fn tick(&mut self, seen: &Seen<F>, shown: &mut Shown<F>) {
         shown.ringing_nm = rung_nm(self, seen, shown.jump_nm);
         shown.torque_nm += shown.ringing_nm;
