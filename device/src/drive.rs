@@ -238,7 +238,7 @@ impl Drive {
         (!is_other).then(|| self.preparation.values())
     }
 
-    /// What it has rendered last.
+    /// Output of the last `render_torque`.
     pub fn rendered(&self) -> Option<&Rendered> {
         self.rendered.as_ref()
     }

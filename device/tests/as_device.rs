@@ -18,7 +18,7 @@ use support::{Bench, Boots, TICKS_PER_MS};
 /// Of each scene, ms.
 const LENGTH_MS: u32 = 2_000;
 
-/// What a row has of the device.
+/// The device's columns of a trace row.
 #[derive(Clone, Copy)]
 struct Row {
     count: i32,
@@ -122,7 +122,7 @@ fn rows(scene: &Scene) -> Vec<Row> {
     rows.rows
 }
 
-/// What the drive renders on the counts of these rows, armed long before.
+/// Replays the counts of these rows to a drive that was armed long before.
 fn drive(scene: &Scene, rows: &[Row]) -> Bench {
     let first = rows[0].count;
     let mut boots = Boots::new();

@@ -55,18 +55,18 @@ pub enum Limit {
     NotArmed = 7,
 }
 
-/// What a tick shows, as far as the stages have come.
+/// Output of a tick; each stage changes it in turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown<F> {
     /// The torque to show, N·m: T > 0 opposes growing angle.
     pub torque_nm: F,
-    /// What the symptoms ask for before any guard or limit, N·m.
+    /// Torque of the symptoms before any guard or limit, N·m.
     pub model_torque_nm: F,
     /// Sum of the jumps of the symptoms' torque in this tick, N·m.
     pub jump_nm: F,
-    /// What friction compensation has added, N·m.
+    /// Torque added by friction compensation, N·m.
     pub compensation_nm: F,
-    /// What the ringing of a bone has added, N·m.
+    /// Torque added by the ringing of a bone, N·m.
     pub ringing_nm: F,
     /// What the stick-slip object does; stick without one.
     pub phase: Phase,

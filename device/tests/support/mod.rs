@@ -62,9 +62,9 @@ pub(crate) struct Bench {
     pub(crate) number: u16,
     replies: Vec<Reply>,
     pub(crate) blocks: Vec<Block>,
-    /// Where the shaft is turned to in the next ticks, and how fast it is then.
+    /// Prescribed encoder counts and velocities of the next ticks.
     pub(crate) script: VecDeque<(i32, f64)>,
-    /// What the drive has made of that.
+    /// Outputs of `render_torque` for those ticks.
     pub(crate) rendered: Vec<Rendered>,
     ms: u32,
 }

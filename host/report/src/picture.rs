@@ -48,7 +48,7 @@ const LEGEND_HEIGHT: u32 = 34;
 /// Height of every further line of the legend, CSS pixels.
 const LEGEND_LINE: u32 = 22;
 
-/// What charts have beside their colours.
+/// Style rules of charts besides colours.
 const RULES: &str = "svg{font-family:system-ui,-apple-system,\"Segoe UI\",Roboto,\"Noto Sans\",sans-serif}\n\
     svg polyline[stroke=\"#555551\"]{stroke-dasharray:24 16}\n";
 
