@@ -39,6 +39,9 @@ for story in implicit-euler restick-rules parameter-change turn-back-guard; do
     cp "target/figures/stability/$story.svg" "docs/images/$story.svg"
     echo "docs/images/$story.svg"
 done
+cargo run --profile dist --features emulator --quiet -- stability --coupled --pictures --out target/figures/coupled >target/figures/coupled.txt
+cp target/figures/coupled/z-width.svg docs/images/z-width.svg
+echo docs/images/z-width.svg
 cargo run --profile dist --features emulator --quiet -- stability --list --long >docs/hard-cases.md
 echo docs/hard-cases.md
 

@@ -3,32 +3,36 @@
 mod support;
 
 use serde_json::Value;
+use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
-use support::{crepitus, names, number, run, stderr, stdout, summary};
+use support::{crepitus, csv, names, number, run, stderr, stdout, summary};
 
 fn stability(out: &Path, arguments: &[&str]) -> Output {
     let out = ["--out", out.to_str().unwrap()];
     run(&[&["stability"], arguments, &out[..]].concat())
 }
 
-/// The header and the rows of `cases.csv`; texts may be in quotes.
+/// The fields of a line; texts may be in quotes.
+fn fields(line: &str) -> Vec<String> {
+    let mut fields = vec![String::new()];
+    let mut quoted = false;
+    for c in line.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields.push(String::new()),
+            c => fields.last_mut().unwrap().push(c),
+        }
+    }
+    fields
+}
+
+/// The header and the rows of `cases.csv`.
 fn cells(folder: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     let text = fs::read_to_string(folder.join("cases.csv")).expect("cases");
-    let mut lines = text.lines().map(|line| {
-        let mut fields = vec![String::new()];
-        let mut quoted = false;
-        for c in line.chars() {
-            match c {
-                '"' => quoted = !quoted,
-                ',' if !quoted => fields.push(String::new()),
-                c => fields.last_mut().unwrap().push(c),
-            }
-        }
-        fields
-    });
+    let mut lines = text.lines().map(fields);
     let header = lines.next().expect("a header");
     (header, lines.collect())
 }
@@ -242,4 +246,82 @@ fn the_catalogue_is_a_page_of_the_book() {
     let output = run(&["--json", "stability", "--list", "--case", "H05"]);
     let printed: Value = serde_json::from_str(&stdout(&output)).unwrap();
     assert_eq!(printed["cases"][0]["name"], "reversal-in-stick");
+}
+
+/// The rows of a file of the map, by the names of its columns.
+fn rows(folder: &Path, name: &str) -> Vec<HashMap<String, String>> {
+    let (header, lines) = csv(&folder.join(name));
+    let named = |line: Vec<String>| header.iter().cloned().zip(line).collect();
+    lines.into_iter().map(named).collect()
+}
+
+#[test]
+fn the_map_of_stiffness_keeps_what_theory_promises() {
+    let home = tempfile::tempdir().unwrap();
+    let out = home.path().join("map");
+    let output = stability(&out, &["--coupled", "--pictures"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(
+        names(&out),
+        [
+            "cells.csv",
+            "margins.csv",
+            "onsets.csv",
+            "report.html",
+            "scene.toml",
+            "summary.json",
+            "z-width.svg"
+        ]
+    );
+    let value =
+        |row: &HashMap<String, String>, name: &str| -> f64 { row[name].parse().expect("a number") };
+    let onsets = rows(&out, "onsets.csv");
+    let (mut found, mut linear) = (0, 0);
+    for row in &onsets {
+        let measured = value(row, "onset_nm_per_rad");
+        let left = value(row, "friction_left_nm");
+        if measured.is_nan() || left < 0.0 {
+            continue;
+        }
+        found += 1;
+        // Damping and counts together, or friction alone, keep a shaft quiet.
+        let damped = value(row, "colgate_schenkel_nm_per_rad");
+        let counted = value(row, "abbott_okamura_nm_per_rad");
+        let rubbed = value(row, "diolaiti_nm_per_rad");
+        assert!(measured > damped.min(counted).max(rubbed), "{row:?}");
+        // Without any friction, and behind a motor, the linear system is right to
+        // a step of the map or two: counts feed a swing, and torque is limited.
+        if value(row, "gear_friction_nm") == 0.0 && value(row, "lag_s") > 1e-4 {
+            let ratio = measured / value(row, "linear_nm_per_rad");
+            assert!((0.35..2.0).contains(&ratio), "{ratio}: {row:?}");
+            linear += 1;
+        }
+    }
+    assert!(found > 15 && linear > 12, "{found}, {linear}");
+    // The presets on the device as it is have at least twice their stiffness.
+    let shipped: Vec<_> = rows(&out, "margins.csv")
+        .into_iter()
+        .filter(|row| row["with"] == "nothing else" && value(row, "gear_friction_nm") == 0.5)
+        .collect();
+    assert!(shipped.len() >= 12);
+    for row in shipped {
+        assert_eq!(row["verdict"], "quiet", "{row:?}");
+        assert!(row["onset_over_stiffness"] == "nan", "{row:?}");
+        assert!(value(&row, "most_over_stiffness") >= 2.0, "{row:?}");
+    }
+    // Anybody can run a cell.
+    let scene = out.join("scene.toml");
+    let ran = home.path().join("ran");
+    let output = run(&[
+        "run",
+        scene.to_str().unwrap(),
+        "--out",
+        ran.to_str().unwrap(),
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(summary(&ran)["plant_energy"]["residual_relative"].is_number());
+
+    let output = run(&["stability", "--coupled", "--case", "H05"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("--coupled"), "{}", stderr(&output));
 }

@@ -15,7 +15,7 @@
 //!
 //! [`accuracy`] is the report of the study: work-precision diagrams from its
 //! points. [`stability`] is that of the hard cases: a heat map of the matrix,
-//! and the stories that [`story`] draws. [`effects`] is that of the effects of
+//! and the stories that [`story`] draws. [`coupled`] is the map of stiffness. [`effects`] is that of the effects of
 //! a scene: their influence against their cost.
 
 // Counts become numbers to be drawn; none comes near 2^53.
@@ -37,6 +37,7 @@ mod chart_torque;
 mod chart_zoom;
 mod choice;
 mod collector;
+pub mod coupled;
 mod course;
 pub mod effects;
 mod envelope;

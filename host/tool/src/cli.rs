@@ -227,11 +227,16 @@ Examples:
   crepitus stability --case sudden-stop
   crepitus stability --case H10 --case H16 --solver exact-events --solver rk4
   crepitus stability --long --out /tmp/stability
+  crepitus stability --coupled
 
 Every hard case is put to every solver under every convention, in f32 and f64. A cell of the \
 matrix holds, with the margin that was measured; or degrades: right in kind, a number is above \
 its limit; or fails: something else than the joint was simulated. Some cells must hold; if one \
-does not, the exit code is 1. With one --case, everything about it is printed.")]
+does not, the exit code is 1. With one --case, everything about it is printed.
+
+With --coupled a hand that stops is put to the whole device instead: which stiffness stays quiet \
+with which cuff, lag and friction left in the gear, and what the presets have left.")]
+#[expect(clippy::struct_excessive_bools, reason = "switches of a command line")]
 pub(crate) struct StabilityArguments {
     /// Only this case, by number or name: H05, reversal-in-stick. May be given again.
     #[arg(long = "case", value_name = "NAME")]
@@ -257,7 +262,11 @@ pub(crate) struct StabilityArguments {
     #[arg(long)]
     pub(crate) list: bool,
 
-    /// Folder for cases.csv, summary.json and report.html [default: out/stability].
+    /// Map the stiffness at which the device begins to ring on a leg, instead of the cases.
+    #[arg(long, conflicts_with_all = ["cases", "solvers", "conventions", "precision", "long", "list"])]
+    pub(crate) coupled: bool,
+
+    /// Folder for cases.csv, summary.json and report.html [default: out/stability; out/coupled].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 

@@ -12,12 +12,19 @@
 //! ```
 //!
 //! Only a share is cancelled, because what is left is what keeps a sampled
-//! spring passive: it gives away b·∫Ω² dt with b = kr·(h/2 + delay + 1/ω_c)
-//! ≈ 0.09 N·m·s/rad (kr = 400 N·m/rad, a 20 kHz tick, one tick late, a 1 kHz
-//! current loop), and (1 − share)·friction = 0.1 N·m takes more than that up to
-//! 1.1 rad/s; without any friction left there is no such speed. Near standstill
-//! the sign of the speed is noise of the encoder (one count is 0.011 rad/s), so
-//! there it fades out.
+//! spring passive: it gives away kr·τ·∫Ω² dt, τ = h·(½ + d) being the mean lag,
+//! 0.21 ms ([`energy_observer`](crate::energy_observer) has d), and a friction F
+//! takes more than that up to Ω = F/(kr·τ). No stick can drive a shaft of
+//! inertia J faster than Ts/√(kr·J), so whatever the cuff and the hand are
+//!
+//! ```text
+//! (1 − share)·friction ≥ Ts·τ·√(kr/J)         J = 0.061 kg·m², rotor and brace
+//! ```
+//!
+//! keeps a resting hand quiet: 7, 3 and 21 mN·m for the presets ([`least_left_nm`]).
+//! The largest share is 0.9: of 0.5 N·m it leaves 50. Near standstill the sign of
+//! the speed is noise of the encoder (one count is 0.011 rad/s), so there it fades
+//! out. `crepitus stability --coupled` maps what happens with less.
 //!
 //! **Energy.** |T| ≤ share·friction, so over any motion the hand gets at most
 //! share·friction·∫|dφ|, whatever the delay or the noise of Ω, and a gear whose
@@ -41,7 +48,7 @@
 //! fade are engineering estimates (the fade is 4.5 counts of the encoder at the
 //! estimator's 50 Hz).
 
-use crate::parameters::{ParameterSpec, Tabled};
+use crate::parameters::{ParameterSpec, Parameters, Tabled};
 use crate::real::Real;
 use crate::settings::SettingsError;
 
@@ -50,7 +57,7 @@ use crate::settings::SettingsError;
 pub struct FrictionCompensationSettings {
     /// Dry friction at the joint, N·m.
     pub friction_nm: f64,
-    /// Share of it that is cancelled, 0 to 1.
+    /// Share of it that is cancelled, 0 to 0.9.
     pub share: f64,
     /// Speed of the joint below which it fades out, rad/s.
     pub fade_rad_s: f64,
@@ -72,7 +79,7 @@ impl Tabled<3> for FrictionCompensationSettings {
             symbol: "σ",
             unit: "1",
             min: 0.0,
-            max: 1.0,
+            max: 0.9,
             default: 0.8,
             meaning: "share of the friction that is cancelled; the rest keeps sampled springs passive",
         },
@@ -104,6 +111,14 @@ impl Default for FrictionCompensationSettings {
     fn default() -> Self {
         Self::defaults()
     }
+}
+
+/// The least dry friction that has to be left, N·m, for this joint to keep a
+/// resting hand quiet by friction alone: what acts lags behind by `lag_s` on
+/// average, and the shaft has this inertia.
+pub fn least_left_nm(joint: &Parameters, lag_s: f64, inertia_kg_m2: f64) -> f64 {
+    let radians_per_s = libm::sqrt(joint.stiffness_nm_per_rad / inertia_kg_m2);
+    joint.static_torque_nm * lag_s * radians_per_s
 }
 
 /// The feed-forward; it has no state.
@@ -155,8 +170,20 @@ mod tests {
         crate::parameters::tests::is_its_table_and_is_held_to_it::<3, Settings>();
         let s = Settings::default();
         assert_eq!((s.friction_nm, s.share, s.fade_rad_s), (0.5, 0.8, 0.05));
-        let beyond = Settings { share: 1.01, ..s };
+        let beyond = Settings { share: 0.91, ..s };
         assert!(FrictionCompensation::<f32>::new(&beyond).is_err());
+    }
+
+    #[test]
+    fn the_largest_share_leaves_what_the_presets_need() {
+        let most = FrictionCompensationSettings::TABLE[1].max;
+        let left_nm = (1.0 - most) * FrictionCompensationSettings::default().friction_nm;
+        let need = |p: &Parameters| least_left_nm(p, 210.4e-6, 0.061);
+        for preset in &crate::presets::PRESETS {
+            assert!(2.0 * need(&preset.parameters) < left_nm, "{}", preset.name);
+        }
+        let coarse = need(&Parameters::default());
+        assert!((coarse - 6.81e-3).abs() < 1e-5, "{coarse}");
     }
 
     fn curve<F: Real>() {

@@ -164,6 +164,7 @@ impl Scene {
             let encoder = effects.encoder.as_ref();
             warnings.extend(encoder.and_then(|encoder| device::guard_refusal(crepitus, encoder)));
         }
+        warnings.extend(device::compensation_warning(&effects.listed));
         let scene = Self {
             file: file.to_owned(),
             title,

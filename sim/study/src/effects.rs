@@ -22,14 +22,13 @@
 //! | the whole study, its results, their file | [`study`], [`results`], [`effects_csv`] |
 //! | limits, and the smallest set of effects within | [`tolerance`], `smallest`, [`mod@answer`] |
 //! | the stretch of time that the report shows | `window` |
-//! | runs on all cores | `parallel` |
+//! | runs on all cores | `crate::parallel` |
 
 pub mod answer;
 pub mod build_up;
 pub mod effects_csv;
 mod hand;
 pub mod influence;
-mod parallel;
 pub mod refusal;
 pub mod results;
 mod smallest;

@@ -154,7 +154,7 @@ fn what_is_no_value_is_refused_with_what_is_one() {
     );
     assert_eq!(
         text("friction-compensation.share", "inf"),
-        "friction-compensation.share is a number: `inf` is none; it is between 0 and 1"
+        "friction-compensation.share is a number: `inf` is none; it is between 0 and 0.9"
     );
     assert_eq!(
         text("crepitus.restart", "1"),

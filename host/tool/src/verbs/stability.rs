@@ -2,6 +2,7 @@
 //! margin.
 
 mod case_text;
+mod coupled;
 mod list;
 mod page;
 mod plan;
@@ -15,11 +16,15 @@ use crepitus_scene::output::Folder;
 use crepitus_study::stability::story::{self, Story};
 use crepitus_study::stability::{Matrix, matrix};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use summary::Summary;
 
 /// Runs the cases, writes the files, says what holds.
 pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result<(), Failure> {
+    if arguments.coupled {
+        let out = arguments.out.as_deref().unwrap_or(Path::new("out/coupled"));
+        return coupled::coupled(out, arguments.pictures, as_json);
+    }
     let plan = plan::plan(arguments)?;
     if arguments.list {
         return if as_json {

@@ -252,7 +252,7 @@ fn compensation_and_bone_come_and_go_under_torque() {
         let name = ["friction-compensation.render", "bone-shaping.render"][rng.usize(0..2)];
         let other = 1.0 - value(&values, name);
         set(&mut values, name, other);
-        set(&mut values, "friction-compensation.share", rng.f64());
+        set(&mut values, "friction-compensation.share", 0.9 * rng.f64());
         set(&mut values, "bone-shaping.gain", 2.0 * rng.f64());
         values
     });

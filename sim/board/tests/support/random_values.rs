@@ -21,7 +21,7 @@ pub(crate) fn allowed(rng: &mut Rng, base: &Values) -> Values {
         ("crepitus.kinetic_torque_nm", static_nm * share),
         ("crepitus.restart", switch(rng)),
         ("friction-compensation.render", switch(rng)),
-        ("friction-compensation.share", rng.f64()),
+        ("friction-compensation.share", 0.9 * rng.f64()),
         ("bone-shaping.render", switch(rng)),
         ("bone-shaping.gain", between(rng, 0.0, 2.0)),
         ("limits.torque_nm", between(rng, static_nm, 6.5)),

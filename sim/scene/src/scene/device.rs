@@ -7,7 +7,12 @@ use crate::error::SceneError;
 use crepitus_model::Convention;
 use crepitus_model::device_limits::LimitSettings;
 use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::parameters::Tabled;
+use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::render::turn_back::most_rad_per_count;
+use crepitus_plant::assembly::Listed;
+use crepitus_plant::effect::numbers;
+use crepitus_plant::effects::{drivetrain, friction_compensation};
 
 /// Refuses a scene that no device can render.
 pub(super) fn check(
@@ -49,6 +54,23 @@ pub(super) fn check(
         Some(why) => refuse(why),
         None => Ok(()),
     }
+}
+
+/// That a scene's device compensates all the friction that its gear has, or
+/// more, if it does.
+pub(super) fn compensation_warning(listed: &[Listed]) -> Option<String> {
+    let given = |name: &str| Some(&listed.iter().find(|l| l.effect.name == name)?.given);
+    let settings =
+        FrictionCompensationSettings::of(numbers(given(friction_compensation::EFFECT.name)?));
+    let [_, friction_nm, _] = numbers(given(drivetrain::EFFECT.name)?);
+    let compensated_nm = settings.share * settings.friction_nm;
+    (compensated_nm >= friction_nm).then(|| {
+        format!(
+            "the device compensates {compensated_nm} N·m, and the gear has {friction_nm} N·m: nothing is left to keep a \
+             moving shaft quiet, and what is beyond pushes the leg; give friction-compensation the least friction that \
+             is ever measured"
+        )
+    })
 }
 
 /// Why a device with this encoder would refuse a joint, if it would.

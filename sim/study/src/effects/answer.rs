@@ -3,11 +3,11 @@
 
 use super::hand::{Ended, events, feel};
 use super::influence::{Difference, Size, relative};
-use super::parallel::{Meter, each};
 use super::smallest::{Set, sets, smallest, without};
 use super::study::{Felt, TIMINGS};
 use super::tolerance::{Criterion, Tolerance};
 use super::variant::states;
+use crate::parallel::{Meter, each};
 use crate::watcher::Watcher;
 use crepitus_model::Real;
 use crepitus_plant::effect::Effect;

@@ -5,7 +5,7 @@
 
 mod signals;
 
-use super::parallel::{Meter, each};
+use crate::parallel::{Meter, each};
 use crate::stability::story::{Panel, Scale, Series, Story};
 use crate::watcher::Watcher;
 use crepitus_plant::effect::{Effect, Part};

@@ -1,6 +1,6 @@
 //! A run as the hand feels it: one torque a tick.
 
-use super::parallel::Meter;
+use crate::parallel::Meter;
 use crepitus_model::Real;
 use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns};
 use crepitus_scene::trace::EventRecord;

@@ -8,9 +8,9 @@ mod trend;
 pub(super) use profile::Profile;
 
 use super::hand::feel;
-use super::parallel::{Meter, each};
 use super::study::Felt;
 use super::variant::Change;
+use crate::parallel::{Meter, each};
 use crate::stability::story::{Panel, Scale, Series, Story};
 use crate::watcher::Watcher;
 use crepitus_model::Real;

@@ -90,6 +90,7 @@ pub fn all() -> Vec<Case> {
         rounding::subnormal_decay(),
         rounding::break_at_a_sample(),
         rounding::slip_without_lead(),
+        gaps::retreat_in_a_gap(),
     ]
 }
 

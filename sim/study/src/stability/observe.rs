@@ -79,8 +79,7 @@ fn run<F: Precise>(
             let shaken = Shaken {
                 settings,
                 sampling,
-                delay_ticks: shake.delay_ticks,
-                counts: shake.counts,
+                shake: *shake,
             };
             return Ok(shaken.observe::<F>(subject)?);
         }

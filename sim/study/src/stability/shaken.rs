@@ -2,6 +2,7 @@
 //! much energy it gets back.
 
 use super::criterion::BOUND_SLACK;
+use super::input::Shake;
 use super::locators::{WithLocator, with_locator};
 use super::observation::Observation;
 use super::subject::Subject;
@@ -11,7 +12,7 @@ use crepitus_model::locate::Locate;
 use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::shaft::Linear;
 use crepitus_model::{
-    Active, EnergyObserver, Real, Renderer, Sample, Settings, SettingsError, Validated,
+    Active, EnergyObserver, Real, Renderer, Sample, Settings, SettingsError, ShaftStep, Validated,
 };
 use crepitus_plant::encoder::Encoder;
 
@@ -19,10 +20,7 @@ use crepitus_plant::encoder::Encoder;
 pub(super) struct Shaken<'a> {
     pub(super) settings: Validated<Settings>,
     pub(super) sampling: Sampling<'a>,
-    /// Ticks between a sample and its torque.
-    pub(super) delay_ticks: usize,
-    /// Whether the joint sees counts of the device's encoder, or the truth.
-    pub(super) counts: bool,
+    pub(super) shake: Shake,
 }
 
 /// What a tick shows to whoever draws it.
@@ -94,22 +92,38 @@ impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
             omega,
         );
         let exact = Active::<f64>::new(&shaken.settings, step_s)?;
-        let mut hand = EnergyObserver::new(&exact, shaken.delay_ticks);
+        let mut hand = EnergyObserver::new(&exact, shaken.shake.delay_ticks);
         let mut unguarded = hand;
         let mut chunk = Vec::new();
-        for _ in 0..shaken.sampling.steps() {
+        // Travel since the last sample that was taken.
+        let mut unseen_rad = F::ZERO;
+        for n in 1..=shaken.sampling.steps() {
             walk.fill(&mut chunk, 1);
             let travel_rad = walk.now().0 - angle_rad;
             angle_rad = walk.now().0;
-            let shaft = match chunk.first() {
-                Some(_) if shaken.counts => reader.read(encoder.count(angle_rad)),
-                Some(shaft) => *shaft,
-                None => break,
+            let Some(shaft) = chunk.first() else { break };
+            let is_lost = shaken.shake.lost.takes(n, step_s);
+            let sample = if is_lost {
+                reader.miss();
+                unseen_rad += shaft.delta_phi_rad;
+                Sample::Lost
+            } else if shaken.shake.counts {
+                Sample::Taken(reader.read(encoder.count(angle_rad)))
+            } else {
+                Sample::Taken(ShaftStep {
+                    delta_phi_rad: std::mem::take(&mut unseen_rad) + shaft.delta_phi_rad,
+                    ..*shaft
+                })
             };
-            let shown = renderer.render(&Sample::Taken(shaft), |_| {});
+            let shown = renderer.render(&sample, |_| {});
             let (shown_nm, model_nm) = (shown.torque_nm.to_f64(), shown.model_torque_nm.to_f64());
-            hand.tick(travel_rad, shown_nm);
-            unguarded.tick(travel_rad, model_nm);
+            if is_lost {
+                hand.tick_unseen(travel_rad, shown_nm);
+                unguarded.tick_unseen(travel_rad, model_nm);
+            } else {
+                hand.tick(travel_rad, shown_nm);
+                unguarded.tick(travel_rad, model_nm);
+            }
             on_tick(&Tick {
                 shown_nm,
                 model_nm,
@@ -126,6 +140,7 @@ impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::input::Lost;
     use super::*;
     use crepitus_model::presets::PRESETS;
     use crepitus_plant::Motion;
@@ -177,8 +192,13 @@ mod tests {
                     let shaken = Shaken {
                         settings: settings.validate().unwrap(),
                         sampling: Sampling::new(&motion, duration_s, 5e-5),
-                        delay_ticks,
-                        counts,
+                        shake: Shake {
+                            amplitude_rad: 0.0,
+                            frequency_hz: 0.0,
+                            delay_ticks,
+                            counts,
+                            lost: Lost::NONE,
+                        },
                     };
                     let returned = shaken.run::<f32>(firmware, |_| {}).unwrap();
                     let stroke_rad = p.static_torque_nm / p.stiffness_nm_per_rad;

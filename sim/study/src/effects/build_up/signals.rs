@@ -1,7 +1,7 @@
 //! The signals of a run's second half, and their measures.
 
-use super::super::parallel::Meter;
 use super::Measured;
+use crate::parallel::Meter;
 use crepitus_model::Real;
 use crepitus_scene::Scene;
 use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns, step_count, step_s};

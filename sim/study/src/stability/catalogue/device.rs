@@ -4,7 +4,7 @@
 use super::tools::{TICK_S, changed, faulty, joint, paper_joint, trial};
 use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Counted, Criterion, Limits};
-use crate::stability::input::{Fault, Input, Shaft, Shake};
+use crate::stability::input::{Fault, Input, Lost, Shaft, Shake};
 use crepitus_model::encoder::EncoderSettings;
 use crepitus_model::presets::PRESETS;
 use crepitus_model::{Convention, Parameters};
@@ -203,6 +203,7 @@ pub(super) fn shaking_hand() -> Case {
                                 frequency_hz,
                                 delay_ticks,
                                 counts,
+                                lost: Lost::NONE,
                             };
                             let staircase = if counts { count_rad / stroke_rad } else { 0.0 };
                             let input = Input::Shaken {

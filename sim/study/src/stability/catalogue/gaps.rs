@@ -4,7 +4,8 @@
 use super::tools::{TICK_S, cycle_hz, exactly, faulty, paper_joint, rendered, sine, trial};
 use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Counted, Criterion, Limits};
-use crate::stability::input::{Fault, Input, Lost, Rendered, Shaft};
+use crate::stability::input::{Fault, Input, Lost, Rendered, Shaft, Shake};
+use crepitus_model::encoder::EncoderSettings;
 use crepitus_model::{Convention, Parameters};
 
 pub(super) fn gap_under_load() -> Case {
@@ -81,6 +82,53 @@ pub(super) fn losses_with_the_motion() -> Case {
                 },
             ];
             vec![trial(paper_joint(subject.convention), input, criteria)]
+        },
+    }
+}
+
+pub(super) fn retreat_in_a_gap() -> Case {
+    Case {
+        id: "H56",
+        name: "retreat-in-a-gap",
+        title: "A hand that retreats in every gap gets no energy for it",
+        hard: "While samples are lost the torque is held, and pushes a hand that retreats. A stick that then begins with \
+               all of that torque holds the energy a second time, gap after gap. It begins with what the spring would \
+               have left, and then a gap returns no more than a spring that is sampled as rarely.",
+        source: "|T′| = max(0, |T| − kr·x), model/src/render/held.rs; the bound with n ticks between two samples",
+        long: false,
+        must: located,
+        trials: |subject| {
+            if subject.convention != Convention::Frozen {
+                return Vec::new();
+            }
+            let p = Parameters::default();
+            let stroke_rad = p.static_torque_nm / p.stiffness_nm_per_rad;
+            let mut trials = Vec::new();
+            for (ticks, counts) in [(4, false), (10, true), (20, false), (25, true)] {
+                let shake = Shake {
+                    amplitude_rad: 0.0009,
+                    frequency_hz: 50.0,
+                    delay_ticks: 1,
+                    counts,
+                    // The hand turns back at 5 ms, and every 20 ms.
+                    lost: Lost {
+                        ticks,
+                        every: 400,
+                        from_s: 0.006,
+                    },
+                };
+                let count_rad = EncoderSettings::default().rad_per_count();
+                let staircase = if counts { count_rad / stroke_rad } else { 0.0 };
+                let input = Input::Shaken {
+                    shake,
+                    duration_s: 2.0,
+                    step_s: TICK_S,
+                };
+                let most = 1.0 + staircase;
+                let returned = Criterion::Returned { most };
+                trials.push(trial(paper_joint(subject.convention), input, [returned]));
+            }
+            trials
         },
     }
 }

@@ -109,6 +109,8 @@ pub struct Shake {
     pub delay_ticks: usize,
     /// Whether the joint sees counts of the device's encoder, or the truth.
     pub counts: bool,
+    /// The samples that are lost.
+    pub lost: Lost,
 }
 
 /// Something to be refused.

@@ -1,6 +1,6 @@
 //! Inputs as people read them: text and number stand once.
 
-use super::{Change, Fault, Input, Rendered, Shaft, Shake};
+use super::{Change, Fault, Input, Lost, Rendered, Shaft, Shake};
 use crate::stability::text::{Plain, Time};
 use crepitus_model::Parameters;
 use crepitus_model::parameters::PARAMETERS;
@@ -229,6 +229,19 @@ impl fmt::Display for Shake {
             } else {
                 "as it is"
             }
-        )
+        )?;
+        let Lost {
+            ticks,
+            every,
+            from_s,
+        } = self.lost;
+        if ticks > 0 {
+            write!(
+                f,
+                "; {ticks} of every {every} samples are lost, from t = {} s on",
+                Plain(from_s)
+            )?;
+        }
+        Ok(())
     }
 }

@@ -3,7 +3,7 @@
 
 use super::{Mark, Panel, Scale, Series, Story};
 use crate::sampling::Sampling;
-use crate::stability::input::Shake;
+use crate::stability::input::{Lost, Shake};
 use crate::stability::shaken::{Returned, Shaken, Tick};
 use crate::stability::subject::{Rung, Subject};
 use crepitus_model::solver::Solver;
@@ -21,6 +21,7 @@ const SHOWN: Shake = Shake {
     frequency_hz: 20.0,
     delay_ticks: 0,
     counts: false,
+    lost: Lost::NONE,
 };
 /// Frequency of the sweep, Hz.
 const SWEPT_HZ: f64 = 50.0;
@@ -120,8 +121,7 @@ fn shake(
     let shaken = Shaken {
         settings: Settings::default().validate()?,
         sampling: Sampling::new(&motion, duration_s, STEP_S),
-        delay_ticks: shake.delay_ticks,
-        counts: shake.counts,
+        shake,
     };
     shaken.run::<f32>(DEVICE, on_tick)
 }
@@ -148,6 +148,7 @@ impl Sweep {
                     frequency_hz: SWEPT_HZ,
                     delay_ticks,
                     counts: false,
+                    lost: Lost::NONE,
                 };
                 let returned = shake(hand, SWEPT_S, |_| {})?;
                 points.push((share, returned.guarded));

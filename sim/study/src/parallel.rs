@@ -13,7 +13,7 @@ const LOOK: Duration = Duration::from_millis(50);
 
 /// How much is done, and whether it goes on.
 #[derive(Debug)]
-pub(super) struct Meter {
+pub(crate) struct Meter {
     total: f64,
     done: AtomicU64,
     stopped: AtomicBool,
@@ -21,7 +21,7 @@ pub(super) struct Meter {
 
 impl Meter {
     /// Of so much work.
-    pub(super) fn new(total: f64) -> Self {
+    pub(crate) fn new(total: f64) -> Self {
         Self {
             total: total.max(1.0),
             done: AtomicU64::new(0),
@@ -30,17 +30,17 @@ impl Meter {
     }
 
     /// So much more is done.
-    pub(super) fn did(&self, amount: u64) {
+    pub(crate) fn did(&self, amount: u64) {
         self.done.fetch_add(amount, Ordering::Relaxed);
     }
 
     /// Whether the watcher has ended it all.
-    pub(super) fn is_stopped(&self) -> bool {
+    pub(crate) fn is_stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }
 
     /// Tells the watcher how far it is.
-    pub(super) fn tell<W: Watcher>(&self, watcher: &mut W) -> Result<(), W::Error> {
+    pub(crate) fn tell<W: Watcher>(&self, watcher: &mut W) -> Result<(), W::Error> {
         let done = f64::from_whole(self.done.load(Ordering::Relaxed));
         watcher
             .progress((done / self.total).min(1.0))
@@ -50,7 +50,7 @@ impl Meter {
 
 /// `work` on each of `items`, on as many cores as there are; results in the
 /// order of the items.
-pub(super) fn each<T: Sync, R: Send, W: Watcher>(
+pub(crate) fn each<T: Sync, R: Send, W: Watcher>(
     items: &[T],
     meter: &Meter,
     watcher: &mut W,

@@ -1,0 +1,29 @@
+//! The page.
+
+use super::{CoupledText, map, margins};
+use crate::frame;
+use crepitus_study::coupled::CoupledStudy;
+use maud::html;
+
+const LAYOUT: &str = "body{max-width:64rem}.map,.margins{margin-top:1.8rem}.scroll{overflow-x:auto}\
+.margins table{border-collapse:collapse}.margins th,.margins td{padding:.2rem .8rem .2rem 0;text-align:left}";
+
+pub(super) fn html(study: &CoupledStudy, text: &CoupledText) -> String {
+    let body = html! {
+        header {
+            p.kicker { "Crepitus · where the device stays quiet on a leg" }
+            h1 { (text.title) }
+            p.description { (text.intro) }
+        }
+        main {
+            section.map {
+                div.scroll tabindex="0" role="group" aria-label="Chart" { (map::svg(study)) }
+            }
+            (margins::table("The presets", "preset", &study.presets, |m| m.setting.preset.name))
+            (margins::table("The paper’s joint with other effects", "with", &study.extras, |m| m.setting.extra.name))
+            (frame::tables(&text.tables))
+        }
+        (frame::footer(&text.footer))
+    };
+    frame::document(&text.title, LAYOUT, &body)
+}

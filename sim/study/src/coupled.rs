@@ -1,0 +1,32 @@
+//! Where the device stays quiet on a leg: its Z-width.
+//!
+//! A rendered spring is sampled, held for a tick, and acts late; each of these
+//! gives energy away, about kr·τ·∫Ω² dt with τ the [mean lag](Lag::mean_s).
+//! Something in the mechanics has to take it. So a hand moves the leg, stops,
+//! and rests, and we look whether the shaft comes to rest, too, over
+//!
+//! ```text
+//! kr  ×  damping of the cuff  ×  lag of the motor  ×  friction left in the gear
+//! ```
+//!
+//! with the pipeline that the drive renders (scenes with `device = true`), and
+//! beside it what the literature says of the same numbers.
+//!
+//! | to find | look in |
+//! |---|---|
+//! | what is varied, and the scene of a cell | `setting` |
+//! | when a shaft is quiet, settles or rings | `cell` |
+//! | the criteria of the literature, and the linear system | `criteria` |
+//! | the map, the presets' margins, each effect | `study` |
+//! | files | [`csv`] |
+
+mod cell;
+mod criteria;
+pub mod csv;
+mod setting;
+mod study;
+
+pub use cell::{Cell, Verdict};
+pub use criteria::{Criteria, most_share};
+pub use setting::{DAMPINGS, Extra, GEARS, Gear, LAGS, Lag, STIFFNESSES, Setting};
+pub use study::{CoupledError, CoupledStudy, Margin, Onset, run};

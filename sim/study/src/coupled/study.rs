@@ -1,0 +1,261 @@
+//! The map, what the presets have left, and each effect by itself.
+
+use super::cell::{Cell, Verdict, run_cell};
+use super::criteria::Criteria;
+use super::setting::{DAMPINGS, Extra, GEARS, LAGS, STIFFNESSES, Setting};
+use crate::parallel::{Meter, each};
+use crate::watcher::Watcher;
+use crepitus_model::Real;
+use crepitus_model::presets::PRESETS;
+use std::time::Instant;
+
+/// A preset's own stiffness is varied by these factors.
+const FACTORS: [f64; 15] = [
+    0.25, 0.354, 0.5, 0.707, 1.0, 1.41, 2.0, 2.83, 4.0, 5.66, 8.0, 11.3, 16.0, 22.6, 32.0,
+];
+
+/// Dampings at which presets and effects are looked at, N·m·s/rad: no damping
+/// at all, and the cuff's default.
+const ENDS: [f64; 2] = [0.0, 1.0];
+
+/// Where a column of the map begins to ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Onset {
+    /// The first cell of the column.
+    pub setting: Setting,
+    /// The lowest stiffness that rings, N·m/rad; none if none does.
+    pub measured: Option<f64>,
+    /// The largest that was run.
+    pub most: f64,
+    /// What theory says.
+    pub criteria: Criteria,
+}
+
+/// What a joint has left on one device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margin {
+    /// The joint as it is.
+    pub setting: Setting,
+    /// What its shaft does.
+    pub verdict: Verdict,
+    /// The lowest stiffness that rings, over its own; none if none does.
+    pub onset: Option<f64>,
+    /// The largest that the device takes, of those that were run.
+    pub most: f64,
+}
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub struct CoupledStudy {
+    /// The map: of each gear, lag and damping every stiffness, in this order.
+    pub cells: Vec<Cell>,
+    /// The same without stiffness.
+    pub onsets: Vec<Onset>,
+    /// Each preset on each gear.
+    pub presets: Vec<Margin>,
+    /// The paper's joint, with each effect that the map leaves out.
+    pub extras: Vec<Margin>,
+    /// How long it took, s.
+    pub wall_s: f64,
+}
+
+/// Why it has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum CoupledError<E> {
+    /// The watcher ended it.
+    #[error("ended early")]
+    Watcher(E),
+    /// A run could not go on.
+    #[error("{0}")]
+    Run(String),
+}
+
+/// Carries it out.
+///
+/// # Errors
+/// What the watcher returns.
+pub fn run<W: Watcher>(watcher: &mut W) -> Result<CoupledStudy, CoupledError<W::Error>> {
+    let begun = Instant::now();
+    let map = map();
+    let (presets, extras) = (presets(), extras());
+    let mut settings: Vec<Setting> = map.clone();
+    for joint in presets.iter().chain(&extras) {
+        settings.extend(stiffer(joint));
+    }
+    let count = u64::try_from(settings.len()).unwrap_or(u64::MAX);
+    let meter = Meter::new(f64::from_whole(count));
+    let ran = each(&settings, &meter, watcher, |setting| {
+        run_cell(setting, &meter)
+    })
+    .map_err(CoupledError::Watcher)?;
+    let mut cells = Vec::with_capacity(ran.len());
+    for cell in ran {
+        cells.extend(cell.map_err(CoupledError::Run)?);
+    }
+    let joints = cells.split_off(map.len().min(cells.len()));
+    let mut margins = joints.chunks(FACTORS.len()).map(margin);
+    let presets = margins.by_ref().take(presets.len()).flatten().collect();
+    Ok(CoupledStudy {
+        onsets: cells.chunks(STIFFNESSES.len()).filter_map(onset).collect(),
+        cells,
+        presets,
+        extras: margins.flatten().collect(),
+        wall_s: begun.elapsed().as_secs_f64(),
+    })
+}
+
+fn map() -> Vec<Setting> {
+    let mut settings = Vec::new();
+    for gear in GEARS {
+        for lag in LAGS {
+            for damping_nms_per_rad in DAMPINGS {
+                for stiffness_nm_per_rad in STIFFNESSES {
+                    settings.push(Setting {
+                        stiffness_nm_per_rad,
+                        damping_nms_per_rad,
+                        lag,
+                        gear,
+                        ..Setting::shipped()
+                    });
+                }
+            }
+        }
+    }
+    settings
+}
+
+fn presets() -> Vec<Setting> {
+    let mut settings = Vec::new();
+    for preset in &PRESETS {
+        for gear in GEARS {
+            for damping_nms_per_rad in ENDS {
+                settings.push(Setting {
+                    preset,
+                    stiffness_nm_per_rad: preset.parameters.stiffness_nm_per_rad,
+                    damping_nms_per_rad,
+                    gear,
+                    ..Setting::shipped()
+                });
+            }
+        }
+    }
+    settings
+}
+
+fn extras() -> Vec<Setting> {
+    let [_, as_shipped, .., none] = GEARS;
+    let mut settings = Vec::new();
+    for extra in Extra::ALL {
+        for gear in [as_shipped, none] {
+            for damping_nms_per_rad in ENDS {
+                settings.push(Setting {
+                    damping_nms_per_rad,
+                    gear,
+                    extra,
+                    ..Setting::shipped()
+                });
+            }
+        }
+    }
+    settings
+}
+
+/// The joint at each factor of its stiffness.
+fn stiffer(joint: &Setting) -> impl Iterator<Item = Setting> {
+    let joint = *joint;
+    FACTORS.into_iter().map(move |factor| Setting {
+        stiffness_nm_per_rad: factor * joint.stiffness_nm_per_rad,
+        ..joint
+    })
+}
+
+/// The lowest stiffness that rings, and the largest that was run.
+fn rings(cells: &[Cell]) -> (Option<f64>, f64) {
+    let stiffness = |cell: &Cell| cell.setting.stiffness_nm_per_rad;
+    let ringing = cells.iter().find(|cell| cell.verdict == Verdict::Rings);
+    let run = cells.iter().filter(|c| c.verdict != Verdict::Refused);
+    (
+        ringing.map(stiffness),
+        run.map(stiffness).fold(0.0, f64::max),
+    )
+}
+
+fn onset(column: &[Cell]) -> Option<Onset> {
+    let first = column.first()?;
+    let (measured, most) = rings(column);
+    Some(Onset {
+        setting: first.setting,
+        measured,
+        most,
+        criteria: Criteria::of(&first.setting),
+    })
+}
+
+fn margin(cells: &[Cell]) -> Option<Margin> {
+    let (own, _) = cells.iter().zip(FACTORS).find(|(_, f)| *f == 1.0)?;
+    let (measured, most) = rings(cells);
+    let stiffness = own.setting.stiffness_nm_per_rad;
+    Some(Margin {
+        setting: own.setting,
+        verdict: own.verdict,
+        onset: measured.map(|onset| onset / stiffness),
+        most: most / stiffness,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cell(stiffness_nm_per_rad: f64, verdict: Verdict) -> Cell {
+        Cell {
+            setting: Setting {
+                stiffness_nm_per_rad,
+                ..Setting::shipped()
+            },
+            verdict,
+            ripple_rad: 0.0,
+            ripple_nm: 0.0,
+        }
+    }
+
+    #[test]
+    fn the_lowest_stiffness_that_rings_is_the_onset() {
+        use Verdict::{Quiet, Refused, Rings, Settles};
+        let column = [
+            cell(100.0, Quiet),
+            cell(200.0, Settles),
+            cell(400.0, Rings),
+            cell(800.0, Quiet),
+            cell(1600.0, Refused),
+        ];
+        let onset = onset(&column).unwrap();
+        assert_eq!((onset.measured, onset.most), (Some(400.0), 800.0));
+        let none = [cell(100.0, Quiet), cell(200.0, Refused)];
+        assert_eq!(rings(&none), (None, 100.0));
+        let joint: Vec<Cell> = FACTORS
+            .map(|f| cell(400.0 * f, if f > 3.0 { Rings } else { Quiet }))
+            .into();
+        let margin = margin(&joint).unwrap();
+        assert_eq!((margin.onset, margin.verdict), (Some(4.0), Quiet));
+        assert_eq!(margin.most, 32.0);
+    }
+
+    #[test]
+    fn each_joint_is_run_at_every_factor() {
+        let settings = presets();
+        assert_eq!(settings.len(), PRESETS.len() * GEARS.len() * ENDS.len());
+        assert_eq!(stiffer(&settings[0]).count(), FACTORS.len());
+        assert!(FACTORS.contains(&1.0));
+        let scenes: Vec<_> = Extra::ALL
+            .map(|extra| {
+                Setting {
+                    extra,
+                    ..Setting::shipped()
+                }
+                .scene()
+            })
+            .into();
+        assert!(scenes.iter().all(Result::is_ok), "{scenes:?}");
+    }
+}
