@@ -4,7 +4,7 @@
 mod support;
 
 use crepitus_device::usb_port::HostBytes;
-use crepitus_protocol::parameters::{PARAMETER_COUNT, Parameter};
+use crepitus_protocol::parameters::{self, PARAMETER_COUNT};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -31,7 +31,7 @@ fn the_example_client_is_short_and_knows_the_parameters() {
         .map(str::trim)
         .filter(|line| !line.is_empty() && !line.starts_with('#'));
     assert!(lines.count() <= MOST_LINES);
-    let (id, _) = Parameter::find("crepitus.static_torque_nm").unwrap();
+    let (id, _) = parameters::find("crepitus.static_torque_nm").unwrap();
     assert!(text.contains(&format!("values[{id}] = 0.45")));
     assert!(text.contains(&format!("\"<{PARAMETER_COUNT}d\"")));
 }

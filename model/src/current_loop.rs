@@ -44,102 +44,55 @@
 //! losses, 6.5 N·m·0.7/(3.33 N·m/A).
 
 use crate::active::LONGEST_STEP_S;
-use crate::parameters::{ParameterSpec, Tabled};
+use crate::parameters::{Tabled, settings};
 use crate::real::Real;
 use crate::settings::SettingsError;
 
-/// What the device believes of its winding, and what it asks of the current.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CurrentLoopSettings {
-    /// Bandwidth f, Hz.
-    pub bandwidth_hz: f64,
-    /// Resistance R, Ω.
-    pub resistance_ohm: f64,
-    /// Inductance L, H.
-    pub inductance_h: f64,
-    /// Voltage that the bridge can give either way, V.
-    pub supply_v: f64,
-    /// Largest current that is asked for, A.
-    pub current_limit_a: f64,
-}
-
-impl Tabled<5> for CurrentLoopSettings {
-    const TABLE: &'static [ParameterSpec; 5] = &[
-        ParameterSpec {
-            key: "bandwidth_hz",
+settings! {
+    /// What the device believes of its winding, and what it asks of the current.
+    pub struct CurrentLoopSettings, group "motor" {} {
+        // The largest is a tenth of the tick: beyond, a voltage that is a tick late rings.
+        bandwidth_hz {
+            id: 20 disarmed,
             symbol: "f",
             unit: "Hz",
-            min: 1.0,
-            // A tenth of the tick: beyond, a voltage that is a tick late rings.
-            max: 2000.0,
+            range: 1.0..=2000.0,
             default: 1000.0,
             meaning: "bandwidth of the current loop: a step is followed with the time constant 1/2πf",
         },
-        ParameterSpec {
-            key: "resistance_ohm",
+        resistance_ohm {
+            id: 21 disarmed,
             symbol: "R",
             unit: "Ω",
-            min: 0.01,
-            max: 100.0,
+            range: 0.01..=100.0,
             default: 1.23,
             meaning: "resistance that the device believes the winding to have; copper gains 39 % per 100 K",
         },
-        ParameterSpec {
-            key: "inductance_h",
+        inductance_h {
+            id: 22 disarmed,
             symbol: "L",
             unit: "H",
-            min: 1e-6,
-            max: 1.0,
+            range: 1e-6..=1.0,
             default: 0.34e-3,
             meaning: "inductance that the device believes the winding to have",
         },
-        ParameterSpec {
-            key: "supply_v",
+        supply_v {
+            id: 23 disarmed,
             symbol: "U",
             unit: "V",
-            min: 1.0,
-            max: 60.0,
+            range: 1.0..=60.0,
             default: 24.0,
             meaning: "voltage that the bridge can give either way",
         },
-        ParameterSpec {
-            key: "current_limit_a",
+        // The hardware trips at the largest.
+        current_limit_a {
+            id: 24 disarmed,
             symbol: "I",
             unit: "A",
-            min: 0.01,
-            // The hardware trips here.
-            max: 1.95,
+            range: 0.01..=1.95,
             default: 1.37,
             meaning: "largest current that is asked for: 6.5 N·m at the joint of a hand that back-drives the gear",
         },
-    ];
-
-    fn values(&self) -> [f64; 5] {
-        [
-            self.bandwidth_hz,
-            self.resistance_ohm,
-            self.inductance_h,
-            self.supply_v,
-            self.current_limit_a,
-        ]
-    }
-
-    fn of(
-        [
-            bandwidth_hz,
-            resistance_ohm,
-            inductance_h,
-            supply_v,
-            current_limit_a,
-        ]: [f64; 5],
-    ) -> Self {
-        Self {
-            bandwidth_hz,
-            resistance_ohm,
-            inductance_h,
-            supply_v,
-            current_limit_a,
-        }
     }
 }
 
@@ -153,12 +106,6 @@ impl CurrentLoopSettings {
     /// held, this is by how much a rendered spring lags: 4.21 ticks.
     pub fn lag_ticks(&self, step_s: f64) -> f64 {
         -1.0 / libm::expm1(-core::f64::consts::TAU * self.bandwidth_hz * step_s)
-    }
-}
-
-impl Default for CurrentLoopSettings {
-    fn default() -> Self {
-        Self::defaults()
     }
 }
 

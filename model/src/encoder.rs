@@ -14,96 +14,45 @@
 //! It has no lag at constant speed, needs no absolute angle, and its noise is
 //! one count over about 1/(2π·f_b) of time.
 
-use crate::parameters::ParameterSpec;
+use crate::parameters::{Tabled, settings};
 use crate::real::Real;
 use crate::settings::SettingsError;
 use crate::shaft::ShaftStep;
 
-/// The encoder and its place in the drivetrain.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EncoderSettings {
-    /// Lines of the disc; four counts each.
-    pub lines: f64,
-    /// Turns of the motor for one of the joint.
-    pub gear_ratio: f64,
-    /// Bandwidth f_b of the velocity estimate, Hz.
-    pub velocity_bandwidth_hz: f64,
+settings! {
+    /// The encoder and its place in the drivetrain.
+    pub struct EncoderSettings, group "encoder" {} {
+        lines {
+            id: 6 disarmed,
+            symbol: "N",
+            unit: "lines per motor turn",
+            range: 1.0..=1e6,
+            default: 512.0,
+            meaning: "lines of the encoder disc; quadrature makes four counts of each",
+        },
+        gear_ratio {
+            id: 7 disarmed,
+            symbol: "i",
+            unit: "motor turns per joint turn",
+            range: 1.0..=1e4,
+            default: 86.0,
+            meaning: "reduction between the motor, where the encoder sits, and the joint",
+        },
+        velocity_bandwidth_hz {
+            id: 8 disarmed,
+            symbol: "f_b",
+            unit: "Hz",
+            range: 0.1..=1e4,
+            default: 50.0,
+            meaning: "bandwidth of the velocity estimate: higher follows faster, lower is quieter",
+        },
+    }
 }
 
-/// The table of [`EncoderSettings`], in the order of
-/// [`EncoderSettings::values`].
-pub const ENCODER_PARAMETERS: [ParameterSpec; 3] = [
-    ParameterSpec {
-        key: "lines",
-        symbol: "N",
-        unit: "lines per motor turn",
-        min: 1.0,
-        max: 1e6,
-        default: 512.0,
-        meaning: "lines of the encoder disc; quadrature makes four counts of each",
-    },
-    ParameterSpec {
-        key: "gear_ratio",
-        symbol: "i",
-        unit: "motor turns per joint turn",
-        min: 1.0,
-        max: 1e4,
-        default: 86.0,
-        meaning: "reduction between the motor, where the encoder sits, and the joint",
-    },
-    ParameterSpec {
-        key: "velocity_bandwidth_hz",
-        symbol: "f_b",
-        unit: "Hz",
-        min: 0.1,
-        max: 1e4,
-        default: 50.0,
-        meaning: "bandwidth of the velocity estimate: higher follows faster, lower is quieter",
-    },
-];
-
 impl EncoderSettings {
-    /// The values in the order of [`ENCODER_PARAMETERS`].
-    pub fn values(&self) -> [f64; 3] {
-        [self.lines, self.gear_ratio, self.velocity_bandwidth_hz]
-    }
-
-    /// The values, to be changed in the order of [`ENCODER_PARAMETERS`].
-    pub fn values_mut(&mut self) -> [&mut f64; 3] {
-        [
-            &mut self.lines,
-            &mut self.gear_ratio,
-            &mut self.velocity_bandwidth_hz,
-        ]
-    }
-
     /// Joint angle of one count, rad.
     pub fn rad_per_count(&self) -> f64 {
         core::f64::consts::TAU / (4.0 * self.lines * self.gear_ratio)
-    }
-
-    /// Checks the ranges.
-    ///
-    /// # Errors
-    /// [`SettingsError::OutOfRange`] for the first value that is outside.
-    pub fn validate(&self) -> Result<(), SettingsError> {
-        for (parameter, value) in ENCODER_PARAMETERS.iter().zip(self.values()) {
-            if !(value >= parameter.min && value <= parameter.max) {
-                return Err(SettingsError::OutOfRange { parameter, value });
-            }
-        }
-        Ok(())
-    }
-}
-
-impl Default for EncoderSettings {
-    fn default() -> Self {
-        let [lines, gear_ratio, velocity_bandwidth_hz] = ENCODER_PARAMETERS.map(|p| p.default);
-        Self {
-            lines,
-            gear_ratio,
-            velocity_bandwidth_hz,
-        }
     }
 }
 
@@ -235,7 +184,7 @@ mod tests {
         assert_eq!(settings.values(), [512.0, 86.0, 50.0]);
         assert!((settings.rad_per_count() - 35.674e-6).abs() < 1e-9);
         assert_eq!(settings.validate(), Ok(()));
-        for (i, spec) in ENCODER_PARAMETERS.iter().enumerate() {
+        for (i, spec) in EncoderSettings::TABLE.iter().enumerate() {
             for (bad, good) in [
                 (f64::NAN, spec.default),
                 (spec.min * 0.99, spec.min),

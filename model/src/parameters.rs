@@ -1,10 +1,11 @@
-//! The parameters of the imaginary object: the one table that scene files,
-//! the command line, the device's wire and the documents read; and what all
-//! such tables have in common, [`Tabled`].
+//! Parameters: the tables that scene files, the command line, the device's wire
+//! and the documents read, each declared once, with [`settings!`]; and those of
+//! the imaginary object.
 
 use crate::settings::SettingsError;
+use core::cmp::Ordering;
 
-/// What is known about one parameter.
+/// What is known about one number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterSpec {
     /// Name in scene files and on the command line; the unit is part of it.
@@ -23,13 +24,107 @@ pub struct ParameterSpec {
     pub meaning: &'static str,
 }
 
-/// Settings that are the numbers of one table.
+/// A parameter of a device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its number on the wire and in flash. Numbers are given once and need not
+    /// be contiguous.
+    pub id: u16,
+    /// The effect or the part that it belongs to, as in scene files.
+    pub group: &'static str,
+    /// What it is.
+    pub kind: Kind,
+    /// When it may change.
+    pub when: When,
+}
+
+/// What a parameter is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A number in a range.
+    Number(&'static ParameterSpec),
+    /// One of some names; its value is the place of the name.
+    Choice(&'static Choice),
+}
+
+/// A parameter that is one of some names.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// Name.
+    pub key: &'static str,
+    /// What can be chosen.
+    pub names: &'static [&'static str],
+    /// Place of the default.
+    pub default: f64,
+    /// What it means.
+    pub meaning: &'static str,
+}
+
+/// When a parameter may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum When {
+    /// Always; active values move there within the slew limit.
+    Always,
+    /// Only while there is no torque.
+    Disarmed,
+}
+
+impl Parameter {
+    /// Name within its group; a number's has its unit.
+    pub const fn key(&self) -> &'static str {
+        match self.kind {
+            Kind::Number(spec) => spec.key,
+            Kind::Choice(choice) => choice.key,
+        }
+    }
+
+    /// The default.
+    pub const fn default(&self) -> f64 {
+        match self.kind {
+            Kind::Number(spec) => spec.default,
+            Kind::Choice(choice) => choice.default,
+        }
+    }
+
+    /// What it means.
+    pub const fn meaning(&self) -> &'static str {
+        match self.kind {
+            Kind::Number(spec) => spec.meaning,
+            Kind::Choice(choice) => choice.meaning,
+        }
+    }
+
+    /// Whether it can have this value; no number is none.
+    pub fn allows(&self, value: f64) -> bool {
+        match self.kind {
+            Kind::Number(spec) => spec.allows(value),
+            Kind::Choice(choice) => (0_u8..)
+                .zip(choice.names)
+                .any(|(place, _)| f64::from(place).partial_cmp(&value) == Some(Ordering::Equal)),
+        }
+    }
+}
+
+impl ParameterSpec {
+    /// Whether it can have this value; no number is none.
+    pub fn allows(&self, value: f64) -> bool {
+        value >= self.min && value <= self.max
+    }
+}
+
+/// Settings that are the numbers of one table; [`settings!`] makes them.
 pub trait Tabled<const N: usize>: Copy {
     /// One entry a number: key with unit, range, default, meaning.
     const TABLE: &'static [ParameterSpec; N];
 
+    /// The wire's number of each, where a device has it.
+    const IDS: [Option<u16>; N];
+
     /// The numbers in the order of the table.
     fn values(&self) -> [f64; N];
+
+    /// The numbers, to be changed, in the order of the table.
+    fn values_mut(&mut self) -> [&mut f64; N];
 
     /// From numbers in the order of the table; not checked.
     fn of(values: [f64; N]) -> Self;
@@ -46,8 +141,7 @@ pub trait Tabled<const N: usize>: Copy {
     /// no number at all.
     fn validate(&self) -> Result<(), SettingsError> {
         for (parameter, value) in Self::TABLE.iter().zip(self.values()) {
-            // Written so that NaN fails.
-            if !(value >= parameter.min && value <= parameter.max) {
+            if !parameter.allows(value) {
                 return Err(SettingsError::OutOfRange { parameter, value });
             }
         }
@@ -55,99 +149,180 @@ pub trait Tabled<const N: usize>: Copy {
     }
 }
 
-/// The parameters of the stick-slip object, in SI units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameters {
-    /// J, kg·m².
-    pub inertia_kg_m2: f64,
-    /// kr, N·m/rad.
-    pub stiffness_nm_per_rad: f64,
-    /// c, N·m·s/rad.
-    pub damping_nms_per_rad: f64,
-    /// Tk, N·m.
-    pub kinetic_torque_nm: f64,
-    /// Ts, N·m.
-    pub static_torque_nm: f64,
+/// Declares settings: the one place where a parameter's name, symbol, unit,
+/// range, default and meaning stand, its number on the wire, and when it may
+/// change (`always`, or only `disarmed`).
+///
+/// ```text
+/// settings! {
+///     /// Why there are such settings.
+///     pub struct NameSettings, group "name" {
+///         render { id: 7 always, choice: ["off", "on"], default: 0, meaning: "…" },
+///     } {
+///         gain { id: 8 always, symbol: "g", unit: "1", range: 0.0..=10.0, default: 1.0, meaning: "…" },
+///     }
+/// }
+/// ```
+///
+/// Choices come first; they are the device's, not fields of the struct. A number
+/// without an `id` is one that no device has. Made are the struct with its
+/// fields, [`Tabled`] and [`Default`], and `DEVICE`: what a device has of it, to
+/// be listed in `crepitus_protocol::parameters`.
+macro_rules! settings {
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident, group $group:literal {
+            $($choice:ident {
+                id: $choice_id:literal $choice_when:ident,
+                choice: $names:expr,
+                default: $choice_default:literal,
+                meaning: $choice_meaning:literal $(,)?
+            }),* $(,)?
+        } {
+            $($field:ident {
+                $(id: $id:literal $when:ident,)?
+                symbol: $symbol:literal,
+                unit: $unit:literal,
+                range: $min:literal..=$max:literal,
+                default: $default:literal,
+                meaning: $meaning:literal $(,)?
+            }),* $(,)?
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct $name {
+            $(#[doc = concat!($symbol, ", ", $unit, ": ", $meaning, ".")] pub $field: f64,)*
+        }
+
+        #[allow(non_upper_case_globals, reason = "named as the fields that they describe")]
+        impl $name {
+            $(const $field: $crate::parameters::ParameterSpec = $crate::parameters::ParameterSpec {
+                key: stringify!($field),
+                symbol: $symbol,
+                unit: $unit,
+                min: $min,
+                max: $max,
+                default: $default,
+                meaning: $meaning,
+            };)*
+
+            /// What a device has of it.
+            pub const DEVICE: &'static [$crate::parameters::Parameter] = &[
+                $($crate::parameters::Parameter {
+                    id: $choice_id,
+                    group: $group,
+                    kind: $crate::parameters::Kind::Choice(&$crate::parameters::Choice {
+                        key: stringify!($choice),
+                        names: &$names,
+                        default: $choice_default as f64,
+                        meaning: $choice_meaning,
+                    }),
+                    when: $crate::parameters::settings!(@when $choice_when),
+                },)*
+                $($($crate::parameters::Parameter {
+                    id: $id,
+                    group: $group,
+                    kind: $crate::parameters::Kind::Number(&Self::$field),
+                    when: $crate::parameters::settings!(@when $when),
+                },)?)*
+            ];
+        }
+
+        impl $crate::parameters::Tabled<{ [$(stringify!($field)),*].len() }> for $name {
+            const TABLE: &'static [$crate::parameters::ParameterSpec; [$(stringify!($field)),*].len()] =
+                &[$(Self::$field),*];
+
+            const IDS: [Option<u16>; [$(stringify!($field)),*].len()] =
+                [$($crate::parameters::settings!(@id $($id)?)),*];
+
+            fn values(&self) -> [f64; [$(stringify!($field)),*].len()] {
+                [$(self.$field),*]
+            }
+
+            fn values_mut(&mut self) -> [&mut f64; [$(stringify!($field)),*].len()] {
+                [$(&mut self.$field),*]
+            }
+
+            fn of([$($field),*]: [f64; [$(stringify!($field)),*].len()]) -> Self {
+                Self { $($field),* }
+            }
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                $crate::parameters::Tabled::defaults()
+            }
+        }
+    };
+    (@when always) => { $crate::parameters::When::Always };
+    (@when disarmed) => { $crate::parameters::When::Disarmed };
+    (@id) => { None };
+    (@id $id:literal) => { Some($id) };
 }
 
-/// Inertia J.
-pub const INERTIA: ParameterSpec = ParameterSpec {
-    key: "inertia_kg_m2",
-    symbol: "J",
-    unit: "kg·m²",
-    min: 1e-12,
-    max: 1e3,
-    default: 0.01,
-    meaning: "inertia of the imaginary object; with the stiffness it sets the pitch √(kr/J)/2π",
-};
-/// Stiffness kr.
-pub const STIFFNESS: ParameterSpec = ParameterSpec {
-    key: "stiffness_nm_per_rad",
-    symbol: "kr",
-    unit: "N·m/rad",
-    min: 1e-6,
-    max: 1e9,
-    default: 400.0,
-    meaning: "stiffness of the spring that holds the imaginary object",
-};
-/// Damping c.
-pub const DAMPING: ParameterSpec = ParameterSpec {
-    key: "damping_nms_per_rad",
-    symbol: "c",
-    unit: "N·m·s/rad",
-    min: 0.0,
-    max: 1e6,
-    default: 0.0,
-    meaning: "viscous damping of the imaginary object; 0 in the paper and under `frozen`",
-};
-/// Kinetic friction torque Tk.
-pub const KINETIC_TORQUE: ParameterSpec = ParameterSpec {
-    key: "kinetic_torque_nm",
-    symbol: "Tk",
-    unit: "N·m",
-    min: 0.0,
-    max: 1e6,
-    default: 0.2,
-    meaning: "friction torque while the shaft slips over the object; the mean torque at constant speed",
-};
-/// Static friction torque Ts.
-pub const STATIC_TORQUE: ParameterSpec = ParameterSpec {
-    key: "static_torque_nm",
-    symbol: "Ts",
-    unit: "N·m",
-    min: 0.0,
-    max: 1e6,
-    default: 0.4,
-    meaning: "torque at which a stick breaks; nothing larger is ever shown",
-};
+pub(crate) use settings;
 
-/// All parameters, in the order of [`Parameters::values`].
-pub const PARAMETERS: [ParameterSpec; 5] =
-    [INERTIA, STIFFNESS, DAMPING, KINETIC_TORQUE, STATIC_TORQUE];
+settings! {
+    /// The parameters of the stick-slip object, in SI units. Defaults are the
+    /// paper's.
+    pub struct Parameters, group "crepitus" {
+        render {
+            id: 0 always,
+            choice: ["off", "on"],
+            default: 1,
+            meaning: "whether the joint grates; `off` is a healthy joint",
+        },
+        restart {
+            id: 5 always,
+            choice: ["elastic", "from-kinetic"],
+            default: 0,
+            meaning: "torque with which a stick begins: 2Tk − Ts, or Tk",
+        },
+    } {
+        inertia_kg_m2 {
+            id: 1 always,
+            symbol: "J",
+            unit: "kg·m²",
+            range: 1e-12..=1e3,
+            default: 0.01,
+            meaning: "inertia of the imaginary object; with the stiffness it sets the pitch √(kr/J)/2π",
+        },
+        stiffness_nm_per_rad {
+            id: 2 always,
+            symbol: "kr",
+            unit: "N·m/rad",
+            range: 1e-6..=1e9,
+            default: 400.0,
+            meaning: "stiffness of the spring that holds the imaginary object",
+        },
+        damping_nms_per_rad {
+            symbol: "c",
+            unit: "N·m·s/rad",
+            range: 0.0..=1e6,
+            default: 0.0,
+            meaning: "viscous damping of the imaginary object; 0 in the paper and under `frozen`",
+        },
+        kinetic_torque_nm {
+            id: 3 always,
+            symbol: "Tk",
+            unit: "N·m",
+            range: 0.0..=1e6,
+            default: 0.2,
+            meaning: "friction torque while the shaft slips over the object; the mean torque at constant speed",
+        },
+        static_torque_nm {
+            id: 4 always,
+            symbol: "Ts",
+            unit: "N·m",
+            range: 0.0..=1e6,
+            default: 0.4,
+            meaning: "torque at which a stick breaks; nothing larger is ever shown",
+        },
+    }
+}
 
 impl Parameters {
-    /// The values in the order of [`PARAMETERS`].
-    pub fn values(&self) -> [f64; 5] {
-        [
-            self.inertia_kg_m2,
-            self.stiffness_nm_per_rad,
-            self.damping_nms_per_rad,
-            self.kinetic_torque_nm,
-            self.static_torque_nm,
-        ]
-    }
-
-    /// The values, to be changed in the order of [`PARAMETERS`].
-    pub fn values_mut(&mut self) -> [&mut f64; 5] {
-        [
-            &mut self.inertia_kg_m2,
-            &mut self.stiffness_nm_per_rad,
-            &mut self.damping_nms_per_rad,
-            &mut self.kinetic_torque_nm,
-            &mut self.static_torque_nm,
-        ]
-    }
-
     /// Natural frequency ωn = √(kr/J), rad/s.
     pub fn natural_rad_s(&self) -> f64 {
         libm::sqrt(self.stiffness_nm_per_rad / self.inertia_kg_m2)
@@ -164,19 +339,6 @@ impl Parameters {
     }
 }
 
-impl Default for Parameters {
-    /// The paper's parameters.
-    fn default() -> Self {
-        Self {
-            inertia_kg_m2: INERTIA.default,
-            stiffness_nm_per_rad: STIFFNESS.default,
-            damping_nms_per_rad: DAMPING.default,
-            kinetic_torque_nm: KINETIC_TORQUE.default,
-            static_torque_nm: STATIC_TORQUE.default,
-        }
-    }
-}
-
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
@@ -188,6 +350,7 @@ pub(crate) mod tests {
         // Each number is its own: none is lost or changes place.
         let numbers = core::array::from_fn(|i| 1.0 + f64::from(u8::try_from(i).unwrap()));
         assert_eq!(T::of(numbers).values(), numbers);
+        assert_eq!(T::of(numbers).values_mut().map(|x| *x), numbers);
         for (i, spec) in T::TABLE.iter().enumerate() {
             assert_eq!(defaults[i], spec.default);
             assert!(T::TABLE.iter().filter(|s| s.key == spec.key).count() == 1);

@@ -1,7 +1,7 @@
 //! What people set, and the check that nothing else gets past.
 
 use crate::active::LONGEST_STEP_S;
-use crate::parameters::{PARAMETERS, ParameterSpec, Parameters};
+use crate::parameters::{ParameterSpec, Parameters, Tabled};
 use core::fmt;
 
 /// How a slip ends. The paper admits three readings; the book's model page
@@ -173,12 +173,7 @@ impl Settings {
     /// The first rule that is broken, as [`SettingsError`].
     pub fn validate(self) -> Result<Validated<Self>, SettingsError> {
         let p = &self.parameters;
-        for (parameter, value) in PARAMETERS.iter().zip(p.values()) {
-            // Written so that NaN fails.
-            if !(value >= parameter.min && value <= parameter.max) {
-                return Err(SettingsError::OutOfRange { parameter, value });
-            }
-        }
+        p.validate()?;
         if p.kinetic_torque_nm > p.static_torque_nm {
             return Err(SettingsError::KineticAboveStatic {
                 kinetic_nm: p.kinetic_torque_nm,
@@ -217,7 +212,7 @@ mod tests {
 
     #[test]
     fn every_number_is_held_to_its_range() {
-        for (i, spec) in PARAMETERS.iter().enumerate() {
+        for (i, spec) in Parameters::TABLE.iter().enumerate() {
             for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 1e300] {
                 let error = refused(|s| {
                     for (j, v) in s.parameters.values_mut().into_iter().enumerate() {

@@ -1,182 +1,145 @@
 //! The parameters of a device: the table that wire, command line, book and
-//! validation read. Names, units, ranges, defaults and meanings are those of
-//! `model`; what is added here is the id, the group, and when a parameter may
-//! change.
+//! validation read. Each is declared beside what it sets, in `model`, with its
+//! id, name, unit, range, default and meaning; here stands which there are.
 //!
-//! An id is a place in [`PARAMETERS`] and in [`Values`]. It never changes its
-//! meaning; new parameters are appended.
+//! An id never changes its meaning and is never given again. What is not at the
+//! place of an id any more may leave a gap.
 
 use crate::settings::ValueError;
+use crepitus_model::Parameters;
 use crepitus_model::current_loop::CurrentLoopSettings;
-use crepitus_model::device_limits::{LimitSettings, TORQUE_CONSTANT};
-use crepitus_model::encoder::ENCODER_PARAMETERS;
-use crepitus_model::parameters::{
-    INERTIA, KINETIC_TORQUE, ParameterSpec, STATIC_TORQUE, STIFFNESS, Tabled,
-};
+use crepitus_model::device_limits::{LimitSettings, MotorSettings};
+use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::parameters::Tabled;
 use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// A parameter of the device.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameter {
-    /// The effect or the part that it belongs to, as in scene files.
-    pub group: &'static str,
-    /// What it is.
-    pub kind: Kind,
-    /// When it may change.
-    pub when: When,
-}
+pub use crepitus_model::parameters::{Choice, Kind, Parameter, When};
 
-/// What a parameter is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// A number in a range.
-    Number(&'static ParameterSpec),
-    /// One of some names; its value is the place of the name.
-    Choice(&'static Choice),
-}
-
-/// A parameter that is one of some names.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Choice {
-    /// Name.
-    pub key: &'static str,
-    /// What can be chosen.
-    pub names: &'static [&'static str],
-    /// Place of the default.
-    pub default: f64,
-    /// What it means.
-    pub meaning: &'static str,
-}
-
-/// When a parameter may change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum When {
-    /// Always; active values move there within the slew limit.
-    Always,
-    /// Only while there is no torque.
-    Disarmed,
-}
-
-const RENDER_CREPITUS: Choice = Choice {
-    key: "render",
-    names: &["off", "on"],
-    default: 1.0,
-    meaning: "whether the joint grates; `off` is a healthy joint",
-};
-
-const RESTART: Choice = Choice {
-    key: "restart",
-    names: &["elastic", "from-kinetic"],
-    default: 0.0,
-    meaning: "torque with which a stick begins: 2Tk − Ts, or Tk",
-};
-
-const RENDER_COMPENSATION: Choice = Choice {
-    key: "render",
-    names: &["off", "on"],
-    default: 0.0,
-    meaning: "whether a share of the gear's friction is cancelled",
-};
-
-const RENDER_SHAPING: Choice = Choice {
-    key: "render",
-    names: &["off", "on"],
-    default: 0.0,
-    meaning: "whether the bone rings when the joint clicks",
-};
-
-const fn live(group: &'static str, spec: &'static ParameterSpec) -> Parameter {
-    Parameter {
-        group,
-        kind: Kind::Number(spec),
-        when: When::Always,
-    }
-}
-
-const fn at_rest(group: &'static str, spec: &'static ParameterSpec) -> Parameter {
-    Parameter {
-        group,
-        kind: Kind::Number(spec),
-        when: When::Disarmed,
-    }
-}
-
-const fn choice(group: &'static str, choice: &'static Choice) -> Parameter {
-    Parameter {
-        group,
-        kind: Kind::Choice(choice),
-        when: When::Always,
-    }
-}
-
-const CREPITUS: &str = "crepitus";
-const ENCODER: &str = "encoder";
-const COMPENSATION: &str = "friction-compensation";
-const SHAPING: &str = "bone-shaping";
-const MOTOR: &str = "motor";
-const LIMITS: &str = "limits";
-
-const FRICTION: &[ParameterSpec; 3] = FrictionCompensationSettings::TABLE;
-const BONE: &[ParameterSpec; 6] = BoneShapingSettings::TABLE;
-const LOOP: &[ParameterSpec; 5] = CurrentLoopSettings::TABLE;
-const LIMIT: &[ParameterSpec; 3] = LimitSettings::TABLE;
-
-/// How many parameters there are.
-pub const PARAMETER_COUNT: usize = 29;
-
-/// Every parameter, at the place of its id.
-pub const PARAMETERS: [Parameter; PARAMETER_COUNT] = [
-    choice(CREPITUS, &RENDER_CREPITUS),
-    live(CREPITUS, &INERTIA),
-    live(CREPITUS, &STIFFNESS),
-    live(CREPITUS, &KINETIC_TORQUE),
-    live(CREPITUS, &STATIC_TORQUE),
-    choice(CREPITUS, &RESTART),
-    at_rest(ENCODER, &ENCODER_PARAMETERS[0]),
-    at_rest(ENCODER, &ENCODER_PARAMETERS[1]),
-    at_rest(ENCODER, &ENCODER_PARAMETERS[2]),
-    choice(COMPENSATION, &RENDER_COMPENSATION),
-    live(COMPENSATION, &FRICTION[0]),
-    live(COMPENSATION, &FRICTION[1]),
-    live(COMPENSATION, &FRICTION[2]),
-    choice(SHAPING, &RENDER_SHAPING),
-    live(SHAPING, &BONE[0]),
-    live(SHAPING, &BONE[1]),
-    live(SHAPING, &BONE[2]),
-    live(SHAPING, &BONE[3]),
-    live(SHAPING, &BONE[4]),
-    live(SHAPING, &BONE[5]),
-    at_rest(MOTOR, &LOOP[0]),
-    at_rest(MOTOR, &LOOP[1]),
-    at_rest(MOTOR, &LOOP[2]),
-    at_rest(MOTOR, &LOOP[3]),
-    at_rest(MOTOR, &LOOP[4]),
-    at_rest(MOTOR, &TORQUE_CONSTANT),
-    live(LIMITS, &LIMIT[0]),
-    live(LIMITS, &LIMIT[1]),
-    at_rest(LIMITS, &LIMIT[2]),
+/// What a device has, one line each.
+const DECLARED: &[&[Parameter]] = &[
+    Parameters::DEVICE,
+    EncoderSettings::DEVICE,
+    FrictionCompensationSettings::DEVICE,
+    BoneShapingSettings::DEVICE,
+    CurrentLoopSettings::DEVICE,
+    MotorSettings::DEVICE,
+    LimitSettings::DEVICE,
 ];
 
-/// The places of the parameters that code asks for by name.
+/// How many parameters there are.
+pub const PARAMETER_COUNT: usize = count(DECLARED);
+
+/// Every parameter, in the order of the ids.
+pub const PARAMETERS: [Parameter; PARAMETER_COUNT] = sorted();
+
+const fn count(mut groups: &[&[Parameter]]) -> usize {
+    let mut count = 0;
+    while let [group, rest @ ..] = groups {
+        count += group.len();
+        groups = rest;
+    }
+    count
+}
+
+/// The parameter with the lowest id that is not below `least`.
+#[expect(clippy::panic, reason = "at compile time: it ends the build")]
+const fn next(least: u16) -> &'static Parameter {
+    let mut found: Option<&'static Parameter> = None;
+    let mut groups = DECLARED;
+    while let [group, rest @ ..] = groups {
+        let mut parameters = *group;
+        while let [parameter, rest @ ..] = parameters {
+            let is_nearer = match found {
+                Some(found) => parameter.id < found.id,
+                None => true,
+            };
+            if parameter.id >= least && is_nearer {
+                found = Some(parameter);
+            }
+            parameters = rest;
+        }
+        groups = rest;
+    }
+    match found {
+        Some(found) => found,
+        None => panic!("there is no such parameter"),
+    }
+}
+
+#[expect(clippy::indexing_slicing, reason = "at compile time")]
+const fn sorted() -> [Parameter; PARAMETER_COUNT] {
+    let mut all = [*next(0); PARAMETER_COUNT];
+    let mut place = 1;
+    while place < all.len() {
+        all[place] = *next(all[place - 1].id + 1);
+        place += 1;
+    }
+    all
+}
+
+// An id that stands twice would be passed over by the second.
+const _: () = {
+    let mut parameters: &[_] = &PARAMETERS;
+    while let [first, rest @ ..] = parameters {
+        if let [second, ..] = rest {
+            assert!(first.id < second.id, "an id was given twice");
+        }
+        parameters = rest;
+    }
+};
+
+/// The ids of the parameters that code asks for by name.
 pub mod id {
+    use super::Parameter;
+
     /// `crepitus.render`.
-    pub const CREPITUS: usize = 0;
+    pub const CREPITUS: u16 = named("crepitus", "render");
     /// `crepitus.stiffness_nm_per_rad`.
-    pub const STIFFNESS: usize = 2;
+    pub const STIFFNESS: u16 = named("crepitus", "stiffness_nm_per_rad");
     /// `crepitus.restart`.
-    pub const RESTART: usize = 5;
+    pub const RESTART: u16 = named("crepitus", "restart");
     /// `crepitus.kinetic_torque_nm`.
-    pub const KINETIC_TORQUE: usize = 3;
+    pub const KINETIC_TORQUE: u16 = named("crepitus", "kinetic_torque_nm");
     /// `crepitus.static_torque_nm`.
-    pub const STATIC_TORQUE: usize = 4;
+    pub const STATIC_TORQUE: u16 = named("crepitus", "static_torque_nm");
     /// `encoder.lines`.
-    pub const LINES: usize = 6;
+    pub const LINES: u16 = named("encoder", "lines");
+    /// `encoder.gear_ratio`.
+    pub const GEAR_RATIO: u16 = named("encoder", "gear_ratio");
+    /// `friction-compensation.render`.
+    pub const COMPENSATION: u16 = named("friction-compensation", "render");
+    /// `bone-shaping.render`.
+    pub const BONE_SHAPING: u16 = named("bone-shaping", "render");
     /// `limits.torque_nm`.
-    pub const TORQUE_LIMIT: usize = 26;
+    pub const TORQUE_LIMIT: u16 = named("limits", "torque_nm");
+
+    /// The id of a parameter.
+    #[expect(clippy::panic, reason = "at compile time: it ends the build")]
+    const fn named(group: &str, key: &str) -> u16 {
+        let mut parameters: &[Parameter] = &super::PARAMETERS;
+        while let [parameter, rest @ ..] = parameters {
+            if same(parameter.group, group) && same(parameter.key(), key) {
+                return parameter.id;
+            }
+            parameters = rest;
+        }
+        panic!("there is no such parameter")
+    }
+
+    const fn same(a: &str, b: &str) -> bool {
+        let (mut a, mut b) = (a.as_bytes(), b.as_bytes());
+        while let ([x, more_a @ ..], [y, more_b @ ..]) = (a, b) {
+            if *x != *y {
+                return false;
+            }
+            (a, b) = (more_a, more_b);
+        }
+        a.is_empty() && b.is_empty()
+    }
 }
 
 /// A value for each of [`PARAMETERS`]; what people set. A choice is the place
@@ -191,16 +154,54 @@ impl Default for Values {
 }
 
 impl Values {
-    /// The value at the place of an id, if there is one.
-    pub fn get(&self, id: usize) -> Option<f64> {
-        self.0.get(id).copied()
+    /// The value of a parameter, if there is one.
+    pub fn get(&self, id: u16) -> Option<f64> {
+        self.0.get(place(id)?).copied()
     }
 
-    /// Sets the value at the place of an id; nothing if there is none.
-    pub fn set(&mut self, id: usize, value: f64) {
-        if let Some(place) = self.0.get_mut(id) {
-            *place = value;
+    /// Sets a parameter; nothing if there is none.
+    pub fn set(&mut self, id: u16, value: f64) {
+        if let Some(value_there) = place(id).and_then(|place| self.0.get_mut(place)) {
+            *value_there = value;
         }
+    }
+
+    /// Every parameter with its value.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static Parameter, f64)> {
+        PARAMETERS_BY_ID.iter().zip(self.0)
+    }
+
+    /// Settings, as far as a device has them; the rest at its defaults.
+    pub fn read<const N: usize, T: Tabled<N>>(&self) -> T {
+        let mut values = T::TABLE.map(|parameter| parameter.default);
+        self.take(&T::IDS, &mut values);
+        T::of(values)
+    }
+
+    /// Takes over the values that there are.
+    #[inline(never)]
+    fn take(&self, ids: &[Option<u16>], values: &mut [f64]) {
+        for (value, id) in values.iter_mut().zip(ids) {
+            if let Some(set) = id.and_then(|id| self.get(id)) {
+                *value = set;
+            }
+        }
+    }
+
+    /// With these settings, as far as a device has them.
+    #[must_use]
+    pub fn with<const N: usize, T: Tabled<N>>(mut self, settings: &T) -> Self {
+        for (value, id) in settings.values().into_iter().zip(T::IDS) {
+            if let Some(id) = id {
+                self.set(id, value);
+            }
+        }
+        self
+    }
+
+    /// Whether a choice is not the first of its names: what is off is not.
+    pub fn is_on(&self, id: u16) -> bool {
+        self.get(id).is_some_and(|choice| choice != 0.0)
     }
 
     /// Checks every value by itself.
@@ -208,69 +209,46 @@ impl Values {
     /// # Errors
     /// [`ValueError`] for the first that is outside its range, or no choice.
     pub fn check(&self) -> Result<(), ValueError> {
-        for (id, (parameter, value)) in (0..).zip(PARAMETERS.iter().zip(self.0)) {
-            if !parameter.allows(value) {
-                return Err(ValueError::OutOfRange { id });
-            }
+        match self.iter().find(|(p, value)| !p.allows(*value)) {
+            Some((parameter, _)) => Err(ValueError::OutOfRange { id: parameter.id }),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// The first parameter that differs and may not change while there is
     /// torque.
-    pub fn needs_disarmed(&self, now: &Self) -> Option<u8> {
-        (0..)
-            .zip(PARAMETERS.iter().zip(self.0.iter().zip(&now.0)))
-            .find(|(_, (parameter, (new, old)))| {
+    pub fn needs_disarmed(&self, now: &Self) -> Option<u16> {
+        self.iter()
+            .zip(now.0)
+            .find(|((parameter, new), old)| {
                 parameter.when == When::Disarmed && new.to_bits() != old.to_bits()
             })
-            .map(|(id, _)| id)
+            .map(|((parameter, _), _)| parameter.id)
     }
 }
 
-impl Parameter {
-    /// Name within its group; a number's has its unit.
-    pub fn key(&self) -> &'static str {
-        match self.kind {
-            Kind::Number(spec) => spec.key,
-            Kind::Choice(choice) => choice.key,
-        }
-    }
+/// [`PARAMETERS`] at one place in memory.
+static PARAMETERS_BY_ID: [Parameter; PARAMETER_COUNT] = PARAMETERS;
 
-    /// The default.
-    pub fn default(&self) -> f64 {
-        match self.kind {
-            Kind::Number(spec) => spec.default,
-            Kind::Choice(choice) => choice.default,
-        }
-    }
+/// Where a parameter stands in [`PARAMETERS`] and [`Values`]; one function for
+/// all, as each of them inside another would fill the controllers' flash.
+#[inline(never)]
+fn place(id: u16) -> Option<usize> {
+    PARAMETERS_BY_ID.iter().position(|p| p.id == id)
+}
 
-    /// What it means.
-    pub fn meaning(&self) -> &'static str {
-        match self.kind {
-            Kind::Number(spec) => spec.meaning,
-            Kind::Choice(choice) => choice.meaning,
-        }
-    }
+/// The parameter with this id.
+pub fn with_id(id: u16) -> Option<&'static Parameter> {
+    PARAMETERS_BY_ID.iter().find(|p| p.id == id)
+}
 
-    /// Whether it can have this value; no number is none.
-    pub fn allows(&self, value: f64) -> bool {
-        match self.kind {
-            Kind::Number(spec) => value >= spec.min && value <= spec.max,
-            Kind::Choice(choice) => (0_u8..)
-                .zip(choice.names)
-                .any(|(place, _)| f64::from(place) == value),
-        }
-    }
-
-    /// The parameter of this name, `group.key`, with its id.
-    pub fn find(name: &str) -> Option<(usize, &'static Self)> {
-        let (group, key) = name.split_once('.')?;
-        PARAMETERS
-            .iter()
-            .enumerate()
-            .find(|(_, parameter)| parameter.group == group && parameter.key() == key)
-    }
+/// The parameter of this name, `group.key`, with its id.
+pub fn find(name: &str) -> Option<(u16, &'static Parameter)> {
+    let (group, key) = name.split_once('.')?;
+    PARAMETERS_BY_ID
+        .iter()
+        .find(|parameter| parameter.group == group && parameter.key() == key)
+        .map(|parameter| (parameter.id, parameter))
 }
 
 #[cfg(test)]
@@ -279,34 +257,58 @@ mod tests {
 
     #[test]
     fn names_are_unique_and_found() {
-        for (id, parameter) in PARAMETERS.iter().enumerate() {
+        for parameter in &PARAMETERS {
             let name = std::format!("{}.{}", parameter.group, parameter.key());
-            assert_eq!(Parameter::find(&name), Some((id, parameter)), "{name}");
+            assert_eq!(find(&name), Some((parameter.id, parameter)), "{name}");
+            assert_eq!(with_id(parameter.id), Some(parameter));
             assert!(parameter.allows(parameter.default()), "{name}");
             assert!(!parameter.allows(f64::NAN), "{name}");
         }
-        assert_eq!(Parameter::find("crepitus.nothing"), None);
-        assert_eq!(Parameter::find("crepitus"), None);
+        assert_eq!(find("crepitus.nothing"), None);
+        assert_eq!(find("crepitus"), None);
+        assert_eq!(with_id(u16::MAX), None);
+    }
+
+    /// Programs of other versions and records in flash count on them.
+    #[test]
+    fn ids_stay() {
+        for (id, name) in [
+            (id::CREPITUS, "crepitus.render"),
+            (1, "crepitus.inertia_kg_m2"),
+            (id::RESTART, "crepitus.restart"),
+            (8, "encoder.velocity_bandwidth_hz"),
+            (id::COMPENSATION, "friction-compensation.render"),
+            (19, "bone-shaping.refill_w"),
+            (20, "motor.bandwidth_hz"),
+            (25, "motor.torque_constant_nm_per_a"),
+            (28, "limits.speed_rad_s"),
+        ] {
+            assert_eq!(find(name).map(|(id, _)| id), Some(id), "{name}");
+        }
     }
 
     #[test]
-    fn ids_are_the_places_that_code_believes() {
-        for (id, name) in [
-            (id::CREPITUS, "crepitus.render"),
-            (id::STIFFNESS, "crepitus.stiffness_nm_per_rad"),
-            (id::RESTART, "crepitus.restart"),
-            (id::KINETIC_TORQUE, "crepitus.kinetic_torque_nm"),
-            (id::STATIC_TORQUE, "crepitus.static_torque_nm"),
-            (id::LINES, "encoder.lines"),
-            (id::TORQUE_LIMIT, "limits.torque_nm"),
-        ] {
-            assert_eq!(Parameter::find(name).map(|(place, _)| place), Some(id));
-        }
+    fn settings_are_read_and_written_by_id() {
+        let encoder = EncoderSettings {
+            lines: 1000.0,
+            gear_ratio: 50.0,
+            velocity_bandwidth_hz: 80.0,
+        };
+        let values = Values::default().with(&encoder);
+        assert_eq!(values.read::<3, EncoderSettings>(), encoder);
+        assert_eq!(values.get(id::LINES), Some(1000.0));
+        // What no device has is at its default.
+        let damped = Parameters {
+            damping_nms_per_rad: 1.0,
+            ..Parameters::default()
+        };
+        let values = Values::default().with(&damped);
+        assert_eq!(values.read::<5, Parameters>(), Parameters::default());
     }
 
     #[test]
     fn choices_are_places_of_names() {
-        let (_, restart) = Parameter::find("crepitus.restart").unwrap();
+        let (_, restart) = find("crepitus.restart").unwrap();
         assert!(restart.allows(0.0) && restart.allows(1.0));
         assert!(!restart.allows(2.0) && !restart.allows(0.5) && !restart.allows(-1.0));
     }
@@ -318,8 +320,8 @@ mod tests {
         let mut next = now;
         next.set(2, 300.0);
         assert_eq!(next.needs_disarmed(&now), None);
-        let (lines, _) = Parameter::find("encoder.lines").unwrap();
+        let (lines, _) = find("encoder.lines").unwrap();
         next.set(lines, 500.0);
-        assert_eq!(next.needs_disarmed(&now).map(usize::from), Some(lines));
+        assert_eq!(next.needs_disarmed(&now), Some(lines));
     }
 }

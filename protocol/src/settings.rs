@@ -1,15 +1,15 @@
 //! [`Values`], as numbers on the wire, and [`DeviceSettings`], with types and
 //! checked: what people set, before it becomes what a tick uses.
 
-use crate::parameters::{PARAMETER_COUNT, Values, id};
+use crate::parameters::{Kind, PARAMETERS, Parameter, Values, id, with_id};
 use crepitus_model::current_loop::CurrentLoopSettings;
-use crepitus_model::device_limits::LimitSettings;
+use crepitus_model::device_limits::{LimitSettings, MotorSettings};
 use crepitus_model::encoder::EncoderSettings;
-use crepitus_model::parameters::{DAMPING, Parameters, Tabled};
+use crepitus_model::parameters::Parameters;
 use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::render::turn_back::most_rad_per_count;
-use crepitus_model::{Convention, Restart, Settings, Validated};
+use crepitus_model::{Convention, Restart, Settings, SettingsError, Validated};
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -22,19 +22,65 @@ pub enum ValueError {
     /// of its names.
     OutOfRange {
         /// The parameter.
-        id: u8,
+        id: u16,
     },
-    /// The kinetic torque is above the static torque, or so close below it that
-    /// the turn-back guard cannot keep the bound of returned energy with this
-    /// stiffness and encoder.
+    /// The kinetic torque is above the static torque.
     KineticAboveStatic,
+    /// The kinetic torque is so close below the static torque that the turn-back
+    /// guard cannot keep the bound of returned energy with this stiffness and
+    /// encoder: see [`Values::guarded_rad_per_count`].
+    Unguarded,
     /// The static torque is above the device's largest torque.
     StaticAboveLimit,
     /// The parameter with this id only changes while there is no torque.
     NeedsDisarmed {
         /// The parameter.
-        id: u8,
+        id: u16,
     },
+    /// The model refuses what the device's own rules allow: a mistake in the
+    /// program.
+    Contradiction,
+}
+
+impl ValueError {
+    /// The parameters that it is about, the one to change first.
+    pub fn parameters(&self) -> &'static [u16] {
+        match self {
+            Self::KineticAboveStatic => &[id::KINETIC_TORQUE, id::STATIC_TORQUE],
+            Self::Unguarded => &[
+                id::KINETIC_TORQUE,
+                id::STATIC_TORQUE,
+                id::STIFFNESS,
+                id::LINES,
+                id::GEAR_RATIO,
+                id::RESTART,
+            ],
+            Self::StaticAboveLimit => &[id::STATIC_TORQUE, id::TORQUE_LIMIT],
+            Self::OutOfRange { id } | Self::NeedsDisarmed { id } => {
+                with_id(*id).map_or(&[], |parameter| core::slice::from_ref(&parameter.id))
+            }
+            Self::Contradiction => &[],
+        }
+    }
+}
+
+/// What the model refuses, as the wire says it.
+impl From<SettingsError> for ValueError {
+    #[cold]
+    #[inline(never)]
+    fn from(error: SettingsError) -> Self {
+        match error {
+            SettingsError::OutOfRange { parameter, .. } => {
+                let is_it = |p: &&Parameter| p.kind == Kind::Number(parameter);
+                PARAMETERS
+                    .iter()
+                    .find(is_it)
+                    .map_or(Self::Contradiction, |p| Self::OutOfRange { id: p.id })
+            }
+            SettingsError::KineticAboveStatic { .. } => Self::KineticAboveStatic,
+            _ => Self::Contradiction,
+        }
+    }
 }
 
 /// Everything that people set of a device. An effect that is off is absent.
@@ -64,89 +110,24 @@ impl DeviceSettings {
     /// allowed. Values of an effect that is off are held to their rules too.
     pub fn of(values: &Values) -> Result<Self, ValueError> {
         values.check()?;
-        let [
-            crepitus,
-            inertia_kg_m2,
-            stiffness_nm_per_rad,
-            kinetic_torque_nm,
-            static_torque_nm,
-            restart,
-            lines,
-            encoder_gear,
-            velocity_bandwidth_hz,
-            compensation,
-            friction_nm,
-            share,
-            fade_rad_s,
-            shaping,
-            frequency_hz,
-            damping_ratio,
-            gain,
-            limit_nm,
-            budget_j,
-            refill_w,
-            bandwidth_hz,
-            resistance_ohm,
-            inductance_h,
-            supply_v,
-            current_limit_a,
-            torque_constant_nm_per_a,
-            torque_nm,
-            slew_nm_per_s,
-            speed_rad_s,
-        ]: [f64; PARAMETER_COUNT] = values.0;
-        if kinetic_torque_nm > static_torque_nm {
-            return Err(ValueError::KineticAboveStatic);
-        }
-        if static_torque_nm > torque_nm {
+        let joint = values.joint().validate()?;
+        let limits: LimitSettings = values.read();
+        if joint.parameters.static_torque_nm > limits.torque_nm {
             return Err(ValueError::StaticAboveLimit);
         }
-        let is_on = |choice: f64| choice != 0.0;
-        let settings = Settings {
-            parameters: Parameters {
-                inertia_kg_m2,
-                stiffness_nm_per_rad,
-                damping_nms_per_rad: DAMPING.default,
-                kinetic_torque_nm,
-                static_torque_nm,
-            },
-            convention: Convention::Frozen,
-            restart: restart_of(restart),
-        };
-        // All that `validate` refuses has been refused above, by id.
-        let settings = settings
-            .validate()
-            .map_err(|_| ValueError::KineticAboveStatic)?;
         if values.rad_per_count() > values.guarded_rad_per_count() {
-            return Err(ValueError::KineticAboveStatic);
+            return Err(ValueError::Unguarded);
         }
+        let motor: MotorSettings = values.read();
+        let is_on = |id| values.is_on(id);
         Ok(Self {
-            crepitus: is_on(crepitus).then_some(settings),
-            encoder: EncoderSettings {
-                lines,
-                gear_ratio: encoder_gear,
-                velocity_bandwidth_hz,
-            },
-            friction_compensation: is_on(compensation).then_some(FrictionCompensationSettings::of(
-                [friction_nm, share, fade_rad_s],
-            )),
-            bone_shaping: is_on(shaping).then_some(BoneShapingSettings::of([
-                frequency_hz,
-                damping_ratio,
-                gain,
-                limit_nm,
-                budget_j,
-                refill_w,
-            ])),
-            current_loop: CurrentLoopSettings::of([
-                bandwidth_hz,
-                resistance_ohm,
-                inductance_h,
-                supply_v,
-                current_limit_a,
-            ]),
-            torque_constant_nm_per_a,
-            limits: LimitSettings::of([torque_nm, slew_nm_per_s, speed_rad_s]),
+            crepitus: is_on(id::CREPITUS).then_some(joint),
+            encoder: values.read(),
+            friction_compensation: is_on(id::COMPENSATION).then(|| values.read()),
+            bone_shaping: is_on(id::BONE_SHAPING).then(|| values.read()),
+            current_loop: values.read(),
+            torque_constant_nm_per_a: motor.torque_constant_nm_per_a,
+            limits,
         })
     }
 
@@ -157,82 +138,44 @@ impl DeviceSettings {
     }
 }
 
-fn restart_of(choice: f64) -> Restart {
-    if choice == 0.0 {
-        Restart::Elastic
-    } else {
-        Restart::FromKinetic
-    }
-}
-
 impl Values {
+    /// The joint, whether it is on or not.
+    fn joint(&self) -> Settings {
+        Settings {
+            parameters: self.read(),
+            convention: Convention::Frozen,
+            restart: if self.is_on(id::RESTART) {
+                Restart::FromKinetic
+            } else {
+                Restart::Elastic
+            },
+        }
+    }
+
     /// Angle of one count of the encoder at the joint, rad.
     pub fn rad_per_count(&self) -> f64 {
-        let [
-            _,
-            _,
-            _,
-            _,
-            _,
-            _,
-            lines,
-            gear_ratio,
-            velocity_bandwidth_hz,
-            ..,
-        ] = self.0;
-        EncoderSettings {
-            lines,
-            gear_ratio,
-            velocity_bandwidth_hz,
-        }
-        .rad_per_count()
+        self.read::<3, EncoderSettings>().rad_per_count()
     }
 
     /// The largest angle of one count with which the turn-back guard keeps the
     /// bound of returned energy at this joint, rad.
     pub fn guarded_rad_per_count(&self) -> f64 {
-        let [
-            _,
-            inertia_kg_m2,
-            stiffness_nm_per_rad,
-            kinetic_torque_nm,
-            static_torque_nm,
-            restart,
-            ..,
-        ] = self.0;
-        most_rad_per_count(&Settings {
-            parameters: Parameters {
-                inertia_kg_m2,
-                stiffness_nm_per_rad,
-                damping_nms_per_rad: DAMPING.default,
-                kinetic_torque_nm,
-                static_torque_nm,
-            },
-            convention: Convention::Frozen,
-            restart: restart_of(restart),
-        })
+        most_rad_per_count(&self.joint())
     }
 
     /// With the joint's numbers: a preset, for example.
     #[must_use]
-    pub fn with_crepitus(mut self, parameters: &Parameters) -> Self {
-        self.set(id::CREPITUS, 1.0);
-        for (place, value) in (id::CREPITUS + 1..).zip([
-            parameters.inertia_kg_m2,
-            parameters.stiffness_nm_per_rad,
-            parameters.kinetic_torque_nm,
-            parameters.static_torque_nm,
-        ]) {
-            self.set(place, value);
-        }
-        self
+    pub fn with_crepitus(self, parameters: &Parameters) -> Self {
+        let mut values = self.with(parameters);
+        values.set(id::CREPITUS, 1.0);
+        values
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameters::{Kind, PARAMETERS};
+    use crepitus_model::parameters::Tabled;
     use crepitus_model::presets::PRESETS;
 
     #[test]
@@ -249,10 +192,10 @@ mod tests {
     #[test]
     fn every_number_arrives_at_its_place() {
         let mut values = Values::default();
-        for (id, parameter) in PARAMETERS.iter().enumerate() {
-            let place = f64::from(u8::try_from(id).unwrap());
+        for (place, parameter) in (0_u8..).zip(&PARAMETERS) {
+            let place = f64::from(place);
             values.set(
-                id,
+                parameter.id,
                 match parameter.kind {
                     Kind::Choice(_) => 1.0,
                     // Another number in each place, all allowed.
@@ -286,15 +229,14 @@ mod tests {
 
     #[test]
     fn every_value_is_held_to_its_range_by_its_id() {
-        for (id, parameter) in PARAMETERS.iter().enumerate() {
+        for parameter in &PARAMETERS {
             for bad in [f64::NAN, f64::INFINITY, -1.0, 1e300] {
                 let mut values = Values::default();
-                values.set(id, bad);
+                values.set(parameter.id, bad);
                 let refused = DeviceSettings::of(&values);
-                let expected = u8::try_from(id).unwrap();
                 assert_eq!(
                     refused,
-                    Err(ValueError::OutOfRange { id: expected }),
+                    Err(ValueError::OutOfRange { id: parameter.id }),
                     "{}",
                     parameter.key()
                 );
@@ -321,14 +263,14 @@ mod tests {
 
     #[test]
     fn what_the_turn_back_guard_cannot_guard_is_refused() {
-        let with = |changes: &[(usize, f64)]| {
+        let with = |changes: &[(u16, f64)]| {
             let mut values = Values::default();
             for &(id, value) in changes {
                 values.set(id, value);
             }
             DeviceSettings::of(&values).map(|_| ())
         };
-        let refused = Err(ValueError::KineticAboveStatic);
+        let refused = Err(ValueError::Unguarded);
         // Two counts are 71.3 µrad; the drop over the stiffness of the default
         // is 500 µrad. Near Ts the other condition counts: with x = Ts − Tk and
         // restart at Ts − 2x it is 12·x² ≥ 8·kr·Δ·(Ts − x).
@@ -353,6 +295,42 @@ mod tests {
             with(&[(id::KINETIC_TORQUE, 0.0), (id::STIFFNESS, 5000.0)]),
             Ok(())
         );
+    }
+
+    #[test]
+    fn what_the_model_refuses_keeps_its_name() {
+        let refused = |change: fn(&mut Settings)| {
+            let mut settings = Settings::default();
+            change(&mut settings);
+            ValueError::from(settings.validate().unwrap_err())
+        };
+        let stiff = refused(|s| s.parameters.stiffness_nm_per_rad = -1.0);
+        assert_eq!(stiff, ValueError::OutOfRange { id: id::STIFFNESS });
+        let kinetic = refused(|s| s.parameters.kinetic_torque_nm = 0.5);
+        assert_eq!(kinetic, ValueError::KineticAboveStatic);
+        // No device has damping.
+        let damped = refused(|s| s.parameters.damping_nms_per_rad = -1.0);
+        assert_eq!(damped, ValueError::Contradiction);
+        for error in [
+            stiff,
+            kinetic,
+            ValueError::Unguarded,
+            ValueError::StaticAboveLimit,
+            ValueError::NeedsDisarmed { id: id::LINES },
+        ] {
+            let ids = error.parameters();
+            assert!(!ids.is_empty() && ids.iter().all(|id| with_id(*id).is_some()));
+        }
+        assert!(ValueError::Contradiction.parameters().is_empty());
+    }
+
+    #[test]
+    fn names_of_choices_are_those_of_the_model() {
+        let (_, restart) = crate::parameters::find("crepitus.restart").unwrap();
+        let Kind::Choice(choice) = restart.kind else {
+            panic!("a choice");
+        };
+        assert!(Restart::ALL.map(Restart::name).iter().eq(choice.names));
     }
 
     #[test]

@@ -154,17 +154,16 @@ impl Preparation {
     pub fn new() -> Result<(Self, Start), ValueError> {
         let values = Values::default();
         let in_force = DeviceSettings::of(&values)?;
-        let refused = |_: SettingsError| ValueError::KineticAboveStatic;
         let mut preparation = Self {
             in_force: DeviceSettings {
                 crepitus: None,
                 ..in_force
             },
             values,
-            active: silent(&in_force.crepitus.unwrap_or(fallback()?)).map_err(refused)?,
+            active: silent(&in_force.crepitus.unwrap_or(fallback()?))?,
         };
-        let reader = Reader::of(&in_force.encoder).map_err(refused)?;
-        let motor = motor(&in_force).map_err(refused)?;
+        let reader = Reader::of(&in_force.encoder)?;
+        let motor = motor(&in_force)?;
         let prepared = preparation.prepare(Revision::NONE, &values, false)?;
         Ok((
             preparation,
@@ -198,33 +197,31 @@ impl Preparation {
             return Err(ValueError::NeedsDisarmed { id });
         }
         let now = &self.in_force;
-        // Every number has been checked.
-        let refused = |_: SettingsError| ValueError::KineticAboveStatic;
         let slew = next.limits.slew_nm_per_s;
         let is_other_encoder = now.encoder != next.encoder;
         let (joint, active) = match (now.crepitus, next.crepitus) {
             (None, None) => (JointPlan::Absent, self.active),
             // The guard knows the encoder's count: a new joint for a new one.
             (Some(_), Some(settings)) if is_other_encoder => {
-                let from = silent(&settings).map_err(refused)?;
-                let to = Active::new(&settings, TICK_S).map_err(refused)?;
+                let from = silent(&settings)?;
+                let to = Active::new(&settings, TICK_S)?;
                 (JointPlan::Begin(from, Ramp::new(from, to, slew)), to)
             }
             (Some(_), Some(settings)) => {
-                let to = Active::new(&settings, TICK_S).map_err(refused)?;
+                let to = Active::new(&settings, TICK_S)?;
                 (JointPlan::Follow(Ramp::new(self.active, to, slew)), to)
             }
             (None, Some(settings)) => {
-                let from = silent(&settings).map_err(refused)?;
-                let to = Active::new(&settings, TICK_S).map_err(refused)?;
+                let from = silent(&settings)?;
+                let to = Active::new(&settings, TICK_S)?;
                 (JointPlan::Begin(from, Ramp::new(from, to, slew)), to)
             }
             (Some(settings), None) => {
-                let to = silent(&settings).map_err(refused)?;
+                let to = silent(&settings)?;
                 (JointPlan::Leave(Ramp::new(self.active, to, slew)), to)
             }
         };
-        let reader = Reader::of(&next.encoder).map_err(refused)?;
+        let reader = Reader::of(&next.encoder)?;
         let is_other_motor = now.current_loop != next.current_loop
             || now.joint_constant().to_bits() != next.joint_constant().to_bits();
         let prepared = Prepared {
@@ -233,13 +230,13 @@ impl Preparation {
                 rad_per_count: reader.rad_per_count,
                 joint,
                 compensation: match &next.friction_compensation {
-                    Some(settings) => Some(FrictionCompensation::new(settings).map_err(refused)?),
+                    Some(settings) => Some(FrictionCompensation::new(settings)?),
                     None => None,
                 },
                 bone: if now.bone_shaping == next.bone_shaping {
                     None
                 } else {
-                    Some(bone(next.bone_shaping.as_ref()).map_err(refused)?)
+                    Some(bone(next.bone_shaping.as_ref())?)
                 },
                 torque_limit_nm: single(next.limits.torque_nm),
                 slew_nm: single(slew * TICK_S),
@@ -247,7 +244,7 @@ impl Preparation {
             command: CommandPlan {
                 revision,
                 motor: if is_other_motor {
-                    Some(motor(&next).map_err(refused)?)
+                    Some(motor(&next)?)
                 } else {
                     None
                 },
@@ -261,9 +258,7 @@ impl Preparation {
 
 /// The paper's joint.
 fn fallback() -> Result<Validated<Settings>, ValueError> {
-    Settings::default()
-        .validate()
-        .map_err(|_| ValueError::KineticAboveStatic)
+    Ok(Settings::default().validate()?)
 }
 
 /// The same joint without torque.

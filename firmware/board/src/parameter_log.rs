@@ -1,8 +1,8 @@
 //! Parameters in two sectors of flash: a log that only grows.
 //!
 //! ```text
-//! sector 2  | record 1 | record 2 | ... | record 32 |       16 KB each, 512 bytes a slot
-//! sector 3  | record 33 | free | free | ...
+//! sector 2  | record 1 | record 2 | ... | record 16 |       16 KB each, 1 KB a slot
+//! sector 3  | record 17 | free | free | ...
 //! ```
 //!
 //! Writing takes a few milliseconds; erasing a sector stops the core for
@@ -203,23 +203,23 @@ mod tests {
     }
 
     #[test]
-    fn without_a_start_in_between_there_is_room_for_64_and_then_it_says_so() {
+    fn without_a_start_in_between_there_is_room_for_32_and_then_it_says_so() {
         let mut bytes = vec![0xff; LOG_BYTES];
         let mut log = open(&mut bytes);
         let kept = (1..=100).take_while(|n| log.keep(Revision(*n), &values(*n)));
         assert_eq!(kept.count(), SLOTS);
         assert_eq!(log.sectors.erased, 0);
         let mut log = open(&mut bytes);
-        assert_eq!(log.newest(), Some((Revision(64), values(64))));
+        assert_eq!(log.newest(), Some((Revision(32), values(32))));
         assert_eq!(log.sectors.erased, 1);
-        assert!(log.keep(Revision(65), &values(65)));
+        assert!(log.keep(Revision(33), &values(33)));
     }
 
     #[test]
     fn a_power_failure_at_any_byte_leaves_the_old_or_the_new() {
         let length = crate::parameter_record::RECORD_BYTES;
         for power_for in 0..=length {
-            for before in [1, 31, 32, 33] {
+            for before in [1, 15, 16, 17] {
                 let mut bytes = vec![0xff; LOG_BYTES];
                 for n in 1..=before {
                     assert!(open(&mut bytes).keep(Revision(n), &values(n)));

@@ -1,25 +1,26 @@
 //! A set of parameters as bytes of flash.
 //!
 //! ```text
-//! "CRP1" ‖ sequence u32 ‖ revision u32 ‖ count u32 ‖ count × f64 ‖ CRC-32      little endian
+//! "CRP2" ‖ sequence u32 ‖ revision u32 ‖ count u32 ‖ count × (id u16 ‖ value f64) ‖ CRC-32      little endian
 //! ```
 //!
-//! Ids never change their meaning and new parameters are appended, so a record
-//! of an older program is read: what it does not have is at its default.
+//! Ids never change their meaning, so a record of another program is read: what
+//! it does not have is at its default, and what has gone is left out.
 
 use crepitus_protocol::frame::CRC;
 use crepitus_protocol::parameters::PARAMETER_COUNT;
 use crepitus_protocol::{Revision, Values};
 
-/// Bytes between the beginnings of two records: room for 61 parameters.
-pub const SLOT_BYTES: usize = 512;
+/// Bytes between the beginnings of two records: room for 100 parameters.
+pub const SLOT_BYTES: usize = 1024;
 
-const MAGIC: [u8; 4] = *b"CRP1";
+const MAGIC: [u8; 4] = *b"CRP2";
 const HEAD_BYTES: usize = 16;
 const SUM_BYTES: usize = 4;
+const VALUE_BYTES: usize = 10;
 
 /// Bytes of a record of this program.
-pub const RECORD_BYTES: usize = HEAD_BYTES + 8 * PARAMETER_COUNT + SUM_BYTES;
+pub const RECORD_BYTES: usize = HEAD_BYTES + VALUE_BYTES * PARAMETER_COUNT + SUM_BYTES;
 
 const _: () = assert!(RECORD_BYTES <= SLOT_BYTES);
 
@@ -43,7 +44,10 @@ impl Record {
         let body = MAGIC
             .into_iter()
             .chain(head.into_iter().flat_map(u32::to_le_bytes))
-            .chain(self.values.0.into_iter().flat_map(f64::to_le_bytes));
+            .chain(self.values.iter().flat_map(|(parameter, value)| {
+                let id = parameter.id.to_le_bytes();
+                id.into_iter().chain(value.to_le_bytes())
+            }));
         for (place, byte) in bytes.iter_mut().zip(body) {
             *place = byte;
         }
@@ -60,16 +64,17 @@ impl Record {
         let (revision, rest) = rest.split_first_chunk::<4>()?;
         let (count, rest) = rest.split_first_chunk::<4>()?;
         let count = usize::try_from(u32::from_le_bytes(*count)).ok()?;
-        let value_bytes = count.checked_mul(8)?;
+        let value_bytes = count.checked_mul(VALUE_BYTES)?;
         let sum = rest.get(value_bytes..)?.first_chunk::<SUM_BYTES>()?;
         let body = slot.get(..HEAD_BYTES + value_bytes)?;
         if *magic != MAGIC || CRC.checksum(body) != u32::from_le_bytes(*sum) {
             return None;
         }
         let mut values = Values::default();
-        let stored = rest.get(..value_bytes)?.chunks_exact(8);
-        for (place, bytes) in values.0.iter_mut().zip(stored) {
-            *place = f64::from_le_bytes(*bytes.first_chunk()?);
+        for stored in rest.get(..value_bytes)?.chunks_exact(VALUE_BYTES) {
+            let (id, value) = stored.split_first_chunk()?;
+            let value = f64::from_le_bytes(*value.first_chunk()?);
+            values.set(u16::from_le_bytes(*id), value);
         }
         Some(Self {
             sequence: u32::from_le_bytes(*sequence),
@@ -111,17 +116,17 @@ mod tests {
     }
 
     #[test]
-    fn a_record_of_fewer_parameters_leaves_the_others_at_their_defaults() {
+    fn a_record_of_another_program_gives_what_there_still_is() {
         let whole = record().bytes();
-        let count = 3_usize;
-        let end = HEAD_BYTES + 8 * count;
+        // The first five, of which the fourth is one that has gone.
+        let end = HEAD_BYTES + VALUE_BYTES * 5;
         let mut slot = [0xff; SLOT_BYTES];
         slot[..end].copy_from_slice(&whole[..end]);
-        slot[12..16].copy_from_slice(&3_u32.to_le_bytes());
+        slot[12..16].copy_from_slice(&5_u32.to_le_bytes());
+        let gone = HEAD_BYTES + VALUE_BYTES * 3;
+        slot[gone..gone + 2].copy_from_slice(&9_999_u16.to_le_bytes());
         let sum = CRC.checksum(&slot[..end]).to_le_bytes();
         slot[end..end + 4].copy_from_slice(&sum);
-        let values = Record::of(&slot).unwrap().values;
-        assert_eq!(values.0[..count], record().values.0[..count]);
-        assert_eq!(values.0[count..], Values::default().0[count..]);
+        assert_eq!(Record::of(&slot).unwrap().values, record().values);
     }
 }

@@ -135,7 +135,9 @@ impl DriveSide {
                 self.has_refused = true;
                 self.status.refused = Some((
                     Revision(u32::from(bytes.byte())),
-                    ValueError::NeedsDisarmed { id: bytes.byte() },
+                    ValueError::NeedsDisarmed {
+                        id: bytes.byte().into(),
+                    },
                 ));
                 self.status()
             }

@@ -8,7 +8,8 @@
 use crate::bytes::Bytes;
 use crepitus_model::Real;
 use crepitus_model::active::LONGEST_STEP_S;
-use crepitus_model::encoder::{ENCODER_PARAMETERS, EncoderReader, EncoderSettings};
+use crepitus_model::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::parameters::Tabled;
 
 /// Checks the laws.
 ///
@@ -25,7 +26,7 @@ pub fn body(data: &[u8]) {
 
 fn run<F: Real>(mut bytes: Bytes<'_>) {
     let mut settings = EncoderSettings::default();
-    for (spec, value) in ENCODER_PARAMETERS.iter().zip(settings.values_mut()) {
+    for (spec, value) in EncoderSettings::TABLE.iter().zip(settings.values_mut()) {
         *value = bytes.between(spec.min, spec.max);
     }
     let step_s = bytes.between(1e-9, LONGEST_STEP_S);

@@ -20,16 +20,16 @@ pub(crate) fn near(bytes: &mut Bytes<'_>, now: u64) -> u64 {
 pub(crate) fn values(bytes: &mut Bytes<'_>) -> Values {
     let mut values = Values::default();
     for _ in 0..bytes.byte() % 4 {
-        let id = usize::from(bytes.byte()) % PARAMETERS.len();
+        let parameter = &PARAMETERS[usize::from(bytes.byte()) % PARAMETERS.len()];
         let how = bytes.byte();
-        let value = match PARAMETERS[id].kind {
+        let value = match parameter.kind {
             _ if how >= 240 => bytes.double(),
             Kind::Choice(_) => f64::from(how % 3),
             // Near the default, since most values go with some others only.
             Kind::Number(spec) if how < 120 => spec.default * f64::from(how) / 60.0,
             Kind::Number(spec) => bytes.between(spec.min, spec.max),
         };
-        values.set(id, value);
+        values.set(parameter.id, value);
     }
     values
 }

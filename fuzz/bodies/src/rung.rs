@@ -2,7 +2,7 @@
 
 use crate::bytes::Bytes;
 use crepitus_model::active::LONGEST_STEP_S;
-use crepitus_model::parameters::{DAMPING, INERTIA, STATIC_TORQUE, STIFFNESS};
+use crepitus_model::parameters::Tabled;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters, Restart, Settings, Validated};
 
@@ -59,10 +59,11 @@ pub(crate) fn step_s(bytes: &mut Bytes<'_>) -> f64 {
 pub(crate) fn settings(bytes: &mut Bytes<'_>, convention: Convention) -> Validated<Settings> {
     let frozen = convention == Convention::Frozen;
     let restart = bytes.choice(&Restart::ALL);
-    let inertia_kg_m2 = bytes.between(INERTIA.min, INERTIA.max);
-    let stiffness_nm_per_rad = bytes.between(STIFFNESS.min, STIFFNESS.max);
-    let damping_nms_per_rad = bytes.between(DAMPING.min, DAMPING.max);
-    let static_torque_nm = bytes.between(STATIC_TORQUE.min, STATIC_TORQUE.max);
+    let [inertia, stiffness, damping, _, static_torque] = Parameters::TABLE;
+    let inertia_kg_m2 = bytes.between(inertia.min, inertia.max);
+    let stiffness_nm_per_rad = bytes.between(stiffness.min, stiffness.max);
+    let damping_nms_per_rad = bytes.between(damping.min, damping.max);
+    let static_torque_nm = bytes.between(static_torque.min, static_torque.max);
     let settings = Settings {
         parameters: Parameters {
             inertia_kg_m2,

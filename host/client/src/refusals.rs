@@ -2,10 +2,10 @@
 
 use crate::faults::fault_text;
 use crate::request_kind::RequestKind;
-use crate::values::{allowed_text, full_name, parameter, show_value};
+use crate::values::{allowed_text, full_name, show_value};
 use crepitus_protocol::host::Refusal;
 use crepitus_protocol::link::DriveRefusal;
-use crepitus_protocol::parameters::id;
+use crepitus_protocol::parameters::{id, with_id};
 use crepitus_protocol::{ValueError, Values};
 use std::fmt;
 
@@ -86,33 +86,40 @@ impl Refused {
     fn values_text(&self, f: &mut fmt::Formatter<'_>, error: ValueError) -> fmt::Result {
         match error {
             ValueError::OutOfRange { id } => {
-                let id = usize::from(id);
                 write!(f, "{} is not allowed", self.setting(id))?;
-                if let Some(parameter) = parameter(id) {
+                if let Some(parameter) = with_id(id) {
                     write!(f, ": it is {}", allowed_text(parameter))?;
                 }
             }
-            ValueError::KineticAboveStatic => match self.counts_unguarded() {
-                Some((count_rad, most_rad)) => write!(
+            ValueError::KineticAboveStatic => write!(
+                f,
+                "{} is above {}: lower the first or raise the second",
+                self.setting(id::KINETIC_TORQUE),
+                self.setting(id::STATIC_TORQUE)
+            )?,
+            ValueError::Unguarded => {
+                write!(
                     f,
                     "{} is too close to {}, with {} and {}: a hand that turns back inside a slip would get \
-                     more energy than the slip takes out of the spring. One count of the encoder is \
-                     {:.1} µrad, and may be {:.1} µrad: lower the kinetic torque or the stiffness, or raise \
-                     the static torque",
+                     more energy than the slip takes out of the spring",
                     self.setting(id::KINETIC_TORQUE),
                     self.setting(id::STATIC_TORQUE),
                     self.setting(id::STIFFNESS),
                     self.setting(id::LINES),
-                    count_rad * 1e6,
-                    most_rad * 1e6
-                )?,
-                None => write!(
-                    f,
-                    "{} is above {}: lower the first or raise the second",
-                    self.setting(id::KINETIC_TORQUE),
-                    self.setting(id::STATIC_TORQUE)
-                )?,
-            },
+                )?;
+                if let Some(values) = &self.values {
+                    write!(
+                        f,
+                        ". One count of the encoder is {:.1} µrad, and may be {:.1} µrad",
+                        values.rad_per_count() * 1e6,
+                        values.guarded_rad_per_count() * 1e6
+                    )?;
+                }
+                f.write_str(": lower the kinetic torque or the stiffness, or raise the static torque")?;
+            }
+            ValueError::Contradiction => f.write_str(
+                "the device's own rules contradict each other, a defect of its program: please report these values",
+            )?,
             ValueError::StaticAboveLimit => {
                 write!(
                     f,
@@ -120,14 +127,14 @@ impl Refused {
                     self.setting(id::STATIC_TORQUE),
                     self.setting(id::TORQUE_LIMIT)
                 )?;
-                if let Some(limit) = parameter(id::TORQUE_LIMIT) {
+                if let Some(limit) = with_id(id::TORQUE_LIMIT) {
                     write!(f, ", which is {}", allowed_text(limit))?;
                 }
             }
             ValueError::NeedsDisarmed { id } => write!(
                 f,
                 "{} changes only while there is no torque: disarm first",
-                self.setting(usize::from(id))
+                self.setting(id)
             )?,
             _ => f.write_str(
                 "the values are refused for a reason that this tool does not know: \
@@ -137,22 +144,10 @@ impl Refused {
         f.write_str("; nothing was changed")
     }
 
-    /// Where the kinetic torque is not above the static one, but the encoder
-    /// too coarse for the turn-back guard: the angle of one count, and the
-    /// largest allowed, rad.
-    fn counts_unguarded(&self) -> Option<(f64, f64)> {
-        let values = self.values?;
-        if values.get(id::KINETIC_TORQUE)? > values.get(id::STATIC_TORQUE)? {
-            return None;
-        }
-        let (count_rad, most_rad) = (values.rad_per_count(), values.guarded_rad_per_count());
-        (count_rad > most_rad).then_some((count_rad, most_rad))
-    }
-
     /// "crepitus.static_torque_nm = 9".
-    fn setting(&self, id: usize) -> String {
+    fn setting(&self, id: u16) -> String {
         let name = name_of(id);
-        match (parameter(id), self.values.and_then(|values| values.get(id))) {
+        match (with_id(id), self.values.and_then(|values| values.get(id))) {
             (Some(parameter), Some(value)) => format!("{name} = {}", show_value(parameter, value)),
             _ => name,
         }
@@ -160,8 +155,8 @@ impl Refused {
 }
 
 /// A parameter's name, whatever the id.
-pub(crate) fn name_of(id: usize) -> String {
-    parameter(id).map_or_else(|| format!("parameter {id}"), full_name)
+pub(crate) fn name_of(id: u16) -> String {
+    with_id(id).map_or_else(|| format!("parameter {id}"), full_name)
 }
 
 fn needs_disarmed(f: &mut fmt::Formatter<'_>, what: RequestKind) -> fmt::Result {

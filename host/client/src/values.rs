@@ -1,6 +1,6 @@
 //! Parameters as text.
 
-use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter};
+use crepitus_protocol::parameters::{Kind, Parameter};
 
 /// Why a text is no value of a parameter.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -101,9 +101,4 @@ pub fn allowed_text(parameter: &Parameter) -> String {
             names.join(" or ")
         }
     }
-}
-
-/// The parameter with this id.
-pub(crate) fn parameter(id: usize) -> Option<&'static Parameter> {
-    PARAMETERS.get(id)
 }

@@ -1,7 +1,7 @@
 //! What stands beside the samples.
 
 use crepitus_protocol::management::Identity;
-use crepitus_protocol::parameters::{Kind, PARAMETERS};
+use crepitus_protocol::parameters::Kind;
 use crepitus_protocol::{Revision, TICKS_PER_S, Values, schema};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -141,9 +141,8 @@ impl Sidecar {
 
 /// Values by name; choices by the name of what was chosen.
 pub fn named_values(values: &Values) -> Map<String, Value> {
-    PARAMETERS
+    values
         .iter()
-        .zip(values.0)
         .map(|(parameter, value)| {
             let name = format!("{}.{}", parameter.group, parameter.key());
             let value = match parameter.kind {

@@ -59,122 +59,70 @@
 use crate::active::LONGEST_STEP_S;
 use crate::energy_observer::MOST_DELAY_TICKS;
 use crate::oscillator::{Oscillator, Transition};
-use crate::parameters::{ParameterSpec, Parameters, Tabled};
+use crate::parameters::{Parameters, Tabled, settings};
 use crate::real::Real;
 use crate::settings::SettingsError;
 
-/// The bone, and what its ringing may cost.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BoneShapingSettings {
-    /// Frequency of the undamped bone ω/2π, Hz.
-    pub frequency_hz: f64,
-    /// Damping ratio ζ.
-    pub damping_ratio: f64,
-    /// Gain g: N·m of ringing per N·m of jump.
-    pub gain: f64,
-    /// Largest torque that is added, and largest ringing of one jump, N·m.
-    pub limit_nm: f64,
-    /// Capacity of the tank, J.
-    pub budget_j: f64,
-    /// Power with which it refills, W.
-    pub refill_w: f64,
-}
-
-impl Tabled<6> for BoneShapingSettings {
-    const TABLE: &'static [ParameterSpec; 6] = &[
-        ParameterSpec {
-            key: "frequency_hz",
+settings! {
+    /// The bone, and what its ringing may cost.
+    pub struct BoneShapingSettings, group "bone-shaping" {
+        render {
+            id: 13 always,
+            choice: ["off", "on"],
+            default: 0,
+            meaning: "whether the bone rings when the joint clicks",
+        },
+    } {
+        frequency_hz {
+            id: 14 always,
             symbol: "f",
             unit: "Hz",
-            min: 20.0,
-            max: 1000.0,
+            range: 20.0..=1000.0,
             default: 115.0,
             meaning: "frequency of the bone: 115 Hz healthy, 67 Hz with a meniscal tear",
         },
-        ParameterSpec {
-            key: "damping_ratio",
+        damping_ratio {
+            id: 15 always,
             symbol: "ζ",
             unit: "1",
-            min: 0.005,
-            max: 0.99,
+            range: 0.005..=0.99,
             default: 0.098,
             meaning: "damping ratio of the bone: 0.098 healthy, 0.036 with a meniscal tear",
         },
-        ParameterSpec {
-            key: "gain",
+        gain {
+            id: 16 always,
             symbol: "g",
             unit: "1",
-            min: 0.0,
-            max: 10.0,
+            range: 0.0..=10.0,
             default: 1.0,
             meaning: "ringing per jump of the torque; 0 is none",
         },
-        ParameterSpec {
-            key: "limit_nm",
+        // The slew limit exempts steps up to the largest.
+        limit_nm {
+            id: 17 always,
             symbol: "Tb",
             unit: "N·m",
-            min: 0.0,
-            // The slew limit exempts steps up to here.
-            max: 0.6,
+            range: 0.0..=0.6,
             default: 0.6,
             meaning: "largest torque that is added",
         },
-        ParameterSpec {
-            key: "budget_j",
+        // The least keeps the books exact up to 10 rad/s at 20 kHz.
+        budget_j {
+            id: 18 always,
             symbol: "E",
             unit: "J",
-            // Keeps the books exact up to 10 rad/s at 20 kHz.
-            min: 5e-3,
-            max: 0.1,
+            range: 5e-3..=0.1,
             default: 0.01,
             meaning: "energy that the ringing may return at once",
         },
-        ParameterSpec {
-            key: "refill_w",
+        refill_w {
+            id: 19 always,
             symbol: "P",
             unit: "W",
-            min: 0.0,
-            max: 0.2,
+            range: 0.0..=0.2,
             default: 0.1,
             meaning: "power that the ringing may return for ever",
         },
-    ];
-
-    fn values(&self) -> [f64; 6] {
-        [
-            self.frequency_hz,
-            self.damping_ratio,
-            self.gain,
-            self.limit_nm,
-            self.budget_j,
-            self.refill_w,
-        ]
-    }
-
-    fn of(
-        [
-            frequency_hz,
-            damping_ratio,
-            gain,
-            limit_nm,
-            budget_j,
-            refill_w,
-        ]: [f64; 6],
-    ) -> Self {
-        Self {
-            frequency_hz,
-            damping_ratio,
-            gain,
-            limit_nm,
-            budget_j,
-            refill_w,
-        }
-    }
-}
-
-impl Default for BoneShapingSettings {
-    fn default() -> Self {
-        Self::defaults()
     }
 }
 

@@ -48,68 +48,44 @@
 //! fade are engineering estimates (the fade is 4.5 counts of the encoder at the
 //! estimator's 50 Hz).
 
-use crate::parameters::{ParameterSpec, Parameters, Tabled};
+use crate::parameters::{Parameters, Tabled, settings};
 use crate::real::Real;
 use crate::settings::SettingsError;
 
-/// What the device believes of its gear, and how much of it to cancel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrictionCompensationSettings {
-    /// Dry friction at the joint, N·m.
-    pub friction_nm: f64,
-    /// Share of it that is cancelled, 0 to 0.9.
-    pub share: f64,
-    /// Speed of the joint below which it fades out, rad/s.
-    pub fade_rad_s: f64,
-}
-
-impl Tabled<3> for FrictionCompensationSettings {
-    const TABLE: &'static [ParameterSpec; 3] = &[
-        ParameterSpec {
-            key: "friction_nm",
+settings! {
+    /// What the device believes of its gear, and how much of it to cancel.
+    pub struct FrictionCompensationSettings, group "friction-compensation" {
+        render {
+            id: 9 always,
+            choice: ["off", "on"],
+            default: 0,
+            meaning: "whether a share of the gear's friction is cancelled",
+        },
+    } {
+        friction_nm {
+            id: 10 always,
             symbol: "Tf",
             unit: "N·m",
-            min: 0.0,
-            max: 2.0,
+            range: 0.0..=2.0,
             default: 0.5,
             meaning: "dry friction that the device believes the gear to have, at the joint",
         },
-        ParameterSpec {
-            key: "share",
+        share {
+            id: 11 always,
             symbol: "σ",
             unit: "1",
-            min: 0.0,
-            max: 0.9,
+            range: 0.0..=0.9,
             default: 0.8,
             meaning: "share of the friction that is cancelled; the rest keeps sampled springs passive",
         },
-        ParameterSpec {
-            key: "fade_rad_s",
+        fade_rad_s {
+            id: 12 always,
             symbol: "Ωf",
             unit: "rad/s",
-            min: 1e-3,
-            max: 10.0,
+            range: 1e-3..=10.0,
             default: 0.05,
             meaning: "speed of the joint below which the compensation fades out to zero",
         },
-    ];
-
-    fn values(&self) -> [f64; 3] {
-        [self.friction_nm, self.share, self.fade_rad_s]
-    }
-
-    fn of([friction_nm, share, fade_rad_s]: [f64; 3]) -> Self {
-        Self {
-            friction_nm,
-            share,
-            fade_rad_s,
-        }
-    }
-}
-
-impl Default for FrictionCompensationSettings {
-    fn default() -> Self {
-        Self::defaults()
     }
 }
 

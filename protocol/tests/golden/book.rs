@@ -176,7 +176,7 @@ fn parameters() -> String {
     let mut text =
         "| id | name | unit | allowed | default | changes | meaning |\n|---|---|---|---|---|---|---|\n"
             .to_owned();
-    for (id, parameter) in PARAMETERS.iter().enumerate() {
+    for parameter in &PARAMETERS {
         let (unit, allowed, default) = match parameter.kind {
             Kind::Number(spec) => (
                 spec.unit,
@@ -199,7 +199,8 @@ fn parameters() -> String {
         };
         let _ = writeln!(
             text,
-            "| {id} | `{}.{}` | {unit} | {allowed} | {default} | {when} | {} |",
+            "| {} | `{}.{}` | {unit} | {allowed} | {default} | {when} | {} |",
+            parameter.id,
             parameter.group,
             parameter.key(),
             parameter.meaning()

@@ -8,6 +8,7 @@ use crepitus_protocol::host::{Answer, Ask, Counters, Refusal, Reply, Request, St
 use crepitus_protocol::link::{
     DriveRefusal, DriveStatus, FromDrive, Heartbeat, Order, Outcome, ToDrive,
 };
+use crepitus_protocol::parameters::PARAMETERS;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 use crepitus_protocol::telemetry::{BlockFlags, NO_CURRENT, Sample, SampleFlags};
 use crepitus_protocol::{
@@ -91,8 +92,8 @@ const OTHER: Session = Session(0xcafe);
 /// Half its id for each parameter: no device would take them.
 fn values() -> Values {
     let mut values = Values::default();
-    for (id, value) in (0_u8..).zip(&mut values.0) {
-        *value = f64::from(id) / 2.0;
+    for parameter in &PARAMETERS {
+        values.set(parameter.id, f64::from(parameter.id) / 2.0);
     }
     values
 }
@@ -243,8 +244,10 @@ fn refusals() -> Vec<(String, Refusal)> {
     for (name, error) in [
         ("out-of-range", ValueError::OutOfRange { id: 28 }),
         ("kinetic-above-static", ValueError::KineticAboveStatic),
+        ("unguarded", ValueError::Unguarded),
         ("static-above-limit", ValueError::StaticAboveLimit),
         ("needs-disarmed", ValueError::NeedsDisarmed { id: 6 }),
+        ("contradiction", ValueError::Contradiction),
     ] {
         all.push((format!("values.{name}"), Refusal::Values(error)));
     }

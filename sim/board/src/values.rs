@@ -25,20 +25,20 @@ pub enum NotRendered {
 /// [`NotRendered`] if no device can render it.
 pub fn values(scene: &Scene) -> Result<Values, NotRendered> {
     let mut values = Values::default();
-    for (place, parameter) in PARAMETERS.iter().enumerate() {
+    for parameter in &PARAMETERS {
         let Some(effect) = EFFECTS.iter().find(|e| e.name == parameter.group) else {
             continue;
         };
         match parameter.kind {
             Kind::Choice(choice) if choice.key == "render" => {
-                values.set(place, f64::from(u8::from(scene.has(effect.name))));
+                values.set(parameter.id, f64::from(u8::from(scene.has(effect.name))));
             }
             Kind::Choice(_) => {}
             Kind::Number(spec) => {
                 let given = scene.given(effect);
                 let at = effect.parameters.iter().position(|p| p.key == spec.key);
                 if let Some(value) = at.and_then(|at| given.numbers.get(at)) {
-                    values.set(place, *value);
+                    values.set(parameter.id, *value);
                 }
             }
         }

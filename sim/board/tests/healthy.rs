@@ -9,7 +9,7 @@ use crepitus_model::render::ramp::Ramp;
 use crepitus_model::{Active, Frozen, Settings, StickSlip};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::host::{Answer, Ask};
-use crepitus_protocol::parameters::Parameter;
+use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, SAMPLE_BYTES, SampleFlags};
 use crepitus_protocol::{Revision, State, TICK_S, TICKS_PER_S};
 use std::time::Instant;
@@ -173,7 +173,7 @@ fn the_model_torque_is_that_of_the_model() {
 }
 
 fn set(host: &mut Host, name: &str, value: f64) -> Revision {
-    let (id, _) = Parameter::find(name).unwrap();
+    let (id, _) = parameters::find(name).unwrap();
     host.commit(|values| values.set(id, value)).unwrap()
 }
 

@@ -4,7 +4,7 @@ use crepitus_crosscheck::compare::{compare, ours};
 use crepitus_crosscheck::corpus::{Case, MOST_EVENTS};
 use crepitus_crosscheck::double_double::Dd;
 use crepitus_crosscheck::watched::{Answer, LIMIT, Watched};
-use crepitus_model::parameters::PARAMETERS;
+use crepitus_model::parameters::{Parameters, Tabled};
 use crepitus_plant::Motion;
 use std::io;
 
@@ -19,7 +19,7 @@ pub(crate) fn case(number: u64) -> io::Result<bool> {
         settings.restart.name(),
         case.kind.name()
     );
-    for (spec, value) in PARAMETERS.iter().zip(settings.parameters.values()) {
+    for (spec, value) in Parameters::TABLE.iter().zip(settings.parameters.values()) {
         println!("  {} = {value:e} {}", spec.symbol, spec.unit);
     }
     let p = &settings.parameters;

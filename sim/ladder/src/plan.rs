@@ -2,6 +2,7 @@
 
 use crate::exchange::{Exchange, PLAN, STEPS};
 use crate::subject::Subject;
+use crepitus_model::parameters::Tabled;
 use crepitus_model::{Parameters, Restart, Settings, SettingsError, Validated};
 
 /// A subject, its numbers, and how many steps of it.

@@ -4,11 +4,11 @@ use crate::support::{Port, client, connected, device, ms, pump_for, refusal};
 use crepitus_client::{Client, Error};
 use crepitus_protocol::host::Refusal;
 use crepitus_protocol::management::ResetCause;
-use crepitus_protocol::parameters::{Parameter, id};
+use crepitus_protocol::parameters::{self, id};
 use crepitus_protocol::{Revision, ValueError, Values};
 
-fn place(name: &str) -> usize {
-    Parameter::find(name).unwrap().0
+fn place(name: &str) -> u16 {
+    parameters::find(name).unwrap().0
 }
 
 #[test]
@@ -138,7 +138,7 @@ mod overtaking {
     pub(super) struct Overtaken {
         pub(super) inner: Port,
         pub(super) other: Client<Port>,
-        pub(super) changes: Vec<(usize, f64)>,
+        pub(super) changes: Vec<(u16, f64)>,
     }
 
     impl Transport for Overtaken {
@@ -173,7 +173,7 @@ mod overtaking {
     }
 }
 
-fn overtaken(changes: &[(usize, f64)]) -> Client<overtaking::Overtaken> {
+fn overtaken(changes: &[(u16, f64)]) -> Client<overtaking::Overtaken> {
     let (shared, port) = device();
     let other = client(port, 2);
     let mut changes = changes.to_vec();

@@ -6,7 +6,7 @@ use crepitus_client::{Holder, Refused, RequestKind, TransportError, fault_text};
 use crepitus_protocol::fault::FAULTS;
 use crepitus_protocol::host::Refusal;
 use crepitus_protocol::link::DriveRefusal;
-use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter};
+use crepitus_protocol::parameters::{self, Kind, PARAMETERS};
 use crepitus_protocol::{Revision, Session, ValueError, Values};
 use std::time::Duration;
 
@@ -137,7 +137,7 @@ fn values_are_read_as_they_are_shown() {
             assert_eq!(read.to_bits(), value.to_bits(), "{text}");
         }
     }
-    let (_, restart) = Parameter::find("crepitus.restart").unwrap();
+    let (_, restart) = parameters::find("crepitus.restart").unwrap();
     assert_eq!(show_value(restart, 1.0), "from-kinetic");
     assert_eq!(full_name(restart), "crepitus.restart");
 }
@@ -145,7 +145,7 @@ fn values_are_read_as_they_are_shown() {
 #[test]
 fn what_is_no_value_is_refused_with_what_is_one() {
     let text = |name: &str, value: &str| {
-        let (_, parameter) = Parameter::find(name).unwrap();
+        let (_, parameter) = parameters::find(name).unwrap();
         parse_value(parameter, value).unwrap_err().to_string()
     };
     assert_eq!(

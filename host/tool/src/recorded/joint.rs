@@ -1,7 +1,7 @@
 //! The imaginary object, from what a device says of it.
 
+use crepitus_model::Parameters;
 use crepitus_model::oscillator::Oscillator;
-use crepitus_model::parameters::{DAMPING, Parameters};
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{Revision, TICK_S};
 use crepitus_recording::{Row, Sidecar};
@@ -104,9 +104,10 @@ impl Joint {
         let parameters = Parameters {
             inertia_kg_m2: number("crepitus.inertia_kg_m2")?,
             stiffness_nm_per_rad: number("crepitus.stiffness_nm_per_rad")?,
-            damping_nms_per_rad: DAMPING.default,
             kinetic_torque_nm: number("crepitus.kinetic_torque_nm")?,
             static_torque_nm: number("crepitus.static_torque_nm")?,
+            // No device has damping.
+            ..Parameters::default()
         };
         self.parameters = Some((revision, parameters));
         Some(parameters)

@@ -13,7 +13,7 @@ use crate::shipped;
 use crate::simulated::Simulated;
 use crepitus_client::{Client, RequestKind};
 use crepitus_model::presets::Preset;
-use crepitus_protocol::parameters::Parameter;
+use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};
 use crepitus_scene::Overrides;
@@ -151,7 +151,7 @@ impl Follower for Examination {
             && since >= when
         {
             self.changes.pop_front();
-            let (id, _) = Parameter::find(name)
+            let (id, _) = parameters::find(name)
                 .ok_or_else(|| Failure::Work(format!("there is no parameter {name}")))?;
             let revision = client.set(&[(id, value)]).map_err(failure)?;
             self.made.push((name, value, revision));

@@ -6,7 +6,7 @@ use crate::line::{connect, failure};
 use crate::shipped;
 use crepitus_client::values::{allowed_text, full_name, parse_value, show_value};
 use crepitus_model::presets::Preset;
-use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter, When};
+use crepitus_protocol::parameters::{self, Kind, PARAMETERS, Parameter, When};
 use crepitus_protocol::{Revision, Values};
 use crepitus_scene::Overrides;
 use serde_json::{Map, Value, json};
@@ -31,8 +31,8 @@ pub(crate) fn params(arguments: &ParamsArguments, as_json: bool) -> Result<(), F
 }
 
 /// The parameter of a name, or what names there are like it.
-fn find(name: &str) -> Result<(usize, &'static Parameter), Failure> {
-    Parameter::find(name).ok_or_else(|| {
+fn find(name: &str) -> Result<(u16, &'static Parameter), Failure> {
+    parameters::find(name).ok_or_else(|| {
         let like = PARAMETERS
             .iter()
             .map(full_name)
@@ -46,7 +46,7 @@ fn find(name: &str) -> Result<(usize, &'static Parameter), Failure> {
 
 fn list(as_json: bool) -> Result<(), Failure> {
     if as_json {
-        let list: Vec<_> = PARAMETERS.iter().enumerate().map(described).collect();
+        let list: Vec<_> = PARAMETERS.iter().map(described).collect();
         return print_json(&list);
     }
     let mut text = String::new();
@@ -67,13 +67,13 @@ fn list(as_json: bool) -> Result<(), Failure> {
     print(&text)
 }
 
-fn described((id, parameter): (usize, &Parameter)) -> Value {
+fn described(parameter: &Parameter) -> Value {
     let (unit, min, max, choices) = match parameter.kind {
         Kind::Number(spec) => (Some(spec.unit), Some(spec.min), Some(spec.max), None),
         Kind::Choice(choice) => (None, None, None, Some(choice.names)),
     };
     json!({
-        "id": id,
+        "id": parameter.id,
         "name": full_name(parameter),
         "unit": unit,
         "min": min,
@@ -95,7 +95,7 @@ fn named(parameter: &Parameter, value: f64) -> Value {
 
 fn get(device: &DeviceArguments, names: &[String], as_json: bool) -> Result<(), Failure> {
     let wanted: Vec<_> = if names.is_empty() {
-        PARAMETERS.iter().enumerate().collect()
+        PARAMETERS.iter().map(|p| (p.id, p)).collect()
     } else {
         names
             .iter()
@@ -104,7 +104,7 @@ fn get(device: &DeviceArguments, names: &[String], as_json: bool) -> Result<(), 
     };
     let mut client = connect(device)?;
     let (revision, values) = client.parameters().map_err(failure)?;
-    let value = |id: usize| values.get(id).unwrap_or(f64::NAN);
+    let value = |id: u16| values.get(id).unwrap_or(f64::NAN);
     if as_json {
         let values: Map<String, Value> = wanted
             .iter()

@@ -1,7 +1,7 @@
 //! `crepitus presets`.
 
 use crate::failure::{Failure, print, print_json};
-use crepitus_model::parameters::PARAMETERS;
+use crepitus_model::parameters::{Parameters, Tabled};
 use crepitus_model::presets::{Evidence, PRESETS, Preset};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -15,7 +15,7 @@ pub(crate) fn presets(as_json: bool) -> Result<(), Failure> {
     for preset in &PRESETS {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{}: {}", preset.name, preset.feels_like);
-        for (p, value) in PARAMETERS.iter().zip(preset.parameters.values()) {
+        for (p, value) in Parameters::TABLE.iter().zip(preset.parameters.values()) {
             let _ = writeln!(
                 text,
                 "    {:2} = {value:<7} {:10} {}",
@@ -29,7 +29,7 @@ pub(crate) fn presets(as_json: bool) -> Result<(), Failure> {
 }
 
 fn to_json(preset: &Preset) -> Value {
-    let parameters: Map<_, _> = PARAMETERS
+    let parameters: Map<_, _> = Parameters::TABLE
         .iter()
         .zip(preset.parameters.values())
         .map(|(p, value)| (p.key.to_owned(), json!(value)))

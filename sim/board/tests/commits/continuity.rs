@@ -9,14 +9,14 @@ use crate::support::{Heard, random_values};
 use crate::support::{Host, set};
 use crepitus_model::encoder::EncoderSettings;
 use crepitus_protocol::host::{Answer, Ask};
-use crepitus_protocol::parameters::{Parameter, id};
+use crepitus_protocol::parameters::{self, id};
 use crepitus_protocol::telemetry::{Block, Sample, SampleFlags};
 use crepitus_protocol::{LimitReason, Revision, TICK_S, Values};
 use fastrand::Rng;
 use std::collections::BTreeMap;
 
 fn value(values: &Values, name: &str) -> f64 {
-    let (id, _) = Parameter::find(name).expect("a parameter");
+    let (id, _) = parameters::find(name).expect("a parameter");
     values.get(id).expect("a value")
 }
 

@@ -10,7 +10,7 @@ use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::frame;
 use crepitus_protocol::host::{Answer, Ask, Refusal, Reply, Request, Status};
 use crepitus_protocol::management::{self, Question, What};
-use crepitus_protocol::parameters::Parameter;
+use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, Sample};
 use crepitus_protocol::{Decoder, Lane, Revision, Session, Values};
 use crepitus_scene::{Overrides, Scene};
@@ -371,7 +371,7 @@ impl Host {
 
 /// Sets the value of this name.
 pub(crate) fn set(values: &mut Values, name: &str, value: f64) {
-    let (id, _) = Parameter::find(name).expect("a parameter");
+    let (id, _) = parameters::find(name).expect("a parameter");
     values.set(id, value);
 }
 

@@ -43,7 +43,7 @@ pub(crate) fn forbidden(rng: &mut Rng, base: &Values) -> Values {
     let mut values = allowed(rng, base);
     match rng.u8(0..4) {
         0 => {
-            let id = rng.usize(0..PARAMETERS.len());
+            let id = PARAMETERS[rng.usize(0..PARAMETERS.len())].id;
             let bad = [f64::NAN, f64::INFINITY, -1.0, 1e300];
             values.set(id, bad[rng.usize(0..bad.len())]);
         }

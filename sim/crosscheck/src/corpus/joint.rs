@@ -1,7 +1,7 @@
 //! The joint of a case, and the speed and duration that suit it.
 
 use super::{MotionKind, log_uniform, uniform};
-use crepitus_model::parameters::{DAMPING, INERTIA, STATIC_TORQUE, STIFFNESS};
+use crepitus_model::parameters::Tabled;
 use crepitus_model::{Convention, Parameters, Restart, Settings, Validated};
 use fastrand::Rng;
 use std::f64::consts::{PI, TAU};
@@ -25,13 +25,20 @@ pub(super) fn draw(
     convention: Convention,
     kind: MotionKind,
 ) -> Option<(Validated<Settings>, Scale)> {
+    let [
+        inertia_range,
+        stiffness_range,
+        damping_range,
+        _,
+        static_range,
+    ] = Parameters::TABLE;
     let extreme = rng.u32(0..EXTREME) == 0;
     let (inertia, stiffness, limit) = if extreme {
         (
-            log_uniform(rng, INERTIA.min, INERTIA.max),
-            log_uniform(rng, STIFFNESS.min, STIFFNESS.max),
+            log_uniform(rng, inertia_range.min, inertia_range.max),
+            log_uniform(rng, stiffness_range.min, stiffness_range.max),
             // From 0 on; a logarithm needs a beginning.
-            log_uniform(rng, 1e-9, STATIC_TORQUE.max),
+            log_uniform(rng, 1e-9, static_range.max),
         )
     } else {
         (
@@ -64,7 +71,7 @@ pub(super) fn draw(
     let cycle_s = (TAU + 2.0 * lambda) / natural;
     let cycles = log_uniform(rng, 2.0, 80.0);
     let duration_s = (cycles * cycle_s).min(MOST_SWING_RAD / natural);
-    if !(1e-12..=1e7).contains(&duration_s) || damping > DAMPING.max {
+    if !(1e-12..=1e7).contains(&duration_s) || damping > damping_range.max {
         return None;
     }
     let settings = Settings {

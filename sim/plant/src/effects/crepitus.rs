@@ -2,14 +2,14 @@
 //! equations, numbers and conventions are those of `crepitus_model`.
 
 use crate::effect::{Effect, Part};
-use crepitus_model::parameters::PARAMETERS;
+use crepitus_model::parameters::{Parameters, Tabled};
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "crepitus",
     adds: "the torque of the stick-slip object",
     states: &["theta_rad", "theta_dot_rad_s"],
-    parameters: &PARAMETERS,
+    parameters: Parameters::TABLE,
     choices: &[],
     needs: &[],
     part: Part::Joint,

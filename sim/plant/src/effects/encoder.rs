@@ -2,14 +2,15 @@
 //! [`crate::encoder`], the estimate from `crepitus_model::encoder`.
 
 use crate::effect::{Effect, Part};
-use crepitus_model::encoder::ENCODER_PARAMETERS;
+use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::parameters::Tabled;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: "encoder",
     adds: "whole counts instead of the true angle, and a velocity estimated from them",
     states: &["velocity estimate", "tracking lag"],
-    parameters: &ENCODER_PARAMETERS,
+    parameters: EncoderSettings::TABLE,
     choices: &[],
     needs: &[],
     part: Part::Sensor,

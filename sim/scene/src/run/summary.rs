@@ -4,6 +4,7 @@ use super::coupled::PlantTotals;
 use super::tally::Tally;
 use super::{AddedTime, Totals, step_s};
 use crate::scene::{Crepitus, SCENE_VERSION, Scene, SolverChoice};
+use crepitus_model::parameters::Tabled;
 use crepitus_model::{Convention, EVENTS_PER_STEP, Parameters};
 use crepitus_plant::effect::{Effect, Part};
 use serde::Serialize;

@@ -6,6 +6,7 @@ use crate::document::{Range, Section};
 use crate::error::SceneError;
 use crepitus_model::encoder::EncoderSettings;
 use crepitus_model::parameters::ParameterSpec;
+use crepitus_model::parameters::Tabled;
 use crepitus_model::presets::{PRESETS, Preset};
 use crepitus_model::{Convention, Restart, Settings};
 use crepitus_plant::assembly::Listed;

@@ -4,7 +4,7 @@ use super::criterion::Criterion;
 use super::input::Input;
 use super::subject::{Rung, Subject};
 use super::text::Plain;
-use crepitus_model::parameters::PARAMETERS;
+use crepitus_model::parameters::Tabled;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters, Settings};
 use std::fmt::Write;
@@ -49,7 +49,8 @@ impl Trial {
         let p = &self.settings.parameters;
         let paper = Parameters::default();
         let mut text = String::new();
-        for ((spec, value), default) in PARAMETERS.iter().zip(p.values()).zip(paper.values()) {
+        for ((spec, value), default) in Parameters::TABLE.iter().zip(p.values()).zip(paper.values())
+        {
             if value != default {
                 let value = Plain(value);
                 // Writing to a string cannot fail.

@@ -4,6 +4,7 @@ use super::tools::{changed, joint, paper_joint, rendered, slip_s, trial};
 use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Criterion, Limits};
 use crate::stability::input::{Input, Lost, Rendered, Shaft};
+use crepitus_model::parameters::Tabled;
 use crepitus_model::presets::PRESETS;
 use crepitus_model::{Convention, Parameters};
 use crepitus_scene::scene::Precision;

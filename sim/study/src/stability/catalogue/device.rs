@@ -6,6 +6,7 @@ use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Counted, Criterion, Limits};
 use crate::stability::input::{Fault, Input, Lost, Shaft, Shake};
 use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::parameters::Tabled;
 use crepitus_model::presets::PRESETS;
 use crepitus_model::{Convention, Parameters};
 

@@ -5,6 +5,7 @@ use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Counted, Criterion, Limits};
 use crate::stability::input::{Input, Shaft};
 use crate::stability::subject::{Rung, Subject};
+use crepitus_model::parameters::Tabled;
 use crepitus_model::presets::PRESETS;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters};

@@ -3,7 +3,7 @@
 use super::{Change, Fault, Input, Lost, Rendered, Shaft, Shake};
 use crate::stability::text::{Plain, Time};
 use crepitus_model::Parameters;
-use crepitus_model::parameters::PARAMETERS;
+use crepitus_model::parameters::Tabled;
 use std::fmt;
 
 impl fmt::Display for Shaft {
@@ -198,7 +198,7 @@ struct Named<'a>(&'a Parameters);
 impl fmt::Display for Named<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (old, new) = (Parameters::default(), self.0);
-        for ((spec, value), paper) in PARAMETERS.iter().zip(new.values()).zip(old.values()) {
+        for ((spec, value), paper) in Parameters::TABLE.iter().zip(new.values()).zip(old.values()) {
             if value != paper {
                 write!(f, " {} = {} {}", spec.symbol, Plain(value), spec.unit)?;
             }
