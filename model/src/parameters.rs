@@ -29,7 +29,7 @@ pub struct ParameterSpec {
 pub struct Parameter {
     /// Its number on the wire and in flash. Numbers are given once and need not
     /// be contiguous.
-    pub id: u16,
+    pub id: u8,
     /// The effect or the part that it belongs to, as in scene files.
     pub group: &'static str,
     /// What it is.
@@ -118,7 +118,7 @@ pub trait Tabled<const N: usize>: Copy {
     const TABLE: &'static [ParameterSpec; N];
 
     /// The wire's number of each, where a device has it.
-    const IDS: [Option<u16>; N];
+    const IDS: [Option<u8>; N];
 
     /// The numbers in the order of the table.
     fn values(&self) -> [f64; N];
@@ -233,7 +233,7 @@ macro_rules! settings {
             const TABLE: &'static [$crate::parameters::ParameterSpec; [$(stringify!($field)),*].len()] =
                 &[$(Self::$field),*];
 
-            const IDS: [Option<u16>; [$(stringify!($field)),*].len()] =
+            const IDS: [Option<u8>; [$(stringify!($field)),*].len()] =
                 [$($crate::parameters::settings!(@id $($id)?)),*];
 
             fn values(&self) -> [f64; [$(stringify!($field)),*].len()] {

@@ -47,7 +47,7 @@ const fn count(mut groups: &[&[Parameter]]) -> usize {
 
 /// The parameter with the lowest id that is not below `least`.
 #[expect(clippy::panic, reason = "at compile time: it ends the build")]
-const fn next(least: u16) -> &'static Parameter {
+const fn next(least: u8) -> &'static Parameter {
     let mut found: Option<&'static Parameter> = None;
     let mut groups = DECLARED;
     while let [group, rest @ ..] = groups {
@@ -97,29 +97,29 @@ pub mod id {
     use super::Parameter;
 
     /// `crepitus.render`.
-    pub const CREPITUS: u16 = named("crepitus", "render");
+    pub const CREPITUS: u8 = named("crepitus", "render");
     /// `crepitus.stiffness_nm_per_rad`.
-    pub const STIFFNESS: u16 = named("crepitus", "stiffness_nm_per_rad");
+    pub const STIFFNESS: u8 = named("crepitus", "stiffness_nm_per_rad");
     /// `crepitus.restart`.
-    pub const RESTART: u16 = named("crepitus", "restart");
+    pub const RESTART: u8 = named("crepitus", "restart");
     /// `crepitus.kinetic_torque_nm`.
-    pub const KINETIC_TORQUE: u16 = named("crepitus", "kinetic_torque_nm");
+    pub const KINETIC_TORQUE: u8 = named("crepitus", "kinetic_torque_nm");
     /// `crepitus.static_torque_nm`.
-    pub const STATIC_TORQUE: u16 = named("crepitus", "static_torque_nm");
+    pub const STATIC_TORQUE: u8 = named("crepitus", "static_torque_nm");
     /// `encoder.lines`.
-    pub const LINES: u16 = named("encoder", "lines");
+    pub const LINES: u8 = named("encoder", "lines");
     /// `encoder.gear_ratio`.
-    pub const GEAR_RATIO: u16 = named("encoder", "gear_ratio");
+    pub const GEAR_RATIO: u8 = named("encoder", "gear_ratio");
     /// `friction-compensation.render`.
-    pub const COMPENSATION: u16 = named("friction-compensation", "render");
+    pub const COMPENSATION: u8 = named("friction-compensation", "render");
     /// `bone-shaping.render`.
-    pub const BONE_SHAPING: u16 = named("bone-shaping", "render");
+    pub const BONE_SHAPING: u8 = named("bone-shaping", "render");
     /// `limits.torque_nm`.
-    pub const TORQUE_LIMIT: u16 = named("limits", "torque_nm");
+    pub const TORQUE_LIMIT: u8 = named("limits", "torque_nm");
 
     /// The id of a parameter.
     #[expect(clippy::panic, reason = "at compile time: it ends the build")]
-    const fn named(group: &str, key: &str) -> u16 {
+    const fn named(group: &str, key: &str) -> u8 {
         let mut parameters: &[Parameter] = &super::PARAMETERS;
         while let [parameter, rest @ ..] = parameters {
             if same(parameter.group, group) && same(parameter.key(), key) {
@@ -155,12 +155,12 @@ impl Default for Values {
 
 impl Values {
     /// The value of a parameter, if there is one.
-    pub fn get(&self, id: u16) -> Option<f64> {
+    pub fn get(&self, id: u8) -> Option<f64> {
         self.0.get(place(id)?).copied()
     }
 
     /// Sets a parameter; nothing if there is none.
-    pub fn set(&mut self, id: u16, value: f64) {
+    pub fn set(&mut self, id: u8, value: f64) {
         if let Some(value_there) = place(id).and_then(|place| self.0.get_mut(place)) {
             *value_there = value;
         }
@@ -180,7 +180,7 @@ impl Values {
 
     /// Takes over the values that there are.
     #[inline(never)]
-    fn take(&self, ids: &[Option<u16>], values: &mut [f64]) {
+    fn take(&self, ids: &[Option<u8>], values: &mut [f64]) {
         for (value, id) in values.iter_mut().zip(ids) {
             if let Some(set) = id.and_then(|id| self.get(id)) {
                 *value = set;
@@ -200,7 +200,7 @@ impl Values {
     }
 
     /// Whether a choice is not the first of its names: what is off is not.
-    pub fn is_on(&self, id: u16) -> bool {
+    pub fn is_on(&self, id: u8) -> bool {
         self.get(id).is_some_and(|choice| choice != 0.0)
     }
 
@@ -217,7 +217,7 @@ impl Values {
 
     /// The first parameter that differs and may not change while there is
     /// torque.
-    pub fn needs_disarmed(&self, now: &Self) -> Option<u16> {
+    pub fn needs_disarmed(&self, now: &Self) -> Option<u8> {
         self.iter()
             .zip(now.0)
             .find(|((parameter, new), old)| {
@@ -233,17 +233,17 @@ static PARAMETERS_BY_ID: [Parameter; PARAMETER_COUNT] = PARAMETERS;
 /// Where a parameter stands in [`PARAMETERS`] and [`Values`]; one function for
 /// all, as each of them inside another would fill the controllers' flash.
 #[inline(never)]
-fn place(id: u16) -> Option<usize> {
+fn place(id: u8) -> Option<usize> {
     PARAMETERS_BY_ID.iter().position(|p| p.id == id)
 }
 
 /// The parameter with this id.
-pub fn with_id(id: u16) -> Option<&'static Parameter> {
+pub fn with_id(id: u8) -> Option<&'static Parameter> {
     PARAMETERS_BY_ID.iter().find(|p| p.id == id)
 }
 
 /// The parameter of this name, `group.key`, with its id.
-pub fn find(name: &str) -> Option<(u16, &'static Parameter)> {
+pub fn find(name: &str) -> Option<(u8, &'static Parameter)> {
     let (group, key) = name.split_once('.')?;
     PARAMETERS_BY_ID
         .iter()
@@ -266,7 +266,7 @@ mod tests {
         }
         assert_eq!(find("crepitus.nothing"), None);
         assert_eq!(find("crepitus"), None);
-        assert_eq!(with_id(u16::MAX), None);
+        assert_eq!(with_id(u8::MAX), None);
     }
 
     /// Programs of other versions and records in flash count on them.

@@ -22,7 +22,7 @@ pub enum ValueError {
     /// of its names.
     OutOfRange {
         /// The parameter.
-        id: u16,
+        id: u8,
     },
     /// The kinetic torque is above the static torque.
     KineticAboveStatic,
@@ -35,7 +35,7 @@ pub enum ValueError {
     /// The parameter with this id only changes while there is no torque.
     NeedsDisarmed {
         /// The parameter.
-        id: u16,
+        id: u8,
     },
     /// The model refuses what the device's own rules allow: a mistake in the
     /// program.
@@ -44,7 +44,7 @@ pub enum ValueError {
 
 impl ValueError {
     /// The parameters that it is about, the one to change first.
-    pub fn parameters(&self) -> &'static [u16] {
+    pub fn parameters(&self) -> &'static [u8] {
         match self {
             Self::KineticAboveStatic => &[id::KINETIC_TORQUE, id::STATIC_TORQUE],
             Self::Unguarded => &[

@@ -1,7 +1,7 @@
 //! A set of parameters as bytes of flash.
 //!
 //! ```text
-//! "CRP2" ‖ sequence u32 ‖ revision u32 ‖ count u32 ‖ count × (id u16 ‖ value f64) ‖ CRC-32      little endian
+//! "CRP2" ‖ sequence u32 ‖ revision u32 ‖ count u32 ‖ count × (id u8 ‖ value f64) ‖ CRC-32      little endian
 //! ```
 //!
 //! Ids never change their meaning, so a record of another program is read: what
@@ -11,13 +11,13 @@ use crepitus_protocol::frame::CRC;
 use crepitus_protocol::parameters::PARAMETER_COUNT;
 use crepitus_protocol::{Revision, Values};
 
-/// Bytes between the beginnings of two records: room for 100 parameters.
+/// Bytes between the beginnings of two records: room for 111 parameters.
 pub const SLOT_BYTES: usize = 1024;
 
 const MAGIC: [u8; 4] = *b"CRP2";
 const HEAD_BYTES: usize = 16;
 const SUM_BYTES: usize = 4;
-const VALUE_BYTES: usize = 10;
+const VALUE_BYTES: usize = 9;
 
 /// Bytes of a record of this program.
 pub const RECORD_BYTES: usize = HEAD_BYTES + VALUE_BYTES * PARAMETER_COUNT + SUM_BYTES;
@@ -45,8 +45,7 @@ impl Record {
             .into_iter()
             .chain(head.into_iter().flat_map(u32::to_le_bytes))
             .chain(self.values.iter().flat_map(|(parameter, value)| {
-                let id = parameter.id.to_le_bytes();
-                id.into_iter().chain(value.to_le_bytes())
+                core::iter::once(parameter.id).chain(value.to_le_bytes())
             }));
         for (place, byte) in bytes.iter_mut().zip(body) {
             *place = byte;
@@ -72,9 +71,8 @@ impl Record {
         }
         let mut values = Values::default();
         for stored in rest.get(..value_bytes)?.chunks_exact(VALUE_BYTES) {
-            let (id, value) = stored.split_first_chunk()?;
-            let value = f64::from_le_bytes(*value.first_chunk()?);
-            values.set(u16::from_le_bytes(*id), value);
+            let (id, value) = stored.split_first()?;
+            values.set(*id, f64::from_le_bytes(*value.first_chunk()?));
         }
         Some(Self {
             sequence: u32::from_le_bytes(*sequence),
@@ -124,7 +122,7 @@ mod tests {
         slot[..end].copy_from_slice(&whole[..end]);
         slot[12..16].copy_from_slice(&5_u32.to_le_bytes());
         let gone = HEAD_BYTES + VALUE_BYTES * 3;
-        slot[gone..gone + 2].copy_from_slice(&9_999_u16.to_le_bytes());
+        slot[gone] = u8::MAX;
         let sum = CRC.checksum(&slot[..end]).to_le_bytes();
         slot[end..end + 4].copy_from_slice(&sum);
         assert_eq!(Record::of(&slot).unwrap().values, record().values);

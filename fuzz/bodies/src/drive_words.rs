@@ -135,9 +135,7 @@ impl DriveSide {
                 self.has_refused = true;
                 self.status.refused = Some((
                     Revision(u32::from(bytes.byte())),
-                    ValueError::NeedsDisarmed {
-                        id: bytes.byte().into(),
-                    },
+                    ValueError::NeedsDisarmed { id: bytes.byte() },
                 ));
                 self.status()
             }

@@ -56,7 +56,7 @@ pub enum Error {
     #[error("there is no parameter with the id {id}")]
     UnknownParameter {
         /// The id.
-        id: u16,
+        id: u8,
     },
     /// The answer is one to another question: a defect of the device.
     #[error("the device gives an answer to `{what}` that is none: this is a defect of its program")]
@@ -87,7 +87,7 @@ impl From<Mismatch> for Error {
 )]
 pub struct Conflict {
     /// The parameter.
-    pub id: u16,
+    pub id: u8,
     /// Its value as it was read first.
     pub before: f64,
     /// Its value now.

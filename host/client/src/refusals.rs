@@ -145,7 +145,7 @@ impl Refused {
     }
 
     /// "crepitus.static_torque_nm = 9".
-    fn setting(&self, id: u16) -> String {
+    fn setting(&self, id: u8) -> String {
         let name = name_of(id);
         match (with_id(id), self.values.and_then(|values| values.get(id))) {
             (Some(parameter), Some(value)) => format!("{name} = {}", show_value(parameter, value)),
@@ -155,7 +155,7 @@ impl Refused {
 }
 
 /// A parameter's name, whatever the id.
-pub(crate) fn name_of(id: u16) -> String {
+pub(crate) fn name_of(id: u8) -> String {
     with_id(id).map_or_else(|| format!("parameter {id}"), full_name)
 }
 

@@ -135,7 +135,7 @@ impl<T: Transport> Client<T> {
     /// # Errors
     /// [`Error::Conflict`] in that case; [`Error::UnknownParameter`];
     /// otherwise as [`Self::commit`].
-    pub fn set(&mut self, changes: &[(u16, f64)]) -> Result<Revision, Error> {
+    pub fn set(&mut self, changes: &[(u8, f64)]) -> Result<Revision, Error> {
         let (mut base, first) = self.parameters()?;
         let mut read = first;
         let mut tries = 1;

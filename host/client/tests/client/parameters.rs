@@ -7,7 +7,7 @@ use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::parameters::{self, id};
 use crepitus_protocol::{Revision, ValueError, Values};
 
-fn place(name: &str) -> u16 {
+fn place(name: &str) -> u8 {
     parameters::find(name).unwrap().0
 }
 
@@ -83,7 +83,7 @@ fn what_is_not_allowed_is_refused_with_what_is() {
         ),
         (
             &[(id::KINETIC_TORQUE, 0.38), (id::STIFFNESS, 4000.0)],
-            ValueError::KineticAboveStatic,
+            ValueError::Unguarded,
             "crepitus.kinetic_torque_nm = 0.38 is too close to crepitus.static_torque_nm = 0.4, with \
              crepitus.stiffness_nm_per_rad = 4000 and encoder.lines = 512: a hand that turns back \
              inside a slip would get more energy than the slip takes out of the spring. One count \
@@ -106,8 +106,8 @@ fn what_is_not_allowed_is_refused_with_what_is() {
         (Revision(1), Values::default())
     );
     assert_eq!(
-        client.set(&[(1_000, 0.0)]).unwrap_err(),
-        Error::UnknownParameter { id: 1_000 }
+        client.set(&[(255, 0.0)]).unwrap_err(),
+        Error::UnknownParameter { id: 255 }
     );
 }
 
@@ -138,7 +138,7 @@ mod overtaking {
     pub(super) struct Overtaken {
         pub(super) inner: Port,
         pub(super) other: Client<Port>,
-        pub(super) changes: Vec<(u16, f64)>,
+        pub(super) changes: Vec<(u8, f64)>,
     }
 
     impl Transport for Overtaken {
@@ -173,7 +173,7 @@ mod overtaking {
     }
 }
 
-fn overtaken(changes: &[(u16, f64)]) -> Client<overtaking::Overtaken> {
+fn overtaken(changes: &[(u8, f64)]) -> Client<overtaking::Overtaken> {
     let (shared, port) = device();
     let other = client(port, 2);
     let mut changes = changes.to_vec();

@@ -31,7 +31,7 @@ pub(crate) fn params(arguments: &ParamsArguments, as_json: bool) -> Result<(), F
 }
 
 /// The parameter of a name, or what names there are like it.
-fn find(name: &str) -> Result<(u16, &'static Parameter), Failure> {
+fn find(name: &str) -> Result<(u8, &'static Parameter), Failure> {
     parameters::find(name).ok_or_else(|| {
         let like = PARAMETERS
             .iter()
@@ -104,7 +104,7 @@ fn get(device: &DeviceArguments, names: &[String], as_json: bool) -> Result<(), 
     };
     let mut client = connect(device)?;
     let (revision, values) = client.parameters().map_err(failure)?;
-    let value = |id: u16| values.get(id).unwrap_or(f64::NAN);
+    let value = |id: u8| values.get(id).unwrap_or(f64::NAN);
     if as_json {
         let values: Map<String, Value> = wanted
             .iter()

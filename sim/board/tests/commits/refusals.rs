@@ -22,7 +22,7 @@ fn refusal(host: &mut Host, change: impl FnOnce(&mut Values)) -> Option<Refusal>
     refused
 }
 
-fn id(name: &str) -> u16 {
+fn id(name: &str) -> u8 {
     let (id, _) = parameters::find(name).expect("a parameter");
     id
 }
