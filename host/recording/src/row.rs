@@ -2,6 +2,7 @@
 
 use crepitus_protocol::LimitReason;
 use crepitus_protocol::telemetry::SampleFlags;
+use serde_json::{Map, Number, Value};
 use std::fmt::Write as _;
 
 /// The columns, with what they mean.
@@ -31,7 +32,7 @@ pub const COLUMNS: [(&str, &str); 13] = [
         "why the torque is not the model's: none, torque, slew, current, voltage, turned-back, holding, not-armed",
     ),
     (
-        "flags",
+        "notes",
         "settling: parameters on their way; lost: no count to believe; late: rendering was late",
     ),
 ];
@@ -71,8 +72,11 @@ pub struct RowError {
     pub text: String,
 }
 
-/// What flags are called.
-const FLAGS: [(u16, &str); 3] = [
+/// The columns that are words; the others are numbers.
+const WORDS: [&str; 4] = ["phase", "event", "limit", "notes"];
+
+/// What notes are called.
+const NOTES: [(u16, &str); 3] = [
     (SampleFlags::SETTLING, "settling"),
     (SampleFlags::LOST, "lost"),
     (SampleFlags::LATE, "late"),
@@ -114,7 +118,7 @@ impl Row {
         }
         let _ = write!(line, ",{},{},", self.revision, self.flags.limit().name());
         let mut separator = "";
-        for (bit, name) in FLAGS {
+        for (bit, name) in NOTES {
             if self.flags.has(bit) {
                 line.push_str(separator);
                 line.push_str(name);
@@ -122,6 +126,23 @@ impl Row {
             }
         }
         line.push('\n');
+    }
+
+    /// As an object, with the names of [`COLUMNS`] and the same numbers; what
+    /// is empty in a line is null.
+    pub fn to_json(&self) -> Value {
+        let mut line = String::new();
+        self.append_to(&mut line);
+        let cells = COLUMNS.iter().zip(line.trim_end().split(','));
+        let value = |(name, _): &(&str, &str), text: &str| match text.parse::<Number>() {
+            Ok(number) if !WORDS.contains(name) => Value::Number(number),
+            _ if text.is_empty() => Value::Null,
+            _ => Value::String(text.to_owned()),
+        };
+        cells
+            .map(|(column, text)| (column.0.to_owned(), value(column, text)))
+            .collect::<Map<_, _>>()
+            .into()
     }
 
     /// From a line without its end.
@@ -159,7 +180,7 @@ impl Row {
         };
         match cells.next() {
             None => Ok(row),
-            Some(text) => Err(wrong(("flags", text))),
+            Some(text) => Err(wrong(("notes", text))),
         }
     }
 }
@@ -207,7 +228,7 @@ fn flags(
         .with(SampleFlags::ENERGISED, reason != LimitReason::NotArmed)
         .with_limit(reason);
     for name in set.1.split('+').filter(|name| !name.is_empty()) {
-        let (bit, _) = FLAGS
+        let (bit, _) = NOTES
             .iter()
             .find(|(_, known)| *known == name)
             .ok_or_else(|| wrong(set))?;
@@ -255,6 +276,36 @@ mod tests {
             }
         }
         rows
+    }
+
+    #[test]
+    fn an_object_has_the_names_and_numbers_of_a_line() {
+        let row = Row {
+            tick: 1 << 40,
+            time_s: 0.1,
+            omega_rad_s: 0.1,
+            flags: SampleFlags::default()
+                .with(SampleFlags::BREAK, true)
+                .with(SampleFlags::LOST, true),
+            ..Row::default()
+        };
+        let object = row.to_json();
+        let mut line = String::new();
+        row.append_to(&mut line);
+        for ((name, _), cell) in COLUMNS.iter().zip(line.trim_end().split(',')) {
+            let told = match &object[name] {
+                Value::Null => String::new(),
+                Value::String(text) => text.clone(),
+                number => number.to_string(),
+            };
+            assert_eq!(told, cell, "{name}");
+        }
+        assert_eq!(object.as_object().unwrap().len(), COLUMNS.len());
+        assert_eq!(
+            (&object["event"], &object["notes"]),
+            (&"break".into(), &"lost".into())
+        );
+        assert!(object["current_a"].is_null() && object["omega_rad_s"] == 0.1);
     }
 
     #[test]

@@ -218,8 +218,8 @@ fn caption(curves: &[Curve], method: &str, (model, names): (bool, bool)) -> Stri
         })
         .collect();
     let bands = if names {
-        " Taken of second differences, which is undone, so that the weight of a leg does not leak \
-         into the bands. The numbers above are the root mean square of what vibrates in each."
+        " From 2.5 Hz on taken of second differences, which is undone, so that the weight of a leg does \
+         not leak into the bands. The numbers above are the root mean square of what vibrates in each."
     } else {
         ""
     };

@@ -4,7 +4,9 @@
 //! Where there is a plant the torque at the hand holds the weight of a leg,
 //! thousands of times what crepitus vibrates, which would leak from below into
 //! all the rest. So there the spectrum is that of the second difference, and
-//! what differencing does to each frequency is undone.
+//! what differencing does to each frequency is undone. To undo it where next to
+//! nothing is left would make a mountain of what leaks down from above: below
+//! [`SLOW_HZ`] the spectrum is that of the torque itself.
 
 use crepitus_study::spectrum;
 
@@ -48,11 +50,16 @@ impl Gain {
     }
 }
 
+/// Below this the torque itself is looked at, Hz.
+const SLOW_HZ: f64 = 2.5;
+
 /// See [`spectrum::Welch`].
 #[derive(Debug)]
 pub(crate) struct Welch {
     of: spectrum::Welch,
     gain: Gain,
+    /// Of the torque itself, where `of` is that of differences.
+    slow: Option<spectrum::Welch>,
     /// The last two samples.
     last: [Option<f64>; 2],
 }
@@ -61,18 +68,21 @@ impl Welch {
     pub(crate) const SHORTEST: usize = spectrum::Welch::SHORTEST;
 
     pub(crate) fn new(step_s: f64, expected: u64) -> Option<Self> {
-        Self::with(step_s, expected, Gain::One)
+        Self::with(step_s, expected, Gain::One, None)
     }
 
     /// By second differences, see the module.
     pub(crate) fn differencing(step_s: f64, expected: u64) -> Option<Self> {
-        Self::with(step_s, expected.saturating_sub(2), Gain::Difference(step_s))
+        let expected = expected.saturating_sub(2);
+        let slow = spectrum::Welch::new(step_s, expected);
+        Self::with(step_s, expected, Gain::Difference(step_s), slow)
     }
 
-    fn with(step_s: f64, expected: u64, gain: Gain) -> Option<Self> {
+    fn with(step_s: f64, expected: u64, gain: Gain, slow: Option<spectrum::Welch>) -> Option<Self> {
         spectrum::Welch::new(step_s, expected).map(|of| Self {
             of,
             gain,
+            slow,
             last: [None; 2],
         })
     }
@@ -90,13 +100,17 @@ impl Welch {
         };
         if let [Some(a), Some(b)] = self.last {
             self.of.push(value - 2.0 * b + a);
+            if let Some(slow) = &mut self.slow {
+                slow.push(value);
+            }
         }
         self.last = [self.last[1], Some(value)];
     }
 
     pub(crate) fn finish(self) -> Option<Spectrum> {
         let whole = self.of.finish()?;
-        let points = whole
+        let slow = self.slow.and_then(spectrum::Welch::finish);
+        let mut points: Vec<Point> = whole
             .amplitudes
             .iter()
             .enumerate()
@@ -108,6 +122,15 @@ impl Welch {
                 Point::new(hz, amplitude)
             })
             .collect();
+        // The same windows, so the same frequencies.
+        for (point, amplitude) in points
+            .iter_mut()
+            .zip(slow.iter().flat_map(|s| &s.amplitudes))
+        {
+            if point.x < SLOW_HZ {
+                point.y = *amplitude;
+            }
+        }
         Some(Spectrum {
             points,
             resolution_hz: whole.resolution_hz,
@@ -122,6 +145,20 @@ impl Welch {
 mod tests {
     use super::*;
     use std::f64::consts::TAU;
+
+    #[test]
+    fn a_slow_sine_is_as_high_as_it_is_below_what_vibrates() {
+        // Grating of 0.4 N·m, whose own leak differences make a mountain of.
+        let torque = |t: f64| 0.26 * (TAU * 1.25 * t).sin() + 0.4 * (TAU * 31.8 * t).fract();
+        let mut welch = Welch::differencing(1e-3, 16_384).expect("a step");
+        for i in 0..16_384_u32 {
+            welch.push(torque(f64::from(i) * 1e-3));
+        }
+        let spectrum = welch.finish().expect("enough samples");
+        let slow = spectrum.points.iter().filter(|p| p.x < 5.0);
+        let highest = slow.fold(0.0_f64, |high, p| high.max(p.y));
+        assert!((0.85 * 0.26..1.05 * 0.26).contains(&highest), "{highest}");
+    }
 
     #[test]
     fn the_weight_of_a_leg_does_not_leak_into_the_bands() {

@@ -1,5 +1,6 @@
 //! How a verb fails: the text a person reads and the exit code a script reads.
 
+use crate::safe_text::{message, visible};
 use serde_json::json;
 use std::fmt::Display;
 use std::io;
@@ -26,30 +27,57 @@ impl Failure {
         Self::Input(error.to_string())
     }
 
-    /// The work failed at `path`.
+    /// The work failed at `path`; a place where this user may not work is bad
+    /// input.
     pub(crate) fn at(path: &Path, doing: &str, error: &io::Error) -> Self {
-        Self::Work(format!("{}: {doing}: {error}", path.display()))
+        let told = format!("{}: {doing}: {error}", path.display());
+        match error.kind() {
+            io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+                Self::Input(told)
+            }
+            _ => Self::Work(told),
+        }
     }
 
     /// Says what was wrong and gives the exit code.
     pub(crate) fn report(&self, json: bool) -> ExitCode {
-        let (message, code) = match self {
-            Self::Input(message) => (message, 2),
-            Self::Work(message) => (message, 1),
+        let (told, code) = match self {
+            Self::Input(told) => (message(told), 2),
+            Self::Work(told) => (message(told), 1),
             Self::Negative | Self::NoReader => return ExitCode::from(1),
         };
         if json {
             // Where stdout is gone, the exit code is all that is left.
-            let _ = print_json(&json!({ "error": { "message": message, "exit_code": code } }));
+            let _ = print_json(&json!({ "error": { "message": told, "exit_code": code } }));
         } else {
-            eprintln!("error: {message}");
+            eprintln!("error: {told}");
         }
         ExitCode::from(code)
     }
 }
 
+/// Says on stderr what was odd.
+pub(crate) fn warn(warning: impl Display) {
+    eprintln!("warning: {}", message(&warning.to_string()));
+}
+
+/// What was wrong with the command line, as the library that reads it says it;
+/// in our words where it would repeat what a terminal obeys, or much.
+pub(crate) fn usage(error: &clap::Error) -> ExitCode {
+    let told = error.render().to_string();
+    if !error.use_stderr() || message(&told) == told {
+        error.exit();
+    }
+    eprint!("{}", message(&told));
+    ExitCode::from(2)
+}
+
 /// Writes text to stdout; a reader that has gone is a failure, not a panic.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    write(&visible(text))
+}
+
+fn write(text: &str) -> Result<(), Failure> {
     use io::Write;
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes())
@@ -61,5 +89,6 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|e| Failure::Work(format!("cannot be written as JSON: {e}")))?;
-    print(&(text + "\n"))
+    // Its strings are escaped as JSON wants it.
+    write(&(text + "\n"))
 }

@@ -6,6 +6,8 @@ use crate::shipped;
 use crate::simulated::Simulated;
 use crepitus_client::discovery::{self, Device, DeviceKind};
 use crepitus_client::{Client, Error, Management, Serial, Transport, TransportError};
+use crepitus_protocol::ValueError;
+use crepitus_protocol::host::Refusal;
 use crepitus_scene::Overrides;
 use std::time::Duration;
 
@@ -41,13 +43,29 @@ pub(crate) fn manage(arguments: &DeviceArguments) -> Result<Management<Line>, Fa
     Ok(Management::new(open(arguments)?))
 }
 
-/// What a device did not do is work that failed.
+/// What a device did not do is work that failed; values that it would never
+/// take, and parameters that there are not, are bad input.
 #[expect(
     clippy::needless_pass_by_value,
     reason = "used where errors are mapped"
 )]
 pub(crate) fn failure(error: Error) -> Failure {
-    Failure::Work(error.to_string())
+    let told = error.to_string();
+    match error {
+        Error::UnknownParameter { .. } => Failure::Input(told),
+        Error::Refused(refused)
+            if matches!(
+                refused.refusal,
+                Refusal::Values(ValueError::NeedsDisarmed { .. })
+            ) =>
+        {
+            Failure::Work(told)
+        }
+        Error::Refused(refused) if matches!(refused.refusal, Refusal::Values(_)) => {
+            Failure::Input(told)
+        }
+        _ => Failure::Work(told),
+    }
 }
 
 fn serial(port: &str) -> Result<Serial, Failure> {

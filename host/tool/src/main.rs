@@ -8,6 +8,7 @@ mod keys;
 mod line;
 mod progress;
 mod recorded;
+mod safe_text;
 mod sections;
 mod shipped;
 mod simulated;
@@ -21,7 +22,10 @@ use cli::{Cli, Verb};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return failure::usage(&error),
+    };
     let result = match &cli.verb {
         Verb::Demo(arguments) => verbs::demo::demo(arguments, cli.json),
         Verb::Devices => verbs::devices::devices(cli.json),

@@ -9,7 +9,7 @@ mod summary;
 mod table;
 
 use crate::cli::EffectsArguments;
-use crate::failure::{Failure, print, print_json};
+use crate::failure::{Failure, print, print_json, warn};
 use crate::shipped;
 use crate::studying::{self, Interrupted, Watch};
 use crepitus_scene::output::Folder;
@@ -43,7 +43,7 @@ pub(crate) fn effects(arguments: &EffectsArguments, as_json: bool) -> Result<(),
         return print_json(&json!({ "out": out, "summary": summary }));
     }
     for warning in study.warnings.iter().chain(&summary::unsteady(&study)) {
-        eprintln!("warning: {warning}");
+        warn(warning);
     }
     let answer = study.answer.as_ref().map_or_else(String::new, |answer| {
         format!("\n{}", smallest::words(answer))

@@ -5,7 +5,7 @@ mod tables;
 mod watch;
 
 use crate::cli::RunArguments;
-use crate::failure::{Failure, print, print_json};
+use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
 use crate::shipped;
 use crepitus_model::Restart;
@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &RunArguments, as_json: bool) -> Result<(), Failure
         return print_json(&json!({ "out": out, "summary": summary }));
     }
     for warning in &summary.warnings {
-        eprintln!("warning: {warning}");
+        warn(warning);
     }
     print(&format!(
         "{}\n{}\nreport: {}\n",

@@ -6,10 +6,9 @@ use crate::following::{Follower, follow};
 use crate::line::{Line, connect, failure};
 use crate::status_line::StatusLine;
 use crepitus_client::Client;
-use crepitus_protocol::telemetry::{Block, SampleFlags};
+use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, TICKS_PER_S};
-use crepitus_recording::{COLUMNS, Row, Samples};
-use serde_json::json;
+use crepitus_recording::{COLUMNS, Samples};
 
 /// Streams.
 pub(crate) fn stream(arguments: &StreamArguments, as_json: bool) -> Result<(), Failure> {
@@ -70,7 +69,7 @@ impl Follower for Printing {
             match self.format {
                 SampleFormat::Csv => row.append_to(&mut self.text),
                 SampleFormat::Jsonl => {
-                    self.text.push_str(&object(&row).to_string());
+                    self.text.push_str(&row.to_json().to_string());
                     self.text.push('\n');
                 }
             }
@@ -85,25 +84,4 @@ impl Follower for Printing {
         self.status.show(client.accounting());
         Ok(false)
     }
-}
-
-fn object(row: &Row) -> serde_json::Value {
-    json!({
-        "tick": row.tick,
-        "t_s": row.time_s,
-        "count": row.count,
-        "angle_rad": row.angle_rad,
-        "omega_rad_s": row.omega_rad_s,
-        "phase": match row.flags.phase_sign() { 0 => "stick", 1.. => "slip+", _ => "slip-" },
-        "break": row.flags.has(SampleFlags::BREAK),
-        "stick": row.flags.has(SampleFlags::STICK),
-        "model_torque_nm": row.model_torque_nm,
-        "torque_nm": row.torque_nm,
-        "current_a": row.current_a,
-        "revision": row.revision,
-        "limit": row.flags.limit().name(),
-        "settling": row.flags.has(SampleFlags::SETTLING),
-        "lost": row.flags.has(SampleFlags::LOST),
-        "late": row.flags.has(SampleFlags::LATE),
-    })
 }
