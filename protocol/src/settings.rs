@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn what_the_turn_back_guard_cannot_guard_is_refused() {
-        let with = |changes: &[(u16, f64)]| {
+        let with = |changes: &[(u8, f64)]| {
             let mut values = Values::default();
             for &(id, value) in changes {
                 values.set(id, value);

@@ -61,17 +61,6 @@ pub(crate) fn warn(warning: impl Display) {
     eprintln!("warning: {}", message(&warning.to_string()));
 }
 
-/// What was wrong with the command line, as the library that reads it says it;
-/// in our words where it would repeat what a terminal obeys, or much.
-pub(crate) fn usage(error: &clap::Error) -> ExitCode {
-    let told = error.render().to_string();
-    if !error.use_stderr() || message(&told) == told {
-        error.exit();
-    }
-    eprint!("{}", message(&told));
-    ExitCode::from(2)
-}
-
 /// Writes text to stdout; a reader that has gone is a failure, not a panic.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     write(&visible(text))

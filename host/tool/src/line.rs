@@ -45,26 +45,21 @@ pub(crate) fn manage(arguments: &DeviceArguments) -> Result<Management<Line>, Fa
 
 /// What a device did not do is work that failed; values that it would never
 /// take, and parameters that there are not, are bad input.
-#[expect(
-    clippy::needless_pass_by_value,
-    reason = "used where errors are mapped"
-)]
 pub(crate) fn failure(error: Error) -> Failure {
     let told = error.to_string();
-    match error {
-        Error::UnknownParameter { .. } => Failure::Input(told),
-        Error::Refused(refused)
-            if matches!(
-                refused.refusal,
-                Refusal::Values(ValueError::NeedsDisarmed { .. })
-            ) =>
-        {
-            Failure::Work(told)
-        }
-        Error::Refused(refused) if matches!(refused.refusal, Refusal::Values(_)) => {
-            Failure::Input(told)
-        }
-        _ => Failure::Work(told),
+    let is_input = match error {
+        Error::UnknownParameter { .. } => true,
+        Error::Refused(refused) => match refused.refusal {
+            Refusal::Values(ValueError::NeedsDisarmed { .. }) => false,
+            Refusal::Values(_) => true,
+            _ => false,
+        },
+        _ => false,
+    };
+    if is_input {
+        Failure::Input(told)
+    } else {
+        Failure::Work(told)
     }
 }
 

@@ -19,13 +19,15 @@ mod verbs;
 
 use clap::Parser;
 use cli::{Cli, Verb};
+use std::env;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
-        Err(error) => return failure::usage(&error),
-    };
+    let cli = Cli::try_parse().unwrap_or_else(|error| {
+        // The library repeats what it does not understand.
+        let shown = env::args_os().map(|argument| safe_text::message(&argument.to_string_lossy()));
+        Cli::try_parse_from(shown).err().unwrap_or(error).exit()
+    });
     let result = match &cli.verb {
         Verb::Demo(arguments) => verbs::demo::demo(arguments, cli.json),
         Verb::Devices => verbs::devices::devices(cli.json),

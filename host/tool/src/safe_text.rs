@@ -32,10 +32,25 @@ fn is_hidden(c: char) -> bool {
     turns || (c.is_control() && !matches!(c, '\n' | '\t'))
 }
 
-/// A message: [`visible`], with long words and quotations cut.
+/// A message: [`visible`], with long words and quotations cut, and what this
+/// program was called with.
 pub(crate) fn message(text: &str) -> String {
+    let arguments = std::env::args_os().map(|argument| argument.to_string_lossy().into_owned());
+    brief(text, arguments)
+}
+
+fn brief(text: &str, arguments: impl Iterator<Item = String>) -> String {
+    let mut text = text.to_owned();
+    for argument in arguments {
+        for part in argument.split('=').chain([argument.as_str()]) {
+            let part = part.trim();
+            if part.chars().count() > LONGEST {
+                text = text.replace(part, &cut(part));
+            }
+        }
+    }
     let mut brief = String::with_capacity(text.len());
-    let mut rest = text;
+    let mut rest = text.as_str();
     while let Some(first) = rest.chars().next() {
         let (part, more) = match first {
             '"' | '`' => {
@@ -88,6 +103,15 @@ mod tests {
             assert!(told.len() < 250, "{told}");
             assert!(told.ends_with("characters) is not allowed"), "{told}");
         }
+        // A path needs no quotation marks.
+        let told = brief(
+            &format!("{words}: cannot be read"),
+            [words.clone(), format!("--set=a.{words}")].into_iter(),
+        );
+        assert!(
+            told.len() < 250 && told.ends_with("cannot be read"),
+            "{told}"
+        );
         // An open quotation is one up to the end.
         assert!(message(&format!("\"{words}")).len() < 250);
         let short = "scene.toml, line 4: `device`: \"reference\" has no step";

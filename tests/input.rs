@@ -1,0 +1,139 @@
+//! What a hurried or a hostile person puts in: escapes, endless words, places
+//! where nobody may write, values beyond their range.
+
+mod support;
+
+use std::process::Output;
+use support::{run, stderr, stdout};
+
+const ESCAPE: char = '\u{1b}';
+
+fn refused(output: &Output) -> String {
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(output));
+    let told = stderr(output);
+    assert!(!told.contains(ESCAPE), "{told:?}");
+    told
+}
+
+#[test]
+fn what_a_terminal_would_obey_is_shown() {
+    let home = tempfile::tempdir().unwrap();
+    let scene = home.path().join("scene.toml");
+    let text = "version = 1\ntitle = \"red \\u001b[31m title\"\nduration_s = 0.1\n\
+        [motion]\nkind = \"constant\"\nvelocity_rad_s = 1.0\n\
+        [solver]\nkind = \"exact\"\nstep_s = 1e-3\n[effects.crepitus]\n";
+    std::fs::write(&scene, text).unwrap();
+    let out = home.path().join("out");
+    let (scene, out) = (scene.to_str().unwrap(), out.to_str().unwrap());
+    let ran = run(&["run", scene, "--out", out]);
+    assert_eq!(ran.status.code(), Some(0), "{}", stderr(&ran));
+    let told = stdout(&ran);
+    assert!(
+        told.contains("red \\u{1b}[31m title") && !told.contains(ESCAPE),
+        "{told:?}"
+    );
+
+    let bad = "\u{1b}[2J";
+    for arguments in [
+        &["run", bad][..],
+        &["run", scene, "--set", &format!("effects.crepitus.{bad}=1")],
+        &["stability", "--case", bad],
+        &["params", "set", &format!("{bad}=1"), "--device", "sim"],
+        &[
+            "params",
+            "set",
+            &format!("crepitus.restart={bad}"),
+            "--device",
+            "sim",
+        ],
+        &["info", "--device", bad],
+        &[bad],
+        &["--json", "run", scene, bad],
+    ] {
+        let told = refused(&run(arguments));
+        assert!(
+            told.contains("u{1b}") || told.contains("u001b"),
+            "{arguments:?}: {told}"
+        );
+    }
+}
+
+#[test]
+fn no_input_is_repeated_at_length() {
+    let long = "x".repeat(5_000);
+    let words = "several words ".repeat(400);
+    for input in [&long, &words] {
+        for arguments in [
+            &["run", input.as_str()][..],
+            &["run", "fig6-ideal-cycle", "--set", input],
+            &[
+                "run",
+                "fig6-ideal-cycle",
+                "--set",
+                &format!("title.{input}=1"),
+            ],
+            &["stability", "--case", input],
+            &["accuracy", "--need", input],
+            &["params", "get", input, "--device", "sim"],
+            &["info", "--device", input],
+            &[input],
+        ] {
+            let told = refused(&run(arguments));
+            let verb = arguments
+                .first()
+                .map_or("", |verb| verb.get(..9.min(verb.len())).unwrap_or(""));
+            assert!(
+                told.chars().count() < 1_500,
+                "{verb}: {} characters\n{told}",
+                told.len()
+            );
+            for line in told.lines() {
+                assert!(!line.contains(&"x".repeat(201)), "{verb}: {line}");
+            }
+        }
+    }
+}
+
+#[test]
+fn where_nobody_may_write_and_what_no_device_takes_is_bad_input() {
+    // Not even root may make a folder there.
+    #[cfg(target_os = "linux")]
+    for arguments in [
+        &["run", "fig6-ideal-cycle", "--out", "/sys/kernel/crepitus"][..],
+        &[
+            "stability",
+            "--case",
+            "H05",
+            "--out",
+            "/sys/kernel/crepitus",
+        ],
+        &[
+            "record",
+            "--device",
+            "sim",
+            "--for",
+            "0.1s",
+            "/sys/kernel/crepitus",
+        ],
+    ] {
+        let told = refused(&run(arguments));
+        assert!(told.contains("/sys/kernel/crepitus"), "{told}");
+    }
+    for (name, value) in [
+        ("crepitus.static_torque_nm", "9"),
+        ("friction-compensation.share", "0.95"),
+        ("crepitus.kinetic_torque_nm", "0.5"),
+        ("crepitus.stiffness_nm_per_rad", "4000"),
+        ("crepitus.nothing", "1"),
+        ("crepitus.restart", "sideways"),
+    ] {
+        let told = refused(&run(&[
+            "params",
+            "set",
+            &format!("{name}={value}"),
+            "--device",
+            "sim",
+        ]));
+        assert!(told.contains(name), "{told}");
+    }
+}
