@@ -70,7 +70,7 @@ pub(super) fn precisions() -> Case {
                the same event, in the same order. f64 alone is asked two of them: damping at \
                1 ± 1e-6 of critical (H11 asks 1 ± 1e-3), and Ts = 1.0001 Tk, whose sticks of 150 ns are the noise \
                of its matches.",
-        source: "numerics report, section 2; tests/reference-cases, computed with 50 digits",
+        source: "tests/reference-cases, computed with 50 digits",
         long: false,
         must: located,
         trials: |subject| {
@@ -102,7 +102,7 @@ pub(super) fn golden() -> Case {
                are the numbers that the firmware must reproduce. It does: the same runs on an emulated STM32F405 \
                (`cargo test -p crepitus-emulator --test ladder golden`) give these hashes, and QEMU goes through \
                the same instructions.",
-        source: "numerics report, section 2; the hashes are of this model's own torques",
+        source: "the hashes are of this model's own torques",
         long: false,
         must: located,
         trials: |subject| {

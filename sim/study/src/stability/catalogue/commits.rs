@@ -163,7 +163,7 @@ pub(super) fn commits_while_blind() -> Case {
         title: "A commit every tick while samples are lost",
         hard: "Each commit begins a ramp before the last one has ended, some in the tick after a break, some while the \
                torque is held. Commits of the numbers in force must change nothing, to the bit.",
-        source: "a commit is one atomic exchange; DESIGN, The device",
+        source: "docs/stability.md, Energy from nowhere: a commit is one atomic exchange",
         long: false,
         must: located,
         trials: |subject| {

@@ -16,7 +16,8 @@ pub(super) fn near_critical_damping() -> Case {
         hard: "Below it the object still catches up with the shaft, above it no more: the velocities graze, and a \
                search for a change of sign sees neither. Damping of the method's own, −ωn·h/2 or +ωn·h/2 for the \
                Eulers, decides alone.",
-        source: "numerics report, sections 1.6 and 2 (1 ± 1e-6); 1 ± 1e-3 for f32, whose own numbers are 6e-8 apart",
+        source: "one slip's energy balance, tests/reference-cases, m23, on both sides of it (1 ± 1e-6); \
+                 1 ± 1e-3 for f32, whose own numbers are 6e-8 apart",
         long: false,
         must: located,
         trials: |subject| {
@@ -78,7 +79,7 @@ pub(super) fn strong_damping() -> Case {
         title: "Damping ratio 0.02: slides for ever after one break",
         hard: "The object's motion decays through all exponents into subnormal numbers. A method with negative \
                damping of its own rings instead, and sticks again.",
-        source: "numerics report, section 2",
+        source: "tests/reference-cases, e18, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {

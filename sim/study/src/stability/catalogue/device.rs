@@ -18,7 +18,7 @@ pub(super) fn impossible_samples() -> Case {
         hard: "One NaN in a state is a NaN for ever. A sample passes a check before the joint sees it; what does not \
                pass is counted, the torque is held for 20 ticks and then let go of at 100 N·m/s, and up to three \
                missing ticks are made up for afterwards, so that the cycles stay on time.",
-        source: "numerics report, section 2; the device's limits are 50 rad/s and 10 rad/s in a tick",
+        source: "model/src/render/input_check.rs: the device's limits are 50 rad/s and 10 rad/s in a tick",
         long: false,
         must: located,
         trials: |subject| {
@@ -56,9 +56,9 @@ pub(super) fn gap() -> Case {
         name: "gap",
         title: "No sample for a tenth of a second while the shaft moves on",
         hard: "What the shaft did meanwhile cannot be known. The torque has been let go of; the joint goes on in a new \
-               stick, from the torque that is shown, so that nothing jumps. Later events are those of a joint that \
-               was put down there.",
-        source: "numerics report, section 2: no torque step above Ts − (2Tk − Ts), a valid phase at the end",
+               stick, from the torque that is shown, and the torque goes on from there. Later events are those of a joint \
+               that was put down there.",
+        source: "model/src/render/held.rs: no torque step above Ts − (2Tk − Ts), a valid phase at the end",
         long: false,
         must: located,
         trials: |subject| {
@@ -102,7 +102,7 @@ pub(super) fn parameter_changes() -> Case {
                0.32 J and shows 16 N·m. A commit is a ramp: torques keep the slew limit, θ is scaled so that stored \
                energy never rises, and |T| is at most the static limit in force at every tick. Frozen only: it is \
                what the device renders and changes under way.",
-        source: "numerics report, section 2; DESIGN, The device",
+        source: "docs/stability.md, Energy from nowhere",
         long: false,
         must: located,
         trials: |subject| {
@@ -178,7 +178,7 @@ pub(super) fn shaking_hand() -> Case {
                and a sampled spring gives back more than it took. With the turn-back guard all that returns is what \
                the spring held and what sampling gives away, also with the torque one or two ticks late. An encoder's \
                staircase holds half a count more at the limit, Ts·Δ/2.",
-        source: "DESIGN, The device; measured with an energy observer",
+        source: "docs/stability.md, A hand that turns back; measured with an energy observer",
         long: false,
         must: located,
         trials: |subject| {

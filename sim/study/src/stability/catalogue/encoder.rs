@@ -7,8 +7,6 @@ use crate::stability::input::{Input, Shaft};
 use crate::stability::subject::Subject;
 use crepitus_model::{Convention, Parameters};
 
-const NUMERICS: &str = "numerics report, section 2";
-
 /// Counts of 10⁴ turns of the joint: 86 motor turns each of 4 · 512.
 const TEN_THOUSAND_TURNS: i32 = 10_000 * 86 * 2048;
 
@@ -30,7 +28,7 @@ pub(super) fn counter_wrap() -> Case {
         title: "The counter wraps, and the joint has made ten thousand turns",
         hard: "An angle of 10⁴ turns has steps of 4 mrad in f32, four times the whole travel of a stick: angles may \
                only travel as differences of counts, and those must survive the wrap of the counter.",
-        source: NUMERICS,
+        source: "a counter of 32 bits wraps; at 1e4 rad an f32 has steps of 0.98 mrad, a whole stick",
         long: false,
         must: located,
         trials: |subject| {
@@ -104,7 +102,7 @@ pub(super) fn quantised_velocity() -> Case {
                estimate, and its slope at every count is steeper than (Ts − Tk)/J. Frozen looks at Ω once a cycle. \
                Under paper and physical a slip ends where the noise meets the object's velocity, and the overlap \
                to meet in is 0.5 % at 1 rad/s: these are shown, and not required to hold.",
-        source: "numerics report, section 2; the estimator that ships, bandwidth 50 Hz",
+        source: "closed form of the cycle; the estimator that ships, bandwidth 50 Hz",
         long: false,
         must: frozen_located,
         trials: |subject| {
@@ -139,7 +137,7 @@ pub(super) fn jitter_and_loss() -> Case {
                next: the angle stays exact, the velocity gets noise that grows with the speed. A lost reading is \
                made up for by the next one, which has travelled twice as far: angle and time stay exact, and only \
                the torque stands still for a tick.",
-        source: NUMERICS,
+        source: "closed form of the cycle; an angle that is counted is not lost with a reading",
         long: false,
         must: frozen_located,
         trials: |subject| {
@@ -174,8 +172,7 @@ pub(super) fn hand() -> Case {
                This is no fault of the joint but of sampling, and the run must show it as theory has it: below the \
                limit of Colgate and Schenkel the swing grows, above it decays. Physical adds the object's inertia \
                to the loop and is left out.",
-        source: "numerics report, sections 2 (×1.28 and ×0.78) and 2.1; numbers from the eigenvalues of the exact \
-                 discrete loop, over 2.5 s",
+        source: "Colgate and Schenkel 1997, b > K·T/2; numbers from the eigenvalues of the exact discrete loop, over 2.5 s",
         long: false,
         must: located,
         trials: |subject| {

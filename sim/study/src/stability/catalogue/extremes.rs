@@ -7,8 +7,6 @@ use crate::stability::input::{Input, Shaft};
 use crate::stability::subject::Subject;
 use crepitus_model::{Convention, Real};
 
-const NUMERICS: &str = "numerics report, section 2";
-
 pub(super) fn stiff() -> Case {
     Case {
         id: "H13",
@@ -16,7 +14,7 @@ pub(super) fn stiff() -> Case {
         title: "ωn·h = 3.16: two steps a cycle",
         hard: "The object swings faster than the step. Explicit methods blow up above ωn·h = 2, implicit Euler \
                damps the swing away, and who looks at the ends of steps only sees one cycle in twenty.",
-        source: NUMERICS,
+        source: "tests/reference-cases, k15, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {
@@ -45,7 +43,7 @@ pub(super) fn light() -> Case {
         title: "Hardly any inertia: J = 1e-9 and 1e-12 kg·m²",
         hard: "A slip lasts 160 ns to 5 µs, far less than a step, and 1/J is 1e12: in the limit the angle jumps. \
                Accelerations of 2e11 rad/s² must not overflow, nor their squares.",
-        source: NUMERICS,
+        source: "J → 0: a slip takes no time and ends at 2Tk − Ts; tests/reference-cases, j21, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {
@@ -81,7 +79,7 @@ pub(super) fn soft_and_strong() -> Case {
         title: "A soft spring, a very soft one, and a million newton metres",
         hard: "A stick winds up by 400 or 2500 rad in steps of 1 mrad: in f32 a plain sum stands still once the \
                step is half its last digit, and the break comes late or never.",
-        source: NUMERICS,
+        source: "tests/reference-cases, l16, with 50 digits; closed form of the cycle",
         long: false,
         must: located,
         trials: |subject| {
@@ -129,7 +127,7 @@ pub(super) fn storm() -> Case {
         title: "A shaft without memory: white velocity of ±50 rad/s",
         hard: "A broken sensor looks like this. Accelerations of 2e6 rad/s² and jumps at every fourth step lead \
                through every branch; the work of a step must stay bounded, and no number may be lost.",
-        source: NUMERICS,
+        source: "what holds for any motion: |T| ≤ Ts, at most 8 events a step, no number that is none",
         long: false,
         must: located,
         trials: |subject| storm_trials(subject, 1..=2, 5.0),
@@ -155,7 +153,7 @@ pub(super) fn high_speed() -> Case {
         hard: "A stick lasts a nanosecond, and v² + ωn²x² is 1e12. Under paper and physical the velocities overlap \
                by λ²/2 = 5e-15 of the speed, which no number of f32 and few of f64 can hold: there it is only \
                asked to survive. A frozen slip must last the whole period 2π/ωn.",
-        source: NUMERICS,
+        source: "what holds for any motion: |T| ≤ Ts; a slip of any speed lasts less than 2π/ωn",
         long: false,
         must: located,
         trials: |subject| {

@@ -13,7 +13,7 @@ pub(super) fn steps() -> Case {
         title: "Steps of no length, of negative length, of no number",
         hard: "A step of zero divides by zero, a negative one runs time backwards, and NaN passes every comparison \
                that is written the wrong way round. After 1000 s a joint of the paper has seen 31,831 cycles in one step.",
-        source: "numerics report, section 2",
+        source: "the documented errors of Active and of a step",
         long: false,
         must: located,
         trials: |subject| {
@@ -47,7 +47,7 @@ pub(super) fn parameters() -> Case {
         title: "Parameters that make no joint",
         hard: "A spring or an inertia of zero divides by zero, Tk above Ts turns the drop into a push, negative \
                damping feeds the swing, and NaN slips through a check that asks whether a value is too large.",
-        source: "numerics report, section 2",
+        source: "the documented errors of Settings",
         long: false,
         must: located,
         trials: |subject| {

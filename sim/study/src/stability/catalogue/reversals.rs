@@ -9,8 +9,6 @@ use crate::stability::criterion::{Counted, Criterion, Limits};
 use crate::stability::input::Shaft;
 use crepitus_model::{Convention, Parameters};
 
-const NUMERICS: &str = "numerics report, section 2";
-
 /// Torque after an event on a motion that the steps describe exactly.
 const TORQUE: Criterion = Criterion::EventTorques {
     within_nm: Limits {
@@ -26,7 +24,7 @@ pub(super) fn dwell() -> Case {
         title: "Dwells at exactly zero speed, then turns back",
         hard: "Ω = 0 is neither sign: a slip that runs on must end by itself, a stick must hold, and the first \
                movement after the dwell decides the sense.",
-        source: NUMERICS,
+        source: "tests/reference-cases, x22 and x22z, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {
@@ -44,7 +42,7 @@ pub(super) fn reversal_in_stick() -> Case {
         title: "Turns back inside a stick, and never leaves it",
         hard: "In a stick the object follows by position. One that integrates velocity drifts, and its loop of \
                torque over angle does not close; near the limit the turn can be a break and its undoing in one step.",
-        source: NUMERICS,
+        source: "tests/reference-cases, r11 and p12, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {
@@ -90,7 +88,7 @@ pub(super) fn velocity_jumps() -> Case {
         title: "Ω jumps by half a radian per second",
         hard: "A jump tears a stick loose whatever its torque, and can throw a slip into the other sense at once; \
                the event belongs to the instant of the jump and the torque to the new sense.",
-        source: NUMERICS,
+        source: "tests/reference-cases, q10, q10p and q10z, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {
@@ -111,7 +109,7 @@ pub(super) fn through_zero() -> Case {
         title: "Ω passes zero during a slip",
         hard: "Friction follows the velocity relative to the object, not the shaft's: who looks at the sign of Ω \
                turns the torque round too early.",
-        source: NUMERICS,
+        source: "tests/reference-cases, t09, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {
@@ -142,7 +140,7 @@ pub(super) fn fast_swing() -> Case {
         title: "45° at 2 Hz: the inertia alone exceeds Ts",
         hard: "J·Ω̇ is above Ts from the first instant, so there is no stick to start from, and a velocity match \
                asks for three times what stick can hold: it must reverse, and never show it.",
-        source: NUMERICS,
+        source: "tests/reference-cases, f19 and f19s, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {
@@ -167,7 +165,7 @@ pub(super) fn sudden_stop() -> Case {
         title: "1 rad/s stops within 50 ms",
         hard: "The object keeps √(J·kr)·Ω = 2 N·m of swing, and the match asks stick for 1.6 N·m, four times Ts. \
                What is shown must stay within Ts, and the ringing must end.",
-        source: NUMERICS,
+        source: "tests/reference-cases, g20 and g20z, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {
@@ -207,7 +205,7 @@ pub(super) fn hard_braking() -> Case {
         hard: "The paper's torque leaves the inertia out, so a stick breaks although the object would at once be \
                faster than the shaft: it sticks again in the same instant, without end (Zeno). An encoder's \
                velocity brakes so hard at every count.",
-        source: NUMERICS,
+        source: "J·Ω̇ against Ts − Tk in eq. (7)",
         long: false,
         must: located,
         trials: |subject| {

@@ -7,7 +7,6 @@ use crate::stability::input::{Input, Shaft};
 use crate::stability::subject::Subject;
 
 /// Where the catalogue comes from.
-const NUMERICS: &str = "numerics report, section 2";
 
 pub(super) fn constant_speed() -> Case {
     Case {
@@ -16,7 +15,7 @@ pub(super) fn constant_speed() -> Case {
         title: "Constant speed from 0.05 to 3 rad/s",
         hard: "A stick lasts from 20 ms down to 0.33 ms, a slip ends where the velocities touch with an overlap of \
                λ²/2, 0.06 % at 3 rad/s, and each error shifts all events after it.",
-        source: "numerics report, section 2; closed form of section 1.5",
+        source: "tests/reference-cases, c01, c03z and c05, with 50 digits; closed form of the cycle, docs/model.md",
         long: false,
         must: located,
         trials: |subject| {
@@ -47,7 +46,7 @@ pub(super) fn mirror() -> Case {
         title: "The other direction is the mirror image",
         hard: "The paper's equations hold for Ω > 0 only. A comparison with > on one side and ≥ on the other, or a \
                sum in another order, makes flexion and extension differ.",
-        source: NUMERICS,
+        source: "the equations are odd in angle and torque; tests/reference-cases, n06, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {
@@ -101,7 +100,7 @@ pub(super) fn rest() -> Case {
         title: "A shaft at rest, slack and loaded to 0.9 Ts",
         hard: "A regularised friction law creeps under load; rounding that is added each step drifts; a comparison \
                of two zeros can start a slip.",
-        source: NUMERICS,
+        source: "at rest nothing in eqs. (1) to (11) moves",
         long: false,
         must: located,
         trials: |subject| rest_trials(subject, 100.0),
@@ -126,7 +125,7 @@ pub(super) fn equal_torques() -> Case {
         title: "Ts = Tk: breaks once and slides for ever",
         hard: "Once per period the velocities touch without crossing, with the torque exactly at the limit: a root \
                of even multiplicity, where rounding decides between nothing and a stick of no length.",
-        source: NUMERICS,
+        source: "with Ts = Tk a slip takes nothing from the spring; tests/reference-cases, d13, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {
@@ -157,7 +156,7 @@ pub(super) fn nearly_equal_torques() -> Case {
         title: "Ts a millionth above Tk",
         hard: "A stick lasts 1.5 ns, a thirty-thousandth of a step, and in f32 a millionth is eight roundings: the \
                phases must not chatter between two samples.",
-        source: NUMERICS,
+        source: "tests/reference-cases, d14, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {
@@ -187,7 +186,7 @@ pub(super) fn no_kinetic_friction() -> Case {
         title: "Tk = 0: every slip ends exactly at −Ts",
         hard: "The torque that stick needs after a slip is the static limit itself. Without a tolerance rounding \
                turns every stick into a reverse; one built without it counted 636 reverses.",
-        source: NUMERICS,
+        source: "2Tk − Ts = −Ts; tests/reference-cases, z14, with 50 digits",
         long: false,
         must: located,
         trials: |subject| {

@@ -42,8 +42,7 @@ pub(super) fn grazing() -> Case {
         title: "The shaft runs away from the object, just so or just not",
         hard: "At the critical acceleration the velocities touch in a double root. A millionth to either side \
                decides whether there is a stick at all; f32 cannot tell them apart and is only shown.",
-        source: "numerics report, section 2; critical Ω̇ = 0.161328451492413 and 1.51421157788459 rad/s² by bisection \
-                 with 40 digits",
+        source: "critical Ω̇ = 0.161328451492413 and 1.51421157788459 rad/s² by bisection with 40 digits",
         long: false,
         must: |subject| located(subject) && subject.precision == Precision::F64,
         trials: |subject| {
@@ -78,7 +77,7 @@ pub(super) fn simultaneous() -> Case {
         title: "A break exactly on a sample, on a knot, on a jump, and as the shaft stops",
         hard: "Two events at one instant: rounding puts the break on either side of the sample, and each side \
                could report it, or neither. Which side it is may differ; how often must not.",
-        source: "numerics report, section 2",
+        source: "an event on a boundary is recorded once, whichever side it falls on",
         long: false,
         must: located,
         trials: |subject: Subject| {
