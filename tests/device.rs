@@ -79,7 +79,7 @@ fn what_is_not_allowed_is_refused_with_the_reason() {
     for (arguments, code, parts) in [
         (
             &["params", "set", "crepitus.static_torque_nm=0.1"][..],
-            1,
+            2,
             &[
                 "kinetic_torque_nm",
                 "static_torque_nm",
