@@ -167,6 +167,26 @@ impl Motion {
         }
     }
 
+    /// As [`Self::piece`], for one who goes on from piece to piece: `place` is
+    /// where the last one was found, 0 to begin with, and is kept.
+    pub fn piece_from(&self, time_s: f64, place: &mut usize) -> Piece {
+        if let Self::Sequence(pieces) = self
+            && let Some([next, after @ ..]) = pieces.get(*place + 1..)
+            && next.start_s <= time_s
+            && after.first().is_none_or(|after| time_s < after.start_s)
+        {
+            *place += 1;
+            return *next;
+        }
+        let piece = self.piece(time_s);
+        if let Self::Sequence(pieces) = self {
+            *place = pieces
+                .partition_point(|p| p.start_s <= time_s)
+                .saturating_sub(1);
+        }
+        piece
+    }
+
     /// The shaft just after `time_s`.
     pub fn at(&self, time_s: f64) -> ShaftState {
         self.piece(time_s).at(time_s)
@@ -227,6 +247,28 @@ impl Strokes {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn who_goes_on_finds_the_same_pieces_from_anywhere() {
+        let piece = |start_s: f64, end_s: f64| Piece {
+            start_s,
+            end_s,
+            jump: false,
+            curve: Curve::Polynomial([start_s, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        };
+        let knots = [0.0, 0.0, 1.0, 1.5, 1.5, 4.0, f64::INFINITY];
+        let pieces = knots.windows(2).map(|w| piece(w[0], w[1]));
+        let motion = Motion::Sequence(pieces.collect());
+        for from in 0..8 {
+            for time_s in [0.0, 0.5, 1.0, 1.5, 2.0, 4.0, 9.0, -1.0] {
+                let mut place = from;
+                let found = motion.piece_from(time_s, &mut place);
+                assert_eq!(found, motion.piece(time_s), "{from}, {time_s}");
+                // And again, from where it was found.
+                assert_eq!(motion.piece_from(time_s, &mut place), found);
+            }
+        }
+    }
 
     #[test]
     fn strokes_reach_their_ends_and_their_peak_speed() {

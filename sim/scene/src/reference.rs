@@ -53,6 +53,8 @@ pub struct Reference<'a> {
     natural_rad_s: f64,
     impedance: f64,
     piece: Piece,
+    /// Where the motion has it.
+    piece_place: usize,
     time_s: f64,
     /// The shaft now; just after a knot, at it.
     now: ShaftState,
@@ -109,6 +111,7 @@ impl<'a> Reference<'a> {
             steady: None,
             frozen: (f64::NAN, f64::NAN),
             piece,
+            piece_place: 0,
             time_s: 0.0,
             now: piece.at(0.0),
             before_piece: piece.at(0.0),
@@ -150,7 +153,9 @@ impl<'a> Reference<'a> {
                 return ControlFlow::Continue(());
             }
             self.before_piece = self.now;
-            self.piece = self.motion.piece(self.piece.end_s);
+            self.piece = self
+                .motion
+                .piece_from(self.piece.end_s, &mut self.piece_place);
             self.now = self.piece.at(self.time_s);
             self.repeat = None;
             self.ahead = Ahead::from(self.time_s);
@@ -201,6 +206,8 @@ impl<'a> Reference<'a> {
         }
     }
 
+    /// A call: inside [`Self::follow`] it would take its registers.
+    #[inline(never)]
     fn go_to(&mut self, time_s: f64) {
         self.time_s = time_s;
         self.now = self.piece.at(time_s);
@@ -285,7 +292,8 @@ impl<'a> Reference<'a> {
         torque_nm.min(limit).max(-limit)
     }
 
-    /// (x, v) of a slip.
+    /// (x, v) of a slip. A call, as [`Self::go_to`].
+    #[inline(never)]
     fn swing(&self, slip: &Slip, time_s: f64) -> (f64, f64) {
         self.swing.after(slip.x, slip.v, time_s - slip.start_s)
     }

@@ -47,6 +47,7 @@ impl Ahead {
 impl Reference<'_> {
     /// The end of the present phase, if it is not after `horizon_s`, which is
     /// within the piece.
+    #[inline(never)]
     pub(super) fn look_ahead<B>(
         &mut self,
         horizon_s: f64,

@@ -63,10 +63,18 @@ impl Reference<'_> {
         }
         let slack = self.limit_slack_nm(&self.now);
         first_root(from_s, to_s, Touch::Passes, poll, |time_s| {
-            let shaft = self.piece.at(time_s);
-            let (torque, rate) = self.torque_and_rate(anchor, inertial, &shaft);
+            let (phi_rad, torque, rate) = if inertial {
+                let shaft = self.piece.at(time_s);
+                let (torque, rate) = self.torque_and_rate(anchor, true, &shaft);
+                (shaft.phi_rad, torque, rate)
+            } else {
+                // The spring asks for no acceleration.
+                let (phi_rad, omega_rad_s) = self.piece.angle_and_velocity(time_s);
+                let (theta, phi) = anchor;
+                (phi_rad, kr * (theta + (phi_rad - phi)), kr * omega_rad_s)
+            };
             // The angle is rounded, too.
-            let noise = 2.0 * f64::EPSILON * (limit_nm + torque.abs() + kr * shaft.phi_rad.abs());
+            let noise = 2.0 * f64::EPSILON * (limit_nm + torque.abs() + kr * phi_rad.abs());
             Sample {
                 value: limit_nm - sense.of_signed(torque),
                 slope: -sense.of_signed(rate),

@@ -6,8 +6,6 @@ use crate::stability::criterion::{Counted, Criterion, Limits};
 use crate::stability::input::{Input, Shaft};
 use crate::stability::subject::Subject;
 
-/// Where the catalogue comes from.
-
 pub(super) fn constant_speed() -> Case {
     Case {
         id: "H01",
