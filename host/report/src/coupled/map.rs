@@ -14,13 +14,14 @@ const LEFT: f64 = 58.0;
 const TOP: f64 = 74.0;
 /// Between panels.
 const GAP: (f64, f64) = (22.0, 40.0);
-const LEGEND: f64 = 70.0;
+const LEGEND: f64 = 92.0;
 
 const STYLE: &str = "svg{font-family:system-ui,-apple-system,\"Segoe UI\",Roboto,\"Noto Sans\",\
 sans-serif;font-size:11px}text{fill:var(--text)}.bold{font-weight:600}.soft{fill:var(--level)}\
 .end{text-anchor:end}.middle{text-anchor:middle}.quiet{fill:var(--quiet)}.settles{fill:var(--settles)}\
 .rings{fill:var(--rings)}.refused{fill:none}.frame{fill:none;stroke:var(--axis)}\
 .criterion{stroke:var(--text);stroke-width:2;fill:none}.linear{stroke-dasharray:3 2}\
+.counts{stroke-width:3.5;stroke-dasharray:1.5 4}.rubbing{stroke-width:1.2;stroke-dasharray:8 3}\
 .own{stroke:var(--text);stroke-width:1;stroke-dasharray:1 2;fill:none}";
 
 const fn colour(name: &'static str, light: &'static str, dark: &'static str) -> Named {
@@ -165,6 +166,12 @@ fn panel(at: (f64, f64), cells: &[Cell], onsets: &[&Onset], is_first: bool) -> M
             @if within(onset.criteria.linear) {
                 path.criterion.linear d=(bar(n, onset.criteria.linear)) { title { "linear, without friction" } }
             }
+            @if within(onset.criteria.abbott_okamura) {
+                path.criterion.counts d=(bar(n, onset.criteria.abbott_okamura)) { title { "Abbott and Okamura" } }
+            }
+            @if within(onset.criteria.diolaiti) {
+                path.criterion.rubbing d=(bar(n, onset.criteria.diolaiti)) { title { "Diolaiti et al." } }
+            }
         }
         rect.frame x=(x0 - 0.5) y=(y0 - 0.5) width=(panel_width()) height=(panel_height()) {}
         @for stiffness in STIFFNESSES.iter().step_by(4) {
@@ -196,6 +203,10 @@ fn legend(y: f64) -> Markup {
         text x="226" y=(y + 32.0) { "linear, without any friction" }
         path.own d=(format!("M408 {}h22", y + 28.0)) {}
         text x="436" y=(y + 32.0) { "fine 320, coarse 400, bone-on-bone 500" }
+        path.criterion.counts d=(format!("M8 {}h22", y + 49.0)) {}
+        text x="36" y=(y + 53.0) { "counts, Abbott and Okamura" }
+        path.criterion.rubbing d=(format!("M198 {}h22", y + 49.0)) {}
+        text x="226" y=(y + 53.0) { "friction left, Diolaiti et al. (where not drawn: beyond the panel)" }
     }
 }
 
