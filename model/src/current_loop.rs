@@ -49,7 +49,7 @@ use crate::real::Real;
 use crate::settings::SettingsError;
 
 settings! {
-    /// What the device believes of its winding, and what it asks of the current.
+    /// Assumed winding parameters, and limits of the current loop.
     pub struct CurrentLoopSettings, group "motor" {} {
         // The largest is a tenth of the tick: beyond, a voltage that is a tick late rings.
         bandwidth_hz {

@@ -38,7 +38,7 @@ settings! {
 }
 
 settings! {
-    /// What the motor is worth at its own shaft.
+    /// Torque constant of the motor.
     pub struct MotorSettings, group "motor" {} {
         torque_constant_nm_per_a {
             id: 25 disarmed,

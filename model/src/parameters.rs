@@ -5,7 +5,7 @@
 use crate::settings::SettingsError;
 use core::cmp::Ordering;
 
-/// What is known about one number.
+/// One numeric parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterSpec {
     /// Name in scene files and on the command line; the unit is part of it.

@@ -75,7 +75,7 @@ pub struct RowError {
 /// The columns that are words; the others are numbers.
 const WORDS: [&str; 4] = ["phase", "event", "limit", "notes"];
 
-/// What notes are called.
+/// Names of the notes.
 const NOTES: [(u16, &str); 3] = [
     (SampleFlags::SETTLING, "settling"),
     (SampleFlags::LOST, "lost"),

@@ -14,7 +14,7 @@ use crepitus_study::coupled::CoupledStudy;
 pub struct CoupledText {
     /// The title of the page.
     pub title: String,
-    /// What was studied and how.
+    /// The study in a few sentences.
     pub intro: String,
     /// The tables, in order.
     pub tables: Vec<Section>,

@@ -43,8 +43,8 @@ pub(crate) fn manage(arguments: &DeviceArguments) -> Result<Management<Line>, Fa
     Ok(Management::new(open(arguments)?))
 }
 
-/// What a device did not do is work that failed; values that it would never
-/// take, and parameters that there are not, are bad input.
+/// A refusal by the device is failed work (exit code 1); values outside its
+/// rules and unknown parameters are bad input (2).
 pub(crate) fn failure(error: Error) -> Failure {
     let told = error.to_string();
     let is_input = match error {

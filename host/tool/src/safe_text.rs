@@ -7,7 +7,7 @@ use std::borrow::Cow;
 /// The most that is repeated of one word, or one quotation, characters.
 const LONGEST: usize = 200;
 
-/// What is kept of a longer one.
+/// Characters kept of a longer one.
 const KEPT: usize = 150;
 
 /// With control characters escaped, but for ends of lines and tabs; and those

@@ -53,7 +53,7 @@ use crate::real::Real;
 use crate::settings::SettingsError;
 
 settings! {
-    /// What the device believes of its gear, and how much of it to cancel.
+    /// Assumed friction of the gear, and the share of it to cancel.
     pub struct FrictionCompensationSettings, group "friction-compensation" {
         render {
             id: 9 always,

@@ -1,4 +1,4 @@
-//! Where the device stays quiet on a leg: its Z-width.
+//! Z-width: the stiffness range in which the device is stable on a leg.
 //!
 //! A rendered spring is sampled, held for a tick, and acts late; each of these
 //! gives energy away, about kr·τ·∫Ω² dt with τ the [mean lag](Lag::mean_s).

@@ -1,4 +1,4 @@
-//! How much stiffer a joint could be before its shaft rings.
+//! Stiffness margins: how much stiffer a joint may be before its shaft rings.
 
 use crepitus_study::coupled::{Margin, Verdict};
 use maud::{Markup, html};

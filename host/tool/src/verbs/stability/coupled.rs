@@ -1,4 +1,4 @@
-//! `crepitus stability --coupled`: where the device stays quiet on a leg.
+//! `crepitus stability --coupled`: the Z-width of the device on a leg.
 
 use crate::failure::{Failure, print, print_json};
 use crate::studying::{self, Watch};
@@ -28,7 +28,7 @@ struct Summary {
     wall_s: f64,
 }
 
-/// How many cells stand how.
+/// Number of cells by verdict.
 #[derive(Default, Serialize)]
 struct Counts {
     quiet: usize,
