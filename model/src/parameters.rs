@@ -1,5 +1,5 @@
 //! Parameters: the tables that scene files, the command line, the device's wire
-//! and the documents read, each declared once, with [`settings!`]; and those of
+//! and the documents read, each declared once, with `settings!`; and those of
 //! the imaginary object.
 
 use crate::settings::SettingsError;
@@ -112,7 +112,7 @@ impl ParameterSpec {
     }
 }
 
-/// Settings that are the numbers of one table; [`settings!`] makes them.
+/// Settings that are the numbers of one table; `settings!` makes them.
 pub trait Tabled<const N: usize>: Copy {
     /// One entry a number: key with unit, range, default, meaning.
     const TABLE: &'static [ParameterSpec; N];
