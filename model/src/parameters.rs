@@ -32,13 +32,13 @@ pub struct Parameter {
     pub id: u8,
     /// The effect or the part that it belongs to, as in scene files.
     pub group: &'static str,
-    /// What it is.
+    /// Number or choice.
     pub kind: Kind,
     /// When it may change.
     pub when: When,
 }
 
-/// What a parameter is.
+/// The type of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// A number in a range.
@@ -52,7 +52,7 @@ pub enum Kind {
 pub struct Choice {
     /// Name.
     pub key: &'static str,
-    /// What can be chosen.
+    /// The names of the options, in the order of their values.
     pub names: &'static [&'static str],
     /// Place of the default.
     pub default: f64,
@@ -94,7 +94,7 @@ impl Parameter {
         }
     }
 
-    /// Whether it can have this value; no number is none.
+    /// Whether this value is allowed; NaN never is.
     pub fn allows(&self, value: f64) -> bool {
         match self.kind {
             Kind::Number(spec) => spec.allows(value),
@@ -106,7 +106,7 @@ impl Parameter {
 }
 
 impl ParameterSpec {
-    /// Whether it can have this value; no number is none.
+    /// Whether this value is allowed; NaN never is.
     pub fn allows(&self, value: f64) -> bool {
         value >= self.min && value <= self.max
     }
@@ -207,7 +207,7 @@ macro_rules! settings {
                 meaning: $meaning,
             };)*
 
-            /// What a device has of it.
+            /// The device's parameters of this group.
             pub const DEVICE: &'static [$crate::parameters::Parameter] = &[
                 $($crate::parameters::Parameter {
                     id: $choice_id,

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 pub use crepitus_model::parameters::{Choice, Kind, Parameter, When};
 
-/// What a device has, one line each.
+/// The groups of device parameters, one line each.
 const DECLARED: &[&[Parameter]] = &[
     Parameters::DEVICE,
     EncoderSettings::DEVICE,
@@ -30,7 +30,7 @@ const DECLARED: &[&[Parameter]] = &[
     LimitSettings::DEVICE,
 ];
 
-/// How many parameters there are.
+/// Number of device parameters.
 pub const PARAMETER_COUNT: usize = count(DECLARED);
 
 /// Every parameter, in the order of the ids.
