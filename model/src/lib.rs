@@ -23,17 +23,12 @@
 //!
 //! | to find | look in |
 //! |---|---|
-//! | what people set, ranges, presets | [`parameters`], [`presets`], [`settings`] |
-//! | what a tick uses | [`active`], [`ticks`], [`shaft`] |
-//! | the object itself | [`stick_slip`], [`frozen`], [`velocity_match`], [`implicit_euler`] |
-//! | how a slip is carried forward | [`propagate`], [`oscillator`] |
-//! | how the end of a phase is found | [`locate`] |
-//! | which of these a scene or a firmware selects | [`solver`] |
+//! | how a parameter is declared: name, unit, range, id | [`parameters`] |
+//! | the joint: its settings and presets, the numbers that a step uses, the shaft's path, the object's free motion | [`joint`] |
+//! | the solver ladder: phases stepped through, slips carried forward, events located | [`solver`] |
 //! | what a device renders, from sample to torque; every stage a file | [`render`] |
-//! | what the hand gets back of its work | [`energy_observer`] |
-//! | counts of the motor encoder to angle and speed | [`encoder`] |
-//! | how the motor's current follows | [`current_loop`] |
-//! | what a device never does | [`device_limits`] |
+//! | encoder, motor current, device limits, the observer of the hand's energy | [`control`] |
+//! | f32 and f64 | [`real`] |
 #![no_std]
 #![deny(unsafe_code)]
 #![deny(
@@ -58,37 +53,20 @@
 #[cfg(test)]
 extern crate std;
 
-pub mod active;
-pub mod compensated;
-pub mod current_loop;
-pub mod device_limits;
-pub mod encoder;
-pub mod energy_observer;
-mod event;
-pub mod frozen;
-pub mod implicit_euler;
-pub mod locate;
-pub mod oscillator;
+pub mod control;
+pub mod joint;
 pub mod parameters;
-mod phase;
-pub mod presets;
-pub mod propagate;
 pub mod real;
 pub mod render;
-pub mod settings;
-pub mod shaft;
 pub mod solver;
-pub mod stick_slip;
-pub mod ticks;
-pub mod velocity_match;
 
-pub use active::Active;
-pub use current_loop::CurrentLoop;
-pub use energy_observer::EnergyObserver;
-pub use event::{EVENTS_PER_STEP, Event};
-pub use frozen::Frozen;
-pub use parameters::{Parameters, Tabled};
-pub use phase::{EventKind, Phase, Sense};
+pub use control::current_loop::CurrentLoop;
+pub use control::energy_observer::EnergyObserver;
+pub use joint::{
+    Convention, EVENTS_PER_STEP, Event, EventKind, Parameters, Phase, Restart, Sense, Settings,
+    SettingsError, ShaftStep, StepCoefficients, StickSlip, Validated,
+};
+pub use parameters::Tabled;
 pub use real::Real;
 pub use render::Pipeline;
 pub use render::bone_shaping::BoneShaping;
@@ -96,7 +74,5 @@ pub use render::crepitus::{Crepitus, Renderer};
 pub use render::friction_compensation::FrictionCompensation;
 pub use render::guarded::Guarded;
 pub use render::input_check::Sample;
-pub use settings::{Convention, Restart, Settings, SettingsError, Validated};
-pub use shaft::ShaftStep;
-pub use stick_slip::StickSlip;
-pub use velocity_match::VelocityMatch;
+pub use solver::frozen::Frozen;
+pub use solver::velocity_match::VelocityMatch;

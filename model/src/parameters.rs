@@ -1,8 +1,6 @@
-//! Parameters: the tables that scene files, the command line, the device's wire
-//! and the documents read, each declared once, with `settings!`; and those of
-//! the imaginary object.
+//! How parameters are declared, once each, with `settings!`: scene files, the
+//! command line, the device's wire and the documents read these tables.
 
-use crate::settings::SettingsError;
 use core::cmp::Ordering;
 
 /// One numeric parameter.
@@ -112,6 +110,15 @@ impl ParameterSpec {
     }
 }
 
+/// A number outside its range, or NaN.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutOfRange {
+    /// Which one, with its range.
+    pub parameter: &'static ParameterSpec,
+    /// The value asked for.
+    pub value: f64,
+}
+
 /// Settings that are the numbers of one table; `settings!` makes them.
 pub trait Tabled<const N: usize>: Copy {
     /// One entry a number: key with unit, range, default, meaning.
@@ -137,12 +144,11 @@ pub trait Tabled<const N: usize>: Copy {
     /// Checks the ranges.
     ///
     /// # Errors
-    /// [`SettingsError::OutOfRange`] for the first number that is outside, or
-    /// no number at all.
-    fn validate(&self) -> Result<(), SettingsError> {
+    /// [`OutOfRange`] for the first number that is outside, or NaN.
+    fn validate(&self) -> Result<(), OutOfRange> {
         for (parameter, value) in Self::TABLE.iter().zip(self.values()) {
             if !parameter.allows(value) {
-                return Err(SettingsError::OutOfRange { parameter, value });
+                return Err(OutOfRange { parameter, value });
             }
         }
         Ok(())
@@ -263,82 +269,6 @@ macro_rules! settings {
 
 pub(crate) use settings;
 
-settings! {
-    /// The parameters of the stick-slip object, in SI units. Defaults are the
-    /// paper's.
-    pub struct Parameters, group "crepitus" {
-        render {
-            id: 0 always,
-            choice: ["off", "on"],
-            default: 1,
-            meaning: "whether the joint grates; `off` is a healthy joint",
-        },
-        restart {
-            id: 5 always,
-            choice: ["elastic", "from-kinetic"],
-            default: 0,
-            meaning: "torque with which a stick begins: 2Tk − Ts, or Tk",
-        },
-    } {
-        inertia_kg_m2 {
-            id: 1 always,
-            symbol: "J",
-            unit: "kg·m²",
-            range: 1e-12..=1e3,
-            default: 0.01,
-            meaning: "inertia of the imaginary object; with the stiffness it sets the pitch √(kr/J)/2π",
-        },
-        stiffness_nm_per_rad {
-            id: 2 always,
-            symbol: "kr",
-            unit: "N·m/rad",
-            range: 1e-6..=1e9,
-            default: 400.0,
-            meaning: "stiffness of the spring that holds the imaginary object",
-        },
-        damping_nms_per_rad {
-            symbol: "c",
-            unit: "N·m·s/rad",
-            range: 0.0..=1e6,
-            default: 0.0,
-            meaning: "viscous damping of the imaginary object; 0 in the paper and under `frozen`",
-        },
-        kinetic_torque_nm {
-            id: 3 always,
-            symbol: "Tk",
-            unit: "N·m",
-            range: 0.0..=1e6,
-            default: 0.2,
-            meaning: "friction torque while the shaft slips over the object; the mean torque at constant speed",
-        },
-        static_torque_nm {
-            id: 4 always,
-            symbol: "Ts",
-            unit: "N·m",
-            range: 0.0..=1e6,
-            default: 0.4,
-            meaning: "torque at which a stick breaks; nothing larger is ever shown",
-        },
-    }
-}
-
-impl Parameters {
-    /// Natural frequency ωn = √(kr/J), rad/s.
-    pub fn natural_rad_s(&self) -> f64 {
-        libm::sqrt(self.stiffness_nm_per_rad / self.inertia_kg_m2)
-    }
-
-    /// √(J·kr), N·m·s/rad: the torque that one rad/s of speed is worth.
-    pub fn impedance_nms_per_rad(&self) -> f64 {
-        libm::sqrt(self.inertia_kg_m2 * self.stiffness_nm_per_rad)
-    }
-
-    /// Torque with which an elastic stick begins after a slip: 2Tk − Ts, N·m.
-    pub fn restart_torque_nm(&self) -> f64 {
-        2.0 * self.kinetic_torque_nm - self.static_torque_nm
-    }
-}
-
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
@@ -372,7 +302,7 @@ pub(crate) mod tests {
             ] {
                 let refused = with(bad);
                 assert!(
-                    matches!(refused, Err(SettingsError::OutOfRange { parameter, .. }) if parameter == spec),
+                    matches!(refused, Err(OutOfRange { parameter, .. }) if parameter == spec),
                     "{} = {bad}: {refused:?}",
                     spec.key
                 );

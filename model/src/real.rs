@@ -46,7 +46,7 @@ pub trait Real:
     const EPSILON: Self;
     /// Relative slack of the static limit: a required torque that little
     /// beyond it counts as *at* the limit, see
-    /// [`Active::limit_slack_nm`](crate::Active::limit_slack_nm).
+    /// [`StepCoefficients::limit_slack_nm`](crate::StepCoefficients::limit_slack_nm).
     ///
     /// Some parameter sets re-stick exactly on the limit (Tk = 0 ends every
     /// slip at −Ts), where rounding decides which side one sees. The slack is
@@ -54,7 +54,7 @@ pub trait Real:
     const LIMIT_SLACK: Self;
     /// Relative slack of a touch. With Ts = Tk the velocities meet without
     /// crossing, and such a time is known to the root of the rounding only:
-    /// see [`Active::touch_slack_nm`](crate::Active::touch_slack_nm).
+    /// see [`StepCoefficients::touch_slack_nm`](crate::StepCoefficients::touch_slack_nm).
     const TOUCH_SLACK: Self;
     /// Below this a number is at rest. Far below anything that matters, and
     /// far above the subnormal numbers that a decay would otherwise end in,

@@ -26,11 +26,8 @@ pub mod limits;
 pub mod ramp;
 pub mod turn_back;
 
-use crate::event::Event;
-use crate::phase::Phase;
+use crate::joint::{Event, Phase, ShaftStep, StickSlip};
 use crate::real::Real;
-use crate::shaft::ShaftStep;
-use crate::stick_slip::StickSlip;
 use core::marker::PhantomData;
 use input_check::{Checked, Sample};
 
@@ -305,15 +302,16 @@ impl<F: Real> Seen<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::locate::ExactEvents;
     use crate::render::friction_compensation::FrictionCompensationSettings;
-    use crate::{Active, FrictionCompensation, Frozen, Settings};
+    use crate::solver::locate::ExactEvents;
+    use crate::{FrictionCompensation, Frozen, Settings, StepCoefficients};
 
     type Joint = Bare<Frozen<f64, ExactEvents>>;
 
     fn joint() -> Joint {
-        let active = Active::new(&Settings::default().validate().unwrap(), 5e-5).unwrap();
-        Bare(Frozen::new(active, 1.0))
+        let coefficients =
+            StepCoefficients::new(&Settings::default().validate().unwrap(), 5e-5).unwrap();
+        Bare(Frozen::new(coefficients, 1.0))
     }
 
     fn steady() -> Seen<f64> {

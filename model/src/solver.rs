@@ -5,16 +5,22 @@
 //! it from a scene calls [`with_joint`], which decides once and runs the
 //! visitor with the concrete type: no choice is left for the step.
 
-use crate::active::Active;
-use crate::frozen::Frozen;
-use crate::implicit_euler::ImplicitEuler;
-use crate::locate::{EndOfStep, ExactBreak, ExactEvents, ExactHermite, Interpolated, Locate};
-use crate::propagate::{Euler, Exact, Propagate, Rk4, SemiImplicitEuler, Verlet};
+pub mod frozen;
+pub mod implicit_euler;
+pub mod locate;
+pub mod propagate;
+pub mod velocity_match;
+
+use crate::joint::shaft::Linear;
+use crate::joint::{Convention, Settings, SettingsError, StepCoefficients, StickSlip, Validated};
 use crate::real::Real;
-use crate::settings::{Convention, Settings, SettingsError, Validated};
-use crate::shaft::Linear;
-use crate::stick_slip::StickSlip;
-use crate::velocity_match::{Paper, Physical, StickTorque, VelocityMatch};
+use crate::solver::frozen::Frozen;
+use crate::solver::implicit_euler::ImplicitEuler;
+use crate::solver::locate::{
+    EndOfStep, ExactBreak, ExactEvents, ExactHermite, Interpolated, Locate,
+};
+use crate::solver::propagate::{Euler, Exact, Propagate, Rk4, SemiImplicitEuler, Verlet};
+use crate::solver::velocity_match::{Paper, Physical, StickTorque, VelocityMatch};
 
 /// A rung of the ladder: how a slip is carried forward, and how the end of a
 /// phase is found.
@@ -153,7 +159,7 @@ pub fn with_joint<F: Real, V: JointVisitor<F>>(
     visitor: V,
 ) -> Result<V::Output, SettingsError> {
     let start = Start {
-        active: Active::new(settings, step_s)?,
+        coefficients: StepCoefficients::new(settings, step_s)?,
         omega_rad_s,
     };
     let refused = |reason| SettingsError::Solver {
@@ -177,13 +183,13 @@ pub fn with_joint<F: Real, V: JointVisitor<F>>(
 
 /// What every joint starts from.
 struct Start<F> {
-    active: Active<F>,
+    coefficients: StepCoefficients<F>,
     omega_rad_s: F,
 }
 
 impl<F: Real> Start<F> {
     fn frozen<L: Locate<F, Shape = Linear>, V: JointVisitor<F>>(self, visitor: V) -> V::Output {
-        visitor.visit(Frozen::<F, L>::new(self.active, self.omega_rad_s))
+        visitor.visit(Frozen::<F, L>::new(self.coefficients, self.omega_rad_s))
     }
 
     fn velocity_match<C: StickTorque<F>, V: JointVisitor<F>>(
@@ -199,7 +205,7 @@ impl<F: Real> Start<F> {
             Solver::Verlet => self.rung::<C, Verlet<F>, EndOfStep, V>(visitor),
             Solver::Rk4 => self.rung::<C, Rk4<F>, EndOfStep, V>(visitor),
             Solver::ImplicitEuler => {
-                visitor.visit(ImplicitEuler::new(self.active, self.omega_rad_s))
+                visitor.visit(ImplicitEuler::new(self.coefficients, self.omega_rad_s))
             }
             Solver::Exact => self.rung::<C, Exact<F>, EndOfStep, V>(visitor),
             Solver::ExactBreak => self.rung::<C, Exact<F>, ExactBreak, V>(visitor),
@@ -220,7 +226,7 @@ impl<F: Real> Start<F> {
         visitor: V,
     ) -> V::Output {
         visitor.visit(VelocityMatch::<F, C, P, L>::new(
-            self.active,
+            self.coefficients,
             self.omega_rad_s,
         ))
     }

@@ -11,31 +11,31 @@
 
 mod support;
 
-use crepitus_model::locate::ExactEvents;
 use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::render::ramp::Ramp;
+use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
-    Active, Frozen, Parameters, Phase, Real, Renderer, Restart, Sample, Settings, ShaftStep,
-    StickSlip,
+    Frozen, Parameters, Phase, Real, Renderer, Restart, Sample, Settings, ShaftStep,
+    StepCoefficients, StickSlip,
 };
 use proptest::prelude::*;
 
 const TICK_S: f64 = 5e-5;
 const SLEW_NM_PER_S: f64 = 100.0;
 
-fn active<F: Real>(parameters: Parameters, restart: Restart) -> Active<F> {
+fn coefficients<F: Real>(parameters: Parameters, restart: Restart) -> StepCoefficients<F> {
     let settings = Settings {
         parameters,
         restart,
         ..Settings::default()
     };
-    Active::new(&settings.validate().unwrap(), TICK_S).unwrap()
+    StepCoefficients::new(&settings.validate().unwrap(), TICK_S).unwrap()
 }
 
 /// The energy that the object stores: its spring's, and in a slip, where it
 /// moves by itself, its motion's.
 fn stored_j<F: Real>(joint: &Frozen<F, ExactEvents>) -> f64 {
-    let (a, theta) = (joint.active(), joint.theta_rad().to_f64());
+    let (a, theta) = (joint.coefficients(), joint.theta_rad().to_f64());
     let spring = 0.5 * a.stiffness.to_f64() * theta * theta;
     match joint.phase() {
         Phase::Stick => spring,
@@ -62,17 +62,17 @@ struct Worst {
 /// Moves a joint by these speeds, 40 ticks each, and commits the numbers of
 /// each change at its tick.
 fn run<F: Real>(
-    first: Active<F>,
-    changes: &[(usize, Active<F>)],
+    first: StepCoefficients<F>,
+    changes: &[(usize, StepCoefficients<F>)],
     speeds_rad_s: &[f64],
-) -> (Worst, Active<F>) {
+) -> (Worst, StepCoefficients<F>) {
     let mut joint = Frozen::<F, ExactEvents>::new(first, F::ZERO);
     let mut ramp = Ramp::at(first);
     let mut worst = Worst::default();
     let mut changes = changes.iter().peekable();
     for tick in 0..speeds_rad_s.len() * 40 {
         while let Some((_, next)) = changes.next_if(|(at, _)| *at <= tick) {
-            ramp = Ramp::new(*joint.active(), *next, SLEW_NM_PER_S);
+            ramp = Ramp::new(*joint.coefficients(), *next, SLEW_NM_PER_S);
         }
         let torque = joint.torque_nm().to_f64();
         if let Some(next) = ramp.advance() {
@@ -90,7 +90,7 @@ fn run<F: Real>(
         let mut events = 0;
         joint.step(&shaft, |_| events += 1);
         worst.events += events;
-        let a = joint.active();
+        let a = joint.coefficients();
         let shown = joint.torque_nm().to_f64();
         worst.limit = worst.limit.max(shown.abs() - a.static_nm.to_f64());
         if events == 0 {
@@ -102,7 +102,7 @@ fn run<F: Real>(
             worst.slew = worst.slew.max(moved / (SLEW_NM_PER_S * TICK_S));
         }
     }
-    (worst, *joint.active())
+    (worst, *joint.coefficients())
 }
 
 fn check<F: Real>(worst: &Worst) {
@@ -122,8 +122,8 @@ fn a_spring_made_forty_times_stiffer_in_mid_stick_injects_nothing() {
         stiffness_nm_per_rad: 10.0,
         ..Parameters::default()
     };
-    let stiff = active::<f32>(Parameters::default(), Restart::Elastic);
-    let soft = active::<f32>(soft, Restart::Elastic);
+    let stiff = coefficients::<f32>(Parameters::default(), Restart::Elastic);
+    let soft = coefficients::<f32>(soft, Restart::Elastic);
     let (worst, last) = run(soft, &[(700, stiff)], &[1.1; 200]);
     check::<f32>(&worst);
     assert_eq!(last, stiff);
@@ -135,7 +135,7 @@ fn a_spring_made_forty_times_stiffer_in_mid_stick_injects_nothing() {
 
 #[test]
 fn a_static_limit_lowered_below_the_torque_breaks_the_stick() {
-    let base = active::<f32>(Parameters::default(), Restart::Elastic);
+    let base = coefficients::<f32>(Parameters::default(), Restart::Elastic);
     let weak = Parameters {
         kinetic_torque_nm: 0.1,
         static_torque_nm: 0.2,
@@ -155,12 +155,12 @@ fn a_static_limit_lowered_below_the_torque_breaks_the_stick() {
     }
     let shown = renderer.render(&move_by(0.0), |_| {});
     assert!((shown.torque_nm - 0.36).abs() < 1e-5 && !shown.settling);
-    renderer.commit(active(weak, Restart::Elastic), SLEW_NM_PER_S);
+    renderer.commit(coefficients(weak, Restart::Elastic), SLEW_NM_PER_S);
     let mut breaks_at = None;
     for tick in 1..=60 {
         let mut events = Vec::new();
         let shown = renderer.render(&move_by(0.0), |e| events.push(e.to));
-        assert!(shown.torque_nm.abs() <= renderer.joint().active().static_nm);
+        assert!(shown.torque_nm.abs() <= renderer.joint().coefficients().static_nm);
         // 0.2 N·m at 5 mN·m a tick.
         assert_eq!(shown.settling, tick < 40, "{tick}");
         if !events.is_empty() {
@@ -179,12 +179,12 @@ fn a_commit_leaves_a_slip_its_end() {
         ..base
     };
     let ends_at = |change: Option<Parameters>| {
-        let mut joint = Frozen::<f64, ExactEvents>::new(active(base, Restart::Elastic), 1.0);
+        let mut joint = Frozen::<f64, ExactEvents>::new(coefficients(base, Restart::Elastic), 1.0);
         let mut ends = Vec::new();
         for tick in 0..2000_u32 {
             if let Some(p) = change.filter(|_| tick == 100) {
                 assert!(matches!(joint.phase(), Phase::Slip(_)));
-                joint.adjust(active(p, Restart::Elastic));
+                joint.adjust(coefficients(p, Restart::Elastic));
             }
             let shaft = ShaftStep {
                 delta_phi_rad: TICK_S,
@@ -209,7 +209,7 @@ fn a_commit_leaves_a_slip_its_end() {
 #[test]
 fn a_slip_never_ends_with_more_than_its_spring_held_at_the_break() {
     // From a soft break at 0.4 N·m to numbers whose stick begins at 1 N·m.
-    let base = active::<f64>(Parameters::default(), Restart::Elastic);
+    let base = coefficients::<f64>(Parameters::default(), Restart::Elastic);
     let strong = Parameters {
         kinetic_torque_nm: 1.0,
         static_torque_nm: 1.0 + 1e-3,
@@ -224,7 +224,7 @@ fn a_slip_never_ends_with_more_than_its_spring_held_at_the_break() {
     let mut sticks = Vec::new();
     for tick in 0..2000 {
         if tick == 100 {
-            joint.adjust(active(strong, Restart::Elastic));
+            joint.adjust(coefficients(strong, Restart::Elastic));
         }
         joint.step(&shaft, |e| {
             if e.to == Phase::Stick {
@@ -273,10 +273,10 @@ proptest! {
     ) {
         let mut changes = changes;
         changes.sort_by_key(|(at, _)| *at);
-        let of = |(p, r): (Parameters, Restart)| active::<f32>(p, r);
+        let of = |(p, r): (Parameters, Restart)| coefficients::<f32>(p, r);
         let single: Vec<_> = changes.iter().map(|&(at, c)| (at, of(c))).collect();
         check::<f32>(&run(of(first), &single, &speeds).0);
-        let of = |(p, r): (Parameters, Restart)| active::<f64>(p, r);
+        let of = |(p, r): (Parameters, Restart)| coefficients::<f64>(p, r);
         let double: Vec<_> = changes.iter().map(|&(at, c)| (at, of(c))).collect();
         check::<f64>(&run(of(first), &double, &speeds).0);
     }

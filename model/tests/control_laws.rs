@@ -10,14 +10,14 @@
 
 mod support;
 
-use crepitus_model::current_loop::CurrentLoopSettings;
-use crepitus_model::energy_observer::MOST_DELAY_TICKS;
-use crepitus_model::locate::ExactEvents;
+use crepitus_model::control::current_loop::CurrentLoopSettings;
+use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
+use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
-    Active, BoneShaping, CurrentLoop, FrictionCompensation, Frozen, Real, Settings, ShaftStep,
-    StickSlip, Tabled,
+    BoneShaping, CurrentLoop, FrictionCompensation, Frozen, Real, Settings, ShaftStep,
+    StepCoefficients, StickSlip, Tabled,
 };
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -201,8 +201,9 @@ impl Crepitus {
 
 /// After a second to settle.
 fn crepitus(omega: f64, seconds: f64, struck: Struck) -> Crepitus {
-    let active = Active::<f64>::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
-    let mut joint = Frozen::<f64, ExactEvents>::new(active, omega);
+    let coefficients =
+        StepCoefficients::<f64>::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
+    let mut joint = Frozen::<f64, ExactEvents>::new(coefficients, omega);
     let mut bone = bone::<f64>(&BoneShapingSettings::default(), 1);
     let step = ShaftStep {
         delta_phi_rad: omega * TICK_S,

@@ -17,11 +17,13 @@
 
 mod support;
 
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::locate::ExactEvents;
-use crepitus_model::presets::PRESETS;
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::joint::presets::PRESETS;
 use crepitus_model::render::input_check::InputLimits;
-use crepitus_model::{Active, EnergyObserver, Parameters, Renderer, Sample, Settings, ShaftStep};
+use crepitus_model::solver::locate::ExactEvents;
+use crepitus_model::{
+    EnergyObserver, Parameters, Renderer, Sample, Settings, ShaftStep, StepCoefficients,
+};
 use proptest::prelude::*;
 
 const TICK_S: f64 = 5e-5;
@@ -49,17 +51,17 @@ fn books(parameters: Parameters, delay: usize, sight: Sight, angles_rad: &[f64])
         parameters,
         ..Settings::default()
     };
-    let active = Active::<f32>::new(&settings.validate().unwrap(), TICK_S).unwrap();
+    let coefficients = StepCoefficients::<f32>::new(&settings.validate().unwrap(), TICK_S).unwrap();
     let count = |phi: f64| (phi / encoder.rad_per_count()).floor() as i32;
     let mut reader =
         EncoderReader::<f32>::new(&encoder, TICK_S, count(angles_rad[0]), 0.0).unwrap();
     let mut renderer = Renderer::<f32, ExactEvents>::of(
-        active,
+        coefficients,
         InputLimits::device(TICK_S),
         encoder.rad_per_count() as f32,
         0.0,
     );
-    let exact = Active::<f64>::new(&settings.validate().unwrap(), TICK_S).unwrap();
+    let exact = StepCoefficients::<f64>::new(&settings.validate().unwrap(), TICK_S).unwrap();
     let mut hand = EnergyObserver::new(&exact, delay);
     let mut unguarded = hand;
     let mut omega = 0.0;

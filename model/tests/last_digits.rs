@@ -2,30 +2,30 @@
 //! a gap, tell apart.
 #![allow(missing_docs)]
 
-use crepitus_model::locate::ExactEvents;
 use crepitus_model::render::Limit;
 use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::render::ramp::Ramp;
+use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
-    Active, Convention, Frozen, Guarded, Parameters, Renderer, Sample, Settings, ShaftStep,
-    StickSlip,
+    Convention, Frozen, Guarded, Parameters, Renderer, Sample, Settings, ShaftStep,
+    StepCoefficients, StickSlip,
 };
 
 const TICK_S: f64 = 5e-5;
 
-fn active(parameters: Parameters) -> Active<f32> {
+fn coefficients(parameters: Parameters) -> StepCoefficients<f32> {
     let settings = Settings {
         parameters,
         ..Settings::default()
     };
-    Active::new(&settings.validate().unwrap(), TICK_S).unwrap()
+    StepCoefficients::new(&settings.validate().unwrap(), TICK_S).unwrap()
 }
 
 #[test]
 fn a_period_in_single_precision_keeps_its_fraction_of_a_tick() {
     // 2π/(200 rad/s · 50 µs).
-    let period = active(Parameters::default()).period;
+    let period = coefficients(Parameters::default()).period;
     assert_eq!(period.whole, 628);
     assert!((f64::from(period.fraction) - 0.318_530_717_958_6).abs() < 1e-7);
 }
@@ -38,7 +38,7 @@ fn a_ramp_never_lifts_the_kinetic_torque_above_the_static_one() {
         (0.015_999_992_32, 0.016, 0.146),
     ] {
         let torques = |kinetic_torque_nm, static_torque_nm| {
-            active(Parameters {
+            coefficients(Parameters {
                 kinetic_torque_nm,
                 static_torque_nm,
                 ..Parameters::default()
@@ -54,7 +54,7 @@ fn a_ramp_never_lifts_the_kinetic_torque_above_the_static_one() {
 
 #[test]
 fn after_a_gap_a_joint_goes_on_from_the_torque_that_is_shown() {
-    let joint = Frozen::<f32, ExactEvents>::new(active(Parameters::default()), 0.1);
+    let joint = Frozen::<f32, ExactEvents>::new(coefficients(Parameters::default()), 0.1);
     let mut joint = Guarded::new(joint, InputLimits::device(TICK_S), 0.1);
     let moved = Sample::Taken(ShaftStep {
         delta_phi_rad: 5e-6,
@@ -84,7 +84,7 @@ fn after_a_gap_nothing_comes_back_of_a_torque_that_was_switched_off() {
         })
     };
     let mut joint = Renderer::<f32, ExactEvents>::of(
-        active(Parameters::default()),
+        coefficients(Parameters::default()),
         InputLimits::device(TICK_S),
         COUNT_RAD,
         1.0,

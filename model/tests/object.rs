@@ -2,19 +2,21 @@
 //! and every picture shows: where it is, and how it goes on when its numbers
 //! change or the shaft was out of sight.
 
-use crepitus_model::locate::ExactEvents;
-use crepitus_model::{Active, Frozen, Parameters, Phase, Sense, Settings, ShaftStep, StickSlip};
+use crepitus_model::solver::locate::ExactEvents;
+use crepitus_model::{
+    Frozen, Parameters, Phase, Sense, Settings, ShaftStep, StepCoefficients, StickSlip,
+};
 
 const TICK_S: f64 = 5e-5;
 
 type Joint = Frozen<f64, ExactEvents>;
 
-fn active(parameters: Parameters) -> Active<f64> {
+fn coefficients(parameters: Parameters) -> StepCoefficients<f64> {
     let settings = Settings {
         parameters,
         ..Settings::default()
     };
-    Active::new(&settings.validate().unwrap(), TICK_S).unwrap()
+    StepCoefficients::new(&settings.validate().unwrap(), TICK_S).unwrap()
 }
 
 fn paper() -> Parameters {
@@ -31,7 +33,7 @@ fn steady(omega: f64) -> ShaftStep<f64> {
 
 /// A joint that has made so many ticks at this speed.
 fn after(ticks: u32, omega: f64) -> Joint {
-    let mut joint = Joint::new(active(paper()), omega);
+    let mut joint = Joint::new(coefficients(paper()), omega);
     for _ in 0..ticks {
         joint.step(&steady(omega), |_| {});
     }
@@ -74,7 +76,7 @@ fn in_a_stick_the_object_moves_with_the_shaft() {
 
 #[test]
 fn slips_are_numbered() {
-    let mut joint = Joint::new(active(paper()), 1.0);
+    let mut joint = Joint::new(coefficients(paper()), 1.0);
     let mut breaks = 0;
     for _ in 0..4000 {
         joint.step(&steady(1.0), |e| {
@@ -89,7 +91,7 @@ fn slips_are_numbered() {
 fn the_same_numbers_change_nothing() {
     for ticks in [15, 300] {
         let (mut joint, same) = (after(ticks, 0.97), after(ticks, 0.97));
-        joint.adjust(active(paper()));
+        joint.adjust(coefficients(paper()));
         assert_eq!(joint.phase(), same.phase());
         assert!((joint.theta_rad() - same.theta_rad()).abs() < 1e-16);
         assert!((joint.theta_dot_rad_s() - same.theta_dot_rad_s()).abs() < 1e-13);
@@ -100,7 +102,8 @@ fn the_same_numbers_change_nothing() {
 #[test]
 fn a_ramp_that_goes_nowhere_loses_no_rounding_error() {
     // A stick carries the error of its sum: a second of small steps in f32.
-    let numbers = Active::<f32>::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
+    let numbers =
+        StepCoefficients::<f32>::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
     let step = ShaftStep {
         delta_phi_rad: 1.37e-8,
         omega_start_rad_s: 2.7e-4,
@@ -119,7 +122,7 @@ fn a_ramp_that_goes_nowhere_loses_no_rounding_error() {
 #[test]
 fn a_break_is_reported_with_all_that_is_known() {
     for (omega, s) in [(0.97, 1.0), (-0.97, -1.0)] {
-        let mut joint = Joint::new(active(paper()), omega);
+        let mut joint = Joint::new(coefficients(paper()), omega);
         let mut seen = Vec::new();
         for _ in 0..700 {
             joint.step(&steady(omega), |e| seen.push(e));
@@ -144,7 +147,7 @@ fn a_soft_spring_breaks_at_the_same_torque() {
         ..paper()
     };
     for s in [1.0, -1.0] {
-        let mut joint = Joint::new(active(soft), s * 1e5);
+        let mut joint = Joint::new(coefficients(soft), s * 1e5);
         let mut seen = Vec::new();
         joint.step(&steady(s * 1e5), |e| seen.push(e));
         assert_eq!(seen.len(), 1);
@@ -156,7 +159,7 @@ fn a_soft_spring_breaks_at_the_same_torque() {
 #[test]
 fn in_stick_a_stiffer_spring_keeps_its_torque_and_a_softer_one_its_angle() {
     let with = |stiffness_nm_per_rad| {
-        active(Parameters {
+        coefficients(Parameters {
             stiffness_nm_per_rad,
             ..paper()
         })
@@ -176,7 +179,7 @@ fn in_a_slip_the_object_goes_on_from_where_it_is() {
     let change = |parameters: Parameters| {
         let mut joint = after(300, 0.97);
         let before = (joint.theta_rad(), joint.theta_dot_rad_s());
-        joint.adjust(active(parameters));
+        joint.adjust(coefficients(parameters));
         (before, (joint.theta_rad(), joint.theta_dot_rad_s()))
     };
     // Friction torques move the centre of the swing, not the object.
@@ -212,7 +215,7 @@ fn a_slip_that_began_with_a_soft_spring_ends_within_what_that_held() {
     };
     for (stiffness, torque) in [(800.0, 0.4), (100.0, 0.1)] {
         let mut joint = after(300, 0.97);
-        joint.adjust(active(strong(stiffness)));
+        joint.adjust(coefficients(strong(stiffness)));
         let mut sticks = Vec::new();
         for _ in 0..2000 {
             joint.step(&steady(0.97), |e| {

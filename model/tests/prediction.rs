@@ -23,12 +23,14 @@
     reason = "small numbers, and f32 is what is tested"
 )]
 
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::locate::ExactEvents;
-use crepitus_model::presets::PRESETS;
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::joint::presets::PRESETS;
 use crepitus_model::render::Limit;
 use crepitus_model::render::input_check::InputLimits;
-use crepitus_model::{Active, Parameters, Phase, Renderer, Sample, Settings, ShaftStep, StickSlip};
+use crepitus_model::solver::locate::ExactEvents;
+use crepitus_model::{
+    Parameters, Phase, Renderer, Sample, Settings, ShaftStep, StepCoefficients, StickSlip,
+};
 
 const TICK_S: f64 = 5e-5;
 const DELAYS: [usize; 3] = [0, 1, 2];
@@ -85,12 +87,12 @@ fn ticks(p: Parameters, sight: Sight, hand: Hand<'_>, seconds: f64) -> Vec<(f64,
         parameters: p,
         ..Settings::default()
     };
-    let active = Active::<f32>::new(&settings.validate().unwrap(), TICK_S).unwrap();
+    let coefficients = StepCoefficients::<f32>::new(&settings.validate().unwrap(), TICK_S).unwrap();
     let count = |phi: f64| (phi / encoder.rad_per_count()).floor() as i32;
     let (mut phi, mut omega) = hand(0.0);
     let mut reader = EncoderReader::<f32>::new(&encoder, TICK_S, count(phi), 0.0).unwrap();
     let mut renderer = Renderer::<f32, ExactEvents>::of(
-        active,
+        coefficients,
         InputLimits::device(TICK_S),
         encoder.rad_per_count() as f32,
         omega as f32,

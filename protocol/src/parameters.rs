@@ -7,9 +7,9 @@
 
 use crate::settings::ValueError;
 use crepitus_model::Parameters;
-use crepitus_model::current_loop::CurrentLoopSettings;
-use crepitus_model::device_limits::{LimitSettings, MotorSettings};
-use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::control::current_loop::CurrentLoopSettings;
+use crepitus_model::control::device_limits::{LimitSettings, MotorSettings};
+use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::render::friction_compensation::FrictionCompensationSettings;

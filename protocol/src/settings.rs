@@ -2,10 +2,10 @@
 //! checked: what people set, before it becomes what a tick uses.
 
 use crate::parameters::{Kind, PARAMETERS, Parameter, Values, id, with_id};
-use crepitus_model::current_loop::CurrentLoopSettings;
-use crepitus_model::device_limits::{LimitSettings, MotorSettings};
-use crepitus_model::encoder::EncoderSettings;
-use crepitus_model::parameters::Parameters;
+use crepitus_model::Parameters;
+use crepitus_model::control::current_loop::CurrentLoopSettings;
+use crepitus_model::control::device_limits::{LimitSettings, MotorSettings};
+use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::render::turn_back::most_rad_per_count;
@@ -175,8 +175,8 @@ impl Values {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_model::joint::presets::PRESETS;
     use crepitus_model::parameters::Tabled;
-    use crepitus_model::presets::PRESETS;
 
     #[test]
     fn defaults_are_the_papers_joint_and_nothing_else() {

@@ -11,7 +11,7 @@ use crate::drive::rendering::Rendered;
 use crate::drive::safety::{Permit, Safety};
 use crate::drive::sampler::Sampled;
 use crepitus_model::Real;
-use crepitus_model::current_loop::Limit;
+use crepitus_model::control::current_loop::Limit;
 
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::telemetry::{Block, BlockFlags, NO_CURRENT, Sample, SampleFlags};

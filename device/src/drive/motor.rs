@@ -3,7 +3,7 @@
 
 use crate::drive::prepare::MotorPlan;
 use crepitus_model::Real;
-use crepitus_model::current_loop::{CurrentLoop, Limit};
+use crepitus_model::control::current_loop::{CurrentLoop, Limit};
 
 /// What the bridge does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

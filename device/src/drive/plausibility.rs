@@ -6,7 +6,7 @@
 
 use crate::drive::motor::Motor;
 use crepitus_model::Real;
-use crepitus_model::current_loop::Limit;
+use crepitus_model::control::current_loop::Limit;
 use crepitus_protocol::Fault;
 
 /// Largest current, A: beyond it the hardware trips, too.

@@ -5,13 +5,13 @@
 //! for the idle loop: the tick finds a [`Prepared`] and takes it over whole,
 //! between two blocks of telemetry.
 
-use crepitus_model::current_loop::{CurrentLoop, CurrentLoopSettings};
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::energy_observer::MOST_DELAY_TICKS;
+use crepitus_model::control::current_loop::{CurrentLoop, CurrentLoopSettings};
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::bone_shaping::BoneShapingSettings;
 use crepitus_model::render::ramp::Ramp;
 use crepitus_model::{
-    Active, BoneShaping, FrictionCompensation, Settings, SettingsError, Validated,
+    BoneShaping, FrictionCompensation, Settings, SettingsError, StepCoefficients, Validated,
 };
 use crepitus_protocol::{DeviceSettings, Revision, TICK_S, ValueError, Values};
 
@@ -64,7 +64,7 @@ pub enum JointPlan {
     /// There is one: it goes on along this ramp.
     Follow(Ramp<f32>),
     /// There will be one: it begins without torque, and goes on along the ramp.
-    Begin(Active<f32>, Ramp<f32>),
+    Begin(StepCoefficients<f32>, Ramp<f32>),
     /// It goes along this ramp until it has no torque, then there is none.
     Leave(Ramp<f32>),
 }
@@ -131,7 +131,7 @@ pub struct Preparation {
     in_force: DeviceSettings,
     values: Values,
     /// Numbers of the joint in force; without torque if there is none.
-    active: Active<f32>,
+    coefficients: StepCoefficients<f32>,
 }
 
 /// What everything starts from.
@@ -160,7 +160,7 @@ impl Preparation {
                 ..in_force
             },
             values,
-            active: silent(&in_force.crepitus.unwrap_or(fallback()?))?,
+            coefficients: silent(&in_force.crepitus.unwrap_or(fallback()?))?,
         };
         let reader = Reader::of(&in_force.encoder)?;
         let motor = motor(&in_force)?;
@@ -199,26 +199,29 @@ impl Preparation {
         let now = &self.in_force;
         let slew = next.limits.slew_nm_per_s;
         let is_other_encoder = now.encoder != next.encoder;
-        let (joint, active) = match (now.crepitus, next.crepitus) {
-            (None, None) => (JointPlan::Absent, self.active),
+        let (joint, coefficients) = match (now.crepitus, next.crepitus) {
+            (None, None) => (JointPlan::Absent, self.coefficients),
             // The guard knows the encoder's count: a new joint for a new one.
             (Some(_), Some(settings)) if is_other_encoder => {
                 let from = silent(&settings)?;
-                let to = Active::new(&settings, TICK_S)?;
+                let to = StepCoefficients::new(&settings, TICK_S)?;
                 (JointPlan::Begin(from, Ramp::new(from, to, slew)), to)
             }
             (Some(_), Some(settings)) => {
-                let to = Active::new(&settings, TICK_S)?;
-                (JointPlan::Follow(Ramp::new(self.active, to, slew)), to)
+                let to = StepCoefficients::new(&settings, TICK_S)?;
+                (
+                    JointPlan::Follow(Ramp::new(self.coefficients, to, slew)),
+                    to,
+                )
             }
             (None, Some(settings)) => {
                 let from = silent(&settings)?;
-                let to = Active::new(&settings, TICK_S)?;
+                let to = StepCoefficients::new(&settings, TICK_S)?;
                 (JointPlan::Begin(from, Ramp::new(from, to, slew)), to)
             }
             (Some(settings), None) => {
                 let to = silent(&settings)?;
-                (JointPlan::Leave(Ramp::new(self.active, to, slew)), to)
+                (JointPlan::Leave(Ramp::new(self.coefficients, to, slew)), to)
             }
         };
         let reader = Reader::of(&next.encoder)?;
@@ -251,7 +254,7 @@ impl Preparation {
                 speed_limit_rad_s: single(next.limits.speed_rad_s),
             },
         };
-        (self.in_force, self.values, self.active) = (next, *values, active);
+        (self.in_force, self.values, self.coefficients) = (next, *values, coefficients);
         Ok(prepared)
     }
 }
@@ -262,11 +265,11 @@ fn fallback() -> Result<Validated<Settings>, ValueError> {
 }
 
 /// The same joint without torque.
-fn silent(settings: &Validated<Settings>) -> Result<Active<f32>, SettingsError> {
+fn silent(settings: &Validated<Settings>) -> Result<StepCoefficients<f32>, SettingsError> {
     let mut silent = **settings;
     silent.parameters.kinetic_torque_nm = 0.0;
     silent.parameters.static_torque_nm = 0.0;
-    Active::new(&silent.validate()?, TICK_S)
+    StepCoefficients::new(&silent.validate()?, TICK_S)
 }
 
 fn bone(settings: Option<&BoneShapingSettings>) -> Result<Option<BoneShaping<f32>>, SettingsError> {

@@ -5,11 +5,11 @@
 
 use crate::drive::prepare::{JointPlan, RenderingPlan};
 use crate::drive::sampler::Sampled;
-use crepitus_model::locate::ExactEvents;
 use crepitus_model::render::additions::{RingingBone, SlewedCompensation};
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
 use crepitus_model::render::{Limit, Pipeline, Seen, Shown};
+use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{Crepitus, EventKind, Real};
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{LimitReason, TICK_S};

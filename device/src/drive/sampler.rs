@@ -2,7 +2,7 @@
 
 use crate::drive::prepare::Reader;
 use crepitus_model::Sample;
-use crepitus_model::encoder::EncoderReader;
+use crepitus_model::control::encoder::EncoderReader;
 use crepitus_protocol::telemetry::BLOCK_TICKS;
 
 /// After so many ticks without a count that a shaft can make, the shaft is
@@ -117,7 +117,7 @@ impl Sampler {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_model::encoder::EncoderSettings;
+    use crepitus_model::control::encoder::EncoderSettings;
 
     fn sampler(start: u32) -> Sampler {
         Sampler::new(&Reader::of(&EncoderSettings::default()).unwrap(), start, 0)

@@ -7,8 +7,8 @@
 
 use crate::bytes::Bytes;
 use crepitus_model::Real;
-use crepitus_model::active::LONGEST_STEP_S;
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::joint::LONGEST_STEP_S;
 use crepitus_model::parameters::Tabled;
 
 /// Checks the laws.

@@ -96,10 +96,10 @@ impl<F: Real> JointVisitor<F> for Ticks<'_> {
 
             laws::torque(joint.joint());
             laws::state(joint.joint());
-            events.within(joint.joint().active().static_nm);
+            events.within(joint.joint().coefficients().static_nm);
             let torque = joint.torque_nm();
             assert!(
-                torque.abs() <= joint.joint().active().static_nm,
+                torque.abs() <= joint.joint().coefficients().static_nm,
                 "{torque:?} N·m shown"
             );
             let now = joint.counters();

@@ -60,7 +60,7 @@ impl<F: Real> Events<F> {
 
 /// The torque is within ±Ts, so it is a number.
 pub(crate) fn torque<F: Real, J: StickSlip<F>>(joint: &J) {
-    let (torque, limit) = (joint.torque_nm(), joint.active().static_nm);
+    let (torque, limit) = (joint.torque_nm(), joint.coefficients().static_nm);
     assert!(torque.abs() <= limit, "{torque:?} N·m, Ts is {limit:?}");
 }
 

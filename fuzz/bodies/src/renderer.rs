@@ -13,12 +13,14 @@ use crate::guarded::{MOST_EVENTS, next_samples, sample};
 use crate::laws::{self, Events};
 use crate::rung;
 use crate::shaft::Shaft;
-use crepitus_model::encoder::EncoderSettings;
-use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
+use crepitus_model::control::encoder::EncoderSettings;
+use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::Limit;
 use crepitus_model::render::input_check::InputLimits;
-use crepitus_model::shaft::Linear;
-use crepitus_model::{Active, Convention, Frozen, Phase, Real, Renderer, ShaftStep, StickSlip};
+use crepitus_model::solver::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
+use crepitus_model::{
+    Convention, Frozen, Phase, Real, Renderer, ShaftStep, StepCoefficients, StickSlip,
+};
 
 const SLEW_NM_PER_S: f64 = 100.0;
 
@@ -45,19 +47,19 @@ pub fn body(data: &[u8]) {
 
 fn run<F: Real, L: Locate<F, Shape = Linear>>(mut bytes: Bytes<'_>) {
     let step_s = bytes.between(1e-6, LONGEST_TICK_S);
-    let active = |bytes: &mut Bytes<'_>| {
+    let coefficients = |bytes: &mut Bytes<'_>| {
         let settings = rung::settings(bytes, Convention::Frozen);
-        Active::<F>::new(&settings, step_s).expect("a valid step")
+        StepCoefficients::<F>::new(&settings, step_s).expect("a valid step")
     };
     let count_rad = F::from_f64(EncoderSettings::default().rad_per_count());
     let limits = InputLimits::device(step_s);
-    let first = active(&mut bytes);
+    let first = coefficients(&mut bytes);
     let mut renderer = Renderer::<F, L>::of(first, limits, count_rad, F::ZERO);
     let mut shaft = Shaft::default();
     let mut ticks = 0;
     while !bytes.is_empty() && ticks < MOST_TICKS {
         if bytes.byte().is_multiple_of(8) {
-            let next = active(&mut bytes);
+            let next = coefficients(&mut bytes);
             renderer.commit(next, SLEW_NM_PER_S);
         }
         for step in next_samples(&mut bytes, &mut shaft, step_s) {
@@ -78,7 +80,7 @@ fn tick<F: Real, L: Locate<F, Shape = Linear>>(
     let shown = renderer.render(&sample(step), |event| events.see(&event));
 
     let joint = renderer.joint();
-    let limit = joint.active().static_nm;
+    let limit = joint.coefficients().static_nm;
     laws::torque(joint);
     laws::state(joint);
     assert!(shown.torque_nm.abs() <= limit, "{shown:?}, Ts {limit:?}");
@@ -106,7 +108,7 @@ struct Stored {
 
 impl Stored {
     fn of<F: Real, L: Locate<F, Shape = Linear>>(joint: &Frozen<F, L>) -> Self {
-        let a = joint.active();
+        let a = joint.coefficients();
         let theta = joint.theta_rad().to_f64();
         let spring_j = 0.5 * a.stiffness.to_f64() * theta * theta;
         let motion_j = match joint.phase() {
@@ -132,7 +134,7 @@ impl Stored {
             after.energy_j <= self.energy_j + 64.0 * eps * scale_j,
             "an adjustment stores energy: {self:?} {after:?}"
         );
-        let slew_nm = SLEW_NM_PER_S * joint.active().step_s.to_f64();
+        let slew_nm = SLEW_NM_PER_S * joint.coefficients().step_s.to_f64();
         #[expect(clippy::cast_precision_loss, reason = "a small number")]
         let rounding_nm = self.static_nm.max(after.static_nm) * eps * (MOST_TICKS + 8) as f64;
         let most_nm = slew_nm * (1.0 + 1.1e-6) + rounding_nm;

@@ -1,7 +1,7 @@
 //! Bytes to what a joint is made of: valid settings, a solver, a step.
 
 use crate::bytes::Bytes;
-use crepitus_model::active::LONGEST_STEP_S;
+use crepitus_model::joint::LONGEST_STEP_S;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters, Restart, Settings, Validated};

@@ -89,7 +89,7 @@ impl<F: Real> JointVisitor<F> for Walk<'_> {
             joint.step(&step, |event| events.see(&event));
             events.end(&joint, EVENTS_PER_STEP);
             if lawful {
-                events.within(joint.active().static_nm);
+                events.within(joint.coefficients().static_nm);
                 laws::torque(&joint);
                 laws::state(&joint);
                 let towards = F::from_f64(self.sign) * joint.torque_nm();

@@ -1,7 +1,7 @@
 //! Counts to angle and speed, as the drive does it: the same estimator, the
 //! same numbers.
 
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_protocol::{DeviceSettings, TICK_S, Values};
 
 /// Follows the shaft.

@@ -56,12 +56,11 @@
 //! 0.036 with a meniscal tear (PMC8284919); gain, budget and refill are
 //! engineering estimates; the limit is the step that the slew limit exempts.
 
-use crate::active::LONGEST_STEP_S;
-use crate::energy_observer::MOST_DELAY_TICKS;
-use crate::oscillator::{Oscillator, Transition};
-use crate::parameters::{Parameters, Tabled, settings};
+use crate::control::energy_observer::MOST_DELAY_TICKS;
+use crate::joint::oscillator::{Oscillator, Transition};
+use crate::joint::{LONGEST_STEP_S, Parameters, SettingsError};
+use crate::parameters::{Tabled, settings};
 use crate::real::Real;
-use crate::settings::SettingsError;
 
 settings! {
     /// The bone, and what its ringing may cost.

@@ -13,13 +13,11 @@ use super::input_check::{Checked, InputCheck, InputLimits, Sample};
 use super::ramp::Ramp;
 use super::turn_back::TurnBack;
 use super::{Limit, Pipeline, Seen, Shown, Symptom, Torque};
-use crate::active::Active;
-use crate::event::Event;
-use crate::frozen::Frozen;
-use crate::locate::Locate;
+use crate::joint::shaft::Linear;
+use crate::joint::{Event, StepCoefficients, StickSlip};
 use crate::real::Real;
-use crate::shaft::Linear;
-use crate::stick_slip::StickSlip;
+use crate::solver::frozen::Frozen;
+use crate::solver::locate::Locate;
 
 /// The joint as a device renders it.
 #[derive(Clone, Debug)]
@@ -36,22 +34,22 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Crepitus<F, L> {
     /// A joint in stick at θ = 0 on a shaft that moves with `omega_rad_s`,
     /// seen by an encoder with this angle of one count.
     pub fn new(
-        active: Active<F>,
+        coefficients: StepCoefficients<F>,
         limits: InputLimits<F>,
         rad_per_count: F,
         omega_rad_s: F,
     ) -> Self {
         Self {
-            held: Held::new(Frozen::new(active, omega_rad_s), &limits),
-            ramp: Ramp::at(active),
+            held: Held::new(Frozen::new(coefficients, omega_rad_s), &limits),
+            ramp: Ramp::at(coefficients),
             turn_back: TurnBack::new(rad_per_count),
         }
     }
 
     /// From the next tick on, towards these numbers, no torque faster than
     /// `slew_nm_per_s`. A change that is still under way ends where it is.
-    pub fn commit(&mut self, next: Active<F>, slew_nm_per_s: f64) {
-        let now = *self.held.joint().active();
+    pub fn commit(&mut self, next: StepCoefficients<F>, slew_nm_per_s: f64) {
+        let now = *self.held.joint().coefficients();
         self.follow(Ramp::new(now, next, slew_nm_per_s));
     }
 
@@ -90,8 +88,8 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Symptom<F> for Crepitus<F, L> {
         shown: &mut Shown<F>,
         mut on_event: impl FnMut(Event<F>),
     ) -> Torque<F> {
-        if let Some(active) = self.ramp.advance() {
-            self.held.joint_mut().adjust(active);
+        if let Some(coefficients) = self.ramp.advance() {
+            self.held.joint_mut().adjust(coefficients);
         }
         let jump_nm = &mut shown.jump_nm;
         self.held.follow(input, move |event| {
@@ -126,11 +124,16 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Symptom<F> for Crepitus<F, L> {
 
 impl<F: Real, L: Locate<F, Shape = Linear>> Renderer<F, L> {
     /// See [`Crepitus::new`].
-    pub fn of(active: Active<F>, limits: InputLimits<F>, rad_per_count: F, omega_rad_s: F) -> Self {
-        let step_s = active.step_s;
+    pub fn of(
+        coefficients: StepCoefficients<F>,
+        limits: InputLimits<F>,
+        rad_per_count: F,
+        omega_rad_s: F,
+    ) -> Self {
+        let step_s = coefficients.step_s;
         Self::new(
             InputCheck::new(&limits, step_s, omega_rad_s),
-            Crepitus::new(active, limits, rad_per_count, omega_rad_s),
+            Crepitus::new(coefficients, limits, rad_per_count, omega_rad_s),
             (),
             (),
             (),
@@ -149,7 +152,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Renderer<F, L> {
     }
 
     /// See [`Crepitus::commit`].
-    pub fn commit(&mut self, next: Active<F>, slew_nm_per_s: f64) {
+    pub fn commit(&mut self, next: StepCoefficients<F>, slew_nm_per_s: f64) {
         self.symptoms.commit(next, slew_nm_per_s);
     }
 
@@ -167,7 +170,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Renderer<F, L> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::locate::ExactEvents;
+    use crate::solver::locate::ExactEvents;
     use crate::{Phase, Settings, ShaftStep};
 
     const TICK_S: f64 = 5e-5;
@@ -184,9 +187,10 @@ mod tests {
     /// One that has gone on for so many ticks of 50 µrad: 10 are a stick at
     /// 0.2 N·m, 40 the middle of a slip.
     fn after(ticks: u32) -> Renderer<f32, ExactEvents> {
-        let active = Active::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
+        let coefficients =
+            StepCoefficients::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
         let limits = InputLimits::device(TICK_S);
-        let mut renderer = Renderer::of(active, limits, COUNT_RAD, 1.0);
+        let mut renderer = Renderer::of(coefficients, limits, COUNT_RAD, 1.0);
         for _ in 0..ticks {
             renderer.render(&moved(5e-5), |_| {});
         }

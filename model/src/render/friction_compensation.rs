@@ -13,7 +13,7 @@
 //!
 //! Only a share is cancelled, because what is left is what keeps a sampled
 //! spring passive: it gives away kr·τ·∫Ω² dt, τ = h·(½ + d) being the mean lag,
-//! 0.21 ms ([`energy_observer`](crate::energy_observer) has d), and a friction F
+//! 0.21 ms ([`energy_observer`](crate::control::energy_observer) has d), and a friction F
 //! takes more than that up to Ω = F/(kr·τ). No stick can drive a shaft of
 //! inertia J faster than Ts/√(kr·J), so whatever the cuff and the hand are
 //!
@@ -48,9 +48,9 @@
 //! fade are engineering estimates (the fade is 4.5 counts of the encoder at the
 //! estimator's 50 Hz).
 
-use crate::parameters::{Parameters, Tabled, settings};
+use crate::joint::{Parameters, SettingsError};
+use crate::parameters::{Tabled, settings};
 use crate::real::Real;
-use crate::settings::SettingsError;
 
 settings! {
     /// Assumed friction of the gear, and the share of it to cancel.
@@ -155,7 +155,7 @@ mod tests {
         let most = FrictionCompensationSettings::TABLE[1].max;
         let left_nm = (1.0 - most) * FrictionCompensationSettings::default().friction_nm;
         let need = |p: &Parameters| least_left_nm(p, 210.4e-6, 0.061);
-        for preset in &crate::presets::PRESETS {
+        for preset in &crate::joint::presets::PRESETS {
             assert!(2.0 * need(&preset.parameters) < left_nm, "{}", preset.name);
         }
         let coarse = need(&Parameters::default());

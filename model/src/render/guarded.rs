@@ -5,9 +5,8 @@
 use super::Check;
 use super::held::{Held, JointCounters};
 use super::input_check::{InputCheck, InputCounters, InputLimits, Sample};
-use crate::event::Event;
+use crate::joint::{Event, StickSlip};
 use crate::real::Real;
-use crate::stick_slip::StickSlip;
 
 /// What has happened to a guarded joint; counters stop at their largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,7 +47,7 @@ impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
     /// Guards a joint on a shaft that moves with `omega_rad_s`.
     pub fn new(joint: J, limits: InputLimits<F>, omega_rad_s: F) -> Self {
         Self {
-            check: InputCheck::new(&limits, joint.active().step_s, omega_rad_s),
+            check: InputCheck::new(&limits, joint.coefficients().step_s, omega_rad_s),
             held: Held::new(joint, &limits),
         }
     }
@@ -98,18 +97,18 @@ impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frozen::Frozen;
-    use crate::locate::ExactEvents;
+    use crate::joint::ShaftStep;
     use crate::render::input_check::CATCH_UP_TICKS;
-    use crate::shaft::ShaftStep;
-    use crate::{Active, Phase, Settings};
+    use crate::solver::frozen::Frozen;
+    use crate::solver::locate::ExactEvents;
+    use crate::{Phase, Settings, StepCoefficients};
     use std::vec::Vec;
 
     const TICK_S: f64 = 5e-5;
 
     /// A joint that does nothing but remember its steps.
     struct Remembers {
-        active: Active<f32>,
+        coefficients: StepCoefficients<f32>,
         steps: Vec<ShaftStep<f32>>,
     }
 
@@ -122,8 +121,8 @@ mod tests {
             panic!("gaps here are short");
         }
 
-        fn active(&self) -> &Active<f32> {
-            &self.active
+        fn coefficients(&self) -> &StepCoefficients<f32> {
+            &self.coefficients
         }
 
         fn phase(&self) -> Phase {
@@ -144,10 +143,14 @@ mod tests {
     }
 
     fn guarded(omega: f32) -> Guarded<f32, Remembers> {
-        let active = Active::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
+        let coefficients =
+            StepCoefficients::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
         let steps = Vec::new();
         Guarded::new(
-            Remembers { active, steps },
+            Remembers {
+                coefficients,
+                steps,
+            },
             InputLimits::device(TICK_S),
             omega,
         )
@@ -205,9 +208,10 @@ mod tests {
     /// The torque after a gap of `missing` ticks in which a stick that showed
     /// `held_nm` travelled by `travel_rad`.
     fn after_a_gap(held_nm: f32, missing: u32, travel_rad: f32) -> f32 {
-        let active = Active::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
+        let coefficients =
+            StepCoefficients::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();
         let mut joint = Guarded::new(
-            Frozen::<f32, ExactEvents>::new(active, 0.0),
+            Frozen::<f32, ExactEvents>::new(coefficients, 0.0),
             InputLimits::device(TICK_S),
             0.0,
         );

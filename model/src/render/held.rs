@@ -26,10 +26,8 @@
 //! these at most [`EVENTS_PER_STEP`] events.
 
 use super::input_check::{Checked, Gap, InputLimits};
-use crate::event::{EVENTS_PER_STEP, Event};
+use crate::joint::{EVENTS_PER_STEP, Event, ShaftStep, StickSlip};
 use crate::real::Real;
-use crate::shaft::ShaftStep;
-use crate::stick_slip::StickSlip;
 
 /// What has happened to a joint; counters stop at their largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -88,7 +86,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
     #[inline]
     pub fn torque_nm(&self) -> F {
         if self.is_holding {
-            self.joint.active().limited(self.kept_nm)
+            self.joint.coefficients().limited(self.kept_nm)
         } else {
             self.joint.torque_nm()
         }
@@ -144,7 +142,11 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
             omega_start_rad_s: shaft.omega_start_rad_s.settled(),
             omega_end_rad_s: shaft.omega_end_rad_s.settled(),
         };
-        if self.joint.active().outlasts_a_stick(&shaft) {
+        if self
+            .joint
+            .coefficients()
+            .outlasts_a_stick(shaft.delta_phi_rad)
+        {
             count(&mut self.counters.long_steps);
         }
         let mut events = 0;
@@ -161,7 +163,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
     /// back by this travel, N·m; never beyond zero.
     fn unwound_nm(&self, travel_rad: F) -> F {
         let held_nm = self.kept_nm;
-        let change_nm = self.joint.active().stiffness * travel_rad;
+        let change_nm = self.joint.coefficients().stiffness * travel_rad;
         if held_nm < F::ZERO {
             (held_nm + F::ZERO.at_least(change_nm)).at_most(F::ZERO)
         } else {

@@ -6,8 +6,8 @@
 //! where it is now, and not how it came there.
 
 use super::Check;
+use crate::joint::ShaftStep;
 use crate::real::Real;
-use crate::shaft::ShaftStep;
 
 /// The most missing ticks that are made up for, step by step.
 pub const CATCH_UP_TICKS: u32 = 3;

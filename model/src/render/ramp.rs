@@ -16,14 +16,14 @@
 //!
 //! [`Frozen::adjust`]: crate::Frozen::adjust
 
-use crate::active::Active;
+use crate::joint::StepCoefficients;
 use crate::real::Real;
 
 /// The way from one set of numbers to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ramp<F> {
-    from: Active<F>,
-    to: Active<F>,
+    from: StepCoefficients<F>,
+    to: StepCoefficients<F>,
     /// Length, ticks.
     ticks: u32,
     /// Ticks that have passed; all of them at rest.
@@ -38,10 +38,10 @@ pub struct Ramp<F> {
 
 impl<F: Real> Ramp<F> {
     /// No change under way.
-    pub fn at(active: Active<F>) -> Self {
+    pub fn at(coefficients: StepCoefficients<F>) -> Self {
         Self {
-            from: active,
-            to: active,
+            from: coefficients,
+            to: coefficients,
             ticks: 0,
             passed: 0,
             per_tick: F::ZERO,
@@ -54,7 +54,7 @@ impl<F: Real> Ramp<F> {
 
     /// From the numbers in force to `to`, with no torque faster than
     /// `slew_nm_per_s` > 0. Computed in f64, so called outside the tick.
-    pub fn new(from: Active<F>, to: Active<F>, slew_nm_per_s: f64) -> Self {
+    pub fn new(from: StepCoefficients<F>, to: StepCoefficients<F>, slew_nm_per_s: f64) -> Self {
         let ratio = |a: F, b: F| b.to_f64() / a.to_f64();
         let change = |a: F, b: F| libm::fabs(b.to_f64() - a.to_f64());
         let stiffness = ratio(from.stiffness, to.stiffness);
@@ -87,7 +87,7 @@ impl<F: Real> Ramp<F> {
 
     /// The numbers of the next tick, if they are not those of the last one.
     /// The last ones are the new numbers to the bit.
-    pub fn advance(&mut self) -> Option<Active<F>> {
+    pub fn advance(&mut self) -> Option<StepCoefficients<F>> {
         if !self.is_settling() {
             return None;
         }
@@ -109,23 +109,23 @@ impl<F: Real> Ramp<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::Settings;
-    use crate::{Parameters, presets};
+    use crate::joint::Settings;
+    use crate::{Parameters, joint::presets};
 
     const TICK_S: f64 = 5e-5;
     const SLEW_NM_PER_S: f64 = 100.0;
 
-    fn active(parameters: Parameters) -> Active<f32> {
+    fn coefficients(parameters: Parameters) -> StepCoefficients<f32> {
         let settings = Settings {
             parameters,
             ..Settings::default()
         };
-        Active::new(&settings.validate().unwrap(), TICK_S).unwrap()
+        StepCoefficients::new(&settings.validate().unwrap(), TICK_S).unwrap()
     }
 
     #[test]
     fn nothing_moves_at_rest() {
-        let mut ramp = Ramp::at(active(Parameters::default()));
+        let mut ramp = Ramp::at(coefficients(Parameters::default()));
         assert!(!ramp.is_settling());
         assert_eq!(ramp.advance(), None);
     }
@@ -134,7 +134,7 @@ mod tests {
     fn torques_keep_the_slew_limit_and_end_at_the_new_numbers() {
         for from in presets::PRESETS {
             for to in presets::PRESETS {
-                let (from, to) = (active(from.parameters), active(to.parameters));
+                let (from, to) = (coefficients(from.parameters), coefficients(to.parameters));
                 let mut ramp = Ramp::new(from, to, SLEW_NM_PER_S);
                 let (mut now, mut ticks) = (from, 0);
                 while let Some(next) = ramp.advance() {
@@ -158,7 +158,7 @@ mod tests {
     fn a_ramp_is_as_long_as_its_largest_change() {
         let base = Parameters::default();
         let ticks = |parameters| {
-            let mut ramp = Ramp::new(active(base), active(parameters), SLEW_NM_PER_S);
+            let mut ramp = Ramp::new(coefficients(base), coefficients(parameters), SLEW_NM_PER_S);
             let mut ticks = 0;
             while ramp.advance().is_some() {
                 ticks += 1;
@@ -202,7 +202,11 @@ mod tests {
             kinetic_torque_nm: 0.3,
             ..Parameters::default()
         };
-        let mut ramp = Ramp::new(active(Parameters::default()), active(to), SLEW_NM_PER_S);
+        let mut ramp = Ramp::new(
+            coefficients(Parameters::default()),
+            coefficients(to),
+            SLEW_NM_PER_S,
+        );
         // 0.4·ln 4/5e-3 = 110.9 ticks.
         let mut half = None;
         for _ in 0..56 {

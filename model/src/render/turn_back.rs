@@ -42,9 +42,8 @@
 //! the largest count Δ that keeps both; the presets keep it by a factor of 2.6
 //! and more.
 
-use crate::phase::Phase;
+use crate::joint::{Phase, Restart, Settings};
 use crate::real::Real;
-use crate::settings::{Restart, Settings};
 
 /// The counts that a hand may go back in a slip before its torque is gone: two
 /// are allowed, the third is noticed, and in the time of a fourth the torque
@@ -121,8 +120,8 @@ impl<F: Real> TurnBack<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::encoder::EncoderSettings;
-    use crate::presets::PRESETS;
+    use crate::control::encoder::EncoderSettings;
+    use crate::joint::presets::PRESETS;
     use crate::{Parameters, Sense};
 
     const COUNT: f64 = 1e-5;

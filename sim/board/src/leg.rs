@@ -26,13 +26,13 @@ mod sensors;
 #[cfg(test)]
 mod tests;
 
-pub use crepitus_plant::bridge::Terminals;
+pub use crepitus_plant::effects::motor::bridge::Terminals;
 pub use sensors::{CurrentSensor, EncoderWiring};
 
-use crepitus_plant::bridge::Bridge;
 use crepitus_plant::chain::Body;
+use crepitus_plant::effects::motor::bridge::Bridge;
 use crepitus_plant::effects::motor::{self, MotorNumbers};
-use crepitus_plant::ledger::Ledger;
+use crepitus_plant::energy_balance::EnergyBalance;
 use crepitus_plant::{Motion, Plant};
 use crepitus_scene::{Scene, Walk};
 use sensors::Counter;
@@ -175,7 +175,7 @@ impl Leg {
     }
 
     /// The energy balance since the start.
-    pub fn balance(&self) -> Ledger {
+    pub fn balance(&self) -> EnergyBalance {
         self.plant.balance()
     }
 }

@@ -3,10 +3,10 @@
 mod support;
 
 use crepitus_board::Start;
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::locate::ExactEvents;
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::render::ramp::Ramp;
-use crepitus_model::{Active, Frozen, Settings, StickSlip};
+use crepitus_model::solver::locate::ExactEvents;
+use crepitus_model::{Frozen, Settings, StepCoefficients, StickSlip};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::host::{Answer, Ask};
 use crepitus_protocol::parameters;
@@ -141,18 +141,18 @@ fn the_model_torque_is_that_of_the_model() {
     let samples = host.samples.take().unwrap();
 
     let mut settings = Settings::default();
-    let target = Active::new(&settings.validate().unwrap(), TICK_S).unwrap();
+    let target = StepCoefficients::new(&settings.validate().unwrap(), TICK_S).unwrap();
     settings.parameters.kinetic_torque_nm = 0.0;
     settings.parameters.static_torque_nm = 0.0;
-    let silent = Active::new(&settings.validate().unwrap(), TICK_S).unwrap();
+    let silent = StepCoefficients::new(&settings.validate().unwrap(), TICK_S).unwrap();
     let mut ramp = Ramp::new(silent, target, 100.0);
     let mut model = Frozen::<f32, ExactEvents>::new(silent, 0.0);
     let encoder = EncoderSettings::default();
     let mut reader = EncoderReader::new(&encoder, TICK_S, samples[before].count, 0.0).unwrap();
     let mut events = 0;
     for (n, sample) in samples[before..].iter().enumerate() {
-        if let Some(active) = ramp.advance() {
-            model.adjust(active);
+        if let Some(coefficients) = ramp.advance() {
+            model.adjust(coefficients);
         }
         model.step(&reader.read(sample.count), |_| events += 1);
         assert_eq!(

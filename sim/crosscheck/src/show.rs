@@ -4,7 +4,8 @@ use crepitus_crosscheck::compare::{compare, ours};
 use crepitus_crosscheck::corpus::{Case, MOST_EVENTS};
 use crepitus_crosscheck::double_double::Dd;
 use crepitus_crosscheck::watched::{Answer, LIMIT, Watched};
-use crepitus_model::parameters::{Parameters, Tabled};
+use crepitus_model::Parameters;
+use crepitus_model::parameters::Tabled;
 use crepitus_plant::Motion;
 use std::io;
 

@@ -4,17 +4,17 @@
 //! in the lowest, 1 a break, 2 a stick, 3 a reversal.
 
 use crate::exchange::{Input, Kind, Output};
-use crepitus_model::encoder::EncoderReader;
-use crepitus_model::locate::ExactEvents;
+use crepitus_model::control::encoder::EncoderReader;
+use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
-    Active, BoneShaping, CurrentLoop, Event, EventKind, FrictionCompensation, Guarded, Renderer,
-    Sample, ShaftStep, StickSlip,
+    BoneShaping, CurrentLoop, Event, EventKind, FrictionCompensation, Guarded, Renderer, Sample,
+    ShaftStep, StepCoefficients, StickSlip,
 };
 
 /// Something that is stepped.
 pub trait Measured {
     /// A commit of other numbers, outside of the step.
-    fn commit(&mut self, _next: Active<f32>) {}
+    fn commit(&mut self, _next: StepCoefficients<f32>) {}
 
     /// One step.
     fn step(&mut self, input: &Input) -> Output;
@@ -106,7 +106,7 @@ pub struct Rendered {
 }
 
 impl Measured for Rendered {
-    fn commit(&mut self, next: Active<f32>) {
+    fn commit(&mut self, next: StepCoefficients<f32>) {
         self.renderer.commit(next, self.slew_nm_per_s);
     }
 

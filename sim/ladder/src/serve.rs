@@ -5,10 +5,10 @@ use crate::measured::{Joint, Measured, Rendered, step};
 use crate::plan::Plan;
 use crate::subject::Subject;
 use core::hint::black_box;
-use crepitus_model::current_loop::CurrentLoopSettings;
-use crepitus_model::device_limits::LimitSettings;
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::energy_observer::MOST_DELAY_TICKS;
+use crepitus_model::control::current_loop::CurrentLoopSettings;
+use crepitus_model::control::device_limits::LimitSettings;
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::real::Real;
 use crepitus_model::render::bone_shaping::BoneShapingSettings;
@@ -16,8 +16,8 @@ use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
-    Active, BoneShaping, CurrentLoop, FrictionCompensation, Guarded, Renderer, SettingsError,
-    StickSlip,
+    BoneShaping, CurrentLoop, FrictionCompensation, Guarded, Renderer, SettingsError,
+    StepCoefficients, StickSlip,
 };
 
 /// Serves one command after the other. `wait` is called as there is none, and
@@ -61,18 +61,19 @@ impl Here<'_> {
             Subject::Rung(_, solver) => self.joint::<false>(plan, solver)?,
             Subject::Checked(_) => self.joint::<true>(plan, Solver::ExactEvents)?,
             Subject::Renderer => {
-                let active = |which| Active::<f32>::new(&plan.settings(which)?, step_s);
-                let actives = [active(0)?, active(1)?];
+                let coefficients =
+                    |which| StepCoefficients::<f32>::new(&plan.settings(which)?, step_s);
+                let coefficients = [coefficients(0)?, coefficients(1)?];
                 let rendered = Rendered {
                     renderer: Renderer::of(
-                        actives[0],
+                        coefficients[0],
                         InputLimits::device(step_s),
                         f32::from_f64(EncoderSettings::default().rad_per_count()),
                         plan.omega_rad_s,
                     ),
                     slew_nm_per_s: LimitSettings::defaults().slew_nm_per_s,
                 };
-                self.run(rendered, Some(actives))
+                self.run(rendered, Some(coefficients))
             }
             Subject::Encoder => {
                 let settings = EncoderSettings::default();
@@ -112,7 +113,11 @@ impl Here<'_> {
     }
 
     /// Steps of a subject, command after command; whether another plan comes.
-    fn run<M: Measured>(&mut self, mut subject: M, actives: Option<[Active<f32>; 2]>) -> bool {
+    fn run<M: Measured>(
+        &mut self,
+        mut subject: M,
+        coefficients: Option<[StepCoefficients<f32>; 2]>,
+    ) -> bool {
         // What is called is not known here, so it is called.
         let step: fn(&mut M, &Input) -> Output = black_box(step::<M>);
         self.exchange.set(ENTRY, address(step as usize));
@@ -124,9 +129,9 @@ impl Here<'_> {
                 let steps = Plan::decode(self.exchange).map_or(0, |plan| plan.steps);
                 for n in (0..usize::MAX).take(steps as usize) {
                     let input = self.exchange.input(n);
-                    if let (Kind::Commit, Some(actives)) = (input.kind, &actives) {
+                    if let (Kind::Commit, Some(coefficients)) = (input.kind, &coefficients) {
                         committed = 1 - committed;
-                        if let Some(next) = actives.get(committed) {
+                        if let Some(next) = coefficients.get(committed) {
                             subject.commit(*next);
                         }
                     }

@@ -1,8 +1,8 @@
 //! What drives the shaft: what makes a torque out of the device's command, or
-//! the [bridge](crate::bridge), which knows voltages only.
+//! the [bridge](crate::effects::motor::bridge), which knows voltages only.
 
 use crate::chain::{Push, Step, Verdict};
-use crate::ledger::{Account, Ledger};
+use crate::energy_balance::{Account, EnergyBalance};
 
 /// Drives the shaft.
 pub trait Actuator: Send {
@@ -32,7 +32,7 @@ pub trait Actuator: Send {
     fn absorbed_j(&self) -> f64;
 
     /// Books where that work is.
-    fn book(&self, ledger: &mut Ledger);
+    fn energy(&self, balance: &mut EnergyBalance);
 
     /// Names of the columns in a trace.
     fn columns(&self) -> &'static [&'static str];
@@ -68,8 +68,8 @@ impl Actuator for Box<dyn Commanded> {
         self.as_ref().absorbed_j()
     }
 
-    fn book(&self, ledger: &mut Ledger) {
-        self.as_ref().book(ledger);
+    fn energy(&self, balance: &mut EnergyBalance) {
+        self.as_ref().energy(balance);
     }
 
     fn columns(&self) -> &'static [&'static str] {
@@ -122,8 +122,8 @@ impl Actuator for Ideal {
         self.absorbed_j
     }
 
-    fn book(&self, ledger: &mut Ledger) {
-        ledger.book("actuator", "torque", Account::Rendered, self.absorbed_j);
+    fn energy(&self, balance: &mut EnergyBalance) {
+        balance.add("actuator", "torque", Account::Rendered, self.absorbed_j);
     }
 
     fn columns(&self) -> &'static [&'static str] {

@@ -3,9 +3,9 @@
 //! Everything is decided here, once: what is not listed leaves no part behind.
 
 use crate::actuator::{Actuator, Commanded, Ideal};
+use crate::boundary::{Boundary, Prescribed, Released};
 use crate::chain::{Chain, Shaft};
 use crate::effect::{Context, Effect, Given, Part};
-use crate::holder::{Holder, Prescribed, Released};
 use crate::plant::Plant;
 use crepitus_model::SettingsError;
 
@@ -47,7 +47,7 @@ pub fn assemble_with<A: Actuator>(
     actuator: A,
 ) -> Plant<A> {
     let mut chain: Box<dyn Chain> = Box::new(Shaft);
-    let mut holder: Box<dyn Holder> = if released {
+    let mut boundary: Box<dyn Boundary> = if released {
         Box::new(Released)
     } else {
         Box::new(Prescribed::new(context.start))
@@ -55,9 +55,9 @@ pub fn assemble_with<A: Actuator>(
     for Listed { effect, given } in listed {
         match effect.part {
             Part::Link(make) => chain = make(given, context, chain),
-            Part::Holder(make) => holder = make(given, context, chain.as_ref()),
+            Part::Boundary(make) => boundary = make(given, context, chain.as_ref()),
             Part::Joint | Part::Sensor | Part::Stage(..) | Part::Actuator(_) => {}
         }
     }
-    Plant::new(actuator, chain, holder, context.start)
+    Plant::new(actuator, chain, boundary, context.start)
 }

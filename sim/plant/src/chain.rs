@@ -1,7 +1,7 @@
 //! The mechanics between motor and hand: a chain of bodies, one effect a part.
 //!
 //! ```text
-//! actuator ─> shaft ─ drivetrain ─ backlash ─ cuff ─ limb ─> holder
+//! actuator ─> shaft ─ drivetrain ─ backlash ─ cuff ─ limb ─> boundary
 //!              └──────────── chain, left to right ───────┘
 //! ```
 //!
@@ -20,7 +20,7 @@
 //!
 //! What stands left of a point of the chain acts on what stands right of it
 //! with a torque that is affine in the mean velocity there, a − b·w. So each
-//! part *folds* what is left of it into two numbers, the holder at the right
+//! part *folds* what is left of it into two numbers, the boundary at the right
 //! end solves one equation, and the parts *settle* with the answer. Parts that
 //! a scene leaves out are not in the chain.
 //!
@@ -29,7 +29,7 @@
 //! step folded again; an end of a mode inside the step is located there, the
 //! step cut in two.
 
-use crate::ledger::Ledger;
+use crate::energy_balance::EnergyBalance;
 use crepitus_model::Sense;
 
 /// A body of the chain, all referred to the joint.
@@ -224,7 +224,7 @@ pub trait Chain: Send {
     fn weight(&self) -> Option<Weight>;
 
     /// Books what each part stores now and has lost so far.
-    fn book(&self, body: &Body, ledger: &mut Ledger);
+    fn energy(&self, body: &Body, balance: &mut EnergyBalance);
 
     /// Names of the columns in a trace.
     fn columns(&self, names: &mut Vec<&'static str>);
@@ -286,7 +286,7 @@ impl Chain for Shaft {
         None
     }
 
-    fn book(&self, _: &Body, _: &mut Ledger) {}
+    fn energy(&self, _: &Body, _: &mut EnergyBalance) {}
 
     fn columns(&self, _: &mut Vec<&'static str>) {}
 

@@ -1,8 +1,8 @@
 //! What an effect is: a name, its numbers, and how it joins a plant.
 
 use crate::actuator::Commanded;
+use crate::boundary::Boundary;
 use crate::chain::{Body, Chain};
-use crate::holder::Holder;
 use crepitus_model::SettingsError;
 use crepitus_model::parameters::ParameterSpec;
 
@@ -80,7 +80,7 @@ pub type MakeActuator = fn(&Given, &Context) -> Result<Box<dyn Commanded>, Setti
 /// Lengthens the chain.
 pub type MakeLink = fn(&Given, &Context, Box<dyn Chain>) -> Box<dyn Chain>;
 /// Makes what holds the chain's right end.
-pub type MakeHolder = fn(&Given, &Context, &dyn Chain) -> Box<dyn Holder>;
+pub type MakeBoundary = fn(&Given, &Context, &dyn Chain) -> Box<dyn Boundary>;
 
 /// Where an effect joins.
 #[derive(Clone, Copy, Debug)]
@@ -97,7 +97,7 @@ pub enum Part {
     /// A part of the chain, right of those before it in the table.
     Link(MakeLink),
     /// What holds the right end.
-    Holder(MakeHolder),
+    Boundary(MakeBoundary),
 }
 
 /// The numbers of an effect whose table has `N`.

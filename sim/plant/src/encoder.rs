@@ -1,6 +1,6 @@
 //! The encoder at the motor: the true shaft angle to whole counts.
 
-use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::control::encoder::EncoderSettings;
 
 /// An ideal incremental encoder: it counts every edge and never loses one.
 #[derive(Clone, Copy, Debug, PartialEq)]

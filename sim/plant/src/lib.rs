@@ -1,8 +1,7 @@
 //! # What the joint is attached to
 //!
-//! The motion that somebody makes, the sensors that see the shaft, and what
-//! stands between the motor and the hand: effects that a scene lists one by
-//! one.
+//! The motion, the sensors that see the shaft, and what stands between the
+//! motor and the hand: effects that a scene lists one by one.
 //!
 //! | to find | look in |
 //! |---|---|
@@ -12,25 +11,22 @@
 //! | counts of the encoder at the motor | [`encoder`] |
 //! | what an effect is, and the table of them | [`effect`], [`effects`] |
 //! | how listed effects become a plant | [`assembly`] |
-//! | how a plant is stepped | [`plant`], [`chain`], [`load`], [`actuator`], [`holder`] |
-//! | a motor that is driven by its terminals | [`winding`], [`bridge`] |
-//! | where its energy is | [`ledger`] |
+//! | how a plant is stepped | [`plant`], [`chain`], [`load`], [`actuator`], [`boundary`] |
+//! | where its energy is | [`energy_balance`] |
 
 pub mod actuator;
 pub mod assembly;
-pub mod bridge;
+pub mod boundary;
 pub mod chain;
 pub mod effect;
 pub mod effects;
 pub mod encoder;
-pub mod holder;
-pub mod ledger;
+pub mod energy_balance;
 pub mod load;
 pub mod motion;
 pub mod piece;
 pub mod plant;
 pub mod recording;
-pub mod winding;
 
 pub use motion::Motion;
 pub use piece::{Piece, ShaftState};

@@ -2,7 +2,7 @@
 //! it: the simplest part, and most effects of a leg are one.
 
 use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight};
-use crate::ledger::{Account, Ledger};
+use crate::energy_balance::{Account, EnergyBalance};
 
 /// A torque that depends on the body's motion, and an inertia.
 pub trait Load: Send {
@@ -29,7 +29,7 @@ pub trait Load: Send {
 
     /// Books what it stores now and has lost so far, without the kinetic
     /// energy.
-    fn book(&self, body: &Body, ledger: &mut Ledger);
+    fn energy(&self, body: &Body, balance: &mut EnergyBalance);
 
     /// What was odd.
     fn warnings(&self, _: &mut Vec<String>) {}
@@ -135,14 +135,14 @@ impl<L: Load> Chain for Loaded<L> {
         }
     }
 
-    fn book(&self, body: &Body, ledger: &mut Ledger) {
-        self.left.book(body, ledger);
+    fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
+        self.left.energy(body, balance);
         let inertia = self.load.inertia_kg_m2();
         if inertia > 0.0 {
             let kinetic_j = 0.5 * inertia * body.omega_rad_s * body.omega_rad_s;
-            ledger.book(L::NAME, "kinetic", Account::Stored, kinetic_j);
+            balance.add(L::NAME, "kinetic", Account::Stored, kinetic_j);
         }
-        self.load.book(body, ledger);
+        self.load.energy(body, balance);
     }
 
     fn columns(&self, names: &mut Vec<&'static str>) {

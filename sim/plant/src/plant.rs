@@ -1,9 +1,9 @@
-//! A plant: actuator, chain and holder, stepped together.
+//! A plant: actuator, chain and boundary, stepped together.
 
 use crate::actuator::{Actuator, Commanded};
+use crate::boundary::{Boundary, MotionStep, Stretch};
 use crate::chain::{Body, Chain, Flow, Impacts, Step, Verdict};
-use crate::holder::{Holder, MotionStep, Stretch};
-use crate::ledger::Ledger;
+use crate::energy_balance::EnergyBalance;
 
 /// Ends of modes that are located within one step. What would follow is
 /// carried to the step's end in the mode then in force.
@@ -24,10 +24,10 @@ const SHORTEST: f64 = 1e-6;
 pub struct Plant<A = Box<dyn Commanded>> {
     actuator: A,
     chain: Box<dyn Chain>,
-    holder: Box<dyn Holder>,
+    boundary: Box<dyn Boundary>,
     /// The body at the right end of the chain.
     body: Body,
-    start: Ledger,
+    start: EnergyBalance,
 }
 
 /// A stretch solved.
@@ -49,16 +49,16 @@ impl<A: Actuator> Plant<A> {
     pub fn new(
         actuator: A,
         mut chain: Box<dyn Chain>,
-        holder: Box<dyn Holder>,
+        boundary: Box<dyn Boundary>,
         start: Body,
     ) -> Self {
-        chain.attach(holder.inertia_kg_m2());
+        chain.attach(boundary.inertia_kg_m2());
         let mut plant = Self {
             actuator,
             chain,
-            holder,
+            boundary,
             body: start,
-            start: Ledger::default(),
+            start: EnergyBalance::default(),
         };
         plant.start = plant.booked();
         plant
@@ -76,13 +76,13 @@ impl<A: Actuator> Plant<A> {
 
     /// Between two steps the motion's velocity jumps.
     pub fn jump(&mut self, omega_rad_s: f64) {
-        self.holder
+        self.boundary
             .jump(omega_rad_s, &mut self.body, self.chain.as_mut());
     }
 
     /// One step, in which the scene's motion goes like this.
     pub fn advance(&mut self, motion: &MotionStep) {
-        self.holder.begin(motion);
+        self.boundary.begin(motion);
         let mut from = 0.0;
         for ends in 0..=ENDS_PER_STEP {
             let stretch = |to: f64| Stretch {
@@ -177,7 +177,7 @@ impl<A: Actuator> Plant<A> {
             cut: stretch.from > 0.0,
         };
         let push = self.chain.fold(&step, &self.body);
-        let flow = self.holder.solve(stretch, &self.body, push);
+        let flow = self.boundary.solve(stretch, &self.body, push);
         Solution { step, flow }
     }
 
@@ -188,7 +188,7 @@ impl<A: Actuator> Plant<A> {
             .chain
             .settle(&step, &self.body, &mut next, flow, ends_at);
         let rigid = self.chain.inertia_kg_m2();
-        self.holder
+        self.boundary
             .settle(stretch, &mut self.body, next, flow, &settled, rigid);
         self.actuator.settle(stretch.length_s, settled.shaft_rad_s);
     }
@@ -205,14 +205,14 @@ impl<A: Actuator> Plant<A> {
     }
 
     /// Impulse that the hand has felt so far, N·m·s; see
-    /// [`Holder::felt_nms`].
+    /// [`Boundary::felt_nms`].
     pub fn felt_nms(&self) -> f64 {
-        self.holder.felt_nms()
+        self.boundary.felt_nms()
     }
 
     /// The part of that which came in impacts, N·m·s.
     pub fn struck_nms(&self) -> f64 {
-        self.holder.struck_nms()
+        self.boundary.struck_nms()
     }
 
     /// The impacts so far; none if no part of it can have any.
@@ -226,16 +226,16 @@ impl<A: Actuator> Plant<A> {
     }
 
     /// The energy balance since the start.
-    pub fn balance(&self) -> Ledger {
+    pub fn balance(&self) -> EnergyBalance {
         self.booked().since(&self.start)
     }
 
-    fn booked(&self) -> Ledger {
-        let mut ledger = Ledger::default();
-        self.holder.book(&self.body, &mut ledger);
-        self.actuator.book(&mut ledger);
-        self.chain.book(&self.body, &mut ledger);
-        ledger
+    fn booked(&self) -> EnergyBalance {
+        let mut balance = EnergyBalance::default();
+        self.boundary.energy(&self.body, &mut balance);
+        self.actuator.energy(&mut balance);
+        self.chain.energy(&self.body, &mut balance);
+        balance
     }
 
     /// Names of the columns that its parts have in a trace.
@@ -245,7 +245,7 @@ impl<A: Actuator> Plant<A> {
         if !self.chain.is_rigid() {
             names.extend(["leg_angle_rad", "leg_omega_rad_s"]);
         }
-        names.extend(self.holder.columns());
+        names.extend(self.boundary.columns());
         names
     }
 
@@ -256,7 +256,7 @@ impl<A: Actuator> Plant<A> {
         if !self.chain.is_rigid() {
             row.extend([self.body.angle_rad, self.body.omega_rad_s]);
         }
-        self.holder.write(row);
+        self.boundary.write(row);
     }
 
     /// What was odd.

@@ -3,7 +3,9 @@
 
 use crepitus_model::Validated;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
-use crepitus_model::{Active, Event, Phase, Real, Settings, SettingsError, ShaftStep, StickSlip};
+use crepitus_model::{
+    Event, Phase, Real, Settings, SettingsError, ShaftStep, StepCoefficients, StickSlip,
+};
 
 /// A joint whose rung was chosen while the program runs.
 pub struct AnyJoint<F>(Box<dyn Erased<F>>);
@@ -73,7 +75,7 @@ impl<F: Real> JointVisitor<F> for Boxed {
 trait Erased<F: Real> {
     fn step(&mut self, shaft: &ShaftStep<F>, on_event: &mut dyn FnMut(Event<F>));
     fn restart(&mut self, torque_nm: F, omega_rad_s: F);
-    fn active(&self) -> &Active<F>;
+    fn coefficients(&self) -> &StepCoefficients<F>;
     fn phase(&self) -> Phase;
     fn torque_nm(&self) -> F;
     fn theta_rad(&self) -> F;
@@ -89,8 +91,8 @@ impl<F: Real, J: StickSlip<F>> Erased<F> for J {
         StickSlip::restart(self, torque_nm, omega_rad_s);
     }
 
-    fn active(&self) -> &Active<F> {
-        StickSlip::active(self)
+    fn coefficients(&self) -> &StepCoefficients<F> {
+        StickSlip::coefficients(self)
     }
 
     fn phase(&self) -> Phase {
@@ -119,8 +121,8 @@ impl<F: Real> StickSlip<F> for AnyJoint<F> {
         self.0.restart(torque_nm, omega_rad_s);
     }
 
-    fn active(&self) -> &Active<F> {
-        self.0.active()
+    fn coefficients(&self) -> &StepCoefficients<F> {
+        self.0.coefficients()
     }
 
     fn phase(&self) -> Phase {

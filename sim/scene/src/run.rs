@@ -151,14 +151,6 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
     columns
 }
 
-/// Whether the stages of a scene's device can be built.
-///
-/// # Errors
-/// [`SettingsError`] if one of their numbers does not go with the step.
-pub(crate) fn check_stages(scene: &Scene) -> Result<(), SettingsError> {
-    stages::check(scene, step_s(scene))
-}
-
 /// How many steps a scene has; of `reference`, rows.
 pub fn step_count(scene: &Scene) -> u64 {
     steps(scene).0
@@ -224,19 +216,11 @@ fn step_through<F: Precise>(
 
 /// Number of steps, and of steps between trace rows.
 fn steps(scene: &Scene) -> (u64, u64) {
-    let step_s = step_s(scene);
+    let step_s = scene.step_s();
     // A duration written in decimals may miss a whole number by rounding.
     let steps = whole(scene.duration_s / step_s * (1.0 + 1e-12) + 1e-9);
     let every = whole((scene.trace_step_s / step_s).round()).max(1);
     (steps, every)
-}
-
-/// The step of the solver; of `reference`, the time between rows.
-pub fn step_s(scene: &Scene) -> f64 {
-    match scene.solver {
-        SolverChoice::Reference => scene.trace_step_s,
-        SolverChoice::Ladder { step_s, .. } => step_s,
-    }
 }
 
 #[expect(

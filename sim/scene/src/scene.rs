@@ -4,6 +4,7 @@ mod device;
 mod effects;
 mod motion;
 mod solver;
+mod stages;
 mod variants;
 
 pub use motion::MotionKind;
@@ -11,8 +12,7 @@ pub use solver::{Precision, SolverChoice};
 
 use crate::document::{Document, Range, Section};
 use crate::error::SceneError;
-use crate::run;
-use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use crepitus_plant::actuator::Actuator;
 use crepitus_plant::assembly::{Listed, assemble, assemble_with};
@@ -183,8 +183,18 @@ impl Scene {
             warnings,
         };
         scene.assemble().map_err(|e| root.error(e.to_string()))?;
-        run::check_stages(&scene).map_err(|e| root.error(e.to_string()))?;
+        scene
+            .check_stages()
+            .map_err(|e| root.error(e.to_string()))?;
         Ok(scene)
+    }
+
+    /// The step of the solver; of `reference`, the time between rows, s.
+    pub fn step_s(&self) -> f64 {
+        match self.solver {
+            SolverChoice::Reference => self.trace_step_s,
+            SolverChoice::Ladder { step_s, .. } => step_s,
+        }
     }
 
     /// The plant.
@@ -192,7 +202,7 @@ impl Scene {
     /// # Errors
     /// [`SettingsError`] if a number of the motor does not go with the step.
     pub fn assemble(&self) -> Result<Plant, SettingsError> {
-        let tick_s = run::step_s(self);
+        let tick_s = self.step_s();
         assemble(&self.listed, &self.context(tick_s), !self.is_held())
     }
 

@@ -1,8 +1,8 @@
 //! The motion of a scene, step by step, and the plant that goes along.
 
 use crepitus_plant::actuator::Actuator;
+use crepitus_plant::boundary::MotionStep;
 use crepitus_plant::chain::Body;
-use crepitus_plant::holder::MotionStep;
 use crepitus_plant::{Motion, Piece, Plant};
 use std::borrow::Borrow;
 

@@ -141,14 +141,15 @@ fn folder(name: &str) -> (tempfile::TempDir, PathBuf) {
 fn is_of(effect: &Effect, function: &str) -> bool {
     let file = effect.name.replace('-', "_");
     let model = match effect.name {
-        "crepitus" => "crepitus_model::frozen",
-        "encoder" => "crepitus_model::encoder",
-        "motor" => "crepitus_model::current_loop",
+        "crepitus" => "crepitus_model::solver::frozen",
+        "encoder" => "crepitus_model::control::encoder",
+        "motor" => "crepitus_model::control::current_loop",
         "friction-compensation" => "crepitus_model::render::friction_compensation",
         "bone-shaping" => "crepitus_model::render::bone_shaping",
         _ => "no such function",
     };
-    let winding = effect.name == "motor" && function.contains("crepitus_plant::winding");
+    let winding =
+        effect.name == "motor" && function.contains("crepitus_plant::effects::motor::winding");
     winding
         || function.contains(&format!("crepitus_plant::effects::{file}::"))
         || function.contains(model)

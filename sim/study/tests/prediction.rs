@@ -25,12 +25,12 @@
     reason = "counts of an encoder on a scene's angle"
 )]
 
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::locate::ExactEvents;
-use crepitus_model::propagate::Exact;
-use crepitus_model::velocity_match::{Paper, Physical};
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::solver::locate::ExactEvents;
+use crepitus_model::solver::propagate::Exact;
+use crepitus_model::solver::velocity_match::{Paper, Physical};
 use crepitus_model::{
-    Active, Convention, Frozen, Phase, Real, ShaftStep, StickSlip, VelocityMatch,
+    Convention, Frozen, Phase, Real, ShaftStep, StepCoefficients, StickSlip, VelocityMatch,
 };
 use crepitus_plant::Motion;
 use crepitus_study::accuracy::StudyScene;
@@ -63,23 +63,23 @@ fn errors(scene: &StudyScene, sight: Sight, step_s: f64) -> Errors {
 }
 
 fn of<F: Real>(scene: &StudyScene, sight: Sight, step_s: f64) -> Errors {
-    let active = Active::<F>::new(&scene.settings, step_s).unwrap();
+    let coefficients = StepCoefficients::<F>::new(&scene.settings, step_s).unwrap();
     let omega = F::from_f64(scene.motion.at(0.0).omega_rad_s);
     match scene.settings.convention {
         Convention::Frozen => along(
-            Frozen::<F, ExactEvents>::new(active, omega),
+            Frozen::<F, ExactEvents>::new(coefficients, omega),
             scene,
             sight,
             step_s,
         ),
         Convention::Paper => along(
-            VelocityMatch::<F, Paper, Exact<F>, ExactEvents>::new(active, omega),
+            VelocityMatch::<F, Paper, Exact<F>, ExactEvents>::new(coefficients, omega),
             scene,
             sight,
             step_s,
         ),
         Convention::Physical => along(
-            VelocityMatch::<F, Physical, Exact<F>, ExactEvents>::new(active, omega),
+            VelocityMatch::<F, Physical, Exact<F>, ExactEvents>::new(coefficients, omega),
             scene,
             sight,
             step_s,
@@ -138,9 +138,9 @@ fn half_tick<F: Real, J: StickSlip<F>>(joint: &J, omega: F, step_s: f64) -> f64 
     if joint.phase() != Phase::Stick {
         return torque_nm;
     }
-    let active = joint.active();
-    let limit_nm = active.static_nm.to_f64();
-    let ahead_nm = active.stiffness.to_f64() * omega.to_f64() * step_s / 2.0;
+    let coefficients = joint.coefficients();
+    let limit_nm = coefficients.static_nm.to_f64();
+    let ahead_nm = coefficients.stiffness.to_f64() * omega.to_f64() * step_s / 2.0;
     (torque_nm + ahead_nm).min(limit_nm).max(-limit_nm)
 }
 

@@ -145,7 +145,7 @@ mod tests {
         let fault = Fault {
             name: name.to_owned(),
             what: "a sign".to_owned(),
-            file: "model/src/frozen.rs".to_owned(),
+            file: "model/src/solver/frozen.rs".to_owned(),
             text: "+".to_owned(),
             with: "-".to_owned(),
             unseen_by_cases: (!noticed).then(|| "nothing changes".to_owned()),
@@ -170,7 +170,9 @@ mod tests {
         let outcomes = [tried("sign", true), tried("silent", false)];
         let text = page(&outcomes);
         assert!(text.contains("2 planted faults: the catalogue notices 1; the model's tests 1."));
-        assert!(text.contains("| `sign` | a sign (model/src/frozen.rs) | H10 | laws: mirror |"));
+        assert!(
+            text.contains("| `sign` | a sign (model/src/solver/frozen.rs) | H10 | laws: mirror |")
+        );
         assert!(text.contains("- `silent` is not noticed by the hard cases: nothing changes"));
         assert!(text.contains("- `silent` is not noticed by the model's tests: a hole"));
         let mut later = tried("later", true);

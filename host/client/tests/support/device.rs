@@ -4,7 +4,7 @@ use super::noise::Noise;
 use crepitus_device::drive::motor::Bridge;
 use crepitus_device::usb_port::HostBytes;
 use crepitus_device::{Comms, Drive, comms, drive};
-use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_protocol::management::{Identity, ResetCause, Role};
 use crepitus_protocol::{Revision, TICK_S, Values, schema};
 use std::collections::VecDeque;

@@ -2,7 +2,7 @@
 //! the right.
 
 use crate::palette::{self, Variable};
-use crepitus_model::presets::PRESETS;
+use crepitus_model::joint::presets::PRESETS;
 use crepitus_study::coupled::{
     Cell, CoupledStudy, DAMPINGS, GEARS, LAGS, Onset, STIFFNESSES, Verdict,
 };

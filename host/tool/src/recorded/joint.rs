@@ -1,7 +1,7 @@
 //! The imaginary object, from what a device says of it.
 
 use crepitus_model::Parameters;
-use crepitus_model::oscillator::Oscillator;
+use crepitus_model::joint::oscillator::Oscillator;
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{Revision, TICK_S};
 use crepitus_recording::{Row, Sidecar};

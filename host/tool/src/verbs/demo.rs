@@ -12,7 +12,7 @@ use crate::recorded::{RecordedSummary, report};
 use crate::shipped;
 use crate::simulated::Simulated;
 use crepitus_client::{Client, RequestKind};
-use crepitus_model::presets::Preset;
+use crepitus_model::joint::presets::Preset;
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};

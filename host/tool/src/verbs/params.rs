@@ -5,7 +5,7 @@ use crate::failure::{Failure, print, print_json};
 use crate::line::{connect, failure};
 use crate::shipped;
 use crepitus_client::values::{allowed_text, full_name, parse_value, show_value};
-use crepitus_model::presets::Preset;
+use crepitus_model::joint::presets::Preset;
 use crepitus_protocol::parameters::{self, Kind, PARAMETERS, Parameter, When};
 use crepitus_protocol::{Revision, Values};
 use crepitus_scene::Overrides;

@@ -1,8 +1,9 @@
 //! `crepitus presets`.
 
 use crate::failure::{Failure, print, print_json};
-use crepitus_model::parameters::{Parameters, Tabled};
-use crepitus_model::presets::{Evidence, PRESETS, Preset};
+use crepitus_model::Parameters;
+use crepitus_model::joint::presets::{Evidence, PRESETS, Preset};
+use crepitus_model::parameters::Tabled;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 

@@ -1,6 +1,6 @@
 //! The two sensors of the drive, and what can be wrong with them.
 
-use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_plant::encoder::Encoder;
 
 /// How the encoder is connected.

@@ -1,7 +1,7 @@
 //! The leg against closed forms, and its faults.
 
 use super::*;
-use crepitus_plant::bridge::DIODE_V;
+use crepitus_plant::effects::motor::bridge::DIODE_V;
 use crepitus_scene::Overrides;
 use std::path::Path;
 use std::time::Instant;

@@ -7,7 +7,7 @@
 use crate::rendering;
 use crate::support::{Heard, random_values};
 use crate::support::{Host, set};
-use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_protocol::host::{Answer, Ask};
 use crepitus_protocol::parameters::{self, id};
 use crepitus_protocol::telemetry::{Block, Sample, SampleFlags};

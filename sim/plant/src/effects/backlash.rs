@@ -16,7 +16,7 @@
 
 use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight, sense_of};
 use crate::effect::{Effect, Need, Part, numbers};
-use crate::ledger::{Account, Ledger};
+use crate::energy_balance::{Account, EnergyBalance};
 use crepitus_model::Sense;
 use crepitus_model::parameters::ParameterSpec;
 
@@ -267,9 +267,9 @@ impl Chain for Backlash {
         self.left.weight()
     }
 
-    fn book(&self, body: &Body, ledger: &mut Ledger) {
-        self.left.book(&self.rotor(body), ledger);
-        ledger.book(NAME, "impacts", Account::Lost, self.lost_j);
+    fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
+        self.left.energy(&self.rotor(body), balance);
+        balance.add(NAME, "impacts", Account::Lost, self.lost_j);
     }
 
     fn columns(&self, names: &mut Vec<&'static str>) {

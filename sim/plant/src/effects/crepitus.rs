@@ -2,7 +2,8 @@
 //! equations, numbers and conventions are those of `crepitus_model`.
 
 use crate::effect::{Effect, Part};
-use crepitus_model::parameters::{Parameters, Tabled};
+use crepitus_model::Parameters;
+use crepitus_model::parameters::{Tabled};
 
 /// The effect.
 pub const EFFECT: Effect = Effect {

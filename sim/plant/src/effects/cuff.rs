@@ -17,7 +17,7 @@
 
 use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight};
 use crate::effect::{Effect, Part, numbers};
-use crate::ledger::{Account, Ledger};
+use crate::energy_balance::{Account, EnergyBalance};
 use crepitus_model::parameters::ParameterSpec;
 
 /// The effect.
@@ -224,23 +224,23 @@ impl Chain for Cuff {
         self.left.weight()
     }
 
-    fn book(&self, body: &Body, ledger: &mut Ledger) {
-        self.left.book(&self.brace, ledger);
+    fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
+        self.left.energy(&self.brace, balance);
         let turned = self.brace.angle_rad - body.angle_rad;
         let speed = self.brace.omega_rad_s;
-        ledger.book(
+        balance.add(
             NAME,
             "brace",
             Account::Stored,
             0.5 * self.inertia_kg_m2 * speed * speed,
         );
-        ledger.book(
+        balance.add(
             NAME,
             "elastic",
             Account::Stored,
             0.5 * self.stiffness * turned * turned,
         );
-        ledger.book(NAME, "damping", Account::Lost, self.lost_j);
+        balance.add(NAME, "damping", Account::Lost, self.lost_j);
     }
 
     fn columns(&self, names: &mut Vec<&'static str>) {

@@ -17,7 +17,7 @@
 
 use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight, sense_of};
 use crate::effect::{Effect, Part, numbers};
-use crate::ledger::{Account, Ledger};
+use crate::energy_balance::{Account, EnergyBalance};
 use crepitus_model::Sense;
 use crepitus_model::parameters::ParameterSpec;
 
@@ -239,11 +239,11 @@ impl Chain for Drivetrain {
         self.left.weight()
     }
 
-    fn book(&self, body: &Body, ledger: &mut Ledger) {
-        self.left.book(body, ledger);
+    fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
+        self.left.energy(body, balance);
         let kinetic_j = 0.5 * self.inertia_kg_m2 * body.omega_rad_s * body.omega_rad_s;
-        ledger.book(NAME, "rotor", Account::Stored, kinetic_j);
-        ledger.book(NAME, "friction", Account::Lost, self.lost_j);
+        balance.add(NAME, "rotor", Account::Stored, kinetic_j);
+        balance.add(NAME, "friction", Account::Lost, self.lost_j);
     }
 
     fn columns(&self, names: &mut Vec<&'static str>) {

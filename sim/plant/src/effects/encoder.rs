@@ -1,8 +1,8 @@
 //! `encoder`: what the device knows of the shaft. Counts come from
-//! [`crate::encoder`], the estimate from `crepitus_model::encoder`.
+//! [`crate::encoder`], the estimate from `crepitus_model::control::encoder`.
 
 use crate::effect::{Effect, Part};
-use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Tabled;
 
 /// The effect.

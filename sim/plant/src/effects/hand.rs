@@ -17,8 +17,8 @@
 
 use crate::chain::{Body, Chain, Flow, Push, Settled, Weight};
 use crate::effect::{Effect, Part, numbers};
-use crate::holder::{Holder, MotionStep, Stretch};
-use crate::ledger::{Account, Ledger};
+use crate::boundary::{Boundary, MotionStep, Stretch};
+use crate::energy_balance::{Account, EnergyBalance};
 use crepitus_model::parameters::ParameterSpec;
 
 /// The effect.
@@ -66,7 +66,7 @@ pub const EFFECT: Effect = Effect {
     ],
     choices: &[],
     needs: &[],
-    part: Part::Holder(|given, context, chain| {
+    part: Part::Boundary(|given, context, chain| {
         let [mass, damping, stiffness, lever] = numbers(given);
         let square = lever * lever;
         let arm = Arm {
@@ -119,7 +119,7 @@ trait Lift: Send {
     /// Notes work done.
     fn did(&mut self, joule: f64);
     /// Books it.
-    fn book(&self, ledger: &mut Ledger);
+    fn energy(&self, balance: &mut EnergyBalance);
 }
 
 /// There is no leg.
@@ -130,7 +130,7 @@ impl Lift for () {
 
     fn did(&mut self, _: f64) {}
 
-    fn book(&self, _: &mut Ledger) {}
+    fn energy(&self, _: &mut EnergyBalance) {}
 }
 
 /// Lifts it.
@@ -148,8 +148,8 @@ impl Lift for Lifts {
         self.given_j += joule;
     }
 
-    fn book(&self, ledger: &mut Ledger) {
-        ledger.book(NAME, "lifting", Account::Given, self.given_j);
+    fn energy(&self, balance: &mut EnergyBalance) {
+        balance.add(NAME, "lifting", Account::Given, self.given_j);
     }
 }
 
@@ -179,7 +179,7 @@ impl<L: Lift> Hand<L> {
     }
 }
 
-impl<L: Lift> Holder for Hand<L> {
+impl<L: Lift> Boundary for Hand<L> {
     fn jump(&mut self, _: f64, _: &mut Body, _: &mut dyn Chain) {}
 
     fn begin(&mut self, motion: &MotionStep) {
@@ -243,25 +243,25 @@ impl<L: Lift> Holder for Hand<L> {
         self.arm.inertia_kg_m2
     }
 
-    fn book(&self, body: &Body, ledger: &mut Ledger) {
+    fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
         let arm = &self.arm;
         let behind = arm.intended.angle_rad - body.angle_rad;
         let speed = body.omega_rad_s;
-        ledger.book(NAME, "work", Account::Given, arm.given_j);
-        self.lift.book(ledger);
-        ledger.book(
+        balance.add(NAME, "work", Account::Given, arm.given_j);
+        self.lift.energy(balance);
+        balance.add(
             NAME,
             "arm",
             Account::Stored,
             0.5 * arm.inertia_kg_m2 * speed * speed,
         );
-        ledger.book(
+        balance.add(
             NAME,
             "elastic",
             Account::Stored,
             0.5 * arm.stiffness * behind * behind,
         );
-        ledger.book(NAME, "damping", Account::Lost, arm.lost_j);
+        balance.add(NAME, "damping", Account::Lost, arm.lost_j);
     }
 
     fn columns(&self) -> &'static [&'static str] {

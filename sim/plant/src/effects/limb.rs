@@ -41,7 +41,7 @@ pub use passive::Passive;
 
 use crate::chain::{Body, Push, Step, Weight};
 use crate::effect::{ChoiceSpec, Effect, Part, numbers};
-use crate::ledger::{Account, Ledger};
+use crate::energy_balance::{Account, EnergyBalance};
 use crate::load::{Load, Loaded};
 use crepitus_model::parameters::ParameterSpec;
 
@@ -138,7 +138,7 @@ trait AngleTorque: Copy + Send + 'static {
     /// Torque, N·m, its slope, N·m/rad, and its bend, N·m/rad².
     fn expand(&self, angle_rad: f64) -> [f64; 3];
     /// The energy that it stores, J.
-    fn book(&self, angle_rad: f64, ledger: &mut Ledger);
+    fn energy(&self, angle_rad: f64, balance: &mut EnergyBalance);
     /// The angles that it is known for, rad.
     fn range_rad(&self) -> (f64, f64);
 }
@@ -158,9 +158,9 @@ impl AngleTorque for Pendulum {
         [torque, slope, -torque]
     }
 
-    fn book(&self, angle_rad: f64, ledger: &mut Ledger) {
+    fn energy(&self, angle_rad: f64, balance: &mut EnergyBalance) {
         let height_j = -self.weight_nm * (angle_rad + self.turned_rad).sin();
-        ledger.book(NAME, "weight", Account::Stored, height_j);
+        balance.add(NAME, "weight", Account::Stored, height_j);
     }
 
     fn range_rad(&self) -> (f64, f64) {
@@ -175,9 +175,9 @@ impl<A: AngleTorque, B: AngleTorque> AngleTorque for (A, B) {
         [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
     }
 
-    fn book(&self, angle_rad: f64, ledger: &mut Ledger) {
-        self.0.book(angle_rad, ledger);
-        self.1.book(angle_rad, ledger);
+    fn energy(&self, angle_rad: f64, balance: &mut EnergyBalance) {
+        self.0.energy(angle_rad, balance);
+        self.1.energy(angle_rad, balance);
     }
 
     fn range_rad(&self) -> (f64, f64) {
@@ -238,9 +238,9 @@ impl<T: AngleTorque> Load for Limb<T> {
         Some(Box::new(move |angle| torque.expand(angle)[0]))
     }
 
-    fn book(&self, body: &Body, ledger: &mut Ledger) {
-        self.torque.book(body.angle_rad, ledger);
-        ledger.book(NAME, "damping", Account::Lost, self.lost_j);
+    fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
+        self.torque.energy(body.angle_rad, balance);
+        balance.add(NAME, "damping", Account::Lost, self.lost_j);
     }
 
     fn warnings(&self, warnings: &mut Vec<String>) {

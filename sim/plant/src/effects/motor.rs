@@ -1,9 +1,9 @@
 //! `motor`: winding, back-EMF, supply, and the device's current loop.
 //!
-//! The [winding](crate::winding) gets a voltage of up to the supply's, held
+//! The [winding] gets a voltage of up to the supply's, held
 //! between two PWM periods. In the middle of a tick the device samples the
 //! current and computes the next voltage from this tick's torque
-//! (`crepitus_model::current_loop`, the code of the firmware, in the scene's
+//! (`crepitus_model::control::current_loop`, the code of the firmware, in the scene's
 //! precision); the PWM loads it with the next period, half a tick later.
 //!
 //! The voltage is constant over a tick, so the plant steps as long; the current
@@ -12,15 +12,18 @@
 //! | number | default | source |
 //! |---|---|---|
 //! | winding | 1.23 Ω, 0.34 mH, 38.9 mN·m/A | maxon RE35, 30 V winding |
-//! | supply, limits, bandwidth | 24 V, 1.37 A, 1 kHz | see `crepitus_model::current_loop` |
+//! | supply, limits, bandwidth | 24 V, 1.37 A, 1 kHz | see `crepitus_model::control::current_loop` |
 //! | gear ratio | 86 | the paper |
+
+pub mod bridge;
+pub mod winding;
 
 use crate::actuator::{Actuator, Commanded};
 use crate::chain::Push;
 use crate::effect::{Context, Effect, Given, Part, numbers};
-use crate::ledger::{Account, Ledger};
-use crate::winding::{Course, Winding, WindingSettings};
-use crepitus_model::current_loop::{CurrentLoop, CurrentLoopSettings};
+use crate::energy_balance::{Account, EnergyBalance};
+use crate::effects::motor::winding::{Course, Winding, WindingSettings};
+use crepitus_model::control::current_loop::{CurrentLoop, CurrentLoopSettings};
 use crepitus_model::parameters::{ParameterSpec, Tabled};
 use crepitus_model::{Real, SettingsError};
 
@@ -188,9 +191,9 @@ impl<F: Real> Actuator for Motor<F> {
         self.winding.absorbed_j()
     }
 
-    fn book(&self, ledger: &mut Ledger) {
-        ledger.book(NAME, "supply", Account::Given, self.winding.supplied_j());
-        self.winding.book(NAME, ledger);
+    fn energy(&self, balance: &mut EnergyBalance) {
+        balance.add(NAME, "supply", Account::Given, self.winding.supplied_j());
+        self.winding.energy(NAME, balance);
     }
 
     fn columns(&self) -> &'static [&'static str] {

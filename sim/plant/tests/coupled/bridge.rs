@@ -3,7 +3,7 @@
 use crate::random::case;
 use crate::support::{Build, Rig, TICK_S, cases};
 use crepitus_plant::Motion;
-use crepitus_plant::bridge::{Bridge, DIODE_V, Terminals};
+use crepitus_plant::effects::motor::bridge::{Bridge, DIODE_V, Terminals};
 use proptest::prelude::*;
 
 const OHM: f64 = 1.23;

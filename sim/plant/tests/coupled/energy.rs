@@ -2,12 +2,12 @@
 
 use crate::random::{Case, case};
 use crate::support::cases;
-use crepitus_plant::ledger::{Account, Ledger};
+use crepitus_plant::energy_balance::{Account, EnergyBalance};
 use proptest::prelude::*;
 
 const TICKS: u32 = 6000;
 
-fn losses(balance: &Ledger) -> impl Iterator<Item = f64> {
+fn losses(balance: &EnergyBalance) -> impl Iterator<Item = f64> {
     let terms = balance.terms().iter();
     terms
         .filter(|t| t.account == Account::Lost)

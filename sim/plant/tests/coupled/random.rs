@@ -2,7 +2,7 @@
 
 use crate::support::{Build, Rig, TICK_S, knot};
 use crepitus_plant::Motion;
-use crepitus_plant::bridge::Bridge;
+use crepitus_plant::effects::motor::bridge::Bridge;
 use crepitus_plant::motion::Strokes;
 use proptest::prelude::*;
 use std::f64::consts::TAU;

@@ -2,12 +2,12 @@
 
 use crepitus_plant::actuator::{Actuator, Commanded};
 use crepitus_plant::assembly::{Listed, assemble, assemble_with};
-use crepitus_plant::bridge::Bridge;
+use crepitus_plant::boundary::MotionStep;
 use crepitus_plant::chain::Body;
 use crepitus_plant::effect::{Context, Given};
 use crepitus_plant::effects::EFFECTS;
+use crepitus_plant::effects::motor::bridge::Bridge;
 use crepitus_plant::effects::motor::{self, MotorNumbers};
-use crepitus_plant::holder::MotionStep;
 use crepitus_plant::{Motion, Piece, Plant};
 use proptest::test_runner::{Config, RngSeed};
 use std::fmt::{self, Debug, Formatter};

@@ -17,8 +17,8 @@
 mod hands;
 mod rig;
 
-use crepitus_model::encoder::EncoderSettings;
-use crepitus_model::presets::PRESETS;
+use crepitus_model::control::encoder::EncoderSettings;
+use crepitus_model::joint::presets::PRESETS;
 use crepitus_model::render::turn_back::most_rad_per_count;
 use crepitus_model::{Parameters, Restart, Settings};
 use fastrand::Rng;

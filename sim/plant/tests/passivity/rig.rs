@@ -1,11 +1,12 @@
 //! A joint as the device renders it, what makes its torque act, and a hand's
 //! energy.
 
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::locate::ExactEvents;
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::render::input_check::InputLimits;
+use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
-    Active, EnergyObserver, Phase, Renderer, Sample, Settings, ShaftStep, StickSlip, Validated,
+    EnergyObserver, Phase, Renderer, Sample, Settings, ShaftStep, StepCoefficients, StickSlip,
+    Validated,
 };
 use crepitus_plant::actuator::Commanded;
 use crepitus_plant::chain::Body;
@@ -130,12 +131,12 @@ impl Rig {
         let settings = settings.validate().expect("allowed");
         let encoder = EncoderSettings::default();
         let renderer = Renderer::of(
-            Active::<f32>::new(&settings, TICK_S).expect("a tick"),
+            StepCoefficients::<f32>::new(&settings, TICK_S).expect("a tick"),
             InputLimits::device(TICK_S),
             single(encoder.rad_per_count()),
             0.0,
         );
-        let exact = Active::<f64>::new(&settings, TICK_S).expect("a tick");
+        let exact = StepCoefficients::<f64>::new(&settings, TICK_S).expect("a tick");
         let observer = match acts {
             Acts::Late(ticks) => EnergyObserver::new(&exact, ticks),
             Acts::Motor => EnergyObserver::behind_a_lag(&exact, motor_lag_ticks()),

@@ -4,7 +4,7 @@ use super::Reference;
 use super::ahead::PhaseEnd;
 use super::first_root::{Sample, Touch, first_root};
 use super::parabola::Parabola;
-use crepitus_model::locate::earlier;
+use crepitus_model::solver::locate::earlier;
 use crepitus_model::{Convention, Sense};
 use crepitus_plant::ShaftState;
 use std::ops::ControlFlow;

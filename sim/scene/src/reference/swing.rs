@@ -5,7 +5,7 @@
 //! itself, with its common factor e^(−a·u), keeps the digits of what is left.
 
 use crepitus_model::Parameters;
-use crepitus_model::oscillator::Oscillator;
+use crepitus_model::joint::oscillator::Oscillator;
 
 /// Up to this a·u the change over the time is the exact one to use.
 const SHORT: f64 = 0.5;

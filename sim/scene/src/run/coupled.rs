@@ -1,25 +1,25 @@
-//! A run with a plant: device → actuator → chain → holder, tick by tick. The
+//! A run with a plant: device → actuator → chain → boundary, tick by tick. The
 //! shaft does what comes of it.
 
 use super::device::{Device, device};
 use super::stages;
 use super::stepping::{CHECK_STEPS, PROGRESS_STEPS};
 use super::watch::{Ended, Watch};
-use super::{Diverged, RunError, Totals, step_s, steps};
+use super::{Diverged, RunError, Totals, steps};
 use crate::any_joint::Precise;
 use crate::scene::Scene;
 use crate::trace::EventRecord;
 use crate::walk::Walk;
 use crepitus_model::solver::Solver;
+use crepitus_plant::boundary::MotionStep;
 use crepitus_plant::chain::Impacts;
-use crepitus_plant::holder::MotionStep;
-use crepitus_plant::ledger::Ledger;
+use crepitus_plant::energy_balance::EnergyBalance;
 use crepitus_plant::{Motion, Plant};
 
 /// The totals of a plant.
 pub(super) struct PlantTotals {
     /// The balance of its mechanics and its motor.
-    pub(super) balance: Ledger,
+    pub(super) balance: EnergyBalance,
     /// Where the work of the rendered torque comes from.
     pub(super) rendering: Rendering,
     /// What the hand felt; none if nobody holds the leg.
@@ -91,7 +91,7 @@ pub(super) fn simulate<F: Precise>(
     solver: Solver,
     watch: &mut dyn Watch,
 ) -> Result<Totals, Ended> {
-    let tick_s = step_s(scene);
+    let tick_s = scene.step_s();
     let plant = scene.assemble()?;
     let shaft = plant.shaft();
     let run = Run {
@@ -243,7 +243,7 @@ impl Run {
 /// through it.
 fn first_felt_nm(scene: &Scene) -> Result<f64, crepitus_model::SettingsError> {
     let mut plant = scene.assemble()?;
-    let tick_s = step_s(scene);
+    let tick_s = scene.step_s();
     let mut walk = Walk::new(&scene.motion, tick_s);
     plant.command(0.0);
     let (from, to) = walk.step();
@@ -262,6 +262,6 @@ fn diverged(scene: &Scene, by_s: f64) -> Diverged {
     Diverged {
         solver: scene.solver.name(),
         by_s,
-        radians_per_step: swing * step_s(scene),
+        radians_per_step: swing * scene.step_s(),
     }
 }

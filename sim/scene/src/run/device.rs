@@ -8,11 +8,11 @@ use super::tally::Tally;
 use crate::any_joint::{AnyJoint, Precise};
 use crate::scene::Scene;
 use crate::trace::{Column, ColumnKind, EventRecord};
-use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
+use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::input_check::Sample;
 use crepitus_model::render::{Bare, Seen, Shown};
-use crepitus_model::shaft::Linear;
 use crepitus_model::solver::Solver;
+use crepitus_model::solver::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
 use crepitus_model::{Real, Settings, SettingsError, StickSlip, Validated};
 use crepitus_plant::chain::Body;
 

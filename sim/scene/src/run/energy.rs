@@ -1,7 +1,7 @@
 //! The energy of one run, term by term.
 
 use crepitus_model::Parameters;
-use crepitus_model::oscillator::Oscillator;
+use crepitus_model::joint::oscillator::Oscillator;
 
 /// Terms of the balance, J. See `tally` for what they mean.
 #[derive(Clone, Copy, Debug)]

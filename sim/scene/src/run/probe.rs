@@ -3,7 +3,7 @@
 //! hits all alike.
 
 use super::watch::watched;
-use super::{Blind, simulate, step_s};
+use super::{Blind, simulate};
 use crate::cpu_time;
 use crate::scene::{Scene, SolverChoice};
 use serde::Serialize;
@@ -99,7 +99,7 @@ pub fn step_times<E>(
 ) -> Result<Vec<StepTime>, E> {
     let mut short = scenes.to_vec();
     for scene in &mut short {
-        scene.duration_s = scene.duration_s.min(STEPS * step_s(scene));
+        scene.duration_s = scene.duration_s.min(STEPS * scene.step_s());
     }
     let mut times = vec![Vec::new(); short.len()];
     for _ in 0..timings {

@@ -1,7 +1,7 @@
 //! What the joint is told of the shaft: the truth, or what an encoder sees.
 
 use crate::trace::{Column, ColumnKind};
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::{Real, SettingsError, ShaftStep};
 use crepitus_plant::chain::Body;
 use crepitus_plant::encoder::Encoder;

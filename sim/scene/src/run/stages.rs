@@ -3,23 +3,20 @@
 
 use crate::any_joint::AnyJoint;
 use crate::scene::Scene;
-use crepitus_model::device_limits::LimitSettings;
-use crepitus_model::energy_observer::MOST_DELAY_TICKS;
-use crepitus_model::locate::Locate;
-use crepitus_model::parameters::Tabled;
+use crepitus_model::control::device_limits::LimitSettings;
+use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
+use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::additions::{RingingBone, SlewedCompensation};
-use crepitus_model::render::bone_shaping::BoneShapingSettings;
-use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
 use crepitus_model::render::{Addition, Bare, Check, Limits, Pipeline, Seen, Shown, Symptom};
-use crepitus_model::shaft::Linear;
+use crepitus_model::solver::locate::Locate;
 use crepitus_model::{
-    Active, BoneShaping, Crepitus, Event, FrictionCompensation, Frozen, Real, Settings,
-    SettingsError, StickSlip, Validated,
+    BoneShaping, Crepitus, Event, FrictionCompensation, Frozen, Real, Settings, SettingsError,
+    StepCoefficients, StickSlip, Validated,
 };
-use crepitus_plant::effect::{Effect, Part, numbers};
-use crepitus_plant::effects::{bone_shaping, friction_compensation};
+use crepitus_plant::effect::Part;
+use crepitus_plant::effects::friction_compensation;
 
 /// Ticks between a sample and the torque that answers it, of a bare solver.
 const BARE_DELAY_TICKS: usize = 1;
@@ -41,8 +38,8 @@ pub(super) fn bare<F: Real, S: Symptom<F>>(
     Ok(Pipeline::new(
         (),
         symptoms,
-        compensation(scene)?,
-        bone(scene, step_s, BARE_DELAY_TICKS)?,
+        scene.compensation()?,
+        scene.bone(step_s, BARE_DELAY_TICKS)?,
         (),
     ))
 }
@@ -58,8 +55,8 @@ pub(super) fn drive<F: Real, S: Symptom<F>>(
     Ok(Pipeline::new(
         InputCheck::new(&InputLimits::device(step_s), F::from_f64(step_s), F::ZERO),
         symptoms,
-        SlewedCompensation::new(compensation(scene)?, slew_nm),
-        RingingBone::new(bone(scene, step_s, MOST_DELAY_TICKS)?, slew_nm),
+        SlewedCompensation::new(scene.compensation()?, slew_nm),
+        RingingBone::new(scene.bone(step_s, MOST_DELAY_TICKS)?, slew_nm),
         TorqueLimits::armed(F::from_f64(limits.torque_nm), slew_nm),
     ))
 }
@@ -72,18 +69,11 @@ pub(super) fn crepitus<F: Real, L: Locate<F, Shape = Linear>>(
 ) -> Result<Crepitus<F, L>, SettingsError> {
     let encoder = scene.encoder.unwrap_or_default();
     Ok(Crepitus::new(
-        Active::new(settings, step_s)?,
+        StepCoefficients::new(settings, step_s)?,
         InputLimits::device(step_s),
         F::from_f64(encoder.rad_per_count()),
         F::ZERO,
     ))
-}
-
-/// Whether the stages of a scene's device can be built at all.
-pub(super) fn check(scene: &Scene, step_s: f64) -> Result<(), SettingsError> {
-    compensation::<f64>(scene)?;
-    bone::<f64>(scene, step_s, MOST_DELAY_TICKS)?;
-    Ok(())
 }
 
 /// The stages behind the symptoms that a scene lists, with their columns, in
@@ -105,27 +95,6 @@ pub(super) fn added_nm(effect: &str, shown: &Shown<f64>) -> f64 {
     } else {
         shown.ringing_nm
     }
-}
-
-fn given<const N: usize>(scene: &Scene, effect: &Effect) -> Option<[f64; N]> {
-    let listed = scene.listed.iter().find(|l| l.effect.name == effect.name)?;
-    Some(numbers(&listed.given))
-}
-
-fn compensation<F: Real>(scene: &Scene) -> Result<Option<FrictionCompensation<F>>, SettingsError> {
-    given(scene, &friction_compensation::EFFECT)
-        .map(|numbers| FrictionCompensation::new(&FrictionCompensationSettings::of(numbers)))
-        .transpose()
-}
-
-fn bone<F: Real>(
-    scene: &Scene,
-    step_s: f64,
-    delay_ticks: usize,
-) -> Result<Option<BoneShaping<F>>, SettingsError> {
-    given(scene, &bone_shaping::EFFECT)
-        .map(|numbers| BoneShaping::new(&BoneShapingSettings::of(numbers), step_s, delay_ticks))
-        .transpose()
 }
 
 /// A pipeline of any stages.

@@ -61,7 +61,7 @@ fn bare<F: Real, S: Sensor<F>>(
 ) -> Result<Totals, Ended> {
     let (steps, every) = steps(scene);
     let wants_rows = watch.wants_rows();
-    let mut walk = Walk::new(&scene.motion, super::step_s(scene));
+    let mut walk = Walk::new(&scene.motion, scene.step_s());
     let mut row = Vec::new();
     let mut fastest_rad_s = walk.now().omega_rad_s.abs();
     loop {
@@ -111,7 +111,7 @@ impl<F: Real, S: Sensor<F>> JointVisitor<F> for Run<'_, S> {
         } = self;
         let (steps, every) = steps(scene);
         let wants_rows = watch.wants_rows();
-        let step_s = super::step_s(scene);
+        let step_s = scene.step_s();
         let mut walk = Walk::new(&scene.motion, step_s);
         let mut books = Books::new::<F>(settings, step_s, walk.now().omega_rad_s);
         let mut row = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::coupled::PlantTotals;
 use super::tally::Tally;
-use super::{AddedTime, Totals, step_s};
+use super::{AddedTime, Totals};
 use crate::scene::{Crepitus, SCENE_VERSION, Scene, SolverChoice};
 use crepitus_model::parameters::Tabled;
 use crepitus_model::{Convention, EVENTS_PER_STEP, Parameters};
@@ -477,7 +477,7 @@ fn run_warnings(scene: &Scene, totals: &Totals) -> Vec<String> {
         warnings.push(format!(
             "duration_s = {} s is not a whole number of steps of {} s: the run ends at {} s",
             scene.duration_s,
-            step_s(scene),
+            scene.step_s(),
             totals.end_s
         ));
     }

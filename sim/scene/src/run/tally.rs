@@ -15,7 +15,7 @@
 
 use super::energy::Energy;
 use super::lead::Lead;
-use crepitus_model::oscillator::Oscillator;
+use crepitus_model::joint::oscillator::Oscillator;
 use crepitus_model::{Convention, Event, EventKind, Phase, Sense, Settings};
 
 /// Extremes, mean and root mean square of the torque over time.

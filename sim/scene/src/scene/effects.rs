@@ -4,10 +4,10 @@
 use super::Crepitus;
 use crate::document::{Range, Section};
 use crate::error::SceneError;
-use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::control::encoder::EncoderSettings;
+use crepitus_model::joint::presets::{PRESETS, Preset};
 use crepitus_model::parameters::ParameterSpec;
 use crepitus_model::parameters::Tabled;
-use crepitus_model::presets::{PRESETS, Preset};
 use crepitus_model::{Convention, Restart, Settings};
 use crepitus_plant::assembly::Listed;
 use crepitus_plant::effect::{Effect, Given, Part};

@@ -2,7 +2,7 @@
 
 use super::{Crepitus, MotionKind, Scene, SolverChoice};
 use crepitus_model::Settings;
-use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_plant::assembly::Listed;
 use crepitus_plant::effect::{Effect, Given, Part};
 use crepitus_plant::effects::EFFECTS;

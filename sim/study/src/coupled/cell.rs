@@ -2,7 +2,7 @@
 
 use super::setting::{DURATION_S, Setting, TICK_S};
 use crate::parallel::Meter;
-use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_scene::run::{Observer, RunError, columns, run};
 use crepitus_scene::trace::EventRecord;
 use serde::Serialize;

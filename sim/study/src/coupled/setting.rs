@@ -1,6 +1,6 @@
 //! What is varied, and the scene that comes of it.
 
-use crepitus_model::presets::{PRESETS, Preset};
+use crepitus_model::joint::presets::{PRESETS, Preset};
 use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_scene::scene::Overrides;
 use crepitus_scene::{Scene, SceneError};

@@ -6,7 +6,7 @@ use super::setting::{DAMPINGS, Extra, GEARS, LAGS, STIFFNESSES, Setting};
 use crate::parallel::{Meter, each};
 use crate::watcher::Watcher;
 use crepitus_model::Real;
-use crepitus_model::presets::PRESETS;
+use crepitus_model::joint::presets::PRESETS;
 use std::time::Instant;
 
 /// A preset's own stiffness is varied by these factors.

@@ -28,7 +28,7 @@ pub(super) fn feel(
     hear: impl FnMut(f64) -> bool,
 ) -> Result<Summary, Ended> {
     let mut scene = scene.clone();
-    scene.trace_step_s = run::step_s(&scene);
+    scene.trace_step_s = scene.step_s();
     let mut ear = Ear {
         place: place(&scene),
         hear,

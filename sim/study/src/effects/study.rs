@@ -13,7 +13,7 @@ use crate::parallel::{Meter, each};
 use crate::watcher::Watcher;
 use crepitus_model::Real;
 use crepitus_scene::Scene;
-use crepitus_scene::run::{AddedTime, StepTime, step_count, step_s, step_times};
+use crepitus_scene::run::{AddedTime, StepTime, step_count, step_times};
 use std::time::Instant;
 
 /// Timings of which the fastest counts: enough that a busy machine is quiet
@@ -95,7 +95,7 @@ pub fn run<W: Watcher>(
         scene: scene.file.display().to_string(),
         title: scene.title.clone(),
         effects: scene.effects().iter().map(|e| e.name).collect(),
-        tick_s: step_s(scene),
+        tick_s: scene.step_s(),
         ticks: step_count(scene),
         warnings,
         rows,
@@ -128,7 +128,7 @@ fn whole<W: Watcher>(
     let felt = each(std::slice::from_ref(scene), meter, watcher, |scene| {
         let count = step_count(scene);
         let mut signal = Vec::with_capacity(usize::try_from(count).unwrap_or(0));
-        let mut listener = Listener::new(step_s(scene), count);
+        let mut listener = Listener::new(scene.step_s(), count);
         let summary = feel(scene, meter, |torque_nm| {
             signal.push(torque_nm);
             listener.push(torque_nm);
@@ -167,7 +167,7 @@ fn hear(variant: &Variant, whole: &Felt, meter: &Meter) -> Result<Heard, String>
         });
     };
     let count = step_count(scene);
-    let mut listener = Listener::new(step_s(scene), count);
+    let mut listener = Listener::new(scene.step_s(), count);
     let mut difference = Size::default();
     let mut profile = Profile::new(count);
     let mut own = whole.signal.iter();

@@ -15,7 +15,6 @@ use crate::stability::story::{Panel, Scale, Series, Story};
 use crate::watcher::Watcher;
 use crepitus_model::Real;
 use crepitus_scene::Scene;
-use crepitus_scene::run::step_s;
 use panel::panel;
 use trend::Trend;
 
@@ -52,7 +51,7 @@ pub(super) fn story<W: Watcher>(
     candidates.retain(|c| c.rms_nm > 0.0);
     candidates.sort_by(|a, b| b.rms_nm.total_cmp(&a.rms_nm));
     candidates.truncate(SHOWN);
-    let tick_s = step_s(scene);
+    let tick_s = scene.step_s();
     let (from, to) = window(whole, &candidates, tick_s);
     if candidates.is_empty() || to < from + 2 {
         return Ok(None);

@@ -7,12 +7,12 @@ use super::observation::Observation;
 use super::subject::Subject;
 use crate::sampling::Sampling;
 use crate::true_events::TimedEvent;
-use crepitus_model::locate::Locate;
+use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::ramp::Ramp;
-use crepitus_model::shaft::Linear;
+use crepitus_model::solver::locate::Locate;
 use crepitus_model::{
-    Active, EventKind, Frozen, Phase, Real, Settings, SettingsError, ShaftStep, StickSlip,
-    Validated,
+    EventKind, Frozen, Phase, Real, Settings, SettingsError, ShaftStep, StepCoefficients,
+    StickSlip, Validated,
 };
 
 /// The device's slew limit, N·m/s.
@@ -34,7 +34,7 @@ impl Changed<'_> {
 /// The energy that a frozen object stores: its spring's, and in a slip, where
 /// it moves by itself, its motion's, J.
 pub(super) fn stored_j<F: Real, L: Locate<F, Shape = Linear>>(joint: &Frozen<F, L>) -> f64 {
-    let (a, theta) = (joint.active(), joint.theta_rad().to_f64());
+    let (a, theta) = (joint.coefficients(), joint.theta_rad().to_f64());
     let spring = 0.5 * a.stiffness.to_f64() * theta * theta;
     match joint.phase() {
         Phase::Stick => spring,
@@ -49,9 +49,9 @@ impl<F: Real> WithLocator<F> for Changed<'_> {
 
     fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
         let step_s = self.sampling.step_s();
-        let active = Active::<F>::new(&self.settings, step_s)?;
-        let mut joint = Frozen::<F, L>::new(active, F::ZERO);
-        let mut ramp = Ramp::at(active);
+        let coefficients = StepCoefficients::<F>::new(&self.settings, step_s)?;
+        let mut joint = Frozen::<F, L>::new(coefficients, F::ZERO);
+        let mut ramp = Ramp::at(coefficients);
         let mut seen = Observation {
             step_s,
             ..Observation::default()
@@ -71,8 +71,8 @@ impl<F: Real> WithLocator<F> for Changed<'_> {
                     parameters: change.parameters,
                     ..*self.settings
                 };
-                let next = Active::new(&next.validate()?, step_s)?;
-                ramp = Ramp::new(*joint.active(), next, SLEW_NM_PER_S);
+                let next = StepCoefficients::new(&next.validate()?, step_s)?;
+                ramp = Ramp::new(*joint.coefficients(), next, SLEW_NM_PER_S);
             }
             tick(&mut joint, &mut ramp, shaft, now_s, &mut slip_j, &mut seen);
         }
@@ -97,7 +97,7 @@ fn tick<F: Real, L: Locate<F, Shape = Linear>>(
     }
     let step_s = seen.step_s;
     let mut events = 0;
-    let stiffness = joint.active().stiffness.to_f64();
+    let stiffness = joint.coefficients().stiffness.to_f64();
     joint.step(shaft, |event| {
         events += 1;
         let spring_j = 0.5 * stiffness * event.theta_rad.to_f64().powi(2);
@@ -116,7 +116,7 @@ fn tick<F: Real, L: Locate<F, Shape = Linear>>(
         ));
     });
     seen.steps += 1;
-    let a = joint.active();
+    let a = joint.coefficients();
     let torque_nm = joint.torque_nm().to_f64();
     seen.last_torque_nm = torque_nm;
     let limit_nm = a.static_nm.to_f64();

@@ -3,9 +3,9 @@
 
 use super::subject::{Rung, Subject};
 use crepitus_model::Real;
-use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
-use crepitus_model::shaft::Linear;
+use crepitus_model::joint::shaft::Linear;
 use crepitus_model::solver::Solver;
+use crepitus_model::solver::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
 
 /// What to do once the locator is known.
 pub(super) trait WithLocator<F: Real> {

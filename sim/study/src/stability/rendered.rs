@@ -9,13 +9,14 @@ use super::observe::bits;
 use super::subject::Subject;
 use crate::sampling::{Sampling, Walk};
 use crate::true_events::TimedEvent;
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::locate::Locate;
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::Limit;
 use crepitus_model::render::input_check::InputLimits;
-use crepitus_model::shaft::Linear;
+use crepitus_model::solver::locate::Locate;
 use crepitus_model::{
-    Active, Event, Real, Renderer, Sample, Settings, SettingsError, ShaftStep, StickSlip, Validated,
+    Event, Real, Renderer, Sample, Settings, SettingsError, ShaftStep, StepCoefficients, StickSlip,
+    Validated,
 };
 use crepitus_plant::encoder::Encoder;
 
@@ -34,16 +35,16 @@ impl RenderedRun<'_> {
     }
 
     /// The numbers that are committed, in turn.
-    fn commits<F: Real>(&self) -> Result<Vec<Active<F>>, SettingsError> {
+    fn commits<F: Real>(&self) -> Result<Vec<StepCoefficients<F>>, SettingsError> {
         let step_s = self.sampling.step_s();
-        let active = |&parameters| {
+        let coefficients = |&parameters| {
             let next = Settings {
                 parameters,
                 ..*self.settings
             };
-            Active::new(&next.validate()?, step_s)
+            StepCoefficients::new(&next.validate()?, step_s)
         };
-        self.rendered.commits.iter().map(active).collect()
+        self.rendered.commits.iter().map(coefficients).collect()
     }
 }
 
@@ -55,7 +56,7 @@ impl<F: Real> WithLocator<F> for RenderedRun<'_> {
         let commits = self.commits::<F>()?;
         let mut sight = Sight::new(self.sampling.walk_from(0), rendered.counts, step_s)?;
         let mut renderer = Renderer::<F, L>::of(
-            Active::new(&self.settings, step_s)?,
+            StepCoefficients::new(&self.settings, step_s)?,
             InputLimits::device(step_s),
             F::from_f64(EncoderSettings::default().rad_per_count()),
             sight.omega(),
@@ -69,9 +70,9 @@ impl<F: Real> WithLocator<F> for RenderedRun<'_> {
         for n in 1..=self.sampling.steps() {
             if rendered.commit_every > 0
                 && n.is_multiple_of(rendered.commit_every)
-                && let Some(active) = next.next()
+                && let Some(coefficients) = next.next()
             {
-                renderer.commit(*active, SLEW_NM_PER_S);
+                renderer.commit(*coefficients, SLEW_NM_PER_S);
             }
             let sample = sight.look(rendered.lost.takes(n, step_s));
             let (since, sampling) = (seen.steps.saturating_sub(sight.missed), &self.sampling);
@@ -85,7 +86,7 @@ impl<F: Real> WithLocator<F> for RenderedRun<'_> {
                 Sample::Lost => sight.missed + 1,
                 Sample::Taken(_) => 0,
             };
-            let limit_nm = renderer.joint().active().static_nm.to_f64();
+            let limit_nm = renderer.joint().coefficients().static_nm.to_f64();
             note::<F>(&mut seen, shown.torque_nm.to_f64(), limit_nm, late_step);
             seen.guard_ticks += u64::from(shown.limit == Limit::TurnedBack);
         }

@@ -7,12 +7,13 @@ use super::locators::{WithLocator, with_locator};
 use super::observation::Observation;
 use super::subject::Subject;
 use crate::sampling::Sampling;
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::locate::Locate;
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::input_check::InputLimits;
-use crepitus_model::shaft::Linear;
+use crepitus_model::solver::locate::Locate;
 use crepitus_model::{
-    Active, EnergyObserver, Real, Renderer, Sample, Settings, SettingsError, ShaftStep, Validated,
+    EnergyObserver, Real, Renderer, Sample, Settings, SettingsError, ShaftStep, StepCoefficients,
+    Validated,
 };
 use crepitus_plant::encoder::Encoder;
 
@@ -77,7 +78,7 @@ impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
     fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
         let Self(shaken, mut on_tick) = self;
         let step_s = shaken.sampling.step_s();
-        let active = Active::<F>::new(&shaken.settings, step_s)?;
+        let coefficients = StepCoefficients::<F>::new(&shaken.settings, step_s)?;
         let settings = EncoderSettings::default();
         let encoder = Encoder::new(&settings);
         let mut walk = shaken.sampling.walk_from(0);
@@ -86,12 +87,12 @@ impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
         let first = encoder.count(angle_rad);
         let mut reader = EncoderReader::<F>::new(&settings, step_s, first, omega)?;
         let mut renderer = Renderer::<F, L>::of(
-            active,
+            coefficients,
             InputLimits::device(step_s),
             F::from_f64(settings.rad_per_count()),
             omega,
         );
-        let exact = Active::<f64>::new(&shaken.settings, step_s)?;
+        let exact = StepCoefficients::<f64>::new(&shaken.settings, step_s)?;
         let mut hand = EnergyObserver::new(&exact, shaken.shake.delay_ticks);
         let mut unguarded = hand;
         let mut chunk = Vec::new();
@@ -142,7 +143,7 @@ impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
 mod tests {
     use super::super::input::Lost;
     use super::*;
-    use crepitus_model::presets::PRESETS;
+    use crepitus_model::joint::presets::PRESETS;
     use crepitus_plant::Motion;
     use crepitus_plant::recording::{AngleUnit, Source, read, smooth};
     use crepitus_scene::scene::Precision;

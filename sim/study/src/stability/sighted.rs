@@ -2,7 +2,7 @@
 //! is no number is a sample that was not taken.
 
 use crepitus_model::render::input_check::{InputLimits, Sample};
-use crepitus_model::{Active, Event, Guarded, Phase, Real, ShaftStep, StickSlip};
+use crepitus_model::{Event, Guarded, Phase, Real, ShaftStep, StepCoefficients, StickSlip};
 
 /// The step of a sample that was not taken.
 pub(super) fn lost<F: Real>() -> ShaftStep<F> {
@@ -36,8 +36,8 @@ impl<F: Real, J: StickSlip<F>> StickSlip<F> for Sighted<F, J> {
         self.0.joint_mut().restart(torque_nm, omega_rad_s);
     }
 
-    fn active(&self) -> &Active<F> {
-        self.0.joint().active()
+    fn coefficients(&self) -> &StepCoefficients<F> {
+        self.0.joint().coefficients()
     }
 
     fn phase(&self) -> Phase {

@@ -4,7 +4,7 @@ use super::input::{Fault, Input, Rendered, Shaft};
 use super::random::Random;
 use super::sighted::lost;
 use crate::sampling::{CHUNK_STEPS, Sampling, Walk};
-use crepitus_model::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::{Real, SettingsError, ShaftStep};
 use crepitus_plant::Motion;
 use crepitus_plant::encoder::Encoder;

@@ -1,7 +1,7 @@
 //! The passive moment of muscles and ligaments, after Riener and Edrich.
 
 use super::{AngleTorque, NAME};
-use crate::ledger::{Account, Ledger};
+use crate::energy_balance::{Account, EnergyBalance};
 
 /// The passive moment.
 #[derive(Clone, Copy, Debug)]
@@ -73,8 +73,8 @@ impl AngleTorque for Passive {
         ]
     }
 
-    fn book(&self, angle_rad: f64, ledger: &mut Ledger) {
-        ledger.book(NAME, "passive", Account::Stored, self.stored_j(angle_rad));
+    fn energy(&self, angle_rad: f64, balance: &mut EnergyBalance) {
+        balance.add(NAME, "passive", Account::Stored, self.stored_j(angle_rad));
     }
 
     fn range_rad(&self) -> (f64, f64) {

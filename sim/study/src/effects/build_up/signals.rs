@@ -4,7 +4,7 @@ use super::Measured;
 use crate::parallel::Meter;
 use crepitus_model::Real;
 use crepitus_scene::Scene;
-use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns, step_count, step_s};
+use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns, step_count};
 use crepitus_scene::trace::{EventKind, EventRecord};
 
 /// Half of the stretch whose mean is taken away, s.
@@ -91,13 +91,13 @@ impl Signals {
     /// Runs `scene` and listens.
     pub(super) fn of(scene: &Scene, meter: &Meter) -> Result<Self, String> {
         let mut scene = scene.clone();
-        scene.trace_step_s = step_s(&scene);
+        scene.trace_step_s = scene.step_s();
         let names: Vec<_> = columns(&scene).iter().map(|c| c.name).collect();
         let place = |name: &str| names.iter().position(|n| *n == name);
         let model = place("torque_nm").ok_or("the scene has no joint")?;
         let mut ear = Ear {
             signals: Self {
-                tick_s: step_s(&scene),
+                tick_s: scene.step_s(),
                 from_s: scene.duration_s / 2.0,
                 model_nm: Vec::new(),
                 hand_nm: Vec::new(),

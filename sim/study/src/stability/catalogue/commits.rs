@@ -4,8 +4,8 @@ use super::tools::{changed, joint, paper_joint, rendered, slip_s, trial};
 use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Criterion, Limits};
 use crate::stability::input::{Input, Lost, Rendered, Shaft};
+use crepitus_model::joint::presets::PRESETS;
 use crepitus_model::parameters::Tabled;
-use crepitus_model::presets::PRESETS;
 use crepitus_model::{Convention, Parameters};
 use crepitus_scene::scene::Precision;
 
@@ -106,7 +106,7 @@ pub(super) fn stronger_in_a_slip() -> Case {
         title: "Torques and stiffness change inside a slip, whose end then lies elsewhere",
         hard: "The restart angle (2Tk − Ts)/kr of the new numbers may hold more than the old spring held when it broke: \
                a slip would end with energy that nobody put in.",
-        source: "model/src/frozen.rs: the angle of a slip's end is at most that of its break, scaled as the spring is",
+        source: "model/src/solver/frozen.rs: the angle of a slip's end is at most that of its break, scaled as the spring is",
         long: false,
         must: located,
         trials: |subject| {

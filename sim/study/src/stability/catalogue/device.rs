@@ -5,9 +5,9 @@ use super::tools::{TICK_S, changed, faulty, joint, paper_joint, trial};
 use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Counted, Criterion, Limits};
 use crate::stability::input::{Fault, Input, Lost, Shaft, Shake};
-use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::control::encoder::EncoderSettings;
+use crepitus_model::joint::presets::PRESETS;
 use crepitus_model::parameters::Tabled;
-use crepitus_model::presets::PRESETS;
 use crepitus_model::{Convention, Parameters};
 
 pub(super) fn impossible_samples() -> Case {

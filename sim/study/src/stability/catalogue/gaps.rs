@@ -5,7 +5,7 @@ use super::tools::{TICK_S, cycle_hz, exactly, faulty, paper_joint, rendered, sin
 use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Counted, Criterion, Limits};
 use crate::stability::input::{Fault, Input, Lost, Rendered, Shaft, Shake};
-use crepitus_model::encoder::EncoderSettings;
+use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::{Convention, Parameters};
 
 pub(super) fn gap_under_load() -> Case {

@@ -13,7 +13,7 @@ pub(super) fn steps() -> Case {
         title: "Steps of no length, of negative length, of no number",
         hard: "A step of zero divides by zero, a negative one runs time backwards, and NaN passes every comparison \
                that is written the wrong way round. After 1000 s a joint of the paper has seen 31,831 cycles in one step.",
-        source: "the documented errors of Active and of a step",
+        source: "the documented errors of StepCoefficients and of a step",
         long: false,
         must: located,
         trials: |subject| {

@@ -5,8 +5,8 @@ use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Counted, Criterion, Limits};
 use crate::stability::input::{Input, Shaft};
 use crate::stability::subject::{Rung, Subject};
+use crepitus_model::joint::presets::PRESETS;
 use crepitus_model::parameters::Tabled;
-use crepitus_model::presets::PRESETS;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters};
 use crepitus_scene::scene::Precision;
@@ -18,7 +18,7 @@ pub(super) fn free_period() -> Case {
         title: "The free period keeps its fraction of a tick in f32",
         hard: "A period of 628.3 ticks in one f32 number is known to 3e-5 of a tick, and every slip is off by it in \
                the same direction. In whole ticks and a fraction it is known to 6e-8.",
-        source: "model/src/ticks.rs; at 1000 rad/s a slip is a period but for λ = 1e-4",
+        source: "model/src/joint/ticks.rs; at 1000 rad/s a slip is a period but for λ = 1e-4",
         long: false,
         must: located,
         trials: |subject| {

@@ -4,11 +4,11 @@
 use super::{Mark, Panel, Scale, Series, Story};
 use crate::sampling::Sampling;
 use crate::stability::changed::SLEW_NM_PER_S;
-use crepitus_model::locate::ExactEvents;
-use crepitus_model::oscillator::Oscillator;
+use crepitus_model::joint::oscillator::Oscillator;
 use crepitus_model::render::ramp::Ramp;
+use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
-    Active, Frozen, Parameters, Settings, SettingsError, ShaftStep, StickSlip, Validated,
+    Frozen, Parameters, Settings, SettingsError, ShaftStep, StepCoefficients, StickSlip, Validated,
 };
 use crepitus_plant::Motion;
 
@@ -129,7 +129,7 @@ fn valid(parameters: Parameters) -> Result<Validated<Settings>, SettingsError> {
 }
 
 /// Energy of spring and motion, J.
-fn energy_j(a: &Active<f64>, theta: f64, theta_dot: f64) -> f64 {
+fn energy_j(a: &StepCoefficients<f64>, theta: f64, theta_dot: f64) -> f64 {
     0.5 * a.stiffness * theta * theta + 0.5 * a.inertia * theta_dot * theta_dot
 }
 
@@ -138,7 +138,10 @@ fn committed(
     soft: &Validated<Settings>,
     stiff: &Validated<Settings>,
 ) -> Result<Lines, SettingsError> {
-    let (soft, stiff) = (Active::new(soft, STEP_S)?, Active::new(stiff, STEP_S)?);
+    let (soft, stiff) = (
+        StepCoefficients::new(soft, STEP_S)?,
+        StepCoefficients::new(stiff, STEP_S)?,
+    );
     let motion = Motion::constant(OMEGA_RAD_S);
     let sampling = Sampling::new(&motion, SHOWN_S, STEP_S);
     let mut joint = Frozen::<f64, ExactEvents>::new(soft, OMEGA_RAD_S);
@@ -151,9 +154,9 @@ fn committed(
         let now_s = sampling.time_s(n, 0.0);
         let due = |at_s: f64| (now_s - at_s).abs() < 0.5 * STEP_S;
         if due(STIFFER_S) {
-            ramp = Ramp::new(*joint.active(), stiff, SLEW_NM_PER_S);
+            ramp = Ramp::new(*joint.coefficients(), stiff, SLEW_NM_PER_S);
         } else if due(SOFTER_S) {
-            ramp = Ramp::new(*joint.active(), soft, SLEW_NM_PER_S);
+            ramp = Ramp::new(*joint.coefficients(), soft, SLEW_NM_PER_S);
         }
         if let Some(next) = ramp.advance() {
             joint.adjust(next);
@@ -164,7 +167,11 @@ fn committed(
         lines.add(
             sampling.time_s(n + 1, 0.0),
             joint.torque_nm(),
-            energy_j(joint.active(), joint.theta_rad(), joint.theta_dot_rad_s()),
+            energy_j(
+                joint.coefficients(),
+                joint.theta_rad(),
+                joint.theta_dot_rad_s(),
+            ),
         );
     }
     Ok(lines)
@@ -174,8 +181,8 @@ fn committed(
 /// looked at: the stick's angle goes on, and the far too strong spring swings.
 fn naive(soft: &Parameters, stiff: &Parameters) -> Result<Lines, SettingsError> {
     let swing = Oscillator::<f64>::of(stiff).transition(STEP_S);
-    let soft: Active<f64> = Active::new(&valid(*soft)?, STEP_S)?;
-    let stiff = Active::new(&valid(*stiff)?, STEP_S)?;
+    let soft: StepCoefficients<f64> = StepCoefficients::new(&valid(*soft)?, STEP_S)?;
+    let stiff = StepCoefficients::new(&valid(*stiff)?, STEP_S)?;
     let mut lines = Lines::default();
     let mut time_s = 0.0;
     while time_s < STIFFER_S - 0.5 * STEP_S {

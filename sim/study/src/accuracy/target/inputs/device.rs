@@ -2,9 +2,11 @@
 
 use crepitus_ladder::exchange::{Input, Kind};
 use crepitus_ladder::{Plan, Subject};
-use crepitus_model::encoder::EncoderSettings;
-use crepitus_model::locate::ExactEvents;
-use crepitus_model::{Active, Frozen, Parameters, Settings, SettingsError, ShaftStep, StickSlip};
+use crepitus_model::control::encoder::EncoderSettings;
+use crepitus_model::solver::locate::ExactEvents;
+use crepitus_model::{
+    Frozen, Parameters, Settings, SettingsError, ShaftStep, StepCoefficients, StickSlip,
+};
 use crepitus_plant::encoder::Encoder;
 
 /// Torque at the joint for a current of the motor, N·m/A.
@@ -148,8 +150,8 @@ fn rendered(plan: &Plan, motion: &[ShaftStep<f32>]) -> Result<Vec<(f32, f32)>, S
         restart: plan.restart,
         ..Settings::default()
     };
-    let active = Active::new(&settings.validate()?, plan.step_s)?;
-    let mut joint = Frozen::<f32, ExactEvents>::new(active, plan.omega_rad_s);
+    let coefficients = StepCoefficients::new(&settings.validate()?, plan.step_s)?;
+    let mut joint = Frozen::<f32, ExactEvents>::new(coefficients, plan.omega_rad_s);
     let torque = |step| {
         let mut jump_nm = 0.0;
         joint.step(step, |event| {

@@ -1,0 +1,27 @@
+//! The stick-slip joint: what people set, and what every solver computes with.
+//!
+//! ```text
+//! parameters, presets → settings → coefficients (one step length) ─┐
+//!                                 shaft (the path within a step) ──┼→ a solver's stick_slip → events
+//!                                 oscillator (the free object) ────┘
+//! ```
+
+pub mod coefficients;
+pub mod compensated;
+mod event;
+pub mod oscillator;
+mod parameters;
+mod phase;
+pub mod presets;
+mod settings;
+pub mod shaft;
+mod stick_slip;
+pub mod ticks;
+
+pub use coefficients::StepCoefficients;
+pub use event::{EVENTS_PER_STEP, Event};
+pub use parameters::Parameters;
+pub use phase::{EventKind, Phase, Sense};
+pub use settings::{Convention, LONGEST_STEP_S, Restart, Settings, SettingsError, Validated};
+pub use shaft::ShaftStep;
+pub use stick_slip::StickSlip;

@@ -1,0 +1,223 @@
+//! A winding on a bridge that somebody else switches: the board, whose device
+//! code closes the current loop itself.
+//!
+//! Driven, the terminals have the voltage that the bridge is told, within the
+//! supply's. Open, all its switches are off, and what current there is flows
+//! on through their diodes, against the supply:
+//!
+//! ```text
+//! v = −sgn(i)·(U + 2·Ud)   until i = 0;   then i = 0, and no torque,
+//! unless |Kt·N·Ω| > U + 2·Ud: then the motor is a generator on the supply
+//! ```
+//!
+//! The instant at which the current has died away is located inside the step
+//! and the step cut there, as it is for the modes of a chain. The supply takes
+//! back what it gets: it is stiff.
+//!
+//! Ud is 0.8 V, an estimate: body diodes of MOSFETs at an ampere.
+
+use crate::actuator::Actuator;
+use crate::chain::{Push, Step, Verdict, sense_of};
+use crate::effects::motor::{COLUMNS, MotorNumbers, NAME};
+use crate::energy_balance::{Account, EnergyBalance};
+use crate::effects::motor::winding::{Course, Winding};
+use crepitus_model::Sense;
+
+/// Voltage over a diode that conducts, V.
+pub const DIODE_V: f64 = 0.8;
+
+/// A current that falls to this share of itself is none.
+const NEARLY: f64 = 1e-5;
+
+/// What the bridge does with the motor's terminals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Terminals {
+    /// It holds this voltage, V; positive drives towards growing angle.
+    Driven(f64),
+    /// All switches are off.
+    Open,
+}
+
+/// How the current flows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Mode {
+    /// Through switches, at this voltage.
+    Driven(f64),
+    /// Through diodes, in this sense.
+    Diodes(Sense),
+    /// Not at all.
+    Blocked,
+}
+
+/// A motor's winding on a bridge.
+#[derive(Clone, Copy, Debug)]
+pub struct Bridge {
+    winding: Winding,
+    supply_v: f64,
+    mode: Mode,
+    /// In this step the diodes were found not to begin to conduct: at the edge
+    /// they would, and would not, for ever.
+    refused: bool,
+    charge_c: f64,
+    supply_j: f64,
+    diodes_j: f64,
+}
+
+impl Bridge {
+    /// An open bridge on a motor without current, mostly stepped by `usual_s`.
+    pub fn new(motor: MotorNumbers, usual_s: f64) -> Self {
+        Self {
+            winding: Winding::new(motor.winding, 0.0, usual_s),
+            supply_v: motor.supply_v,
+            mode: Mode::Blocked,
+            refused: false,
+            charge_c: 0.0,
+            supply_j: 0.0,
+            diodes_j: 0.0,
+        }
+    }
+
+    /// Switches the bridge. A voltage beyond the supply's is the supply's.
+    pub fn set(&mut self, terminals: Terminals) {
+        self.mode = match terminals {
+            Terminals::Driven(v) => Mode::Driven(v.clamp(-self.supply_v, self.supply_v)),
+            Terminals::Open => Sense::of(self.current_a()).map_or(Mode::Blocked, Mode::Diodes),
+        };
+    }
+
+    /// The winding's current now, A; positive drives towards growing angle.
+    pub fn current_a(&self) -> f64 {
+        self.winding.current_a()
+    }
+
+    /// Charge that has gone through the winding so far, A·s: times Kt·N, the
+    /// impulse on the joint.
+    pub fn charge_c(&self) -> f64 {
+        self.charge_c
+    }
+
+    /// The winding.
+    pub fn winding(&self) -> &Winding {
+        &self.winding
+    }
+
+    /// The supply's voltage, V.
+    pub fn supply_v(&self) -> f64 {
+        self.supply_v
+    }
+
+    /// What the diodes hold against a current, V.
+    fn against_v(&self) -> f64 {
+        self.supply_v + 2.0 * DIODE_V
+    }
+
+    /// The voltage at terminals through which a current flows, V.
+    fn voltage_v(&self) -> Option<f64> {
+        match self.mode {
+            Mode::Driven(v) => Some(v),
+            Mode::Diodes(sense) => Some(-sense.of_signed(self.against_v())),
+            Mode::Blocked => None,
+        }
+    }
+
+    /// A current through diodes, of this course: dies away, or flows on.
+    fn judge(&mut self, sense: Sense, step: &Step, course: &Course) -> Verdict {
+        let start = sense.of_signed(self.current_a());
+        let tends_to = sense.of_signed(course.final_a);
+        if start <= 0.0 {
+            if tends_to > 0.0 {
+                return Verdict::Holds;
+            }
+            self.refused = true;
+            self.mode = Mode::Blocked;
+            return Verdict::Again;
+        }
+        let left = self.winding.left_after(step.length_s);
+        if sense.of_signed(course.current_a(left)) > NEARLY * start {
+            return Verdict::Holds;
+        }
+        // Without current after τ·ln((i − i∞)/(−i∞)).
+        let ends_s = self.winding.time_constant_s() * (-start / tends_to).ln_1p();
+        Verdict::EndsAt((ends_s / step.length_s).min(1.0))
+    }
+}
+
+impl Actuator for Bridge {
+    fn fold(&mut self, length_s: f64) -> Push {
+        match self.voltage_v() {
+            Some(voltage_v) => self.winding.fold(voltage_v, length_s),
+            None => Push::default(),
+        }
+    }
+
+    fn check(&mut self, step: &Step, mean_rad_s: impl FnOnce() -> f64) -> Verdict {
+        match self.mode {
+            Mode::Driven(_) => Verdict::Holds,
+            Mode::Diodes(sense) => {
+                let voltage_v = -sense.of_signed(self.against_v());
+                let course = self.winding.course(voltage_v, mean_rad_s());
+                self.judge(sense, step, &course)
+            }
+            Mode::Blocked => {
+                let emf_v = self.winding.settings().constant * mean_rad_s();
+                if emf_v.abs() <= self.against_v() || self.refused {
+                    return Verdict::Holds;
+                }
+                self.mode = Mode::Diodes(sense_of(-emf_v));
+                Verdict::Again
+            }
+        }
+    }
+
+    fn load_nm(&self) -> f64 {
+        self.winding.load_nm()
+    }
+
+    fn settle(&mut self, length_s: f64, mean_rad_s: f64) {
+        self.refused = false;
+        let Some(voltage_v) = self.voltage_v() else {
+            self.winding.idle();
+            return;
+        };
+        let start_a = self.current_a();
+        let course = self.winding.course(voltage_v, mean_rad_s);
+        let mean_a = self
+            .winding
+            .settle(voltage_v, length_s, mean_rad_s, &course);
+        let charge_c = mean_a * length_s;
+        self.charge_c += charge_c;
+        self.supply_j += voltage_v * charge_c;
+        if let Mode::Diodes(sense) = self.mode {
+            let diodes_j = 2.0 * DIODE_V * sense.of_signed(charge_c);
+            self.supply_j += diodes_j;
+            self.diodes_j += diodes_j;
+            if sense.of_signed(self.current_a()) <= NEARLY * start_a.abs() {
+                self.diodes_j += self.winding.cut_off();
+                self.mode = Mode::Blocked;
+            }
+        }
+    }
+
+    fn absorbed_j(&self) -> f64 {
+        self.winding.absorbed_j()
+    }
+
+    fn energy(&self, balance: &mut EnergyBalance) {
+        balance.add(NAME, "supply", Account::Given, self.supply_j);
+        balance.add(NAME, "diodes", Account::Lost, self.diodes_j);
+        self.winding.energy(NAME, balance);
+    }
+
+    fn columns(&self) -> &'static [&'static str] {
+        &COLUMNS
+    }
+
+    fn write(&self, row: &mut Vec<f64>) {
+        // Open terminals without current show the back-EMF; it is not kept.
+        row.extend([
+            self.current_a(),
+            self.voltage_v().unwrap_or(0.0),
+            self.winding.torque_nm(),
+        ]);
+    }
+}
