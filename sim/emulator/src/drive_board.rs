@@ -19,7 +19,7 @@ mod encoder_edges;
 mod half_bridges;
 mod link_wires;
 
-use crate::elf::Image;
+use crate::image::Image;
 use crate::mcu::{Mcu, Pin, Reset, Watch};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;

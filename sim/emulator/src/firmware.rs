@@ -6,7 +6,7 @@
 //! `thumbv7em-none-eabihf`, a test says so in a line and is left out;
 //! with `CREPITUS_NEEDS_TARGET` set it fails instead.
 
-use crate::elf::{Image, ImageError};
+use crate::image::{Image, ImageError};
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;

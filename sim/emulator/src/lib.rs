@@ -10,7 +10,7 @@
 //! | the one there is | [`stm32f405`] |
 //! | which cycles a task takes | [`cycles`] |
 //! | what a step of each solver costs | [`ladder`] |
-//! | where the images come from | [`firmware`], [`elf`] |
+//! | where the images come from | [`firmware`], [`image`] |
 //! | the same for a program that can do without | [`on_target`] |
 //!
 //! Time is exact and virtual: nothing reads a clock, and two runs of the same
@@ -32,9 +32,9 @@ mod devices;
 #[cfg(feature = "core")]
 pub mod drive_board;
 #[cfg(feature = "core")]
-pub mod elf;
-#[cfg(feature = "core")]
 pub mod firmware;
+#[cfg(feature = "core")]
+pub mod image;
 #[cfg(feature = "core")]
 pub mod ladder;
 #[cfg(feature = "core")]
@@ -50,7 +50,7 @@ pub use devices::usart::Character;
 #[cfg(feature = "core")]
 pub use drive_board::DriveBoard;
 #[cfg(feature = "core")]
-pub use elf::Image;
+pub use image::Image;
 #[cfg(feature = "core")]
 pub use mcu::{Mcu, Pin, Reset};
 #[cfg(feature = "core")]

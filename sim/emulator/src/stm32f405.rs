@@ -15,7 +15,7 @@ mod as_mcu;
 use crate::chip::Chip;
 use crate::chip::clocks::Clock;
 use crate::chip::memory::Memory;
-use crate::elf::Image;
+use crate::image::Image;
 use crate::mcu::{Mcu, Pin, Reset, Step, Watch};
 use crate::time::Time;
 use rsemu::core::wire::Level;
