@@ -173,7 +173,10 @@ impl Drive {
         if is_busy {
             return;
         }
-        let Some((revision, values)) = self.commits.take() else {
+        let Some((revision, gathered)) = self.commits.take() else {
+            return;
+        };
+        let Some(values) = Commits::verified(&gathered, &self.counters) else {
             return;
         };
         let is_live = self.command.safety().is_live();

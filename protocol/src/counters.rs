@@ -43,7 +43,7 @@ counters! {
     Produced "produced-samples" "Samples that were put into blocks.",
     Dropped "dropped-samples" "Samples of blocks that found no place in the queue to the link.",
     Frames "received-frames" "Frames from comms that were in order.",
-    Discarded "discarded-frames" "Frames from comms that were too long, malformed, or had a wrong checksum.",
+    Discarded "discarded-frames" "Frames from comms that were too long, malformed, or had a wrong checksum; commits with a wrong checksum over all values.",
     Foreign "foreign-frames" "Frames of a lane or a language that the drive does not speak.",
     Heartbeats "heartbeats" "Heartbeats that were fresh.",
     StaleHeartbeats "stale-heartbeats" "Heartbeats that had been on their way for too long.",

@@ -10,6 +10,7 @@
 //! at the next zero byte.
 
 use crate::lane::Lane;
+use crate::schema::LONGEST_MESSAGE;
 use core::borrow::BorrowMut;
 use core::fmt::{self, Debug, Formatter};
 use crc::{CRC_32_ISO_HDLC, Crc, Digest, Table};
@@ -17,7 +18,7 @@ use postcard::ser_flavors::Flavor;
 use serde::Serialize;
 
 /// The longest body: lane, tag, message.
-pub const BODY_BYTES: usize = 450;
+pub const BODY_BYTES: usize = 2 + LONGEST_MESSAGE;
 
 /// Bytes of the checksum.
 pub const CRC_BYTES: usize = 4;

@@ -23,6 +23,7 @@
 //! | what a frame carries | [`lane`] |
 //! | messages of the host's wire | [`host`] |
 //! | messages between the controllers | [`link`] |
+//! | how a commit travels on the link | [`pieces`] |
 //! | samples | [`telemetry`] |
 //! | the lane that never changes: who is there, stop, reboot | [`management`] |
 //! | whether two sides speak the same language | [`schema`] |
@@ -61,6 +62,7 @@ pub mod lane;
 pub mod link;
 pub mod management;
 pub mod parameters;
+pub mod pieces;
 pub mod revision;
 pub mod schema;
 pub mod settings;

@@ -11,7 +11,7 @@
 //! comms repeats a command until it hears its outcome.
 
 use crate::counters::DRIVE_COUNT;
-use crate::parameters::Values;
+use crate::pieces::Piece;
 use crate::revision::Revision;
 use crate::settings::ValueError;
 use crate::state::State;
@@ -29,12 +29,14 @@ pub const STALE_TICKS: u64 = 400;
 pub enum ToDrive {
     /// Comms is alive. Sent every millisecond.
     Heartbeat(Heartbeat),
-    /// These parameters, from the next block on.
+    /// Parameters to apply with the next block, one piece of them.
     Commit {
         /// Their revision.
         revision: Revision,
-        /// All values.
-        values: Values,
+        /// Checksum over all values of the commit.
+        checksum: u32,
+        /// Some of the values.
+        piece: Piece,
     },
     /// Do this, once.
     Command {

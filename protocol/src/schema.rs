@@ -12,6 +12,7 @@ use crate::host::{Reply, Request};
 use crate::link::{FromDrive, ToDrive};
 use crate::parameters::{Kind, PARAMETERS};
 use crate::telemetry::Block;
+use postcard::experimental::max_size::MaxSize;
 use postcard_schema::key::Key;
 
 /// The language of this crate.
@@ -72,14 +73,23 @@ const fn hash() -> u64 {
     counted(hash, &COMMS_COUNTERS)
 }
 
-/// Every message fits a frame, with its lane and tag.
-const _: () = {
-    use crate::frame::BODY_BYTES;
-    use postcard::experimental::max_size::MaxSize;
-    assert!(2 + Request::POSTCARD_MAX_SIZE <= BODY_BYTES);
-    assert!(2 + Reply::POSTCARD_MAX_SIZE <= BODY_BYTES);
-    assert!(2 + Block::POSTCARD_MAX_SIZE <= BODY_BYTES);
-    assert!(2 + ToDrive::POSTCARD_MAX_SIZE <= BODY_BYTES);
-    assert!(2 + FromDrive::POSTCARD_MAX_SIZE <= BODY_BYTES);
-    assert!(2 + crate::management::ANSWER_BYTES <= BODY_BYTES);
-};
+/// Bytes of the longest message.
+pub const LONGEST_MESSAGE: usize = longest(&[
+    Request::POSTCARD_MAX_SIZE,
+    Reply::POSTCARD_MAX_SIZE,
+    Block::POSTCARD_MAX_SIZE,
+    ToDrive::POSTCARD_MAX_SIZE,
+    FromDrive::POSTCARD_MAX_SIZE,
+    crate::management::ANSWER_BYTES,
+]);
+
+const fn longest(mut lengths: &[usize]) -> usize {
+    let mut longest = 0;
+    while let [length, tail @ ..] = lengths {
+        if *length > longest {
+            longest = *length;
+        }
+        lengths = tail;
+    }
+    longest
+}

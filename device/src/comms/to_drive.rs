@@ -3,6 +3,7 @@
 use crepitus_protocol::frame::{self, Frame};
 use crepitus_protocol::link::{Heartbeat, Order, ToDrive};
 use crepitus_protocol::management::{Question, What};
+use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::{Lane, Revision, Values};
 
 /// What is not confirmed is sent again after this, ms.
@@ -17,10 +18,38 @@ pub(super) struct ToDriveQueue {
     now_ms: u64,
     heartbeat_due: bool,
     management: Option<Question>,
-    commit_ms: Option<(Revision, u64)>,
+    commit: CommitProgress,
     command_ms: Option<(u16, u64)>,
     hello_ms: u64,
     last_number: u16,
+}
+
+/// How far the commit under way has been sent.
+#[derive(Clone, Copy, Debug, Default)]
+struct CommitProgress {
+    revision: Option<Revision>,
+    next: u8,
+    sent_ms: u64,
+}
+
+impl CommitProgress {
+    /// The piece to send now: one a millisecond, so that heartbeats are not
+    /// delayed; from the first again where nothing was confirmed.
+    fn next_piece(&mut self, now_ms: u64, revision: Revision, values: &Values) -> Option<Piece> {
+        let is_new = self.revision != Some(revision);
+        if is_new {
+            (self.revision, self.next) = (Some(revision), 0);
+        } else if now_ms <= self.sent_ms {
+            return None;
+        }
+        let piece = match Piece::of(&values.0, self.next) {
+            None if now_ms < self.sent_ms.saturating_add(REPEAT_MS) => return None,
+            None => Piece::of(&values.0, 0)?,
+            Some(piece) => piece,
+        };
+        (self.next, self.sent_ms) = (piece.index.saturating_add(1), now_ms);
+        Some(piece)
+    }
 }
 
 impl ToDriveQueue {
@@ -61,11 +90,9 @@ impl ToDriveQueue {
             return frame::encode_bytes(Lane::Management, &question.bytes()).ok();
         }
         if let Some((number, order)) = command
-            && self.is_due(
-                self.command_ms
-                    .filter(|(sent, _)| *sent == number)
-                    .map(|s| s.1),
-            )
+            && self.command_ms.is_none_or(|(sent, sent_ms)| {
+                sent != number || self.now_ms >= sent_ms.saturating_add(REPEAT_MS)
+            })
         {
             self.command_ms = Some((number, self.now_ms));
             return message(&ToDrive::Command {
@@ -75,16 +102,12 @@ impl ToDriveQueue {
             });
         }
         if let Some((revision, values)) = commit
-            && self.is_due(
-                self.commit_ms
-                    .filter(|(sent, _)| *sent == revision)
-                    .map(|s| s.1),
-            )
+            && let Some(piece) = self.commit.next_piece(self.now_ms, revision, values)
         {
-            self.commit_ms = Some((revision, self.now_ms));
             return message(&ToDrive::Commit {
                 revision,
-                values: *values,
+                checksum: pieces::checksum(&values.0),
+                piece,
             });
         }
         if wants_hello && self.now_ms >= self.hello_ms {
@@ -96,10 +119,6 @@ impl ToDriveQueue {
             return frame::encode_bytes(Lane::Management, &question.bytes()).ok();
         }
         None
-    }
-
-    fn is_due(&self, sent_ms: Option<u64>) -> bool {
-        sent_ms.is_none_or(|sent_ms| self.now_ms >= sent_ms.saturating_add(REPEAT_MS))
     }
 }
 

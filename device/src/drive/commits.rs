@@ -2,13 +2,14 @@
 
 use crate::counters::Counters;
 use crepitus_protocol::counters::DriveCounter;
+use crepitus_protocol::pieces::{Gathered, Piece};
 use crepitus_protocol::{Revision, ValueError, Values};
 
-/// What was heard of commits, and what became of them.
+/// Received commits and their outcomes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Commits {
-    /// The latest that waits for its preparation.
-    wanted: Option<(Revision, Values)>,
+    /// The latest, until its preparation begins.
+    wanted: Option<(Revision, Gathered)>,
     /// The newest that was heard of this start of comms.
     newest: Option<Revision>,
     /// The one that was prepared last; it comes into force with a block.
@@ -18,11 +19,12 @@ pub struct Commits {
 }
 
 impl Commits {
-    /// A commit was heard while `in_force` is.
-    pub fn hear(
+    /// Handles a piece of a commit, received while `in_force` is.
+    pub fn receive(
         &mut self,
         revision: Revision,
-        values: &Values,
+        checksum: u32,
+        piece: &Piece,
         in_force: Revision,
         counters: &Counters,
     ) {
@@ -34,19 +36,38 @@ impl Commits {
             return;
         }
         self.newest = Some(revision);
-        // Comms repeats it until it has heard what became of it.
+        // Comms repeats it until it has heard its outcome.
         let is_known = in_force == revision
             || self.prepared == Some(revision)
-            || self.wanted.is_some_and(|(wanted, _)| wanted == revision)
             || self.refused.is_some_and(|(refused, _)| refused == revision);
-        if !is_known {
-            self.wanted = Some((revision, *values));
+        if is_known {
+            return;
+        }
+        let is_begun = self.wanted.as_ref().is_some_and(|(wanted, gathered)| {
+            *wanted == revision && gathered.checksum() == checksum
+        });
+        if !is_begun {
+            self.wanted = Some((revision, Gathered::new(checksum)));
+        }
+        if let Some((_, gathered)) = &mut self.wanted {
+            gathered.add(piece);
         }
     }
 
-    /// The one that waits, if there is one.
-    pub fn take(&mut self) -> Option<(Revision, Values)> {
-        self.wanted.take()
+    /// Takes the latest commit once all its pieces are here; see
+    /// [`Self::verified`].
+    pub fn take(&mut self) -> Option<(Revision, Gathered)> {
+        self.wanted.take_if(|(_, gathered)| gathered.is_complete())
+    }
+
+    /// The values of a commit, if its checksum is right. Comms repeats one that
+    /// is not; the sum takes its time, so not under a lock.
+    pub fn verified(gathered: &Gathered, counters: &Counters) -> Option<Values> {
+        let values = gathered.values().copied().map(Values);
+        if values.is_none() {
+            counters.count(DriveCounter::Discarded);
+        }
+        values
     }
 
     /// It was prepared, and will come into force; or refused.
@@ -80,40 +101,124 @@ impl Commits {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_protocol::parameters::id;
+    use crepitus_protocol::pieces::checksum;
 
-    #[test]
-    fn the_number_of_none_is_no_commit() {
-        let counters = Counters::new();
-        let mut commits = Commits::default();
-        commits.hear(Revision::NONE, &Values::default(), Revision(4), &counters);
-        assert_eq!(commits.take(), None);
-        assert_eq!(counters.get(DriveCounter::StaleCommands), 1);
+    /// What arrives of a commit.
+    struct Wire {
+        counters: Counters,
+        commits: Commits,
+    }
+
+    impl Wire {
+        fn new() -> Self {
+            Self {
+                counters: Counters::new(),
+                commits: Commits::default(),
+            }
+        }
+
+        fn piece(&mut self, revision: u32, values: &Values, index: u8, in_force: u32) -> bool {
+            let piece = Piece::of(&values.0, index);
+            if let Some(piece) = &piece {
+                let sum = checksum(&values.0);
+                self.commits.receive(
+                    Revision(revision),
+                    sum,
+                    piece,
+                    Revision(in_force),
+                    &self.counters,
+                );
+            }
+            piece.is_some()
+        }
+
+        fn whole(&mut self, revision: u32, values: &Values, in_force: u32) {
+            let mut index = 0;
+            while self.piece(revision, values, index, in_force) {
+                index += 1;
+            }
+            assert!(index > 1, "several pieces");
+        }
+
+        fn take(&mut self) -> Option<(Revision, Values)> {
+            let (revision, gathered) = self.commits.take()?;
+            Some((revision, Commits::verified(&gathered, &self.counters)?))
+        }
     }
 
     #[test]
-    fn a_commit_is_taken_once_however_often_it_is_heard() {
-        let counters = Counters::new();
-        let mut commits = Commits::default();
+    fn the_number_of_none_is_no_commit() {
+        let mut wire = Wire::new();
+        wire.piece(Revision::NONE.0, &Values::default(), 0, 4);
+        assert_eq!(wire.commits.wanted, None);
+        assert_eq!(wire.counters.get(DriveCounter::StaleCommands), 1);
+    }
+
+    #[test]
+    fn a_commit_is_taken_once_however_often_it_is_received() {
+        let mut wire = Wire::new();
         let values = Values::default();
         for _ in 0..3 {
-            commits.hear(Revision(5), &values, Revision(4), &counters);
+            wire.whole(5, &values, 4);
         }
-        assert_eq!(commits.take(), Some((Revision(5), values)));
-        commits.done(Revision(5), Ok(()), &counters);
-        commits.hear(Revision(5), &values, Revision(4), &counters);
-        assert_eq!(commits.take(), None);
+        assert_eq!(wire.take(), Some((Revision(5), values)));
+        wire.commits.done(Revision(5), Ok(()), &wire.counters);
+        wire.whole(5, &values, 4);
+        assert_eq!(wire.take(), None);
         // One that was overtaken does not come back.
-        commits.hear(Revision(4), &values, Revision(5), &counters);
-        assert_eq!(commits.take(), None);
-        assert_eq!(counters.get(DriveCounter::StaleCommands), 1);
-        // What was refused stays refused, until comms starts anew.
+        wire.whole(4, &values, 5);
+        assert_eq!(wire.take(), None);
+        assert!(wire.counters.get(DriveCounter::StaleCommands) > 0);
+        // What was refused stays refused, until comms restarts.
         let why = ValueError::NeedsDisarmed { id: 6 };
-        commits.done(Revision(6), Err(why), &counters);
-        commits.hear(Revision(6), &values, Revision(5), &counters);
-        assert_eq!(commits.take(), None);
-        assert_eq!(commits.refused(), Some((Revision(6), why)));
-        commits.forget();
-        commits.hear(Revision(2), &values, Revision(5), &counters);
-        assert!(commits.take().is_some());
+        wire.commits.done(Revision(6), Err(why), &wire.counters);
+        wire.whole(6, &values, 5);
+        assert_eq!(wire.take(), None);
+        assert_eq!(wire.commits.refused(), Some((Revision(6), why)));
+        wire.commits.forget();
+        wire.whole(2, &values, 5);
+        assert!(wire.take().is_some());
+    }
+
+    #[test]
+    fn pieces_of_two_commits_are_never_one() {
+        let (old, mut new) = (Values::default(), Values::default());
+        new.set(id::STATIC_TORQUE, 0.5);
+        new.set(id::TORQUE_LIMIT, 3.0);
+        // A newer revision takes over; the rest of the older one is stale.
+        let mut wire = Wire::new();
+        wire.piece(5, &old, 0, 4);
+        wire.piece(6, &new, 1, 4);
+        wire.piece(5, &old, 1, 4);
+        assert_eq!(wire.take(), None);
+        wire.piece(6, &new, 0, 4);
+        assert_eq!(wire.take(), Some((Revision(6), new)));
+        // The same number with other values, from before a restart of comms.
+        let mut wire = Wire::new();
+        wire.piece(5, &old, 0, 4);
+        wire.piece(5, &new, 1, 4);
+        assert_eq!(wire.take(), None);
+        wire.piece(5, &new, 0, 4);
+        assert_eq!(wire.take(), Some((Revision(5), new)));
+    }
+
+    #[test]
+    fn a_commit_with_a_wrong_checksum_is_not_applied_and_may_come_again() {
+        let mut wire = Wire::new();
+        let values = Values::default();
+        for index in 0.. {
+            let Some(piece) = Piece::of(&values.0, index) else {
+                break;
+            };
+            let sum = checksum(&values.0) ^ 1;
+            let (revision, in_force) = (Revision(5), Revision(4));
+            wire.commits
+                .receive(revision, sum, &piece, in_force, &wire.counters);
+        }
+        assert_eq!(wire.take(), None);
+        assert_eq!(wire.counters.get(DriveCounter::Discarded), 1);
+        wire.whole(5, &values, 4);
+        assert_eq!(wire.take(), Some((Revision(5), values)));
     }
 }

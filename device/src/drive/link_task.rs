@@ -97,9 +97,15 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
                     shared.commits(Commits::forget);
                 }
             }
-            ToDrive::Commit { revision, values } => {
+            ToDrive::Commit {
+                revision,
+                checksum,
+                piece,
+            } => {
                 let in_force = shared.command(|command| command.revision());
-                shared.commits(|commits| commits.hear(*revision, values, in_force, counters));
+                shared.commits(|commits| {
+                    commits.receive(*revision, *checksum, piece, in_force, counters);
+                });
                 self.link.changed();
             }
             ToDrive::Command {

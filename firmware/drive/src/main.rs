@@ -341,7 +341,10 @@ mod app {
                 || cx.shared.rendering_plan.lock(|slot| slot.is_some())
                 || cx.shared.command_plan.lock(|slot| slot.is_some())
                 || cx.shared.is_settling.load(Ordering::Relaxed);
-            if !is_busy && let Some((revision, values)) = cx.shared.commits.lock(Commits::take) {
+            if !is_busy
+                && let Some((revision, gathered)) = cx.shared.commits.lock(Commits::take)
+                && let Some(values) = Commits::verified(&gathered, cx.shared.counters)
+            {
                 let is_live = cx.shared.command.lock(|command| command.safety().is_live());
                 let result = cx.local.preparation.prepare(revision, &values, is_live);
                 let done = result.as_ref().map(|_| ()).map_err(|error| *error);

@@ -23,6 +23,7 @@ use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::host::{Ask, Request};
 use crepitus_protocol::link::{Order, ToDrive};
 use crepitus_protocol::management::{Identity, Question, ResetCause, What};
+use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::{
     Decoder, DeviceSettings, LEASE_TICKS, Lane, Revision, Session, Values, frame, schema,
 };
@@ -357,9 +358,16 @@ impl Bench {
                 assert!(heartbeat.lease_left == 0 || self.is_leased());
                 assert!(!heartbeat.enable || self.wants);
             }
-            ToDrive::Commit { values, .. } => {
-                assert!(DeviceSettings::of(values).is_ok());
-                assert!(self.values.contains(values), "nobody's values");
+            ToDrive::Commit {
+                checksum, piece, ..
+            } => {
+                let source = self
+                    .values
+                    .iter()
+                    .find(|values| pieces::checksum(&values.0) == *checksum)
+                    .expect("values of a host");
+                assert!(DeviceSettings::of(source).is_ok());
+                assert_eq!(Piece::of(&source.0, piece.index), Some(*piece));
             }
             ToDrive::Command { order, .. } => assert!(*order != Order::Arm || self.wants),
         }

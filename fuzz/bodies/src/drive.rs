@@ -21,6 +21,7 @@ use crepitus_device::drive::motor::Bridge;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::link::{FromDrive, Heartbeat, Order, STALE_TICKS, ToDrive};
 use crepitus_protocol::management::{Answer, Identity, Question, ResetCause};
+use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, SampleFlags};
 use crepitus_protocol::{
     Decoder, DeviceSettings, HEARTBEAT_TICKS, Lane, Revision, State, Values, frame, schema,
@@ -182,7 +183,7 @@ impl Bench {
             3 => {
                 let revision = Revision(u32::from(bytes.byte()));
                 let values = link_words::values(bytes);
-                self.say(&ToDrive::Commit { revision, values });
+                self.commit(revision, &values);
             }
             4 => {
                 let order = bytes.choice(&[Order::Arm, Order::Zero, Order::ClearFault]);
@@ -214,10 +215,7 @@ impl Bench {
             7 => self.read(usize::from(bytes.byte() % 8)),
             // All that arming needs.
             8 => {
-                self.say(&ToDrive::Commit {
-                    revision: Revision(1),
-                    values: Values::default(),
-                });
+                self.commit(Revision(1), &Values::default());
                 self.heartbeat();
                 self.run(20, &Readings::good());
                 self.heartbeat();
@@ -256,6 +254,17 @@ impl Bench {
         }));
     }
 
+    fn commit(&mut self, revision: Revision, values: &Values) {
+        self.sent.push((revision, *values));
+        for piece in (0..).map_while(|index| Piece::of(&values.0, index)) {
+            self.say(&ToDrive::Commit {
+                revision,
+                checksum: pieces::checksum(&values.0),
+                piece,
+            });
+        }
+    }
+
     fn say(&mut self, message: &ToDrive) {
         let frame = frame::encode(Lane::ToDrive, message).expect("every message fits");
         self.hear(&frame);
@@ -289,7 +298,6 @@ impl Bench {
             );
             match message {
                 Some(ToDrive::Heartbeat(heartbeat)) => self.note(now, &heartbeat),
-                Some(ToDrive::Commit { revision, values }) => self.sent.push((revision, values)),
                 _ => {}
             }
         }

@@ -8,6 +8,7 @@ use crepitus_protocol::link::{
     DriveRefusal, DriveStatus, FromDrive, Heartbeat, Order, Outcome, ToDrive,
 };
 use crepitus_protocol::management::{Answer, Identity, Role};
+use crepitus_protocol::pieces::Gathered;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, BlockFlags};
 use crepitus_protocol::{Lane, Revision, State, ValueError, schema};
 
@@ -21,6 +22,7 @@ pub(crate) struct DriveSide {
     comms_start: u16,
     has_said_hello: bool,
     has_refused: bool,
+    gathered: (Revision, Gathered),
 }
 
 impl DriveSide {
@@ -34,6 +36,7 @@ impl DriveSide {
             comms_start,
             has_said_hello: false,
             has_refused: false,
+            gathered: (Revision::NONE, Gathered::new(0)),
         }
     }
 
@@ -57,7 +60,19 @@ impl DriveSide {
                     }
                 }
             }
-            ToDrive::Commit { revision, .. } => self.status.revision = revision,
+            ToDrive::Commit {
+                revision,
+                checksum,
+                piece,
+            } => {
+                if self.gathered.0 != revision || self.gathered.1.checksum() != checksum {
+                    self.gathered = (revision, Gathered::new(checksum));
+                }
+                self.gathered.1.add(&piece);
+                if self.gathered.1.values().is_some() {
+                    self.status.revision = revision;
+                }
+            }
             ToDrive::Command { number, order, .. } => {
                 match order {
                     Order::Arm => self.status.state = State::Armed,

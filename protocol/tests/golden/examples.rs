@@ -9,6 +9,7 @@ use crepitus_protocol::link::{
     DriveRefusal, DriveStatus, FromDrive, Heartbeat, Order, Outcome, ToDrive,
 };
 use crepitus_protocol::parameters::PARAMETERS;
+use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 use crepitus_protocol::telemetry::{BlockFlags, NO_CURRENT, Sample, SampleFlags};
 use crepitus_protocol::{
@@ -335,7 +336,8 @@ fn to_drive() -> Vec<Example> {
         }),
         ToDrive::Commit {
             revision: Revision(301),
-            values: values(),
+            checksum: pieces::checksum(&values().0),
+            piece: Piece::of(&values().0, 1).expect("more values than one piece has"),
         },
         command(Order::Arm),
         command(Order::Zero),
@@ -345,7 +347,7 @@ fn to_drive() -> Vec<Example> {
         .iter()
         .map(|message| {
             let means = matches!(message, ToDrive::Commit { .. })
-                .then(|| format!("Commit {{ revision: Revision(301), values }}; {VALUES}"));
+                .then(|| format!("Commit {{ revision: Revision(301), checksum, piece: Piece {{ index: 1, values }} }}; {VALUES}"));
             let name = format!("to-drive.{}", to_drive_name(message));
             example(Lane::ToDrive, &name, message, means.as_deref())
         })

@@ -8,6 +8,7 @@ const SOURCES: [&str; 8] = [
     include_str!("../../src/host.rs"),
     include_str!("../../src/link.rs"),
     include_str!("../../src/parameters.rs"),
+    include_str!("../../src/pieces.rs"),
     include_str!("../../src/revision.rs"),
     include_str!("../../src/settings.rs"),
     include_str!("../../src/state.rs"),

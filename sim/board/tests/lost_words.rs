@@ -8,6 +8,9 @@ use crepitus_protocol::host::{Answer, Ask, Refusal, Request};
 use crepitus_protocol::{DeviceSettings, Fault, State, ValueError};
 use support::{Host, examination, set};
 
+/// Ticks of the drive in a millisecond.
+const TICKS_PER_MS: u64 = 20;
+
 fn connected() -> Host {
     let mut host = Host::new(&examination(), &Start::default());
     host.run(400);
@@ -113,6 +116,13 @@ fn a_refusal_that_is_never_heard() {
             host.tick();
         }
         host.device.board_mut().up().injector.faults = cut(true);
+        // Heartbeats, first in every millisecond, are lost for longer than the
+        // pieces of the commit behind them.
+        for tick in 0..3 * TICKS_PER_MS {
+            let is_heartbeat = (tick + phase) % TICKS_PER_MS < 4;
+            host.device.board_mut().down().injector.faults = cut(is_heartbeat);
+            host.tick();
+        }
         host.device.board_mut().down().injector.faults = cut(false);
         host.run(15_000);
         host.device.board_mut().up().injector.faults = cut(false);

@@ -1,0 +1,165 @@
+//! Values in pieces: how a commit travels to the drive.
+//!
+//! A heartbeat must not wait long behind a frame, and the number of parameters
+//! grows. So a frame on the link carries at most [`PIECE_VALUES`] values, the
+//! revision, and a checksum over all values of the commit. The receiver applies
+//! a commit when it has every piece and the checksum is right, or not at all.
+
+use crate::frame::CRC;
+use crate::parameters::PARAMETER_COUNT;
+use postcard::experimental::max_size::MaxSize;
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// The most values in one frame of the link.
+pub const PIECE_VALUES: usize = 16;
+
+/// Some of the values of a commit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
+pub struct Piece {
+    /// Place of this piece; the first value is at 16 times as much.
+    pub index: u8,
+    /// The values; 0 beyond the last.
+    pub values: [f64; PIECE_VALUES],
+}
+
+impl Piece {
+    /// The piece at a place, if the values reach so far.
+    pub fn of(values: &[f64], index: u8) -> Option<Self> {
+        let some = values.chunks(PIECE_VALUES).nth(index.into())?;
+        let mut piece = Self {
+            index,
+            values: [0.0; PIECE_VALUES],
+        };
+        for (value, given) in piece.values.iter_mut().zip(some) {
+            *value = *given;
+        }
+        Some(piece)
+    }
+}
+
+/// Checksum over all values of a commit: CRC-32 of their bytes, little endian.
+pub fn checksum(values: &[f64]) -> u32 {
+    let mut digest = CRC.digest();
+    for value in values {
+        digest.update(&value.to_le_bytes());
+    }
+    digest.finalize()
+}
+
+/// The pieces of one commit, as they arrive, in any order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gathered<const N: usize = PARAMETER_COUNT> {
+    checksum: u32,
+    values: [f64; N],
+    /// One bit a piece.
+    missing: u32,
+}
+
+impl<const N: usize> Gathered<N> {
+    const ALL: u32 = {
+        let pieces = N.div_ceil(PIECE_VALUES);
+        assert!(pieces < 32, "more pieces than bits");
+        (1 << pieces) - 1
+    };
+
+    /// No piece yet, of values with this checksum.
+    pub fn new(checksum: u32) -> Self {
+        Self {
+            checksum,
+            values: [0.0; N],
+            missing: Self::ALL,
+        }
+    }
+
+    /// The checksum that the whole must have.
+    pub fn checksum(&self) -> u32 {
+        self.checksum
+    }
+
+    /// Adds a piece; ignores one that lies beyond the last value.
+    pub fn add(&mut self, piece: &Piece) {
+        let place = self.values.chunks_mut(PIECE_VALUES).nth(piece.index.into());
+        let Some(place) = place else {
+            return;
+        };
+        for (value, given) in place.iter_mut().zip(piece.values) {
+            *value = given;
+        }
+        self.missing &= !(1 << piece.index);
+    }
+
+    /// Whether every piece has arrived.
+    pub fn is_complete(&self) -> bool {
+        self.missing == 0
+    }
+
+    /// The values, if every piece has arrived and the checksum is right.
+    pub fn values(&self) -> Option<&[f64; N]> {
+        (self.is_complete() && checksum(&self.values) == self.checksum).then_some(&self.values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::vec::Vec;
+
+    const MANY: usize = 100;
+
+    fn pieces(values: &[f64]) -> Vec<Piece> {
+        (0..).map_while(|index| Piece::of(values, index)).collect()
+    }
+
+    #[test]
+    fn a_hundred_values_are_seven_pieces() {
+        let values: [f64; MANY] = core::array::from_fn(|n| n as f64 / 3.0);
+        let pieces = pieces(&values);
+        assert_eq!(pieces.len(), 7);
+        let mut gathered = Gathered::<MANY>::new(checksum(&values));
+        for piece in &pieces {
+            assert_eq!(gathered.values(), None);
+            gathered.add(piece);
+        }
+        assert_eq!(gathered.values(), Some(&values));
+    }
+
+    #[test]
+    fn a_piece_from_nowhere_changes_nothing() {
+        let mut gathered = Gathered::<MANY>::new(0);
+        for index in [7, 31, 32, 255] {
+            let before = gathered;
+            gathered.add(&Piece {
+                index,
+                values: [1.0; PIECE_VALUES],
+            });
+            assert_eq!(gathered, before, "{index}");
+        }
+    }
+
+    proptest! {
+        /// In any order, with repeats: the values to the bit; with a piece of
+        /// another commit among them, nothing.
+        #[test]
+        fn whole_or_not_at_all(
+            bits in prop::array::uniform32(any::<u64>()),
+            order in Just((0..2_u8).cycle().take(9).collect::<Vec<_>>()).prop_shuffle(),
+            (wrong, flip) in (0..32_usize, 0..64_u32),
+        ) {
+            let values = bits.map(f64::from_bits);
+            let mut gathered = Gathered::<32>::new(checksum(&values));
+            for index in order {
+                gathered.add(&Piece::of(&values, index).unwrap());
+            }
+            let whole = gathered.values().map(|values| values.map(f64::to_bits));
+            prop_assert_eq!(whole, Some(bits));
+
+            let mut other = values;
+            other[wrong] = f64::from_bits(bits[wrong] ^ 1 << flip);
+            let index = if wrong < PIECE_VALUES { 0 } else { 1 };
+            gathered.add(&Piece::of(&other, index).unwrap());
+            prop_assert!(gathered.is_complete() && gathered.values().is_none());
+        }
+    }
+}
