@@ -7,9 +7,9 @@ use crepitus_model::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, L
 use crepitus_model::shaft::Linear;
 use crepitus_model::solver::Solver;
 
-/// What to do once the locator is known.
+/// Work that is generic over the locator.
 pub(super) trait WithLocator<F: Real> {
-    /// What comes of it.
+    /// Its result.
     type Output;
 
     /// Called with the locator as a type.
