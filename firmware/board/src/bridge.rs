@@ -11,9 +11,9 @@
 //! | PA9, PB14 | CH2, CH2N | upper and lower of half B |
 //! | PB12 | BKIN | low: overcurrent, or the driver's fault; a broken wire is low, too |
 //!
-//! Off is all four low: the motor coasts. The break does that without any
-//! program, and stays until the program has let go as well. Dead time, break
-//! and what off means are locked until the next reset.
+//! Off is all four low: the motor coasts. The break does that in hardware,
+//! and persists until the program floats the bridge, too. Dead time, break
+//! and idle levels are locked until the next reset.
 
 use crate::clocks::APB2_TIMER_HZ;
 use crepitus_model::Real;
@@ -38,7 +38,7 @@ pub struct Bridge {
 }
 
 impl Bridge {
-    /// All switches open; the timer waits for its start.
+    /// A floating bridge; the timer is not started.
     pub fn new(
         timer: TIM1,
         half_a: (PA8, PB13),
@@ -60,9 +60,8 @@ impl Bridge {
             w.cc1e().set_bit().cc1ne().set_bit();
             w.cc2e().set_bit().cc2ne().set_bit()
         });
-        // Idle levels are low after a reset. The driver of the HAL would let
-        // the outputs come back by themselves after a break; here only the
-        // program switches them on.
+        // Idle levels are low after a reset. The HAL's driver would re-enable
+        // the outputs automatically after a break; here only the program does.
         timer.bdtr().write(|w| {
             w.dtg().set(DEAD_CLOCKS);
             w.ossi().idle_level().ossr().idle_level();
@@ -74,7 +73,7 @@ impl Bridge {
             timer,
             is_driven: false,
         };
-        bridge.set_shares(0.0);
+        bridge.set_duty(0.0);
         bridge.timer.egr().write(|w| w.ug().set_bit());
         breaks
             .into_alternate::<1>()
@@ -99,18 +98,19 @@ impl Bridge {
         bridge
     }
 
-    /// The timer, to be started.
+    /// The timer, which [`start`](crate::ticks::start) starts.
     pub(crate) fn timer(&self) -> &TIM1 {
         &self.timer
     }
 
-    /// A voltage, V, from the next period on. What is no number lets go.
+    /// Applies a voltage, V, from the next period on. NaN or an infinity floats
+    /// the bridge.
     pub fn drive(&mut self, volts: f32) {
         if !volts.is_finite() {
             self.float();
             return;
         }
-        self.set_shares(volts);
+        self.set_duty(volts);
         if !self.is_driven {
             self.is_driven = true;
             // Has no effect while the break is there.
@@ -118,20 +118,20 @@ impl Bridge {
         }
     }
 
-    /// All switches open, at once; a break that is over is forgotten.
+    /// Opens all switches at once, and clears a break that is over.
     pub fn float(&mut self) {
         self.timer.bdtr().modify(|_, w| w.moe().clear_bit());
         self.is_driven = false;
-        self.set_shares(0.0);
+        self.set_duty(0.0);
         self.timer.sr().write(|w| w.bif().clear());
     }
 
-    /// The break has fired since the bridge floated last.
-    pub fn is_broken(&self) -> bool {
+    /// Whether the break has fired since the bridge floated last.
+    pub fn break_has_fired(&self) -> bool {
         self.timer.sr().read().bif().bit()
     }
 
-    fn set_shares(&mut self, volts: f32) {
+    fn set_duty(&mut self, volts: f32) {
         let half = f32::from(TOP / 2);
         let swing = (volts / SUPPLY_V).within(1.0) * half;
         self.timer

@@ -17,8 +17,8 @@ pub const APB2_TIMER_HZ: u32 = 168_000_000;
 /// Timers of APB1, Hz.
 pub const APB1_TIMER_HZ: u32 = 84_000_000;
 
-/// Starts them. Without a crystal it waits for ever, with everything off; one
-/// that stops later is an unhandled interrupt, so everything off, too.
+/// Starts the clocks. Without a crystal it waits for ever, with all outputs
+/// off; a crystal that stops later is an unhandled interrupt, so off, too.
 pub fn start(rcc: RCC) -> Rcc {
     let config = Config::hse(8.MHz()).sysclk(168.MHz()).require_pll48clk();
     let rcc = rcc.freeze(config);

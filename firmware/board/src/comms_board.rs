@@ -3,12 +3,12 @@
 use crate::clocks;
 use crate::enable_line::EnableLine;
 use crate::flash::ParameterSectors;
-use crate::link::{DmaPlace, Link, PLACES};
+use crate::identity::identity;
+use crate::link::{BUFFERS, DmaBuffer, Link};
 use crate::parameter_log::ParameterLog;
 use crate::start::{Start, start};
 use crate::ticks::Quarters;
 use crate::usb::{self, PACKET_WORDS, UsbBusType};
-use crate::who::identity;
 use crepitus_protocol::management::{Identity, Role};
 use stm32f4xx_hal::pac::{IWDG, Peripherals};
 use stm32f4xx_hal::prelude::*;
@@ -16,9 +16,9 @@ use usb_device::bus::UsbBusAllocator;
 
 /// Its parts.
 pub struct CommsBoard {
-    /// Why it has started.
+    /// Reset cause and start counter.
     pub start: Start,
-    /// Who it is.
+    /// Identity for a hello.
     pub identity: Identity,
     /// PB0, read back on PB1.
     pub line: EnableLine,
@@ -30,16 +30,17 @@ pub struct CommsBoard {
     pub log: ParameterLog<ParameterSectors>,
     /// Starts `tick`.
     pub quarters: Quarters,
-    /// To be started last.
+    /// Started last.
     pub watchdog: IWDG,
 }
 
 impl CommsBoard {
-    /// Outputs off. May erase a sector of flash, which takes up to a second.
+    /// Sets up the board with outputs off. May erase a sector of flash, which
+    /// takes up to a second.
     pub fn new(
         chip: Peripherals,
         packets: &'static mut [u32; PACKET_WORDS],
-        places: [DmaPlace; PLACES],
+        buffers: [DmaBuffer; BUFFERS],
     ) -> Self {
         let mut rcc = clocks::start(chip.RCC);
         let start = start(&mut rcc, &chip.RNG);
@@ -53,7 +54,7 @@ impl CommsBoard {
             identity: identity(Role::Comms, &start),
             line,
             log: ParameterLog::open(ParameterSectors::new(chip.FLASH)),
-            link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), places, &mut rcc),
+            link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), buffers, &mut rcc),
             bus: usb::bus(blocks, a.pa11, a.pa12, packets, &rcc),
             quarters: Quarters::start(chip.TIM2, &mut rcc),
             watchdog: chip.IWDG,

@@ -1,9 +1,9 @@
 //! The motor's current, converted once a tick in step with the bridge.
 //!
-//! PC0 sees an amplifier of 20 V/V across a shunt of 33 mΩ in the motor's line
-//! (INA240A1), around half of the supply that is also the converter's
+//! PC0 measures an amplifier of 20 V/V across a shunt of 33 mΩ in the motor's
+//! line (INA240A1). Zero is half of the supply, which is also the converter's
 //! reference: 0.66 V/A, ±2.5 A, 1.22 mA a count, which is 4 mN·m at the joint.
-//! What the amplifier is off by is measured at every arming.
+//! The amplifier's offset is measured at every arming.
 
 use crate::raw;
 use stm32f4xx_hal::gpio::PC0;
@@ -26,12 +26,12 @@ const COUNTS: f32 = 4096.0;
 pub struct Converter(ADC1);
 
 impl Converter {
-    /// Waits for its timer.
+    /// A converter triggered by TIM3.
     pub fn new(converter: ADC1, common: &ADC_COMMON, pin: PC0, rcc: &mut Rcc) -> Self {
         ADC1::enable(rcc);
         ADC1::reset(rcc);
         pin.into_analog();
-        // 84 MHz / 4 = 21 MHz; 15 clocks to look, 12 to convert.
+        // 84 MHz / 4 = 21 MHz; 15 clocks to sample, 12 to convert.
         common.ccr().write(|w| w.adcpre().div4());
         converter.smpr1().write(|w| w.smp10().cycles15());
         raw::converter_channel(&converter, CHANNEL);
@@ -42,8 +42,8 @@ impl Converter {
         Self(converter)
     }
 
-    /// The current, A, positive towards growing angle; once for every
-    /// conversion, none if there has been none.
+    /// Takes the current, A, positive towards growing angle; `None` without a
+    /// new conversion.
     pub fn take_a(&mut self) -> Option<f32> {
         if !self.0.sr().read().eoc().bit() {
             return None;

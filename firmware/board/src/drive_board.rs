@@ -5,19 +5,19 @@ use crate::clocks;
 use crate::converter::Converter;
 use crate::enable_line::EnableLine;
 use crate::encoder::Encoder;
-use crate::link::{DmaPlace, Link, PLACES};
+use crate::identity::identity;
+use crate::link::{BUFFERS, DmaBuffer, Link};
 use crate::start::{Start, start};
 use crate::ticks::{BeginOfTick, MiddleOfTick};
-use crate::who::identity;
 use crepitus_protocol::management::{Identity, Role};
 use stm32f4xx_hal::pac::{IWDG, Peripherals};
 use stm32f4xx_hal::prelude::*;
 
 /// Its parts.
 pub struct DriveBoard {
-    /// Why it has started.
+    /// Reset cause and start counter.
     pub start: Start,
-    /// Who it is.
+    /// Identity for a hello.
     pub identity: Identity,
     /// PB0, read back on PB1.
     pub line: EnableLine,
@@ -33,19 +33,20 @@ pub struct DriveBoard {
     pub begin: BeginOfTick,
     /// Starts `command_motor`.
     pub middle: MiddleOfTick,
-    /// To be started last.
+    /// Started last.
     pub watchdog: IWDG,
 }
 
 impl DriveBoard {
-    /// Outputs off; the ticks wait for [`ticks::start`](crate::ticks::start).
-    pub fn new(chip: Peripherals, places: [DmaPlace; PLACES]) -> Self {
+    /// Sets up the board with outputs off; ticks begin with
+    /// [`ticks::start`](crate::ticks::start).
+    pub fn new(chip: Peripherals, buffers: [DmaBuffer; BUFFERS]) -> Self {
         let mut rcc = clocks::start(chip.RCC);
         let start = start(&mut rcc, &chip.RNG);
         let a = chip.GPIOA.split(&mut rcc);
         let b = chip.GPIOB.split(&mut rcc);
         let c = chip.GPIOC.split(&mut rcc);
-        // What switches the motor first.
+        // First what switches the motor.
         let line = EnableLine::new(b.pb0, b.pb1);
         let bridge = Bridge::new(
             chip.TIM1,
@@ -61,7 +62,7 @@ impl DriveBoard {
             bridge,
             converter: Converter::new(chip.ADC1, &chip.ADC_COMMON, c.pc0, &mut rcc),
             encoder: Encoder::new(chip.TIM5, a.pa0, a.pa1, &mut rcc),
-            link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), places, &mut rcc),
+            link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), buffers, &mut rcc),
             begin: BeginOfTick::new(chip.TIM4, &mut rcc),
             middle: MiddleOfTick::new(chip.TIM3, &mut rcc),
             watchdog: chip.IWDG,

@@ -5,7 +5,7 @@
 
 use stm32f4xx_hal::gpio::{Input, Output, PB0, PB1};
 
-/// Of GPIOB, on both boards: what drives the line.
+/// The pin of GPIOB that drives the line, on both boards.
 pub(crate) const PIN: u8 = 0;
 
 /// The line.
@@ -16,7 +16,7 @@ pub struct EnableLine {
 }
 
 impl EnableLine {
-    /// Off.
+    /// The line, off.
     pub fn new(drives: PB0, reads: PB1) -> Self {
         let mut drives = drives.into_push_pull_output();
         drives.set_low();
@@ -26,12 +26,12 @@ impl EnableLine {
         }
     }
 
-    /// Drives it.
+    /// Drives the line.
     pub fn set(&mut self, on: bool) {
         self.drives.set_state(on.into());
     }
 
-    /// As it is read back.
+    /// Reads the line back.
     pub fn is_on(&self) -> bool {
         self.reads.is_high()
     }

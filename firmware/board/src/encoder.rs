@@ -1,8 +1,8 @@
 //! The encoder: TIM5 counts every edge of both channels, in 32 bits.
 //!
-//! PA0 is channel A, PA1 channel B. A level counts once it has stood for eight
-//! samples of 21 MHz, 0.38 µs; at 420 deg/s of the joint edges are 4.9 µs
-//! apart.
+//! PA0 is channel A, PA1 channel B. The input filter accepts a level after
+//! eight equal samples at 21 MHz, 0.38 µs; at 420 deg/s of the joint edges are
+//! 4.9 µs apart.
 
 use stm32f4xx_hal::gpio::{PA0, PA1, Pull};
 use stm32f4xx_hal::pac::TIM5;
@@ -12,7 +12,7 @@ use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 pub struct Encoder(TIM5);
 
 impl Encoder {
-    /// Counts from zero on.
+    /// Starts counting at zero.
     pub fn new(timer: TIM5, a: PA0, b: PA1, rcc: &mut Rcc) -> Self {
         TIM5::enable(rcc);
         TIM5::reset(rcc);
@@ -28,7 +28,7 @@ impl Encoder {
         Self(timer)
     }
 
-    /// What it has counted; wraps.
+    /// The counter; wraps.
     pub fn count(&self) -> u32 {
         self.0.cnt().read().cnt().bits()
     }

@@ -4,32 +4,32 @@ use crate::parameter_log::{LOG_BYTES, SECTOR_BYTES, Sectors};
 use stm32f4xx_hal::flash::FlashExt;
 use stm32f4xx_hal::pac::FLASH;
 
-/// Where they begin; `comms/memory.x` keeps the program off them.
+/// Start of the sectors; `comms/memory.x` excludes them from the program.
 const OFFSET: usize = 2 * SECTOR_BYTES;
 
-/// The number of the first.
+/// Number of the first sector.
 const FIRST: u8 = 2;
 
 /// The two sectors.
 pub struct ParameterSectors(FLASH);
 
 impl ParameterSectors {
-    /// Of this chip.
+    /// The sectors of this chip.
     pub fn new(flash: FLASH) -> Self {
         Self(flash)
     }
 
-    /// Errors stay until they are cleared, and would be taken for those of
-    /// what is done next.
-    fn forget_errors(&mut self) {
+    /// Clears error flags, which would be taken for those of the next
+    /// operation.
+    fn clear_errors(&mut self) {
         self.0.sr().write(|w| {
             w.operr().clear().wrperr().clear().pgaerr().clear();
             w.pgperr().clear().pgserr().clear()
         });
     }
 
-    /// The cache may still have what was there before.
-    fn forget_cached(&mut self) {
+    /// Resets the data cache, which may hold the old content.
+    fn reset_data_cache(&mut self) {
         let acr = self.0.acr();
         acr.modify(|_, w| w.dcen().clear_bit());
         acr.modify(|_, w| w.dcrst().set_bit());
@@ -50,13 +50,13 @@ impl Sectors for ParameterSectors {
         if offset + bytes.len() > LOG_BYTES {
             return false;
         }
-        self.forget_errors();
+        self.clear_errors();
         let done = self
             .0
             .unlocked()
             .program(OFFSET + offset, bytes.iter())
             .is_ok();
-        self.forget_cached();
+        self.reset_data_cache();
         done
     }
 
@@ -64,9 +64,9 @@ impl Sectors for ParameterSectors {
         let Some(number) = u8::try_from(sector).ok().filter(|sector| *sector < 2) else {
             return false;
         };
-        self.forget_errors();
+        self.clear_errors();
         let done = self.0.unlocked().erase(FIRST + number).is_ok();
-        self.forget_cached();
+        self.reset_data_cache();
         done
     }
 }

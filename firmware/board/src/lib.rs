@@ -1,14 +1,14 @@
-//! # What the two boards have on them
+//! # Peripherals of the two boards
 //!
 //! Both are an STM32F405 with a crystal of 8 MHz. `docs/hardware.md` has the
-//! wiring; the pins stand in [`drive_board`] and [`comms_board`], once.
+//! wiring, [`drive_board`] and [`comms_board`] the pins.
 //!
 //! | part | on | file |
 //! |---|---|---|
 //! | 168 MHz from the crystal, 48 MHz for USB | both | [`clocks`] |
-//! | why it has started, and which start this is | both | [`start`], [`reset_cause`], [`kept`] |
-//! | who it is | both | [`who`] |
-//! | what is done when a program cannot go on | both | [`stop`] |
+//! | reset cause and start counter | both | [`start`], [`reset_cause`], [`reset_record`] |
+//! | identity | both | [`identity`] |
+//! | fatal errors: outputs off, then reset | both | [`stop`] |
 //! | enable line, with read-back | both | [`enable_line`] |
 //! | link: UART with DMA both ways | both | [`link`] |
 //! | watchdog, fed when every task has run | both | [`watchdog`] |
@@ -19,14 +19,14 @@
 //! | USB | comms | [`usb`] |
 //! | parameters in flash | comms | [`parameter_log`], [`parameter_record`], [`flash`] |
 //!
-//! What the compiler cannot check stands in `raw.rs`, one short file.
-//! Nothing here waits without a bound but what stands before the first task.
+//! All `unsafe` code is in `raw.rs`, one short file.
+//! Every wait is bounded, except before the first task.
 #![cfg_attr(not(test), no_std)]
 
-pub mod kept;
 pub mod parameter_log;
 pub mod parameter_record;
 pub mod reset_cause;
+pub mod reset_record;
 
 #[cfg(target_os = "none")]
 pub mod bridge;
@@ -45,6 +45,8 @@ pub mod encoder;
 #[cfg(target_os = "none")]
 pub mod flash;
 #[cfg(target_os = "none")]
+pub mod identity;
+#[cfg(target_os = "none")]
 pub mod link;
 #[cfg(target_os = "none")]
 mod raw;
@@ -58,5 +60,3 @@ pub mod ticks;
 pub mod usb;
 #[cfg(target_os = "none")]
 pub mod watchdog;
-#[cfg(target_os = "none")]
-pub mod who;

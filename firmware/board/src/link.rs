@@ -1,20 +1,20 @@
 //! The link between the controllers: USART6 at 4.2 Mbaud, DMA both ways.
 //!
 //! ```text
-//! PC7 ─> USART6 ─> DMA2 stream 1 ─> ring of 2 KB (4.9 ms)        ─> Link::next_byte
+//! PC7 ─> USART6 ─> DMA2 stream 1 ─> ring of 2 KB (4.9 ms)        ─> Link::take_byte
 //! PC6 <─ USART6 <─ DMA2 stream 6 <─ a frame, and the one after it <─ Link::send
 //! ```
 //!
 //! 84 MHz / 20 = 4.2 MHz exactly, with 16 samples a bit (1 + 4/16).
 //!
-//! A frame takes 0.8 of the millisecond to be sent, and about as long to be
-//! made: so there are three places, one whose frame is on its way, one that
-//! waits, and one in which the next is made. The DMA reads where it was made.
+//! Sending a frame takes 0.8 of the millisecond, and encoding it about as
+//! long: so there are three buffers, one being sent, one pending, and one for
+//! encoding the next frame in place. The DMA reads it there.
 //!
-//! The end of a frame that was sent is an interrupt (`DMA2_STREAM6`); what has
-//! been received is looked for, several times a millisecond. There is no
-//! interrupt for an idle line: to clear its flag one has to read the data
-//! register, and that takes a byte from under the DMA now and then.
+//! The end of a sent frame is an interrupt (`DMA2_STREAM6`); received bytes are
+//! polled several times a millisecond. There is no interrupt for an idle
+//! line: clearing its flag reads the data register, which now and then takes
+//! a byte from the DMA.
 
 use crate::raw;
 use core::sync::atomic::{AtomicU8, Ordering, fence};
@@ -23,17 +23,17 @@ use stm32f4xx_hal::gpio::{PC6, PC7, Pull};
 use stm32f4xx_hal::pac::{DMA2, USART6};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
-/// Bytes that may wait to be taken.
+/// Capacity of the receive ring, bytes.
 const RING_BYTES: usize = 2048;
 
-/// Places for frames: see the module.
-pub const PLACES: usize = 3;
+/// Number of frame buffers: see the module.
+pub const BUFFERS: usize = 3;
 
-/// A place for a frame, in RAM that DMA reaches.
-pub type DmaPlace = &'static mut Place;
+/// A buffer for a frame, in RAM that DMA reaches.
+pub type DmaBuffer = &'static mut Place;
 
-/// What places are made of.
-pub const PLACE: Place = [0; FRAME_BYTES];
+/// Initial value of a buffer.
+pub const EMPTY_BUFFER: Place = [0; FRAME_BYTES];
 
 const RECEIVE: usize = 1;
 const SEND: usize = 6;
@@ -49,19 +49,19 @@ pub struct Link {
     dma: DMA2,
     /// The next byte of the ring to be taken.
     next: usize,
-    spare: [Option<DmaPlace>; PLACES],
-    /// In their order; never more than there are places.
-    waiting: [Option<Made<DmaPlace>>; PLACES],
-    sending: Option<DmaPlace>,
+    spare: [Option<DmaBuffer>; BUFFERS],
+    /// Pending frames in order; never more than there are buffers.
+    waiting: [Option<Made<DmaBuffer>>; BUFFERS],
+    sending: Option<DmaBuffer>,
 }
 
 impl Link {
-    /// Receives from now on.
+    /// Sets up the link and starts receiving.
     pub fn new(
         usart: &USART6,
         dma: DMA2,
         (sends, receives): (PC6, PC7),
-        places: [DmaPlace; PLACES],
+        buffers: [DmaBuffer; BUFFERS],
         rcc: &mut Rcc,
     ) -> Self {
         USART6::enable(rcc);
@@ -69,14 +69,14 @@ impl Link {
         DMA2::enable(rcc);
         DMA2::reset(rcc);
         sends.into_alternate::<8>();
-        // A line without a sender is idle.
+        // Without a sender the line is idle.
         receives
             .into_alternate::<8>()
             .set_internal_resistor(Pull::Up);
         let data = usart.dr().as_ptr();
         let stream = dma.st(RECEIVE);
         raw::dma_register(stream, data);
-        raw::dma_bytes(stream, &RING);
+        raw::dma_destination(stream, &RING);
         stream.ndtr().write(|w| w.ndt().set(length(RING_BYTES)));
         stream.cr().write(|w| {
             w.chsel().set(CHANNEL).dir().peripheral_to_memory();
@@ -99,44 +99,43 @@ impl Link {
         Self {
             dma,
             next: 0,
-            spare: places.map(Some),
-            waiting: [const { None }; PLACES],
+            spare: buffers.map(Some),
+            waiting: [const { None }; BUFFERS],
             sending: None,
         }
     }
 
-    /// The task that the end of a frame has started has begun: if a frame
-    /// waits, it goes now.
+    /// Acknowledges the interrupt of a sent frame, and sends the next one.
     pub fn acknowledge(&mut self) {
         self.dma.hifcr().write(|w| w.ctcif6().clear());
-        self.go_on();
+        self.start_next();
     }
 
-    /// Bytes that have been received and not taken: 2,047 at most.
+    /// Number of received bytes not yet taken: 2,047 at most.
     pub fn received(&self) -> usize {
         let left = usize::from(self.dma.st(RECEIVE).ndtr().read().ndt().bits());
         let end = RING_BYTES.wrapping_sub(left);
         end.wrapping_sub(self.next) % RING_BYTES
     }
 
-    /// Takes one of them.
+    /// Takes the oldest received byte.
     pub fn take_byte(&mut self) -> Option<u8> {
         let byte = RING.get(self.next)?.load(Ordering::Relaxed);
         self.next = (self.next + 1) % RING_BYTES;
         Some(byte)
     }
 
-    /// A place for the next frame, if there is one.
-    pub fn spare(&mut self) -> Option<DmaPlace> {
+    /// Takes a free buffer, if there is one.
+    pub fn spare(&mut self) -> Option<DmaBuffer> {
         self.spare.iter_mut().find_map(Option::take)
     }
 
-    /// Whether there is a place.
+    /// Whether a buffer is free.
     pub fn can_send(&self) -> bool {
         self.spare.iter().any(Option::is_some)
     }
 
-    /// Sends a copy of a frame, if there is a place.
+    /// Sends a copy of a frame, if a buffer is free.
     pub fn send_copy(&mut self, frame: &Frame) {
         if let Some(place) = self.spare() {
             if let Some(bytes) = place.get_mut(..frame.len()) {
@@ -147,20 +146,20 @@ impl Link {
         }
     }
 
-    /// Sends a frame once those before have gone.
-    pub fn send(&mut self, frame: Made<DmaPlace>) {
-        put(&mut self.waiting, frame);
-        self.go_on();
+    /// Sends a frame after those pending.
+    pub fn send(&mut self, frame: Made<DmaBuffer>) {
+        push(&mut self.waiting, frame);
+        self.start_next();
     }
 
-    /// Starts what waits, if nothing is on its way.
-    fn go_on(&mut self) {
+    /// Starts sending the next pending frame, if none is being sent.
+    fn start_next(&mut self) {
         let is_sending = self.dma.st(SEND).cr().read().en().is_enabled();
         if is_sending {
             return;
         }
         if let Some(sent) = self.sending.take() {
-            put(&mut self.spare, sent);
+            push(&mut self.spare, sent);
         }
         let Some(frame) = self.waiting.iter_mut().next().and_then(Option::take) else {
             return;
@@ -171,17 +170,17 @@ impl Link {
             w.ctcif6().clear().chtif6().clear().cteif6().clear();
             w.cdmeif6().clear().cfeif6().clear()
         });
-        let place = raw::dma_place(stream, frame.place);
+        let place = raw::dma_source(stream, frame.place);
         stream.ndtr().write(|w| w.ndt().set(length(frame.length)));
-        // The bytes are there before the stream reads them.
+        // Completes all writes before the stream reads them.
         fence(Ordering::SeqCst);
         stream.cr().modify(|_, w| w.en().enabled());
         self.sending = Some(place);
     }
 }
 
-/// Behind those that are there.
-fn put<T>(slots: &mut [Option<T>; PLACES], one_more: T) {
+/// Appends to the occupied slots.
+fn push<T>(slots: &mut [Option<T>; BUFFERS], one_more: T) {
     if let Some(free) = slots.iter_mut().find(|free| free.is_none()) {
         *free = Some(one_more);
     }

@@ -1,4 +1,4 @@
-//! Parameters in two sectors of flash: a log that only grows.
+//! Parameters in two sectors of flash, as an append-only log.
 //!
 //! ```text
 //! sector 2  | record 1 | record 2 | ... | record 16 |       16 KB each, 1 KB a slot
@@ -7,9 +7,9 @@
 //!
 //! Writing takes a few milliseconds; erasing a sector stops the core for
 //! almost a second. So a new record goes to the next free slot, and the sector
-//! that does not have the newest one is erased at the next start, before the
-//! watchdog runs. A record that was cut off by a power failure does not count,
-//! and the one before it does.
+//! without the newest one is erased at the next start, before the watchdog
+//! runs. A record cut off by a power failure is invalid; the one before it
+//! then is the newest.
 
 use crate::parameter_record::{Record, SLOT_BYTES};
 use crepitus_protocol::{Revision, Values};
@@ -25,13 +25,13 @@ const SLOTS: usize = 2 * SLOTS_PER_SECTOR;
 
 /// The two sectors.
 pub trait Sectors {
-    /// All [`LOG_BYTES`] of them.
+    /// The content of both, [`LOG_BYTES`].
     fn bytes(&self) -> &[u8];
 
-    /// Writes where nothing is yet; whether it went well.
+    /// Writes erased bytes; returns whether it succeeded.
     fn write(&mut self, offset: usize, bytes: &[u8]) -> bool;
 
-    /// Erases the first (0) or the second (1); whether it went well.
+    /// Erases the first (0) or the second (1); returns whether it succeeded.
     fn erase(&mut self, sector: usize) -> bool;
 }
 
@@ -40,13 +40,13 @@ pub trait Sectors {
 pub struct ParameterLog<S> {
     sectors: S,
     newest: Option<Record>,
-    /// The slot for the next record, if there is one.
+    /// The slot for the next record, unless the log is full.
     free: Option<usize>,
 }
 
 impl<S: Sectors> ParameterLog<S> {
-    /// Reads the log and makes room in it. Erases, which takes long: before
-    /// the watchdog runs.
+    /// Reads the log and erases the sector not in use, which takes long: call
+    /// it before the watchdog runs.
     pub fn open(mut sectors: S) -> Self {
         let (place, newest) = newest(sectors.bytes());
         let in_use = place.map(|slot| slot / SLOTS_PER_SECTOR);
@@ -63,16 +63,16 @@ impl<S: Sectors> ParameterLog<S> {
         }
     }
 
-    /// What was kept last.
+    /// The parameters stored last.
     pub fn newest(&self) -> Option<(Revision, Values)> {
         self.newest
             .as_ref()
             .map(|record| (record.revision, record.values))
     }
 
-    /// Keeps parameters; whether they are. Takes some milliseconds, in which
-    /// the core runs between two bytes only.
-    pub fn keep(&mut self, revision: Revision, values: &Values) -> bool {
+    /// Stores parameters; returns whether it succeeded. Takes some
+    /// milliseconds, in which the core stalls but for moments between bytes.
+    pub fn store(&mut self, revision: Revision, values: &Values) -> bool {
         let Some(slot) = self.free else {
             return false;
         };
@@ -84,12 +84,12 @@ impl<S: Sectors> ParameterLog<S> {
         let begin = slot * SLOT_BYTES;
         let is_good = self.sectors.write(begin, &record.bytes());
         let written = self.sectors.bytes().get(begin..begin + SLOT_BYTES);
-        let is_kept = is_good && written.and_then(Record::of) == Some(record);
-        if is_kept {
+        let is_stored = is_good && written.and_then(Record::of) == Some(record);
+        if is_stored {
             self.newest = Some(record);
         }
         self.free = next_free(self.sectors.bytes(), Some(slot / SLOTS_PER_SECTOR));
-        is_kept
+        is_stored
     }
 }
 
@@ -126,8 +126,8 @@ fn newest(bytes: &[u8]) -> (Option<usize>, Option<Record>) {
         .unzip()
 }
 
-/// The first slot after all that is written in the sector in use; then that of
-/// the other one, if it is blank.
+/// The slot after the last written one of the sector in use; if that is full,
+/// the first one of the other sector, if blank.
 fn next_free(bytes: &[u8], in_use: Option<usize>) -> Option<usize> {
     let sector = in_use.unwrap_or(0);
     let range = sector_range(sector);
@@ -197,7 +197,7 @@ mod tests {
         let mut bytes = vec![0xff; LOG_BYTES];
         for n in 1..400 {
             let mut log = open(&mut bytes);
-            assert!(log.keep(Revision(n), &values(n)), "{n}");
+            assert!(log.store(Revision(n), &values(n)), "{n}");
             assert_eq!(open(&mut bytes).newest(), Some((Revision(n), values(n))));
         }
     }
@@ -206,13 +206,13 @@ mod tests {
     fn without_a_start_in_between_there_is_room_for_32_and_then_it_says_so() {
         let mut bytes = vec![0xff; LOG_BYTES];
         let mut log = open(&mut bytes);
-        let kept = (1..=100).take_while(|n| log.keep(Revision(*n), &values(*n)));
+        let kept = (1..=100).take_while(|n| log.store(Revision(*n), &values(*n)));
         assert_eq!(kept.count(), SLOTS);
         assert_eq!(log.sectors.erased, 0);
         let mut log = open(&mut bytes);
         assert_eq!(log.newest(), Some((Revision(32), values(32))));
         assert_eq!(log.sectors.erased, 1);
-        assert!(log.keep(Revision(33), &values(33)));
+        assert!(log.store(Revision(33), &values(33)));
     }
 
     #[test]
@@ -222,22 +222,22 @@ mod tests {
             for before in [1, 15, 16, 17] {
                 let mut bytes = vec![0xff; LOG_BYTES];
                 for n in 1..=before {
-                    assert!(open(&mut bytes).keep(Revision(n), &values(n)));
+                    assert!(open(&mut bytes).store(Revision(n), &values(n)));
                 }
                 let mut log = open(&mut bytes);
                 log.sectors.power_for = power_for;
-                let done = log.keep(Revision(99), &values(99));
+                let done = log.store(Revision(99), &values(99));
                 assert_eq!(done, power_for == length);
                 let expected = if done { 99 } else { before };
                 let mut log = open(&mut bytes);
                 assert_eq!(log.newest(), Some((Revision(expected), values(expected))));
-                assert!(log.keep(Revision(100), &values(100)));
+                assert!(log.store(Revision(100), &values(100)));
             }
         }
     }
 
     #[test]
-    fn what_is_no_log_is_erased_and_sequences_may_wrap() {
+    fn invalid_content_is_erased_and_sequences_may_wrap() {
         let mut bytes = vec![0x5a; LOG_BYTES];
         let mut log = open(&mut bytes);
         assert_eq!((log.newest(), log.sectors.erased), (None, 2));
@@ -247,7 +247,7 @@ mod tests {
             values: values(1),
         });
         for n in 2..6 {
-            assert!(log.keep(Revision(n), &values(n)));
+            assert!(log.store(Revision(n), &values(n)));
         }
         assert_eq!(open(&mut bytes).newest(), Some((Revision(5), values(5))));
     }

@@ -4,8 +4,8 @@
 //! "CRP2" ‖ sequence u32 ‖ revision u32 ‖ count u32 ‖ count × (id u8 ‖ value f64) ‖ CRC-32      little endian
 //! ```
 //!
-//! Ids never change their meaning, so a record of another program is read: what
-//! it does not have is at its default, and what has gone is left out.
+//! Ids never change their meaning, so a record of another version is readable:
+//! missing parameters get their default, unknown ones are skipped.
 
 use crepitus_protocol::frame::CRC;
 use crepitus_protocol::parameters::PARAMETER_COUNT;
@@ -19,7 +19,7 @@ const HEAD_BYTES: usize = 16;
 const SUM_BYTES: usize = 4;
 const VALUE_BYTES: usize = 9;
 
-/// Bytes of a record of this program.
+/// Bytes of a record of this version.
 pub const RECORD_BYTES: usize = HEAD_BYTES + VALUE_BYTES * PARAMETER_COUNT + SUM_BYTES;
 
 const _: () = assert!(RECORD_BYTES <= SLOT_BYTES);
@@ -29,14 +29,14 @@ const _: () = assert!(RECORD_BYTES <= SLOT_BYTES);
 pub struct Record {
     /// Counts records; the newest has the highest, modulo 2³².
     pub sequence: u32,
-    /// Of the values.
+    /// Revision of the values.
     pub revision: Revision,
     /// The parameters.
     pub values: Values,
 }
 
 impl Record {
-    /// Its bytes.
+    /// Encodes the record.
     pub fn bytes(&self) -> [u8; RECORD_BYTES] {
         let mut bytes = [0; RECORD_BYTES];
         let count = u32::try_from(PARAMETER_COUNT).unwrap_or_default();
@@ -56,7 +56,7 @@ impl Record {
         bytes
     }
 
-    /// The record at the beginning of a slot, if there is a whole one.
+    /// Decodes the record at the beginning of a slot, if it is valid.
     pub fn of(slot: &[u8]) -> Option<Self> {
         let (magic, rest) = slot.split_first_chunk::<4>()?;
         let (sequence, rest) = rest.split_first_chunk::<4>()?;

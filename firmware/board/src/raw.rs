@@ -1,38 +1,42 @@
-//! All that the compiler cannot check, in one place.
+//! All `unsafe` code of the boards.
 //!
-//! | what | why it is right |
+//! | what | why it is sound |
 //! |---|---|
-//! | [`kept_words`], [`keep_words`] | words that the start-up code leaves alone; any bits are a `u32`; read and written whole, by `init` before there are tasks, or by who never returns |
-//! | [`image`] | symbols of the linker script around the program in flash, which nobody writes while it runs |
-//! | [`outputs_off`] | called where nothing else runs any more; only ever switches off |
-//! | [`dma_register`], [`dma_bytes`] | the stream writes a `'static` buffer of atomic bytes in RAM that DMA reaches, within the length that `link.rs` gives it |
-//! | [`dma_place`] | the stream reads a place that `link.rs` owns and keeps until the stream is done, in RAM that DMA reaches, within it |
+//! | [`record_words`], [`store_record_words`] | words that the start-up code leaves alone; any bits are a `u32`; accessed as a whole, by `init` before there are tasks, or by a function that never returns |
+//! | [`image`] | symbols of the linker script around the program in flash, which is not written while it runs |
+//! | [`outputs_off`] | called when nothing else runs any more; only switches off |
+//! | [`dma_register`], [`dma_destination`] | the stream writes a `'static` buffer of atomic bytes in RAM that DMA reaches, within the length that `link.rs` sets |
+//! | [`dma_source`] | the stream reads a buffer that `link.rs` owns and keeps until the stream is done, in RAM that DMA reaches, within its length |
 //! | [`converter_channel`] | a channel that the converter has |
-//! | `HardFault` | the stack may be of no use, so it begins anew; it never returns |
+//! | `HardFault` | the stack may be unusable, so its pointer is reset; never returns |
 #![allow(unsafe_code)]
 
 use crate::enable_line;
-use crate::kept::{Reason, WORDS};
-use crate::link::DmaPlace;
+use crate::link::DmaBuffer;
+use crate::reset_record::{Reason, WORDS};
 use crate::stop::stop;
 use core::mem::MaybeUninit;
 use core::sync::atomic::AtomicU8;
 use stm32f4xx_hal::pac;
 
-/// In a section that is neither cleared nor loaded.
+/// The reset record, in a section that is neither cleared nor loaded.
 #[unsafe(link_section = ".uninit.kept")]
-static mut KEPT: MaybeUninit<[u32; WORDS]> = MaybeUninit::uninit();
+static mut RECORD: MaybeUninit<[u32; WORDS]> = MaybeUninit::uninit();
 
-/// The words that outlive a reset; after power was off, anything.
-pub(crate) fn kept_words() -> [u32; WORDS] {
+/// Reads the words that survive a reset; undefined after power was off.
+pub(crate) fn record_words() -> [u32; WORDS] {
     // SAFETY: see the table.
-    unsafe { (&raw const KEPT).cast::<[u32; WORDS]>().read_volatile() }
+    unsafe { (&raw const RECORD).cast::<[u32; WORDS]>().read_volatile() }
 }
 
-/// Leaves words for the next start.
-pub(crate) fn keep_words(words: [u32; WORDS]) {
+/// Stores words for the next start.
+pub(crate) fn store_record_words(words: [u32; WORDS]) {
     // SAFETY: see the table.
-    unsafe { (&raw mut KEPT).cast::<[u32; WORDS]>().write_volatile(words) }
+    unsafe {
+        (&raw mut RECORD)
+            .cast::<[u32; WORDS]>()
+            .write_volatile(words)
+    }
 }
 
 unsafe extern "C" {
@@ -42,7 +46,7 @@ unsafe extern "C" {
     static __edata: u8;
 }
 
-/// The program in flash: code, constants, and what variables begin with.
+/// The program in flash: code, constants, and initial values.
 pub(crate) fn image() -> &'static [u8] {
     // SAFETY: see the table.
     unsafe {
@@ -53,8 +57,9 @@ pub(crate) fn image() -> &'static [u8] {
     }
 }
 
-/// Enable line and bridge off. The line has the same pin on both boards; comms
-/// has no bridge, and its timer's clock is off: there the write does nothing.
+/// Switches enable line and bridge off. The line has the same pin on both
+/// boards; comms has no bridge, and its timer's clock is off: there the write
+/// has no effect.
 pub(crate) fn outputs_off() {
     // SAFETY: see the table.
     let (gpio, timer) = unsafe { (pac::GPIOB::steal(), pac::TIM1::steal()) };
@@ -62,23 +67,23 @@ pub(crate) fn outputs_off() {
     timer.bdtr().modify(|_, w| w.moe().clear_bit());
 }
 
-/// Tells a DMA stream which register it serves.
+/// Sets the register that a DMA stream serves.
 pub(crate) fn dma_register(stream: &pac::dma2::ST, register: *const u16) {
     // SAFETY: see the table.
     unsafe { stream.par().write(|w| w.bits(address(register.addr()))) };
 }
 
-/// Tells a DMA stream where the frame is that it sends. Whoever calls keeps the
-/// place, and leaves it alone, until the stream is done.
-pub(crate) fn dma_place(stream: &pac::dma2::ST, place: DmaPlace) -> DmaPlace {
-    let begin = address(place.as_mut_ptr().expose_provenance());
+/// Sets the frame that a DMA stream sends. The caller must keep the returned
+/// buffer, and not access it, until the stream is done.
+pub(crate) fn dma_source(stream: &pac::dma2::ST, buffer: DmaBuffer) -> DmaBuffer {
+    let begin = address(buffer.as_mut_ptr().expose_provenance());
     // SAFETY: see the table.
     unsafe { stream.m0ar().write(|w| w.bits(begin)) };
-    place
+    buffer
 }
 
-/// Tells a DMA stream which bytes it fills.
-pub(crate) fn dma_bytes(stream: &pac::dma2::ST, bytes: &'static [AtomicU8]) {
+/// Sets the bytes that a DMA stream fills.
+pub(crate) fn dma_destination(stream: &pac::dma2::ST, bytes: &'static [AtomicU8]) {
     let begin = address(bytes.as_ptr().addr());
     // SAFETY: see the table.
     unsafe { stream.m0ar().write(|w| w.bits(begin)) };
@@ -88,14 +93,13 @@ fn address(address: usize) -> u32 {
     u32::try_from(address).unwrap_or_default()
 }
 
-/// The one channel that is converted.
+/// Selects the channel that is converted.
 pub(crate) fn converter_channel(converter: &pac::ADC1, channel: u8) {
     // SAFETY: see the table.
     converter.sqr3().write(|w| unsafe { w.sq1().bits(channel) });
 }
 
-/// Where the processor ends up when it cannot go on, at a stack overflow above
-/// all.
+/// Handler of processor faults, above all of a stack overflow.
 #[unsafe(naked)]
 #[unsafe(no_mangle)]
 #[allow(non_snake_case, reason = "the vector's name")]

@@ -1,18 +1,17 @@
-//! Why a controller has started: what the reset hardware says, and what was
-//! kept.
+//! Reset cause, from the reset hardware's flags and the record in RAM.
 //!
-//! | flags | kept | cause |
+//! | flags | record | cause |
 //! |---|---|---|
 //! | brown-out without power-on | | brown-out |
-//! | power-on | valid: RAM has lived through it | brown-out |
-//! | power-on | no | power |
+//! | power-on | valid: RAM has kept its contents | brown-out |
+//! | power-on | invalid | power |
 //! | any other | panic, fault, unhandled | panic |
 //! | a watchdog | | watchdog |
 //! | software, pin | | asked |
 //!
-//! Every reset also sets the pin's flag, so that one says least.
+//! Every reset also sets the pin's flag, so that one is ignored.
 
-use crate::kept::{Kept, Reason};
+use crate::reset_record::{Reason, ResetRecord};
 use crepitus_protocol::management::ResetCause;
 
 /// The flags of RCC_CSR.
@@ -26,11 +25,11 @@ pub struct Flags {
     pub watchdog: bool,
 }
 
-/// The cause.
-pub fn reset_cause(flags: Flags, kept: Option<&Kept>) -> ResetCause {
-    let reason = kept.map_or(Reason::None, |kept| kept.reason);
+/// Returns the reset cause.
+pub fn reset_cause(flags: Flags, record: Option<&ResetRecord>) -> ResetCause {
+    let reason = record.map_or(Reason::None, |record| record.reason);
     match (flags, reason) {
-        (Flags { power_on: true, .. }, _) if kept.is_none() => ResetCause::Power,
+        (Flags { power_on: true, .. }, _) if record.is_none() => ResetCause::Power,
         (
             Flags {
                 power_on,
@@ -39,7 +38,7 @@ pub fn reset_cause(flags: Flags, kept: Option<&Kept>) -> ResetCause {
             },
             _,
         ) if power_on || brown_out => ResetCause::BrownOut,
-        // A fault handler that could not finish ends in the watchdog.
+        // A fault handler that did not finish ends in a watchdog reset.
         (_, Reason::Panic | Reason::Fault | Reason::Unhandled) => ResetCause::Panic,
         (Flags { watchdog: true, .. }, _) => ResetCause::Watchdog,
         _ => ResetCause::Asked,
@@ -52,9 +51,9 @@ mod tests {
 
     #[test]
     fn every_row_of_the_table() {
-        let kept = |reason| Kept {
+        let record = |reason| ResetRecord {
             reason,
-            ..Kept::default()
+            ..ResetRecord::default()
         };
         let no = Flags::default();
         let power = Flags {
@@ -71,11 +70,11 @@ mod tests {
             ..no
         };
         let (none, asked, panic) = (
-            Some(kept(Reason::None)),
-            Some(kept(Reason::Asked)),
-            Some(kept(Reason::Fault)),
+            Some(record(Reason::None)),
+            Some(record(Reason::Asked)),
+            Some(record(Reason::Fault)),
         );
-        for (flags, kept, cause) in [
+        for (flags, record, cause) in [
             (power, None, ResetCause::Power),
             (power, none, ResetCause::BrownOut),
             (fell, none, ResetCause::BrownOut),
@@ -87,7 +86,7 @@ mod tests {
             (no, none, ResetCause::Asked),
             (no, None, ResetCause::Asked),
         ] {
-            assert_eq!(reset_cause(flags, kept.as_ref()), cause);
+            assert_eq!(reset_cause(flags, record.as_ref()), cause);
         }
     }
 }

@@ -1,29 +1,30 @@
-//! How a controller starts: why, and which start this is.
+//! Reset cause and start counter.
 
-use crate::kept::{Kept, Reason};
 use crate::raw;
 use crate::reset_cause::{Flags, reset_cause};
+use crate::reset_record::{Reason, ResetRecord};
 use crepitus_protocol::management::ResetCause;
 use stm32f4xx_hal::pac::{RCC, RNG};
 use stm32f4xx_hal::rcc::{Enable, Rcc};
 
-/// Polls of the random number generator; it takes 40 clocks of 48 MHz.
+/// Timeout of the random number generator, in polls; it takes 40 clocks of
+/// 48 MHz.
 const MOST_POLLS: u32 = 10_000;
 
-/// What is known of a start.
+/// A start of the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Start {
-    /// Why.
+    /// Reset cause.
     pub cause: ResetCause,
-    /// Which one: the other controller notices a restart by it. The first
-    /// after power was off is random, so two of those differ.
+    /// Start counter, by which the other controller detects a restart. Random
+    /// after power was off, so that two such starts differ.
     pub number: u16,
-    /// What the program before has left.
-    pub before: Kept,
+    /// The record that the last program stored.
+    pub before: ResetRecord,
 }
 
-/// Looks at flags and words, and clears them for the next start. Once, with
-/// the clocks running.
+/// Reads the reset flags and the record, and clears them for the next start.
+/// Called once, with the clocks running.
 pub fn start(rcc: &mut Rcc, generator: &RNG) -> Start {
     let csr = rcc.csr().read();
     let flags = Flags {
@@ -32,22 +33,22 @@ pub fn start(rcc: &mut Rcc, generator: &RNG) -> Start {
         watchdog: csr.wdgrstf().bit() || csr.wwdgrstf().bit(),
     };
     rcc.csr().modify(|_, w| w.rmvf().clear());
-    let kept = Kept::of(raw::kept_words());
-    let number = match kept {
-        Some(kept) => kept.start.wrapping_add(1),
+    let record = ResetRecord::of(raw::record_words());
+    let number = match record {
+        Some(record) => record.start.wrapping_add(1),
         None => random(rcc, generator),
     };
-    let words = Kept {
+    let words = ResetRecord {
         start: number,
         reason: Reason::None,
         detail: 0,
     }
     .words();
-    raw::keep_words(words);
+    raw::store_record_words(words);
     Start {
-        cause: reset_cause(flags, kept.as_ref()),
+        cause: reset_cause(flags, record.as_ref()),
         number,
-        before: kept.unwrap_or_default(),
+        before: record.unwrap_or_default(),
     }
 }
 
@@ -57,7 +58,7 @@ fn random(rcc: &mut RCC, generator: &RNG) -> u16 {
     let mut number = 0;
     for _ in 0..MOST_POLLS {
         if generator.sr().read().drdy().bit() {
-            // Both halves, so that a generator that is stuck matters less.
+            // Both halves, in case the generator has stuck bits.
             let word = generator.dr().read().bits();
             number = (word ^ (word >> 16)) & 0xffff;
             break;

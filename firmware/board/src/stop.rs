@@ -1,30 +1,29 @@
-//! When a program cannot go on: outputs off, the reason kept, a new start.
+//! Fatal errors and reboots: outputs off, the reason stored, then a reset.
 //!
-//! The next start finds the reason, is in a fault of its own and says so to
-//! the host. Nothing is logged here: that takes longer than a motor should
-//! wait.
+//! The next start reads the reason, raises a fault and reports it to the
+//! host. Nothing is logged here: that would delay switching off the motor.
 
-use crate::kept::{Kept, Reason};
 use crate::raw;
+use crate::reset_record::{Reason, ResetRecord};
 use core::panic::PanicInfo;
 use cortex_m::peripheral::SCB;
 
-/// Outputs off, then a new start that knows the reason.
+/// Turns outputs off, stores the reason and resets the processor.
 pub(crate) fn stop(reason: Reason, detail: u32) -> ! {
     raw::outputs_off();
     cortex_m::interrupt::disable();
-    let kept = Kept::of(raw::kept_words()).unwrap_or_default();
-    let words = Kept {
+    let record = ResetRecord::of(raw::record_words()).unwrap_or_default();
+    let words = ResetRecord {
         reason,
         detail,
-        ..kept
+        ..record
     }
     .words();
-    raw::keep_words(words);
+    raw::store_record_words(words);
     SCB::sys_reset()
 }
 
-/// A new start that somebody asked for.
+/// Resets the processor at the host's request.
 pub fn reboot() -> ! {
     stop(Reason::Asked, 0)
 }

@@ -4,12 +4,12 @@
 //! TIM1   ╱╲        bridge: up and down in 50 µs; switches load at the bottom
 //!       ╱  ╲
 //! TIM4  |          sample_encoder, at the bottom
-//! TIM3     |       the converter, in the middle of the top: no switch near
-//!           |      command_motor, 2 µs later: the current is there
+//! TIM3     |       the converter, in the middle of the top: no switching near
+//!           |      command_motor, 2 µs later: the current is converted
 //! ```
 //!
 //! All three count the same crystal, start together and are never stopped:
-//! whatever the bridge does, the ticks go on.
+//! ticks continue whatever the bridge does.
 
 use crate::bridge::Bridge;
 use crate::clocks::APB1_TIMER_HZ;
@@ -20,11 +20,12 @@ use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 const COUNTS: u16 = 4_200;
 const _: () = assert!(COUNTS as u32 * 20_000 == APB1_TIMER_HZ);
 
-/// The converter looks for 15 of its clocks, 0.71 µs: it begins 0.36 µs before
-/// the middle of the tick.
+/// The converter samples for 15 of its clocks, 0.71 µs: it begins 0.36 µs
+/// before the middle of the tick.
 const CONVERTER_EARLY: u16 = 30;
 
-/// From its start to the current: 2 µs. It takes 27 clocks of 21 MHz, 1.29 µs.
+/// From the converter's start to `command_motor`: 2 µs. A conversion takes 27
+/// clocks of 21 MHz, 1.29 µs.
 const CONVERSION: u16 = 168;
 
 /// The middle of a tick.
@@ -71,7 +72,7 @@ impl BeginOfTick {
     }
 }
 
-/// Starts the three together, but for some clocks of the core.
+/// Starts the three timers within some clocks of the core.
 pub fn start(bridge: &Bridge, middle: &MiddleOfTick, begin: &BeginOfTick) {
     cortex_m::interrupt::free(|_| {
         bridge.timer().cr1().modify(|_, w| w.cen().set_bit());
@@ -84,7 +85,7 @@ pub fn start(bridge: &Bridge, middle: &MiddleOfTick, begin: &BeginOfTick) {
 pub struct Quarters(TIM2);
 
 impl Quarters {
-    /// Begins.
+    /// Starts the timer.
     pub fn start(timer: TIM2, rcc: &mut Rcc) -> Self {
         TIM2::enable(rcc);
         TIM2::reset(rcc);

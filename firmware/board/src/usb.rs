@@ -31,7 +31,7 @@ pub fn bus(
     UsbBus::new(usb, packets)
 }
 
-/// What a host is told; the serial number as `crepitus info` writes it.
+/// Strings of the USB descriptors; the serial number as `crepitus info` has it.
 pub fn identity<'a>(serial: &[u8; 12], digits: &'a mut [u8; DIGITS]) -> UsbIdentity<'a> {
     let digit = |value: u8| {
         if value < 10 {

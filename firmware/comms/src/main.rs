@@ -1,22 +1,22 @@
 //! # The comms controller
 //!
-//! `device::comms` on silicon: bytes and lines in, a millisecond, bytes and
-//! lines out.
+//! `device::comms` on silicon: read bytes and lines, tick, write bytes and
+//! lines.
 //!
-//! | priority | task | interrupt | when | what it has to itself |
+//! | priority | task | interrupt | when | resources of its own |
 //! |---|---|---|---|---|
 //! | 3 | `tick` | TIM2 | every quarter of a millisecond; the tick of comms with each fourth | line |
-//! | 2 | `usb` | OTG_FS | what the bus does; room and something to send; every millisecond | the USB port |
-//! | 1 | `link` | DMA2_STREAM6, pended | with `tick`, and as a frame has gone | the link, watchdog |
+//! | 2 | `usb` | OTG_FS | events of the bus; data to send; every millisecond | the USB port |
+//! | 1 | `link` | DMA2_STREAM6, pended | with `tick`, and after each sent frame | the link, watchdog |
 //! | 0 | `idle` | | always | parameters in flash, log |
 //!
 //! | shared | between | locked for |
 //! |---|---|---|
 //! | `comms` | 3, 2, 1, 0 | a tick, an event of the bus, a byte, a frame |
-//! | `save` | 3, 0 | parameters on their way to flash |
+//! | `save` | 3, 0 | handing over parameters to store |
 //!
-//! Nothing above `idle` logs, and nothing waits: a host that does not read
-//! loses telemetry, which is counted.
+//! Only `idle` logs, and nothing blocks: a host that does not read loses
+//! telemetry, which is counted.
 #![no_std]
 #![no_main]
 
@@ -27,11 +27,11 @@ mod app {
     use board::comms_board::CommsBoard;
     use board::enable_line::EnableLine;
     use board::flash::ParameterSectors;
-    use board::link::{Link, PLACE, PLACES};
+    use board::link::{BUFFERS, EMPTY_BUFFER, Link};
     use board::parameter_log::ParameterLog;
     use board::ticks::Quarters;
     use board::usb::{DIGITS, PACKET_WORDS, UsbBusAllocator, UsbBusType, identity};
-    use board::watchdog::{Roll, Watchdog};
+    use board::watchdog::{TaskCheckins, Watchdog};
     use core::mem::MaybeUninit;
     use crepitus_device::comms::{Boot, Comms, Inputs};
     use crepitus_device::usb_port::{HostBytes, UsbPort};
@@ -39,30 +39,29 @@ mod app {
     use crepitus_protocol::{Fault, Revision, Values};
     use stm32f4xx_hal::pac::Interrupt;
 
-    /// What starts `usb`, beside the bus.
+    /// Starts `usb`, as the bus does.
     const USB: Interrupt = Interrupt::OTG_FS;
 
-    /// What starts `link`, beside the end of a frame.
+    /// Starts `link`, as the end of a sent frame does.
     const LINK: Interrupt = Interrupt::DMA2_STREAM6;
 
-    /// Between the order to start anew and doing it, ms: the answer is sent,
-    /// and the drive is told.
-    const FAREWELL_MS: u8 = 20;
+    /// Delay of a reboot, ms, to send the answer and forward it to the drive.
+    const REBOOT_DELAY_MS: u8 = 20;
 
-    /// Who has run, for the watchdog.
+    /// Tasks that check in with the watchdog.
     const TICKED: usize = 0;
-    const USED: usize = 1;
+    const USB_POLLED: usize = 1;
     const LINKED: usize = 2;
     const TASKS: usize = 3;
 
-    /// Runs of `link` that `idle` may take for a round: at most 250 ms.
-    const PATIENCE: u32 = 1_000;
+    /// Timeout of `idle` in runs of `link`: at most 250 ms.
+    const IDLE_TIMEOUT_RUNS: u32 = 1_000;
 
     #[shared]
     struct Shared {
         comms: &'static mut Comms,
         save: Option<(Revision, Values)>,
-        roll: Roll<TASKS>,
+        checkins: TaskCheckins<TASKS>,
     }
 
     #[local]
@@ -76,15 +75,15 @@ mod app {
     }
 
     #[init(local = [
-        places: [Place; PLACES] = [PLACE; PLACES],
-        // In their places from the beginning: large, or referred to for ever.
+        buffers: [Place; BUFFERS] = [EMPTY_BUFFER; BUFFERS],
+        // Static: large, or borrowed for ever.
         comms: MaybeUninit<Comms> = MaybeUninit::uninit(),
         bus: MaybeUninit<UsbBusAllocator<UsbBusType>> = MaybeUninit::uninit(),
         packets: [u32; PACKET_WORDS] = [0; PACKET_WORDS],
         digits: [u8; DIGITS] = [0; DIGITS]
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let board = CommsBoard::new(cx.device, cx.local.packets, cx.local.places.each_mut());
+        let board = CommsBoard::new(cx.device, cx.local.packets, cx.local.buffers.each_mut());
         let start = board.start;
         defmt::info!(
             "comms: start {=u16} after {=str}; before: {=str} {=u32:#x}",
@@ -99,15 +98,15 @@ mod app {
             saved: board.log.newest(),
             counters: 0,
         }));
-        let told = identity(&board.identity.serial, cx.local.digits);
-        let Ok(port) = UsbPort::new(cx.local.bus.write(board.bus), &told) else {
-            panic!("the description of the USB device is not allowed");
+        let usb_identity = identity(&board.identity.serial, cx.local.digits);
+        let Ok(port) = UsbPort::new(cx.local.bus.write(board.bus), &usb_identity) else {
+            panic!("the USB descriptors are invalid");
         };
         (
             Shared {
                 comms,
                 save: None,
-                roll: Roll::new(),
+                checkins: TaskCheckins::new(),
             },
             Local {
                 quarters: board.quarters,
@@ -115,19 +114,19 @@ mod app {
                 port,
                 link: board.link,
                 log: board.log,
-                watchdog: Watchdog::start(board.watchdog, PATIENCE),
+                watchdog: Watchdog::start(board.watchdog, IDLE_TIMEOUT_RUNS),
             },
         )
     }
 
     #[task(
         binds = TIM2, priority = 3,
-        local = [quarters, line, quarter: u8 = 0, farewell: Option<u8> = None],
-        shared = [comms, save, &roll],
+        local = [quarters, line, quarter: u8 = 0, reboot_in_ms: Option<u8> = None],
+        shared = [comms, save, &checkins],
     )]
     fn tick(mut cx: tick::Context) {
         cx.local.quarters.acknowledge();
-        cx.shared.roll.here(TICKED);
+        cx.shared.checkins.check_in(TICKED);
         rtic::pend(LINK);
         *cx.local.quarter = (*cx.local.quarter + 1) % 4;
         if *cx.local.quarter != 0 {
@@ -142,9 +141,9 @@ mod app {
             cx.shared.save.lock(|save| *save = outputs.save);
         }
         if outputs.reboot {
-            *cx.local.farewell = Some(FAREWELL_MS);
+            *cx.local.reboot_in_ms = Some(REBOOT_DELAY_MS);
         }
-        match cx.local.farewell {
+        match cx.local.reboot_in_ms {
             Some(0) => board::stop::reboot(),
             Some(left) => *left -= 1,
             None => {}
@@ -152,19 +151,19 @@ mod app {
         rtic::pend(USB);
     }
 
-    #[task(binds = OTG_FS, priority = 2, local = [port], shared = [comms, &roll])]
+    #[task(binds = OTG_FS, priority = 2, local = [port], shared = [comms, &checkins])]
     fn usb(mut cx: usb::Context) {
-        cx.shared.roll.here(USED);
+        cx.shared.checkins.check_in(USB_POLLED);
         let port = cx.local.port;
         cx.shared.comms.lock(|comms| port.poll(*comms));
     }
 
-    #[task(binds = DMA2_STREAM6, priority = 1, local = [link, watchdog], shared = [comms, &roll])]
+    #[task(binds = DMA2_STREAM6, priority = 1, local = [link, watchdog], shared = [comms, &checkins])]
     fn link(mut cx: link::Context) {
         let link = cx.local.link;
         link.acknowledge();
-        cx.shared.roll.here(LINKED);
-        cx.local.watchdog.feed(cx.shared.roll);
+        cx.shared.checkins.check_in(LINKED);
+        cx.local.watchdog.feed(cx.shared.checkins);
         for _ in 0..link.received() {
             if let Some(byte) = link.take_byte() {
                 cx.shared.comms.lock(|comms| comms.link_received(byte));
@@ -180,20 +179,20 @@ mod app {
         }
     }
 
-    #[idle(local = [log], shared = [comms, save, &roll])]
+    #[idle(local = [log], shared = [comms, save, &checkins])]
     fn idle(mut cx: idle::Context) -> ! {
-        let mut told = None;
+        let mut reported = None;
         loop {
             if let Some((revision, values)) = cx.shared.save.lock(Option::take) {
-                let done = cx.local.log.keep(revision, &values);
+                let done = cx.local.log.store(revision, &values);
                 cx.shared.comms.lock(|comms| comms.saved(done));
             }
             let now = cx.shared.comms.lock(|comms| {
                 let fault = comms.fault().map_or(0, Fault::code);
                 (comms.state(), fault, comms.revision())
             });
-            if told != Some(now) {
-                told = Some(now);
+            if reported != Some(now) {
+                reported = Some(now);
                 let (state, fault, revision) = now;
                 defmt::info!(
                     "{=str}, fault {=u8}, revision {=u32}",
@@ -202,7 +201,7 @@ mod app {
                     revision.0
                 );
             }
-            cx.shared.roll.idle_here();
+            cx.shared.checkins.idle_checks_in();
             cortex_m::asm::wfi();
         }
     }

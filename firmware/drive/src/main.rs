@@ -1,13 +1,13 @@
 //! # The drive controller
 //!
-//! `device::drive` on silicon: peripherals in, a tick, peripherals out.
+//! `device::drive` on silicon: read peripherals, tick, write peripherals.
 //!
-//! | priority | task | interrupt | when | what it has to itself |
+//! | priority | task | interrupt | when | resources of its own |
 //! |---|---|---|---|---|
-//! | 4 | `command_motor` | TIM3 | in the middle of the tick, as the current is there | bridge, line, converter |
+//! | 4 | `command_motor` | TIM3 | in the middle of the tick, when the current is converted | bridge, line, converter |
 //! | 3 | `sample_encoder` | TIM4 | every 50 µs | encoder |
 //! | 2 | `render_torque` | SDIO, pended | after it | the model |
-//! | 1 | `link` | DMA2_STREAM6, pended | after each tick, and as a frame has gone | the link, watchdog |
+//! | 1 | `link` | DMA2_STREAM6, pended | after each tick, and after each sent frame | the link, watchdog |
 //! | 0 | `idle` | | always | preparation, log |
 //!
 //! | shared | between | locked for |
@@ -16,12 +16,12 @@
 //! | `sampled` | 4, 3, 2 | a copy |
 //! | `rendered` | 4, 2 | a copy |
 //! | `sampler` | 3, 1 | the clock, the zero |
-//! | `prepared`, `rendering_plan`, `command_plan` | 3, 2, 4, 0 | a plan on its way |
-//! | `commits` | 1, 0 | a commit on its way |
+//! | `prepared`, `rendering_plan`, `command_plan` | 3, 2, 4, 0 | handing over a plan |
+//! | `commits` | 1, 0 | handing over a commit |
 //!
-//! Parameters go from `link` by `commits` to `idle`, which makes numbers of
-//! them; with a block `sample_encoder` hands those to the others. Nothing
-//! above `idle` logs, and nothing waits.
+//! Parameters go from `link` by `commits` to `idle`, which computes step
+//! coefficients from them; at the start of a block `sample_encoder` passes
+//! those to the others. Only `idle` logs, and nothing blocks.
 #![no_std]
 #![no_main]
 
@@ -37,9 +37,9 @@ mod app {
     use board::drive_board::DriveBoard;
     use board::enable_line::EnableLine;
     use board::encoder::Encoder;
-    use board::link::{DmaPlace, Link, PLACE, PLACES};
+    use board::link::{BUFFERS, DmaBuffer, EMPTY_BUFFER, Link};
     use board::ticks::{self, BeginOfTick, MiddleOfTick};
-    use board::watchdog::{Roll, Watchdog};
+    use board::watchdog::{TaskCheckins, Watchdog};
     use core::sync::atomic::{AtomicBool, Ordering};
     use crepitus_device::counters::Counters;
     use crepitus_device::drive::Boot;
@@ -54,26 +54,26 @@ mod app {
     use crepitus_protocol::frame::Place;
     use stm32f4xx_hal::pac::Interrupt;
 
-    /// What starts `render_torque`: of an interrupt that nothing else uses.
+    /// Starts `render_torque`; otherwise unused.
     const RENDER: Interrupt = Interrupt::SDIO;
 
-    /// What starts `link`, beside the end of a frame.
+    /// Starts `link`, as the end of a sent frame does.
     const LINK: Interrupt = Interrupt::DMA2_STREAM6;
 
-    /// Who has run, for the watchdog.
+    /// Tasks that check in with the watchdog.
     const COMMAND: usize = 0;
     const SAMPLE: usize = 1;
     const RENDERED: usize = 2;
     const LINKED: usize = 3;
     const TASKS: usize = 4;
 
-    /// The most bytes that a run of `link` takes, every other tick. The wire
+    /// The most bytes that a run of `link` receives, every other tick. The link
     /// could bring 42 in that time; comms sends 25 in a millisecond, and 300 with
     /// a commit.
     const RUN_BYTES: usize = 16;
 
-    /// Runs of `link` that `idle` may take for a round: at most 250 ms.
-    const PATIENCE: u32 = 5_000;
+    /// Timeout of `idle` in runs of `link`: at most 250 ms.
+    const IDLE_TIMEOUT_RUNS: u32 = 5_000;
 
     #[shared]
     struct Shared {
@@ -86,12 +86,12 @@ mod app {
         sampled: Option<Sampled>,
         rendered: Option<Rendered>,
         is_settling: AtomicBool,
-        is_going: AtomicBool,
+        is_running: AtomicBool,
         is_link_due: AtomicBool,
         was_armed: AtomicBool,
         has_plan: AtomicBool,
         counters: Counters,
-        roll: Roll<TASKS>,
+        checkins: TaskCheckins<TASKS>,
     }
 
     #[local]
@@ -104,14 +104,14 @@ mod app {
         encoder: Encoder,
         rendering: Rendering,
         link: Link,
-        link_task: LinkTask<DmaPlace>,
+        link_task: LinkTask<DmaBuffer>,
         preparation: Preparation,
         watchdog: Watchdog,
     }
 
-    #[init(local = [places: [Place; PLACES] = [PLACE; PLACES]])]
+    #[init(local = [buffers: [Place; BUFFERS] = [EMPTY_BUFFER; BUFFERS]])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let board = DriveBoard::new(cx.device, cx.local.places.each_mut());
+        let board = DriveBoard::new(cx.device, cx.local.buffers.each_mut());
         let start = board.start;
         defmt::info!(
             "drive: start {=u16} after {=str}; before: {=str} {=u32:#x}",
@@ -127,7 +127,7 @@ mod app {
             ..Boot::default()
         };
         let Ok((preparation, first)) = Preparation::new() else {
-            panic!("the defaults are not allowed");
+            panic!("the default parameters are invalid");
         };
         let shared = Shared {
             command: Command::new(&first.motor, &first.prepared.command, &boot),
@@ -139,12 +139,12 @@ mod app {
             sampled: None,
             rendered: None,
             is_settling: AtomicBool::new(false),
-            is_going: AtomicBool::new(false),
+            is_running: AtomicBool::new(false),
             is_link_due: AtomicBool::new(false),
             was_armed: AtomicBool::new(false),
             has_plan: AtomicBool::new(false),
             counters: Counters::new(),
-            roll: Roll::new(),
+            checkins: TaskCheckins::new(),
         };
         let local = Local {
             middle: board.middle,
@@ -157,7 +157,7 @@ mod app {
             link: board.link,
             link_task: LinkTask::new(boot.identity, boot.start),
             preparation,
-            watchdog: Watchdog::start(board.watchdog, PATIENCE),
+            watchdog: Watchdog::start(board.watchdog, IDLE_TIMEOUT_RUNS),
         };
         // Last, so that the first tick is like the others.
         ticks::start(&local.bridge, &local.middle, &local.begin);
@@ -168,24 +168,24 @@ mod app {
         binds = TIM3, priority = 4,
         local = [middle, converter, line, bridge, middles: u8 = 0],
         shared = [
-            command, command_plan, sampled, rendered, &is_going, &is_link_due, &was_armed,
-            &counters, &roll,
+            command, command_plan, sampled, rendered, &is_running, &is_link_due, &was_armed,
+            &counters, &checkins,
         ]
     )]
     fn command_motor(cx: command_motor::Context) {
         let part = cx.local;
         part.middle.acknowledge();
-        cx.shared.roll.here(COMMAND);
-        // The timers have started before the tasks could run: the first of
-        // these is a remnant of that time, the second is in step.
+        cx.shared.checkins.check_in(COMMAND);
+        // The timers start before the tasks can run: the first interrupt is
+        // left over from then, the second is synchronous.
         *part.middles = part.middles.saturating_add(1);
         if *part.middles >= 2 {
-            cx.shared.is_going.store(true, Ordering::Relaxed);
+            cx.shared.is_running.store(true, Ordering::Relaxed);
         }
         let inputs = Inputs {
             current_a: part.converter.take_a(),
             enable_is_on: part.line.is_on(),
-            is_broken: part.bridge.is_broken(),
+            is_broken: part.bridge.break_has_fired(),
         };
         let (counters, was_armed) = (cx.shared.counters, cx.shared.was_armed);
         let mut shared = (
@@ -198,7 +198,7 @@ mod app {
             let Some(sampled) = sampled else {
                 return Outputs::default();
             };
-            // Where it lies: a copy takes microseconds.
+            // By reference: a copy takes microseconds.
             if let Some(new) = plan {
                 command.take_over(new, counters);
                 *plan = None;
@@ -220,13 +220,13 @@ mod app {
         binds = TIM4, priority = 3,
         local = [begin, encoder],
         shared = [
-            sampler, sampled, prepared, rendering_plan, command_plan, &has_plan, &is_going, &roll,
+            sampler, sampled, prepared, rendering_plan, command_plan, &has_plan, &is_running, &checkins,
         ]
     )]
     fn sample_encoder(mut cx: sample_encoder::Context) {
         cx.local.begin.acknowledge();
-        cx.shared.roll.here(SAMPLE);
-        if !cx.shared.is_going.load(Ordering::Relaxed) {
+        cx.shared.checkins.check_in(SAMPLE);
+        if !cx.shared.is_running.load(Ordering::Relaxed) {
             return;
         }
         let counter = cx.local.encoder.count();
@@ -259,21 +259,21 @@ mod app {
         binds = SDIO, priority = 2,
         local = [rendering],
         shared = [
-            sampled, rendered, rendering_plan, &has_plan, &is_settling, &was_armed, &roll,
+            sampled, rendered, rendering_plan, &has_plan, &is_settling, &was_armed, &checkins,
         ]
     )]
     fn render_torque(mut cx: render_torque::Context) {
-        cx.shared.roll.here(RENDERED);
+        cx.shared.checkins.check_in(RENDERED);
         let rendering = cx.local.rendering;
         let sampled = cx.shared.sampled.lock(|sampled| *sampled);
-        // Where it lies, again.
+        // By reference, again.
         let Some(sampled) = &sampled else {
             return;
         };
         if cx.shared.has_plan.load(Ordering::Relaxed) {
             cx.shared.has_plan.store(false, Ordering::Relaxed);
             cx.shared.rendering_plan.lock(|slot| {
-                // Where it lies: a copy takes microseconds.
+                // By reference: a copy takes microseconds.
                 if let Some(plan) = slot {
                     rendering.take_over(plan, sampled.omega_rad_s);
                     *slot = None;
@@ -290,22 +290,21 @@ mod app {
     #[task(
         binds = DMA2_STREAM6, priority = 1,
         local = [link, link_task, watchdog, has_received: bool = false],
-        shared = [command, sampler, commits, &is_link_due, &counters, &roll]
+        shared = [command, sampler, commits, &is_link_due, &counters, &checkins]
     )]
     fn link(cx: link::Context) {
         let (link, task) = (cx.local.link, cx.local.link_task);
         link.acknowledge();
-        cx.shared.roll.here(LINKED);
-        cx.local.watchdog.feed(cx.shared.roll);
+        cx.shared.checkins.check_in(LINKED);
+        cx.local.watchdog.feed(cx.shared.checkins);
         let counters = cx.shared.counters;
         let mut parts = Parts {
             command: cx.shared.command,
             sampler: cx.shared.sampler,
             commits: cx.shared.commits,
         };
-        // Once a tick, and one or the other, so that no tick has much to do:
-        // bytes that have come, or a piece of what is to go. If both wait they
-        // take turns.
+        // Once a tick, and either received bytes or a piece of a frame to send,
+        // so that no tick has much to do. If both are pending they alternate.
         if !cx.shared.is_link_due.swap(false, Ordering::Relaxed) {
             return;
         }
@@ -330,13 +329,13 @@ mod app {
         local = [preparation],
         shared = [
             command, commits, prepared, rendering_plan, command_plan,
-            &is_settling, &counters, &roll,
+            &is_settling, &counters, &checkins,
         ]
     )]
     fn idle(mut cx: idle::Context) -> ! {
-        let mut told = None;
+        let mut reported = None;
         loop {
-            // On their way from the first of these to the last.
+            // A commit passes through these in turn.
             let is_busy = cx.shared.prepared.lock(|slot| slot.is_some())
                 || cx.shared.rendering_plan.lock(|slot| slot.is_some())
                 || cx.shared.command_plan.lock(|slot| slot.is_some())
@@ -360,8 +359,8 @@ mod app {
                 let fault = safety.fault().map_or(0, Fault::code);
                 (safety.state(), fault, command.revision())
             });
-            if told != Some(now) {
-                told = Some(now);
+            if reported != Some(now) {
+                reported = Some(now);
                 let (state, fault, revision) = now;
                 defmt::info!(
                     "{=str}, fault {=u8}, revision {=u32}",
@@ -370,7 +369,7 @@ mod app {
                     revision.0
                 );
             }
-            cx.shared.roll.idle_here();
+            cx.shared.checkins.idle_checks_in();
             cortex_m::asm::wfi();
         }
     }

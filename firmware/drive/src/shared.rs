@@ -1,4 +1,4 @@
-//! What the link's task shares with the others, behind the locks of RTIC.
+//! Resources that the link's task shares with others, behind RTIC's locks.
 
 use crepitus_device::drive::command::Command;
 use crepitus_device::drive::commits::Commits;
@@ -6,7 +6,7 @@ use crepitus_device::drive::link_task::Shared;
 use crepitus_device::drive::sampler::Sampler;
 use rtic::Mutex;
 
-/// The locks.
+/// Locks of the shared resources.
 pub(crate) struct Parts<C, S, K> {
     pub(crate) command: C,
     pub(crate) sampler: S,

@@ -1,10 +1,10 @@
 //! # The ladder on the target
 //!
 //! `crepitus_ladder::serve` and a core: no peripheral, no clock, no interrupt,
-//! so that this one file runs in every emulator. What to run comes from
-//! outside, and what came of it is left in RAM: see `sim/ladder`.
+//! so that this one file runs in every emulator. The host writes commands to
+//! RAM and reads results there: see `sim/ladder`.
 //!
-//! It is no program for a board: nothing would ever command it there.
+//! Not a program for a board: nothing would ever command it there.
 #![no_std]
 #![no_main]
 
@@ -12,7 +12,7 @@ use core::sync::atomic::AtomicU32;
 use crepitus_ladder::exchange::{ADDRESS, WORDS};
 use crepitus_ladder::{Exchange, serve};
 
-/// The exchange, which nobody else in this program has.
+/// The exchange, exclusive in this program.
 #[allow(unsafe_code, reason = "a fixed address is the point of it")]
 fn words() -> &'static [AtomicU32] {
     // SAFETY: `memory.x` keeps the program out of this part of RAM; any bits

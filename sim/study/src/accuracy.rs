@@ -14,10 +14,10 @@
 //! | the whole study and its results | [`study`], [`results`] |
 //! | one point of the diagram, and its file | [`point`], [`points_csv`] |
 //! | the torque to compare with, at the ends of steps and within them | [`reference_torque`], [`held_torque`] |
-//! | how a run is measured and how it is timed | [`measure`], [`timing`] |
-//! | what a step costs on the device's core | [`target`] |
+//! | accuracy and time of a run | [`measure`], [`timing`] |
+//! | cost of a step on the device's core | [`target`] |
 //! | orders of convergence, and on motions of other kinds | [`orders`], [`convergence`] |
-//! | limits, and the cheapest rung that keeps them | [`need`], [`mod@answer`] |
+//! | limits, and the cheapest rung within them | [`need`], [`mod@answer`] |
 
 pub mod answer;
 pub mod convergence;

@@ -1,16 +1,16 @@
 //! Z-width: the stiffness range in which the device is stable on a leg.
 //!
 //! A rendered spring is sampled, held for a tick, and acts late; each of these
-//! gives energy away, about kr·τ·∫Ω² dt with τ the [mean lag](Lag::mean_s).
-//! Something in the mechanics has to take it. So a hand moves the leg, stops,
-//! and rests, and we look whether the shaft comes to rest, too, over
+//! generates energy, about kr·τ·∫Ω² dt with τ the [mean lag](Lag::mean_s),
+//! which the mechanics have to dissipate. So a hand moves the leg, stops,
+//! and rests, and we check whether the shaft comes to rest, too, over
 //!
 //! ```text
 //! kr  ×  damping of the cuff  ×  lag of the motor  ×  friction left in the gear
 //! ```
 //!
-//! with the pipeline that the drive renders (scenes with `device = true`), and
-//! beside it what the literature says of the same numbers.
+//! with the drive's pipeline (scenes with `device = true`), compared with the
+//! criteria of the literature for the same numbers.
 //!
 //! | to find | look in |
 //! |---|---|

@@ -1,5 +1,5 @@
-//! What each effect of a scene does to the torque at the hand, and what it
-//! costs: each is left out in turn, and each absent one added.
+//! Influence of each effect of a scene on the torque at the hand, and its
+//! cost: each is left out in turn, and each absent one added.
 //!
 //! ```text
 //! scene ─────> torque at the hand, tick by tick ─┐
@@ -9,19 +9,19 @@
 //! sets of effects, growing ──> the smallest one within a tolerance ─────────> answer
 //! ```
 //!
-//! What the hand feels is `hand_torque_nm`, the mean of the tick that ended;
+//! The torque at the hand is `hand_torque_nm`, the mean of the tick that ended;
 //! without a plant it is the joint's own `torque_nm`, and without a joint
-//! nothing. The first row, before the first tick, does not count.
+//! zero. The first row, before the first tick, is ignored.
 //!
 //! | to find | look in |
 //! |---|---|
 //! | which scenes cannot be studied | [`mod@refusal`] |
 //! | which variants a scene has | [`variant`] |
-//! | a run as the hand feels it | `hand` |
+//! | the torque at the hand in a run | `hand` |
 //! | RMS, peak, bands, differences | [`influence`] |
 //! | the whole study, its results, their file | [`study`], [`results`], [`effects_csv`] |
 //! | limits, and the smallest set of effects within | [`tolerance`], `smallest`, [`mod@answer`] |
-//! | the stretch of time that the report shows | `window` |
+//! | the time window that the report shows | `window` |
 //! | runs on all cores | `crate::parallel` |
 
 pub mod answer;

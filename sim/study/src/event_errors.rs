@@ -1,4 +1,4 @@
-//! How wrong matched events are.
+//! Errors of matched events.
 //!
 //! With t the true time of an event and u the found one, of a matched pair:
 //!
@@ -27,7 +27,7 @@ pub struct EventErrors {
 }
 
 impl EventErrors {
-    /// Nothing is known.
+    /// Unknown errors: all NaN.
     pub const UNKNOWN: Self = Self {
         max_s: f64::NAN,
         rms_s: f64::NAN,

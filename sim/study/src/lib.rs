@@ -1,20 +1,20 @@
 //! # Studies
 //!
-//! What a solver costs and what it stands, measured over every rung of the
-//! ladder, every convention and both precisions; what each effect of a scene
-//! does and costs.
+//! Cost and robustness of solvers, measured over every rung of the ladder,
+//! every convention and both precisions; influence and cost of each effect
+//! of a scene.
 //!
 //! | to find | look in |
 //! |---|---|
 //! | what accuracy costs in time | [`accuracy`] |
-//! | the hard cases, and what holds in them | [`stability`] |
+//! | the hard cases, and their verdicts | [`stability`] |
 //! | where the device stays quiet on a leg | [`coupled`] |
-//! | what each effect does to the torque at the hand, and what it costs | [`effects`] |
+//! | influence of each effect on the torque at the hand, and its cost | [`effects`] |
 //! | a motion cut into steps | [`sampling`] |
-//! | the true events, which belongs to which, and the errors | [`true_events`], [`matching`], [`event_errors`] |
+//! | the true events, their matching, and the errors | [`true_events`], [`matching`], [`event_errors`] |
 //! | the spectrum of a torque | [`spectrum`] |
-//! | limits as a text gives them | [`limits`] |
-//! | progress, and how a study ends early | [`watcher`] |
+//! | limits parsed from text | [`limits`] |
+//! | progress and cancellation of a study | [`watcher`] |
 
 pub mod accuracy;
 pub mod coupled;

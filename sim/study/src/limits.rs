@@ -1,39 +1,40 @@
-//! Limits that are given as a text such as `torque=5e-3,interval=5e-4`.
+//! Limits parsed from a text such as `torque=5e-3,interval=5e-4`.
 
 use serde::Serialize;
 use std::fmt;
 
-/// What can be limited: a list of keys, each with a meaning and a unit.
+/// A quantity that can be limited: a list of keys, each with a meaning and a
+/// unit.
 pub trait Limited: Copy + PartialEq + 'static {
-    /// All of them.
+    /// All quantities.
     const ALL: &'static [Self];
-    /// What a list of such limits is called.
+    /// Noun for a list of such limits.
     const LIMITS: &'static str;
-    /// Such a list.
+    /// An example of a list.
     const EXAMPLE: &'static str;
 
     /// Name in a list.
     fn key(self) -> &'static str;
 
-    /// What it is, in words.
+    /// Description.
     fn meaning(self) -> &'static str;
 
-    /// Its unit; empty for what is relative.
+    /// Unit; empty for a relative quantity.
     fn unit(self) -> &'static str;
 }
 
-/// Limits that have to hold, each once.
+/// A list of limits, each quantity at most once.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Limits<C> {
     limits: Vec<Limit<C>>,
 }
 
-/// One of them.
+/// One limit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Limit<C> {
-    /// What is limited.
+    /// The limited quantity.
     pub criterion: C,
-    /// The largest value that is allowed, in the criterion's unit.
+    /// The largest allowed value, in the criterion's unit.
     pub at_most: f64,
 }
 
@@ -44,32 +45,32 @@ impl<C> Limits<C> {
     }
 }
 
-/// Why a text is no list of limits.
+/// Why a text is not a valid list of limits.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LimitsError<C> {
-    /// Nothing is asked for.
+    /// No limit.
     Empty,
     /// Not KEY=VALUE.
     Form {
-        /// The part that is not.
+        /// The invalid part.
         part: String,
     },
-    /// No such criterion.
+    /// Unknown criterion.
     Key {
-        /// What was asked for.
+        /// The key.
         key: String,
     },
-    /// A criterion twice.
+    /// Duplicate criterion.
     Twice {
-        /// Which one.
+        /// The criterion.
         criterion: C,
     },
     /// Not a number above zero.
     Value {
-        /// Of which criterion.
+        /// The criterion.
         criterion: C,
-        /// What was asked for.
+        /// The value.
         value: String,
     },
 }
@@ -111,7 +112,7 @@ impl<C: Limited + fmt::Debug> std::error::Error for LimitsError<C> {}
 impl<C: Limited> std::str::FromStr for Limits<C> {
     type Err = LimitsError<C>;
 
-    /// Reads `torque=5e-3,interval=5e-4`.
+    /// Parses `torque=5e-3,interval=5e-4`.
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let mut limits: Vec<Limit<C>> = Vec::new();
         if text.trim().is_empty() {

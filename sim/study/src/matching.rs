@@ -1,16 +1,16 @@
-//! Which event of a solver belongs to which of the reference.
+//! Matching of a solver's events with those of the reference.
 //!
 //! Events are matched one to one in the order of time. Partners are of the
 //! same kind and sense, and the found one is as late as the pair before it to
 //! within half the cycle around the true one. So a solver whose cycles are a
-//! little too long may fall behind as far as it likes, while a cycle that is
-//! lost or added shows as such: lateness does not jump by a cycle.
+//! little too long may accumulate any delay, while a cycle that is
+//! lost or added is detected: delay does not jump by a cycle.
 //!
-//! What has no partner is unmatched, unless it lies within two steps or one
-//! cycle of the end of the run, whichever is longer: there an event that comes
-//! late has its partner beyond the end. Who falls behind by more than that has
-//! the wrong number of events. That cycle is the shortest of
-//! the scene, so that the excuse is no wider than it has to be.
+//! An event without a partner is unmatched, unless it lies within two steps or
+//! one cycle of the end of the run, whichever is longer: there a late event
+//! has its partner beyond the end. A solver with a larger delay has the wrong
+//! number of events. That cycle is the shortest of the scene, so that the
+//! exception is as narrow as possible.
 
 use crate::true_events::TimedEvent;
 use crepitus_model::EventKind;
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn who_falls_behind_stays_matched_until_a_cycle_is_missing_at_the_end() {
+    fn a_growing_delay_stays_matched_until_a_cycle_is_missing_at_the_end() {
         let truth = cycles(10, 1.0);
         let behind = |stretch| {
             let mut found = cycles(10, stretch);
@@ -182,12 +182,12 @@ mod tests {
         // By 54 ms.
         let (pairs, unmatched) = behind(1.2);
         assert!(pairs < 18 && unmatched >= 1, "{pairs} {unmatched}");
-        // And who runs ahead has too many.
+        // Ahead of time there are too many.
         assert_eq!(matched(&truth, &cycles(11, 0.9)), (20, 1));
     }
 
     #[test]
-    fn a_cycle_lost_by_one_who_is_late_is_found_too() {
+    fn a_cycle_lost_by_a_late_solver_is_found_too() {
         let truth = cycles(10, 1.0);
         let mut found = cycles(10, 1.05);
         found.drain(12..14);
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn one_who_never_sticks_loses_everything() {
+    fn a_solver_that_never_sticks_loses_everything() {
         let truth = cycles(10, 1.0);
         assert_eq!(matched(&truth, &truth[..1]), (1, 18));
         assert_eq!(matched(&[], &[]), (0, 0));

@@ -1,4 +1,4 @@
-//! Work on all cores, watched from one thread.
+//! Work on all cores, with progress reported from one thread.
 
 use crate::watcher::Watcher;
 use crepitus_model::Real;
@@ -8,10 +8,10 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-/// How often the watcher is asked while nothing ends.
-const LOOK: Duration = Duration::from_millis(50);
+/// How often the watcher is called while no item ends.
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// How much is done, and whether it goes on.
+/// Work done, and whether it was cancelled.
 #[derive(Debug)]
 pub(crate) struct Meter {
     total: f64,
@@ -20,7 +20,7 @@ pub(crate) struct Meter {
 }
 
 impl Meter {
-    /// Of so much work.
+    /// A meter for this total of work.
     pub(crate) fn new(total: f64) -> Self {
         Self {
             total: total.max(1.0),
@@ -29,18 +29,18 @@ impl Meter {
         }
     }
 
-    /// So much more is done.
-    pub(crate) fn did(&self, amount: u64) {
+    /// Adds work done.
+    pub(crate) fn add(&self, amount: u64) {
         self.done.fetch_add(amount, Ordering::Relaxed);
     }
 
-    /// Whether the watcher has ended it all.
+    /// Whether the watcher has cancelled the work.
     pub(crate) fn is_stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }
 
-    /// Tells the watcher how far it is.
-    pub(crate) fn tell<W: Watcher>(&self, watcher: &mut W) -> Result<(), W::Error> {
+    /// Reports the progress to the watcher.
+    pub(crate) fn report<W: Watcher>(&self, watcher: &mut W) -> Result<(), W::Error> {
         let done = f64::from_whole(self.done.load(Ordering::Relaxed));
         watcher
             .progress((done / self.total).min(1.0))
@@ -48,8 +48,8 @@ impl Meter {
     }
 }
 
-/// `work` on each of `items`, on as many cores as there are; results in the
-/// order of the items.
+/// Applies `work` to each of `items` on all cores; results in the order of the
+/// items.
 pub(crate) fn each<T: Sync, R: Send, W: Watcher>(
     items: &[T],
     meter: &Meter,
@@ -74,18 +74,18 @@ pub(crate) fn each<T: Sync, R: Send, W: Watcher>(
         }
         drop(sender);
         let mut results: Vec<(usize, R)> = Vec::with_capacity(items.len());
-        let mut told = Ok(());
+        let mut reported = Ok(());
         loop {
-            match receiver.recv_timeout(LOOK) {
+            match receiver.recv_timeout(POLL_INTERVAL) {
                 Ok(result) => results.push(result),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => break,
             }
-            if told.is_ok() {
-                told = meter.tell(watcher);
+            if reported.is_ok() {
+                reported = meter.report(watcher);
             }
         }
-        told?;
+        reported?;
         results.sort_by_key(|(place, _)| *place);
         Ok(results.into_iter().map(|(_, result)| result).collect())
     })
@@ -95,9 +95,9 @@ pub(crate) fn each<T: Sync, R: Send, W: Watcher>(
 mod tests {
     use super::*;
 
-    struct Patience(u32);
+    struct EndsAfter(u32);
 
-    impl Watcher for Patience {
+    impl Watcher for EndsAfter {
         type Error = ();
 
         fn progress(&mut self, fraction: f64) -> Result<(), ()> {
@@ -108,12 +108,12 @@ mod tests {
     }
 
     #[test]
-    fn results_stand_in_the_order_of_the_items() {
+    fn results_are_in_the_order_of_the_items() {
         let items: Vec<u64> = (0..100).collect();
         let meter = Meter::new(100.0);
-        let squares = each(&items, &meter, &mut Patience(u32::MAX), |x| {
+        let squares = each(&items, &meter, &mut EndsAfter(u32::MAX), |x| {
             thread::sleep(Duration::from_micros(u64::from(x % 3 == 0) * 200));
-            meter.did(1);
+            meter.add(1);
             x * x
         })
         .unwrap();
@@ -122,7 +122,7 @@ mod tests {
         let none: Vec<u64> = Vec::new();
         let meter = Meter::new(0.0);
         assert_eq!(
-            each(&none, &meter, &mut Patience(1), |x| *x),
+            each(&none, &meter, &mut EndsAfter(1), |x| *x),
             Ok(Vec::new())
         );
     }
@@ -132,7 +132,7 @@ mod tests {
         let items: Vec<u64> = (0..1000).collect();
         let meter = Meter::new(1000.0);
         let done = AtomicU64::new(0);
-        let ended = each(&items, &meter, &mut Patience(5), |_| {
+        let ended = each(&items, &meter, &mut EndsAfter(5), |_| {
             thread::sleep(Duration::from_millis(1));
             done.fetch_add(1, Ordering::Relaxed);
         });

@@ -4,15 +4,15 @@
 use crepitus_model::{Real, ShaftStep};
 use crepitus_plant::{Motion, Piece};
 
-/// How many steps are prepared at a time: few enough to stay in the cache.
+/// Number of steps prepared at a time: few enough to stay in the cache.
 pub const CHUNK_STEPS: usize = 2048;
 
-/// A motion and the steps it is cut into.
+/// A motion cut into steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampling<'a> {
     motion: &'a Motion,
     step_s: f64,
-    /// Steps per second where that is a whole number: 20,000 steps of 50 µs
+    /// Steps per second if that is a whole number: 20,000 steps of 50 µs
     /// are one second to the bit, and 20,000 · 5e-5 is not always.
     rate_hz: Option<f64>,
     steps: u64,
@@ -27,8 +27,7 @@ impl<'a> Sampling<'a> {
             motion,
             step_s,
             rate_hz: whole.then_some(rate.round()),
-            // Written in decimals, a duration may miss a whole number of steps
-            // by rounding.
+            // A decimal duration may miss a whole number of steps by rounding.
             steps: (duration_s / step_s * (1.0 + 1e-12) + 1e-9).whole(),
         }
     }
@@ -71,7 +70,7 @@ impl<'a> Sampling<'a> {
     }
 }
 
-/// Goes through the steps of a motion in the order of time.
+/// Iterates over the steps of a motion in the order of time.
 #[derive(Clone, Debug)]
 pub struct Walk<'a> {
     sampling: Sampling<'a>,

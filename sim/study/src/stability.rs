@@ -1,5 +1,5 @@
-//! Which hard cases hold: a catalogue of them, run on every rung × convention
-//! × precision, each with a verdict and the margin that was measured.
+//! The hard cases: a catalogue, run on every rung × convention × precision,
+//! with a verdict and the measured margin for each.
 //!
 //! ```text
 //! catalogue: case = inputs + criteria ─┐
@@ -9,31 +9,31 @@
 //!
 //! | to find | look in |
 //! |---|---|
-//! | the cases | [`catalogue`], and what they are made of: [`case`], [`input`], [`criterion`] |
-//! | who is put to the test | [`subject`] |
-//! | how a case is run and judged | `source`, `observe`, `books`, `judge` |
-//! | what came of it | [`verdict`], [`matrix`] |
+//! | the cases | [`catalogue`], and their parts: [`case`], [`input`], [`criterion`] |
+//! | the tested solvers | [`subject`] |
+//! | how a case is run and judged | `source`, `observe`, `energy_audit`, `judge` |
+//! | results | [`verdict`], [`matrix`] |
 //! | an input as data, for a joint elsewhere | [`replay`] |
-//! | the file of it | [`cases_csv`] |
+//! | the results' file | [`cases_csv`] |
 //! | pictures that explain a case | [`story`] |
 
-mod books;
 pub mod case;
 pub mod cases_csv;
 pub mod catalogue;
-mod changed;
 pub mod criterion;
+mod energy_audit;
+mod guarded_joint;
 pub mod input;
 mod judge;
 mod locators;
 pub mod matrix;
 mod observation;
 mod observe;
+mod parameter_changes;
 mod random;
 mod rendered;
 pub mod replay;
-mod shaken;
-mod sighted;
+mod shaking_hand;
 mod source;
 pub mod story;
 pub mod subject;

@@ -6,17 +6,17 @@ use crepitus_scene::reference::{Follow, Reference};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
-/// How many events go by between two questions whether to go on.
-const ASK_EVERY: usize = 1 << 12;
+/// Number of events between two polls.
+const EVENTS_PER_POLL: usize = 1 << 12;
 
-/// An event as it is compared: when, what, and which way.
+/// An event for comparison: time, kind and sense.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimedEvent {
     /// Time since the start of the run, s.
     pub time_s: f64,
-    /// What happened.
+    /// Its kind.
     pub kind: EventKind,
-    /// Of the slip that begins with it, or ends with it.
+    /// Sense of the slip that begins or ends with it.
     pub sense: Sense,
 }
 
@@ -65,19 +65,19 @@ pub fn true_events(
     }
 }
 
-/// As [`true_events`], and asks `go_on` now and then.
+/// As [`true_events`], calling `poll` now and then.
 ///
 /// # Errors
-/// What `go_on` returns.
+/// What `poll` returns.
 pub fn true_events_while<E>(
     settings: &Validated<Settings>,
     motion: &Motion,
     duration_s: f64,
-    go_on: impl FnMut() -> Result<(), E>,
+    poll: impl FnMut() -> Result<(), E>,
 ) -> Result<Vec<TrueEvent>, E> {
     let mut collected = Collected {
         events: Vec::new(),
-        go_on,
+        poll,
     };
     match Reference::new(settings, motion).follow(duration_s, &mut collected) {
         ControlFlow::Continue(()) => Ok(collected.events),
@@ -85,15 +85,15 @@ pub fn true_events_while<E>(
     }
 }
 
-/// Collects events as long as it may.
+/// Collects events until `poll` ends it.
 struct Collected<G> {
     events: Vec<TrueEvent>,
-    go_on: G,
+    poll: G,
 }
 
 impl<E, G: FnMut() -> Result<(), E>> Collected<G> {
     fn ask(&mut self) -> ControlFlow<E> {
-        match (self.go_on)() {
+        match (self.poll)() {
             Ok(()) => ControlFlow::Continue(()),
             Err(error) => ControlFlow::Break(error),
         }
@@ -111,7 +111,7 @@ impl<E, G: FnMut() -> Result<(), E>> Follow for Collected<G> {
             torque_before_nm: event.torque_before_nm,
             torque_after_nm: event.torque_after_nm,
         });
-        if self.events.len().is_multiple_of(ASK_EVERY) {
+        if self.events.len().is_multiple_of(EVENTS_PER_POLL) {
             self.ask()?;
         }
         ControlFlow::Continue(())

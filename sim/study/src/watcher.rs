@@ -1,16 +1,16 @@
-//! Who watches a study: progress, and the way to end it early.
+//! Progress and cancellation of a study.
 
 use crepitus_model::SettingsError;
 
-/// Sees a study go by, and may end it.
+/// Receives the progress of a study, and may cancel it.
 pub trait Watcher {
-    /// Why it ends early.
+    /// Why it cancels.
     type Error;
 
     /// Called often; `fraction` of the work is done.
     ///
     /// # Errors
-    /// Ends the study.
+    /// Cancels the study.
     fn progress(&mut self, fraction: f64) -> Result<(), Self::Error>;
 }
 
@@ -18,7 +18,7 @@ pub trait Watcher {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError<E> {
-    /// The watcher ended it.
+    /// The watcher cancelled it.
     #[error("ended early")]
     Watcher(E),
     /// Settings that do not go together.

@@ -1,16 +1,15 @@
 //! The answer to a need: the cheapest rung and step that are accurate enough.
 //!
 //! A rung at a step meets a need if on *every* scene studied no interior event
-//! is unmatched and every limit holds. Which of those is the cheapest depends
-//! on where it is to run:
+//! is unmatched and every limit holds. The cheapest of them depends on where
+//! it is to run:
 //!
 //! | where | cost | the same cost | further condition |
 //! |---|---|---|---|
 //! | host | CPU time, median over the scenes | within the spread of the timings | – |
 //! | target | mean cycles over the scenes, equal means by the worst observed | to the cycle | the worst observed step fits [`STEP_SHARE`](super::target::STEP_SHARE) of a tick |
 //!
-//! Of those that cost the same, the one that is furthest below the limits is
-//! chosen.
+//! Of equal costs, the one furthest below the limits is chosen.
 
 mod candidate;
 
@@ -22,16 +21,16 @@ use candidate::{asked, candidates};
 use serde::Serialize;
 use std::cmp::Ordering;
 
-/// Among which points a need is to be met.
+/// Selects the points that may meet a need.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Question<'a> {
-    /// Of this convention.
+    /// Convention.
     pub convention: &'a str,
-    /// In this precision.
+    /// Precision.
     pub precision: &'a str,
-    /// At this step, s; at any if `None`.
+    /// Step, s; any if `None`.
     pub step_s: Option<f64>,
-    /// What the ladder costs on the target, if that decides.
+    /// Costs of the ladder on the target, if they decide.
     #[serde(skip)]
     pub target: Option<&'a OnTarget>,
 }
@@ -43,34 +42,34 @@ pub struct Longest {
     pub candidate: Option<Candidate>,
     /// The rung.
     pub solver: &'static str,
-    /// Shorter steps at which it does not, s: luck at the longer one, or
+    /// Shorter steps at which it fails, s: luck at the longer one, or
     /// rounding at the shorter.
     pub fails_below_s: Vec<f64>,
 }
 
-/// A limit of the held torque that no solver can keep.
+/// A limit of the held torque that no solver can meet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Unreachable {
-    /// The shortest step that was asked for, s.
+    /// The shortest step of the question, s.
     pub step_s: f64,
     /// The least root mean square error of any torque that is held that long,
     /// N·m.
     pub floor_nm: f64,
-    /// Where.
+    /// The scene.
     pub scene: String,
 }
 
-/// What is known about a need.
+/// The answer to a need.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Answer {
     /// The cheapest that meets it.
     pub chosen: Option<Candidate>,
     /// The next cheapest that meets it.
     pub runner_up: Option<Candidate>,
-    /// Others that meet it at the same cost, and are not more exact.
+    /// Others that meet it at the same cost, and are not more accurate.
     pub equals: Vec<Candidate>,
-    /// The cheapest that meets it with a smaller error where the chosen one is
-    /// tightest, at a higher cost.
+    /// The cheapest of higher cost that meets it with a smaller error of the
+    /// chosen one's limiting criterion.
     pub better: Option<Candidate>,
     /// Cheaper ones that fail, the costliest first; of each rung the costliest.
     pub cheaper: Vec<Candidate>,
@@ -78,9 +77,9 @@ pub struct Answer {
     pub failed: Vec<Candidate>,
     /// Without a fixed step: the longest step of every rung.
     pub longest: Vec<Longest>,
-    /// Where nothing meets the need: what comes nearest.
+    /// If nothing meets the need: the nearest.
     pub nearest: Option<Candidate>,
-    /// Where nothing meets the need, and nothing could: why.
+    /// If nothing can meet the need: why.
     pub unreachable: Option<Unreachable>,
 }
 
@@ -122,7 +121,7 @@ pub fn answer(points: &[Point], need: &Need, question: &Question<'_>) -> Answer 
     }
 }
 
-/// The cheapest that meets the need; of equally cheap ones the most exact.
+/// The cheapest that meets the need; of equally cheap ones the most accurate.
 fn choose(candidates: &[Candidate]) -> Option<&Candidate> {
     let meeting = || candidates.iter().filter(|c| c.meets());
     let cheapest = meeting().min_by(|a, b| a.by_cost(b))?;
@@ -131,8 +130,8 @@ fn choose(candidates: &[Candidate]) -> Option<&Candidate> {
         .min_by(|a, b| a.used().total_cmp(&b.used()))
 }
 
-/// The cheapest that is smaller than `chosen` where that is tightest, and
-/// costs more.
+/// The cheapest that costs more than `chosen` and has a smaller error of its
+/// limiting criterion.
 fn better(candidates: &[Candidate], chosen: &Candidate) -> Option<Candidate> {
     let tightest = chosen.tightest()?;
     candidates
@@ -196,7 +195,7 @@ fn longest(candidates: &[Candidate]) -> Vec<Longest> {
         .collect()
 }
 
-/// What fails least: all events matched if possible, then the smallest excess.
+/// The nearest: all events matched if possible, then the smallest excess.
 fn nearest(candidates: &[Candidate]) -> Option<Candidate> {
     candidates
         .iter()

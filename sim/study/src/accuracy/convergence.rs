@@ -2,9 +2,9 @@
 //! strokes and a recorded knee, under each convention.
 //!
 //! The headline orders of the ladder are those of a constant speed, where a path
-//! within a step that takes Ω for linear is exact. A hand's Ω bends, and under
+//! within a step with linear Ω is exact. A hand's Ω bends, and under
 //! `physical` its Ω̇ is in the torque of a stick, so there a rung has the order of
-//! its path. Only events are looked at: no time is taken, and every rung computes
+//! its path. Only events are compared: nothing is timed, and every rung computes
 //! in f64.
 
 use crate::accuracy::orders::{Orders, order, shortest_step_s};
@@ -173,7 +173,7 @@ pub fn run_at(
     let omega = scene.motion.at(0.0).omega_rad_s;
     let collect = Collect {
         sampling: &sampling,
-        // A rung that chatters has lost already.
+        // A rung that chatters has failed already.
         most: 4 * truth.len() + 10_000,
     };
     let found = collect.events(AnyJoint::new(&scene.settings, solver, step_s, omega)?);

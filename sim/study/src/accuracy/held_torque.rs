@@ -1,35 +1,35 @@
 //! The torque that a device holds, against the true one over continuous time.
 //!
-//! A device shows the torque of tick n until tick n + 1. What its hand gets
-//! wrong is therefore not the error at the tick but
+//! A device shows the torque of tick n until tick n + 1. The error that the hand
+//! feels is therefore not that at the tick but
 //!
 //! ```text
 //! e² = 1/(N·h) · Σₙ ∫ (Tₙ − T(t))² dt,   t from tₙ to tₙ₊₁
 //! ```
 //!
-//! with Tₙ what the joint shows at tₙ and T the reference's torque: the
+//! with Tₙ the joint's torque at tₙ and T the reference's torque: the
 //! spring's along the true motion in a stick, s·Tk in a slip, and its jumps
-//! where the events are, not at the ticks. (A delay between sample and torque
-//! comes on top; it is the device's, not the solver's.)
+//! at the events, not at the ticks. (A delay between sample and torque
+//! is additional; it is the device's, not the solver's.)
 //!
 //! For every tick the mean m and the variance v of T within it are enough,
-//! since the mean of (Tₙ − T)² over the tick is (Tₙ − m)² + v. The variance is
-//! what no held value can avoid: √(mean of v) is the floor of holding.
+//! since the mean of (Tₙ − T)² over the tick is (Tₙ − m)² + v. No held value
+//! can avoid the variance: √(mean of v) is the floor of holding.
 //!
 //! T is integrated from event to event and from knot to knot of the motion: in
 //! a slip it is constant; in a stick the three-point Gauss rule is exact where
 //! Ω is linear in time, and of sixth order elsewhere.
 //!
-//! At a constant speed, with ticks at no special phase, all of this is known:
+//! At a constant speed, with ticks at no special phase, closed forms exist:
 //! with Δ = Ts − Tk, the ramp r = kr·Ω and the period P of a cycle a joint
-//! that makes no error of its own is off by
+//! without an error of its own is off by
 //!
 //! ```text
 //! e² = (Δ²·h − r²·h³/12)/P
 //! ```
 //!
 //! which is nearly Δ·√(h/P), and the floor is √((Δ²·h/3 − r²·h³/60)/P), nearly
-//! a √3 less.
+//! √3 times less.
 
 use crate::accuracy::scenes::StudyScene;
 use crate::sampling::Sampling;
@@ -44,7 +44,7 @@ const GAUSS: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// Into how many parts a stretch that may have a kink is cut.
+/// Number of parts of an interval that may have a kink.
 const KINKED_PARTS: u32 = 32;
 
 /// The true torque within every tick.
@@ -95,7 +95,7 @@ impl HeldTorque {
             let end_s = sampling.time_s(n, 0.0);
             let mut sum = Sum::default();
             while let Some(event) = events.next_if(|e| e.event.time_s <= end_s) {
-                // Of an event in the last tick, to rounding.
+                // An event of the last tick may be earlier by rounding.
                 let time_s = event.event.time_s.max(start_s);
                 path.add(start_s, time_s, &mut sum);
                 path.pass(time_s, event);
@@ -122,7 +122,7 @@ impl HeldTorque {
     }
 }
 
-/// What the object has done since the last event.
+/// State of the object since the last event.
 #[derive(Clone, Copy, Debug)]
 enum State {
     /// θ = theta + (φ − phi).

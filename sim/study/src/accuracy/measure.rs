@@ -14,9 +14,9 @@ use crepitus_scene::any_joint::{AnyJoint, Precise};
 use crepitus_scene::run::Lead;
 use crepitus_scene::scene::Precision;
 
-/// What the rungs of one scene at one step are measured against.
+/// The reference's run for the rungs of one scene at one step.
 #[derive(Clone, Copy, Debug)]
-pub struct Target<'a> {
+pub struct ReferenceRun<'a> {
     /// The scene.
     pub scene: &'a StudyScene,
     /// Its motion, cut into steps.
@@ -29,7 +29,7 @@ pub struct Target<'a> {
     pub held: &'a HeldTorque,
 }
 
-/// How accurate a rung is.
+/// Accuracy of a rung.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
     /// Events found.
@@ -46,10 +46,10 @@ pub struct Accuracy {
     pub rms_tick_torque_error_nm: f64,
     /// Largest torque error at the end of a step, N·m.
     pub max_tick_torque_error_nm: f64,
-    /// Time in slips in which the shaft was behind the object, s; NaN where
+    /// Time in slips in which the shaft was behind the object, s; NaN if
     /// the result is not finite.
     pub behind_s: f64,
-    /// Energy that friction gave in that time, J.
+    /// Energy that friction supplied in that time, J.
     pub behind_j: f64,
 }
 
@@ -59,31 +59,31 @@ pub struct Accuracy {
 /// # Errors
 /// If the rung, the settings and the step cannot work together.
 pub fn measure(
-    target: &Target<'_>,
+    target: &ReferenceRun<'_>,
     solver: Solver,
     precision: Precision,
 ) -> Result<Accuracy, SettingsError> {
-    let seen = match precision {
-        Precision::F32 => see::<f32>(target, solver),
-        Precision::F64 => see::<f64>(target, solver),
+    let observed = match precision {
+        Precision::F32 => run::<f32>(target, solver),
+        Precision::F64 => run::<f64>(target, solver),
     }?;
-    Ok(judge(target, &seen))
+    Ok(accuracy(target, &observed))
 }
 
-fn see<F: Precise>(target: &Target<'_>, solver: Solver) -> Result<Seen, SettingsError> {
-    let Target {
+fn run<F: Precise>(target: &ReferenceRun<'_>, solver: Solver) -> Result<Observed, SettingsError> {
+    let ReferenceRun {
         scene, sampling, ..
     } = target;
     let omega = F::from_f64(scene.motion.at(0.0).omega_rad_s);
     let joint = AnyJoint::new(&scene.settings, solver, sampling.step_s(), omega)?;
-    Ok(look(target, joint))
+    Ok(observe(target, joint))
 }
 
-/// What was seen of a run.
+/// Observations of a run.
 #[derive(Debug)]
-struct Seen {
+struct Observed {
     events: Vec<TimedEvent>,
-    /// Events beyond those that are kept.
+    /// Number of events beyond those stored.
     more_events: u64,
     held: Errors,
     at_ticks: Errors,
@@ -110,9 +110,9 @@ impl Errors {
     }
 }
 
-/// Runs a joint, and looks at every step.
-fn look<F: Precise>(target: &Target<'_>, mut joint: AnyJoint<F>) -> Seen {
-    let Target {
+/// Runs a joint and observes every step.
+fn observe<F: Precise>(target: &ReferenceRun<'_>, mut joint: AnyJoint<F>) -> Observed {
+    let ReferenceRun {
         scene,
         sampling,
         events,
@@ -120,9 +120,9 @@ fn look<F: Precise>(target: &Target<'_>, mut joint: AnyJoint<F>) -> Seen {
         held,
         ..
     } = target;
-    // A rung that chatters has lost already; its events need no memory.
+    // A rung that chatters has failed already; its events need no memory.
     let most = 4 * events.len() + 10_000;
-    let mut seen = Seen {
+    let mut observed = Observed {
         events: Vec::new(),
         more_events: 0,
         held: Errors::default(),
@@ -141,23 +141,24 @@ fn look<F: Precise>(target: &Target<'_>, mut joint: AnyJoint<F>) -> Seen {
         for shaft in &chunk {
             if let Some(tick) = held.tick(index) {
                 let shown_nm = joint.torque_nm().to_f64();
-                seen.held
+                observed
+                    .held
                     .add(tick.mean_square(shown_nm), tick.largest_nm(shown_nm));
             }
             joint.step(shaft, |event| {
-                if seen.events.len() < most {
+                if observed.events.len() < most {
                     let time_s = sampling.time_s(n, event.fraction.to_f64());
-                    seen.events.push(TimedEvent::new(time_s, &event));
+                    observed.events.push(TimedEvent::new(time_s, &event));
                 } else {
-                    seen.more_events += 1;
+                    observed.more_events += 1;
                 }
             });
             let error_nm = torque.error_nm::<F>(index, joint.torque_nm().to_f64(), &mut tie);
-            seen.at_ticks.add(error_nm * error_nm, error_nm);
+            observed.at_ticks.add(error_nm * error_nm, error_nm);
             if let Phase::Slip(sense) = joint.phase()
-                && seen.lead.is_due()
+                && observed.lead.is_due()
             {
-                seen.lead.look(
+                observed.lead.look(
                     sense.of_signed(1.0),
                     shaft.omega_end_rad_s.to_f64(),
                     joint.theta_dot_rad_s().to_f64(),
@@ -166,23 +167,23 @@ fn look<F: Precise>(target: &Target<'_>, mut joint: AnyJoint<F>) -> Seen {
             n += 1;
             index += 1;
         }
-        // The torque of a slip is Tk whatever has become of the object.
-        seen.finite &= joint.theta_rad().is_finite()
+        // The torque of a slip is Tk even if the object is not finite.
+        observed.finite &= joint.theta_rad().is_finite()
             && joint.theta_dot_rad_s().is_finite()
-            && seen.at_ticks.squares.is_finite()
-            && seen.held.squares.is_finite();
+            && observed.at_ticks.squares.is_finite()
+            && observed.held.squares.is_finite();
     }
-    seen.finite &= seen.events.iter().all(|e| e.time_s.is_finite());
-    seen
+    observed.finite &= observed.events.iter().all(|e| e.time_s.is_finite());
+    observed
 }
 
-fn judge(target: &Target<'_>, seen: &Seen) -> Accuracy {
-    let Target {
+fn accuracy(target: &ReferenceRun<'_>, observed: &Observed) -> Accuracy {
+    let ReferenceRun {
         sampling, events, ..
     } = target;
-    let kept = u64::try_from(seen.events.len()).unwrap_or(u64::MAX);
-    let found = kept.saturating_add(seen.more_events);
-    if !seen.finite {
+    let kept = u64::try_from(observed.events.len()).unwrap_or(u64::MAX);
+    let found = kept.saturating_add(observed.more_events);
+    if !observed.finite {
         let all = u64::try_from(events.len()).unwrap_or(u64::MAX);
         return Accuracy {
             events: found,
@@ -196,17 +197,22 @@ fn judge(target: &Target<'_>, seen: &Seen) -> Accuracy {
             behind_j: f64::NAN,
         };
     }
-    let matching = match_events(events, &seen.events, sampling.step_s(), sampling.end_s());
+    let matching = match_events(
+        events,
+        &observed.events,
+        sampling.step_s(),
+        sampling.end_s(),
+    );
     Accuracy {
         events: found,
-        unmatched: matching.unmatched.saturating_add(seen.more_events),
-        event_errors: EventErrors::new(events, &seen.events, &matching),
-        rms_held_torque_error_nm: seen.held.rms_nm(sampling.steps()),
-        max_held_torque_error_nm: seen.held.max_nm,
-        rms_tick_torque_error_nm: seen.at_ticks.rms_nm(sampling.steps()),
-        max_tick_torque_error_nm: seen.at_ticks.max_nm,
-        behind_s: seen.lead.behind_s,
-        behind_j: seen.lead.behind_j,
+        unmatched: matching.unmatched.saturating_add(observed.more_events),
+        event_errors: EventErrors::new(events, &observed.events, &matching),
+        rms_held_torque_error_nm: observed.held.rms_nm(sampling.steps()),
+        max_held_torque_error_nm: observed.held.max_nm,
+        rms_tick_torque_error_nm: observed.at_ticks.rms_nm(sampling.steps()),
+        max_tick_torque_error_nm: observed.at_ticks.max_nm,
+        behind_s: observed.lead.behind_s,
+        behind_j: observed.lead.behind_j,
     }
 }
 
@@ -231,7 +237,7 @@ mod tests {
         let torque =
             ReferenceTorque::new(&scene, &sampling, &truth, || Ok::<_, Infallible>(())).unwrap();
         let events: Vec<_> = truth.iter().map(|e| e.event).collect();
-        let target = Target {
+        let target = ReferenceRun {
             scene: &scene,
             sampling: &sampling,
             events: &events,

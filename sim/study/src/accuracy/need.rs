@@ -1,7 +1,6 @@
-//! A need: limits that a solver's errors have to keep, and how they are
-//! written: `torque=1e-2,interval=5e-4`.
+//! A need: limits on a solver's errors, written `torque=1e-2,interval=5e-4`.
 //!
-//! `torque` is what a device shows, which holds each torque for a step;
+//! `torque` is that of a device, which holds each torque for a step;
 //! `torque-at-tick` compares at the ends of steps alone, as if the torque were
 //! continuous.
 
@@ -9,16 +8,16 @@ use crate::accuracy::point::Point;
 use crate::limits::{self, Limited};
 use serde::Serialize;
 
-/// Limits that a solver's errors have to keep.
+/// Limits on a solver's errors.
 pub type Need = limits::Limits<Criterion>;
 
-/// One of them.
+/// One limit.
 pub type Limit = limits::Limit<Criterion>;
 
-/// Why a text is no need.
+/// Why a text is not a valid need.
 pub type NeedError = limits::LimitsError<Criterion>;
 
-/// What can be limited.
+/// An error that can be limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Criterion {
@@ -98,8 +97,8 @@ impl Criterion {
         }
     }
 
-    /// The error as it is held against a limit. Torque is known or wrong; of
-    /// events there may be none to be wrong about.
+    /// The error for comparison with a limit. An unknown torque error fails;
+    /// without events there is no event error.
     pub(crate) fn judged(self, point: &Point) -> f64 {
         let error = self.error(point);
         match self {

@@ -2,7 +2,7 @@
 //!
 //! Fitted by least squares over the f64 points at steps of at least 20 µs
 //! whose events all match. An error at the level of rounding says nothing
-//! about the method and is left out; where all are, the method is exact. A rung
+//! about the method and is left out; if all are, the method is exact. A rung
 //! that divides an angle by the step squared shows the rounding of that angle
 //! instead of its order below a quarter of a millisecond.
 
@@ -31,11 +31,11 @@ pub struct Orders {
     pub convention: &'static str,
     /// The rung.
     pub solver: &'static str,
-    /// Of the relative error of the cycle frequency.
+    /// Order of the relative error of the cycle frequency.
     pub frequency: Order,
-    /// Of the worst error of an event's time.
+    /// Order of the worst error of an event's time.
     pub event_time: Order,
-    /// Of the root mean square error of the events' times.
+    /// Order of the root mean square error of the events' times.
     pub event_time_rms: Order,
 }
 
@@ -108,7 +108,7 @@ pub(super) fn shortest_step_s(name: &str) -> f64 {
     }
 }
 
-/// The order of (step, error) pairs; NaN errors are no points.
+/// The order of (step, error) pairs; NaN errors are skipped.
 pub(super) fn order(errors: &[(f64, f64)]) -> Order {
     let known = errors.iter().filter(|(_, e)| !e.is_nan()).count();
     let above: Vec<(f64, f64)> = errors

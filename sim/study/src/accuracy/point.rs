@@ -46,10 +46,10 @@ pub struct Point {
     /// Largest torque error at the end of a step, N·m.
     pub max_tick_torque_error_nm: f64,
     /// Time in slips in which the shaft was behind the object, s. Under
-    /// `paper` and `physical` a slip that lasts so has missed its end; a
-    /// `frozen` one may when the hand slows.
+    /// `paper` and `physical` such a slip has missed its end; under
+    /// `frozen` it may happen when the hand slows.
     pub behind_s: f64,
-    /// Energy that friction gave in that time, J.
+    /// Energy that friction supplied in that time, J.
     pub behind_j: f64,
     /// CPU time of the host per step, ns: median of interleaved repeats.
     pub ns_per_step: f64,
@@ -57,7 +57,7 @@ pub struct Point {
     pub us_per_simulated_s: f64,
     /// Spread of the repeats: (third quartile − first quartile)/median.
     pub time_spread: f64,
-    /// Mean cycles of a step on the target, modelled; NaN where not asked for.
+    /// Mean cycles of a step on the target, modelled; NaN if not measured.
     pub cycles_per_step: f64,
     /// Most cycles of a step in this scene, as far as it was run; NaN likewise.
     pub worst_cycles: f64,
@@ -69,7 +69,7 @@ pub struct Point {
 pub(crate) mod tests {
     use super::*;
 
-    /// A made-up point of precision `f32` with every error small.
+    /// An example point of precision `f32` with small errors.
     pub(crate) fn point(solver: &'static str, step_s: f64) -> Point {
         Point {
             scene: "constant-1".to_owned(),

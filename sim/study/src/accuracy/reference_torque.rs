@@ -1,9 +1,9 @@
-//! The reference's torque at the ends of steps, to compare with.
+//! The reference's torque at the ends of steps, for comparison.
 //!
 //! The torque jumps at an event. Where an event falls on the end of a step to
 //! within rounding, as the first break at 0.5 rad/s does (2 ms are 40 ticks),
 //! both the torque before it and the torque after it are right, and the
-//! nearer one counts. Within rounding means: within four roundings, relative
+//! nearer one is used. Within rounding means: within four roundings, relative
 //! to the length of the phase that ends with the event.
 
 use crate::accuracy::scenes::StudyScene;
@@ -13,10 +13,10 @@ use crepitus_model::{Phase, Real};
 use crepitus_scene::reference::Reference;
 use crepitus_scene::run::Lead;
 
-/// How many steps go by between two questions whether to go on.
-const ASK_EVERY: u64 = 1 << 16;
+/// Number of steps between two polls.
+const STEPS_PER_POLL: u64 = 1 << 16;
 
-/// How many roundings of the phase's length count as simultaneous.
+/// Largest distance of simultaneous events, in roundings of the phase's length.
 const ROUNDINGS: f64 = 4.0;
 
 /// True torque at the end of every step.
@@ -26,7 +26,7 @@ pub struct ReferenceTorque {
     at_ends_nm: Vec<f64>,
     /// Steps whose end is simultaneous with an event in f32, in order.
     ties: Vec<Tie>,
-    /// By how much the shaft led the object at the ends of steps.
+    /// Lead of the shaft over the object at the ends of steps.
     pub lead: Lead,
 }
 
@@ -41,16 +41,16 @@ struct Tie {
 }
 
 impl ReferenceTorque {
-    /// Runs the reference along the steps of `sampling`, and asks `go_on` now
+    /// Runs the reference along the steps of `sampling`, calling `poll` now
     /// and then.
     ///
     /// # Errors
-    /// What `go_on` returns.
+    /// What `poll` returns.
     pub fn new<E>(
         scene: &StudyScene,
         sampling: &Sampling<'_>,
         events: &[TrueEvent],
-        mut go_on: impl FnMut() -> Result<(), E>,
+        mut poll: impl FnMut() -> Result<(), E>,
     ) -> Result<Self, E> {
         let mut reference = Reference::new(&scene.settings, &scene.motion);
         let mut at_ends_nm = Vec::new();
@@ -67,8 +67,8 @@ impl ReferenceTorque {
                     reference.theta_dot_rad_s(),
                 );
             }
-            if n.is_multiple_of(ASK_EVERY) {
-                go_on()?;
+            if n.is_multiple_of(STEPS_PER_POLL) {
+                poll()?;
             }
         }
         Ok(Self {
@@ -79,7 +79,7 @@ impl ReferenceTorque {
     }
 
     /// The error of `shown_nm` after `step`, in a joint of precision `F`;
-    /// `tie` is where the search for ties stands, 0 at the start.
+    /// `tie` is the position of the search for ties, 0 at the start.
     #[inline]
     pub fn error_nm<F: Real>(&self, step: usize, shown_nm: f64, tie: &mut usize) -> f64 {
         let Some(true_nm) = self.at_ends_nm.get(step) else {

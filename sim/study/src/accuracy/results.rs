@@ -1,4 +1,4 @@
-//! What a study found.
+//! Results of a study.
 
 use crate::accuracy::orders::Orders;
 use crate::accuracy::point::Point;
@@ -8,21 +8,21 @@ use serde::Serialize;
 /// A study's results.
 #[derive(Clone, Debug, Serialize)]
 pub struct Study {
-    /// What was studied.
+    /// The studied scenes.
     pub scenes: Vec<StudiedScene>,
     /// The steps, s.
     pub steps_s: Vec<f64>,
     /// Repeats of each timing.
     pub timing_repeats: usize,
-    /// Rungs that have no meaning under a convention.
+    /// Rungs without a meaning under a convention.
     pub refused: Vec<Refused>,
-    /// Steps that a scene is too long or too short for.
+    /// Steps for which a scene is too long or too short.
     pub skipped: Vec<Skipped>,
     /// Measured orders of convergence.
     pub orders: Vec<Orders>,
-    /// How long the study took, s.
+    /// Duration of the study, s.
     pub wall_s: f64,
-    /// What the ladder costs on the target, if that was asked for.
+    /// Costs of the ladder on the target, if measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<OnTarget>,
     /// The points, by scene, convention, rung, precision and falling step.
@@ -35,7 +35,7 @@ pub struct Study {
 pub struct StudiedScene {
     /// Its name.
     pub name: String,
-    /// What it is.
+    /// Its title.
     pub title: String,
     /// Its convention.
     pub convention: &'static str,
@@ -49,7 +49,7 @@ pub struct StudiedScene {
     pub reference_behind_s: f64,
 }
 
-/// A rung that has no meaning under a convention.
+/// A rung without a meaning under a convention.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Refused {
     /// The rung.

@@ -1,10 +1,9 @@
-//! What is studied: a motion of the shaft and the settings of the object.
+//! Scenes of the study: a motion of the shaft and the settings of the object.
 //!
-//! The standard set has four constant speeds, from where sticking dominates to
-//! where it is a flicker, and one sine as a hand would do it. Of the constant
-//! speeds only 0.5 and 2 rad/s let the first stick last a whole number of
-//! device ticks; 0.12 and 0.988 are incommensurate with every step, so that no
-//! rung looks good by luck there.
+//! The standard set has four constant speeds, from dominant to hardly any
+//! sticking, and one hand-like sine. Of the constant speeds only at 0.5 and
+//! 2 rad/s the first stick lasts a whole number of device ticks; 0.12 and 0.988
+//! are incommensurate with every step, so that no rung looks good by luck.
 
 use crate::true_events::{TrueEvent, true_events, true_events_while};
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
@@ -34,7 +33,7 @@ const SINE_S: f64 = 4.0;
 pub struct StudyScene {
     /// Name in points, such as `constant-0.988`.
     pub name: String,
-    /// What it is, in words.
+    /// Description.
     pub title: String,
     /// The shaft's motion.
     pub motion: Motion,
@@ -50,15 +49,15 @@ impl StudyScene {
         true_events(&self.settings, &self.motion, self.duration_s)
     }
 
-    /// As [`Self::true_events`], and asks `go_on` now and then.
+    /// As [`Self::true_events`], calling `poll` now and then.
     ///
     /// # Errors
-    /// What `go_on` returns.
+    /// What `poll` returns.
     pub fn true_events_while<E>(
         &self,
-        go_on: impl FnMut() -> Result<(), E>,
+        poll: impl FnMut() -> Result<(), E>,
     ) -> Result<Vec<TrueEvent>, E> {
-        true_events_while(&self.settings, &self.motion, self.duration_s, go_on)
+        true_events_while(&self.settings, &self.motion, self.duration_s, poll)
     }
 
     /// The convention's name.
@@ -67,7 +66,7 @@ impl StudyScene {
     }
 
     /// Motion and object of a scene file; `None` if it has no crepitus. Its
-    /// sensor and its solver do not matter here.
+    /// sensor and its solver are ignored.
     pub fn of(scene: &Scene) -> Option<Self> {
         let crepitus = scene.crepitus.as_ref()?;
         let name = scene.file.file_stem().unwrap_or_default();

@@ -1,7 +1,7 @@
 //! The whole study: every rung × precision × step on every scene.
 
 use crate::accuracy::held_torque::HeldTorque;
-use crate::accuracy::measure::{Accuracy, Target, measure};
+use crate::accuracy::measure::{Accuracy, ReferenceRun, measure};
 use crate::accuracy::orders::orders;
 use crate::accuracy::point::Point;
 use crate::accuracy::reference_torque::ReferenceTorque;
@@ -29,10 +29,10 @@ pub const FULL_REPEATS: usize = 7;
 /// Repeats of a timing in a quick one.
 pub const QUICK_REPEATS: usize = 5;
 
-/// The most steps of one run: the reference's torque at each is kept.
+/// The most steps of one run: the reference's torque at each is stored.
 const MOST_STEPS: u64 = 20_000_000;
 
-/// A step of the reference costs about as much as this many of a rung.
+/// Cost of a step of the reference, in steps of a rung.
 const REFERENCE_WEIGHT: f64 = 10.0;
 
 /// What to study.
@@ -48,7 +48,7 @@ pub struct Plan {
     pub repeats: usize,
 }
 
-/// Carries out a plan.
+/// Runs a plan.
 ///
 /// # Errors
 /// What the watcher returns, or settings that cannot work together.
@@ -71,7 +71,7 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError
         done: 0.0,
     };
     for scene in &plan.scenes {
-        let truth = scene.true_events_while(|| work.did(0.0))?;
+        let truth = scene.true_events_while(|| work.add(0.0))?;
         let contestants = contestants(plan, scene.settings.convention);
         let mut studied = StudiedScene {
             name: scene.name.clone(),
@@ -81,7 +81,7 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError
             events_true: truth.len(),
             reference_behind_s: 0.0,
         };
-        // By contestant, so that a curve's points stand together.
+        // By contestant, so that a curve's points are together.
         let mut curves = vec![Vec::new(); contestants.len()];
         for &step_s in &falling(&plan.steps_s) {
             let sampling = Sampling::new(&scene.motion, scene.duration_s, step_s);
@@ -108,8 +108,8 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError
     Ok(study)
 }
 
-/// All contestants on one scene at one step, in their order, and how the
-/// reference's slips went.
+/// All contestants on one scene at one step, in their order, and the lead in
+/// the reference's slips.
 fn at_step<W: Watcher>(
     scene: &StudyScene,
     truth: &[TrueEvent],
@@ -119,17 +119,17 @@ fn at_step<W: Watcher>(
     work: &mut Work<'_, W>,
 ) -> Result<(Vec<Point>, Lead), StudyError<W::Error>> {
     let steps = f64::from_whole(sampling.steps());
-    let torque = ReferenceTorque::new(scene, sampling, truth, || work.did(0.0))?;
+    let torque = ReferenceTorque::new(scene, sampling, truth, || work.add(0.0))?;
     let held = HeldTorque::new(scene, sampling, truth);
     let held_floor_nm = held.floor_nm();
-    work.did(REFERENCE_WEIGHT * steps)?;
+    work.add(REFERENCE_WEIGHT * steps)?;
     let end_s = sampling.end_s();
     let events: Vec<TimedEvent> = truth
         .iter()
         .map(|e| e.event)
         .filter(|e| e.time_s <= end_s)
         .collect();
-    let target = Target {
+    let target = ReferenceRun {
         scene,
         sampling,
         events: &events,
@@ -139,11 +139,11 @@ fn at_step<W: Watcher>(
     let mut accuracies = Vec::with_capacity(contestants.len());
     for &(solver, precision) in contestants {
         accuracies.push(measure(&target, solver, precision)?);
-        work.did(steps)?;
+        work.add(steps)?;
     }
     let turn = timed_work(sampling);
     let costs = time(scene, sampling, contestants, plan.repeats, || {
-        work.did(turn)
+        work.add(turn)
     })?;
     let events_true = u64::try_from(events.len()).unwrap_or(u64::MAX);
     let points = contestants
@@ -201,7 +201,7 @@ fn point(
     }
 }
 
-/// Longest first, none twice.
+/// Sorts steps, longest first, without duplicates.
 fn falling(steps_s: &[f64]) -> Vec<f64> {
     let mut steps_s = steps_s.to_vec();
     steps_s.sort_by(|a, b| b.total_cmp(a));
@@ -209,7 +209,7 @@ fn falling(steps_s: &[f64]) -> Vec<f64> {
     steps_s
 }
 
-/// The rungs that have a meaning, in each precision.
+/// The rungs with a meaning, in each precision.
 fn contestants(plan: &Plan, convention: Convention) -> Vec<Contestant> {
     Solver::ALL
         .into_iter()
@@ -219,7 +219,7 @@ fn contestants(plan: &Plan, convention: Convention) -> Vec<Contestant> {
         .collect()
 }
 
-/// The rungs that have no meaning under one of the scenes' conventions.
+/// The rungs without a meaning under one of the scenes' conventions.
 fn refused(scenes: &[StudyScene]) -> Vec<Refused> {
     Convention::ALL
         .into_iter()
@@ -247,8 +247,8 @@ fn not_studied(sampling: &Sampling<'_>) -> Option<&'static str> {
     }
 }
 
-/// Work of one turn of a timing, in steps: the sampling of the motion is done
-/// once for all and hardly counts.
+/// Work of one turn of a timing, in steps: the motion is sampled once for all,
+/// which hardly counts.
 fn timed_work(sampling: &Sampling<'_>) -> f64 {
     f64::from_whole(sampling.steps().min(40_000))
 }
@@ -273,7 +273,7 @@ fn total_work(plan: &Plan) -> f64 {
     total
 }
 
-/// Keeps the watcher informed.
+/// Reports progress to the watcher.
 struct Work<'a, W> {
     watcher: &'a mut W,
     total: f64,
@@ -281,7 +281,7 @@ struct Work<'a, W> {
 }
 
 impl<W: Watcher> Work<'_, W> {
-    fn did(&mut self, amount: f64) -> Result<(), StudyError<W::Error>> {
+    fn add(&mut self, amount: f64) -> Result<(), StudyError<W::Error>> {
         self.done += amount;
         self.watcher
             .progress((self.done / self.total).min(1.0))
@@ -295,13 +295,13 @@ mod tests {
     use crate::accuracy::scenes::standard;
 
     /// Ends a study after this many calls.
-    struct Patience {
+    struct EndsAfter {
         calls: u32,
         most: u32,
         last: f64,
     }
 
-    impl Watcher for Patience {
+    impl Watcher for EndsAfter {
         type Error = ();
 
         fn progress(&mut self, fraction: f64) -> Result<(), ()> {
@@ -333,8 +333,8 @@ mod tests {
         }
     }
 
-    fn patience(most: u32) -> Patience {
-        Patience {
+    fn ends_after(most: u32) -> EndsAfter {
+        EndsAfter {
             calls: 0,
             most,
             last: 0.0,
@@ -354,7 +354,7 @@ mod tests {
             }],
             ..plan()
         };
-        let mut watcher = patience(3);
+        let mut watcher = ends_after(3);
         assert!(matches!(
             run(&plan, &mut watcher),
             Err(StudyError::Watcher(()))
@@ -364,7 +364,7 @@ mod tests {
 
     #[test]
     fn every_combination_has_a_point_in_order() {
-        let mut watcher = patience(u32::MAX);
+        let mut watcher = ends_after(u32::MAX);
         let study = run(&plan(), &mut watcher).unwrap();
         assert!((watcher.last - 1.0).abs() < 1e-12, "{}", watcher.last);
         let mut expected = Vec::new();
@@ -409,7 +409,7 @@ mod tests {
     fn a_watcher_ends_it_at_any_time() {
         for most in [0, 3, 40] {
             assert!(matches!(
-                run(&plan(), &mut patience(most)),
+                run(&plan(), &mut ends_after(most)),
                 Err(StudyError::Watcher(()))
             ));
         }

@@ -1,7 +1,7 @@
-//! The second axis: what a step costs on the device's core.
+//! The second axis: cost of a step on the device's core.
 //!
-//! Whoever can run the ladder there gives the cycles and instructions of each
-//! step; this module says what is run, and puts the numbers beside the errors.
+//! The caller runs the ladder there and returns the cycles and instructions of
+//! each step; this module says what to run, and joins the numbers with errors.
 //!
 //! ```text
 //! scenes at the device's tick ──┐
@@ -9,9 +9,9 @@
 //!                                                                     └─> rows
 //! ```
 //!
-//! The mean of a rung is over the study's scenes, a stretch of each; the worst
+//! The mean of a rung is over the study's scenes, a part of each; the worst
 //! is the worst *observed*, over those and hard [`inputs`] with breaks,
-//! matches and reversals. It is no bound.
+//! matches and reversals. It is not a bound.
 
 pub mod inputs;
 
@@ -29,31 +29,31 @@ use serde::Serialize;
 /// Core cycles of a tick of the device: 50 µs at 168 MHz.
 pub const TICK_CYCLES: f64 = 8_400.0;
 
-/// The share of a tick that the worst observed step of a rung may take where
-/// the target chooses: a fifth, 1,680 cycles. Sampling, guard, compensation,
-/// limits, current loop and link share the rest.
+/// The share of a tick that the worst observed step of a rung may take on the
+/// target: a fifth, 1,680 cycles. Sampling, guard, compensation, limits,
+/// current loop and link share the rest.
 pub const STEP_SHARE: f64 = 0.2;
 
-/// What the numbers are.
+/// Label of the numbers.
 pub const LABEL: &str = "modelled cycles, 0 wait states; not measured on hardware";
 
-/// What the ladder costs on the target.
+/// Costs of the ladder on the target.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OnTarget {
-    /// What the numbers are.
+    /// Label of the numbers.
     pub label: &'static str,
     /// Core cycles of a tick of the device.
     pub tick_cycles: f64,
     /// Steps that were run, each the same to the bit as on the host.
     pub steps: u64,
-    /// The rungs by convention, then what else the device does.
+    /// The rungs by convention, then the device's other code.
     pub rows: Vec<Row>,
 }
 
 /// The cost of a subject.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Its name: of a rung that of scene files, of an effect that of `crepitus
+    /// Name of the rung in scene files, or of the effect in `crepitus
     /// effects`.
     pub subject: &'static str,
     /// The convention of its joint.
@@ -61,17 +61,17 @@ pub struct Row {
     /// Whether it is a rung of the ladder.
     pub is_rung: bool,
     /// Relative error of the cycle frequency in f32 at the device's tick, the
-    /// worst of the study's scenes; NaN without, or where events are wrong.
+    /// worst of the study's scenes; NaN without, or if events are wrong.
     pub frequency_error_rel: f64,
     /// Mean cycles of a step on the study's scenes.
     pub mean_cycles: f64,
-    /// Most cycles of a step that were observed.
+    /// Most cycles observed in a step.
     pub worst_cycles: u32,
-    /// On which input that was.
+    /// The input of that step.
     pub worst_on: String,
     /// Mean instructions of a step on the study's scenes.
     pub mean_instructions: f64,
-    /// Most instructions of a step that were observed.
+    /// Most instructions observed in a step.
     pub worst_instructions: u32,
     /// The mean as a share of a tick.
     pub mean_share: f64,
@@ -85,7 +85,7 @@ pub struct Row {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TargetError<T, W> {
-    /// The target did not do it.
+    /// The target failed.
     #[error("the target: {0}")]
     Target(T),
     /// The study ended early.
@@ -99,11 +99,11 @@ impl<T, W> From<SettingsError> for TargetError<T, W> {
     }
 }
 
-/// Runs every subject on the target, and adds what came of it to the study:
-/// to its points in f32 at the device's tick, and as a table of its own.
+/// Runs every subject on the target, and adds the results to the study: to its
+/// points in f32 at the device's tick, and as a separate table.
 ///
 /// # Errors
-/// What the target or the watcher says, or settings that cannot work together.
+/// Errors of the target or the watcher, or contradictory settings.
 pub fn add<T, W: Watcher>(
     study: &mut Study,
     scenes: &[StudyScene],
@@ -124,11 +124,11 @@ pub fn add<T, W: Watcher>(
     for subject in &subjects {
         let tasks = inputs::tasks(*subject, scenes, lengths)?;
         let each = 1.0 / whole(tasks.len() * subjects.len());
-        let mut seen = Seen::default();
+        let mut cost_of_subject = SubjectCost::default();
         for task in &tasks {
             let calls = on_target(&task.plan, &task.inputs).map_err(TargetError::Target)?;
             let cost = Cost::of(&calls);
-            seen.add(task, &cost);
+            cost_of_subject.add(task, &cost);
             if let (Some(scene), Subject::Rung(_, solver)) = (task.scene, subject) {
                 note(study, scene, solver.name(), &cost);
             }
@@ -136,9 +136,9 @@ pub fn add<T, W: Watcher>(
             let progress = watcher.progress(f64::min(done, 1.0));
             progress.map_err(StudyError::Watcher)?;
         }
-        on.steps += seen.all.calls;
+        on.steps += cost_of_subject.all.calls;
         let frequency = frequency_error(study, *subject);
-        on.rows.push(seen.row(*subject, frequency));
+        on.rows.push(cost_of_subject.row(*subject, frequency));
     }
     study.target = Some(on);
     Ok(())
@@ -156,13 +156,13 @@ fn is_studied(subject: Subject, scenes: &[StudyScene]) -> bool {
     })
 }
 
-/// Whether a point is what the device would do.
+/// Whether a point has the device's precision and tick.
 fn is_on_the_device(point: &Point) -> bool {
     point.precision == Precision::F32.name()
         && (point.step_s - inputs::TICK_S).abs() < 1e-6 * inputs::TICK_S
 }
 
-/// The worst of a rung under its convention.
+/// The worst frequency error of a rung under its convention.
 fn frequency_error(study: &Study, subject: Subject) -> f64 {
     let Subject::Rung(convention, solver) = subject else {
         return f64::NAN;
@@ -185,7 +185,7 @@ fn frequency_error(study: &Study, subject: Subject) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
-/// The cost of a rung beside its errors.
+/// Adds the cost of a rung to its point.
 fn note(study: &mut Study, scene: &StudyScene, solver: &str, cost: &Cost) {
     let point = study.points.iter_mut().find(|point| {
         is_on_the_device(point)
@@ -200,16 +200,16 @@ fn note(study: &mut Study, scene: &StudyScene, solver: &str, cost: &Cost) {
     }
 }
 
-/// What is seen of a subject.
+/// Cost of a subject.
 #[derive(Default)]
-struct Seen {
+struct SubjectCost {
     /// On the scenes of the study.
     usual: Cost,
     all: Cost,
     worst_on: String,
 }
 
-impl Seen {
+impl SubjectCost {
     fn add(&mut self, task: &Task<'_>, cost: &Cost) {
         if task.scene.is_some() {
             self.usual.add(cost);
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn costs_stand_beside_the_errors_of_the_same_rung() {
+    fn costs_are_in_the_points_of_the_same_rung() {
         let mut scenes = standard().unwrap();
         scenes.truncate(1);
         scenes[0].duration_s = 0.1;

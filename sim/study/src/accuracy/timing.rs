@@ -1,13 +1,13 @@
-//! What a step costs on the host.
+//! Cost of a step on the host.
 //!
-//! Only the stepping is timed: the step, its event closure, and the torque it
-//! leaves, which is what a tick of the device asks for. The motion is sampled
+//! Only the stepping is timed: the step, its event closure, and reading the
+//! torque, as in a tick of the device. The motion is sampled
 //! beforehand, and a few thousand steps at a time are brought into the cache
-//! before the clock starts. The clock is the CPU time of the thread, less what
-//! reading it costs: on a busy machine wall time would count the others' work.
+//! before the clock starts. The clock is the CPU time of the thread, minus the
+//! cost of reading it: on a busy machine wall time would include others' work.
 //! All rungs of a scene and step take turns within each repeat, every second
 //! time in the opposite order, so that a machine that slows down or speeds up
-//! meanwhile does it to all alike.
+//! affects all alike.
 
 use crate::accuracy::scenes::StudyScene;
 use crate::sampling::{CHUNK_STEPS, Sampling};
@@ -37,7 +37,7 @@ pub struct Cost {
 }
 
 /// Times `contestants` in turns; `after_each` is called after every turn and
-/// may end it all.
+/// may cancel.
 ///
 /// # Errors
 /// What `after_each` returns, or `E` from settings that cannot work together.
@@ -68,13 +68,12 @@ pub fn time<E: From<SettingsError>>(
     Ok(nanoseconds.iter_mut().map(|times| cost(times)).collect())
 }
 
-/// The stretch of a scene that is timed, around the end of its first quarter:
-/// there the hand-like sine is fastest, and a short step does not see its rest
-/// only.
+/// The timed part of a scene, around the end of its first quarter: there the
+/// hand-like sine is fastest, and short steps do not cover its rest only.
 struct Track<'a> {
     scene: &'a StudyScene,
     step_s: f64,
-    /// What reading the clock adds to each chunk.
+    /// Cost of reading the clock in each chunk.
     reading: Duration,
     single: Vec<ShaftStep<f32>>,
     double: Vec<ShaftStep<f64>>,

@@ -7,28 +7,27 @@ use crepitus_scene::run::{Observer, RunError, columns, run};
 use crepitus_scene::trace::EventRecord;
 use serde::Serialize;
 
-/// Length of a window, s. The last two of a run are looked at: by then a hand's
-/// own swing about its resting place has died to e⁻⁹.
+/// Length of a window, s. The last two of a run are compared: by then a hand's
+/// own swing about its resting place has decayed to e⁻⁹.
 const WINDOW_S: f64 = 0.5;
 
 /// A shaft that moves by no more than this is quiet, counts of the encoder.
 const QUIET_COUNTS: f64 = 2.0;
 
-/// What moves less than this share of what it moved half a second before is
-/// dying out.
-const DYING: f64 = 0.7;
+/// A ripple below this share of that in the window before is settling.
+const SETTLING: f64 = 0.7;
 
-/// What a shaft does while the hand rests.
+/// Behaviour of the shaft while the hand rests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// It stands.
+    /// At rest.
     Quiet,
-    /// It moves less and less.
+    /// A decaying oscillation.
     Settles,
-    /// It goes on, or moves more and more.
+    /// A sustained or growing oscillation.
     Rings,
-    /// The device does not take the joint: see
+    /// The device refuses the joint: see
     /// [`most_rad_per_count`](crepitus_model::render::turn_back::most_rad_per_count).
     Refused,
 }
@@ -48,21 +47,21 @@ impl Verdict {
 /// A cell of the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// What was run.
+    /// Its setting.
     pub setting: Setting,
-    /// What came of it.
+    /// Its verdict.
     pub verdict: Verdict,
-    /// From the lowest to the highest angle of the shaft in the last half
-    /// second, rad; NaN if refused.
+    /// Peak-to-peak angle of the shaft in the last half second, rad; NaN if
+    /// refused.
     pub ripple_rad: f64,
-    /// The same of the torque that the device shows, N·m.
+    /// Peak-to-peak torque of the device then, N·m.
     pub ripple_nm: f64,
 }
 
 /// Runs a cell.
 ///
 /// # Errors
-/// What a run says that could not go on; `None` if the meter was stopped.
+/// The error of a failed run; `Ok(None)` if the meter was stopped.
 pub(super) fn run_cell(setting: &Setting, meter: &Meter) -> Result<Option<Cell>, String> {
     let refused = Cell {
         setting: *setting,
@@ -71,7 +70,7 @@ pub(super) fn run_cell(setting: &Setting, meter: &Meter) -> Result<Option<Cell>,
         ripple_nm: f64::NAN,
     };
     let Ok(scene) = setting.scene() else {
-        meter.did(1);
+        meter.add(1);
         return Ok(Some(refused));
     };
     let names = columns(&scene);
@@ -79,7 +78,7 @@ pub(super) fn run_cell(setting: &Setting, meter: &Meter) -> Result<Option<Cell>,
     let (Some(angle), Some(torque)) = (place("angle_rad"), place("shown_nm")) else {
         return Err("a run without a device".to_owned());
     };
-    let mut listener = Listener {
+    let mut observer = RippleObserver {
         meter,
         angle,
         torque,
@@ -87,33 +86,33 @@ pub(super) fn run_cell(setting: &Setting, meter: &Meter) -> Result<Option<Cell>,
         last: Span::default(),
         torque_nm: Span::default(),
     };
-    match run(&scene, &mut listener) {
+    match run(&scene, &mut observer) {
         Ok(_) => {}
         Err(RunError::Observer(Stopped)) => return Ok(None),
         Err(other) => return Err(other.to_string()),
     }
-    meter.did(1);
-    let (before, last) = (listener.before.width(), listener.last.width());
+    meter.add(1);
+    let (before, last) = (observer.before.width(), observer.last.width());
     Ok(Some(Cell {
         verdict: verdict(before, last),
         ripple_rad: last,
-        ripple_nm: listener.torque_nm.width(),
+        ripple_nm: observer.torque_nm.width(),
         ..refused
     }))
 }
 
-/// Of what the shaft moved in the last window and in the one before, rad.
+/// The verdict, from the ripple in the window before and in the last, rad.
 fn verdict(before_rad: f64, last_rad: f64) -> Verdict {
     if last_rad <= QUIET_COUNTS * EncoderSettings::default().rad_per_count() {
         Verdict::Quiet
-    } else if last_rad < DYING * before_rad {
+    } else if last_rad < SETTLING * before_rad {
         Verdict::Settles
     } else {
         Verdict::Rings
     }
 }
 
-/// From the lowest to the highest.
+/// Lowest and highest value.
 #[derive(Clone, Copy, Debug)]
 struct Span(f64, f64);
 
@@ -124,7 +123,7 @@ impl Default for Span {
 }
 
 impl Span {
-    fn note(&mut self, x: f64) {
+    fn add(&mut self, x: f64) {
         *self = Self(self.0.min(x), self.1.max(x));
     }
 
@@ -133,8 +132,8 @@ impl Span {
     }
 }
 
-/// Watches the last two windows.
-struct Listener<'a> {
+/// Observes the last two windows.
+struct RippleObserver<'a> {
     meter: &'a Meter,
     angle: usize,
     torque: usize,
@@ -147,7 +146,7 @@ struct Listener<'a> {
 #[error("stopped")]
 struct Stopped;
 
-impl Observer for Listener<'_> {
+impl Observer for RippleObserver<'_> {
     type Error = Stopped;
 
     fn row(&mut self, values: &[f64]) -> Result<(), Stopped> {
@@ -160,10 +159,10 @@ impl Observer for Listener<'_> {
         };
         let left_s = DURATION_S - time_s + TICK_S / 2.0;
         if left_s <= WINDOW_S {
-            self.last.note(*angle_rad);
-            self.torque_nm.note(*torque_nm);
+            self.last.add(*angle_rad);
+            self.torque_nm.add(*torque_nm);
         } else if left_s <= 2.0 * WINDOW_S {
-            self.before.note(*angle_rad);
+            self.before.add(*angle_rad);
         }
         Ok(())
     }
@@ -212,7 +211,7 @@ mod tests {
         assert!(without.ripple_nm > 0.1, "{without:?}");
         // Or the damping of a cuff.
         assert_ne!(cell(400.0, 1.0, 5).verdict, Verdict::Rings);
-        // More compensation than friction drives the leg about.
+        // Overcompensation drives the leg.
         let pushed = cell(400.0, 1.0, 3);
         assert_eq!(pushed.verdict, Verdict::Rings, "{pushed:?}");
     }

@@ -1,18 +1,18 @@
-//! What theory says of a cell: the largest stiffness, N·m/rad, by criteria that
-//! know less than a simulation, and the linear system without dry friction.
+//! Theory for a cell: the largest stiffness, N·m/rad, by criteria that include
+//! less than a simulation, and by the linear system without dry friction.
 //!
-//! | | says | knows |
+//! | | criterion | includes |
 //! |---|---|---|
 //! | Colgate and Schenkel 1997 | kr < b/τ | damping b and lag τ, any hand |
 //! | Abbott and Okamura 2005 | kr < min(2b/h, 2F/Δ) | a count Δ and dry friction F, no lag beyond the hold |
 //! | Diolaiti et al. 2006 | kr < J·(F/(Ts·τ))² | dry friction against the speed of the swing |
 //! | linear | the stiffness at which an oscillation neither grows nor dies | this hand, this cuff, no friction, no counts |
 //!
-//! Of the first the form is the original's for τ = h/2, and lag adds to it as in
-//! Diolaiti's. The third is their observation, that dry friction takes more than
-//! a late spring gives up to a certain speed, for this joint: F·|Ω| ≥ kr·τ·Ω²
-//! holds up to F/(kr·τ), and a stick that is full to Ts cannot move a rotor of
-//! inertia J faster than Ts/√(kr·J).
+//! The first is the original's form for τ = h/2, with lag added as in
+//! Diolaiti's. The third is their observation, that dry friction dissipates more
+//! than a late spring generates up to a certain speed, for this joint:
+//! F·|Ω| ≥ kr·τ·Ω² holds up to F/(kr·τ), and a stick loaded to Ts cannot move a
+//! rotor of inertia J faster than Ts/√(kr·J).
 
 use super::setting::{Lag, Setting, TICK_S};
 use crepitus_model::Parameters;
@@ -29,14 +29,14 @@ pub struct Criteria {
     pub colgate_schenkel: f64,
     /// Abbott and Okamura.
     pub abbott_okamura: f64,
-    /// Diolaiti et al.: of dry friction.
+    /// Diolaiti et al.: dry friction.
     pub diolaiti: f64,
-    /// The linear system; infinite if it has no limit that was looked for.
+    /// The linear system; infinite without a limit in the searched range.
     pub linear: f64,
 }
 
 impl Criteria {
-    /// Of a cell, whatever its own stiffness.
+    /// The criteria for a cell, independent of its stiffness.
     pub fn of(setting: &Setting) -> Self {
         let b = setting.damping_nms_per_rad;
         let tau_s = setting.lag.mean_s();
@@ -52,8 +52,8 @@ impl Criteria {
     }
 }
 
-/// The largest share of a gear's friction that may be compensated: what is left
-/// is [`least_left_nm`].
+/// The largest share of a gear's friction that may be compensated: the rest is
+/// [`least_left_nm`].
 pub fn most_share(setting: &Setting, friction_nm: f64) -> f64 {
     let joint = Parameters {
         stiffness_nm_per_rad: setting.stiffness_nm_per_rad,
@@ -68,7 +68,7 @@ fn default(effect: &Effect, key: &str) -> f64 {
     parameter.map_or(f64::NAN, |p| p.default)
 }
 
-/// Rotor and brace, which move as one, kg·m².
+/// Inertia of rotor and brace, which are rigid, kg·m².
 fn shaft_inertia_kg_m2() -> f64 {
     default(&drivetrain::EFFECT, "inertia_kg_m2") + default(&cuff::EFFECT, "brace_inertia_kg_m2")
 }
@@ -114,8 +114,8 @@ fn mechanics(w: f64, damping: f64) -> Complex {
     through.plus(Complex(-shaft_inertia_kg_m2() * w * w, 0.0))
 }
 
-/// Torque that acts for one that is wanted: held for a tick, and behind a
-/// current loop that gains the share g of what it lacks in each.
+/// Transfer function from commanded to acting torque: held for a tick, and
+/// behind a current loop that reduces its error by the share g in each.
 fn device(w: f64, lag: Lag) -> Complex {
     let half = w * TICK_S / 2.0;
     let held = Complex::turned(-half).times(Complex(half.sin() / half, 0.0));
@@ -128,16 +128,16 @@ fn device(w: f64, lag: Lag) -> Complex {
     held.times(tick.times(Complex(gain, 0.0)).over(behind))
 }
 
-/// Stiffness at which an oscillation of this angular frequency would go on for
-/// ever, as far as it is a number at all: the real one.
+/// Stiffness at which an oscillation of this angular frequency is sustained;
+/// only a real one exists.
 fn balancing(w: f64, lag: Lag, damping: f64) -> Complex {
     let Complex(re, im) = mechanics(w, damping).over(device(w, lag));
     Complex(-re, -im)
 }
 
-/// The lowest stiffness at which an oscillation goes on for ever, N·m/rad.
+/// The lowest stiffness of a sustained oscillation, N·m/rad.
 fn linear_onset(lag: Lag, damping: f64) -> f64 {
-    // From where an arm swings by itself to a tenth of the sampling rate.
+    // From an arm's own frequency to a tenth of the sampling rate.
     let (from, to, steps) = (1.0 * TAU, 2000.0 * TAU, 4000);
     let at = |n: u32| from * (to / from).powf(f64::from(n) / f64::from(steps));
     let mut least = f64::INFINITY;

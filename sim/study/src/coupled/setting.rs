@@ -1,4 +1,4 @@
-//! What is varied, and the scene that comes of it.
+//! The varied settings, and the scene of each.
 
 use crepitus_model::joint::presets::{PRESETS, Preset};
 use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
@@ -28,10 +28,10 @@ pub const STIFFNESSES: [f64; 14] = [
 /// Damping of the cuff, N·m·s/rad; the plausible range begins at 0.5.
 pub const DAMPINGS: [f64; 6] = [0.0, 0.05, 0.1, 0.2, 0.5, 1.0];
 
-/// What makes torque of the command.
+/// From the commanded to the acting torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lag {
-    /// At once, and held for a tick.
+    /// Without delay, and held for a tick.
     Ideal,
     /// A motor whose current loop has this bandwidth, Hz.
     Motor(f64),
@@ -46,9 +46,9 @@ pub const LAGS: [Lag; 4] = [
 ];
 
 impl Lag {
-    /// By how much the torque comes late on average, s: half a tick of holding,
-    /// and of a motor 1/g ticks, g = 1 − e^(−2π·f·h) being the share of what the
-    /// current lacks that it gains in a tick.
+    /// Mean delay of the torque, s: half a tick of holding, and for a motor 1/g
+    /// ticks, g = 1 − e^(−2π·f·h) being the share by which the current reduces
+    /// its error in a tick.
     pub fn mean_s(self) -> f64 {
         let ticks = match self {
             Self::Ideal => 0.0,
@@ -57,7 +57,7 @@ impl Lag {
         (0.5 + ticks) * TICK_S
     }
 
-    /// g of a motor; 1 of none.
+    /// g of a motor; 1 without one.
     pub(super) fn gain(self) -> f64 {
         match self {
             Self::Ideal => 1.0,
@@ -65,7 +65,7 @@ impl Lag {
         }
     }
 
-    /// In words.
+    /// Description.
     pub fn name(self) -> String {
         match self {
             Self::Ideal => "torque at once".to_owned(),
@@ -74,10 +74,10 @@ impl Lag {
     }
 }
 
-/// The gear's dry friction, and what the device compensates of it.
+/// The gear's dry friction, and its compensation by the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gear {
-    /// In words.
+    /// Description.
     pub name: &'static str,
     /// Dry friction, N·m.
     pub friction_nm: f64,
@@ -107,8 +107,8 @@ const fn gear(name: &'static str, friction_nm: f64, load_loss: f64, is_compensat
 }
 
 impl Gear {
-    /// Dry friction that is left to a moving shaft, N·m; below zero where the
-    /// device pushes.
+    /// Dry friction left to a moving shaft, N·m; negative if the device
+    /// overcompensates.
     pub fn left_nm(&self) -> f64 {
         let believed = FrictionCompensationSettings::default();
         let compensated = if self.is_compensated {
@@ -120,17 +120,17 @@ impl Gear {
     }
 }
 
-/// Something else that a device may have.
+/// A further effect of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extra {
-    /// In words.
+    /// Description.
     pub name: &'static str,
     /// Lines of a scene.
     toml: &'static str,
 }
 
 impl Extra {
-    /// Nothing else.
+    /// No further effect.
     pub const NONE: Self = Self {
         name: "nothing else",
         toml: "",
@@ -171,17 +171,17 @@ pub struct Setting {
     pub stiffness_nm_per_rad: f64,
     /// Damping of the cuff, N·m·s/rad.
     pub damping_nms_per_rad: f64,
-    /// What makes torque of the command.
+    /// From the commanded to the acting torque.
     pub lag: Lag,
     /// The gear.
     pub gear: Gear,
-    /// What else there is.
+    /// A further effect.
     pub extra: Extra,
 }
 
 impl Setting {
-    /// The paper's joint on the device as it is, at a cuff's damping that is
-    /// plausible.
+    /// The paper's joint on the unchanged device, with a plausible damping of
+    /// the cuff.
     pub fn shipped() -> Self {
         let [coarse, ..] = &PRESETS;
         let [_, _, _, _, _, damping] = DAMPINGS;
@@ -197,7 +197,7 @@ impl Setting {
         }
     }
 
-    /// The scene file of the cell: what `crepitus run` takes.
+    /// The scene file of the cell, for `crepitus run`.
     pub fn toml(&self) -> String {
         let mut text = format!(
             "version = 1\n\
@@ -249,7 +249,7 @@ impl Setting {
     /// The scene.
     ///
     /// # Errors
-    /// [`SceneError`] where the device refuses the joint.
+    /// [`SceneError`] if the device refuses the joint.
     pub fn scene(&self) -> Result<Scene, SceneError> {
         Scene::parse(
             Path::new("coupled.toml"),

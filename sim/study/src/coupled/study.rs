@@ -1,4 +1,4 @@
-//! The map, what the presets have left, and each effect by itself.
+//! The map, the presets' margins, and each effect by itself.
 
 use super::cell::{Cell, Verdict, run_cell};
 use super::criteria::Criteria;
@@ -9,42 +9,41 @@ use crepitus_model::Real;
 use crepitus_model::joint::presets::PRESETS;
 use std::time::Instant;
 
-/// A preset's own stiffness is varied by these factors.
+/// Factors of a preset's own stiffness.
 const FACTORS: [f64; 15] = [
     0.25, 0.354, 0.5, 0.707, 1.0, 1.41, 2.0, 2.83, 4.0, 5.66, 8.0, 11.3, 16.0, 22.6, 32.0,
 ];
 
-/// Dampings at which presets and effects are looked at, N·m·s/rad: no damping
-/// at all, and the cuff's default.
+/// Dampings for presets and effects, N·m·s/rad: none, and the cuff's default.
 const ENDS: [f64; 2] = [0.0, 1.0];
 
-/// Where a column of the map begins to ring.
+/// The onset of ringing in a column of the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Onset {
     /// The first cell of the column.
     pub setting: Setting,
-    /// The lowest stiffness that rings, N·m/rad; none if none does.
+    /// The lowest stiffness that rings, N·m/rad.
     pub measured: Option<f64>,
     /// The largest that was run.
     pub most: f64,
-    /// What theory says.
+    /// Theory.
     pub criteria: Criteria,
 }
 
-/// What a joint has left on one device.
+/// Stability margin of a joint on one device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margin {
-    /// The joint as it is.
+    /// The unchanged joint.
     pub setting: Setting,
-    /// What its shaft does.
+    /// Its verdict.
     pub verdict: Verdict,
-    /// The lowest stiffness that rings, over its own; none if none does.
+    /// The lowest stiffness that rings, over its own.
     pub onset: Option<f64>,
-    /// The largest that the device takes, of those that were run.
+    /// The largest of those run that the device accepts.
     pub most: f64,
 }
 
-/// What came of it.
+/// Results of the study.
 #[derive(Clone, Debug)]
 pub struct CoupledStudy {
     /// The map: of each gear, lag and damping every stiffness, in this order.
@@ -55,22 +54,22 @@ pub struct CoupledStudy {
     pub presets: Vec<Margin>,
     /// The paper's joint, with each effect that the map leaves out.
     pub extras: Vec<Margin>,
-    /// How long it took, s.
+    /// Duration of the study, s.
     pub wall_s: f64,
 }
 
-/// Why it has no result.
+/// Why a study has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum CoupledError<E> {
-    /// The watcher ended it.
+    /// The watcher cancelled it.
     #[error("ended early")]
     Watcher(E),
-    /// A run could not go on.
+    /// A run failed.
     #[error("{0}")]
     Run(String),
 }
 
-/// Carries it out.
+/// Runs the study.
 ///
 /// # Errors
 /// What the watcher returns.

@@ -1,10 +1,10 @@
-//! The smallest set of a scene's effects that stays within a tolerance, what
-//! was dropped, and why the rest is kept.
+//! The smallest set of a scene's effects within a tolerance, the effects that
+//! were dropped, and why the rest is kept.
 
-use super::hand::{Ended, events, feel};
+use super::hand::{Ended, events, hand_torque};
 use super::influence::{Difference, Size, relative};
 use super::smallest::{Set, sets, smallest, without};
-use super::study::{Felt, TIMINGS};
+use super::study::{TIMINGS, WholeRun};
 use super::tolerance::{Criterion, Tolerance};
 use super::variant::states;
 use crate::parallel::{Meter, each};
@@ -15,29 +15,29 @@ use crepitus_scene::Scene;
 use crepitus_scene::run::step_times;
 use serde::Serialize;
 
-/// Costs that differ by less than this are the same.
+/// Relative difference below which costs are equal.
 const SAME_COST: f64 = 0.05;
 
 /// The smallest set of effects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Answer {
-    /// What it has to keep.
+    /// The tolerance.
     pub tolerance: Tolerance,
     /// The set.
     pub chosen: Subset,
-    /// Effects that it has, and what would come of dropping each one, too.
+    /// Its effects, and the result of dropping each one, too.
     pub kept: Vec<Dropped>,
-    /// Effects that it has not, and what comes of dropping each one alone.
+    /// The other effects, and the result of dropping each one alone.
     pub dropped: Vec<Dropped>,
-    /// Other sets of this size that stay within, dearer or further off.
+    /// Other sets of this size within the tolerance, costlier or less accurate.
     pub others: Vec<Subset>,
     /// Time of a step of the whole scene, ns, in the same timings.
     pub scene_ns_per_step: f64,
     /// State variables of the whole scene.
     pub scene_states: usize,
-    /// Sets that were tried.
+    /// Number of sets tried.
     pub tried: usize,
-    /// Sets that there are.
+    /// Number of all sets.
     pub sets: usize,
 }
 
@@ -46,7 +46,7 @@ pub struct Answer {
 pub struct Subset {
     /// Their names.
     pub effects: Vec<&'static str>,
-    /// How far the torque is from that of the whole scene.
+    /// Difference of the torque from that of the whole scene.
     pub difference: Difference,
     /// State variables.
     pub states: usize,
@@ -54,33 +54,33 @@ pub struct Subset {
     pub ns_per_step: f64,
 }
 
-/// What comes of dropping an effect.
+/// Result of dropping an effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Dropped {
     /// The effect.
     pub effect: &'static str,
-    /// Those that leave with it because they need it.
+    /// Dropped with it, because they need it.
     pub along: Vec<&'static str>,
-    /// How far the torque then is from that of the whole scene; none if
-    /// nothing comes of it.
+    /// Difference of the torque from that of the whole scene; `None` if the
+    /// run failed.
     pub difference: Option<Difference>,
-    /// Why nothing comes of it.
+    /// Why the run failed.
     pub failure: Option<String>,
 }
 
-/// What the answer starts from.
+/// Input of the search for an answer.
 pub(super) struct Question<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) whole: &'a Felt,
+    pub(super) whole: &'a WholeRun,
     pub(super) tolerance: &'a Tolerance,
 }
 
-/// Number of sets that a scene's effects make.
+/// Number of valid sets of a scene's effects.
 pub(super) fn set_count(scene: &Scene) -> usize {
     sets(&needs(&scene.effects())).count()
 }
 
-/// For each effect the places of those that it needs.
+/// For each effect the indices of those that it needs.
 fn needs(effects: &[&'static Effect]) -> Vec<Set> {
     effects
         .iter()
@@ -94,8 +94,8 @@ fn needs(effects: &[&'static Effect]) -> Vec<Set> {
         .collect()
 }
 
-/// The answer; none if not even the whole scene is within, which only a scene
-/// that does not repeat itself could do.
+/// The answer; `None` if not even the whole scene is within, which only a scene
+/// with irreproducible runs could cause.
 pub(super) fn answer<W: Watcher>(
     question: &Question<'_>,
     meter: &Meter,
@@ -119,8 +119,8 @@ pub(super) fn answer<W: Watcher>(
         return Ok(None);
     };
     let (chosen_set, chosen) = subsets.remove(cheapest(&subsets));
-    // Each effect is dropped: what is kept from the chosen set, the others
-    // from the whole.
+    // Each effect is dropped: a kept one from the chosen set, the others from
+    // the whole.
     let places: Vec<usize> = (0..effects.len()).collect();
     let dropped = each(&places, meter, watcher, |place| {
         let from = if chosen_set & (1 << place) == 0 {
@@ -146,7 +146,7 @@ pub(super) fn answer<W: Watcher>(
     }))
 }
 
-/// The cheapest, of equally cheap ones the nearest to the scene.
+/// The cheapest, of equal ones that with the smallest difference.
 fn cheapest(subsets: &[(Set, Subset)]) -> usize {
     let least = subsets
         .iter()
@@ -179,11 +179,16 @@ fn names(effects: &[&'static Effect], set: Set) -> Vec<&'static str> {
 }
 
 impl Question<'_> {
-    /// How far a scene's torque is from that of the whole one. If `hurried`,
-    /// it is only followed until it cannot stay within any more.
-    fn difference(&self, scene: &Scene, meter: &Meter, hurried: bool) -> Result<Difference, Ended> {
+    /// Difference of a scene's torque from that of the whole one. If
+    /// `stop_early`, the run ends once it exceeds the tolerance.
+    fn difference(
+        &self,
+        scene: &Scene,
+        meter: &Meter,
+        stop_early: bool,
+    ) -> Result<Difference, Ended> {
         let limit = |criterion| {
-            if hurried {
+            if stop_early {
                 self.tolerance.at_most(criterion)
             } else {
                 f64::INFINITY
@@ -191,11 +196,11 @@ impl Question<'_> {
         };
         let (rms_nm, peak_nm) = (limit(Criterion::Torque), limit(Criterion::Peak));
         let ticks = f64::from_whole(crepitus_scene::run::step_count(scene));
-        // With some room for rounding; in the end the limits themselves count.
+        // With some margin for rounding; in the end the limits decide.
         let most = rms_nm * rms_nm * ticks * (1.0 + 1e-9);
         let mut size = Size::default();
         let mut whole = self.whole.signal.iter();
-        let summary = feel(scene, meter, |torque_nm| {
+        let summary = hand_torque(scene, meter, |torque_nm| {
             size.push(torque_nm - whole.next().copied().unwrap_or(f64::NAN));
             size.squares <= most && size.peak <= peak_nm
         })?;
@@ -206,8 +211,8 @@ impl Question<'_> {
         })
     }
 
-    /// The time of a step of the scene, and the sets with theirs; none if
-    /// there are no sets.
+    /// The time of a step of the scene, and the sets with theirs; `None`
+    /// without sets.
     #[expect(clippy::type_complexity, reason = "used once")]
     fn timed<W: Watcher>(
         &self,
@@ -222,7 +227,7 @@ impl Question<'_> {
                 .iter()
                 .filter_map(|(set, _)| part(self.scene, effects, *set)),
         );
-        let times = step_times(&scenes, TIMINGS, || meter.tell(watcher))?;
+        let times = step_times(&scenes, TIMINGS, || meter.report(watcher))?;
         let mut timed = scenes.iter().zip(times);
         let Some((_, whole)) = timed.next() else {
             return Ok(None);
@@ -243,7 +248,7 @@ impl Question<'_> {
         Ok((!subsets.is_empty()).then_some((whole.ns, subsets)))
     }
 
-    /// What comes of `left`, which is `from` without the effect at `place`.
+    /// Result of `left`, which is `from` without the effect at `place`.
     fn dropped(
         &self,
         effects: &[&'static Effect],
@@ -254,11 +259,11 @@ impl Question<'_> {
     ) -> Dropped {
         let effect = effects.get(place).map_or("", |e| e.name);
         let along = names(effects, from & !left & !(1 << place));
-        let felt = match part(self.scene, effects, left) {
+        let outcome = match part(self.scene, effects, left) {
             Some(scene) => self.difference(&scene, meter, false),
             None => Err(Ended::Failed("the motion needs it".to_owned())),
         };
-        let (difference, failure) = match felt {
+        let (difference, failure) = match outcome {
             Ok(difference) => (Some(difference), None),
             Err(Ended::Failed(why)) => (None, Some(why)),
             Err(_) => (None, None),

@@ -1,7 +1,7 @@
-//! The effects of a scene one after the other, in the order of the table:
-//! from the joint alone to what the hand feels.
+//! The effects of a scene added one by one, in the order of the table: from
+//! the joint alone to the torque at the hand.
 //!
-//! All measures are of the second half of a run, when it has swung in.
+//! All measures are of the second half of a run, in the steady state.
 
 mod signals;
 
@@ -13,17 +13,17 @@ use crepitus_scene::Scene;
 use serde::Serialize;
 use signals::Signals;
 
-/// The end of each run that is shown, s.
+/// The shown part at the end of each run, s.
 const SHOWN_S: f64 = 0.2;
 
 /// Names of the two lines of the picture.
 const MODEL: &str = "torque of the model";
 const HAND: &str = "torque at the hand";
 
-/// What one effect after the other makes of the joint.
+/// The joint with one effect after the other.
 #[derive(Clone, Debug)]
 pub struct BuildUp {
-    /// The joint with its sensor, then with one effect more each.
+    /// The joint with its sensor, then with one more effect each.
     pub rungs: Vec<Rung>,
     /// The torques at the end of each run.
     pub story: Story,
@@ -32,12 +32,12 @@ pub struct BuildUp {
 /// One set of effects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rung {
-    /// What came last; empty for the joint alone.
+    /// The effect added last; empty for the joint alone.
     pub added: &'static str,
-    /// What came of it.
+    /// Measures of the run, unless it failed.
     #[serde(flatten)]
     pub measured: Option<Measured>,
-    /// Why nothing did.
+    /// Why the run failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
@@ -45,15 +45,14 @@ pub struct Rung {
 /// Measures of one run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Measured {
-    /// From the least to the largest of the fast part of the torque at the
-    /// hand, N·m. Fast is what is left of its mean over 0.1 s around.
+    /// Peak-to-peak value of the fast part of the torque at the hand, N·m: the
+    /// torque minus its mean over 0.1 s around.
     pub ripple_nm: f64,
     /// Root mean square of that, N·m.
     pub ripple_rms_nm: f64,
-    /// How far it is behind that of the model's torque, s: where the two
-    /// correlate best.
+    /// Its lag behind that of the model's torque, s, by best correlation.
     pub lag_s: f64,
-    /// Mean length of a stick, s; none if there was none.
+    /// Mean length of a stick, s.
     pub stick_s: Option<f64>,
     /// Shortest time from break to break, s.
     pub shortest_s: Option<f64>,
@@ -65,7 +64,7 @@ pub struct Measured {
     pub fastest_rad_s: f64,
 }
 
-/// Builds `scene` up; none if it has no joint or no plant.
+/// Builds `scene` up; `None` without a joint or a plant.
 ///
 /// # Errors
 /// What the watcher returns.
@@ -78,12 +77,12 @@ pub(super) fn build_up<W: Watcher>(
         return Ok(None);
     }
     let scenes = prefixes(scene);
-    let heard = each(&scenes, meter, watcher, |(_, scene)| {
+    let signals = each(&scenes, meter, watcher, |(_, scene)| {
         Signals::of(scene, meter)
     })?;
     let mut rungs = Vec::new();
     let mut panels = Vec::new();
-    for ((added, _), signals) in scenes.iter().zip(heard) {
+    for ((added, _), signals) in scenes.iter().zip(signals) {
         let (measured, failure) = match signals {
             Ok(signals) => {
                 panels.push(panel(added, &signals));
@@ -110,13 +109,13 @@ pub(super) fn build_up<W: Watcher>(
     }))
 }
 
-/// How many runs it takes.
+/// Number of runs.
 pub(super) fn runs(scene: &Scene) -> usize {
     1 + scene.listed.len()
 }
 
-/// The joint with its sensor, and with one effect more each. What an effect
-/// needs stands before it in the table.
+/// The joint with its sensor, and with one more effect each. The effects that
+/// one needs precede it in the table.
 fn prefixes(scene: &Scene) -> Vec<(&'static str, Scene)> {
     let is_plant = |e: &Effect| !matches!(e.part, Part::Joint | Part::Sensor);
     let last: Vec<&'static Effect> = scene
@@ -186,7 +185,7 @@ mod tests {
         assert_eq!(added, ["", "motor", "drivetrain", "cuff"]);
         assert_eq!(built.story.panels.len(), 4);
         let of = |i: usize| built.rungs[i].measured.unwrap();
-        // Alone, the hand feels what the model shows.
+        // Alone, the hand feels the model's torque.
         assert_eq!(of(0).lag_s, 0.0);
         assert!(of(0).stick_s.is_some());
         assert!(of(1).lag_s > 0.0 && of(1).ripple_nm < of(0).ripple_nm);

@@ -1,4 +1,4 @@
-//! A run as the hand feels it: one torque a tick.
+//! The torque at the hand in a run, one value a tick.
 
 use crate::parallel::Meter;
 use crepitus_model::Real;
@@ -9,50 +9,50 @@ use crepitus_scene::{RunError, Scene, Summary};
 /// Why a run has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(super) enum Ended {
-    /// Whoever listens has heard enough.
-    #[error("heard enough")]
-    Enough,
-    /// The study ends.
+    /// `on_torque` ended the run.
+    #[error("stopped early")]
+    StoppedEarly,
+    /// The study was cancelled.
     #[error("ended early")]
     Stopped,
-    /// It failed, and why.
+    /// The run failed; the reason.
     #[error("{0}")]
     Failed(String),
 }
 
-/// Runs a scene. `hear` gets the torque of each tick, N·m, and may have heard
-/// enough.
-pub(super) fn feel(
+/// Runs a scene. `on_torque` gets the torque of each tick, N·m, and returns
+/// whether to continue.
+pub(super) fn hand_torque(
     scene: &Scene,
     meter: &Meter,
-    hear: impl FnMut(f64) -> bool,
+    on_torque: impl FnMut(f64) -> bool,
 ) -> Result<Summary, Ended> {
     let mut scene = scene.clone();
     scene.trace_step_s = scene.step_s();
-    let mut ear = Ear {
+    let mut observer = HandTorqueObserver {
         place: place(&scene),
-        hear,
+        on_torque,
         rows: 0,
         metered: 0,
         meter,
     };
-    let result = run::run(&scene, &mut ear);
-    // What is left of a run that ended early is done, too.
-    meter.did(run::step_count(&scene).saturating_sub(ear.metered));
+    let result = run::run(&scene, &mut observer);
+    // The rest of a run that ended early is done, too.
+    meter.add(run::step_count(&scene).saturating_sub(observer.metered));
     result.map_err(|e| match e {
         RunError::Observer(ended) => ended,
         other => Ended::Failed(other.to_string()),
     })
 }
 
-/// Events of a run; none without a joint.
+/// Number of events of a run; 0 without a joint.
 pub(super) fn events(summary: &Summary) -> u64 {
     summary
         .events
         .map_or(0, |e| e.breaks + e.sticks + e.reverses)
 }
 
-/// Where in a row the torque at the hand stands; nowhere if there is none.
+/// Index of the torque at the hand in a row, if there is one.
 fn place(scene: &Scene) -> Option<usize> {
     let name = if scene.is_coupled() {
         FELT_COLUMN
@@ -62,16 +62,16 @@ fn place(scene: &Scene) -> Option<usize> {
     columns(scene).iter().position(|c| c.name == name)
 }
 
-struct Ear<'m, F> {
+struct HandTorqueObserver<'m, F> {
     place: Option<usize>,
-    hear: F,
+    on_torque: F,
     rows: u64,
-    /// Ticks that the meter knows of.
+    /// Ticks already added to the meter.
     metered: u64,
     meter: &'m Meter,
 }
 
-impl<F: FnMut(f64) -> bool> Observer for Ear<'_, F> {
+impl<F: FnMut(f64) -> bool> Observer for HandTorqueObserver<'_, F> {
     type Error = Ended;
 
     fn row(&mut self, values: &[f64]) -> Result<(), Ended> {
@@ -87,13 +87,13 @@ impl<F: FnMut(f64) -> bool> Observer for Ear<'_, F> {
         if !torque_nm.is_finite() {
             let time_s = values.first().copied().unwrap_or(f64::NAN);
             return Err(Ended::Failed(format!(
-                "diverged: at t = {time_s} s the torque at the hand is no number"
+                "diverged: at t = {time_s} s the torque at the hand is not finite"
             )));
         }
-        if (self.hear)(torque_nm) {
+        if (self.on_torque)(torque_nm) {
             Ok(())
         } else {
-            Err(Ended::Enough)
+            Err(Ended::StoppedEarly)
         }
     }
 
@@ -102,7 +102,7 @@ impl<F: FnMut(f64) -> bool> Observer for Ear<'_, F> {
     }
 
     fn progress(&mut self, _: f64) -> Result<(), Ended> {
-        self.meter.did(self.rows - self.metered);
+        self.meter.add(self.rows - self.metered);
         self.metered = self.rows;
         if self.meter.is_stopped() {
             return Err(Ended::Stopped);

@@ -1,37 +1,37 @@
-//! What a torque is like over a run, and what it is like beside another.
+//! Statistics of a torque over a run, and of its difference from another.
 
 use crate::spectrum::Welch;
 use crepitus_model::Real;
 use serde::Serialize;
 
-/// Bands in use for the vibration of joints, Hz.
+/// Frequency bands in use for the vibration of joints, Hz.
 pub const BANDS_HZ: [(f64, f64); 3] = [(10.0, 50.0), (50.0, 250.0), (250.0, 450.0)];
 
-/// A torque over a run.
+/// Statistics of a torque over a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Torque {
     /// Root mean square, N·m.
     pub rms_nm: f64,
     /// Largest magnitude, N·m.
     pub peak_nm: f64,
-    /// Root mean square of what vibrates within each of [`BANDS_HZ`], N·m; NaN
-    /// where the run is too short, or the tick too long, to tell.
+    /// Root mean square within each of [`BANDS_HZ`], N·m; NaN if the run is too
+    /// short or the tick too long.
     pub bands_nm: [f64; 3],
 }
 
-/// One torque beside another, tick by tick.
+/// Difference of two torques, tick by tick.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
     /// Root mean square, N·m.
     pub rms_nm: f64,
     /// Largest magnitude, N·m.
     pub peak_nm: f64,
-    /// Difference of the numbers of events over that of the scene; infinite if
-    /// the scene has none.
+    /// Relative difference of the numbers of events; infinite if the scene has
+    /// none.
     pub events_relative: f64,
 }
 
-/// Root mean square and largest magnitude while samples stream by.
+/// Running root mean square and largest magnitude.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Size {
     pub(super) count: u64,
@@ -51,14 +51,14 @@ impl Size {
     }
 }
 
-/// Hears a torque and says what it is like.
+/// Running statistics of a torque.
 ///
-/// The weight of a leg is thousands of times what crepitus vibrates, and
+/// The weight of a leg is thousands of times the vibration of crepitus, and
 /// would leak from below into the bands. So the spectrum is that of the second
-/// difference, which is small where the torque is slow, and what differencing
-/// does to each frequency is undone bin by bin.
+/// difference, which is small for a slow torque, and the gain of differencing
+/// is divided out bin by bin.
 #[derive(Debug)]
-pub(super) struct Listener {
+pub(super) struct TorqueStatistics {
     size: Size,
     tick_s: f64,
     /// The last two samples.
@@ -66,8 +66,8 @@ pub(super) struct Listener {
     welch: Option<Welch>,
 }
 
-impl Listener {
-    /// For so many ticks of this length.
+impl TorqueStatistics {
+    /// Statistics for this number of ticks of this length.
     pub(super) fn new(tick_s: f64, ticks: u64) -> Self {
         Self {
             size: Size::default(),
@@ -114,19 +114,19 @@ pub(super) fn relative(events: u64, scene: u64) -> f64 {
 mod tests {
     use super::*;
 
-    fn heard(tick_s: f64, ticks: u32, torque: impl Fn(f64) -> f64) -> Torque {
-        let mut listener = Listener::new(tick_s, u64::from(ticks));
+    fn measured(tick_s: f64, ticks: u32, torque: impl Fn(f64) -> f64) -> Torque {
+        let mut statistics = TorqueStatistics::new(tick_s, u64::from(ticks));
         for n in 0..ticks {
-            listener.push(torque(f64::from(n) * tick_s));
+            statistics.push(torque(f64::from(n) * tick_s));
         }
-        listener.finish()
+        statistics.finish()
     }
 
     #[test]
     fn a_sine_is_in_its_band_alone() {
         for (band, frequency_hz) in [30.0, 100.0, 350.0].into_iter().enumerate() {
             let sine = |t: f64| 2.0 + 0.3 * (std::f64::consts::TAU * frequency_hz * t).sin();
-            let torque = heard(5e-5, 100_000, sine);
+            let torque = measured(5e-5, 100_000, sine);
             let rms = 0.3 / 2_f64.sqrt();
             for (i, found) in torque.bands_nm.into_iter().enumerate() {
                 let expected = if i == band { rms } else { 0.0 };
@@ -141,7 +141,7 @@ mod tests {
     fn steps_spread_over_the_bands_as_their_harmonics_do() {
         // A square wave of 20 Hz: sines of 4/(π·n) at n·20 Hz, n odd.
         let square = |t: f64| if (t * 20.0).fract() < 0.5 { 1.0 } else { -1.0 };
-        let torque = heard(5e-5, 200_000, square);
+        let torque = measured(5e-5, 200_000, square);
         for ((low, high), found) in BANDS_HZ.into_iter().zip(torque.bands_nm) {
             let power: f64 = (0..20)
                 .map(|i| f64::from(2 * i + 1))
@@ -157,9 +157,9 @@ mod tests {
     fn a_great_weight_does_not_leak_into_the_bands() {
         let tau = std::f64::consts::TAU;
         let weight = |t: f64| 14.0 * (tau * 0.7 * t).sin() + 3.0 * t;
-        let torque = heard(5e-5, 80_000, weight);
+        let torque = measured(5e-5, 80_000, weight);
         assert!(torque.bands_nm.iter().all(|nm| *nm < 5e-5), "{torque:?}");
-        let grating = heard(5e-5, 80_000, |t| weight(t) + 1e-3 * (tau * 30.0 * t).sin());
+        let grating = measured(5e-5, 80_000, |t| weight(t) + 1e-3 * (tau * 30.0 * t).sin());
         let rms = 1e-3 / 2_f64.sqrt();
         assert!(
             (grating.bands_nm[0] / rms - 1.0).abs() < 0.01,
@@ -168,11 +168,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_short_or_too_coarse_has_no_bands() {
-        assert!(heard(5e-5, 1000, f64::sin).bands_nm[0].is_nan());
-        let coarse = heard(2e-3, 5000, f64::sin).bands_nm;
+    fn a_run_too_short_or_too_coarse_has_no_bands() {
+        assert!(measured(5e-5, 1000, f64::sin).bands_nm[0].is_nan());
+        let coarse = measured(2e-3, 5000, f64::sin).bands_nm;
         assert!(coarse[0].is_finite() && coarse[1].is_finite() && coarse[2].is_nan());
-        assert!(heard(5e-5, 1000, f64::sin).rms_nm > 0.0);
+        assert!(measured(5e-5, 1000, f64::sin).rms_nm > 0.0);
     }
 
     #[test]

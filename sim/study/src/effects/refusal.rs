@@ -5,26 +5,26 @@ use crepitus_scene::run::step_count;
 use crepitus_scene::scene::SolverChoice;
 use std::fmt;
 
-/// The most ticks of a scene: the torque at each is kept, 8 bytes a tick.
+/// The most ticks of a scene: the torque at each is stored, 8 bytes a tick.
 pub const MOST_TICKS: u64 = 40_000_000;
 
 /// Why a scene cannot be studied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// Nobody holds the leg.
+    /// The leg is free.
     Released,
     /// Its solver has no step.
     Reference,
     /// It has too many ticks.
     TooLong {
-        /// How many.
+        /// Their number.
         ticks: u64,
     },
 }
 
 impl Refusal {
-    /// The key of the scene that is in the way.
+    /// The key of the scene that prevents it.
     pub fn key(self) -> &'static str {
         match self {
             Self::Released => "motion.kind",
@@ -53,7 +53,7 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Why a scene cannot be studied, if it cannot.
+/// Why a scene cannot be studied, or `None`.
 pub fn refusal(scene: &Scene) -> Option<Refusal> {
     let ticks = step_count(scene);
     if scene.solver == SolverChoice::Reference {
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_has_no_hand_no_step_or_no_end_is_refused_with_its_key() {
+    fn scenes_without_hand_step_or_end_are_refused_with_their_key() {
         let mut long = scene(&["crepitus"], 1.0);
         assert_eq!(refusal(&long), None);
         long.duration_s = 2500.0;

@@ -1,4 +1,4 @@
-//! What a study of effects found.
+//! Results of a study of effects.
 
 use super::answer::Answer;
 use super::build_up::Rung;
@@ -19,26 +19,25 @@ pub struct EffectsStudy {
     pub effects: Vec<&'static str>,
     /// Length of a tick, s.
     pub tick_s: f64,
-    /// How many there were.
+    /// Number of ticks.
     pub ticks: u64,
-    /// What was odd about the scene.
+    /// Warnings of the scene's run.
     pub warnings: Vec<String>,
     /// The scene, then its variants.
     pub rows: Vec<Row>,
-    /// Timings of which the fastest counts.
+    /// Number of timings, of which the fastest counts.
     pub timings: u32,
-    /// The smallest set of effects, if a tolerance was asked for.
+    /// The smallest set of effects, if a tolerance was given.
     pub answer: Option<Answer>,
-    /// The scene's effects one after the other; nothing without a joint or a
-    /// plant.
+    /// The scene's effects added one by one; empty without a joint or a plant.
     pub build_up: Vec<Rung>,
-    /// How long the study took, s.
+    /// Duration of the study, s.
     pub wall_s: f64,
-    /// A picture of that.
+    /// The picture of `build_up`.
     #[serde(skip)]
     pub build_up_story: Option<Story>,
-    /// The torque at the hand in a telling window: of the scene, and of the
-    /// variants that differ most.
+    /// The torque at the hand in the window of largest differences: of the
+    /// scene, and of the variants that differ most.
     #[serde(skip)]
     pub story: Option<Story>,
 }
@@ -46,50 +45,49 @@ pub struct EffectsStudy {
 /// The scene or one of its variants.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// What was done to the scene.
+    /// How it differs from the scene.
     pub change: Change,
-    /// With which effect; empty for the scene itself.
+    /// The effect; empty for the scene itself.
     pub effect: &'static str,
-    /// What left or came with it.
+    /// Effects dropped or added with it.
     pub along: Vec<&'static str>,
     /// State variables.
     pub states: usize,
     /// CPU time of a step without outputs, ns, on the machine of the study.
     pub ns_per_step: f64,
-    /// How much longer than the fastest timing the fastest quarter of them took
-    /// at most, as a share.
+    /// Relative excess of the first quartile of the timings over the fastest.
     pub time_spread: f64,
-    /// What came of it.
+    /// Its outcome.
     #[serde(flatten)]
     pub outcome: Outcome,
 }
 
-/// What came of a run.
+/// Outcome of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Outcome {
-    /// It ran.
+    /// It was completed.
     Ran(Ran),
-    /// It did not.
+    /// It failed.
     Failed {
         /// Why.
         failure: String,
     },
 }
 
-/// A run to its end.
+/// A completed run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ran {
-    /// What the hand felt.
+    /// Torque at the hand.
     pub torque: Torque,
     /// Events of the joint.
     pub events: u64,
-    /// What the effect, and what came or left with it, adds; nothing for the
-    /// scene itself.
+    /// Contribution of the effect and of those dropped or added with it; `None`
+    /// for the scene itself.
     pub added: Option<Added>,
 }
 
-/// What an effect adds: with it less without it.
+/// Contribution of an effect: with it minus without it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Added {
     /// Root mean square of the torque that it adds at the hand, N·m.
@@ -100,15 +98,15 @@ pub struct Added {
     pub events: i64,
     /// State variables.
     pub states: i64,
-    /// CPU time of a step. Where a run is not longer with it than the timings
-    /// can tell only the bound is known: the effect spares as much work as it
-    /// makes, or it hides in the noise.
+    /// CPU time of a step. Below the resolution of the timings only the bound
+    /// is known: the effect saves as much work as it makes, or it is within
+    /// the noise.
     #[serde(flatten)]
     pub time: AddedTime,
 }
 
 impl Row {
-    /// What came of the run, if it ran.
+    /// The completed run, if it did not fail.
     pub fn ran(&self) -> Option<&Ran> {
         match &self.outcome {
             Outcome::Ran(ran) => Some(ran),
@@ -116,12 +114,12 @@ impl Row {
         }
     }
 
-    /// What the effect adds, if both ran.
+    /// Contribution of the effect, if both runs were completed.
     pub fn added(&self) -> Option<&Added> {
         self.ran().and_then(|ran| ran.added.as_ref())
     }
 
-    /// Why it did not run.
+    /// Why the run failed.
     pub fn failure(&self) -> Option<&str> {
         match &self.outcome {
             Outcome::Ran(_) => None,
@@ -129,7 +127,7 @@ impl Row {
         }
     }
 
-    /// What it is: `without drivetrain (and backlash)`.
+    /// Description, such as `without drivetrain (and backlash)`.
     pub fn name(&self) -> String {
         match (self.change, self.along.as_slice()) {
             (Change::Scene, _) => "the scene".to_owned(),
@@ -150,8 +148,8 @@ impl EffectsStudy {
         self.rows.first()
     }
 
-    /// The median spread of the timings, as a share: a cost below this much of
-    /// a step may be none.
+    /// The median relative spread of the timings: costs below this share of a
+    /// step are not significant.
     pub fn time_spread(&self) -> f64 {
         let mut spreads: Vec<f64> = self.rows.iter().map(|row| row.time_spread).collect();
         spreads.retain(|spread| spread.is_finite());
@@ -159,8 +157,7 @@ impl EffectsStudy {
         spreads.get(spreads.len() / 2).copied().unwrap_or(0.0)
     }
 
-    /// The variants that ran, by what the effect adds to the torque, the most
-    /// first.
+    /// The completed variants by contribution to the torque, largest first.
     pub fn by_influence(&self) -> Vec<&Row> {
         let mut rows: Vec<&Row> = self.rows.iter().filter(|r| r.added().is_some()).collect();
         let rms = |row: &Row| row.added().map_or(0.0, |a| a.rms_nm);

@@ -1,21 +1,21 @@
-//! The smallest set of effects that will do: all sets are tried, the small
-//! ones first, until one of a size will.
+//! The smallest sufficient set of effects: all sets are tried, the small ones
+//! first, until one of a size suffices.
 
-/// Effects of a scene by their places, as bits.
+/// A set of a scene's effects, a bit for each index.
 pub(super) type Set = u32;
 
-/// What was found.
+/// Result of the search.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Found<T> {
-    /// The sets of the smallest size that will do, and what each is like.
+    /// The sufficient sets of the smallest size, and their results.
     pub(super) sets: Vec<(Set, T)>,
-    /// How many sets were tried.
+    /// Number of sets tried.
     pub(super) tried: usize,
 }
 
-/// Tries sets of growing size until one will do. `needs` has for each effect
-/// those that it needs; `judge` says of sets which will do, and what they are
-/// like.
+/// Tries sets of growing size until one suffices. `needs` has for each effect
+/// those that it needs; `judge` returns the sufficient ones of some sets with
+/// their results.
 pub(super) fn smallest<T, E>(
     needs: &[Set],
     mut judge: impl FnMut(&[Set]) -> Result<Vec<Option<T>>, E>,
@@ -42,7 +42,7 @@ pub(super) fn smallest<T, E>(
     })
 }
 
-/// All sets in which each effect has what it needs.
+/// All sets in which each effect has those that it needs.
 pub(super) fn sets(needs: &[Set]) -> impl Iterator<Item = Set> {
     let all: Set = (1 << needs.len()) - 1;
     (0..=all).filter(|set| {
@@ -75,8 +75,7 @@ mod tests {
     /// Effects 0 to 4; 3 needs 1, 4 needs 3.
     const NEEDS: [Set; 5] = [0, 0, 0, 0b10, 0b1000];
 
-    /// The error that is left is the sum of what each missing effect adds;
-    /// effects 1 and 2 cancel.
+    /// The error is the sum over the missing effects; effects 1 and 2 cancel.
     fn error(set: Set) -> f64 {
         [0.5, 1.0, -1.0, 0.02, 0.01]
             .iter()
@@ -98,7 +97,7 @@ mod tests {
     #[test]
     fn the_search_is_exact_and_stops_at_the_first_size() {
         assert_eq!(within(10.0).tried, 1);
-        // What cancels is left out together, though neither alone could be.
+        // Effects that cancel are dropped together, though neither alone could be.
         let found = within(0.1);
         assert_eq!(found.sets.len(), 1);
         assert_eq!(found.sets[0].0, 0b00001);

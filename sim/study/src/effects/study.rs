@@ -2,8 +2,8 @@
 
 use super::answer::{Answer, Question, answer, set_count};
 use super::build_up::build_up;
-use super::hand::{Ended, events, feel, ticks};
-use super::influence::{Listener, Size};
+use super::hand::{Ended, events, hand_torque, ticks};
+use super::influence::{Size, TorqueStatistics};
 use super::refusal::{Refusal, refusal};
 use super::results::{Added, EffectsStudy, Outcome, Ran, Row};
 use super::tolerance::Tolerance;
@@ -16,16 +16,16 @@ use crepitus_scene::Scene;
 use crepitus_scene::run::{AddedTime, StepTime, step_count, step_times};
 use std::time::Instant;
 
-/// Timings of which the fastest counts: enough that a busy machine is quiet
-/// in one of them.
+/// Number of timings, of which the fastest counts: enough for a quiet moment
+/// of a busy machine.
 pub(super) const TIMINGS: u32 = 25;
 
-/// What to study.
+/// Plan of a study.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The scene.
     pub scene: Scene,
-    /// How far its torque may change, if the smallest set is wanted.
+    /// Tolerance for the search of the smallest set, if any.
     pub tolerance: Option<Tolerance>,
 }
 
@@ -33,28 +33,28 @@ pub struct Plan {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EffectsError<E> {
-    /// The watcher ended it.
+    /// The watcher cancelled it.
     #[error("ended early")]
     Watcher(E),
     /// The scene cannot be studied.
     #[error("{0}")]
     Refused(Refusal),
-    /// The scene itself does not run.
+    /// The run of the scene itself failed.
     #[error("{0}")]
     Scene(String),
 }
 
 /// The scene's torque at the hand and its events.
-pub(super) struct Felt {
+pub(super) struct WholeRun {
     pub(super) signal: Vec<f64>,
     pub(super) events: u64,
 }
 
-/// Carries out a plan.
+/// Runs a plan.
 ///
 /// # Errors
-/// What the watcher returns, or why the scene cannot be studied. A variant
-/// that fails is a row that says why.
+/// What the watcher returns, or why the scene cannot be studied. A failed
+/// variant is a row with the reason.
 pub fn run<W: Watcher>(
     plan: &Plan,
     watcher: &mut W,
@@ -67,8 +67,8 @@ pub fn run<W: Watcher>(
     let variants = variants(scene);
     let meter = Meter::new(work(plan, variants.len()));
     let (whole, own, warnings) = whole(scene, &meter, watcher)?;
-    let heard = each(&variants, &meter, watcher, |variant| {
-        hear(variant, &whole, &meter)
+    let variant_runs = each(&variants, &meter, watcher, |variant| {
+        run_variant(variant, &whole, &meter)
     })
     .map_err(EffectsError::Watcher)?;
     let (scene_time, times) =
@@ -82,11 +82,17 @@ pub fn run<W: Watcher>(
         time_spread: scene_time.spread,
         outcome: Outcome::Ran(own),
     }];
-    for ((variant, heard), time) in variants.iter().zip(&heard).zip(times) {
-        rows.push(row(variant, heard, (time, scene_time), &whole, &rows[0]));
+    for ((variant, variant_run), time) in variants.iter().zip(&variant_runs).zip(times) {
+        rows.push(row(
+            variant,
+            variant_run,
+            (time, scene_time),
+            &whole,
+            &rows[0],
+        ));
     }
     let answer = find(plan, &whole, &meter, watcher).map_err(EffectsError::Watcher)?;
-    let candidates = candidates(&variants, &heard, &rows[1..]);
+    let candidates = candidates(&variants, &variant_runs, &rows[1..]);
     let story = story(&whole, scene, candidates, &meter, watcher).map_err(EffectsError::Watcher)?;
     let built = build_up(scene, &meter, watcher).map_err(EffectsError::Watcher)?;
     let (build_up, build_up_story) =
@@ -108,7 +114,7 @@ pub fn run<W: Watcher>(
     })
 }
 
-/// All work, in ticks. Of the sets of effects a search may try few.
+/// All work, in ticks; the search for sets may take less.
 fn work(plan: &Plan, variants: usize) -> f64 {
     let sets = if plan.tolerance.is_some() {
         set_count(&plan.scene) + plan.scene.effects().len()
@@ -124,20 +130,20 @@ fn whole<W: Watcher>(
     scene: &Scene,
     meter: &Meter,
     watcher: &mut W,
-) -> Result<(Felt, Ran, Vec<String>), EffectsError<W::Error>> {
-    let felt = each(std::slice::from_ref(scene), meter, watcher, |scene| {
+) -> Result<(WholeRun, Ran, Vec<String>), EffectsError<W::Error>> {
+    let runs = each(std::slice::from_ref(scene), meter, watcher, |scene| {
         let count = step_count(scene);
         let mut signal = Vec::with_capacity(usize::try_from(count).unwrap_or(0));
-        let mut listener = Listener::new(scene.step_s(), count);
-        let summary = feel(scene, meter, |torque_nm| {
+        let mut statistics = TorqueStatistics::new(scene.step_s(), count);
+        let summary = hand_torque(scene, meter, |torque_nm| {
             signal.push(torque_nm);
-            listener.push(torque_nm);
+            statistics.push(torque_nm);
             true
         })?;
-        Ok((signal, listener.finish(), summary))
+        Ok((signal, statistics.finish(), summary))
     })
     .map_err(EffectsError::Watcher)?;
-    match felt.into_iter().next() {
+    match runs.into_iter().next() {
         Some(Ok((signal, torque, summary))) => {
             let events = events(&summary);
             let ran = Ran {
@@ -145,21 +151,21 @@ fn whole<W: Watcher>(
                 events,
                 added: None,
             };
-            Ok((Felt { signal, events }, ran, summary.warnings))
+            Ok((WholeRun { signal, events }, ran, summary.warnings))
         }
         Some(Err(Ended::Failed(why))) => Err(EffectsError::Scene(why)),
         _ => Err(EffectsError::Scene("the run ended early".to_owned())),
     }
 }
 
-/// A variant that ran.
-struct Heard {
+/// The completed run of a variant.
+struct VariantRun {
     ran: Ran,
     difference: Size,
     profile: Profile,
 }
 
-fn hear(variant: &Variant, whole: &Felt, meter: &Meter) -> Result<Heard, String> {
+fn run_variant(variant: &Variant, whole: &WholeRun, meter: &Meter) -> Result<VariantRun, String> {
     let Some(scene) = &variant.scene else {
         return Err(match variant.change {
             Change::With => "the scene's motion, solver or step does not allow it".to_owned(),
@@ -167,21 +173,21 @@ fn hear(variant: &Variant, whole: &Felt, meter: &Meter) -> Result<Heard, String>
         });
     };
     let count = step_count(scene);
-    let mut listener = Listener::new(scene.step_s(), count);
+    let mut statistics = TorqueStatistics::new(scene.step_s(), count);
     let mut difference = Size::default();
     let mut profile = Profile::new(count);
     let mut own = whole.signal.iter();
-    let summary = feel(scene, meter, |torque_nm| {
+    let summary = hand_torque(scene, meter, |torque_nm| {
         let apart = torque_nm - own.next().copied().unwrap_or(f64::NAN);
-        listener.push(torque_nm);
+        statistics.push(torque_nm);
         difference.push(apart);
         profile.push(apart);
         true
     })
     .map_err(|ended| ended.to_string())?;
-    Ok(Heard {
+    Ok(VariantRun {
         ran: Ran {
-            torque: listener.finish(),
+            torque: statistics.finish(),
             events: events(&summary),
             added: None,
         },
@@ -190,8 +196,7 @@ fn hear(variant: &Variant, whole: &Felt, meter: &Meter) -> Result<Heard, String>
     })
 }
 
-/// The times of the scene and of its variants; unknown for one that there is
-/// not.
+/// The times of the scene and of its variants; unknown for an impossible variant.
 fn times<W: Watcher>(
     scene: &Scene,
     variants: &[Variant],
@@ -200,7 +205,7 @@ fn times<W: Watcher>(
 ) -> Result<(StepTime, Vec<StepTime>), W::Error> {
     let mut scenes = vec![scene.clone()];
     scenes.extend(variants.iter().filter_map(|v| v.scene.clone()));
-    let mut times = step_times(&scenes, TIMINGS, || meter.tell(watcher))?.into_iter();
+    let mut times = step_times(&scenes, TIMINGS, || meter.report(watcher))?.into_iter();
     let scene = times.next().unwrap_or(StepTime::UNKNOWN);
     let variants = variants
         .iter()
@@ -212,33 +217,33 @@ fn times<W: Watcher>(
 
 fn row(
     variant: &Variant,
-    heard: &Result<Heard, String>,
+    variant_run: &Result<VariantRun, String>,
     (time, scene_time): (StepTime, StepTime),
-    whole: &Felt,
+    whole: &WholeRun,
     scene: &Row,
 ) -> Row {
-    let time = if heard.is_ok() {
+    let time = if variant_run.is_ok() {
         time
     } else {
         StepTime::UNKNOWN
     };
     let states = variant.scene.as_ref().map_or(0, states);
-    // With the effect less without it.
+    // With the effect minus without it.
     let (sign, added_time) = if variant.change == Change::With {
         (1, AddedTime::between(time, scene_time))
     } else {
         (-1, AddedTime::between(scene_time, time))
     };
-    let outcome = match heard {
-        Ok(heard) => Outcome::Ran(Ran {
+    let outcome = match variant_run {
+        Ok(variant_run) => Outcome::Ran(Ran {
             added: Some(Added {
-                rms_nm: heard.difference.rms(),
-                peak_nm: heard.difference.peak,
-                events: sign * signed(heard.ran.events, whole.events),
+                rms_nm: variant_run.difference.rms(),
+                peak_nm: variant_run.difference.peak,
+                events: sign * signed(variant_run.ran.events, whole.events),
                 states: sign * signed(count(states), count(scene.states)),
                 time: added_time,
             }),
-            ..heard.ran
+            ..variant_run.ran
         }),
         Err(failure) => Outcome::Failed {
             failure: failure.clone(),
@@ -267,7 +272,7 @@ fn signed(a: u64, b: u64) -> i64 {
 
 fn find<W: Watcher>(
     plan: &Plan,
-    whole: &Felt,
+    whole: &WholeRun,
     meter: &Meter,
     watcher: &mut W,
 ) -> Result<Option<Answer>, W::Error> {
@@ -287,21 +292,21 @@ fn find<W: Watcher>(
 
 fn candidates<'a>(
     variants: &'a [Variant],
-    heard: &'a [Result<Heard, String>],
+    variant_runs: &'a [Result<VariantRun, String>],
     rows: &[Row],
 ) -> Vec<Candidate<'a>> {
     variants
         .iter()
-        .zip(heard)
+        .zip(variant_runs)
         .zip(rows)
-        .filter_map(|((variant, heard), row)| {
-            let heard = heard.as_ref().ok()?;
+        .filter_map(|((variant, variant_run), row)| {
+            let variant_run = variant_run.as_ref().ok()?;
             Some(Candidate {
                 scene: variant.scene.as_ref()?,
                 change: variant.change,
                 name: row.name(),
-                rms_nm: heard.difference.rms(),
-                profile: &heard.profile,
+                rms_nm: variant_run.difference.rms(),
+                profile: &variant_run.profile,
             })
         })
         .collect()

@@ -1,17 +1,17 @@
-//! A tolerance: how far the torque at the hand, and the events, may be from
-//! those of the whole scene, written `torque=5e-3,events=0.01`.
+//! A tolerance: limits on the difference of the torque at the hand, and of the
+//! events, from the whole scene, written `torque=5e-3,events=0.01`.
 
 use super::influence::Difference;
 use crate::limits::{self, Limited};
 use serde::Serialize;
 
-/// Limits that what is left of a scene has to keep.
+/// Limits on a reduced scene.
 pub type Tolerance = limits::Limits<Criterion>;
 
-/// One of them.
+/// One limit.
 pub type Limit = limits::Limit<Criterion>;
 
-/// What can be limited.
+/// A difference that can be limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Criterion {
@@ -64,14 +64,14 @@ impl Criterion {
 }
 
 impl Tolerance {
-    /// Whether a difference keeps every limit.
+    /// Whether a difference is within every limit.
     pub fn holds(&self, difference: &Difference) -> bool {
         self.limits()
             .iter()
             .all(|limit| limit.criterion.of(difference) <= limit.at_most)
     }
 
-    /// The limit of a criterion; infinite if there is none.
+    /// The limit of a criterion; infinite without one.
     pub fn at_most(&self, criterion: Criterion) -> f64 {
         self.limits()
             .iter()

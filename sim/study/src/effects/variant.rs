@@ -9,7 +9,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Change {
-    /// It is the scene.
+    /// The scene itself.
     Scene,
     /// An effect is left out.
     Without,
@@ -31,19 +31,19 @@ impl Change {
 /// A variant of a scene.
 #[derive(Clone, Debug)]
 pub struct Variant {
-    /// What is done to the scene.
+    /// How it differs from the scene.
     pub change: Change,
-    /// With which effect.
+    /// The effect.
     pub effect: &'static str,
-    /// Effects that leave with it because they need it, or come with it
-    /// because it needs them.
+    /// Effects dropped with it because they need it, or added because it needs
+    /// them.
     pub along: Vec<&'static str>,
-    /// What comes of it; none if the scene does not allow it.
+    /// The changed scene; `None` if it would be invalid.
     pub scene: Option<Scene>,
 }
 
-/// All variants of a scene: first what it has and can be left out, then what
-/// it has not and can be added, each in the order of the table.
+/// All variants of a scene: first its effects left out, then the others added,
+/// each in the order of the table.
 pub fn variants(scene: &Scene) -> Vec<Variant> {
     let present = scene.effects().into_iter().map(|effect| {
         let left = scene.without(effect);
@@ -70,7 +70,7 @@ pub fn variants(scene: &Scene) -> Vec<Variant> {
     present.chain(absent).collect()
 }
 
-/// Effects of `large` that `small` has not, but for `effect`.
+/// Effects of `large` missing in `small`, except `effect`.
 fn more(large: &Scene, small: &Scene, effect: &Effect) -> Vec<&'static str> {
     large
         .effects()
@@ -80,7 +80,7 @@ fn more(large: &Scene, small: &Scene, effect: &Effect) -> Vec<&'static str> {
         .collect()
 }
 
-/// State variables of a scene; one that two effects share counts once.
+/// Number of state variables of a scene; a shared one counts once.
 pub fn states(scene: &Scene) -> usize {
     let mut names: Vec<_> = scene.effects().into_iter().flat_map(|e| e.states).collect();
     names.sort_unstable();
@@ -93,7 +93,7 @@ mod tests {
     use super::super::study::tests::scene;
     use super::*;
 
-    fn told(effects: &[&str]) -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
+    fn variant_names(effects: &[&str]) -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
         variants(&scene(effects, 0.1))
             .into_iter()
             .map(|v| (v.change.name(), v.effect, v.along))
@@ -101,11 +101,11 @@ mod tests {
     }
 
     #[test]
-    fn what_needs_an_effect_leaves_with_it_and_what_it_needs_comes_with_it() {
-        let told = told(&["crepitus", "drivetrain", "friction-compensation"]);
-        assert_eq!(told.len(), EFFECTS.len());
+    fn dependents_are_dropped_with_an_effect_and_its_needs_are_added_with_it() {
+        let names = variant_names(&["crepitus", "drivetrain", "friction-compensation"]);
+        assert_eq!(names.len(), EFFECTS.len());
         assert_eq!(
-            told[..4],
+            names[..4],
             [
                 ("without", "crepitus", vec![]),
                 ("without", "drivetrain", vec!["friction-compensation"]),
@@ -113,7 +113,7 @@ mod tests {
                 ("with", "encoder", vec![]),
             ]
         );
-        let alone = self::told(&[]);
+        let alone = variant_names(&[]);
         assert!(alone.contains(&("with", "backlash", vec!["drivetrain"])));
         assert!(alone.contains(&("with", "bone-shaping", vec!["crepitus"])));
     }

@@ -7,8 +7,8 @@ mod trend;
 
 pub(super) use profile::Profile;
 
-use super::hand::feel;
-use super::study::Felt;
+use super::hand::hand_torque;
+use super::study::WholeRun;
 use super::variant::Change;
 use crate::parallel::{Meter, each};
 use crate::stability::story::{Panel, Scale, Series, Story};
@@ -42,7 +42,7 @@ pub(super) struct Candidate<'a> {
 
 /// The story of those that differ most; none if none differs.
 pub(super) fn story<W: Watcher>(
-    whole: &Felt,
+    whole: &WholeRun,
     scene: &Scene,
     mut candidates: Vec<Candidate<'_>>,
     meter: &Meter,
@@ -63,7 +63,7 @@ pub(super) fn story<W: Watcher>(
         let mut signal = Vec::with_capacity(to - from);
         let mut tick = 0;
         // It has just run; where it now ends early, so does its line.
-        let _ = feel(&short, meter, |torque_nm| {
+        let _ = hand_torque(&short, meter, |torque_nm| {
             if tick >= from {
                 signal.push(torque_nm);
             }
@@ -124,7 +124,7 @@ const WITHOUT: &str = "with the effect left out";
 const WITH: &str = "with the effect added";
 
 /// The ticks of the window, from its first up to its last.
-fn window(whole: &Felt, candidates: &[Candidate<'_>], tick_s: f64) -> (usize, usize) {
+fn window(whole: &WholeRun, candidates: &[Candidate<'_>], tick_s: f64) -> (usize, usize) {
     let ticks = whole.signal.len();
     let all_s = tick_s * f64::from_whole(u64::try_from(ticks).unwrap_or(0));
     let length_s = if whole.events > 0 {
@@ -185,7 +185,7 @@ mod tests {
         }
         assert!(profile.bins.len() <= 4096);
         let scene = super::super::study::tests::scene(&["crepitus"], 2.0);
-        let whole = Felt {
+        let whole = WholeRun {
             signal: vec![0.0; 40_000],
             events: 240,
         };

@@ -1,4 +1,4 @@
-//! A hard case: what makes it hard, its exact inputs, and what must hold.
+//! A hard case: why it is hard, its exact inputs, and its criteria.
 
 use super::criterion::Criterion;
 use super::input::Input;
@@ -16,35 +16,33 @@ pub struct Case {
     pub id: &'static str,
     /// Its name on the command line: `constant-speed`.
     pub name: &'static str,
-    /// What it is, in a few words.
+    /// Its title.
     pub title: &'static str,
-    /// What makes it hard.
+    /// Why it is hard.
     pub hard: &'static str,
-    /// Where it and its number come from.
+    /// Source of the case and of its limits.
     pub source: &'static str,
     /// Hours of simulated time: only with `--long`.
     pub long: bool,
-    /// Which subjects must hold; what the others do is shown.
+    /// Which subjects must hold; the others are only shown.
     pub must: fn(Subject) -> bool,
-    /// What a subject is put through; nothing where the case says nothing
-    /// about it.
+    /// The trials of a subject; empty if the case does not apply to it.
     pub trials: fn(Subject) -> Vec<Trial>,
 }
 
-/// One run of a case and what must hold in it.
+/// One run of a case and its criteria.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
     /// The joint.
     pub settings: Settings,
-    /// What drives it.
+    /// Its input.
     pub input: Input,
-    /// What must hold beside the common bounds.
+    /// Criteria beside the common bounds.
     pub criteria: Vec<Criterion>,
 }
 
 impl Trial {
-    /// The joint and its input in words; the joint only where it differs from
-    /// the paper's.
+    /// Describes the joint, where it differs from the paper's, and its input.
     pub fn describe(&self) -> String {
         let p = &self.settings.parameters;
         let paper = Parameters::default();
@@ -62,20 +60,20 @@ impl Trial {
 }
 
 impl Case {
-    /// What goes in, in words: every trial of every subject, none twice.
+    /// Descriptions of the inputs of all trials of all subjects, without
+    /// duplicates.
     pub fn inputs(&self) -> Vec<String> {
         self.collect(|trial| vec![trial.describe()])
     }
 
-    /// What must hold, in words, none twice.
+    /// Descriptions of the criteria, without duplicates.
     pub fn criteria(&self) -> Vec<String> {
         self.collect(|trial| trial.criteria.iter().map(ToString::to_string).collect())
     }
 
-    /// What this subject is put through; nothing where the case says nothing
-    /// about it. A rung that needs the exact motion is given no other; the
-    /// reference, what it has a meaning for: a motion that is prescribed and
-    /// not sampled.
+    /// The trials of this subject; empty if the case does not apply to it. A
+    /// rung that needs the exact motion gets no other; the reference only
+    /// motions that are prescribed and not sampled.
     pub fn trials_of(&self, subject: Subject) -> Vec<Trial> {
         let mut trials = (self.trials)(subject);
         if subject.solver.needs_exact_motion() {
@@ -106,8 +104,8 @@ impl Case {
     }
 }
 
-/// Who must hold unless a case says otherwise: `exact-events` and the reference
-/// everywhere, and under `frozen` also `exact-break`, which is the same there.
+/// The subjects that must hold by default: `exact-events` and the reference,
+/// and under `frozen` also `exact-break`, which is the same there.
 pub fn located(subject: Subject) -> bool {
     match subject.solver {
         Rung::Reference | Rung::Ladder(Solver::ExactEvents) => true,

@@ -1,11 +1,9 @@
-//! The catalogue of hard cases: all of them, as data, in the order of their
-//! numbers.
+//! The catalogue of hard cases as data, in the order of their numbers.
 //!
-//! H01 to H36 have the numbers of the report on numerics that the design rests
-//! on; from H38 on are those that planted faults asked for. A case that ends in `L` is the long sibling of the one before it: hours
-//! of simulated time. To add a case, write a function like its neighbours in
-//! the file of its theme and give it a line in [`all`]; tests, matrix and
-//! report follow.
+//! From H38 on are those that were added to detect planted faults. A case that
+//! ends in `L` is the long version of the one before it: hours of simulated
+//! time. To add a case, write a function like its neighbours in the file of its
+//! theme and give it a line in [`all`]; tests, matrix and report follow.
 
 mod arithmetic;
 mod commits;
@@ -97,7 +95,7 @@ pub fn all() -> Vec<Case> {
 /// Finds a case by its number or its name.
 ///
 /// # Errors
-/// Names that look like `wanted`, the likeliest first; all if none does.
+/// Names similar to `wanted`, the likeliest first; all if none is.
 pub fn find(wanted: &str) -> Result<Case, Vec<&'static str>> {
     let all = all();
     let wanted = wanted.to_lowercase();

@@ -1,4 +1,4 @@
-//! What must hold in a trial, with its number.
+//! Criteria of a trial, with their limits.
 
 mod words;
 
@@ -6,20 +6,19 @@ use super::input::Input;
 use crepitus_model::EVENTS_PER_STEP;
 use crepitus_scene::scene::Precision;
 
-/// What holds in every trial beside its own criteria: nothing is infinite or
-/// no number, and no torque is above Ts by more than this share; under
-/// `frozen` no angle of a stick is above Ts/kr by more, unless its step had as
-/// many events as a step may have.
+/// Common bounds of every trial: everything is finite, and no torque exceeds
+/// Ts by more than this share; under `frozen` no angle of a stick exceeds
+/// Ts/kr by more, unless its step had as many events as a step may have.
 pub const BOUND_SLACK: f64 = 1e-5;
 
-/// How much of (work + stored energy) may be missing under `physical` with
-/// both events located.
+/// Largest missing share of (work + stored energy) under `physical` with both
+/// events located.
 pub const BALANCE: Limits = Limits {
     f64: 1e-10,
     f32: 1e-4,
 };
 
-/// The common bounds in words.
+/// Descriptions of the common bounds.
 pub fn common_bounds() -> [String; 3] {
     [
         format!(
@@ -74,13 +73,13 @@ pub enum Counted {
     Reverses,
 }
 
-/// What must hold.
+/// A criterion.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Criterion {
     /// The common bounds, and nothing else.
     Survives,
-    /// The true events in their order, each this near.
+    /// The true events in their order, each within a tolerance.
     Events {
         /// Seconds.
         within_s: Limits,
@@ -90,9 +89,9 @@ pub enum Criterion {
         /// N·m.
         within_nm: Limits,
     },
-    /// So many events.
+    /// Number of events.
     Count {
-        /// Of what.
+        /// The counted events.
         what: Counted,
         /// At least.
         least: u64,
@@ -109,7 +108,7 @@ pub enum Criterion {
         /// At most.
         most: f64,
     },
-    /// From break to break the closed form's frequency.
+    /// The frequency of breaks is that of the closed form.
     CycleRate {
         /// The closed form, Hz.
         hz: f64,
@@ -142,7 +141,7 @@ pub enum Criterion {
         low_nm: f64,
         /// N·m.
         high_nm: f64,
-        /// How far outside, N·m.
+        /// Tolerance outside, N·m.
         slack_nm: f64,
     },
     /// From `from_s` on every torque is the same, bit for bit.
@@ -165,7 +164,7 @@ pub enum Criterion {
     /// In a slip the shaft leads the object in the slip's sense, so the torque
     /// changes sign only when the relative velocity does.
     SlipsWithShaft {
-        /// How far it may lag at the end of a step, rad/s.
+        /// Largest lag at the end of a step, rad/s.
         within_rad_s: Limits,
     },
     /// The torque is that of another input with the sign changed, bit for bit.
@@ -181,12 +180,12 @@ pub enum Criterion {
         /// Relative.
         within: f64,
     },
-    /// So few steps end with a velocity below the smallest normal number.
+    /// Number of steps that end with a velocity below the smallest normal number.
     Subnormals {
         /// At most.
         most: u64,
     },
-    /// From one step to the next the torque moves by no more.
+    /// Change of torque from one step to the next.
     TorqueStep {
         /// N·m.
         most_nm: f64,
@@ -196,17 +195,17 @@ pub enum Criterion {
         /// Relative: rounding only.
         most: Limits,
     },
-    /// Between events no torque moves faster than the slew limit, beyond what
-    /// the shaft's travel explains.
+    /// Between events the torque keeps the slew limit, apart from the shaft's
+    /// travel.
     Slew {
-        /// Share of the limit beyond it: rounding only.
+        /// Share of the limit by which it is exceeded: rounding only.
         beyond: Limits,
     },
-    /// The first event after this time is a break, and comes when it should.
+    /// The first event after this time is a break, and on time.
     FirstBreakAfter {
         /// Since the start, s.
         from_s: f64,
-        /// When it is due, s.
+        /// Its due time, s.
         at_s: f64,
         /// Seconds.
         within_s: Limits,
@@ -223,8 +222,8 @@ pub enum Criterion {
         /// At most.
         most: u64,
     },
-    /// Energy that the hand gets back over any time, as a share of the bound
-    /// Ts²/2kr, sampling's (½ + d)·kr·h·∫Ω²dt being granted.
+    /// Energy that the hand gets back over any time, beyond that of sampling,
+    /// (½ + d)·kr·h·∫Ω²dt, as a share of the bound Ts²/2kr.
     Returned {
         /// At most.
         most: f64,
@@ -234,8 +233,8 @@ pub enum Criterion {
 }
 
 impl Criterion {
-    /// Whether it says something about a solver that has no steps, and that the
-    /// true events come from.
+    /// Whether it applies to the reference, which has no steps and provides the
+    /// true events.
     pub fn suits_the_reference(&self) -> bool {
         !matches!(
             self,
@@ -248,7 +247,7 @@ impl Criterion {
         )
     }
 
-    /// The other input that a criterion compares with.
+    /// The second input of a comparison.
     pub fn twin(&self) -> Option<&Input> {
         match self {
             Self::MirrorOf(input) | Self::SameAs(input) => Some(input),

@@ -1,4 +1,4 @@
-//! What a joint is driven with in a trial: the exact input, as data.
+//! The exact input of a joint in a trial, as data.
 
 mod device;
 mod words;
@@ -39,7 +39,7 @@ pub enum Shaft {
     },
 }
 
-/// What a joint is driven with.
+/// The input of a joint.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Input {
@@ -52,7 +52,7 @@ pub enum Input {
         /// The step, s.
         step_s: f64,
     },
-    /// The same step again and again, for runs too long to cut up.
+    /// The same step repeated, for runs too long to cut into steps.
     Repeated {
         /// Ω, rad/s.
         omega_rad_s: f64,
@@ -61,7 +61,7 @@ pub enum Input {
         /// The step, s.
         step_s: f64,
     },
-    /// A motion seen through the encoder at the motor and the estimator that
+    /// A motion measured by the encoder at the motor and the estimator that
     /// ships.
     Encoder {
         /// The motion.
@@ -72,15 +72,15 @@ pub enum Input {
         rate_hz: f64,
         /// Lines of the encoder's disc.
         lines: f64,
-        /// How far a reading is early or late at most, in periods.
+        /// Largest jitter of a reading, in periods.
         jitter: f64,
-        /// The share of readings that are lost.
+        /// The share of lost readings.
         lost: f64,
         /// Counter at the start; it wraps as a 32-bit timer does.
         first_count: i32,
     },
-    /// Velocities without memory: every step ends at a random one, and every
-    /// fourth begins with a jump to one.
+    /// White velocities: every step ends at a random one, and every fourth
+    /// begins with a jump to one.
     White {
         /// The largest speed, rad/s.
         most_rad_s: f64,
@@ -91,8 +91,8 @@ pub enum Input {
         /// The step, s.
         step_s: f64,
     },
-    /// A hand of inertia I with damping b on the joint, which it turns and
-    /// whose torque it gets, held over each step: I·Ω̇ = −T − b·Ω.
+    /// A hand of inertia I with damping b that turns the joint against its
+    /// torque, held over each step: I·Ω̇ = −T − b·Ω.
     Hand {
         /// I, kg·m².
         inertia_kg_m2: f64,
@@ -105,23 +105,23 @@ pub enum Input {
         /// The step, s.
         step_s: f64,
     },
-    /// A motion that is not always seen as it is.
+    /// A motion with faulty samples.
     Faulty {
         /// The motion.
         shaft: Shaft,
-        /// What goes wrong.
+        /// The fault.
         fault: Fault,
         /// How long, s.
         duration_s: f64,
         /// The step, s.
         step_s: f64,
     },
-    /// A frozen joint whose parameters change under way, ramped as the device
-    /// does it.
-    Changed {
+    /// A frozen joint whose parameters change during the run, ramped as in the
+    /// device.
+    ParameterChanges {
         /// The motion.
         shaft: Shaft,
-        /// When, and to what.
+        /// The changes.
         changes: Vec<Change>,
         /// How long, s.
         duration_s: f64,
@@ -129,15 +129,15 @@ pub enum Input {
         step_s: f64,
     },
     /// A hand that shakes a joint as the device renders it.
-    Shaken {
-        /// How.
+    ShakingHand {
+        /// The shaking motion.
         shake: Shake,
         /// How long, s.
         duration_s: f64,
         /// The step, s.
         step_s: f64,
     },
-    /// A frozen joint as the device renders it, with what it meets there.
+    /// A frozen joint as the device renders it, with lost samples and commits.
     Rendered(Rendered),
     /// Settings and steps that must be refused.
     Refusals(Vec<Attempt>),
@@ -186,7 +186,7 @@ impl Shaft {
 }
 
 impl Input {
-    /// Duration and step, s; `None` where nothing runs.
+    /// Duration and step, s; `None` if nothing runs.
     pub fn duration_and_step_s(&self) -> Option<(f64, f64)> {
         match *self {
             Self::Sampled {
@@ -204,10 +204,10 @@ impl Input {
             | Self::Faulty {
                 duration_s, step_s, ..
             }
-            | Self::Changed {
+            | Self::ParameterChanges {
                 duration_s, step_s, ..
             }
-            | Self::Shaken {
+            | Self::ShakingHand {
                 duration_s, step_s, ..
             }
             | Self::Rendered(Rendered {
@@ -222,7 +222,7 @@ impl Input {
         }
     }
 
-    /// Whether it has a meaning without samples.
+    /// Whether it applies to the reference, which takes no samples.
     pub(super) fn suits_the_reference(&self) -> bool {
         matches!(self, Self::Sampled { .. })
     }
@@ -236,13 +236,13 @@ impl Input {
         }
     }
 
-    /// Whether each step is that of the motion, as far as f64 goes: no counts of
-    /// an encoder, and nothing made up for.
+    /// Whether each step is that of the motion to f64 precision: without an
+    /// encoder and without catching up.
     pub(super) fn is_exact(&self) -> bool {
         !matches!(self, Self::Encoder { .. } | Self::Faulty { .. })
     }
 
-    /// Steps of a run; 0 where nothing runs.
+    /// Steps of a run; 0 if nothing runs.
     pub fn steps(&self) -> f64 {
         self.duration_and_step_s()
             .map_or(0.0, |(duration_s, step_s)| (duration_s / step_s).round())
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn bursts_begin_and_come_again_when_they_should() {
+    fn bursts_begin_and_repeat_on_time() {
         let lost = |every, from_s| Lost {
             ticks: 2,
             every,

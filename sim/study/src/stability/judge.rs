@@ -1,4 +1,4 @@
-//! Holds a criterion against what was seen.
+//! Checks a criterion against observations.
 
 use super::criterion::{BALANCE, BOUND_SLACK, Counted, Criterion};
 use super::observation::Observation;
@@ -11,31 +11,31 @@ use crepitus_model::solver::Solver;
 use crepitus_model::{EventKind, Real};
 use crepitus_scene::scene::Precision;
 
-/// A cycle rate off by more than this factor is another motion.
+/// Factor of the cycle rate beyond which it is another motion.
 const ANOTHER_MOTION: f64 = 2.0;
 
-/// What a criterion is held against.
+/// Observations for a criterion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Evidence<'a> {
     pub(super) subject: Subject,
     pub(super) seen: &'a Observation,
-    /// The true events, where the input has some.
+    /// The true events, if the input has some.
     pub(super) truth: &'a [TrueEvent],
-    /// What was seen with the input that the criterion compares with.
+    /// Observation of the second input of a comparison.
     pub(super) twin: Option<&'a Observation>,
 }
 
-/// What came of a criterion.
+/// Result of a criterion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Finding {
     /// Met or missed, by its number.
     Number(Margin),
-    /// Something else than the joint was simulated.
+    /// The motion is not the joint's.
     Failed(Failure, Option<f64>),
 }
 
 impl Finding {
-    /// As a verdict.
+    /// Converts to a verdict.
     pub(super) fn verdict(self, flagged: bool) -> Verdict {
         match self {
             Self::Number(margin) if margin.measured <= margin.limit => Verdict::Holds(margin),
@@ -49,7 +49,7 @@ impl Finding {
     }
 }
 
-/// The common bounds: what is broken of them, if anything.
+/// Checks the common bounds.
 pub(super) fn common(evidence: &Evidence<'_>) -> Option<Finding> {
     let seen = evidence.seen;
     if seen.overflow_s.is_some() {
@@ -65,7 +65,7 @@ pub(super) fn common(evidence: &Evidence<'_>) -> Option<Finding> {
     (missing.is_nan() || missing > limit).then_some(number(missing, limit, ""))
 }
 
-/// Holds `criterion` against the evidence.
+/// Checks `criterion` against the evidence.
 pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
     let Evidence { subject, seen, .. } = *evidence;
     let tally = &seen.tally;
@@ -156,7 +156,7 @@ pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
     }
 }
 
-/// Holds a criterion of a joint in a device against what was seen.
+/// Checks a criterion of a joint in a device.
 fn of_a_device(criterion: &Criterion, seen: &Observation, precision: Precision) -> Finding {
     match criterion {
         Criterion::TorqueStep { most_nm } => number(seen.largest_step_nm, *most_nm, "N·m"),
@@ -187,7 +187,7 @@ fn of_a_device(criterion: &Criterion, seen: &Observation, precision: Precision) 
     }
 }
 
-/// Holds a criterion of the torque's course against what was seen.
+/// Checks a criterion of the torque over time.
 fn torques(criterion: &Criterion, seen: &Observation, precision: Precision) -> Finding {
     match criterion {
         Criterion::TorqueWithin {
@@ -219,7 +219,7 @@ fn torques(criterion: &Criterion, seen: &Observation, precision: Precision) -> F
     }
 }
 
-/// What a criterion found that a verdict has no place for.
+/// A result of a criterion that does not fit into a verdict.
 pub(super) fn remark(criterion: &Criterion, seen: &Observation) -> String {
     match criterion {
         Criterion::TorqueBits(hash) if seen.torque_bits.0 != *hash => {
@@ -229,7 +229,7 @@ pub(super) fn remark(criterion: &Criterion, seen: &Observation) -> String {
     }
 }
 
-/// A number against its limit.
+/// Compares a number with its limit.
 fn number(measured: f64, limit: f64, unit: &'static str) -> Finding {
     Finding::Number(Margin {
         measured,
@@ -246,7 +246,7 @@ fn same(are: bool) -> Finding {
     }
 }
 
-/// The same events, and how far off they are.
+/// Checks the events and their times.
 fn events(evidence: &Evidence<'_>, within_s: f64) -> Finding {
     let Evidence { seen, truth, .. } = evidence;
     let true_events: Vec<TimedEvent> = truth.iter().map(|t| t.event).collect();
@@ -270,7 +270,7 @@ fn events(evidence: &Evidence<'_>, within_s: f64) -> Finding {
     number(errors.max_s, within_s, "s")
 }
 
-/// How far off the torque after matched events is.
+/// Checks the torque after matched events.
 fn event_torques(evidence: &Evidence<'_>, within_nm: f64) -> Finding {
     let Evidence { seen, truth, .. } = evidence;
     let true_events: Vec<TimedEvent> = truth.iter().map(|t| t.event).collect();
@@ -295,7 +295,7 @@ fn cycle_rate(seen: &Observation, hz: f64, within: f64) -> Finding {
         },
         None,
     );
-    // With few cycles a count says too little.
+    // A count of few cycles is too coarse.
     let share = seen.tally.cycles.count() / (expected - 1.0).max(1.0);
     match seen.tally.cycles.mean() {
         Some(mean_s) if share * ANOTHER_MOTION >= 1.0 && share <= ANOTHER_MOTION => {

@@ -7,9 +7,9 @@ use crepitus_model::joint::shaft::Linear;
 use crepitus_model::solver::Solver;
 use crepitus_model::solver::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
 
-/// What to do once the locator is known.
+/// Work that is generic over the locator.
 pub(super) trait WithLocator<F: Real> {
-    /// What comes of it.
+    /// Its result.
     type Output;
 
     /// Called with the locator as a type.

@@ -15,12 +15,12 @@ use crepitus_model::{Real, Settings, SettingsError};
 use std::rc::Rc;
 use std::time::Instant;
 
-/// What to run.
+/// Plan of a run.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The cases.
     pub cases: Vec<Case>,
-    /// Who is put to them.
+    /// The subjects.
     pub subjects: Vec<Subject>,
 }
 
@@ -31,9 +31,9 @@ pub struct Cell {
     pub subject: Subject,
     /// Whether it must hold: the tool and the tests fail if it does not.
     pub must_hold: bool,
-    /// How it stood the worst of the case's trials.
+    /// Verdict of the worst of the case's trials.
     pub verdict: Verdict,
-    /// Which trial that was, and which criterion.
+    /// That trial, and its criterion.
     pub detail: String,
 }
 
@@ -51,7 +51,7 @@ pub struct Row {
 pub struct Matrix {
     /// The rows.
     pub rows: Vec<Row>,
-    /// How long it took, s.
+    /// Duration of the run, s.
     pub wall_s: f64,
 }
 
@@ -67,7 +67,7 @@ impl Matrix {
     }
 }
 
-/// Carries out a plan.
+/// Runs a plan.
 ///
 /// # Errors
 /// What the watcher returns, or a trial whose settings are refused.
@@ -87,7 +87,7 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Matrix, StudyErro
             if trials.is_empty() {
                 continue;
             }
-            let (verdict, detail) = stand(subject, &trials, &mut truths, &mut work)?;
+            let (verdict, detail) = worst_verdict(subject, &trials, &mut truths, &mut work)?;
             cells.push(Cell {
                 subject,
                 must_hold: (case.must)(subject),
@@ -104,8 +104,8 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Matrix, StudyErro
     Ok(matrix)
 }
 
-/// How a subject stands the worst of some trials, and which that was.
-fn stand<W: Watcher>(
+/// Verdict of a subject in the worst of some trials, with that trial.
+fn worst_verdict<W: Watcher>(
     subject: Subject,
     trials: &[Trial],
     truths: &mut Truths,
@@ -155,7 +155,7 @@ fn stand<W: Watcher>(
     )))
 }
 
-/// From when on a trial looks at the torque, s.
+/// The time from which a trial checks the torque, s.
 fn late_s(trial: &Trial) -> f64 {
     trial
         .criteria
@@ -167,8 +167,8 @@ fn late_s(trial: &Trial) -> f64 {
         .unwrap_or(0.0)
 }
 
-/// The worse, the larger: first by kind, then by how much of the limit is
-/// used.
+/// Rank of a verdict, larger if worse: first by kind, then by the used share
+/// of the limit.
 fn rank(verdict: &Verdict) -> (u8, f64) {
     match verdict {
         Verdict::Holds(margin) => (0, margin.share()),
@@ -187,7 +187,7 @@ fn off(found: u64, expected: u64) -> f64 {
     f64::from_whole(found.abs_diff(expected)) / f64::from_whole(found.max(expected).max(1))
 }
 
-/// The true events of a case's trials: many subjects share them.
+/// The true events of a case's trials, shared by subjects.
 #[derive(Debug, Default)]
 struct Truths(Vec<(Settings, Input, Rc<Vec<TrueEvent>>)>);
 
@@ -224,7 +224,7 @@ impl Truths {
     }
 }
 
-/// Keeps the watcher informed.
+/// Reports progress to the watcher.
 struct Work<'a, W: Watcher> {
     watcher: &'a mut W,
     total: f64,
@@ -239,12 +239,12 @@ impl<W: Watcher> Work<'_, W> {
         input: &Input,
         late_s: f64,
     ) -> Result<Observation, StudyError<W::Error>> {
-        // A run that overflows ends early: its work is done all the same.
+        // A run that overflows ends early: all its work counts as done.
         let after = self.done + work_of(input);
         let mut reason = None;
         let seen = observe(subject, settings, input, late_s, &mut |steps| {
             self.done += steps;
-            self.tell().map_err(|why| {
+            self.report_progress().map_err(|why| {
                 reason = Some(why);
                 Stopped
             })
@@ -256,11 +256,11 @@ impl<W: Watcher> Work<'_, W> {
             (Ok(seen), None) => seen,
         };
         self.done = after;
-        self.tell().map_err(StudyError::Watcher)?;
+        self.report_progress().map_err(StudyError::Watcher)?;
         Ok(seen)
     }
 
-    fn tell(&mut self) -> Result<(), W::Error> {
+    fn report_progress(&mut self) -> Result<(), W::Error> {
         self.watcher.progress((self.done / self.total).min(1.0))
     }
 }

@@ -1,12 +1,12 @@
-//! What is seen of a run.
+//! Observation of a run.
 
 use crate::true_events::TimedEvent;
 use crepitus_model::{EventKind, Real, Sense};
 
-/// The most events that are kept; the rest is counted.
+/// The most events that are stored; the rest is counted.
 pub(super) const MOST_KEPT: usize = 200_000;
 
-/// What is seen of a run.
+/// Observation of a run.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Observation {
     /// Steps made and their length, s.
@@ -16,20 +16,20 @@ pub(super) struct Observation {
     pub(super) events: Vec<TimedEvent>,
     pub(super) torques_after_nm: Vec<f64>,
     pub(super) tally: Tally,
-    /// When something was infinite or no number first, s.
+    /// First time that something was NaN or infinite, s.
     pub(super) overflow_s: Option<f64>,
-    /// When the torque or a stick's angle was above its limit first, s.
+    /// First time that the torque or a stick's angle was above its limit, s.
     pub(super) above_s: Option<f64>,
     /// Largest |T|/Ts.
     pub(super) peak: f64,
     pub(super) torque: Range,
-    /// From the time on that the trial asks for.
+    /// Torque from the time that the trial sets.
     pub(super) late_torque: Range,
     pub(super) first_torque_nm: f64,
     pub(super) last_torque_nm: f64,
-    /// The last step after which the torque was another than before it.
+    /// The last step that changed the torque.
     pub(super) last_change: u64,
-    /// Steps whose travel outlasts a stick: kr·|Δφ| > 2(Ts − Tk).
+    /// Steps whose travel exceeds a stick's: kr·|Δφ| > 2(Ts − Tk).
     pub(super) unresolved_steps: u64,
     /// Hash of the bits of T, and of −T.
     pub(super) torque_bits: Hash,
@@ -40,7 +40,7 @@ pub(super) struct Observation {
     pub(super) lag_rad_s: f64,
     /// Steps that end with a subnormal velocity.
     pub(super) subnormals: u64,
-    /// Worst share of missing energy, where books are kept.
+    /// Worst share of missing energy, if audited.
     pub(super) imbalance: Option<f64>,
     /// First and last swing of the hand, rad.
     pub(super) swing_rad: Option<(f64, f64)>,
@@ -48,16 +48,16 @@ pub(super) struct Observation {
     pub(super) largest_step_nm: f64,
     /// Largest relative rise of the stored energy in an adjustment.
     pub(super) energy_rise: f64,
-    /// Fastest torque without an event, as a share of the slew limit.
+    /// Fastest change of torque without an event, as a share of the slew limit.
     pub(super) slew: f64,
     /// Largest energy returned to the hand, as a share of the bound.
     pub(super) returned: f64,
     /// Largest relative excess of the spring's energy at the end of a slip over
     /// that at its break.
     pub(super) slip_energy: f64,
-    /// Ticks in which the turn-back guard showed no torque.
+    /// Ticks in which the turn-back guard switched the torque off.
     pub(super) guard_ticks: u64,
-    /// What should have been refused and was not.
+    /// Attempts that were accepted by mistake.
     pub(super) accepted: Vec<&'static str>,
 }
 
@@ -67,7 +67,7 @@ impl Observation {
         f64::from_whole(self.steps) * self.step_s
     }
 
-    /// Whether the run can see by itself that its step is too long.
+    /// Whether the run itself detects that its step is too long.
     pub(super) fn is_flagged(&self) -> bool {
         self.unresolved_steps > 0
     }
@@ -115,7 +115,7 @@ impl Default for Hash {
     }
 }
 
-/// Statistics of all events, kept or not.
+/// Statistics of all events, stored or not.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally {
     pub(super) breaks: u64,
@@ -166,7 +166,7 @@ impl Tally {
     }
 }
 
-/// Mean and variance as they come in (Welford).
+/// Running mean and variance (Welford).
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Spread {
     count: f64,
@@ -182,12 +182,12 @@ impl Spread {
         self.squares += off * (x - self.mean);
     }
 
-    /// How many.
+    /// Number of values.
     pub(super) fn count(&self) -> f64 {
         self.count
     }
 
-    /// The mean; `None` of nothing.
+    /// The mean; `None` without values.
     pub(super) fn mean(&self) -> Option<f64> {
         (self.count > 0.0).then_some(self.mean)
     }
@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cycles_and_slips_are_told_apart() {
+    fn cycles_and_slips_are_distinguished() {
         let mut tally = Tally::default();
         let mut add = |time_s, kind, sense| {
             tally.add(&TimedEvent {

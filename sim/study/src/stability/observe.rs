@@ -1,13 +1,13 @@
-//! Runs a subject through an input and notes what is to be seen.
+//! Runs a subject on an input and observes it.
 
-use super::books::Books;
-use super::changed::Changed;
 use super::criterion::BOUND_SLACK;
+use super::energy_audit::EnergyAudit;
+use super::guarded_joint::GuardedJoint;
 use super::input::{Attempt, Input};
 use super::observation::{MOST_KEPT, Observation};
+use super::parameter_changes::ParameterChanges;
 use super::rendered::RenderedRun;
-use super::shaken::Shaken;
-use super::sighted::Sighted;
+use super::shaking_hand::ShakingHand;
 use super::source::{Source, first_omega_rad_s, motion, source};
 use super::subject::{Rung, Subject};
 use super::without_steps::without_steps;
@@ -22,25 +22,25 @@ use crepitus_model::{
 use crepitus_scene::any_joint::{AnyJoint, Precise};
 use crepitus_scene::scene::Precision;
 
-/// Between two looks at whoever watches, in steps.
-const STEPS_A_LOOK: u64 = 65_536;
+/// Number of steps between two polls.
+const STEPS_PER_POLL: u64 = 65_536;
 
 /// The most events that a step reports.
 #[expect(clippy::cast_possible_truncation, reason = "eight")]
 const MOST_EVENTS: u32 = EVENTS_PER_STEP as u32;
 
-/// Up to this ωn·h the books follow damping well enough.
-const BOOKED_RADIANS: f64 = 0.05;
+/// Largest ωn·h at which the audit is accurate with damping.
+const AUDITED_RADIANS: f64 = 0.05;
 
-/// Runs `subject` with `settings` through `input`; the late torque is that
-/// after `late_s`. `go_on` hears of the steps made since it was last called,
-/// and may end the run.
+/// Runs `subject` with `settings` on `input`; the late torque is that
+/// after `late_s`. `poll` gets the number of steps since its last call, and
+/// may cancel the run.
 pub(super) fn observe(
     subject: Subject,
     settings: &Settings,
     input: &Input,
     late_s: f64,
-    go_on: &mut dyn FnMut(f64) -> Result<(), Stopped>,
+    poll: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<Observation, StudyError<Stopped>> {
     if let Input::Refusals(attempts) = input {
         return Ok(attempt(subject, attempts));
@@ -49,8 +49,8 @@ pub(super) fn observe(
         return Ok(without_steps(settings, input, late_s)?);
     };
     match subject.precision {
-        Precision::F32 => run::<f32>(subject, solver, settings, input, late_s, go_on),
-        Precision::F64 => run::<f64>(subject, solver, settings, input, late_s, go_on),
+        Precision::F32 => run::<f32>(subject, solver, settings, input, late_s, poll),
+        Precision::F64 => run::<f64>(subject, solver, settings, input, late_s, poll),
     }
 }
 
@@ -60,28 +60,28 @@ fn run<F: Precise>(
     settings: &Settings,
     input: &Input,
     late_s: f64,
-    go_on: &mut dyn FnMut(f64) -> Result<(), Stopped>,
+    poll: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<Observation, StudyError<Stopped>> {
     let settings = settings.validate()?;
     let (duration_s, step_s) = input.duration_and_step_s().unwrap_or((0.0, 1.0));
     let motion = motion(input);
     let sampling = Sampling::new(&motion, duration_s, step_s);
     match input {
-        Input::Changed { changes, .. } => {
-            let changed = Changed {
+        Input::ParameterChanges { changes, .. } => {
+            let run = ParameterChanges {
                 settings,
                 sampling,
                 changes,
             };
-            return Ok(changed.observe::<F>(subject)?);
+            return Ok(run.observe::<F>(subject)?);
         }
-        Input::Shaken { shake, .. } => {
-            let shaken = Shaken {
+        Input::ShakingHand { shake, .. } => {
+            let run = ShakingHand {
                 settings,
                 sampling,
                 shake: *shake,
             };
-            return Ok(shaken.observe::<F>(subject)?);
+            return Ok(run.observe::<F>(subject)?);
         }
         Input::Rendered(rendered) => {
             let run = RenderedRun {
@@ -96,23 +96,25 @@ fn run<F: Precise>(
     }
     let omega_rad_s = first_omega_rad_s(input, &motion);
     let p = settings.parameters;
-    // Nobody knows what a shaft did that was out of sight.
-    let booked = subject.convention == Convention::Physical
+    // The motion of the shaft during missing samples is unknown.
+    let audited = subject.convention == Convention::Physical
         && !input.needs_guard()
-        && (p.damping_nms_per_rad == 0.0 || p.natural_rad_s() * step_s <= BOOKED_RADIANS);
-    let look = Look {
+        && (p.damping_nms_per_rad == 0.0 || p.natural_rad_s() * step_s <= AUDITED_RADIANS);
+    let observer = StepObserver {
         source: source::<F>(input, &sampling, &motion)?,
         sampling,
         parameters: p,
         frozen: subject.convention == Convention::Frozen,
-        books: booked.then(|| Books::new(p, step_s, F::from_f64(omega_rad_s).to_f64())),
+        audit: audited.then(|| EnergyAudit::new(p, step_s, F::from_f64(omega_rad_s).to_f64())),
         late_step: (late_s / step_s).ceil(),
         guard_from_rad_s: input.needs_guard().then(|| F::from_f64(omega_rad_s)),
-        go_on,
+        poll,
     };
     let omega = F::from_f64(omega_rad_s);
     let joint = AnyJoint::new(&settings, solver, step_s, omega)?;
-    look.guarded_or_not(joint).map_err(StudyError::Watcher)
+    observer
+        .run_behind_check_if_needed(joint)
+        .map_err(StudyError::Watcher)
 }
 
 /// Tries to build each joint.
@@ -135,35 +137,35 @@ fn attempt(subject: Subject, attempts: &[Attempt]) -> Observation {
     }
 }
 
-/// Whoever was asked whether to go on said no, and knows why.
+/// `poll` cancelled the run.
 pub(super) struct Stopped;
 
-/// Looks at a joint after every step.
-struct Look<'a, F> {
+/// Observes a joint after every step.
+struct StepObserver<'a, F> {
     source: Box<dyn Source<F> + 'a>,
     sampling: Sampling<'a>,
     parameters: Parameters,
     frozen: bool,
-    books: Option<Books>,
-    /// From which step on the late torque counts.
+    audit: Option<EnergyAudit>,
+    /// First step of the late torque.
     late_step: f64,
-    /// Velocity at the start, rad/s, if the input goes through the check.
+    /// Velocity at the start, rad/s, if the input needs the check.
     guard_from_rad_s: Option<F>,
-    go_on: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
+    poll: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
 }
 
-impl<F: Real> Look<'_, F> {
-    fn guarded_or_not(self, joint: AnyJoint<F>) -> Result<Observation, Stopped> {
+impl<F: Real> StepObserver<'_, F> {
+    fn run_behind_check_if_needed(self, joint: AnyJoint<F>) -> Result<Observation, Stopped> {
         match self.guard_from_rad_s {
             Some(omega_rad_s) => {
                 let step_s = self.sampling.step_s();
-                self.look(Sighted::new(joint, step_s, omega_rad_s))
+                self.run(GuardedJoint::new(joint, step_s, omega_rad_s))
             }
-            None => self.look(joint),
+            None => self.run(joint),
         }
     }
 
-    fn look<J: StickSlip<F>>(mut self, mut joint: J) -> Result<Observation, Stopped> {
+    fn run<J: StickSlip<F>>(mut self, mut joint: J) -> Result<Observation, Stopped> {
         let first_torque_nm = joint.torque_nm().to_f64();
         let mut seen = Observation {
             step_s: self.sampling.step_s(),
@@ -188,28 +190,28 @@ impl<F: Real> Look<'_, F> {
                     return Ok(seen);
                 }
             }
-            // In a frozen slip these are trigonometry: now and then will do,
-            // as nothing is computed from them.
+            // In a frozen slip these take trigonometry: sampling them now and
+            // then is enough, as nothing is computed from them.
             let finite = joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite();
             if !finite {
                 seen.overflow_s = Some(self.sampling.time_s(seen.steps, 0.0));
                 return Ok(seen);
             }
             unseen += u64::try_from(chunk.len()).unwrap_or(0);
-            if unseen >= STEPS_A_LOOK {
-                (self.go_on)(f64::from_whole(unseen))?;
+            if unseen >= STEPS_PER_POLL {
+                (self.poll)(f64::from_whole(unseen))?;
                 unseen = 0;
             }
         }
-        // Behind the cap nobody knows what happened when.
+        // After the cap the times of events are unknown.
         let is_capped = seen.tally.most_in_step >= MOST_EVENTS;
-        let known = self.books.as_ref().filter(|_| !is_capped);
-        seen.imbalance = known.map(Books::worst);
-        if let Some(books) = &self.books {
-            seen.work_j = books.work_j();
+        let known = self.audit.as_ref().filter(|_| !is_capped);
+        seen.imbalance = known.map(EnergyAudit::worst);
+        if let Some(audit) = &self.audit {
+            seen.work_j = audit.work_j();
         }
         seen.swing_rad = self.source.swing_rad();
-        (self.go_on)(f64::from_whole(unseen))?;
+        (self.poll)(f64::from_whole(unseen))?;
         Ok(seen)
     }
 
@@ -230,8 +232,8 @@ impl<F: Real> Look<'_, F> {
         let mut in_step = 0;
         joint.step(shaft, |event| {
             in_step += 1;
-            if let Some(books) = &mut self.books {
-                books.event(shaft, &event);
+            if let Some(audit) = &mut self.audit {
+                audit.event(shaft, &event);
             }
             note(seen, &self.sampling, shaft, &event, limit_nm);
         });
@@ -240,7 +242,7 @@ impl<F: Real> Look<'_, F> {
         let before_nm = seen.last_torque_nm;
         let torque = joint.torque_nm();
         let torque_nm = torque.to_f64();
-        // A sample that was not taken has no travel.
+        // A missing sample has no travel.
         let travel_rad = Some(shaft.delta_phi_rad.to_f64())
             .filter(|travel| travel.is_finite())
             .unwrap_or(0.0);
@@ -261,7 +263,7 @@ impl<F: Real> Look<'_, F> {
         if !self.frozen || stick {
             let (theta, v) = (joint.theta_rad().to_f64(), joint.theta_dot_rad_s().to_f64());
             finite &= theta.is_finite() && v.is_finite();
-            // At the cap a break that is due waits for the next step.
+            // At the cap a pending break waits for the next step.
             let is_capped = in_step >= MOST_EVENTS;
             above |= self.frozen && !is_capped && stiffness_nm_per_rad * theta.abs() > limit_nm;
             if v != 0.0 && v.abs() < smallest_normal::<F>() {
@@ -271,11 +273,11 @@ impl<F: Real> Look<'_, F> {
                 let lag = sense.of_signed(v - shaft.omega_end_rad_s.to_f64());
                 seen.lag_rad_s = seen.lag_rad_s.max(lag);
             }
-            if let Some(books) = &mut self.books {
-                books.end_of_step(shaft, theta, v);
+            if let Some(audit) = &mut self.audit {
+                audit.end_of_step(shaft, theta, v);
             }
         }
-        if self.books.is_none() {
+        if self.audit.is_none() {
             seen.work_j += 0.5 * (before_nm + torque_nm) * travel_rad;
         }
         if !finite && seen.overflow_s.is_none() {
@@ -290,7 +292,7 @@ impl<F: Real> Look<'_, F> {
     }
 }
 
-/// Notes an event of the step after those that are counted.
+/// Records an event of the step after those already counted.
 fn note<F: Real>(
     seen: &mut Observation,
     sampling: &Sampling<'_>,

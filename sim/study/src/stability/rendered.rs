@@ -1,11 +1,11 @@
-//! A frozen joint as the device renders it, with samples that are lost and
-//! parameters that are committed under way.
+//! A frozen joint as the device renders it, with lost samples and parameters
+//! committed during the run.
 
-use super::changed::SLEW_NM_PER_S;
 use super::input::Rendered;
 use super::locators::{WithLocator, with_locator};
 use super::observation::Observation;
 use super::observe::bits;
+use super::parameter_changes::SLEW_NM_PER_S;
 use super::subject::Subject;
 use crate::sampling::{Sampling, Walk};
 use crate::true_events::TimedEvent;
@@ -20,12 +20,12 @@ use crepitus_model::{
 };
 use crepitus_plant::encoder::Encoder;
 
-/// A joint in a device and what it meets.
+/// A run of a joint in a device.
 pub(super) struct RenderedRun<'a> {
     pub(super) settings: Validated<Settings>,
     pub(super) sampling: Sampling<'a>,
     pub(super) rendered: &'a Rendered,
-    /// From when on the late torque counts, s.
+    /// Start of the late torque, s.
     pub(super) late_s: f64,
 }
 
@@ -34,7 +34,7 @@ impl RenderedRun<'_> {
         with_locator::<F, _>(subject, self)
     }
 
-    /// The numbers that are committed, in turn.
+    /// The committed parameters, in turn.
     fn commits<F: Real>(&self) -> Result<Vec<StepCoefficients<F>>, SettingsError> {
         let step_s = self.sampling.step_s();
         let coefficients = |&parameters| {
@@ -54,12 +54,12 @@ impl<F: Real> WithLocator<F> for RenderedRun<'_> {
     fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
         let (step_s, rendered) = (self.sampling.step_s(), self.rendered);
         let commits = self.commits::<F>()?;
-        let mut sight = Sight::new(self.sampling.walk_from(0), rendered.counts, step_s)?;
+        let mut view = ShaftView::new(self.sampling.walk_from(0), rendered.counts, step_s)?;
         let mut renderer = Renderer::<F, L>::of(
             StepCoefficients::new(&self.settings, step_s)?,
             InputLimits::device(step_s),
             F::from_f64(EncoderSettings::default().rad_per_count()),
-            sight.omega(),
+            view.omega(),
         );
         let late_step = (self.late_s / step_s).ceil().whole();
         let mut seen = Observation {
@@ -74,28 +74,28 @@ impl<F: Real> WithLocator<F> for RenderedRun<'_> {
             {
                 renderer.commit(*coefficients, SLEW_NM_PER_S);
             }
-            let sample = sight.look(rendered.lost.takes(n, step_s));
-            let (since, sampling) = (seen.steps.saturating_sub(sight.missed), &self.sampling);
-            let span = f64::from_whole(sight.missed + 1);
+            let sample = view.sample(rendered.lost.takes(n, step_s));
+            let (since, sampling) = (seen.steps.saturating_sub(view.missed), &self.sampling);
+            let span = f64::from_whole(view.missed + 1);
             let tally = &mut seen.tally;
             let shown = renderer.render(&sample, |event: Event<F>| {
                 let time_s = sampling.time_s(since, span * event.fraction.to_f64());
                 tally.add(&TimedEvent::new(time_s, &event));
             });
-            sight.missed = match sample {
-                Sample::Lost => sight.missed + 1,
+            view.missed = match sample {
+                Sample::Lost => view.missed + 1,
                 Sample::Taken(_) => 0,
             };
             let limit_nm = renderer.joint().coefficients().static_nm.to_f64();
-            note::<F>(&mut seen, shown.torque_nm.to_f64(), limit_nm, late_step);
+            observe::<F>(&mut seen, shown.torque_nm.to_f64(), limit_nm, late_step);
             seen.guard_ticks += u64::from(shown.limit == Limit::TurnedBack);
         }
         Ok(seen)
     }
 }
 
-/// Notes the torque that a tick shows.
-fn note<F: Real>(seen: &mut Observation, torque_nm: f64, limit_nm: f64, late_step: u64) {
+/// Records the torque of a tick.
+fn observe<F: Real>(seen: &mut Observation, torque_nm: f64, limit_nm: f64, late_step: u64) {
     let now_s = f64::from_whole(seen.steps) * seen.step_s;
     seen.steps += 1;
     if !torque_nm.is_finite() {
@@ -116,19 +116,19 @@ fn note<F: Real>(seen: &mut Observation, torque_nm: f64, limit_nm: f64, late_ste
     seen.peak = seen.peak.max(torque_nm.abs() / limit_nm);
 }
 
-/// What the joint sees of the shaft: the truth, or the encoder's counts.
-struct Sight<'a, F> {
+/// The joint's samples of the shaft: the true motion, or the encoder's counts.
+struct ShaftView<'a, F> {
     walk: Walk<'a>,
     chunk: Vec<ShaftStep<F>>,
     encoder: Encoder,
     reader: EncoderReader<F>,
     counts: bool,
-    /// Samples lost since the last that was taken, and their travel, rad.
+    /// Samples lost since the last valid one, and their travel, rad.
     missed: u64,
     travel: F,
 }
 
-impl<'a, F: Real> Sight<'a, F> {
+impl<'a, F: Real> ShaftView<'a, F> {
     fn new(walk: Walk<'a>, counts: bool, step_s: f64) -> Result<Self, SettingsError> {
         let settings = EncoderSettings::default();
         let encoder = Encoder::new(&settings);
@@ -151,7 +151,7 @@ impl<'a, F: Real> Sight<'a, F> {
     }
 
     /// The next sample, if it is not lost.
-    fn look(&mut self, is_lost: bool) -> Sample<F> {
+    fn sample(&mut self, is_lost: bool) -> Sample<F> {
         self.walk.fill(&mut self.chunk, 1);
         let Some(shaft) = self.chunk.first() else {
             return Sample::Lost;

@@ -1,4 +1,4 @@
-//! An input as data: for whoever runs a joint elsewhere.
+//! An input as data, to run a joint elsewhere.
 
 use super::input::Input;
 use super::observation::Hash;
@@ -6,7 +6,7 @@ use super::source::{first_omega_rad_s, motion, source};
 use crate::sampling::Sampling;
 use crepitus_model::{SettingsError, ShaftStep};
 
-/// All steps of an input that takes no notice of the torque.
+/// All steps of an input that does not depend on the torque.
 ///
 /// # Errors
 /// [`SettingsError`] if the input's encoder is not allowed.
@@ -30,8 +30,7 @@ pub fn omega_rad_s(input: &Input) -> f64 {
     first_omega_rad_s(input, &motion(input))
 }
 
-/// The hash that [`Criterion::TorqueBits`](super::Criterion::TorqueBits) asks
-/// for.
+/// The hash for [`Criterion::TorqueBits`](super::Criterion::TorqueBits).
 pub fn torque_hash(torques_nm: impl IntoIterator<Item = f32>) -> u64 {
     let mut hash = Hash::default();
     for torque_nm in torques_nm {

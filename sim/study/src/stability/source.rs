@@ -1,37 +1,36 @@
-//! The steps of an input, made as the joint takes them.
+//! The steps of an input, generated on demand.
 
+use super::guarded_joint::missing_step;
 use super::input::{Fault, Input, Rendered, Shaft};
 use super::random::Random;
-use super::sighted::lost;
 use crate::sampling::{CHUNK_STEPS, Sampling, Walk};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::{Real, SettingsError, ShaftStep};
 use crepitus_plant::Motion;
 use crepitus_plant::encoder::Encoder;
 
-/// Where steps come from.
+/// A source of steps.
 pub(super) trait Source<F> {
     /// Replaces `chunk` by the next steps, at most [`CHUNK_STEPS`]; empty at
-    /// the end. The joint shows `torque_nm` now.
+    /// the end. `torque_nm` is the joint's current torque.
     fn fill(&mut self, chunk: &mut Vec<ShaftStep<F>>, torque_nm: F);
 
-    /// How far the hand swings at first and at last, rad, if there is one.
+    /// First and last swing of the hand, rad, if there is one.
     fn swing_rad(&self) -> Option<(f64, f64)> {
         None
     }
 }
 
-/// The motion behind an input, if it has one: kept by the caller, because
-/// sources borrow it.
+/// The motion of an input; owned by the caller, because sources borrow it.
 pub(super) fn motion(input: &Input) -> Motion {
     match input {
         Input::Sampled { shaft, .. }
         | Input::Encoder { shaft, .. }
         | Input::Faulty { shaft, .. }
-        | Input::Changed { shaft, .. }
+        | Input::ParameterChanges { shaft, .. }
         | Input::Rendered(Rendered { shaft, .. }) => shaft.motion(),
         Input::Repeated { omega_rad_s, .. } => Shaft::Constant(*omega_rad_s).motion(),
-        Input::Shaken { shake, .. } => shake.motion(),
+        Input::ShakingHand { shake, .. } => shake.motion(),
         Input::White { .. } | Input::Hand { .. } | Input::Refusals(_) => Motion::constant(0.0),
     }
 }
@@ -126,13 +125,14 @@ pub(super) fn source<'a, F: Real>(
             n: 0,
             travel: F::ZERO,
         }),
-        // These have runs of their own.
-        Input::Changed { .. } | Input::Shaken { .. } | Input::Rendered(_) | Input::Refusals(_) => {
-            Box::new(Same {
-                step: ShaftStep::default(),
-                left: 0,
-            })
-        }
+        // These have their own runs.
+        Input::ParameterChanges { .. }
+        | Input::ShakingHand { .. }
+        | Input::Rendered(_)
+        | Input::Refusals(_) => Box::new(Same {
+            step: ShaftStep::default(),
+            left: 0,
+        }),
     })
 }
 
@@ -192,7 +192,7 @@ impl<F: Real> Source<F> for Counted<'_, F> {
             let count = self.encoder.count(phi_rad).wrapping_add(self.offset);
             if self.lost > 0.0 && 0.5 * (1.0 + self.random.signed()) < self.lost {
                 self.reader.miss();
-                chunk.push(lost());
+                chunk.push(missing_step());
             } else {
                 chunk.push(self.reader.read(count));
             }
@@ -200,18 +200,18 @@ impl<F: Real> Source<F> for Counted<'_, F> {
     }
 }
 
-/// A motion whose samples go wrong now and then.
+/// A motion with faulty samples.
 struct Faulty<'a, F> {
     walk: Walk<'a>,
     fault: Fault,
     step_s: f64,
     n: u64,
-    /// Of the steps since the last sample that was taken, rad.
+    /// Travel since the last valid sample, rad.
     travel: F,
 }
 
 impl<F: Real> Faulty<'_, F> {
-    /// What arrives in place of the sample of `shaft`, if it goes wrong.
+    /// The faulty sample in place of that of `shaft`, if it is faulty.
     fn wrong(&self, shaft: &ShaftStep<F>) -> Option<ShaftStep<F>> {
         let now_s = f64::from_whole(self.n) * self.step_s;
         match self.fault {
@@ -219,9 +219,9 @@ impl<F: Real> Faulty<'_, F> {
                 .n
                 .is_multiple_of(every)
                 .then(|| impossible(shaft, self.n / every)),
-            Fault::Blind { from_s } => (now_s >= from_s).then(lost),
-            Fault::Gap { from_s, to_s } => (from_s..to_s).contains(&now_s).then(lost),
-            Fault::Retreating => (shaft.delta_phi_rad < F::ZERO).then(lost),
+            Fault::Blind { from_s } => (now_s >= from_s).then(missing_step),
+            Fault::Gap { from_s, to_s } => (from_s..to_s).contains(&now_s).then(missing_step),
+            Fault::Retreating => (shaft.delta_phi_rad < F::ZERO).then(missing_step),
             Fault::Jumps { every } => self.n.is_multiple_of(every).then(|| ShaftStep {
                 omega_end_rad_s: shaft.omega_end_rad_s + F::from_f64(20.0),
                 ..*shaft
@@ -230,7 +230,7 @@ impl<F: Real> Faulty<'_, F> {
     }
 }
 
-/// What no shaft can have done, a kind for each `n`.
+/// An implausible sample, its kind by `n`.
 fn impossible<F: Real>(shaft: &ShaftStep<F>, n: u64) -> ShaftStep<F> {
     let (nan, inf) = (F::from_f64(f64::NAN), F::from_f64(f64::INFINITY));
     let mut wrong = *shaft;

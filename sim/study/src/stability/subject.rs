@@ -1,12 +1,12 @@
-//! Who is put to the test: a rung of the ladder under a convention, in a
+//! The subject of a test: a rung of the ladder under a convention, in a
 //! precision.
 
 use crepitus_model::Convention;
 use crepitus_model::solver::Solver;
 use crepitus_scene::scene::Precision;
 
-/// What computes: a rung of the ladder, in steps, or the event-driven
-/// reference, without.
+/// A solver: a rung of the ladder, in steps, or the event-driven reference,
+/// without.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rung {
     /// In steps.
@@ -30,7 +30,7 @@ impl Rung {
         }
     }
 
-    /// Why it has no meaning under a convention, if it has none.
+    /// Why it has no meaning under a convention, or `None`.
     pub fn refusal(self, convention: Convention) -> Option<&'static str> {
         match self {
             Self::Ladder(solver) => solver.refusal(convention),
@@ -54,7 +54,7 @@ impl Rung {
         }
     }
 
-    /// Why it has no meaning in f32, if it has none.
+    /// Why it has no meaning in f32, or `None`.
     pub fn single_refusal(self) -> Option<&'static str> {
         match self {
             Self::Ladder(solver) => solver.single_refusal(),
@@ -70,12 +70,12 @@ pub struct Subject {
     pub solver: Rung,
     /// How a slip ends.
     pub convention: Convention,
-    /// What it computes in.
+    /// Its precision.
     pub precision: Precision,
 }
 
 impl Subject {
-    /// Every combination that has a meaning.
+    /// Every combination with a meaning.
     pub fn all() -> Vec<Self> {
         let mut all = Vec::new();
         for convention in Convention::ALL {
@@ -93,7 +93,7 @@ impl Subject {
         all
     }
 
-    /// What the firmware renders: `frozen`, the break located, in f32.
+    /// Whether it is the firmware's: `frozen`, the break located, in f32.
     pub fn is_firmware(self) -> bool {
         self.convention == Convention::Frozen
             && self.solver == Rung::Ladder(Solver::ExactEvents)

@@ -1,8 +1,8 @@
-//! Numbers as the catalogue's texts show them.
+//! Numbers in the catalogue's texts.
 
 use std::fmt;
 
-/// A number in as few digits as say it: `0.5`, `1e-12`.
+/// A number with the fewest digits: `0.5`, `1e-12`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plain(pub f64);
 
@@ -17,7 +17,7 @@ impl fmt::Display for Plain {
     }
 }
 
-/// A length of time in the unit that suits it.
+/// A duration in a suitable unit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Time(pub f64);
 
@@ -33,7 +33,7 @@ impl fmt::Display for Time {
         } else {
             (s * 1e6, "µs")
         };
-        // Nine decimals drop what the change of unit adds by rounding.
+        // Nine decimals drop the rounding of the conversion.
         let rounded = (value * 1e9).round() / 1e9;
         write!(f, "{rounded} {unit}")
     }

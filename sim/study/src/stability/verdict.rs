@@ -1,19 +1,19 @@
-//! What came of a case.
+//! Verdict of a case.
 
 use std::fmt;
 
-/// A measured number held against its limit: it holds if it is not above.
+/// A measured number and its limit: it holds if it is not above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margin {
-    /// What was measured.
+    /// The measured value.
     pub measured: f64,
-    /// What it may be at most.
+    /// The largest allowed value.
     pub limit: f64,
     /// Unit of both; empty for counts and ratios.
     pub unit: &'static str,
 }
 
-/// How a subject stood a case.
+/// Verdict of a subject in a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// Every criterion is met; the margin is the narrowest.
@@ -26,10 +26,10 @@ pub enum Verdict {
         /// Whether the run itself gives the warning.
         flagged: bool,
     },
-    /// Something else than the joint was simulated: no number, another
-    /// sequence of events, a torque above its limit.
+    /// The motion is not the joint's: NaN, another sequence of events, a torque
+    /// above its limit.
     Fails {
-        /// What went wrong.
+        /// The failure.
         what: Failure,
         /// Since the start of the trial, s; `None` where it has no time.
         at_s: Option<f64>,
@@ -42,18 +42,18 @@ pub enum Verdict {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Failure {
-    /// A state or a torque is infinite or no number.
+    /// A state or a torque is infinite or NaN.
     Overflow,
     /// |T| > Ts, or a `frozen` object beyond Ts/kr.
     AboveTheLimit,
     /// Other events than the true ones, or in another order.
     OtherEvents {
-        /// How many there are.
+        /// Their number.
         found: u64,
-        /// How many there should be.
+        /// The expected number.
         expected: u64,
     },
-    /// A criterion that has no number: which one.
+    /// A criterion without a number.
     Broken(&'static str),
 }
 
@@ -82,8 +82,8 @@ impl Verdict {
 }
 
 impl Margin {
-    /// How much of the limit is used: at most 1 where it holds. Nothing of
-    /// nothing is nothing; what is no number is beyond every limit.
+    /// The used share of the limit: at most 1 if it holds. 0 of 0 is 0; NaN
+    /// exceeds every limit.
     pub fn share(&self) -> f64 {
         if self.measured == 0.0 {
             0.0

@@ -1,5 +1,5 @@
 //! The event-driven reference as a subject: from row to row of a prescribed
-//! motion, with nothing sampled.
+//! motion, without samples.
 
 use super::criterion::BOUND_SLACK;
 use super::input::Input;
@@ -12,11 +12,11 @@ use crepitus_model::{Event, EventKind, Phase, Real, Settings, SettingsError};
 use crepitus_plant::{Motion, ShaftState};
 use crepitus_scene::reference::Reference;
 
-/// No case has as many events: a run that gets there has lost its way.
+/// No case has as many events: a run that reaches this is stuck.
 const MOST_EVENTS: u64 = 2_000_000;
 
-/// Runs the reference with `settings` through `input`; rows are at the ends of
-/// the input's steps, and the late torque is that after `late_s`.
+/// Runs the reference with `settings` on `input`; rows are at the ends of the
+/// input's steps, and the late torque is that after `late_s`.
 pub(super) fn without_steps(
     settings: &Settings,
     input: &Input,
@@ -61,7 +61,7 @@ pub(super) fn without_steps(
     Ok(seen)
 }
 
-/// Notes the state at a row.
+/// Records the state at a row.
 fn row(seen: &mut Observation, reference: &Reference<'_>, limit_nm: f64, late_step: u64) {
     let torque_nm = reference.torque_nm();
     let (theta, v) = (reference.theta_rad(), reference.theta_dot_rad_s());
@@ -88,7 +88,7 @@ fn row(seen: &mut Observation, reference: &Reference<'_>, limit_nm: f64, late_st
     seen.mirrored_bits.add(bits::<f64>(-torque_nm));
 }
 
-/// Notes an event, whose fraction is its time.
+/// Records an event, whose fraction is its time.
 fn note(seen: &mut Observation, event: &Event<f64>, motion: &Motion, limit_nm: f64) {
     let timed = TimedEvent::new(event.fraction, event);
     let torques = [event.torque_before_nm, event.torque_after_nm];

@@ -1,4 +1,4 @@
-//! A rung at a step, held against a need over all scenes of a question.
+//! A rung at a step, compared with a need over all scenes of a question.
 
 use super::Question;
 use crate::accuracy::need::{Criterion, Limit, Need};
@@ -37,7 +37,7 @@ pub struct Cycles {
     pub mean: f64,
     /// Worst observed, cycles.
     pub worst: u32,
-    /// On which input that was.
+    /// The input of the worst step.
     pub worst_on: String,
 }
 
@@ -52,7 +52,7 @@ impl Cycles {
         self.worst_share() <= STEP_SHARE
     }
 
-    /// By the mean, equal means by the worst.
+    /// Compares the means, equal means by the worst.
     fn order(&self, other: &Self) -> Ordering {
         self.mean
             .total_cmp(&other.mean)
@@ -63,11 +63,11 @@ impl Cycles {
 /// Unmatched events of a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Unmatched {
-    /// How many.
+    /// Their number.
     pub events: u64,
-    /// Of how many of the reference.
+    /// Number of events of the reference.
     pub events_true: u64,
-    /// Where.
+    /// The scene.
     pub scene: String,
 }
 
@@ -79,7 +79,7 @@ pub struct Mark {
     pub limit: Limit,
     /// The error, in the criterion's unit.
     pub error: f64,
-    /// Where it is.
+    /// Its scene.
     pub scene: String,
 }
 
@@ -99,7 +99,7 @@ impl Candidate {
             && self.cycles.as_ref().is_none_or(Cycles::fits)
     }
 
-    /// The criterion that is nearest to its limit, or furthest beyond.
+    /// The criterion nearest to its limit, or furthest beyond.
     pub fn tightest(&self) -> Option<&Mark> {
         self.marks
             .iter()
@@ -111,18 +111,18 @@ impl Candidate {
         self.marks.iter().find(|m| m.limit.criterion == criterion)
     }
 
-    /// Share of one core of the host that real time takes.
+    /// Share of one core of the host for real time.
     pub fn core_share(&self) -> f64 {
         self.us_per_simulated_s * 1e-6
     }
 
-    /// How far the tightest criterion is used up.
+    /// Used share of the tightest limit.
     pub(super) fn used(&self) -> f64 {
         self.tightest().map_or(0.0, Mark::ratio)
     }
 
-    /// The order of costs: cycles of the target where they decide, otherwise
-    /// the host's time.
+    /// Compares costs: cycles of the target if they decide, otherwise the
+    /// host's time.
     pub(super) fn by_cost(&self, other: &Self) -> Ordering {
         match (&self.cycles, &other.cycles) {
             (Some(a), Some(b)) => a.order(b),
@@ -130,8 +130,8 @@ impl Candidate {
         }
     }
 
-    /// Whether the costs of both are the same: to the cycle on the target,
-    /// within the spread of timings on the host.
+    /// Whether both costs are equal: to the cycle on the target, within the
+    /// spread of timings on the host.
     pub(super) fn costs_like(&self, other: &Self) -> bool {
         if let (Some(a), Some(b)) = (&self.cycles, &other.cycles) {
             return a.order(b) == Ordering::Equal;
@@ -146,7 +146,7 @@ impl Candidate {
     }
 }
 
-/// The points that a question is about.
+/// The points that a question selects.
 pub(super) fn asked<'p>(points: &'p [Point], question: &Question<'_>) -> Vec<&'p Point> {
     points
         .iter()
@@ -155,8 +155,8 @@ pub(super) fn asked<'p>(points: &'p [Point], question: &Question<'_>) -> Vec<&'p
         .collect()
 }
 
-/// Each rung and step that was studied on every scene of the question; where
-/// the target decides, each that was run there.
+/// Each rung and step studied on every scene of the question; if the target
+/// decides, each that was run there.
 pub(super) fn candidates(points: &[Point], need: &Need, question: &Question<'_>) -> Vec<Candidate> {
     let asked = asked(points, question);
     let mut scenes: Vec<&str> = Vec::new();
@@ -188,7 +188,7 @@ pub(super) fn candidates(points: &[Point], need: &Need, question: &Question<'_>)
         .collect()
 }
 
-/// What a rung costs on the target.
+/// The cost of a rung on the target.
 fn cycles(target: &OnTarget, solver: &str, convention: &str) -> Option<Cycles> {
     let row = target
         .rows

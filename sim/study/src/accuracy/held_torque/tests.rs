@@ -1,5 +1,5 @@
 use super::*;
-use crate::accuracy::measure::{Accuracy, Target, measure};
+use crate::accuracy::measure::{Accuracy, ReferenceRun, measure};
 use crate::accuracy::reference_torque::ReferenceTorque;
 use crate::accuracy::scenes::standard;
 use crate::true_events::TimedEvent;
@@ -30,7 +30,7 @@ fn accuracy(scene: &StudyScene, solver: Solver, step_s: f64) -> Accuracy {
     let truth = scene.true_events();
     let sampling = Sampling::new(&scene.motion, scene.duration_s, step_s);
     let events: Vec<TimedEvent> = truth.iter().map(|e| e.event).collect();
-    let target = Target {
+    let target = ReferenceRun {
         scene,
         sampling: &sampling,
         events: &events,

@@ -7,19 +7,19 @@ use crepitus_scene::Scene;
 use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns, step_count};
 use crepitus_scene::trace::{EventKind, EventRecord};
 
-/// Half of the stretch whose mean is taken away, s.
+/// Half of the window whose mean is subtracted, s.
 const TREND_S: f64 = 0.05;
 
-/// The largest lag that is looked for, s.
+/// The largest lag of the search, s.
 const MOST_LAG_S: f64 = 0.04;
 
-/// A peak of the correlation is as good as the best from this share of it.
+/// Share of the best correlation that makes a peak as good.
 const GOOD_PEAK: f64 = 0.9;
 
-/// Ticks that the lag is found from, at most.
+/// The most ticks of the correlation.
 const LAG_TICKS: usize = 20_000;
 
-/// What a run showed in its second half, tick by tick.
+/// Signals of a run in its second half, tick by tick.
 pub(super) struct Signals {
     tick_s: f64,
     from_s: f64,
@@ -33,24 +33,24 @@ pub(super) struct Signals {
     places: Places,
 }
 
-/// Where a row has what is kept.
+/// Indices of the recorded columns.
 struct Places {
     omega: usize,
     model: usize,
     hand: usize,
 }
 
-/// The study has been stopped.
+/// The study was cancelled.
 #[derive(Debug, thiserror::Error)]
 #[error("ended early")]
 struct Stopped;
 
-struct Ear<'a> {
+struct SignalObserver<'a> {
     signals: Signals,
     meter: &'a Meter,
 }
 
-impl Observer for Ear<'_> {
+impl Observer for SignalObserver<'_> {
     type Error = Stopped;
 
     fn row(&mut self, values: &[f64]) -> Result<(), Stopped> {
@@ -88,14 +88,14 @@ impl Observer for Ear<'_> {
 }
 
 impl Signals {
-    /// Runs `scene` and listens.
+    /// Runs `scene` and records its signals.
     pub(super) fn of(scene: &Scene, meter: &Meter) -> Result<Self, String> {
         let mut scene = scene.clone();
         scene.trace_step_s = scene.step_s();
         let names: Vec<_> = columns(&scene).iter().map(|c| c.name).collect();
         let place = |name: &str| names.iter().position(|n| *n == name);
         let model = place("torque_nm").ok_or("the scene has no joint")?;
-        let mut ear = Ear {
+        let mut observer = SignalObserver {
             signals: Self {
                 tick_s: scene.step_s(),
                 from_s: scene.duration_s / 2.0,
@@ -114,9 +114,9 @@ impl Signals {
             },
             meter,
         };
-        let ran = run::run(&scene, &mut ear);
-        meter.did(step_count(&scene));
-        ran.map(|_| ear.signals).map_err(|e| e.to_string())
+        let ran = run::run(&scene, &mut observer);
+        meter.add(step_count(&scene));
+        ran.map(|_| observer.signals).map_err(|e| e.to_string())
     }
 
     /// The measures.
@@ -154,8 +154,7 @@ impl Signals {
         usize::try_from((stretch_s / self.tick_s).whole()).unwrap_or(0)
     }
 
-    /// Values less their mean over 0.1 s around, where there is so much around
-    /// them.
+    /// Values minus their mean over 0.1 s around, without the ends.
     fn fast(&self, values: &[f64]) -> Vec<f64> {
         let reach = self.ticks(TREND_S);
         let window = 2 * reach + 1;
@@ -170,7 +169,7 @@ impl Signals {
         fast
     }
 
-    /// How many ticks `late` is behind `early`: where they correlate best.
+    /// Lag of `late` behind `early`, ticks, by best correlation.
     fn lag_ticks(&self, early: &[f64], late: &[f64]) -> usize {
         let most = self.ticks(MOST_LAG_S);
         let length = early.len().saturating_sub(most).min(LAG_TICKS);
@@ -184,8 +183,7 @@ impl Signals {
         };
         let last = most.min(early.len().saturating_sub(from + length));
         let found: Vec<f64> = (0..=last).map(correlation).collect();
-        // A grating repeats itself: the first peak counts that is as good as
-        // the best.
+        // Grating is periodic: take the first peak as good as the best.
         let good = GOOD_PEAK * found.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let at = |lag: usize| found.get(lag).copied().unwrap_or(f64::NEG_INFINITY);
         (0..=last)

@@ -207,7 +207,7 @@ pub(super) fn shaking_hand() -> Case {
                                 lost: Lost::NONE,
                             };
                             let staircase = if counts { count_rad / stroke_rad } else { 0.0 };
-                            let input = Input::Shaken {
+                            let input = Input::ShakingHand {
                                 shake,
                                 duration_s: 2.0,
                                 step_s: TICK_S,

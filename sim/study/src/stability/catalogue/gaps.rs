@@ -119,7 +119,7 @@ pub(super) fn retreat_in_a_gap() -> Case {
                 };
                 let count_rad = EncoderSettings::default().rad_per_count();
                 let staircase = if counts { count_rad / stroke_rad } else { 0.0 };
-                let input = Input::Shaken {
+                let input = Input::ShakingHand {
                     shake,
                     duration_s: 2.0,
                     step_s: TICK_S,

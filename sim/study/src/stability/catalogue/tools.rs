@@ -73,7 +73,7 @@ pub(super) fn faulty(shaft: Shaft, fault: Fault, duration_s: f64) -> Input {
 /// Commits at the device's tick.
 pub(super) fn changed(shaft: Shaft, duration_s: f64, changes: &[(f64, Parameters)]) -> Input {
     let change = |&(at_s, parameters): &(f64, Parameters)| Change { at_s, parameters };
-    Input::Changed {
+    Input::ParameterChanges {
         shaft,
         changes: changes.iter().map(change).collect(),
         duration_s,

@@ -1,7 +1,7 @@
-//! Criteria as people read them: text and number stand once.
+//! Descriptions of criteria, generated from their numbers.
 
 use super::{Counted, Criterion, Limits};
-use crate::stability::changed::SLEW_NM_PER_S;
+use crate::stability::parameter_changes::SLEW_NM_PER_S;
 use crate::stability::text::{Plain, Time};
 use std::fmt;
 
@@ -123,7 +123,7 @@ impl fmt::Display for Criterion {
     }
 }
 
-/// What is asked of a joint in a device.
+/// Criteria of a joint in a device.
 fn of_a_device(criterion: &Criterion, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     match criterion {
         Criterion::TorqueStep { most_nm } => write!(

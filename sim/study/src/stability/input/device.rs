@@ -1,53 +1,53 @@
-//! What a joint meets in a device: samples that go wrong or are lost, commits,
-//! a hand that shakes, and settings that must be refused.
+//! Inputs of a joint in a device: faulty or lost samples, commits, a shaking
+//! hand, and settings that must be refused.
 
 use super::Shaft;
 use crepitus_model::{Parameters, Real, Settings};
 use crepitus_plant::Motion;
 
-/// What goes wrong with samples.
+/// Faults of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
-    /// Every so many samples one is no number, infinite, or what no shaft can
-    /// do: each kind in turn.
+    /// Every so many samples one is NaN, infinite, or implausible: each kind in
+    /// turn.
     Impossible {
         /// Steps from one to the next.
         every: u64,
     },
-    /// None is a number from this time on.
+    /// All samples are NaN from this time on.
     Blind {
         /// Since the start, s.
         from_s: f64,
     },
-    /// None is taken between two times.
+    /// All samples are missing between two times.
     Gap {
         /// From, s.
         from_s: f64,
         /// To, s.
         to_s: f64,
     },
-    /// None is taken while the shaft moves backwards.
+    /// All samples are missing while the shaft moves backwards.
     Retreating,
     /// Every so many samples the velocity at the end of one is 20 rad/s off:
-    /// slow enough for a shaft, but no shaft gets there in a tick.
+    /// a plausible speed, but not within a tick.
     Jumps {
         /// Steps from one to the next.
         every: u64,
     },
 }
 
-/// What a joint meets in a device, beside its hand.
+/// The input of a joint in a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rendered {
     /// The motion.
     pub shaft: Shaft,
-    /// Whether the joint sees counts of the device's encoder, or the truth.
+    /// Whether the joint gets counts of the device's encoder, or the true motion.
     pub counts: bool,
-    /// The samples that are lost.
+    /// Lost samples.
     pub lost: Lost,
     /// A commit every so many ticks; 0 for none.
     pub commit_every: u64,
-    /// To what, in turn.
+    /// The committed parameters, in turn.
     pub commits: Vec<Parameters>,
     /// How long, s.
     pub duration_s: f64,
@@ -55,14 +55,14 @@ pub struct Rendered {
     pub step_s: f64,
 }
 
-/// Which samples are lost: so many of every so many, from a time on.
+/// Lost samples: bursts that may repeat, from a time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lost {
     /// Samples in a row; 0 for none.
     pub ticks: u64,
     /// From one burst to the next, in ticks; 0 for one burst only.
     pub every: u64,
-    /// When the first begins, s.
+    /// Start of the first, s.
     pub from_s: f64,
 }
 
@@ -92,13 +92,13 @@ impl Lost {
 /// New parameters at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
-    /// When, s.
+    /// Time of the change, s.
     pub at_s: f64,
-    /// To what.
+    /// The new parameters.
     pub parameters: Parameters,
 }
 
-/// φ = A·sin(2π·f·t), by a hand that feels the torque late.
+/// φ = A·sin(2π·f·t), by a hand that gets the torque with a delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shake {
     /// A, rad.
@@ -107,16 +107,16 @@ pub struct Shake {
     pub frequency_hz: f64,
     /// Ticks between a sample and its torque.
     pub delay_ticks: usize,
-    /// Whether the joint sees counts of the device's encoder, or the truth.
+    /// Whether the joint gets counts of the device's encoder, or the true motion.
     pub counts: bool,
-    /// The samples that are lost.
+    /// Lost samples.
     pub lost: Lost,
 }
 
-/// Something to be refused.
+/// Settings or a step that must be refused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attempt {
-    /// What is wrong with it.
+    /// Its mistake.
     pub what: &'static str,
     /// The settings.
     pub settings: Settings,

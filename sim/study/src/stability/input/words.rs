@@ -1,4 +1,4 @@
-//! Inputs as people read them: text and number stand once.
+//! Descriptions of inputs, generated from their numbers.
 
 use super::{Change, Fault, Input, Lost, Rendered, Shaft, Shake};
 use crate::stability::text::{Plain, Time};
@@ -113,13 +113,13 @@ impl fmt::Display for Input {
                 Plain(*omega_rad_s)
             )?,
             Self::Faulty { shaft, fault, .. } => write!(f, "{shaft}, {fault}")?,
-            Self::Changed { shaft, changes, .. } => {
+            Self::ParameterChanges { shaft, changes, .. } => {
                 write!(f, "{shaft}")?;
                 for change in changes {
                     write!(f, ", {change}")?;
                 }
             }
-            Self::Shaken { shake, .. } => write!(f, "{shake}")?,
+            Self::ShakingHand { shake, .. } => write!(f, "{shake}")?,
             Self::Rendered(rendered) => write!(f, "{rendered}")?,
             Self::Refusals(attempts) => {
                 for (i, attempt) in attempts.iter().enumerate() {
@@ -192,7 +192,7 @@ impl fmt::Display for Rendered {
     }
 }
 
-/// Parameters in words, where they differ from the paper's.
+/// Description of parameters, where they differ from the paper's.
 struct Named<'a>(&'a Parameters);
 
 impl fmt::Display for Named<'_> {

@@ -3,7 +3,7 @@
 
 use super::{Mark, Panel, Scale, Series, Story};
 use crate::sampling::Sampling;
-use crate::stability::changed::SLEW_NM_PER_S;
+use crate::stability::parameter_changes::SLEW_NM_PER_S;
 use crepitus_model::joint::oscillator::Oscillator;
 use crepitus_model::render::ramp::Ramp;
 use crepitus_model::solver::locate::ExactEvents;

@@ -4,7 +4,7 @@
 use super::{Mark, Panel, Scale, Series, Story};
 use crate::sampling::Sampling;
 use crate::stability::input::{Lost, Shake};
-use crate::stability::shaken::{Returned, Shaken, Tick};
+use crate::stability::shaking_hand::{Returned, ShakingHand, Tick};
 use crate::stability::subject::{Rung, Subject};
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Settings, SettingsError};
@@ -118,12 +118,12 @@ fn shake(
     on_tick: impl FnMut(&Tick),
 ) -> Result<Returned, SettingsError> {
     let motion = shake.motion();
-    let shaken = Shaken {
+    let hand = ShakingHand {
         settings: Settings::default().validate()?,
         sampling: Sampling::new(&motion, duration_s, STEP_S),
         shake,
     };
-    shaken.run::<f32>(DEVICE, on_tick)
+    hand.run::<f32>(DEVICE, on_tick)
 }
 
 /// What is returned, against the amplitude.

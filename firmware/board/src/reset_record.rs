@@ -1,13 +1,13 @@
-//! What is kept in RAM over a reset: which start this is, and why the last
+//! A record in RAM that survives a reset: start counter, and why the last
 //! program ended.
 //!
 //! ```text
-//! "kept" ‖ number of the start ‖ reason ‖ detail ‖ CRC-32
+//! "kept" ‖ start counter ‖ reason ‖ detail ‖ CRC-32
 //! ```
 //!
-//! RAM comes up with anything in it, so the record counts only with its
-//! checksum. It also tells a supply that fell for a moment, which leaves RAM
-//! as it was, from one that was off.
+//! RAM is undefined at power-on, so the record is valid only with its
+//! checksum. This also distinguishes a brief drop of the supply, which leaves
+//! RAM intact, from power-off.
 
 use crepitus_protocol::frame::CRC;
 
@@ -16,20 +16,20 @@ pub const WORDS: usize = 5;
 
 const MAGIC: u32 = u32::from_le_bytes(*b"kept");
 
-/// Why a program has ended, where it could say so.
+/// Why a program has ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reason {
-    /// It has not ended by itself.
+    /// No reason was stored.
     #[default]
     None,
-    /// Somebody asked for a new start.
+    /// A reboot was requested.
     Asked,
-    /// It has panicked; the detail is the line.
+    /// A panic; the detail is the line.
     Panic,
-    /// The processor could not go on; the detail is the instruction's address,
-    /// or 0 if the stack was of no use.
+    /// A processor fault; the detail is the instruction's address, or 0 if the
+    /// stack was unusable.
     Fault,
-    /// An interrupt or an exception that nobody handles; the detail is its
+    /// An interrupt or an exception without a handler; the detail is its
     /// number.
     Unhandled,
 }
@@ -57,17 +57,17 @@ impl Reason {
 
 /// The record.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Kept {
-    /// Which start this is.
+pub struct ResetRecord {
+    /// Start counter.
     pub start: u16,
     /// Why the program has ended.
     pub reason: Reason,
-    /// More about it.
+    /// Depends on the reason.
     pub detail: u32,
 }
 
-impl Kept {
-    /// As words of RAM.
+impl ResetRecord {
+    /// Encodes the record as words of RAM.
     pub fn words(&self) -> [u32; WORDS] {
         let place = Reason::ALL.iter().position(|reason| *reason == self.reason);
         let reason = place.and_then(|place| u32::try_from(place).ok());
@@ -81,7 +81,7 @@ impl Kept {
         [magic, start, reason, detail, checksum(&body)]
     }
 
-    /// From words of RAM, if they are a record.
+    /// Decodes words of RAM, if they are a valid record.
     pub fn of(words: [u32; WORDS]) -> Option<Self> {
         let [magic, start, reason, detail, sum] = words;
         let is_record = magic == MAGIC && sum == checksum(&[magic, start, reason, detail]);
@@ -106,24 +106,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_kept_comes_back_and_nothing_else() {
+    fn only_a_stored_record_is_read() {
         for reason in Reason::ALL {
-            let kept = Kept {
+            let record = ResetRecord {
                 start: 0xfffe,
                 reason,
                 detail: 0x0801_2345,
             };
-            let words = kept.words();
-            assert_eq!(Kept::of(words), Some(kept));
+            let words = record.words();
+            assert_eq!(ResetRecord::of(words), Some(record));
             for place in 0..WORDS {
                 for bit in 0..32 {
                     let mut other = words;
                     other[place] ^= 1 << bit;
-                    assert_eq!(Kept::of(other), None);
+                    assert_eq!(ResetRecord::of(other), None);
                 }
             }
         }
-        assert_eq!(Kept::of([0; WORDS]), None);
-        assert_eq!(Kept::of([u32::MAX; WORDS]), None);
+        assert_eq!(ResetRecord::of([0; WORDS]), None);
+        assert_eq!(ResetRecord::of([u32::MAX; WORDS]), None);
     }
 }

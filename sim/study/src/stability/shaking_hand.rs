@@ -1,5 +1,5 @@
-//! A hand that shakes a joint as the device renders it, and its books: how
-//! much energy it gets back.
+//! A hand that shakes a joint as the device renders it, and the energy that it
+//! gets back.
 
 use super::criterion::BOUND_SLACK;
 use super::input::Shake;
@@ -18,13 +18,13 @@ use crepitus_model::{
 use crepitus_plant::encoder::Encoder;
 
 /// A joint and the hand that shakes it.
-pub(super) struct Shaken<'a> {
+pub(super) struct ShakingHand<'a> {
     pub(super) settings: Validated<Settings>,
     pub(super) sampling: Sampling<'a>,
     pub(super) shake: Shake,
 }
 
-/// What a tick shows to whoever draws it.
+/// Values of a tick for a picture.
 pub(super) struct Tick {
     pub(super) shown_nm: f64,
     pub(super) model_nm: f64,
@@ -42,7 +42,7 @@ pub(super) struct Returned {
     pub(super) unguarded: f64,
 }
 
-impl Shaken<'_> {
+impl ShakingHand<'_> {
     pub(super) fn observe<F: Real>(self, subject: Subject) -> Result<Observation, SettingsError> {
         let (step_s, steps) = (self.sampling.step_s(), self.sampling.steps());
         let mut peak = 0.0_f64;
@@ -60,7 +60,7 @@ impl Shaken<'_> {
         })
     }
 
-    /// Shakes, and shows every tick.
+    /// Runs the hand, calling `on_tick` every tick.
     pub(super) fn run<F: Real>(
         self,
         subject: Subject,
@@ -70,18 +70,18 @@ impl Shaken<'_> {
     }
 }
 
-struct Watched<'a, W>(Shaken<'a>, W);
+struct Watched<'a, W>(ShakingHand<'a>, W);
 
 impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
     type Output = Result<Returned, SettingsError>;
 
     fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
-        let Self(shaken, mut on_tick) = self;
-        let step_s = shaken.sampling.step_s();
-        let coefficients = StepCoefficients::<F>::new(&shaken.settings, step_s)?;
+        let Self(run, mut on_tick) = self;
+        let step_s = run.sampling.step_s();
+        let coefficients = StepCoefficients::<F>::new(&run.settings, step_s)?;
         let settings = EncoderSettings::default();
         let encoder = Encoder::new(&settings);
-        let mut walk = shaken.sampling.walk_from(0);
+        let mut walk = run.sampling.walk_from(0);
         let (mut angle_rad, omega_rad_s) = walk.now();
         let omega = F::from_f64(omega_rad_s);
         let first = encoder.count(angle_rad);
@@ -92,23 +92,23 @@ impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
             F::from_f64(settings.rad_per_count()),
             omega,
         );
-        let exact = StepCoefficients::<f64>::new(&shaken.settings, step_s)?;
-        let mut hand = EnergyObserver::new(&exact, shaken.shake.delay_ticks);
+        let exact = StepCoefficients::<f64>::new(&run.settings, step_s)?;
+        let mut hand = EnergyObserver::new(&exact, run.shake.delay_ticks);
         let mut unguarded = hand;
         let mut chunk = Vec::new();
-        // Travel since the last sample that was taken.
+        // Travel since the last valid sample.
         let mut unseen_rad = F::ZERO;
-        for n in 1..=shaken.sampling.steps() {
+        for n in 1..=run.sampling.steps() {
             walk.fill(&mut chunk, 1);
             let travel_rad = walk.now().0 - angle_rad;
             angle_rad = walk.now().0;
             let Some(shaft) = chunk.first() else { break };
-            let is_lost = shaken.shake.lost.takes(n, step_s);
+            let is_lost = run.shake.lost.takes(n, step_s);
             let sample = if is_lost {
                 reader.miss();
                 unseen_rad += shaft.delta_phi_rad;
                 Sample::Lost
-            } else if shaken.shake.counts {
+            } else if run.shake.counts {
                 Sample::Taken(reader.read(encoder.count(angle_rad)))
             } else {
                 Sample::Taken(ShaftStep {
@@ -149,7 +149,7 @@ mod tests {
     use crepitus_scene::scene::Precision;
     use std::path::Path;
 
-    /// Recorded knees, where they stand beside the repository.
+    /// Recorded knees, if they are beside the repository.
     fn recordings() -> Vec<(String, Motion, f64)> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
         let Ok(files) = std::fs::read_dir(&folder) else {
@@ -190,7 +190,7 @@ mod tests {
                     ..Settings::default()
                 };
                 for (delay_ticks, counts) in [(0, false), (2, true)] {
-                    let shaken = Shaken {
+                    let hand = ShakingHand {
                         settings: settings.validate().unwrap(),
                         sampling: Sampling::new(&motion, duration_s, 5e-5),
                         shake: Shake {
@@ -201,7 +201,7 @@ mod tests {
                             lost: Lost::NONE,
                         },
                     };
-                    let returned = shaken.run::<f32>(firmware, |_| {}).unwrap();
+                    let returned = hand.run::<f32>(firmware, |_| {}).unwrap();
                     let stroke_rad = p.static_torque_nm / p.stiffness_nm_per_rad;
                     let most = if counts {
                         1.0 + count_rad / stroke_rad

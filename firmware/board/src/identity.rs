@@ -1,4 +1,4 @@
-//! Who this controller is.
+//! The identity of this controller.
 
 use crate::raw;
 use crate::start::Start;
@@ -7,10 +7,10 @@ use crepitus_protocol::management::{Identity, Role};
 use crepitus_protocol::schema;
 use stm32f4xx_hal::signature::Uid;
 
-/// Its identity. The image's CRC-32 is that of code, constants and initial
-/// values as they lie in flash, without the vector table: what
-/// `rust-objcopy -O binary --gap-fill 0xff -j .text -j .rodata -j .data`
-/// writes. It takes a few milliseconds.
+/// The identity in a hello. The image's CRC-32 covers code, constants and
+/// initial values in flash, without the vector table: the output of
+/// `rust-objcopy -O binary --gap-fill 0xff -j .text -j .rodata -j .data`.
+/// Takes a few milliseconds.
 pub fn identity(role: Role, start: &Start) -> Identity {
     let part = |text: &str| text.parse().unwrap_or(0);
     Identity {
@@ -21,14 +21,14 @@ pub fn identity(role: Role, start: &Start) -> Identity {
             part(env!("CARGO_PKG_VERSION_PATCH")),
         ],
         schema: schema::HASH,
-        serial: chip(),
+        serial: serial_number(),
         image: CRC.checksum(raw::image()),
         reset: start.cause,
     }
 }
 
-/// The number of the chip: its place on the wafer, wafer and lot.
-fn chip() -> [u8; 12] {
+/// The chip's serial number: its place on the wafer, wafer and lot.
+fn serial_number() -> [u8; 12] {
     let uid = Uid::get();
     let [x0, x1] = uid.x().to_le_bytes();
     let [y0, y1] = uid.y().to_le_bytes();

@@ -1,23 +1,23 @@
-//! A joint behind the check of its input, stepped like any other: a step that
-//! is no number is a sample that was not taken.
+//! A joint with an input check, stepped like any other: a step of NaN is a
+//! missing sample.
 
 use crepitus_model::render::input_check::{InputLimits, Sample};
 use crepitus_model::{Event, Guarded, Phase, Real, ShaftStep, StepCoefficients, StickSlip};
 
-/// The step of a sample that was not taken.
-pub(super) fn lost<F: Real>() -> ShaftStep<F> {
-    let none = F::from_f64(f64::NAN);
+/// The step of a missing sample.
+pub(super) fn missing_step<F: Real>() -> ShaftStep<F> {
+    let nan = F::from_f64(f64::NAN);
     ShaftStep {
-        delta_phi_rad: none,
-        omega_start_rad_s: none,
-        omega_end_rad_s: none,
+        delta_phi_rad: nan,
+        omega_start_rad_s: nan,
+        omega_end_rad_s: nan,
     }
 }
 
-/// A guarded joint with the limits of the device.
-pub(super) struct Sighted<F, J>(Guarded<F, J>);
+/// A joint with an input check with the limits of the device.
+pub(super) struct GuardedJoint<F, J>(Guarded<F, J>);
 
-impl<F: Real, J: StickSlip<F>> Sighted<F, J> {
+impl<F: Real, J: StickSlip<F>> GuardedJoint<F, J> {
     pub(super) fn new(joint: J, step_s: f64, omega_rad_s: F) -> Self {
         Self(Guarded::new(
             joint,
@@ -27,7 +27,7 @@ impl<F: Real, J: StickSlip<F>> Sighted<F, J> {
     }
 }
 
-impl<F: Real, J: StickSlip<F>> StickSlip<F> for Sighted<F, J> {
+impl<F: Real, J: StickSlip<F>> StickSlip<F> for GuardedJoint<F, J> {
     fn step(&mut self, shaft: &ShaftStep<F>, on_event: impl FnMut(Event<F>)) {
         self.0.tick(&Sample::Taken(*shaft), on_event);
     }

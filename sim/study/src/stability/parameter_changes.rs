@@ -1,5 +1,5 @@
-//! A frozen joint whose parameters change under way: each commit is one ramp,
-//! and every adjustment is watched.
+//! A frozen joint whose parameters change during a run: each commit is one
+//! ramp, and every adjustment is observed.
 
 use super::input::Change;
 use super::locators::{WithLocator, with_locator};
@@ -18,21 +18,21 @@ use crepitus_model::{
 /// The device's slew limit, N·m/s.
 pub(super) const SLEW_NM_PER_S: f64 = 100.0;
 
-/// A joint and the changes that it meets.
-pub(super) struct Changed<'a> {
+/// A joint and its changes of parameters.
+pub(super) struct ParameterChanges<'a> {
     pub(super) settings: Validated<Settings>,
     pub(super) sampling: Sampling<'a>,
     pub(super) changes: &'a [Change],
 }
 
-impl Changed<'_> {
+impl ParameterChanges<'_> {
     pub(super) fn observe<F: Real>(self, subject: Subject) -> Result<Observation, SettingsError> {
         with_locator::<F, _>(subject, self)
     }
 }
 
-/// The energy that a frozen object stores: its spring's, and in a slip, where
-/// it moves by itself, its motion's, J.
+/// The energy stored in a frozen object, J: that of its spring, and in a slip,
+/// where it moves freely, its kinetic energy.
 pub(super) fn stored_j<F: Real, L: Locate<F, Shape = Linear>>(joint: &Frozen<F, L>) -> f64 {
     let (a, theta) = (joint.coefficients(), joint.theta_rad().to_f64());
     let spring = 0.5 * a.stiffness.to_f64() * theta * theta;
@@ -44,7 +44,7 @@ pub(super) fn stored_j<F: Real, L: Locate<F, Shape = Linear>>(joint: &Frozen<F, 
     }
 }
 
-impl<F: Real> WithLocator<F> for Changed<'_> {
+impl<F: Real> WithLocator<F> for ParameterChanges<'_> {
     type Output = Result<Observation, SettingsError>;
 
     fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
@@ -128,7 +128,7 @@ fn tick<F: Real, L: Locate<F, Shape = Linear>>(
     }
     seen.peak = seen.peak.max(torque_nm.abs() / limit_nm);
     if events == 0 {
-        // What the shaft's travel does to a stick's torque is no slew.
+        // The shaft's travel in a stick is not limited by the slew rate.
         let wound_nm = match joint.phase() {
             Phase::Stick => (a.stiffness * shaft.delta_phi_rad).abs().to_f64(),
             Phase::Slip(_) => 0.0,

@@ -1,36 +1,36 @@
-//! The energy books of a `physical` joint: work of the shaft against what is
-//! stored and what friction takes, segment by segment between events.
+//! The energy audit of a `physical` joint: work of the shaft against stored and
+//! dissipated energy, segment by segment between events.
 //!
 //! In a stick the work is the integral of kr·θ + J·Ω̇ + c·Ω along the path that
 //! the step describes, a closed form; θ and v at its end are the joint's own,
-//! so a drift shows. In a slip the shaft's travel cancels: what is left is
-//! s·Tk·Δθ against the object's energy.
+//! so a drift is detected. In a slip the shaft's travel cancels: s·Tk·Δθ
+//! remains, against the object's energy.
 
 use crepitus_model::{Event, Parameters, Phase, Real, ShaftStep};
 
-/// Energy books.
+/// Energy audit.
 #[derive(Clone, Debug)]
-pub(super) struct Books {
+pub(super) struct EnergyAudit {
     parameters: Parameters,
     step_s: f64,
     phase: Phase,
     theta: f64,
     v: f64,
-    /// Fraction of the step that is booked.
+    /// Audited fraction of the step.
     fraction: f64,
     /// Work of the shaft, J.
     work_j: f64,
-    /// Work that is missing, J.
+    /// Missing energy, J.
     missing_j: f64,
-    /// Largest |work| + stored so far, J; at least what a stick can store,
-    /// because at first there is next to nothing to take a share of.
+    /// Largest |work| + stored so far, J; at least what a stick can store, as
+    /// both are tiny at first.
     scale_j: f64,
-    /// Worst share missing.
+    /// Worst missing share.
     worst: f64,
 }
 
-impl Books {
-    /// Books of a joint in stick at θ = 0.
+impl EnergyAudit {
+    /// The audit of a joint in stick at θ = 0.
     pub(super) fn new(parameters: Parameters, step_s: f64, omega_rad_s: f64) -> Self {
         Self {
             parameters,
@@ -47,7 +47,7 @@ impl Books {
         }
     }
 
-    /// Books up to an event.
+    /// Adds the segment up to an event.
     pub(super) fn event<F: Real>(&mut self, shaft: &ShaftStep<F>, event: &Event<F>) {
         self.segment(
             shaft,
@@ -58,7 +58,7 @@ impl Books {
         self.phase = event.to;
     }
 
-    /// Books up to the end of the step.
+    /// Adds the segment up to the end of the step.
     pub(super) fn end_of_step<F: Real>(&mut self, shaft: &ShaftStep<F>, theta: f64, v: f64) {
         self.segment(shaft, 1.0, theta, v);
         self.fraction = 0.0;
@@ -68,7 +68,7 @@ impl Books {
         } else {
             self.missing_j.abs() / self.scale_j
         };
-        // NaN shows as the worst.
+        // NaN is the worst.
         if share.is_nan() || share > self.worst {
             self.worst = share;
         }
@@ -79,7 +79,7 @@ impl Books {
         self.work_j
     }
 
-    /// The worst share of |work| + stored that was missing.
+    /// The worst missing share of |work| + stored.
     pub(super) fn worst(&self) -> f64 {
         self.worst
     }
