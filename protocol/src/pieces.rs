@@ -126,6 +126,12 @@ mod tests {
     }
 
     #[test]
+    fn a_heartbeat_waits_behind_less_than_150_bytes() {
+        let body = 2 + crate::link::ToDrive::POSTCARD_MAX_SIZE;
+        assert!(body + crate::frame::CRC_BYTES + 2 < 150, "{body}");
+    }
+
+    #[test]
     fn a_piece_from_nowhere_changes_nothing() {
         let mut gathered = Gathered::<MANY>::new(0);
         for index in [7, 31, 32, 255] {

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-const SOURCES: [&str; 8] = [
+const SOURCES: [&str; 9] = [
     include_str!("../../src/counters.rs"),
     include_str!("../../src/host.rs"),
     include_str!("../../src/link.rs"),
