@@ -25,7 +25,6 @@ pub const STALE_TICKS: u64 = 400;
 
 /// What comms tells the drive.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
-#[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
 pub enum ToDrive {
     /// Comms is alive. Sent every millisecond.
     Heartbeat(Heartbeat),

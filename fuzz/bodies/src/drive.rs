@@ -296,9 +296,8 @@ impl Bench {
                 before == after || after != State::Arming || order == Some(Order::Arm),
                 "{message:?} arms"
             );
-            match message {
-                Some(ToDrive::Heartbeat(heartbeat)) => self.note(now, &heartbeat),
-                _ => {}
+            if let Some(ToDrive::Heartbeat(heartbeat)) = message {
+                self.note(now, &heartbeat);
             }
         }
     }
