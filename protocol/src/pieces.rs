@@ -114,7 +114,13 @@ mod tests {
 
     #[test]
     fn a_hundred_values_are_seven_pieces() {
-        let values: [f64; MANY] = core::array::from_fn(|n| n as f64 / 3.0);
+        let values: [f64; MANY] = {
+            let mut next = 0.0;
+            core::array::from_fn(|_| {
+                next += 1.0 / 3.0;
+                next
+            })
+        };
         let pieces = pieces(&values);
         assert_eq!(pieces.len(), 7);
         let mut gathered = Gathered::<MANY>::new(checksum(&values));
@@ -163,7 +169,7 @@ mod tests {
 
             let mut other = values;
             other[wrong] = f64::from_bits(bits[wrong] ^ 1 << flip);
-            let index = if wrong < PIECE_VALUES { 0 } else { 1 };
+            let index = u8::from(wrong >= PIECE_VALUES);
             gathered.add(&Piece::of(&other, index).unwrap());
             prop_assert!(gathered.is_complete() && gathered.values().is_none());
         }
