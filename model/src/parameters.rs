@@ -155,6 +155,40 @@ pub trait Tabled<const N: usize>: Copy {
     }
 }
 
+/// Values of a device's parameters, by id.
+pub trait Source {
+    /// Whether a choice is not the first of its names: `off` is the first.
+    fn is_on(&self, id: u8) -> bool;
+
+    /// Settings, as far as a device has them; the rest at its defaults.
+    fn read<const N: usize, T: Tabled<N>>(&self) -> T;
+}
+
+/// Settings from numbers in the order of the table; the rest at its defaults.
+pub fn filled<const N: usize, T: Tabled<N>>(numbers: &[f64]) -> T {
+    let mut settings = T::defaults();
+    for (value, number) in settings.values_mut().into_iter().zip(numbers) {
+        *value = *number;
+    }
+    settings
+}
+
+/// The id of the choice with which an effect's parameters begin.
+#[expect(clippy::panic, reason = "at compile time: it ends the build")]
+pub(crate) const fn switch(device: &[Parameter]) -> u8 {
+    match device {
+        [
+            Parameter {
+                id,
+                kind: Kind::Choice(_),
+                ..
+            },
+            ..,
+        ] => *id,
+        _ => panic!("an effect's parameters begin with a choice, off or on"),
+    }
+}
+
 /// Declares settings: the one place where a parameter's name, symbol, unit,
 /// range, default and meaning stand, its number on the wire, and when it may
 /// change (`always`, or only `disarmed`).

@@ -1,23 +1,22 @@
 //! What a device renders: one pipeline from a sample of the shaft to a torque.
 //!
 //! ```text
-//!            Check          Symptom                       Addition   Addition   Limits
-//! sample ─> InputCheck ─> Crepitus ─ turn-back guard ─(+)──(+)────> TorqueLimits ─> torque
-//!                            ↑                         │    │
-//!                  commit ─ Ramp      SlewedCompensation    RingingBone
+//!            Check          Symptom                     Addition             Limits
+//! sample ─> InputCheck ─> Crepitus ─ turn-back guard ─> effects ──────────> TorqueLimits ─> torque
+//!                            ↑                          (a table of them)
+//!                  commit ─ Ramp
 //! ```
 //!
 //! Each place takes any type of its trait. `()` is an absent stage: it has no
-//! state and costs no instruction. An `Option` is one that is switched while
-//! the device runs. The drive and every run of a scene with a device use the
+//! state and costs no instruction. The drive and every run of a scene with a device use the
 //! same stages; a bare solver on its own stands in [`Bare`].
 //!
 //! Every reason why less than what the model asks for is shown has a name, a
 //! [`Limit`]; the last one that acts is reported.
 
-pub mod additions;
 pub mod bone_shaping;
 pub mod crepitus;
+pub mod effects;
 pub mod friction_compensation;
 pub mod guarded;
 pub mod held;
@@ -29,6 +28,7 @@ pub mod turn_back;
 use crate::joint::{Event, Phase, ShaftStep, StickSlip};
 use crate::real::Real;
 use core::marker::PhantomData;
+use effects::Added;
 use input_check::{Checked, Sample};
 
 /// Why the torque shown is not the one that the model asks for. The numbers
@@ -61,10 +61,8 @@ pub struct Shown<F> {
     pub model_torque_nm: F,
     /// Sum of the jumps of the symptoms' torque in this tick, N·m.
     pub jump_nm: F,
-    /// Torque added by friction compensation, N·m.
-    pub compensation_nm: F,
-    /// Torque added by the ringing of a bone, N·m.
-    pub ringing_nm: F,
+    /// Torque added by each effect besides the joint, N·m.
+    pub added: Added<F>,
     /// What the stick-slip object does; stick without one.
     pub phase: Phase,
     /// Parameters are on their way.
@@ -80,8 +78,7 @@ impl<F: Real> Shown<F> {
             torque_nm: self.torque_nm.to_f64(),
             model_torque_nm: self.model_torque_nm.to_f64(),
             jump_nm: self.jump_nm.to_f64(),
-            compensation_nm: self.compensation_nm.to_f64(),
-            ringing_nm: self.ringing_nm.to_f64(),
+            added: self.added.to_f64(),
             phase: self.phase,
             settling: self.settling,
             limit: self.limit,
@@ -95,8 +92,7 @@ impl<F: Real> Shown<F> {
             torque_nm: F::ZERO,
             model_torque_nm: F::ZERO,
             jump_nm: F::ZERO,
-            compensation_nm: F::ZERO,
-            ringing_nm: F::ZERO,
+            added: Added::NONE,
             phase: Phase::Stick,
             settling: false,
             limit: Limit::None,
@@ -141,10 +137,10 @@ pub struct Torque<F> {
     pub model_nm: F,
 }
 
-/// Adds to the torque of the symptoms.
+/// Adds to the torque of the joint.
 pub trait Addition<F> {
     /// One tick.
-    fn tick(&mut self, seen: &Seen<F>, shown: &mut Shown<F>);
+    fn tick(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &mut Shown<F>);
 }
 
 /// Holds the torque within what is allowed.
@@ -155,30 +151,25 @@ pub trait Limits<F> {
 
 /// The stages of a device, in their order.
 #[derive(Clone, Debug)]
-pub struct Pipeline<F, I, S, C = (), B = (), L = ()> {
+pub struct Pipeline<F, I, S, E = (), L = ()> {
     /// The check of its input.
     pub check: I,
     /// The symptoms.
     pub symptoms: S,
-    /// What works against the device's own friction.
-    pub compensation: C,
-    /// What the jumps of the symptoms strike.
-    pub bone: B,
+    /// The effects besides the joint.
+    pub effects: E,
     /// What it may not do.
     pub limits: L,
     precision: PhantomData<F>,
 }
 
-impl<F: Real, I: Check<F>, S: Symptom<F>, C: Addition<F>, B: Addition<F>, L: Limits<F>>
-    Pipeline<F, I, S, C, B, L>
-{
+impl<F: Real, I: Check<F>, S: Symptom<F>, E: Addition<F>, L: Limits<F>> Pipeline<F, I, S, E, L> {
     /// Of these stages.
-    pub fn new(check: I, symptoms: S, compensation: C, bone: B, limits: L) -> Self {
+    pub fn new(check: I, symptoms: S, effects: E, limits: L) -> Self {
         Self {
             check,
             symptoms,
-            compensation,
-            bone,
+            effects,
             limits,
             precision: PhantomData,
         }
@@ -192,15 +183,14 @@ impl<F: Real, I: Check<F>, S: Symptom<F>, C: Addition<F>, B: Addition<F>, L: Lim
         let torque = self.symptoms.tick(&input, &mut shown, on_event);
         shown.torque_nm = torque.shown_nm;
         shown.model_torque_nm = torque.model_nm;
-        self.add(seen, shown)
+        self.add(seen, &input, shown)
     }
 
     /// The stages after the symptoms; on their own, what is shown before the
     /// first tick.
     #[inline]
-    pub fn add(&mut self, seen: &Seen<F>, mut shown: Shown<F>) -> Shown<F> {
-        self.compensation.tick(seen, &mut shown);
-        self.bone.tick(seen, &mut shown);
+    pub fn add(&mut self, seen: &Seen<F>, input: &Checked<F>, mut shown: Shown<F>) -> Shown<F> {
+        self.effects.tick(seen, input, &mut shown);
         self.limits.tick(&mut shown);
         shown
     }
@@ -271,16 +261,7 @@ impl<F: Real, S: Symptom<F>> Symptom<F> for Option<S> {
 
 impl<F> Addition<F> for () {
     #[inline]
-    fn tick(&mut self, _: &Seen<F>, _: &mut Shown<F>) {}
-}
-
-impl<F, A: Addition<F>> Addition<F> for Option<A> {
-    #[inline]
-    fn tick(&mut self, seen: &Seen<F>, shown: &mut Shown<F>) {
-        if let Some(addition) = self {
-            addition.tick(seen, shown);
-        }
-    }
+    fn tick(&mut self, _: &Seen<F>, _: &Checked<F>, _: &mut Shown<F>) {}
 }
 
 impl<F> Limits<F> for () {
@@ -302,9 +283,11 @@ impl<F: Real> Seen<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::effects::EffectSettings;
+    use crate::render::effects::tests::TIMING;
     use crate::render::friction_compensation::FrictionCompensationSettings;
     use crate::solver::locate::ExactEvents;
-    use crate::{FrictionCompensation, Frozen, Settings, StepCoefficients};
+    use crate::{Frozen, Settings, StepCoefficients};
 
     type Joint = Bare<Frozen<f64, ExactEvents>>;
 
@@ -328,7 +311,7 @@ mod tests {
             size_of::<Pipeline<f64, (), Joint>>(),
             size_of::<Frozen<f64, ExactEvents>>()
         );
-        let mut pipeline = Pipeline::new((), joint(), (), (), ());
+        let mut pipeline = Pipeline::new((), joint(), (), ());
         let mut alone = joint().0;
         let (mut ours, mut theirs) = (0, 0);
         for _ in 0..2_000 {
@@ -345,15 +328,17 @@ mod tests {
     }
 
     #[test]
-    fn a_switched_stage_acts_where_it_is() {
-        let law = || FrictionCompensation::new(&FrictionCompensationSettings::default()).unwrap();
-        let mut pipeline = Pipeline::new((), Some(joint()), Some(law()), (), ());
+    fn an_effect_acts_where_it_is() {
+        let given = EffectSettings {
+            friction_compensation: Some(FrictionCompensationSettings::default()),
+            ..EffectSettings::default()
+        };
+        let effects = given.laws(&TIMING).unwrap();
+        let mut pipeline = Pipeline::new((), Some(joint()), effects, ());
         let shown = pipeline.tick(&steady(), |_| {});
-        assert_eq!(
-            shown.torque_nm,
-            shown.model_torque_nm + law().torque_nm(1.0)
-        );
-        pipeline.compensation = None;
+        assert_eq!(shown.added.friction_compensation, -0.4);
+        assert_eq!(shown.torque_nm, shown.model_torque_nm - 0.4);
+        pipeline.effects.friction_compensation = None;
         let shown = pipeline.tick(&steady(), |_| {});
         assert_eq!(shown.torque_nm, shown.model_torque_nm);
         pipeline.symptoms = None;
@@ -363,7 +348,7 @@ mod tests {
 
     #[test]
     fn a_bare_solver_waits_for_its_next_sample() {
-        let mut pipeline = Pipeline::new((), joint(), (), (), ());
+        let mut pipeline = Pipeline::new((), joint(), (), ());
         let before = pipeline.tick(&steady(), |_| {}).torque_nm;
         let lost = Seen {
             sample: Sample::Lost,

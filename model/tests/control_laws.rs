@@ -13,6 +13,7 @@ mod support;
 use crepitus_model::control::current_loop::CurrentLoopSettings;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::bone_shaping::BoneShapingSettings;
+use crepitus_model::render::effects::{DeviceEffect, Timing};
 use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
@@ -23,6 +24,11 @@ use proptest::prelude::*;
 use std::f64::consts::TAU;
 
 const TICK_S: f64 = 5e-5;
+
+const TIMING: Timing = Timing {
+    step_s: TICK_S,
+    delay_ticks: 1,
+};
 
 /// Any number, and what is none.
 fn anything() -> impl Strategy<Value = f32> {
@@ -45,7 +51,11 @@ fn within_the_table<const N: usize, T: Tabled<N> + std::fmt::Debug>() -> impl St
 }
 
 fn bone<F: Real>(settings: &BoneShapingSettings, delay_ticks: usize) -> BoneShaping<F> {
-    BoneShaping::new(settings, TICK_S, delay_ticks).unwrap()
+    let timing = Timing {
+        delay_ticks,
+        ..TIMING
+    };
+    BoneShaping::new(settings, &timing).unwrap()
 }
 
 /// A hand and the torque that is added: what it gets back over the worst
@@ -362,7 +372,7 @@ proptest! {
         speeds in prop::collection::vec(-8.0..8.0_f64, 10..300),
         noise in prop::collection::vec(-0.05..0.05_f64, 300),
     ) {
-        let compensation = FrictionCompensation::<f64>::new(&s).unwrap();
+        let compensation = FrictionCompensation::<f64>::new(&s, &TIMING).unwrap();
         let cancelled = s.share * s.friction_nm;
         let friction = cancelled + more;
         let (mut taken, mut given, mut travel) = (0.0, 0.0, 0.0);
@@ -383,7 +393,7 @@ proptest! {
         s in within_the_table::<3, FrictionCompensationSettings>(),
         omega in anything(),
     ) {
-        let compensation = FrictionCompensation::<f32>::new(&s).unwrap();
+        let compensation = FrictionCompensation::<f32>::new(&s, &TIMING).unwrap();
         let torque = compensation.torque_nm(omega);
         prop_assert!(torque.abs() <= (s.share * s.friction_nm) as f32);
         prop_assert_eq!(compensation.torque_nm(-omega), -torque);

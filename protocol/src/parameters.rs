@@ -10,28 +10,29 @@ use crepitus_model::Parameters;
 use crepitus_model::control::current_loop::CurrentLoopSettings;
 use crepitus_model::control::device_limits::{LimitSettings, MotorSettings};
 use crepitus_model::control::encoder::EncoderSettings;
-use crepitus_model::parameters::Tabled;
-use crepitus_model::render::bone_shaping::BoneShapingSettings;
-use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
+use crepitus_model::parameters::{Source, Tabled};
+use crepitus_model::render::effects;
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 pub use crepitus_model::parameters::{Choice, Kind, Parameter, When};
 
-/// The groups of device parameters, one line each.
-const DECLARED: &[&[Parameter]] = &[
-    Parameters::DEVICE,
-    EncoderSettings::DEVICE,
-    FrictionCompensationSettings::DEVICE,
-    BoneShapingSettings::DEVICE,
-    CurrentLoopSettings::DEVICE,
-    MotorSettings::DEVICE,
-    LimitSettings::DEVICE,
+/// The groups of device parameters: those of the parts, and of every effect in
+/// the model's table.
+const DECLARED: [&[&[Parameter]]; 2] = [
+    &[
+        Parameters::DEVICE,
+        EncoderSettings::DEVICE,
+        CurrentLoopSettings::DEVICE,
+        MotorSettings::DEVICE,
+        LimitSettings::DEVICE,
+    ],
+    effects::DEVICE,
 ];
 
 /// Number of device parameters.
-pub const PARAMETER_COUNT: usize = count(DECLARED);
+pub const PARAMETER_COUNT: usize = count(DECLARED[0]) + count(DECLARED[1]);
 
 /// Every parameter, in the order of the ids.
 pub const PARAMETERS: [Parameter; PARAMETER_COUNT] = sorted();
@@ -49,20 +50,24 @@ const fn count(mut groups: &[&[Parameter]]) -> usize {
 #[expect(clippy::panic, reason = "at compile time: it ends the build")]
 const fn next(least: u8) -> &'static Parameter {
     let mut found: Option<&'static Parameter> = None;
-    let mut groups = DECLARED;
-    while let [group, rest @ ..] = groups {
-        let mut parameters = *group;
-        while let [parameter, rest @ ..] = parameters {
-            let is_nearer = match found {
-                Some(found) => parameter.id < found.id,
-                None => true,
-            };
-            if parameter.id >= least && is_nearer {
-                found = Some(parameter);
+    let mut declared: &[&[&[Parameter]]] = &DECLARED;
+    while let [groups, rest @ ..] = declared {
+        let mut groups: &[&[Parameter]] = groups;
+        while let [parameters, rest @ ..] = groups {
+            let mut parameters: &[Parameter] = parameters;
+            while let [parameter, rest @ ..] = parameters {
+                let is_nearer = match found {
+                    Some(found) => parameter.id < found.id,
+                    None => true,
+                };
+                if parameter.id >= least && is_nearer {
+                    found = Some(parameter);
+                }
+                parameters = rest;
             }
-            parameters = rest;
+            groups = rest;
         }
-        groups = rest;
+        declared = rest;
     }
     match found {
         Some(found) => found,
@@ -110,10 +115,6 @@ pub mod id {
     pub const LINES: u8 = named("encoder", "lines");
     /// `encoder.gear_ratio`.
     pub const GEAR_RATIO: u8 = named("encoder", "gear_ratio");
-    /// `friction-compensation.render`.
-    pub const COMPENSATION: u8 = named("friction-compensation", "render");
-    /// `bone-shaping.render`.
-    pub const BONE_SHAPING: u8 = named("bone-shaping", "render");
     /// `limits.torque_nm`.
     pub const TORQUE_LIMIT: u8 = named("limits", "torque_nm");
 
@@ -171,13 +172,6 @@ impl Values {
         PARAMETERS_BY_ID.iter().zip(self.0)
     }
 
-    /// Settings, as far as a device has them; the rest at its defaults.
-    pub fn read<const N: usize, T: Tabled<N>>(&self) -> T {
-        let mut values = T::TABLE.map(|parameter| parameter.default);
-        self.take(&T::IDS, &mut values);
-        T::of(values)
-    }
-
     /// Takes over the values that there are.
     #[inline(never)]
     fn take(&self, ids: &[Option<u8>], values: &mut [f64]) {
@@ -197,11 +191,6 @@ impl Values {
             }
         }
         self
-    }
-
-    /// Whether a choice is not the first of its names: what is off is not.
-    pub fn is_on(&self, id: u8) -> bool {
-        self.get(id).is_some_and(|choice| choice != 0.0)
     }
 
     /// Checks every value by itself.
@@ -224,6 +213,18 @@ impl Values {
                 parameter.when == When::Disarmed && new.to_bits() != old.to_bits()
             })
             .map(|((parameter, _), _)| parameter.id)
+    }
+}
+
+impl Source for Values {
+    fn is_on(&self, id: u8) -> bool {
+        self.get(id).is_some_and(|choice| choice != 0.0)
+    }
+
+    fn read<const N: usize, T: Tabled<N>>(&self) -> T {
+        let mut values = T::TABLE.map(|parameter| parameter.default);
+        self.take(&T::IDS, &mut values);
+        T::of(values)
     }
 }
 
@@ -277,7 +278,7 @@ mod tests {
             (1, "crepitus.inertia_kg_m2"),
             (id::RESTART, "crepitus.restart"),
             (8, "encoder.velocity_bandwidth_hz"),
-            (id::COMPENSATION, "friction-compensation.render"),
+            (9, "friction-compensation.render"),
             (19, "bone-shaping.refill_w"),
             (20, "motor.bandwidth_hz"),
             (25, "motor.torque_constant_nm_per_a"),

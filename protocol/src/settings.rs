@@ -6,8 +6,8 @@ use crepitus_model::Parameters;
 use crepitus_model::control::current_loop::CurrentLoopSettings;
 use crepitus_model::control::device_limits::{LimitSettings, MotorSettings};
 use crepitus_model::control::encoder::EncoderSettings;
-use crepitus_model::render::bone_shaping::BoneShapingSettings;
-use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
+use crepitus_model::parameters::Source;
+use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::turn_back::most_rad_per_count;
 use crepitus_model::{Convention, Restart, Settings, SettingsError, Validated};
 use postcard::experimental::max_size::MaxSize;
@@ -90,10 +90,8 @@ pub struct DeviceSettings {
     pub crepitus: Option<Validated<Settings>>,
     /// The encoder and its place in the drivetrain.
     pub encoder: EncoderSettings,
-    /// Feed-forward against the gear's friction.
-    pub friction_compensation: Option<FrictionCompensationSettings>,
-    /// The ringing of the bone.
-    pub bone_shaping: Option<BoneShapingSettings>,
+    /// The effects besides the joint.
+    pub effects: EffectSettings,
     /// The motor's current.
     pub current_loop: CurrentLoopSettings,
     /// Torque of the motor for one ampere, N·m/A.
@@ -119,12 +117,10 @@ impl DeviceSettings {
             return Err(ValueError::Unguarded);
         }
         let motor: MotorSettings = values.read();
-        let is_on = |id| values.is_on(id);
         Ok(Self {
-            crepitus: is_on(id::CREPITUS).then_some(joint),
+            crepitus: values.is_on(id::CREPITUS).then_some(joint),
             encoder: values.read(),
-            friction_compensation: is_on(id::COMPENSATION).then(|| values.read()),
-            bone_shaping: is_on(id::BONE_SHAPING).then(|| values.read()),
+            effects: EffectSettings::read(values),
             current_loop: values.read(),
             torque_constant_nm_per_a: motor.torque_constant_nm_per_a,
             limits,
@@ -183,8 +179,7 @@ mod tests {
         let settings = DeviceSettings::of(&Values::default()).unwrap();
         assert_eq!(*settings.crepitus.unwrap(), Settings::default());
         assert_eq!(settings.encoder, EncoderSettings::default());
-        assert_eq!(settings.friction_compensation, None);
-        assert_eq!(settings.bone_shaping, None);
+        assert_eq!(settings.effects, EffectSettings::default());
         assert_eq!(settings.current_loop, CurrentLoopSettings::default());
         assert_eq!(settings.limits, LimitSettings::default());
     }
@@ -218,9 +213,9 @@ mod tests {
         .into_iter()
         .chain(s.encoder.values())
         .chain([1.0])
-        .chain(s.friction_compensation.unwrap().values())
+        .chain(s.effects.friction_compensation.unwrap().values())
         .chain([1.0])
-        .chain(s.bone_shaping.unwrap().values())
+        .chain(s.effects.bone_shaping.unwrap().values())
         .chain(s.current_loop.values())
         .chain([s.torque_constant_nm_per_a])
         .chain(s.limits.values());

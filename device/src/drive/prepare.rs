@@ -8,16 +8,20 @@
 use crepitus_model::control::current_loop::{CurrentLoop, CurrentLoopSettings};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
-use crepitus_model::render::bone_shaping::BoneShapingSettings;
+use crepitus_model::render::effects::{EffectChanges, Timing};
 use crepitus_model::render::ramp::Ramp;
-use crepitus_model::{
-    BoneShaping, FrictionCompensation, Settings, SettingsError, StepCoefficients, Validated,
-};
+use crepitus_model::{Settings, SettingsError, StepCoefficients, Validated};
 use crepitus_protocol::{DeviceSettings, Revision, TICK_S, ValueError, Values};
 
 /// The fastest shaft that is believed, rad/s: seven times what the motor can
 /// do. Beyond it a count is a disturbance.
 const FASTEST_RAD_S: f64 = 50.0;
+
+/// Torque acts half a tick to a tick and a half late, and lags.
+const TIMING: Timing = Timing {
+    step_s: TICK_S,
+    delay_ticks: MOST_DELAY_TICKS,
+};
 
 /// An encoder that can be started at any count.
 #[derive(Clone, Copy, Debug)]
@@ -93,10 +97,8 @@ pub struct RenderingPlan {
     pub rad_per_count: f32,
     /// The joint.
     pub joint: JointPlan,
-    /// Feed-forward against friction.
-    pub compensation: Option<FrictionCompensation<f32>>,
-    /// The bone, where it is another; or none.
-    pub bone: Option<Option<BoneShaping<f32>>>,
+    /// The effects besides the joint, where they are others.
+    pub effects: EffectChanges<f32>,
     /// Largest torque, N·m.
     pub torque_limit_nm: f32,
     /// How much torque grows in a tick, N·m.
@@ -232,15 +234,7 @@ impl Preparation {
             rendering: RenderingPlan {
                 rad_per_count: reader.rad_per_count,
                 joint,
-                compensation: match &next.friction_compensation {
-                    Some(settings) => Some(FrictionCompensation::new(settings)?),
-                    None => None,
-                },
-                bone: if now.bone_shaping == next.bone_shaping {
-                    None
-                } else {
-                    Some(bone(next.bone_shaping.as_ref())?)
-                },
+                effects: next.effects.changes(&now.effects, &TIMING)?,
                 torque_limit_nm: single(next.limits.torque_nm),
                 slew_nm: single(slew * TICK_S),
             },
@@ -270,13 +264,6 @@ fn silent(settings: &Validated<Settings>) -> Result<StepCoefficients<f32>, Setti
     silent.parameters.kinetic_torque_nm = 0.0;
     silent.parameters.static_torque_nm = 0.0;
     StepCoefficients::new(&silent.validate()?, TICK_S)
-}
-
-fn bone(settings: Option<&BoneShapingSettings>) -> Result<Option<BoneShaping<f32>>, SettingsError> {
-    // Its torque acts half a tick to a tick and a half late, and lags.
-    settings
-        .map(|settings| BoneShaping::new(settings, TICK_S, MOST_DELAY_TICKS))
-        .transpose()
 }
 
 fn motor(settings: &DeviceSettings) -> Result<MotorPlan, SettingsError> {

@@ -5,7 +5,7 @@
 
 use crate::drive::prepare::{JointPlan, RenderingPlan};
 use crate::drive::sampler::Sampled;
-use crepitus_model::render::additions::{RingingBone, SlewedCompensation};
+use crepitus_model::render::effects::SwitchedEffects;
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
 use crepitus_model::render::{Limit, Pipeline, Seen, Shown};
@@ -18,14 +18,7 @@ use crepitus_protocol::{LimitReason, TICK_S};
 pub type Symptoms = Option<Crepitus<f32, ExactEvents>>;
 
 /// The stages of the device.
-pub type Stages = Pipeline<
-    f32,
-    InputCheck<f32>,
-    Symptoms,
-    SlewedCompensation<f32>,
-    RingingBone<f32>,
-    TorqueLimits<f32>,
->;
+pub type Stages = Pipeline<f32, InputCheck<f32>, Symptoms, SwitchedEffects<f32>, TorqueLimits<f32>>;
 
 /// The torque of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -58,8 +51,7 @@ impl Rendering {
             stages: Stages::new(
                 InputCheck::new(&limits, f32::from_f64(TICK_S), 0.0),
                 None,
-                SlewedCompensation::new(None, slew_nm),
-                RingingBone::new(None, slew_nm),
+                SwitchedEffects::new(slew_nm),
                 TorqueLimits::new(plan.torque_limit_nm, slew_nm),
             ),
             is_leaving: false,
@@ -88,11 +80,7 @@ impl Rendering {
                 }
             }
         }
-        stages.compensation.change(plan.compensation, plan.slew_nm);
-        stages.bone.set_slew(plan.slew_nm);
-        if let Some(bone) = plan.bone {
-            stages.bone.exchange(bone);
-        }
+        stages.effects.change(plan.effects, plan.slew_nm);
         stages.limits.change(plan.torque_limit_nm, plan.slew_nm);
     }
 

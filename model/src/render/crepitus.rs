@@ -136,7 +136,6 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Renderer<F, L> {
             Crepitus::new(coefficients, limits, rad_per_count, omega_rad_s),
             (),
             (),
-            (),
         )
     }
 

@@ -51,6 +51,9 @@
 use crate::joint::{Parameters, SettingsError};
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
+use crate::render::effects::{DeviceEffect, EffectSpec, Need, Slewed, Timing};
+use crate::render::input_check::Checked;
+use crate::render::{Seen, Shown};
 
 settings! {
     /// Assumed friction of the gear, and the share of it to cancel.
@@ -106,12 +109,23 @@ pub struct FrictionCompensation<F> {
     slope: F,
 }
 
-impl<F: Real> FrictionCompensation<F> {
-    /// From settings; computed in f64 and rounded once.
-    ///
-    /// # Errors
-    /// [`SettingsError::OutOfRange`] if a setting is out of range.
-    pub fn new(settings: &FrictionCompensationSettings) -> Result<Self, SettingsError> {
+impl<F: Real> DeviceEffect<F> for FrictionCompensation<F> {
+    type Settings = FrictionCompensationSettings;
+    type Switched = Slewed<F, Self>;
+
+    const SPEC: EffectSpec = EffectSpec {
+        name: "friction-compensation",
+        adds: "the device's feed-forward against a share of the gear's dry friction",
+        states: &[],
+        column: "compensation_nm",
+        needs: &[Need {
+            effect: "drivetrain",
+            why: "without it there is no friction to compensate",
+        }],
+        parameters: FrictionCompensationSettings::TABLE,
+    };
+
+    fn new(settings: &FrictionCompensationSettings, _: &Timing) -> Result<Self, SettingsError> {
         settings.validate()?;
         let most_nm = settings.share * settings.friction_nm;
         Ok(Self {
@@ -120,8 +134,17 @@ impl<F: Real> FrictionCompensation<F> {
         })
     }
 
-    /// The torque to add, N·m, at the joint's speed; none at a speed that is
-    /// no finite number.
+    // By name in a profile: a test looks for it where it should not be.
+    #[cfg_attr(target_os = "none", inline)]
+    #[cfg_attr(not(target_os = "none"), inline(never))]
+    fn added_nm(&mut self, seen: &Seen<F>, _: &Checked<F>, _: &Shown<F>) -> F {
+        self.torque_nm(seen.omega_rad_s)
+    }
+}
+
+impl<F: Real> FrictionCompensation<F> {
+    /// The torque to add at the joint's speed, N·m; 0 at a speed that is not
+    /// finite.
     #[inline]
     pub fn torque_nm(&self, omega_rad_s: F) -> F {
         if !omega_rad_s.is_finite() {
@@ -135,9 +158,10 @@ impl<F: Real> FrictionCompensation<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::effects::tests::TIMING;
 
     fn compensation<F: Real>() -> FrictionCompensation<F> {
-        FrictionCompensation::new(&FrictionCompensationSettings::default()).unwrap()
+        FrictionCompensation::new(&FrictionCompensationSettings::default(), &TIMING).unwrap()
     }
 
     #[test]
@@ -147,7 +171,7 @@ mod tests {
         let s = Settings::default();
         assert_eq!((s.friction_nm, s.share, s.fade_rad_s), (0.5, 0.8, 0.05));
         let beyond = Settings { share: 0.91, ..s };
-        assert!(FrictionCompensation::<f32>::new(&beyond).is_err());
+        assert!(FrictionCompensation::<f32>::new(&beyond, &TIMING).is_err());
     }
 
     #[test]

@@ -5,10 +5,13 @@
 
 use crate::exchange::{Input, Kind, Output};
 use crepitus_model::control::encoder::EncoderReader;
+use crepitus_model::render::effects::DeviceEffect;
+use crepitus_model::render::input_check::Checked;
+use crepitus_model::render::{Seen, Shown};
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
-    BoneShaping, CurrentLoop, Event, EventKind, FrictionCompensation, Guarded, Renderer, Sample,
-    ShaftStep, StepCoefficients, StickSlip,
+    CurrentLoop, Event, EventKind, Guarded, Renderer, Sample, ShaftStep, StepCoefficients,
+    StickSlip,
 };
 
 /// Something that is stepped.
@@ -26,14 +29,14 @@ pub fn step<M: Measured>(subject: &mut M, input: &Input) -> Output {
     subject.step(input)
 }
 
-/// What is seen of the events of a step.
+/// The events of a step.
 #[derive(Default)]
-struct Seen {
+struct Happened {
     kinds: u32,
     fraction: f32,
 }
 
-impl Seen {
+impl Happened {
     #[inline]
     fn event(&mut self, event: &Event<f32>) {
         let kind = match event.kind {
@@ -82,7 +85,7 @@ pub struct Joint<J>(pub J);
 impl<J: StickSlip<f32>> Measured for Joint<J> {
     #[inline]
     fn step(&mut self, input: &Input) -> Output {
-        let mut seen = Seen::default();
+        let mut seen = Happened::default();
         self.0.step(&input.shaft(), |event| seen.event(&event));
         seen.with(self.0.torque_nm())
     }
@@ -91,7 +94,7 @@ impl<J: StickSlip<f32>> Measured for Joint<J> {
 impl<J: StickSlip<f32>> Measured for Guarded<f32, J> {
     #[inline]
     fn step(&mut self, input: &Input) -> Output {
-        let mut seen = Seen::default();
+        let mut seen = Happened::default();
         self.tick(&input.sample(), |event| seen.event(&event));
         seen.with(self.torque_nm())
     }
@@ -112,7 +115,7 @@ impl Measured for Rendered {
 
     #[inline]
     fn step(&mut self, input: &Input) -> Output {
-        let mut seen = Seen::default();
+        let mut seen = Happened::default();
         let shown = self
             .renderer
             .render(&input.sample(), |event| seen.event(&event));
@@ -137,21 +140,26 @@ impl Measured for EncoderReader<f32> {
     }
 }
 
-impl Measured for FrictionCompensation<f32> {
-    #[inline]
-    fn step(&mut self, input: &Input) -> Output {
-        [self.torque_nm(input.number(0)).to_bits(), 0, 0]
-    }
-}
+/// An effect of the device; its input has travel, speed, and the jump of the
+/// joint's torque.
+pub struct Effect<E>(pub E);
 
-impl Measured for BoneShaping<f32> {
+impl<E: DeviceEffect<f32>> Measured for Effect<E> {
     #[inline]
     fn step(&mut self, input: &Input) -> Output {
-        let jump_nm = input.number(1);
-        if jump_nm != 0.0 {
-            self.ring(jump_nm);
-        }
-        [self.tick(input.number(0)).to_bits(), 0, 0]
+        let omega_rad_s = input.number(1);
+        let shaft = ShaftStep {
+            delta_phi_rad: input.number(0),
+            omega_start_rad_s: omega_rad_s,
+            omega_end_rad_s: omega_rad_s,
+        };
+        let shown = Shown {
+            jump_nm: input.number(2),
+            ..Shown::nothing()
+        };
+        let seen = Seen::taken(&shaft);
+        let added_nm = self.0.added_nm(&seen, &Checked::Step(shaft), &shown);
+        [added_nm.to_bits(), 0, 0]
     }
 }
 

@@ -1,7 +1,7 @@
 //! The program: takes a plan, makes its steps, waits for the next command.
 
 use crate::exchange::{BEGIN, ENTRY, Exchange, Input, Kind, Output, READY, REFUSED, RUN, STATE};
-use crate::measured::{Joint, Measured, Rendered, step};
+use crate::measured::{Effect, Joint, Measured, Rendered, step};
 use crate::plan::Plan;
 use crate::subject::Subject;
 use core::hint::black_box;
@@ -11,14 +11,10 @@ use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::real::Real;
-use crepitus_model::render::bone_shaping::BoneShapingSettings;
-use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
+use crepitus_model::render::effects::{DeviceEffect, LawVisitor, Timing, with_law};
 use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
-use crepitus_model::{
-    BoneShaping, CurrentLoop, FrictionCompensation, Guarded, Renderer, SettingsError,
-    StepCoefficients, StickSlip,
-};
+use crepitus_model::{CurrentLoop, Guarded, Renderer, SettingsError, StepCoefficients, StickSlip};
 
 /// Serves one command after the other. `wait` is called as there is none, and
 /// says whether there will be another.
@@ -82,13 +78,13 @@ impl Here<'_> {
                     None,
                 )
             }
-            Subject::FrictionCompensation => {
-                let settings = FrictionCompensationSettings::defaults();
-                self.run(FrictionCompensation::new(&settings)?, None)
-            }
-            Subject::BoneShaping => {
-                let settings = BoneShapingSettings::defaults();
-                self.run(BoneShaping::new(&settings, step_s, MOST_DELAY_TICKS)?, None)
+            Subject::Effect(place) => {
+                let timing = Timing {
+                    step_s,
+                    delay_ticks: MOST_DELAY_TICKS,
+                };
+                // There is a subject for each place of the table only.
+                with_law(place, &timing, EffectVisitor { here: self })?.unwrap_or(false)
             }
             Subject::CurrentLoop => {
                 let settings = CurrentLoopSettings::defaults();
@@ -154,6 +150,19 @@ impl Here<'_> {
 #[expect(clippy::cast_possible_truncation, reason = "32 bits on the target")]
 fn address(of: usize) -> u32 {
     of as u32 & !1
+}
+
+/// Runs the law that it gets.
+struct EffectVisitor<'a, 'b> {
+    here: &'a mut Here<'b>,
+}
+
+impl LawVisitor<f32> for EffectVisitor<'_, '_> {
+    type Output = bool;
+
+    fn visit<E: DeviceEffect<f32>>(self, law: E) -> bool {
+        self.here.run(Effect(law), None)
+    }
 }
 
 /// Runs the joint that it gets.

@@ -1,6 +1,7 @@
 //! What is measured.
 
 use crepitus_model::Convention;
+use crepitus_model::render::effects::SPECS;
 use crepitus_model::solver::Solver;
 
 /// Something that the device could run in every tick.
@@ -15,24 +16,19 @@ pub enum Subject {
     Renderer,
     /// Counts of the motor's encoder to angle and speed.
     Encoder,
-    /// Feed-forward against the gear's friction.
-    FrictionCompensation,
-    /// The ringing of a bone.
-    BoneShaping,
+    /// The effect at this place of the model's table.
+    Effect(usize),
     /// The loop of the motor's current.
     CurrentLoop,
 }
 
 /// Those that are no rungs.
-const DEVICE: [Subject; 8] = [
+const DEVICE: [Subject; 5] = [
     Subject::Checked(Convention::Frozen),
     Subject::Checked(Convention::Paper),
     Subject::Checked(Convention::Physical),
     Subject::Renderer,
     Subject::Encoder,
-    Subject::FrictionCompensation,
-    Subject::BoneShaping,
-    Subject::CurrentLoop,
 ];
 
 impl Subject {
@@ -45,7 +41,10 @@ impl Subject {
                 .filter(move |solver| solver.refusal_in::<f32>(convention).is_none())
                 .map(move |solver| Self::Rung(convention, solver))
         });
-        rungs.chain(DEVICE)
+        rungs
+            .chain(DEVICE)
+            .chain((0..SPECS.len()).map(Self::Effect))
+            .chain([Self::CurrentLoop])
     }
 
     /// Its name: of a rung as in scene files, of an effect as `crepitus
@@ -56,8 +55,7 @@ impl Subject {
             Self::Checked(_) => "input check",
             Self::Renderer => "renderer",
             Self::Encoder => "encoder",
-            Self::FrictionCompensation => "friction-compensation",
-            Self::BoneShaping => "bone-shaping",
+            Self::Effect(place) => SPECS.get(place).map_or("", |spec| spec.name),
             Self::CurrentLoop => "current loop",
         }
     }

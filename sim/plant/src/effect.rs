@@ -5,6 +5,9 @@ use crate::boundary::Boundary;
 use crate::chain::{Body, Chain};
 use crepitus_model::SettingsError;
 use crepitus_model::parameters::ParameterSpec;
+use crepitus_model::render::effects::EffectSpec;
+
+pub use crepitus_model::render::effects::Need;
 
 /// An effect that a scene can call for.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +28,21 @@ pub struct Effect {
     pub part: Part,
 }
 
+impl Effect {
+    /// An effect of the device, from the model's table.
+    pub const fn of_device(spec: &EffectSpec) -> Self {
+        Self {
+            name: spec.name,
+            adds: spec.adds,
+            states: spec.states,
+            parameters: spec.parameters,
+            choices: &[],
+            needs: spec.needs,
+            part: Part::Stage(spec.column),
+        }
+    }
+}
+
 /// A choice by name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChoiceSpec {
@@ -34,15 +52,6 @@ pub struct ChoiceSpec {
     pub names: &'static [&'static str],
     /// What it means.
     pub meaning: &'static str,
-}
-
-/// An effect that another one needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Need {
-    /// Its name.
-    pub effect: &'static str,
-    /// Why.
-    pub why: &'static str,
 }
 
 /// What a scene gives for an effect.

@@ -1,15 +1,15 @@
-//! The effects that a scene can call for, one file each.
+//! The effects that a scene can call for: one file each here, or in the model,
+//! whose [table](crepitus_model::render::effects) has those of the device.
 
 use crate::effect::Effect;
+use crepitus_model::render::effects::SPECS;
 
 /// Declares the effects' files and the table of them.
 macro_rules! effects {
     ($($file:ident),* $(,)?) => {
         $(pub mod $file;)*
 
-        /// All effects. Those of the chain stand in its order, from the motor
-        /// to the hand.
-        pub const EFFECTS: &[&Effect] = &[$(&$file::EFFECT),*];
+        const OWN: &[Effect] = &[$($file::EFFECT),*];
     };
 }
 
@@ -18,15 +18,41 @@ effects! {
     encoder,
     motor,
     drivetrain,
-    friction_compensation,
     backlash,
     cuff,
     limb,
     hand,
-    bone_shaping,
 }
+
+const COUNT: usize = OWN.len() + SPECS.len();
+
+static ALL: [Effect; COUNT] = {
+    let mut all = [OWN[0]; COUNT];
+    let mut place = 1;
+    while place < COUNT {
+        all[place] = if place < OWN.len() {
+            OWN[place]
+        } else {
+            Effect::of_device(&SPECS[place - OWN.len()])
+        };
+        place += 1;
+    }
+    all
+};
+
+/// All effects: those of the chain in its order, from the motor to the hand,
+/// then those of the device in the order in which they act.
+pub static EFFECTS: [&Effect; COUNT] = {
+    let mut all = [&ALL[0]; COUNT];
+    let mut place = 1;
+    while place < COUNT {
+        all[place] = &ALL[place];
+        place += 1;
+    }
+    all
+};
 
 /// The effect of this name.
 pub fn find(name: &str) -> Option<&'static Effect> {
-    EFFECTS.iter().copied().find(|e| e.name == name)
+    ALL.iter().find(|e| e.name == name)
 }

@@ -161,7 +161,7 @@ fn an_absent_effect_executes_nothing() {
         return;
     }
     let (_keep, folder) = folder("absent");
-    let whole = count(&folder, EFFECTS, STEPS);
+    let whole = count(&folder, &EFFECTS, STEPS);
     for effect in EFFECTS {
         let own = |profile: &Profile| -> u64 {
             profile
@@ -177,7 +177,7 @@ fn an_absent_effect_executes_nothing() {
                 effect.name
             );
         }
-        let absent = count(&folder, &without(effect.name, EFFECTS), STEPS);
+        let absent = count(&folder, &without(effect.name, &EFFECTS), STEPS);
         assert_eq!(own(&absent), 0, "{}", effect.name);
     }
 }
@@ -211,7 +211,7 @@ fn costs_add_up() {
         return;
     }
     let (_keep, folder) = folder("sum");
-    let whole = per_step(&folder, EFFECTS);
+    let whole = per_step(&folder, &EFFECTS);
     // The loop itself, with the least plant.
     let base = per_step(&folder, &[]);
     println!("{:24} {whole:8.1} instructions a step", "all effects");
@@ -223,13 +223,13 @@ fn costs_add_up() {
             .copied()
             .filter(|e| {
                 e.name == effect.name
-                    || without(effect.name, EFFECTS)
+                    || without(effect.name, &EFFECTS)
                         .iter()
                         .any(|o| o.name == e.name)
             })
             .collect();
         let cost =
-            per_step(&folder, &needed_by) - per_step(&folder, &without(effect.name, EFFECTS));
+            per_step(&folder, &needed_by) - per_step(&folder, &without(effect.name, &EFFECTS));
         println!("{:24} {cost:8.1}", effect.name);
         sum += cost;
     }

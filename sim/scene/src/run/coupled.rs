@@ -10,6 +10,7 @@ use crate::any_joint::Precise;
 use crate::scene::Scene;
 use crate::trace::EventRecord;
 use crate::walk::Walk;
+use crepitus_model::render::effects::SPECS;
 use crepitus_model::solver::Solver;
 use crepitus_plant::boundary::MotionStep;
 use crepitus_plant::chain::Impacts;
@@ -81,6 +82,8 @@ pub const STRUCK_COLUMN: &str = "hand_impact_nms";
 /// A stage behind the symptoms, what it adds now, and the work of that.
 struct Stage {
     effect: &'static str,
+    /// Its place in the model's table.
+    place: usize,
     added_nm: f64,
     work_j: f64,
 }
@@ -101,6 +104,7 @@ pub(super) fn simulate<F: Precise>(
         stages: stages::listed(scene)
             .map(|(effect, _)| Stage {
                 effect,
+                place: SPECS.iter().take_while(|s| s.name != effect).count(),
                 added_nm: 0.0,
                 work_j: 0.0,
             })
@@ -216,18 +220,18 @@ impl Run {
         })
     }
 
-    /// Commands what the device shows in the next tick. The model's torque, and
+    /// Commands what the device shows in the next tick. The joint's torque, and
     /// what guards and limits add to it, N·m.
     #[inline]
     fn command(&mut self) -> (f64, f64) {
         let shown = self.device.shown();
         for stage in &mut self.stages {
-            stage.added_nm = stages::added_nm(stage.effect, &shown);
+            stage.added_nm = shown.added.get(stage.place).unwrap_or(0.0);
         }
         self.plant.command(shown.torque_nm);
-        let added_nm = shown.compensation_nm + shown.ringing_nm;
-        let taken_nm = shown.torque_nm - shown.model_torque_nm - added_nm;
-        (shown.model_torque_nm, taken_nm)
+        let joint_nm = shown.model_torque_nm - shown.added.symptoms_nm();
+        let taken_nm = shown.torque_nm - joint_nm - shown.added.all_nm();
+        (joint_nm, taken_nm)
     }
 
     /// The plant through one tick.

@@ -9,7 +9,7 @@ use crate::any_joint::{AnyJoint, Precise};
 use crate::scene::Scene;
 use crate::trace::{Column, ColumnKind, EventRecord};
 use crepitus_model::joint::shaft::Linear;
-use crepitus_model::render::input_check::Sample;
+use crepitus_model::render::input_check::{Checked, Sample};
 use crepitus_model::render::{Bare, Seen, Shown};
 use crepitus_model::solver::Solver;
 use crepitus_model::solver::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
@@ -191,7 +191,7 @@ fn first<F: Real>(
         sample: Sample::Lost,
         omega_rad_s: F::from_f64(omega_rad_s),
     };
-    stages.add(&seen, shown)
+    stages.add(&seen, &Checked::Missing(1), shown)
 }
 
 /// A device with a joint.

@@ -6,28 +6,25 @@ use crate::scene::Scene;
 use crepitus_model::control::device_limits::LimitSettings;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::joint::shaft::Linear;
-use crepitus_model::render::additions::{RingingBone, SlewedCompensation};
-use crepitus_model::render::input_check::{InputCheck, InputLimits};
+use crepitus_model::render::effects::{Effects, SwitchedEffects};
+use crepitus_model::render::input_check::{Checked, InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
 use crepitus_model::render::{Addition, Bare, Check, Limits, Pipeline, Seen, Shown, Symptom};
 use crepitus_model::solver::locate::Locate;
 use crepitus_model::{
-    BoneShaping, Crepitus, Event, FrictionCompensation, Frozen, Real, Settings, SettingsError,
-    StepCoefficients, StickSlip, Validated,
+    Crepitus, Event, Frozen, Real, Settings, SettingsError, StepCoefficients, StickSlip, Validated,
 };
 use crepitus_plant::effect::Part;
-use crepitus_plant::effects::friction_compensation;
 
 /// Ticks between a sample and the torque that answers it, of a bare solver.
 const BARE_DELAY_TICKS: usize = 1;
 
 /// What stands behind the symptoms of a bare solver.
-pub(super) type BareStages<F, S> =
-    Pipeline<F, (), S, Option<FrictionCompensation<F>>, Option<BoneShaping<F>>>;
+pub(super) type BareStages<F, S> = Pipeline<F, (), S, Effects<F>>;
 
 /// What the drive has; its symptoms are always those of the firmware.
 pub(super) type DriveStages<F, S> =
-    Pipeline<F, InputCheck<F>, S, SlewedCompensation<F>, RingingBone<F>, TorqueLimits<F>>;
+    Pipeline<F, InputCheck<F>, S, SwitchedEffects<F>, TorqueLimits<F>>;
 
 /// Around a bare solver, or nothing.
 pub(super) fn bare<F: Real, S: Symptom<F>>(
@@ -38,8 +35,7 @@ pub(super) fn bare<F: Real, S: Symptom<F>>(
     Ok(Pipeline::new(
         (),
         symptoms,
-        scene.compensation()?,
-        scene.bone(step_s, BARE_DELAY_TICKS)?,
+        scene.laws(step_s, BARE_DELAY_TICKS)?,
         (),
     ))
 }
@@ -52,11 +48,12 @@ pub(super) fn drive<F: Real, S: Symptom<F>>(
 ) -> Result<DriveStages<F, S>, SettingsError> {
     let limits = LimitSettings::default();
     let slew_nm = F::from_f64(limits.slew_nm_per_s * step_s);
+    let mut effects = SwitchedEffects::new(slew_nm);
+    effects.change(scene.laws(step_s, MOST_DELAY_TICKS)?.into(), slew_nm);
     Ok(Pipeline::new(
         InputCheck::new(&InputLimits::device(step_s), F::from_f64(step_s), F::ZERO),
         symptoms,
-        SlewedCompensation::new(scene.compensation()?, slew_nm),
-        RingingBone::new(scene.bone(step_s, MOST_DELAY_TICKS)?, slew_nm),
+        effects,
         TorqueLimits::armed(F::from_f64(limits.torque_nm), slew_nm),
     ))
 }
@@ -88,30 +85,20 @@ pub(super) fn listed(scene: &Scene) -> impl Iterator<Item = (&'static str, &'sta
         })
 }
 
-/// What the stage of this effect adds, N·m.
-pub(super) fn added_nm(effect: &str, shown: &Shown<f64>) -> f64 {
-    if effect == friction_compensation::EFFECT.name {
-        shown.compensation_nm
-    } else {
-        shown.ringing_nm
-    }
-}
-
 /// A pipeline of any stages.
 pub(super) trait Rendering<F> {
     /// See [`Pipeline::tick`].
     fn tick(&mut self, seen: &Seen<F>, on_event: &mut dyn FnMut(Event<F>)) -> Shown<F>;
 
     /// See [`Pipeline::add`].
-    fn add(&mut self, seen: &Seen<F>, shown: Shown<F>) -> Shown<F>;
+    fn add(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: Shown<F>) -> Shown<F>;
 }
 
-impl<F: Real, I, S, C, B, L> Rendering<F> for Pipeline<F, I, S, C, B, L>
+impl<F: Real, I, S, E, L> Rendering<F> for Pipeline<F, I, S, E, L>
 where
     I: Check<F>,
     S: Symptom<F>,
-    C: Addition<F>,
-    B: Addition<F>,
+    E: Addition<F>,
     L: Limits<F>,
 {
     #[inline]
@@ -120,8 +107,8 @@ where
     }
 
     #[inline]
-    fn add(&mut self, seen: &Seen<F>, shown: Shown<F>) -> Shown<F> {
-        Self::add(self, seen, shown)
+    fn add(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: Shown<F>) -> Shown<F> {
+        Self::add(self, seen, input, shown)
     }
 }
 

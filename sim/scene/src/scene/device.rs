@@ -12,7 +12,7 @@ use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::render::turn_back::most_rad_per_count;
 use crepitus_plant::assembly::Listed;
 use crepitus_plant::effect::numbers;
-use crepitus_plant::effects::{drivetrain, friction_compensation};
+use crepitus_plant::effects::drivetrain;
 
 /// Refuses a scene that no device can render.
 pub(super) fn check(
@@ -60,8 +60,7 @@ pub(super) fn check(
 /// more, if it does.
 pub(super) fn compensation_warning(listed: &[Listed]) -> Option<String> {
     let given = |name: &str| Some(&listed.iter().find(|l| l.effect.name == name)?.given);
-    let settings =
-        FrictionCompensationSettings::of(numbers(given(friction_compensation::EFFECT.name)?));
+    let settings = FrictionCompensationSettings::of(numbers(given("friction-compensation")?));
     let [_, friction_nm, _] = numbers(given(drivetrain::EFFECT.name)?);
     let compensated_nm = settings.share * settings.friction_nm;
     (compensated_nm >= friction_nm).then(|| {

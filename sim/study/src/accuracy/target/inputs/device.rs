@@ -19,20 +19,16 @@ pub(super) fn usual(plan: &Plan, motion: &[ShaftStep<f32>]) -> Result<Vec<Input>
             motion.iter().map(taken).collect()
         }
         Subject::Encoder => counts(motion),
-        Subject::FrictionCompensation => motion
-            .iter()
-            .map(|step| input([step.omega_end_rad_s, 0.0]))
-            .collect(),
-        Subject::BoneShaping => rendered(plan, motion)?
+        Subject::Effect(_) => rendered(plan, motion)?
             .iter()
             .zip(motion)
-            .map(|((_, jump_nm), step)| input([step.delta_phi_rad, *jump_nm]))
+            .map(|((_, jump_nm), step)| input([step.delta_phi_rad, step.omega_end_rad_s, *jump_nm]))
             .collect(),
         Subject::CurrentLoop => {
             let mut measured_a = 0.0;
             let wanted = |(torque_nm, _): &(f32, f32)| {
                 let wanted_a = torque_nm / NM_PER_A;
-                input([wanted_a, std::mem::replace(&mut measured_a, wanted_a)])
+                input([wanted_a, std::mem::replace(&mut measured_a, wanted_a), 0.0])
             };
             rendered(plan, motion)?.iter().map(wanted).collect()
         }
@@ -55,7 +51,7 @@ pub(super) fn gaps(motion: &[ShaftStep<f32>]) -> Vec<Input> {
                 ..*step
             })
         } else if gap.is_multiple_of(5) {
-            input([f32::NAN, step.omega_end_rad_s])
+            input([f32::NAN, step.omega_end_rad_s, 0.0])
         } else {
             Input {
                 kind: Kind::Lost,
@@ -101,7 +97,7 @@ pub(super) fn extremes() -> Vec<Input> {
     numbers.push(f32::NAN);
     let pairs = numbers
         .iter()
-        .flat_map(|a| numbers.iter().map(move |b| input([*a, *b])));
+        .flat_map(|a| numbers.iter().map(move |b| input([*a, *b, *b])));
     pairs.collect()
 }
 
@@ -117,9 +113,9 @@ fn taken(step: &ShaftStep<f32>) -> Input {
     }
 }
 
-fn input([a, b]: [f32; 2]) -> Input {
+fn input(numbers: [f32; 3]) -> Input {
     Input {
-        words: [a.to_bits(), b.to_bits(), 0],
+        words: numbers.map(f32::to_bits),
         kind: Kind::Taken,
     }
 }

@@ -1,0 +1,122 @@
+//! An effect whose torque fades out where it is exchanged.
+
+use super::{DeviceEffect, Switched};
+use crate::real::Real;
+use crate::render::input_check::Checked;
+use crate::render::{Seen, Shown};
+
+/// Adds the law's torque as it is; of a law that was exchanged for another,
+/// which begins at rest, the last torque fades out within the slew limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Faded<F, E> {
+    law: Option<E>,
+    /// How far a torque fades in a tick, N·m.
+    slew_nm: F,
+    /// What is left of laws that were exchanged, N·m.
+    fading_nm: F,
+    /// The last torque of the law, N·m.
+    last_nm: F,
+}
+
+impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Faded<F, E> {
+    fn new(slew_nm: F) -> Self {
+        Self {
+            law: None,
+            slew_nm,
+            fading_nm: F::ZERO,
+            last_nm: F::ZERO,
+        }
+    }
+
+    fn change(&mut self, law: Option<Option<E>>, slew_nm: F) {
+        if let Some(law) = law {
+            self.fading_nm += self.last_nm;
+            self.last_nm = F::ZERO;
+            self.law = law;
+        }
+        self.slew_nm = slew_nm;
+    }
+
+    #[inline]
+    fn tick(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &mut Shown<F>) -> F {
+        if let Some(law) = &mut self.law {
+            self.last_nm = law.added_nm(seen, input, shown);
+            shown.torque_nm += self.last_nm;
+        }
+        if self.fading_nm == F::ZERO {
+            self.last_nm
+        } else {
+            self.fade(shown)
+        }
+    }
+}
+
+impl<F: Real, E> Faded<F, E> {
+    /// Adds what is left of a law that is gone.
+    #[cold]
+    fn fade(&mut self, shown: &mut Shown<F>) -> F {
+        let left_nm = (self.fading_nm.abs() - self.slew_nm).at_least(F::ZERO);
+        self.fading_nm = if self.fading_nm < F::ZERO {
+            -left_nm
+        } else {
+            left_nm
+        };
+        shown.torque_nm += self.fading_nm;
+        self.last_nm + self.fading_nm
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::BoneShaping;
+    use crate::render::bone_shaping::BoneShapingSettings;
+    use crate::render::effects::tests::{TIMING, after, seen};
+    use std::vec::Vec;
+
+    fn bone() -> BoneShaping<f32> {
+        DeviceEffect::new(&BoneShapingSettings::default(), &TIMING).unwrap()
+    }
+
+    fn faded() -> Faded<f32, BoneShaping<f32>> {
+        let mut stage = Faded::new(0.01);
+        stage.change(Some(Some(bone())), 0.01);
+        stage
+    }
+
+    #[test]
+    fn a_bone_that_is_exchanged_fades_out() {
+        let mut stage = faded();
+        after(&mut stage, 0.0, 0.4);
+        let ringing: Vec<f32> = (0..40).map(|_| after(&mut stage, 0.0, 0.0).0).collect();
+        let last = ringing[39];
+        assert!(last.abs() > 0.1, "{last}");
+        stage.change(Some(None), 0.01);
+        let (fading_nm, shown) = after(&mut stage, 0.0, 0.0);
+        assert!((fading_nm - (last.abs() - 0.01).copysign(last)).abs() < 1e-6);
+        assert_eq!(shown.torque_nm, 1.0 + fading_nm);
+        let ticks = (0..100).take_while(|_| after(&mut stage, 0.0, 0.0).0 != 0.0);
+        assert!(ticks.count() < 60);
+    }
+
+    #[test]
+    fn a_law_that_nobody_exchanges_is_the_law_alone() {
+        let (mut alone, mut staged) = (bone(), faded());
+        for n in 0..50_u8 {
+            let jump_nm = if n == 3 { -0.2 } else { 0.0 };
+            if n == 20 {
+                staged.change(None, 0.02);
+            }
+            let (added_nm, shown) = after(&mut staged, 0.0, jump_nm);
+            let before = Shown {
+                jump_nm,
+                ..Shown::nothing()
+            };
+            let expected_nm = alone.added_nm(&seen(0.0), &Checked::Missing(1), &before);
+            assert_eq!(
+                (added_nm, shown.torque_nm),
+                (expected_nm, 1.0 + expected_nm)
+            );
+        }
+    }
+}

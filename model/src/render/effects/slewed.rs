@@ -1,0 +1,102 @@
+//! An effect that is followed at most as fast as the slew limit.
+
+use super::{DeviceEffect, Switched};
+use crate::real::Real;
+use crate::render::input_check::Checked;
+use crate::render::{Limit, Seen, Shown};
+
+/// Follows the law's torque within the slew limit, also when it is switched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slewed<F, E> {
+    law: Option<E>,
+    /// The largest change in a tick, N·m.
+    slew_nm: F,
+    /// Torque added now, N·m.
+    now_nm: F,
+}
+
+impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Slewed<F, E> {
+    fn new(slew_nm: F) -> Self {
+        Self {
+            law: None,
+            slew_nm,
+            now_nm: F::ZERO,
+        }
+    }
+
+    fn change(&mut self, law: Option<Option<E>>, slew_nm: F) {
+        if let Some(law) = law {
+            self.law = law;
+        }
+        self.slew_nm = slew_nm;
+    }
+
+    #[inline]
+    fn tick(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &mut Shown<F>) -> F {
+        let target_nm = match &mut self.law {
+            Some(law) => law.added_nm(seen, input, shown),
+            None if self.now_nm == F::ZERO => return F::ZERO,
+            None => F::ZERO,
+        };
+        let step_nm = target_nm - self.now_nm;
+        self.now_nm = if step_nm.abs() > self.slew_nm {
+            if shown.limit == Limit::None {
+                shown.limit = Limit::Slew;
+            }
+            self.now_nm + step_nm.within(self.slew_nm)
+        } else {
+            target_nm
+        };
+        shown.torque_nm += self.now_nm;
+        self.now_nm
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::FrictionCompensation;
+    use crate::render::effects::tests::{TIMING, after, seen};
+    use crate::render::friction_compensation::FrictionCompensationSettings;
+
+    /// 0.4 N·m along.
+    fn slewed(slew_nm: f32) -> Slewed<f32, FrictionCompensation<f32>> {
+        let law = DeviceEffect::new(&FrictionCompensationSettings::default(), &TIMING).unwrap();
+        let mut stage = Slewed::new(slew_nm);
+        stage.change(Some(Some(law)), slew_nm);
+        stage
+    }
+
+    #[test]
+    fn compensation_comes_and_goes_within_the_slew_limit() {
+        let mut stage = slewed(0.3);
+        let (added_nm, first) = after(&mut stage, 1.0, 0.0);
+        assert_eq!((first.torque_nm, first.limit), (0.7, Limit::Slew));
+        assert_eq!(added_nm, -0.3);
+        let (_, second) = after(&mut stage, 1.0, 0.0);
+        assert!((second.torque_nm - 0.6).abs() < 1e-6);
+        assert_eq!(second.limit, Limit::None);
+        stage.change(None, 0.3);
+        let (_, kept) = after(&mut stage, 1.0, 0.0);
+        assert_eq!(kept.torque_nm, second.torque_nm);
+        stage.change(Some(None), 0.3);
+        let (_, leaving) = after(&mut stage, 1.0, 0.0);
+        assert!((leaving.torque_nm - 0.9).abs() < 1e-6);
+        assert_eq!(leaving.limit, Limit::Slew);
+        assert_eq!(after(&mut stage, 1.0, 0.0).1.torque_nm, 1.0);
+        let (_, gone) = after(&mut stage, 1.0, 0.0);
+        assert_eq!((gone.torque_nm, gone.limit), (1.0, Limit::None));
+    }
+
+    #[test]
+    fn a_reason_from_before_is_not_replaced_by_the_slew_limit() {
+        let mut stage = slewed(0.1);
+        let mut shown = Shown {
+            limit: Limit::TurnedBack,
+            ..Shown::nothing()
+        };
+        let added_nm = stage.tick(&seen(1.0), &Checked::Missing(1), &mut shown);
+        assert_eq!(shown.limit, Limit::TurnedBack);
+        assert_eq!(added_nm, -0.1);
+    }
+}
