@@ -1,6 +1,6 @@
 //! The device that a person means, and the line to it.
 
-use crate::cli::device::DeviceArguments;
+use crate::cli::DeviceArguments;
 use crate::failure::Failure;
 use crate::shipped;
 use crate::simulated::Simulated;

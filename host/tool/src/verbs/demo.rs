@@ -3,7 +3,6 @@
 
 use super::record::Recording;
 use super::report::in_brief;
-use crate::cli::device::DemoArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Follower, follow};
 use crate::line::{Line, failure};
@@ -11,6 +10,7 @@ use crate::progress::Progress;
 use crate::recorded::{RecordedSummary, report};
 use crate::shipped;
 use crate::simulated::Simulated;
+use clap::Args;
 use crepitus_client::{Client, RequestKind};
 use crepitus_model::presets::Preset;
 use crepitus_protocol::parameters;
@@ -22,6 +22,27 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+
+/// Run the whole chain, simulated: host, USB, both controllers, leg; record and report it.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus demo
+  crepitus demo --out /tmp/demo --json
+
+Everything is real but the silicon: the host's library, a USB stack and a virtual cable, the \
+program of the comms controller, the link, the program of the drive, and a simulated leg that an \
+examiner bends and straightens. DIR gets recording.csv, recording.json, report.html and \
+summary.json.")]
+pub(crate) struct Arguments {
+    /// Folder for what it records and reports [default: out/demo].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Write each figure of the report as an SVG file of its own, too.
+    #[arg(long)]
+    pictures: bool,
+}
 
 /// The leg, and what its joint begins with.
 const SCENE: &str = "passive-examination";
@@ -37,7 +58,7 @@ const CHANGES: [(f64, &str, f64); 2] = [
 const LETTING_GO: Duration = Duration::from_millis(100);
 
 /// Runs it.
-pub(crate) fn demo(arguments: &DemoArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let begun = Instant::now();
     let out = arguments
         .out

@@ -1,11 +1,17 @@
 //! `crepitus devices`: what is attached.
 
 use crate::failure::{Failure, print, print_json};
+use clap::Args;
 use crepitus_client::discovery::{self, DeviceKind};
 use serde_json::json;
 
+/// List the devices that are attached, and the simulated ones.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  crepitus devices --json")]
+pub(crate) struct Arguments {}
+
 /// Lists the devices.
-pub(crate) fn devices(as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(_: &Arguments, as_json: bool) -> Result<(), Failure> {
     let devices = discovery::devices().map_err(Failure::input)?;
     if as_json {
         let list: Vec<_> = devices

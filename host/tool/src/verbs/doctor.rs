@@ -1,16 +1,32 @@
 //! `crepitus doctor`: everything between this program and the motor, one after
 //! the other.
 
-use crate::cli::device::DoctorArguments;
+use crate::cli::DeviceArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::line::{Line, connect};
 use crate::told;
+use clap::Args;
 use crepitus_client::{Client, Event, RequestKind};
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::telemetry::{NO_CURRENT, SampleFlags};
 use serde_json::json;
 use std::time::Duration;
+
+/// Examine a device: what is wrong, and what to do about it.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus doctor
+  crepitus doctor --device sim
+
+Looks at everything between this program and the motor, one after the other, and says what to do \
+about what is not in order. Nothing moves: the device is not armed. The exit code is 1 if \
+something is wrong.")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    device: DeviceArguments,
+}
 
 /// How long telemetry is listened to.
 const LISTEN: Duration = Duration::from_secs(1);
@@ -30,7 +46,7 @@ struct Check {
 }
 
 /// Examines a device.
-pub(crate) fn doctor(arguments: &DoctorArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut checks = Vec::new();
     match connect(&arguments.device) {
         Ok(mut client) => {

@@ -1,17 +1,29 @@
 //! `crepitus info`: who a device is, how it is, what it has counted.
 
-use crate::cli::device::InfoArguments;
+use crate::cli::DeviceArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::line::{Line, failure, manage};
 use crate::told;
+use clap::Args;
 use crepitus_client::{Client, Error, Handshake};
 use crepitus_protocol::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
 use crepitus_protocol::host::{Counters, Status};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
+/// Show who a device is, how it is, and what it has counted.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus info
+  crepitus info --device sim --json")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
 /// Shows a device.
-pub(crate) fn info(arguments: &InfoArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut management = manage(&arguments.device)?;
     let handshake = management.identify().map_err(failure)?;
     match management.into_client(handshake) {

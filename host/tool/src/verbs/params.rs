@@ -1,9 +1,10 @@
 //! `crepitus params`: list, read, set and keep a device's parameters.
 
-use crate::cli::device::{DeviceArguments, ParamsAction, ParamsArguments};
+use crate::cli::{DeviceArguments, key_and_value};
 use crate::failure::{Failure, print, print_json};
 use crate::line::{connect, failure};
 use crate::shipped;
+use clap::{Args, Subcommand};
 use crepitus_client::values::{allowed_text, full_name, parse_value, show_value};
 use crepitus_model::presets::Preset;
 use crepitus_protocol::parameters::{self, Kind, PARAMETERS, Parameter, When};
@@ -11,17 +12,63 @@ use crepitus_protocol::{Revision, Values};
 use crepitus_scene::Overrides;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// List, read, set and keep a device's parameters.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus params list
+  crepitus params get crepitus.static_torque_nm
+  crepitus params set crepitus.static_torque_nm=0.5 crepitus.kinetic_torque_nm=0.25
+  crepitus params apply fine
+  crepitus params apply scenes/bone-shaping.toml
+  crepitus params save
+
+A set is one commit: all of it or nothing comes into force, between two ticks, and torques then \
+move within the slew limit. What is not saved is forgotten when the device is switched off.")]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    action: Action,
+
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// List all parameters: range, default, meaning. Needs no device.
+    List,
+    /// Show the device's parameters, or some of them.
+    Get {
+        /// Names; all if none is given.
+        #[arg(value_name = "NAME")]
+        names: Vec<String>,
+    },
+    /// Set parameters, all at once or none.
+    Set {
+        /// What to set.
+        #[arg(value_name = "NAME=VALUE", required = true, value_parser = key_and_value)]
+        values: Vec<(String, String)>,
+    },
+    /// Take a preset's numbers, or all that a scene says of the device.
+    Apply {
+        /// A preset, a scene that ships, or a scene's file.
+        what: PathBuf,
+    },
+    /// Keep the parameters in force for the next start.
+    Save,
+}
 
 /// Does it.
-pub(crate) fn params(arguments: &ParamsArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let device = &arguments.device;
     match &arguments.action {
-        ParamsAction::List => list(as_json),
-        ParamsAction::Get { names } => get(device, names, as_json),
-        ParamsAction::Set { values } => set(device, values, as_json),
-        ParamsAction::Apply { what } => apply(device, what, as_json),
-        ParamsAction::Save => {
+        Action::List => list(as_json),
+        Action::Get { names } => get(device, names, as_json),
+        Action::Set { values } => set(device, values, as_json),
+        Action::Apply { what } => apply(device, what, as_json),
+        Action::Save => {
             let mut client = connect(device)?;
             client.save().map_err(failure)?;
             let (revision, _) = client.parameters().map_err(failure)?;

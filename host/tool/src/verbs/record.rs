@@ -1,20 +1,53 @@
 //! `crepitus record`: every sample to a file.
 
-use crate::cli::device::RecordArguments;
+use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Follower, follow};
 use crate::line::{Line, connect, failure};
 use crate::status_line::StatusLine;
+use clap::Args;
 use crepitus_client::Client;
 use crepitus_protocol::Revision;
 use crepitus_protocol::telemetry::Block;
 use crepitus_recording::{Recorder, Sidecar};
 use serde_json::json;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
 use std::time::{SystemTime, UNIX_EPOCH};
 
+/// Record a device's samples to a file.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus record monday.csv --for 60s --arm
+  crepitus record try.csv --device sim --for 5s --arm --title \"First try\"
+  crepitus report monday.csv
+
+Every sample of the drive, 20000 a second, goes to FILE; what they are, with which parameters, \
+and what is missing, to a JSON file of the same name. Whatever stops it, what is on the disk can \
+be reported. About 100 MB a minute.")]
+pub(crate) struct Arguments {
+    /// The CSV file; it must not exist.
+    file: PathBuf,
+
+    /// How long: 500ms, 30s, 5m [default: until Ctrl-C].
+    #[arg(long = "for", value_name = "TIME", value_parser = duration)]
+    for_s: Option<Duration>,
+
+    /// Arm first, and disarm at the end.
+    #[arg(long)]
+    arm: bool,
+
+    /// What it is of.
+    #[arg(long, default_value = "Recording of a device")]
+    title: String,
+
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
 /// Records.
-pub(crate) fn record(arguments: &RecordArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut client = connect(&arguments.device)?;
     let mut recording = Recording::begin(&mut client, &arguments.file, &arguments.title)?;
     client.subscribe().map_err(failure)?;

@@ -1,15 +1,34 @@
 //! `crepitus report FILE`: the report of a recording.
 
-use crate::cli::device::ReportArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crate::recorded::{RecordedSummary, report as write_report};
+use clap::Args;
 use crepitus_recording::Recording;
 use serde_json::json;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Make the report of a recording.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus report out/demo/recording.csv
+  crepitus report monday.csv --out monday-report --pictures")]
+pub(crate) struct Arguments {
+    /// The recording: its CSV file.
+    file: PathBuf,
+
+    /// Folder for report.html and summary.json [default: FILE without its ending].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Write each figure of the report as an SVG file of its own, too.
+    #[arg(long)]
+    pictures: bool,
+}
 
 /// Reports.
-pub(crate) fn report(arguments: &ReportArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let recording = Recording::open(&arguments.file).map_err(Failure::input)?;
     let out = arguments
         .out

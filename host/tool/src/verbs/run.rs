@@ -4,10 +4,11 @@ mod plant;
 mod tables;
 mod watch;
 
-use crate::cli::RunArguments;
+use crate::cli::key_and_value;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
 use crate::shipped;
+use clap::Args;
 use crepitus_model::Restart;
 use crepitus_report::{Setup, Text, TorqueLevels};
 use crepitus_scene::output::Folder;
@@ -17,8 +18,56 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use watch::{Watch, WatchError};
 
+/// Simulate a scene and write its trace, events, summary and report.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus run scenes/fig6-ideal-cycle.toml
+  crepitus run slow-examination --out /tmp/exam --solver exact --step 1e-3
+  crepitus run high-speed --set effects.crepitus.preset=fine --set duration_s=2
+  crepitus run passive-examination --as-device
+
+SCENE is a file, or the name of a scene that ships. Any key of the scene can be \
+set: PATH is its name with the tables before it, VALUE is written as in the file.")]
+pub(crate) struct Arguments {
+    /// Scene file, or name of a scene that ships.
+    scene: PathBuf,
+
+    /// Folder for trace.csv, events.csv, summary.json and report.html [default: out/SCENE].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Another solver: exact, exact-events, reference, … (a wrong name lists them all).
+    #[arg(long, value_name = "KIND")]
+    solver: Option<String>,
+
+    /// Another solver step, in seconds.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    step: Option<String>,
+
+    /// Another precision: f32 or f64.
+    #[arg(long, value_name = "PRECISION")]
+    precision: Option<String>,
+
+    /// Render as the device does: input check, turn-back guard, slew and torque limits.
+    #[arg(long)]
+    as_device: bool,
+
+    /// Set a key of the scene.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value)]
+    set: Vec<(String, String)>,
+
+    /// Write each chart of the report as an SVG file of its own, too.
+    #[arg(long)]
+    pictures: bool,
+
+    /// Write only every Nth row of the trace.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    trace_every: u64,
+}
+
 /// Runs a scene.
-pub(crate) fn run(arguments: &RunArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let scene = read(arguments)?;
     let out = out_folder(arguments, &scene);
     let (summary, files) = simulate(&scene, &out, arguments)?;
@@ -40,7 +89,7 @@ pub(crate) fn run(arguments: &RunArguments, as_json: bool) -> Result<(), Failure
 }
 
 /// The scene that the arguments name, with what they change.
-fn read(arguments: &RunArguments) -> Result<Scene, Failure> {
+fn read(arguments: &Arguments) -> Result<Scene, Failure> {
     let overrides = Overrides {
         solver: arguments.solver.clone(),
         step: arguments.step.clone(),
@@ -52,7 +101,7 @@ fn read(arguments: &RunArguments) -> Result<Scene, Failure> {
 }
 
 /// `--out`, or `out/<scene>`.
-fn out_folder(arguments: &RunArguments, scene: &Scene) -> PathBuf {
+fn out_folder(arguments: &Arguments, scene: &Scene) -> PathBuf {
     arguments.out.clone().unwrap_or_else(|| {
         let name = scene.file.file_stem().unwrap_or_default();
         Path::new("out").join(name)
@@ -63,7 +112,7 @@ fn out_folder(arguments: &RunArguments, scene: &Scene) -> PathBuf {
 fn simulate(
     scene: &Scene,
     out: &Path,
-    arguments: &RunArguments,
+    arguments: &Arguments,
 ) -> Result<(Summary, Folder), Failure> {
     let failed = |doing: &str, e: &std::io::Error| Failure::at(out, doing, e);
     let folder = Folder::create(out).map_err(|e| failed("cannot be written", &e))?;

@@ -1,15 +1,26 @@
 //! `crepitus scenes [NAME]`.
 
-use crate::cli::ScenesArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::shipped::{SHIPPED, Shipped};
+use clap::Args;
 use crepitus_scene::Overrides;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
 
+/// List the scenes that ship, with what each shows.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus scenes
+  crepitus scenes fig6-ideal-cycle > my-scene.toml")]
+pub(crate) struct Arguments {
+    /// Print the file of this scene, as a start for one's own.
+    name: Option<String>,
+}
+
 /// Lists the scenes that ship, or prints one.
-pub(crate) fn scenes(arguments: &ScenesArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let Some(name) = &arguments.name {
         let name = name.trim_end_matches(".toml");
         return match Shipped::find(Path::new(name)) {

@@ -1,9 +1,9 @@
 //! `crepitus serve-sim`: a simulated device as a serial port, in real time.
 
-use crate::cli::device::ServeSimArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crate::shipped;
+use clap::Args;
 use crepitus_board::{Start, VirtualDevice};
 use crepitus_client::discovery::simulated_folder;
 use crepitus_protocol::TICKS_PER_S;
@@ -11,8 +11,29 @@ use crepitus_scene::Overrides;
 use crepitus_usb::pty::Pty;
 use serde_json::json;
 use std::fs;
+use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
+
+/// Offer a simulated device as a serial port.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus serve-sim
+  crepitus serve-sim --scene everything --name bench
+  crepitus info --device bench
+
+A simulated device as a serial port that any program can open, in real time, until Ctrl-C. \
+`crepitus devices` lists it.")]
+pub(crate) struct Arguments {
+    /// The scene whose leg and parameters it has.
+    #[arg(long, value_name = "SCENE", default_value = "passive-examination")]
+    scene: PathBuf,
+
+    /// The name under which it is found.
+    #[arg(long, value_name = "NAME", default_value = "sim-1")]
+    name: String,
+}
 
 /// Ticks between two looks at the port.
 const EXCHANGE_TICKS: u64 = 20;
@@ -21,7 +42,7 @@ const EXCHANGE_TICKS: u64 = 20;
 const BEHIND: Duration = Duration::from_millis(200);
 
 /// Serves until Ctrl-C.
-pub(crate) fn serve_sim(arguments: &ServeSimArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.name.is_empty() || arguments.name.contains(['/', '\\']) || arguments.name == "sim"
     {
         return Err(Failure::Input(format!(

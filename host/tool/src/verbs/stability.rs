@@ -9,9 +9,9 @@ mod plan;
 mod summary;
 mod table;
 
-use crate::cli::StabilityArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::studying::{self, Watch};
+use clap::Args;
 use crepitus_scene::output::Folder;
 use crepitus_study::stability::story::{self, Story};
 use crepitus_study::stability::{Matrix, matrix};
@@ -19,8 +19,64 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use summary::Summary;
 
+/// Try the hard cases on every solver: what holds, and by what margin.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus stability
+  crepitus stability --case sudden-stop
+  crepitus stability --case H10 --case H16 --solver exact-events --solver rk4
+  crepitus stability --long --out /tmp/stability
+  crepitus stability --coupled
+
+Every hard case is put to every solver under every convention, in f32 and f64. A cell of the \
+matrix holds, with the margin that was measured; or degrades: right in kind, a number is above \
+its limit; or fails: something else than the joint was simulated. Some cells must hold; if one \
+does not, the exit code is 1. With one --case, everything about it is printed.
+
+With --coupled a hand that stops is put to the whole device instead: which stiffness stays quiet \
+with which cuff, lag and friction left in the gear, and what the presets have left.")]
+#[expect(clippy::struct_excessive_bools, reason = "switches of a command line")]
+pub(crate) struct Arguments {
+    /// Only this case, by number or name: H05, reversal-in-stick. May be given again.
+    #[arg(long = "case", value_name = "NAME")]
+    cases: Vec<String>,
+
+    /// Only this solver: exact, exact-events, rk4, … May be given again.
+    #[arg(long = "solver", value_name = "KIND")]
+    solvers: Vec<String>,
+
+    /// Only this convention: frozen, paper or physical. May be given again.
+    #[arg(long = "convention", value_name = "CONVENTION")]
+    conventions: Vec<String>,
+
+    /// Only this precision: the device computes in f32.
+    #[arg(long, value_name = "PRECISION", value_parser = ["f32", "f64"])]
+    precision: Option<String>,
+
+    /// Also the cases of hours of simulated time.
+    #[arg(long)]
+    long: bool,
+
+    /// List the cases, with inputs, criteria and sources, and run none.
+    #[arg(long)]
+    list: bool,
+
+    /// Map the stiffness at which the device begins to ring on a leg, instead of the cases.
+    #[arg(long, conflicts_with_all = ["cases", "solvers", "conventions", "precision", "long", "list"])]
+    coupled: bool,
+
+    /// Folder for cases.csv, summary.json and report.html [default: out/stability; out/coupled].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Write the matrix and each picture of the report as an SVG file of its own, too.
+    #[arg(long)]
+    pictures: bool,
+}
+
 /// Runs the cases, writes the files, says what holds.
-pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.coupled {
         let out = arguments.out.as_deref().unwrap_or(Path::new("out/coupled"));
         return coupled::coupled(out, arguments.pictures, as_json);
@@ -70,7 +126,7 @@ pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result
 
 /// The stories belong to the whole catalogue; beside single cases they come
 /// only where pictures are asked for.
-fn stories(arguments: &StabilityArguments) -> Result<Vec<Story>, Failure> {
+fn stories(arguments: &Arguments) -> Result<Vec<Story>, Failure> {
     if arguments.cases.is_empty() || arguments.pictures {
         story::all().map_err(|e| Failure::Work(format!("a story cannot be computed: {e}")))
     } else {

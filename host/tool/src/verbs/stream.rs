@@ -1,17 +1,59 @@
 //! `crepitus stream`: samples to stdout, as they come.
 
-use crate::cli::device::{SampleFormat, StreamArguments};
+use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print};
 use crate::following::{Follower, follow};
 use crate::line::{Line, connect, failure};
 use crate::status_line::StatusLine;
+use clap::{Args, ValueEnum};
 use crepitus_client::Client;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, TICKS_PER_S};
 use crepitus_recording::{COLUMNS, Samples};
+use std::time::Duration;
+
+/// How samples are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum SampleFormat {
+    /// A header and a line a sample.
+    Csv,
+    /// A JSON object a line.
+    Jsonl,
+}
+
+/// Print a device's samples as they come.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus stream --rate 100
+  crepitus stream --device sim --for 2s --rate 20000 --arm > samples.csv
+  crepitus stream --format jsonl --rate 10 | head
+
+On a terminal a line with the state goes along on stderr. A rate below the drive's 20000 Hz takes \
+every n-th sample; it is no filter.")]
+pub(crate) struct Arguments {
+    /// Samples a second: 20000 divided by a whole number.
+    #[arg(long, value_name = "HZ", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=20_000))]
+    rate: u32,
+
+    /// How they are printed; with --json as JSON lines.
+    #[arg(long, default_value = "csv")]
+    format: SampleFormat,
+
+    /// How long: 500ms, 30s, 5m [default: until Ctrl-C].
+    #[arg(long = "for", value_name = "TIME", value_parser = duration)]
+    for_s: Option<Duration>,
+
+    /// Arm first, and disarm at the end.
+    #[arg(long)]
+    arm: bool,
+
+    #[command(flatten)]
+    device: DeviceArguments,
+}
 
 /// Streams.
-pub(crate) fn stream(arguments: &StreamArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let rate = arguments.rate;
     if !TICKS_PER_S.is_multiple_of(rate) {
         let every = TICKS_PER_S / rate;
