@@ -8,7 +8,7 @@
 //! blocks ──> Recorder ──> name.csv   a line a sample, appended as they come
 //!                    └──> name.json  whole at every moment: written anew at each change
 //!
-//! name.csv, name.json ──> Recording ──> rows
+//! name.csv, name.json ──> Recording ──> rows ──> Analysis ──> object, events, summary
 //! ```
 //!
 //! Whenever the program is killed, what is on the disk can be read: the CSV
@@ -16,6 +16,7 @@
 //! file then does not say yet, the ticks of the lines do.
 #![forbid(unsafe_code)]
 
+mod analysis;
 mod recorder;
 mod recording;
 mod row;
@@ -23,6 +24,7 @@ mod samples;
 mod shaft;
 mod sidecar;
 
+pub use analysis::{Analysis, Derived, Object, RecordingSummary, seconds};
 pub use recorder::{RecordError, Recorder};
 pub use recording::{ReadError, Recording, Rows};
 pub use row::{COLUMNS, Row, RowError};

@@ -1,5 +1,6 @@
 //! What stands beside the samples.
 
+use crepitus_model::{Convention, Parameters, Restart, Settings};
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::parameters::Kind;
 use crepitus_protocol::{Revision, TICKS_PER_S, Values, schema};
@@ -129,13 +130,38 @@ impl Sidecar {
         }
     }
 
+    /// The settings of the stick-slip joint in a revision; none if the
+    /// revision is not in this recording.
+    pub fn joint_settings(&self, revision: Revision) -> Option<Settings> {
+        let number = |name| self.number(revision, name);
+        Some(Settings {
+            parameters: Parameters {
+                inertia_kg_m2: number("crepitus.inertia_kg_m2")?,
+                stiffness_nm_per_rad: number("crepitus.stiffness_nm_per_rad")?,
+                kinetic_torque_nm: number("crepitus.kinetic_torque_nm")?,
+                static_torque_nm: number("crepitus.static_torque_nm")?,
+                // No device has damping.
+                ..Parameters::default()
+            },
+            // The only convention that a device renders.
+            convention: Convention::Frozen,
+            restart: self
+                .value(revision, "crepitus.restart")
+                .and_then(|value| Restart::ALL.into_iter().find(|r| value == r.name()))
+                .unwrap_or_default(),
+        })
+    }
+
     /// The value of a number in the parameters of a revision.
     pub fn number(&self, revision: Revision, name: &str) -> Option<f64> {
+        self.value(revision, name).and_then(Value::as_f64)
+    }
+
+    fn value(&self, revision: Revision, name: &str) -> Option<&Value> {
         self.parameters
             .iter()
             .find(|set| set.revision == revision.0)
             .and_then(|set| set.values.get(name))
-            .and_then(Value::as_f64)
     }
 }
 

@@ -8,7 +8,7 @@ mod interrupt;
 mod keys;
 mod line;
 mod progress;
-mod recorded;
+mod results;
 mod safe_text;
 mod sections;
 mod shipped;

@@ -1,13 +1,10 @@
 //! What the verbs that carry out a study share: the progress that they show,
-//! how they are interrupted, and the files that they leave.
+//! and how they are interrupted.
 
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Progress;
-use crepitus_scene::output::Folder;
 use crepitus_study::{StudyError, Watcher};
-use std::io::Write;
-use std::path::Path;
 
 /// Moves the progress bar, and stops when asked.
 pub(crate) struct Watch(Progress);
@@ -43,24 +40,4 @@ pub(crate) fn failed(error: StudyError<Interrupted>) -> Failure {
         }
         other => Failure::Work(format!("the study failed: {other}")),
     }
-}
-
-/// Writes names and contents of files, all or none.
-pub(crate) fn write(
-    folder: Folder,
-    out: &Path,
-    files: Vec<(String, String)>,
-) -> Result<(), Failure> {
-    for (name, content) in files {
-        folder
-            .file(&name)
-            .and_then(|mut file| {
-                file.write_all(content.as_bytes())?;
-                Folder::finish(file)
-            })
-            .map_err(|e| Failure::at(out, "writing the results", &e))?;
-    }
-    folder
-        .commit()
-        .map_err(|e| Failure::at(out, "moving the results into place", &e))
 }

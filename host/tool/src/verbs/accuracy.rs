@@ -11,10 +11,10 @@ mod target;
 mod words;
 
 use crate::failure::{Failure, print, print_json};
+use crate::results;
 use crate::studying::{self, Watch};
 use clap::Args;
-use crepitus_scene::output::Folder;
-use crepitus_study::accuracy::{Need, Study, convergence, points_csv, study};
+use crepitus_study::accuracy::{Need, convergence, study};
 use serde_json::json;
 use std::path::PathBuf;
 use summary::Summary;
@@ -108,12 +108,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         (None, None) => Some(PathBuf::from("out/accuracy")),
         (None, Some(_)) => None,
     };
-    // A folder that cannot be written is better known before the work.
-    let folder = out
-        .as_deref()
-        .map(|out| Folder::create(out).map_err(|e| Failure::at(out, "cannot be written", &e)))
-        .transpose()?;
-    // So is an image that cannot be built.
+    let folder = out.as_deref().map(results::folder).transpose()?;
+    // An image that cannot be built is better known before the work.
     let ladder = arguments.target.then(target::ladder).transpose()?;
     let mut study = study::run(&studied.plan, &mut Watch::new()).map_err(studying::failed)?;
     if let Some(mut ladder) = ladder {
@@ -130,7 +126,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     study.orders.extend_from_slice(&by_motion);
     let summary = Summary::new(arguments.quick, &studied, &study);
     if let (Some(folder), Some(out)) = (folder, &out) {
-        studying::write(folder, out, files(&study, &summary, arguments.pictures)?)?;
+        results::write(
+            folder,
+            out,
+            page::files(&study, &summary, arguments.pictures)?,
+        )?;
     }
     match &need {
         Some(need) => answer::tell(need, &studied, &study, out.as_deref(), as_json),
@@ -147,21 +147,4 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             ))
         }
     }
-}
-
-/// The report, the points and the summary, and the pictures if asked for.
-fn files(
-    study: &Study,
-    summary: &Summary<'_>,
-    pictures: bool,
-) -> Result<Vec<(String, String)>, Failure> {
-    let json = serde_json::to_string_pretty(summary)
-        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
-    let mut files = page::files(study, summary, pictures)?;
-    files.push((
-        "points.csv".to_owned(),
-        points_csv::points_csv(&study.points),
-    ));
-    files.push(("summary.json".to_owned(), json + "\n"));
-    Ok(files)
 }

@@ -2,12 +2,11 @@
 //! the simulated leg.
 
 use super::record::Recording;
-use super::report::in_brief;
+use super::report::{self, in_brief};
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Follower, follow};
 use crate::line::{Line, failure};
 use crate::progress::Progress;
-use crate::recorded::{RecordedSummary, report};
 use crate::shipped;
 use crate::simulated::Simulated;
 use clap::Args;
@@ -16,6 +15,7 @@ use crepitus_model::presets::Preset;
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};
+use crepitus_recording::RecordingSummary;
 use crepitus_scene::Overrides;
 use serde_json::json;
 use std::fmt::Write as _;
@@ -108,7 +108,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     say.now("examination", &told(&client, &made))?;
 
     let recording = crepitus_recording::Recording::open(&file).map_err(Failure::input)?;
-    let summary = report(&recording, &out, arguments.pictures)?;
+    let summary = report::write(&recording, &out, arguments.pictures)?;
     done(&summary, &out, &client, begun.elapsed(), as_json)
 }
 
@@ -203,7 +203,7 @@ fn told(client: &Client<Line>, made: &[(&'static str, f64, Revision)]) -> String
 }
 
 fn done(
-    summary: &RecordedSummary,
+    summary: &RecordingSummary,
     out: &Path,
     client: &Client<Line>,
     wall: Duration,

@@ -10,10 +10,10 @@ mod table;
 
 use crate::cli::key_and_value;
 use crate::failure::{Failure, print, print_json, warn};
+use crate::results;
 use crate::shipped;
-use crate::studying::{self, Interrupted, Watch};
+use crate::studying::{Interrupted, Watch};
 use clap::Args;
-use crepitus_scene::output::Folder;
 use crepitus_scene::{Overrides, Scene, SceneError};
 use crepitus_study::effects::{
     EffectsError, Plan, Refusal, Tolerance, refusal, run as study_effects,
@@ -71,11 +71,10 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     };
     let plan = plan(arguments, path)?;
     let out = arguments.out.clone().unwrap_or_else(|| out(&plan.scene));
-    // A folder that cannot be written is better known before the work.
-    let folder = Folder::create(&out).map_err(|e| Failure::at(&out, "cannot be written", &e))?;
+    let folder = results::folder(&out)?;
     let study = study_effects(&plan, &mut Watch::new()).map_err(|e| failed(&plan.scene, e))?;
     let summary = Summary::new(&study);
-    studying::write(
+    results::write(
         folder,
         &out,
         page::files(&study, &summary, arguments.pictures)?,

@@ -7,14 +7,13 @@ mod watch;
 use crate::cli::key_and_value;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
+use crate::results::{self, footer, report_files};
+use crate::sections::torque_levels;
 use crate::shipped;
 use clap::Args;
-use crepitus_model::Restart;
-use crepitus_report::{Setup, Text, TorqueLevels};
-use crepitus_scene::output::Folder;
+use crepitus_report::{Setup, Text};
 use crepitus_scene::{Overrides, RunError, Scene, Summary, run as runner};
 use serde_json::json;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use watch::{Watch, WatchError};
 
@@ -70,10 +69,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let scene = read(arguments)?;
     let out = out_folder(arguments, &scene);
-    let (summary, files) = simulate(&scene, &out, arguments)?;
-    files
-        .commit()
-        .map_err(|e| Failure::at(&out, "moving the results into place", &e))?;
+    let summary = simulate(&scene, &out, arguments)?;
     if as_json {
         return print_json(&json!({ "out": out, "summary": summary }));
     }
@@ -108,25 +104,21 @@ fn out_folder(arguments: &Arguments, scene: &Scene) -> PathBuf {
     })
 }
 
-/// Runs the scene into a folder that still has to be committed.
-fn simulate(
-    scene: &Scene,
-    out: &Path,
-    arguments: &Arguments,
-) -> Result<(Summary, Folder), Failure> {
-    let failed = |doing: &str, e: &std::io::Error| Failure::at(out, doing, e);
-    let folder = Folder::create(out).map_err(|e| failed("cannot be written", &e))?;
+/// Runs the scene and writes its files.
+fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Summary, Failure> {
+    let failed = |e: &std::io::Error| Failure::at(out, "writing the results", e);
+    let folder = results::folder(out)?;
     interrupt::listen();
     let setup = Setup {
         columns: &runner::columns(scene),
         rows_expected: runner::rows(scene),
         row_step_s: scene.trace_step_s,
-        levels: levels(scene),
+        levels: scene.crepitus.map(|c| torque_levels(&c.settings)),
     };
     let mut watch = Watch::new(&folder, &setup, scene.duration_s, arguments.trace_every)
-        .map_err(|e| failed("writing the results", &e))?;
+        .map_err(|e| failed(&e))?;
     let mut summary = crepitus_scene::run(scene, &mut watch).map_err(|e| match e {
-        RunError::Observer(WatchError::Write(e)) => failed("writing the results", &e),
+        RunError::Observer(WatchError::Write(e)) => failed(&e),
         RunError::Observer(WatchError::Interrupted) => {
             Failure::Work("interrupted: nothing was written".to_owned())
         }
@@ -136,9 +128,7 @@ fn simulate(
         _ => Failure::Work(format!("{}: the run failed", scene.file.display())),
     })?;
     runner::measure_costs(scene, &mut summary);
-    let mut figures = watch
-        .finish()
-        .map_err(|e| failed("writing the results", &e))?;
+    let mut figures = watch.finish().map_err(|e| failed(&e))?;
     if let Some(balance) = plant::balance(&summary) {
         figures.set_balance(balance);
     }
@@ -148,49 +138,13 @@ fn simulate(
         description: scene.description.clone(),
         warnings: summary.warnings.clone(),
         sections: tables::sections(&summary, &specs),
-        footer: format!(
-            "crepitus {} · research and education prototype, not a medical device",
-            summary.crepitus_version
-        ),
+        footer: footer(),
     };
-    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
-    let page = crepitus_report::html(&text, &figures).map_err(undrawn)?;
-    let json = serde_json::to_string_pretty(&summary)
-        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
-    let mut texts = vec![
-        ("report.html".to_owned(), page),
-        ("summary.json".to_owned(), json + "\n"),
-    ];
-    if arguments.pictures {
-        let pictures = crepitus_report::pictures(&figures).map_err(undrawn)?;
-        texts.extend(
-            pictures
-                .into_iter()
-                .map(|p| (format!("{}.svg", p.name), p.svg)),
-        );
-    }
-    for (name, content) in texts {
-        folder
-            .file(&name)
-            .and_then(|mut file| {
-                file.write_all(content.as_bytes())?;
-                Folder::finish(file)
-            })
-            .map_err(|e| failed("writing the results", &e))?;
-    }
-    Ok((summary, folder))
-}
-
-/// The torque levels that the report marks.
-fn levels(scene: &Scene) -> Option<TorqueLevels> {
-    let settings = scene.crepitus?.settings;
-    let p = &settings.parameters;
-    let elastic = TorqueLevels::elastic(p.kinetic_torque_nm, p.static_torque_nm);
-    Some(match settings.restart {
-        Restart::Elastic => elastic,
-        Restart::FromKinetic => TorqueLevels {
-            restart_nm: elastic.kinetic_nm,
-            ..elastic
-        },
-    })
+    let page = crepitus_report::html(&text, &figures);
+    let pictures = arguments
+        .pictures
+        .then(|| crepitus_report::pictures(&figures));
+    let files = report_files(page, &summary, pictures)?;
+    results::write(folder, out, files)?;
+    Ok(summary)
 }

@@ -10,9 +10,9 @@ mod summary;
 mod table;
 
 use crate::failure::{Failure, print, print_json};
+use crate::results;
 use crate::studying::{self, Watch};
 use clap::Args;
-use crepitus_scene::output::Folder;
 use crepitus_study::stability::story::{self, Story};
 use crepitus_study::stability::{Matrix, matrix};
 use serde_json::json;
@@ -93,12 +93,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("out/stability"));
-    // A folder that cannot be written is better known before the work.
-    let folder = Folder::create(&out).map_err(|e| Failure::at(&out, "cannot be written", &e))?;
+    let folder = results::folder(&out)?;
     let matrix = matrix::run(&plan, &mut Watch::new()).map_err(studying::failed)?;
     let summary = Summary::new(&plan, &matrix);
     let stories = stories(arguments)?;
-    studying::write(
+    results::write(
         folder,
         &out,
         page::files(&matrix, &stories, &summary, arguments.pictures)?,

@@ -1,10 +1,10 @@
 //! `crepitus stability --coupled`: the Z-width of the device on a leg.
 
 use crate::failure::{Failure, print, print_json};
-use crate::studying::{self, Watch};
+use crate::results::{self, Files, footer, report_files};
+use crate::studying::Watch;
 use crepitus_report::Section;
 use crepitus_report::coupled::{self, CoupledText};
-use crepitus_scene::output::Folder;
 use crepitus_study::coupled::{
     CoupledError, CoupledStudy, GEARS, LAGS, Margin, Setting, Verdict, csv, most_share, run,
 };
@@ -54,13 +54,13 @@ struct Joint {
 
 /// Makes the map, writes the files, says what is left to the presets.
 pub(super) fn coupled(out: &Path, pictures: bool, as_json: bool) -> Result<(), Failure> {
-    let folder = Folder::create(out).map_err(|e| Failure::at(out, "cannot be written", &e))?;
+    let folder = results::folder(out)?;
     let study = run(&mut Watch::new()).map_err(|error| match error {
         CoupledError::Watcher(_) => Failure::Work("interrupted: nothing was written".to_owned()),
         CoupledError::Run(why) => Failure::Work(format!("the study failed: {why}")),
     })?;
     let summary = summary(&study);
-    studying::write(folder, out, files(&study, &summary, pictures)?)?;
+    results::write(folder, out, files(&study, &summary, pictures)?)?;
     if as_json {
         print_json(&json!({ "out": out, "summary": summary }))?;
     } else {
@@ -175,28 +175,16 @@ fn told(study: &CoupledStudy) -> String {
     text
 }
 
-fn files(
-    study: &CoupledStudy,
-    summary: &Summary,
-    pictures: bool,
-) -> Result<Vec<(String, String)>, Failure> {
-    let json = serde_json::to_string_pretty(summary)
-        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
-    let mut files = vec![
-        (
-            "report.html".to_owned(),
-            coupled::html(study, &words(summary)),
-        ),
+fn files(study: &CoupledStudy, summary: &Summary, pictures: bool) -> Result<Files, Failure> {
+    let page = coupled::html(study, &words(summary));
+    let pictures = pictures.then(|| Ok(coupled::pictures(study)));
+    let mut files = report_files(Ok(page), summary, pictures)?;
+    files.extend([
         ("cells.csv".to_owned(), csv::cells(&study.cells)),
         ("onsets.csv".to_owned(), csv::onsets(study)),
         ("margins.csv".to_owned(), csv::margins(study)),
         ("scene.toml".to_owned(), Setting::shipped().toml()),
-        ("summary.json".to_owned(), json + "\n"),
-    ];
-    if pictures {
-        let pictures = coupled::pictures(study).into_iter();
-        files.extend(pictures.map(|p| (format!("{}.svg", p.name), p.svg)));
-    }
+    ]);
     Ok(files)
 }
 
@@ -221,9 +209,6 @@ fn words(summary: &Summary) -> CoupledText {
                 row("the study took", format!("{:.1} s", summary.wall_s)),
             ],
         }],
-        footer: format!(
-            "crepitus {} · research and education prototype, not a medical device",
-            summary.crepitus_version
-        ),
+        footer: footer(),
     }
 }

@@ -1,15 +1,14 @@
 //! The tables of a recording's report.
 
-use super::tally::{RecordedSummary, seconds};
 use crate::sections::{section, torque_section};
-use crepitus_recording::{Controller, ParameterSet, Sidecar};
+use crepitus_recording::{Controller, ParameterSet, RecordingSummary, Sidecar, seconds};
 use crepitus_report::Section;
 use serde_json::Value;
 
 /// Gaps that are shown.
 const SHOWN_GAPS: usize = 20;
 
-pub(super) fn sections(s: &RecordedSummary, sidecar: &Sidecar) -> Vec<Section> {
+pub(super) fn sections(s: &RecordingSummary, sidecar: &Sidecar) -> Vec<Section> {
     let mut sections = vec![recording(s)];
     sections.extend(
         s.model_torque
@@ -51,7 +50,7 @@ fn named(title: &str, rows: impl IntoIterator<Item = (String, String)>) -> Secti
     }
 }
 
-fn recording(s: &RecordedSummary) -> Section {
+fn recording(s: &RecordingSummary) -> Section {
     let device = |c: &Controller| format!("{} (serial {})", c.version, c.serial);
     let t = &s.telemetry;
     let mut rows = vec![
