@@ -14,12 +14,12 @@
 //! | how a case is run and judged | `source`, `observe`, `books`, `judge` |
 //! | what came of it | [`verdict`], [`matrix`] |
 //! | an input as data, for a joint elsewhere | [`replay`] |
-//! | the file of it | [`cases_csv`] |
+//! | the file of it | [`cases_table`] |
 //! | pictures that explain a case | [`story`] |
 
 mod books;
 pub mod case;
-pub mod cases_csv;
+pub mod cases_table;
 pub mod catalogue;
 mod changed;
 pub mod criterion;

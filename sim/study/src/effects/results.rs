@@ -24,6 +24,7 @@ pub struct EffectsStudy {
     /// What was odd about the scene.
     pub warnings: Vec<String>,
     /// The scene, then its variants.
+    #[serde(serialize_with = "super::effects_table::serialize")]
     pub rows: Vec<Row>,
     /// Timings of which the fastest counts.
     pub timings: u32,
@@ -44,7 +45,7 @@ pub struct EffectsStudy {
 }
 
 /// The scene or one of its variants.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// What was done to the scene.
     pub change: Change,
@@ -60,13 +61,11 @@ pub struct Row {
     /// at most, as a share.
     pub time_spread: f64,
     /// What came of it.
-    #[serde(flatten)]
     pub outcome: Outcome,
 }
 
 /// What came of a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// It ran.
     Ran(Ran),
@@ -78,7 +77,7 @@ pub enum Outcome {
 }
 
 /// A run to its end.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ran {
     /// What the hand felt.
     pub torque: Torque,
@@ -90,7 +89,7 @@ pub struct Ran {
 }
 
 /// What an effect adds: with it less without it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Added {
     /// Root mean square of the torque that it adds at the hand, N·m.
     pub rms_nm: f64,
@@ -103,7 +102,6 @@ pub struct Added {
     /// CPU time of a step. Where a run is not longer with it than the timings
     /// can tell only the bound is known: the effect spares as much work as it
     /// makes, or it hides in the noise.
-    #[serde(flatten)]
     pub time: AddedTime,
 }
 

@@ -10,6 +10,7 @@ use crepitus_study::accuracy::answer::{Answer, Candidate, Mark};
 use crepitus_study::accuracy::target::STEP_SHARE;
 use crepitus_study::accuracy::{Need, Question, Study, answer};
 use crepitus_study::limits::Limited;
+use crepitus_table::show::scientific;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
@@ -72,7 +73,7 @@ fn in_words(need: &Need, question: &Question<'_>, study: &Study, answer: &Answer
             "No solver could: any torque that is held for {} is off by {} N·m RMS at least on {}. Ask for a higher \
              --rate, for more torque, or for torque-at-tick.",
             words::step(why.step_s),
-            words::error(why.floor_nm),
+            scientific(why.floor_nm),
             why.scene
         );
     }

@@ -9,7 +9,8 @@ use crepitus_report::Section;
 use crepitus_report::accuracy::{self, AccuracyText};
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::orders::{Order, Orders};
-use crepitus_study::accuracy::{Point, Study, points_csv};
+use crepitus_study::accuracy::points_table::points_table;
+use crepitus_study::accuracy::{Point, Study};
 
 /// The files of a study; each diagram as an SVG of its own if asked for.
 pub(super) fn files(
@@ -22,7 +23,7 @@ pub(super) fn files(
     let mut files = report_files(page, summary, pictures)?;
     files.push((
         "points.csv".to_owned(),
-        points_csv::points_csv(&study.points),
+        points_table(&study.points).to_csv(),
     ));
     Ok(files)
 }

@@ -6,7 +6,7 @@ use crate::results::{Files, footer, report_files};
 use crepitus_report::Section;
 use crepitus_report::effects::{self, EffectsText};
 use crepitus_study::effects::EffectsStudy;
-use crepitus_study::effects::effects_csv::effects_csv;
+use crepitus_study::effects::effects_table::effects_table;
 
 /// Names and contents of the files; each figure as an SVG of its own if asked
 /// for.
@@ -18,7 +18,10 @@ pub(super) fn files(
     let page = effects::html(study, &text(study, summary));
     let pictures = pictures.then(|| effects::pictures(study));
     let mut files = report_files(page, summary, pictures)?;
-    files.push(("effects.csv".to_owned(), effects_csv(study)));
+    files.push((
+        "effects.csv".to_owned(),
+        effects_table(&study.rows).to_csv(),
+    ));
     Ok(files)
 }
 

@@ -5,25 +5,29 @@ use crate::failure::Failure;
 use crate::results::{Files, footer, report_files};
 use crepitus_report::Section;
 use crepitus_report::stability::{self, StabilityText};
+use crepitus_study::stability::Matrix;
+use crepitus_study::stability::cases_table::cases_table;
 use crepitus_study::stability::story::Story;
-use crepitus_study::stability::{Matrix, cases_csv};
 
 /// The report, the cells and the summary; the matrix and each story as an SVG
 /// of its own if asked for.
 pub(super) fn files(
     matrix: &Matrix,
     stories: &[Story],
-    summary: &Summary,
+    summary: &Summary<'_>,
     pictures: bool,
 ) -> Result<Files, Failure> {
     let page = stability::html(matrix, stories, &text(matrix, summary));
     let pictures = pictures.then(|| stability::pictures(matrix, stories));
     let mut files = report_files(page, summary, pictures)?;
-    files.push(("cases.csv".to_owned(), cases_csv::cases_csv(matrix)));
+    files.push((
+        "cases.csv".to_owned(),
+        cases_table(&matrix.cells()).to_csv(),
+    ));
     Ok(files)
 }
 
-fn text(matrix: &Matrix, summary: &Summary) -> StabilityText {
+fn text(matrix: &Matrix, summary: &Summary<'_>) -> StabilityText {
     let counts = &summary.counts;
     let row = |name: &str, value: String| (name.to_owned(), value);
     StabilityText {
