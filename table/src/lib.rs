@@ -106,27 +106,31 @@ impl<'r, R> Table<'r, R> {
 
     /// Shows the last column to people, too, under this heading.
     #[must_use]
-    pub fn headed(mut self, heading: impl Into<String>) -> Self {
-        if let Some(column) = self.columns.last_mut() {
-            column.heading = Some(heading.into());
-        }
-        self
+    pub fn headed(self, heading: impl Into<String>) -> Self {
+        self.last(|column| column.heading = Some(heading.into()))
     }
 
     /// Rounds the numbers and counts of the last column for people.
     #[must_use]
-    pub fn rounded(mut self, show: show::Show) -> Self {
-        if let Some(column) = self.columns.last_mut() {
-            column.show = Some(show);
-        }
-        self
+    pub fn rounded(self, show: show::Show) -> Self {
+        self.last(|column| column.show = Some(show))
     }
 
     /// Aligns the last column to the right.
     #[must_use]
-    pub fn right(mut self) -> Self {
+    pub fn right(self) -> Self {
+        self.last(|column| column.right = true)
+    }
+
+    /// Aligns the last column to the left, as text is anyway.
+    #[must_use]
+    pub fn left(self) -> Self {
+        self.last(|column| column.right = false)
+    }
+
+    fn last(mut self, change: impl FnOnce(&mut Column)) -> Self {
         if let Some(column) = self.columns.last_mut() {
-            column.right = true;
+            change(column);
         }
         self
     }

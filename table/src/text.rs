@@ -1,6 +1,7 @@
 //! A table on a terminal.
 
 use crate::{Column, Table, groups};
+use std::fmt::Write;
 
 /// Between columns.
 const GAP: usize = 2;
@@ -56,7 +57,8 @@ fn group_line(columns: &[(&str, &Column)], widths: &mut [usize]) -> String {
             *first += more;
         }
         let width = width + more;
-        line.push_str(&format!("{heading:^width$}{:GAP$}", ""));
+        // Writing to a String cannot fail.
+        let _ = write!(line, "{heading:^width$}{:GAP$}", "");
         place += count;
     }
     line.trim_end().to_owned() + "\n"
@@ -71,13 +73,11 @@ fn push_line(
 ) {
     let mut line = String::new();
     for ((cell, width), (_, column)) in cells.iter().zip(widths).zip(columns) {
-        let cell = if column.right {
-            format!("{cell:>width$}")
+        let _ = if column.right {
+            write!(line, "{cell:>width$}{:GAP$}", "")
         } else {
-            format!("{cell:width$}")
+            write!(line, "{cell:width$}{:GAP$}", "")
         };
-        line.push_str(&cell);
-        line.push_str(&" ".repeat(GAP));
     }
     line.push_str(remark);
     text.push_str(line.trim_end());

@@ -1,4 +1,4 @@
-//! What stands beside the samples.
+//! Metadata of a recording: its JSON file.
 
 use crepitus_model::{Convention, Parameters, Restart, Settings};
 use crepitus_protocol::management::Identity;
@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 /// Version of the two files.
 pub(crate) const FORMAT: u32 = 1;
 
-/// A controller that has taken part.
+/// Identity of a controller.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Controller {
     /// Version of its program.
@@ -40,7 +40,7 @@ impl From<&Identity> for Controller {
     }
 }
 
-/// Parameters that were in force from a tick on.
+/// Parameters that were active from a tick on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterSet {
     /// Their revision.
@@ -51,16 +51,16 @@ pub struct ParameterSet {
     pub values: Map<String, Value>,
 }
 
-/// Samples that are missing.
+/// A gap: missing samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Gap {
-    /// The first tick that is missing.
+    /// The first missing tick.
     pub first_tick: u64,
-    /// How many are.
+    /// Number of missing samples.
     pub samples: u64,
 }
 
-/// The books: produced = received + dropped.
+/// Sample accounting: produced = received + dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Totals {
     /// Samples that the drive produced from the first to the last recorded
@@ -68,7 +68,7 @@ pub struct Totals {
     pub produced: u64,
     /// Samples that were recorded.
     pub received: u64,
-    /// Samples that were lost on the way, wherever that was.
+    /// Samples lost anywhere between drive and file.
     pub dropped: u64,
 }
 
@@ -77,9 +77,9 @@ pub struct Totals {
 pub struct Sidecar {
     /// Version of the two files.
     pub format: u32,
-    /// What it is of.
+    /// Title.
     pub title: String,
-    /// When it was begun, seconds since 1970.
+    /// Start of the recording, seconds since 1970.
     pub begun_unix_s: u64,
     /// Version of the program that has recorded it.
     pub recorder: String,
@@ -91,23 +91,23 @@ pub struct Sidecar {
     pub drive: Option<Controller>,
     /// Ticks in a second.
     pub ticks_per_s: u32,
-    /// What the columns are.
+    /// Meaning of each column.
     pub columns: Map<String, Value>,
-    /// Whether it was ended in order. If not, it was cut off, and `telemetry`
-    /// and `drops` are those of the last change.
+    /// Whether the recording was finished. If not, `telemetry` and `drops` are
+    /// those of the last update of this file.
     pub complete: bool,
-    /// Every parameter set that was in force, in order.
+    /// Every active parameter set, in order.
     pub parameters: Vec<ParameterSet>,
-    /// The books.
+    /// Sample accounting.
     pub telemetry: Totals,
-    /// What is missing, the first thousand gaps.
+    /// The first thousand gaps.
     pub drops: Vec<Gap>,
-    /// Starts of the drive while it was recorded: ticks begin anew.
+    /// Restarts of the drive during the recording; ticks restart from 0.
     pub drive_restarts: u32,
 }
 
 impl Sidecar {
-    /// Of a recording that begins now, of a device that said who it is.
+    /// Metadata of a recording that begins now.
     pub fn new(title: &str, begun_unix_s: u64, comms: &Identity, drive: Option<&Identity>) -> Self {
         Self {
             format: FORMAT,

@@ -23,7 +23,7 @@ Start with:
   crepitus scenes                           what there is to see
   crepitus run scenes/slow-examination.toml simulate it, then open out/slow-examination/report.html")]
 pub(crate) struct Cli {
-    /// Print JSON for machines instead of text for people.
+    /// Print JSON instead of text.
     #[arg(long, global = true)]
     pub(crate) json: bool,
 
@@ -34,12 +34,12 @@ pub(crate) struct Cli {
 // Which device. No doc comment: it would replace the text of the verb.
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct DeviceArguments {
-    /// The device: a port (/dev/ttyACM0), the name of a simulated one that `serve-sim` offers, or
-    /// `sim`, a simulated one that lives for this command [default: the one that is attached].
+    /// The device: a port (/dev/ttyACM0), the name of a simulated one from `serve-sim`, or `sim`, a
+    /// simulated one for this command only [default: the one that is attached].
     #[arg(long, value_name = "DEVICE", global = true)]
     pub(crate) device: Option<String>,
 
-    /// With --device sim: the scene whose leg and parameters it has.
+    /// With --device sim: the scene that sets its leg and parameters.
     #[arg(
         long,
         value_name = "SCENE",
@@ -49,32 +49,32 @@ pub(crate) struct DeviceArguments {
     pub(crate) scene: PathBuf,
 }
 
-/// `PATH=VALUE`.
+/// Parses `PATH=VALUE`.
 pub(crate) fn key_and_value(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((path, value)) if !path.trim().is_empty() => {
             Ok((path.trim().to_owned(), value.trim().to_owned()))
         }
-        _ => Err("write PATH=VALUE, for example solver.step_s=1e-3".to_owned()),
+        _ => Err("expected PATH=VALUE, for example solver.step_s=1e-3".to_owned()),
     }
 }
 
-/// A length of time: 500ms, 30s, 5m, 1h.
+/// Parses a duration: 500ms, 30s, 5m, 1h.
 pub(crate) fn duration(text: &str) -> Result<Duration, String> {
-    let wrong = || format!("{text:?} is no length of time: write for example 500ms, 30s or 5m");
+    let invalid = || format!("expected a duration such as 500ms, 30s or 5m, got {text:?}");
     let split = text
         .find(|c: char| !(c.is_ascii_digit() || c == '.'))
         .unwrap_or(text.len());
     let (number, unit) = text.split_at(split);
-    let number: f64 = number.parse().map_err(|_| wrong())?;
+    let number: f64 = number.parse().map_err(|_| invalid())?;
     let seconds = match unit.trim() {
         "ms" => 1e-3,
         "s" | "" => 1.0,
         "m" | "min" => 60.0,
         "h" => 3600.0,
-        _ => return Err(wrong()),
+        _ => return Err(invalid()),
     };
-    Duration::try_from_secs_f64(number * seconds).map_err(|_| wrong())
+    Duration::try_from_secs_f64(number * seconds).map_err(|_| invalid())
 }
 
 #[cfg(test)]
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_of_time_have_a_unit() {
+    fn durations_have_a_unit() {
         for (text, ms) in [
             ("500ms", 500),
             ("2s", 2_000),

@@ -2,6 +2,7 @@
 
 mod cli;
 mod device_command;
+mod device_text;
 mod failure;
 mod following;
 mod interrupt;
@@ -15,7 +16,6 @@ mod shipped;
 mod simulated;
 mod status_line;
 mod studying;
-mod told;
 mod verbs;
 
 use clap::Parser;
@@ -25,7 +25,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let cli = Cli::try_parse().unwrap_or_else(|error| {
-        // The library repeats what it does not understand.
+        // The error repeats the arguments: parse them again, escaped.
         let shown = env::args_os().map(|argument| safe_text::message(&argument.to_string_lossy()));
         Cli::try_parse_from(shown).err().unwrap_or(error).exit()
     });

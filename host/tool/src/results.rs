@@ -10,8 +10,8 @@ use std::path::Path;
 /// Names and contents of files.
 pub(crate) type Files = Vec<(String, String)>;
 
-/// The folder of the results, not yet in place. A folder that cannot be
-/// written is better known before the work than after it.
+/// The folder of the results, not yet in place. Called before the work, so
+/// that a folder without write permission fails early.
 pub(crate) fn folder(out: &Path) -> Result<Folder, Failure> {
     Folder::create(out).map_err(|e| Failure::at(out, "cannot be written", &e))
 }

@@ -6,7 +6,7 @@ use crate::interrupt;
 use crate::progress::Progress;
 use crepitus_study::{StudyError, Watcher};
 
-/// Moves the progress bar, and stops when asked.
+/// Moves the progress bar, and stops at Ctrl-C.
 pub(crate) struct Watch(Progress);
 
 /// Ctrl-C.
@@ -25,14 +25,14 @@ impl Watcher for Watch {
 
     fn progress(&mut self, fraction: f64) -> Result<(), Interrupted> {
         self.0.reached(fraction);
-        if interrupt::asked() {
+        if interrupt::requested() {
             return Err(Interrupted);
         }
         Ok(())
     }
 }
 
-/// Why a study has no result.
+/// The failure of a study.
 pub(crate) fn failed(error: StudyError<Interrupted>) -> Failure {
     match error {
         StudyError::Watcher(Interrupted) => {

@@ -36,7 +36,7 @@ macro_rules! verbs {
         }
 
         impl Verb {
-            /// Does it.
+            /// Runs the verb.
             pub(crate) fn run(&self, as_json: bool) -> Result<(), Failure> {
                 match self {
                     $(Self::$verb(arguments) => $module::run(arguments, as_json)),*

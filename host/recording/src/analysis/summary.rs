@@ -77,7 +77,7 @@ impl Default for Sum {
 }
 
 impl Sum {
-    fn note(&mut self, x: f64) {
+    fn add(&mut self, x: f64) {
         self.count += 1;
         self.min = self.min.min(x);
         self.max = self.max.max(x);
@@ -96,7 +96,7 @@ impl Sum {
     }
 }
 
-/// Adds up rows.
+/// Running totals of rows.
 #[derive(Debug, Default)]
 pub(super) struct Tally {
     rows: u64,
@@ -122,8 +122,8 @@ impl Tally {
         }
         self.breaks += u64::from(flags.has(SampleFlags::BREAK));
         self.sticks += u64::from(flags.has(SampleFlags::STICK));
-        self.armed.note(f64::from(row.model_torque_nm));
-        self.asked.note(f64::from(row.torque_nm));
+        self.armed.add(f64::from(row.model_torque_nm));
+        self.asked.add(f64::from(row.torque_nm));
         if flags.limit() != LimitReason::None {
             *self.limited.entry(flags.limit().name()).or_default() += 1;
         }
@@ -134,11 +134,11 @@ impl Tally {
         let mut warnings = Vec::new();
         if !sidecar.complete {
             warnings.push(
-                "The recording was cut off: the program that made it was stopped. What it had \
-                 written until then is here."
+                "The recording is incomplete: the program that made it was stopped. This report has \
+                 what was written until then."
                     .to_owned(),
             );
-            // The lines know more than the JSON file.
+            // The CSV file is newer than the JSON file.
             telemetry.received = self.rows;
             telemetry.produced = self.rows + telemetry.dropped;
         }
@@ -152,12 +152,12 @@ impl Tally {
         }
         if sidecar.drive_restarts > 0 {
             warnings.push(format!(
-                "The drive started {} times meanwhile.",
+                "The drive restarted {} times during the recording.",
                 sidecar.drive_restarts
             ));
         }
         if self.armed.count == 0 && self.rows > 0 {
-            warnings.push("The device was never armed: there was no torque.".to_owned());
+            warnings.push("The device was never armed, so there was no torque.".to_owned());
         }
         RecordingSummary {
             title: sidecar.title.clone(),

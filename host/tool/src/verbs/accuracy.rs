@@ -45,7 +45,7 @@ fifth of the tick. Where none does the exit code is 1. With --need, files are wr
 is given.")]
 pub(crate) struct Arguments {
     /// Study the motion and the crepitus of this scene instead: a file, or the name of one that
-    /// ships. Its solver and its encoder play no part.
+    /// ships. Its solver and its encoder are ignored.
     #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
 
@@ -63,7 +63,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     target: bool,
 
-    /// Write each diagram of the report as an SVG file of its own, too.
+    /// Also write each diagram of the report as an SVG file.
     #[arg(long)]
     pictures: bool,
 
@@ -109,7 +109,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         (None, Some(_)) => None,
     };
     let folder = out.as_deref().map(results::folder).transpose()?;
-    // An image that cannot be built is better known before the work.
+    // Fails before the work if the image cannot be built.
     let ladder = arguments.target.then(target::ladder).transpose()?;
     let mut study = study::run(&studied.plan, &mut Watch::new()).map_err(studying::failed)?;
     if let Some(mut ladder) = ladder {
@@ -133,7 +133,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         )?;
     }
     match &need {
-        Some(need) => answer::tell(need, &studied, &study, out.as_deref(), as_json),
+        Some(need) => answer::print_answer(need, &studied, &study, out.as_deref(), as_json),
         None if as_json => print_json(&json!({ "out": out, "summary": summary })),
         None => {
             let report = out.unwrap_or_default().join("report.html");

@@ -11,17 +11,17 @@ use crepitus_client::Client;
 use crepitus_protocol::telemetry::Block;
 use std::time::Duration;
 
-/// Have torque rendered, as long as this command runs.
+/// Turn torque on while this command runs.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   crepitus arm --for 60s
   crepitus arm --device sim --for 2s
 
-The torque is there as long as this command runs: it holds the lease. Any key or Ctrl-C disarms; \
-if this program is killed, the device lets go within 250 ms by itself.")]
+Torque stays on while this command renews its lease. Any key or Ctrl-C disarms; if this program is \
+killed, the lease expires and the device disarms within 250 ms.")]
 pub(crate) struct Arguments {
-    /// How long: 30s, 5m [default: until a key is pressed].
+    /// Duration: 30s, 5m [default: until a key is pressed].
     #[arg(long = "for", value_name = "TIME", value_parser = duration)]
     for_s: Option<Duration>,
 
@@ -29,18 +29,18 @@ pub(crate) struct Arguments {
     device: DeviceArguments,
 }
 
-/// Holds the lease until a key is pressed.
-struct Holding {
+/// Stops at a key press; the lease is renewed meanwhile.
+struct UntilKey {
     keys: Option<Keys>,
 }
 
-impl Follower for Holding {
+impl Follower for UntilKey {
     fn block(&mut self, _: &mut Client<Line>, _: &Block) -> Result<(), Failure> {
         Ok(())
     }
 
     fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure> {
-        // Only once it is armed, so that a refusal is printed as ever.
+        // After arming, so that an error is printed in the normal mode.
         let keys = self.keys.get_or_insert_with(|| {
             let is_armed = if client.is_armed() {
                 "armed"
@@ -50,19 +50,19 @@ impl Follower for Holding {
             eprintln!("{is_armed}: any key disarms");
             Keys::listen()
         });
-        Ok(keys.are_heard() && keys.pressed())
+        Ok(keys.is_active() && keys.pressed())
     }
 }
 
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut client = connect(&arguments.device)?;
-    let mut holding = Holding { keys: None };
-    let end = follow(&mut client, arguments.for_s, true, &mut holding);
-    // The terminal first, then what is to be said.
-    drop(holding);
+    let mut until_key = UntilKey { keys: None };
+    let end = follow(&mut client, arguments.for_s, true, &mut until_key);
+    // Restores the terminal before anything is printed.
+    drop(until_key);
     let done = match end? {
-        End::Time => "disarmed: the time is over",
-        End::Asked => "disarmed",
+        End::Time => "disarmed: the duration has elapsed",
+        End::Requested => "disarmed",
     };
     print_done(done, as_json)
 }

@@ -1,11 +1,11 @@
-//! `crepitus devices`: what is attached.
+//! `crepitus devices`.
 
 use crate::failure::{Failure, print, print_json};
 use clap::Args;
 use crepitus_client::discovery::{self, DeviceKind};
 use serde_json::json;
 
-/// List the devices that are attached, and the simulated ones.
+/// List attached and simulated devices.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  crepitus devices --json")]
 pub(crate) struct Arguments {}
@@ -31,7 +31,7 @@ pub(crate) fn run(_: &Arguments, as_json: bool) -> Result<(), Failure> {
     if devices.is_empty() {
         return print(
             "no device is attached\n\
-             `crepitus serve-sim` offers a simulated one; `--device sim` is one that lives for one command\n",
+             `crepitus serve-sim` starts a simulated one; `--device sim` is a simulated one for one command\n",
         );
     }
     let lines = devices.iter().map(|device| {

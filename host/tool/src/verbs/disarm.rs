@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use clap::Args;
 use crepitus_client::Client;
 
-/// No more torque.
+/// Turn torque off.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:

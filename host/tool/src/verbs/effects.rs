@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value, requires = "scene")]
     set: Vec<(String, String)>,
 
-    /// Write each figure of the report as an SVG file of its own, too.
+    /// Also write each figure of the report as an SVG file.
     #[arg(long, requires = "scene")]
     pictures: bool,
 }
@@ -122,7 +122,7 @@ fn out(scene: &Scene) -> PathBuf {
     Path::new("out").join(name)
 }
 
-/// A refusal as a scene's own errors are told.
+/// A refusal in the form of a scene's own errors.
 fn refuse(scene: &Scene, refusal: Refusal) -> Failure {
     Failure::input(SceneError {
         file: scene.file.clone(),

@@ -1,4 +1,4 @@
-//! `crepitus params`: list, read, set and keep a device's parameters.
+//! `crepitus params`: list, read, set and save a device's parameters.
 
 use crate::cli::{DeviceArguments, key_and_value};
 use crate::failure::{Failure, print, print_json};
@@ -14,7 +14,7 @@ use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// List, read, set and keep a device's parameters.
+/// List, read, set and save a device's parameters.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -25,8 +25,8 @@ Examples:
   crepitus params apply scenes/bone-shaping.toml
   crepitus params save
 
-A set is one commit: all of it or nothing comes into force, between two ticks, and torques then \
-move within the slew limit. What is not saved is forgotten when the device is switched off.")]
+A set is one commit: all of its values take effect between two ticks, or none; torque then changes \
+within the slew limit. Values that are not saved are lost when the device is switched off.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     action: Action,
@@ -41,26 +41,26 @@ enum Action {
     List,
     /// Show the device's parameters, or some of them.
     Get {
-        /// Names; all if none is given.
+        /// Names [default: all].
         #[arg(value_name = "NAME")]
         names: Vec<String>,
     },
-    /// Set parameters, all at once or none.
+    /// Set parameters, all or none.
     Set {
         /// What to set.
         #[arg(value_name = "NAME=VALUE", required = true, value_parser = key_and_value)]
         values: Vec<(String, String)>,
     },
-    /// Take a preset's numbers, or all that a scene says of the device.
+    /// Apply a preset, or the device parameters of a scene.
     Apply {
         /// A preset, a scene that ships, or a scene's file.
         what: PathBuf,
     },
-    /// Keep the parameters in force for the next start.
+    /// Save the current parameters for the next start.
     Save,
 }
 
-/// Does it.
+/// Runs the action.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let device = &arguments.device;
     match &arguments.action {
@@ -72,12 +72,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             let mut client = connect(device)?;
             client.save().map_err(failure)?;
             let (revision, _) = client.parameters().map_err(failure)?;
-            said(revision, "kept for the next start", as_json)
+            print_done(revision, "saved for the next start", as_json)
         }
     }
 }
 
-/// The parameter of a name, or what names there are like it.
+/// The parameter of a name; the error suggests a similar one.
 fn find(name: &str) -> Result<(u8, &'static Parameter), Failure> {
     parameters::find(name).ok_or_else(|| {
         let like = PARAMETERS
@@ -86,7 +86,7 @@ fn find(name: &str) -> Result<(u8, &'static Parameter), Failure> {
             .max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)))
             .unwrap_or_default();
         Failure::Input(format!(
-            "there is no parameter {name:?}: did you mean {like:?}? `crepitus params list` lists them"
+            "unknown parameter {name:?}: did you mean {like:?}? `crepitus params list` lists all"
         ))
     })
 }
@@ -192,10 +192,10 @@ fn set(
         .collect::<Result<Vec<_>, Failure>>()?;
     let mut client = connect(device)?;
     let revision = client.set(&changes).map_err(failure)?;
-    said(revision, "in force", as_json)
+    print_done(revision, "applied", as_json)
 }
 
-/// A preset's numbers, or all that a scene says of a device.
+/// Commits a preset, or the device parameters of a scene.
 fn apply(device: &DeviceArguments, what: &Path, as_json: bool) -> Result<(), Failure> {
     let preset = what.to_str().and_then(Preset::find);
     let from_scene = if preset.is_some() {
@@ -211,20 +211,20 @@ fn apply(device: &DeviceArguments, what: &Path, as_json: bool) -> Result<(), Fai
         (None, None) => now,
     };
     let revision = client.commit(base, &values).map_err(failure)?;
-    said(revision, "in force", as_json)
+    print_done(revision, "applied", as_json)
 }
 
 fn values_of_scene(what: &Path) -> Result<Values, Failure> {
     let scene = shipped::scene(what, &Overrides::default()).map_err(|failure| match failure {
         Failure::Input(text) if !what.exists() => Failure::Input(format!(
-            "{text}; nor is it a preset: `crepitus presets` lists them"
+            "{text}; it is not a preset either: `crepitus presets` lists them"
         )),
         other => other,
     })?;
     crepitus_board::values::values(&scene).map_err(Failure::input)
 }
 
-fn said(revision: Revision, what: &str, as_json: bool) -> Result<(), Failure> {
+fn print_done(revision: Revision, what: &str, as_json: bool) -> Result<(), Failure> {
     if as_json {
         print_json(&json!({ "revision": revision.0, "done": what }))
     } else {

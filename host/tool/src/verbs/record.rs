@@ -23,14 +23,14 @@ Examples:
   crepitus record try.csv --device sim --for 5s --arm --title \"First try\"
   crepitus report monday.csv
 
-Every sample of the drive, 20000 a second, goes to FILE; what they are, with which parameters, \
-and what is missing, to a JSON file of the same name. Whatever stops it, what is on the disk can \
-be reported. About 100 MB a minute.")]
+Every sample of the drive, 20000 a second, goes to FILE; parameters, units and gaps go to a JSON \
+file of the same name. A recording that was interrupted can still be reported. About 100 MB a \
+minute.")]
 pub(crate) struct Arguments {
     /// The CSV file; it must not exist.
     file: PathBuf,
 
-    /// How long: 500ms, 30s, 5m [default: until Ctrl-C].
+    /// Duration: 500ms, 30s, 5m [default: until Ctrl-C].
     #[arg(long = "for", value_name = "TIME", value_parser = duration)]
     for_s: Option<Duration>,
 
@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     arm: bool,
 
-    /// What it is of.
+    /// Title of the recording.
     #[arg(long, default_value = "Recording of a device")]
     title: String,
 
@@ -52,7 +52,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut recording = Recording::begin(&mut client, &arguments.file, &arguments.title)?;
     client.subscribe().map_err(failure)?;
     let end = follow(&mut client, arguments.for_s, arguments.arm, &mut recording);
-    // Whatever has happened, what was recorded is brought to an end in order.
+    // Finishes the files also after an error.
     let sidecar = recording.finish()?;
     end?;
     let t = sidecar.telemetry;
@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     print(&format!(
         "{}: {} samples produced = {} received + {} dropped\n\
-         `crepitus report {}` makes its report\n",
+         write its report with `crepitus report {}`\n",
         arguments.file.display(),
         t.produced,
         t.received,
@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     ))
 }
 
-/// A recording that is being made of a device.
+/// A recording in progress.
 pub(crate) struct Recording {
     recorder: Recorder,
     announced: Option<Revision>,
@@ -82,7 +82,7 @@ pub(crate) struct Recording {
 }
 
 impl Recording {
-    /// Begins one.
+    /// Creates the files.
     pub(crate) fn begin(
         client: &mut Client<Line>,
         file: &Path,
@@ -100,20 +100,20 @@ impl Recording {
         })
     }
 
-    /// Ends it in order.
+    /// Finishes the files.
     pub(crate) fn finish(self) -> Result<Sidecar, Failure> {
         self.recorder.finish().map_err(stopped)
     }
 }
 
-/// The disk does not take any more.
+/// A write error ends the recording.
 #[expect(
     clippy::needless_pass_by_value,
     reason = "used where errors are mapped"
 )]
 fn stopped(error: crepitus_recording::RecordError) -> Failure {
     Failure::Work(format!(
-        "{error}; the recording ends here, and what was written can be reported"
+        "{error}; the recording ends here, and `crepitus report` can read what was written"
     ))
 }
 

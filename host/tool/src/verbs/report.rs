@@ -41,7 +41,7 @@ const COLUMNS: [Column; 8] = {
 /// Rows between two updates of the progress.
 const PROGRESS_ROWS: u64 = 1 << 14;
 
-/// Make the report of a recording.
+/// Write the report of a recording.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -51,11 +51,11 @@ pub(crate) struct Arguments {
     /// The recording: its CSV file.
     file: PathBuf,
 
-    /// Folder for report.html and summary.json [default: FILE without its ending].
+    /// Folder for report.html and summary.json [default: FILE without its extension].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Write each figure of the report as an SVG file of its own, too.
+    /// Also write each figure of the report as an SVG file.
     #[arg(long)]
     pictures: bool,
 }
@@ -112,7 +112,7 @@ pub(super) fn write(
         if n.is_multiple_of(PROGRESS_ROWS) {
             #[expect(clippy::cast_precision_loss, reason = "a share")]
             progress.reached(n as f64 / expected.max(1) as f64);
-            if interrupt::asked() {
+            if interrupt::requested() {
                 return Err(Failure::Work("interrupted: nothing was written".to_owned()));
             }
         }

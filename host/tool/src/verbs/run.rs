@@ -1,4 +1,4 @@
-//! `crepitus run SCENE`: simulate, write the four files, say what happened.
+//! `crepitus run SCENE`: simulates a scene, writes its files, prints a summary.
 
 mod plant;
 mod tables;
@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value)]
     set: Vec<(String, String)>,
 
-    /// Write each chart of the report as an SVG file of its own, too.
+    /// Also write each chart of the report as an SVG file.
     #[arg(long)]
     pictures: bool,
 
@@ -84,7 +84,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     ))
 }
 
-/// The scene that the arguments name, with what they change.
+/// The scene that the arguments name, with their overrides.
 fn read(arguments: &Arguments) -> Result<Scene, Failure> {
     let overrides = Overrides {
         solver: arguments.solver.clone(),
@@ -124,7 +124,7 @@ fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Summary,
         }
         RunError::Settings(e) => Failure::Input(format!("{}: {e}", scene.file.display())),
         RunError::Diverged(e) => Failure::Work(format!("{}: {e}", scene.file.display())),
-        // A kind of error that did not exist when this was written.
+        // `RunError` is non-exhaustive.
         _ => Failure::Work(format!("{}: the run failed", scene.file.display())),
     })?;
     runner::measure_costs(scene, &mut summary);

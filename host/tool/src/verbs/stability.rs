@@ -29,24 +29,24 @@ Examples:
   crepitus stability --long --out /tmp/stability
   crepitus stability --coupled
 
-Every hard case is put to every solver under every convention, in f32 and f64. A cell of the \
-matrix holds, with the margin that was measured; or degrades: right in kind, a number is above \
-its limit; or fails: something else than the joint was simulated. Some cells must hold; if one \
+Every hard case runs on every solver under every convention, in f32 and f64. A cell of the matrix \
+holds, with the measured margin; or degrades: right in kind, but a number exceeds its limit; or \
+fails: the simulated joint is not the one that was asked for. Some cells must hold; if one \
 does not, the exit code is 1. With one --case, everything about it is printed.
 
 With --coupled a hand that stops is put to the whole device instead: which stiffness stays quiet \
 with which cuff, lag and friction left in the gear, and what the presets have left.")]
 #[expect(clippy::struct_excessive_bools, reason = "switches of a command line")]
 pub(crate) struct Arguments {
-    /// Only this case, by number or name: H05, reversal-in-stick. May be given again.
+    /// Only this case, by number or name: H05, reversal-in-stick. May be repeated.
     #[arg(long = "case", value_name = "NAME")]
     cases: Vec<String>,
 
-    /// Only this solver: exact, exact-events, rk4, … May be given again.
+    /// Only this solver: exact, exact-events, rk4, … May be repeated.
     #[arg(long = "solver", value_name = "KIND")]
     solvers: Vec<String>,
 
-    /// Only this convention: frozen, paper or physical. May be given again.
+    /// Only this convention: frozen, paper or physical. May be repeated.
     #[arg(long = "convention", value_name = "CONVENTION")]
     conventions: Vec<String>,
 
@@ -54,11 +54,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PRECISION", value_parser = ["f32", "f64"])]
     precision: Option<String>,
 
-    /// Also the cases of hours of simulated time.
+    /// Include the cases that take hours of simulated time.
     #[arg(long)]
     long: bool,
 
-    /// List the cases, with inputs, criteria and sources, and run none.
+    /// List the cases with inputs, criteria and sources, without running them.
     #[arg(long)]
     list: bool,
 
@@ -70,12 +70,12 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Write the matrix and each picture of the report as an SVG file of its own, too.
+    /// Also write the matrix and each picture of the report as SVG files.
     #[arg(long)]
     pictures: bool,
 }
 
-/// Runs the cases, writes the files, says what holds.
+/// Runs the cases, writes the files, prints the matrix.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.coupled {
         let out = arguments.out.as_deref().unwrap_or(Path::new("out/coupled"));
@@ -111,20 +111,20 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             Ok(())
         };
     }
-    let told = match (matrix.rows.as_slice(), arguments.cases.is_empty()) {
+    let text = match (matrix.rows.as_slice(), arguments.cases.is_empty()) {
         ([row], false) => case_text::case(row),
         _ => table::table(&matrix, &summary),
     };
     print(&format!(
-        "{told}{}\nreport: {}\n",
+        "{text}{}\nreport: {}\n",
         table::broken(&matrix),
         out.join("report.html").display()
     ))?;
     judge(&matrix)
 }
 
-/// The stories belong to the whole catalogue; beside single cases they come
-/// only where pictures are asked for.
+/// The explanatory pictures: with the whole catalogue, or if `--pictures` is
+/// given.
 fn stories(arguments: &Arguments) -> Result<Vec<Story>, Failure> {
     if arguments.cases.is_empty() || arguments.pictures {
         story::all().map_err(|e| Failure::Work(format!("a story cannot be computed: {e}")))
@@ -196,8 +196,8 @@ mod tests {
             message.contains("H01 constant-speed on exact, frozen, f32"),
             "{message}"
         );
-        let told = table::broken(&matrix);
-        assert!(told.contains("overflow at t = 0.250 s"), "{told}");
-        assert!(told.contains("the first trial"), "{told}");
+        let text = table::broken(&matrix);
+        assert!(text.contains("overflow at t = 0.250 s"), "{text}");
+        assert!(text.contains("the first trial"), "{text}");
     }
 }

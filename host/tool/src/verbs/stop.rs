@@ -6,15 +6,15 @@ use crate::failure::Failure;
 use crate::line::{failure, manage};
 use clap::Args;
 
-/// No more torque, from a device of any version.
+/// Turn torque off, on a device of any version.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   crepitus stop
   crepitus stop --device /dev/ttyACM0
 
-As disarm, but by the part of the protocol that never changes: it works with a device of any \
-version. It is no substitute for the hand-held stop.")]
+Like disarm, but through the part of the protocol that never changes, so it works with a device of \
+any version. It is no substitute for the hand-held stop.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     device: DeviceArguments,

@@ -6,24 +6,19 @@ use crate::failure::Failure;
 use clap::Args;
 use crepitus_client::Client;
 
-/// Tell a device that the joint's angle is zero now.
+/// Set the joint's current angle as zero.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   crepitus zero
   crepitus zero --device /dev/ttyACM0
 
-Hold the joint straight first: counts are counted from here.")]
+Hold the joint straight first: the encoder counts from here.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     device: DeviceArguments,
 }
 
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    execute(
-        &arguments.device,
-        "the angle is zero here",
-        as_json,
-        Client::zero,
-    )
+    execute(&arguments.device, "zero set", as_json, Client::zero)
 }

@@ -15,8 +15,8 @@ use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Answers, and fails if nothing meets the need.
-pub(super) fn tell(
+/// Prints the answer; fails if nothing meets the need.
+pub(super) fn print_answer(
     need: &Need,
     studied: &Studied,
     study: &Study,
@@ -180,7 +180,10 @@ fn recommended(chosen: &Candidate, answer: &Answer) -> String {
                 .mark(mark.limit.criterion)
                 .map_or_else(|| "not known".to_owned(), value)
         ),
-        _ => writeln!(text, "No costlier one is better where it is tightest."),
+        _ => writeln!(
+            text,
+            "No costlier solver does better on the limiting metric."
+        ),
     };
     text
 }
@@ -190,7 +193,7 @@ fn tightest(text: &mut String, chosen: &Candidate) {
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "It is tightest in the {}: {}, {} % of the limit.",
+            "Its limiting metric is the {}: {}, {} % of the limit.",
             mark.limit.criterion.meaning(),
             value(mark),
             words::plain(mark.ratio() * 100.0)

@@ -103,7 +103,7 @@ fn missed_ends(study: &Study) -> Vec<String> {
     notes
 }
 
-/// A word of caution where the machine was busy.
+/// Warning if the timings spread: the machine was busy.
 fn unsteady(points: &[Point]) -> Option<String> {
     /// From here on two costs that differ by a fifth may be the same.
     const UNSTEADY: f64 = 0.2;

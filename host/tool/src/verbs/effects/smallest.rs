@@ -42,7 +42,7 @@ pub(super) fn words(answer: &Answer) -> String {
     list(&mut text, "Dropped; each alone makes:", &answer.dropped);
     list(&mut text, "Kept; dropping it too would make:", &answer.kept);
     if !answer.others.is_empty() {
-        text.push_str("As small and within, but dearer or further off:\n");
+        text.push_str("As small and within the tolerance, but costlier or further off:\n");
         for other in &answer.others {
             // Writing to a String cannot fail.
             let _ = writeln!(

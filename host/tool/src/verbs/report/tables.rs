@@ -16,7 +16,7 @@ pub(super) fn sections(s: &RecordingSummary, sidecar: &Sidecar) -> Vec<Section> 
     );
     sections.extend(
         s.torque
-            .map(|t| torque_section("Torque asked of the motor while armed", &t)),
+            .map(|t| torque_section("Torque commanded to the motor while armed", &t)),
     );
     if !s.limited_s.is_empty() {
         let rows = s
@@ -37,7 +37,7 @@ pub(super) fn sections(s: &RecordingSummary, sidecar: &Sidecar) -> Vec<Section> 
                 format!("{} samples, {:.4} s", gap.samples, seconds(gap.samples)),
             )
         });
-        sections.push(named("What is missing", rows));
+        sections.push(named("Missing samples", rows));
     }
     sections
 }
@@ -75,7 +75,7 @@ fn recording(s: &RecordingSummary) -> Section {
     ];
     rows.extend(s.drive.as_ref().map(|drive| ("drive", device(drive))));
     if s.lost_samples > 0 {
-        rows.push(("counts not believed", s.lost_samples.to_string()));
+        rows.push(("rejected counts", s.lost_samples.to_string()));
     }
     if s.late_ticks > 0 {
         rows.push(("late ticks", s.late_ticks.to_string()));

@@ -65,7 +65,7 @@ pub(super) fn coupled(out: &Path, pictures: bool, as_json: bool) -> Result<(), F
     } else {
         print(&format!(
             "{}\nreport: {}\n",
-            told(&study),
+            onsets_and_margins(&study),
             out.join("report.html").display()
         ))?;
     }
@@ -113,7 +113,7 @@ const FRICTION_NM: f64 = GEARS[0].friction_nm;
 
 /// The lowest stiffness that rings, for each gear and damping at the device's
 /// lag, beside the criteria; then what the presets have left.
-fn told(study: &CoupledStudy) -> String {
+fn onsets_and_margins(study: &CoupledStudy) -> String {
     let of_device: Vec<_> = study
         .onsets
         .iter()

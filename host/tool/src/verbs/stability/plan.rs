@@ -57,7 +57,7 @@ fn subjects(arguments: &Arguments) -> Result<Vec<Subject>, Failure> {
         })
         .collect();
     if subjects.is_empty() {
-        // Only a refusal leaves nobody.
+        // All chosen combinations are refused.
         let single = arguments.precision.as_deref() == Some(Precision::F32.name());
         let pairs = conventions
             .iter()

@@ -58,6 +58,7 @@ fn as_rows<S: Serializer>(cells: &[CaseCell<'_>], serializer: S) -> Result<S::Ok
     cases_table(cells).serialize(serializer)
 }
 
+#[expect(clippy::ref_option, reason = "the form in which serde calls it")]
 fn as_row<S: Serializer>(cell: &Option<CaseCell<'_>>, serializer: S) -> Result<S::Ok, S::Error> {
     let table = cases_table(cell.as_slice());
     table.objects().next().serialize(serializer)
