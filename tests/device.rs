@@ -157,13 +157,13 @@ fn no_device_is_an_error_that_names_the_simulated_one() {
 
 #[test]
 fn control_does_what_it_says() {
-    assert_eq!(done(&["zero"]), "the angle is zero here\n");
+    assert_eq!(done(&["zero"]), "zero set\n");
     assert_eq!(done(&["disarm"]), "disarmed\n");
     assert_eq!(done(&["stop"]), "stopped\n");
-    assert_eq!(done(&["clear-fault"]), "no fault\n");
+    assert_eq!(done(&["clear-fault"]), "faults cleared\n");
     assert_eq!(
         done(&["arm", "--for", "1s"]),
-        "disarmed: the time is over\n"
+        "disarmed: the duration has elapsed\n"
     );
 }
 

@@ -133,7 +133,7 @@ fn a_study_is_what_single_runs_say() {
     assert_eq!(summary["ticks"], 6000);
     assert_eq!(summary["rows"].as_array().unwrap().len(), rows.len());
     assert_eq!(summary["rows"][1]["change"], "without");
-    assert!(summary["rows"][1]["added"]["rms_nm"].as_f64().unwrap() > 0.0);
+    assert!(summary["rows"][1]["added_rms_nm"].as_f64().unwrap() > 0.0);
     assert!(summary["answer"].is_null());
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.len() < 5_000_000);

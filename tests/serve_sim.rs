@@ -31,7 +31,7 @@ impl Served {
         let mut line = String::new();
         let out = child.stdout.as_mut().unwrap();
         BufReader::new(out).read_line(&mut line).unwrap();
-        assert!(line.contains("is offered as"), "{line}");
+        assert!(line.contains("is served as"), "{line}");
         Self { child, home }
     }
 
@@ -179,7 +179,11 @@ fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
     // What was on the disk is a recording.
     let output = served.run(&["report", file.to_str().unwrap()]);
     assert!(output.status.success(), "{}", stderr(&output));
-    assert!(stdout(&output).contains("cut off"), "{}", stdout(&output));
+    assert!(
+        stdout(&output).contains("incomplete"),
+        "{}",
+        stdout(&output)
+    );
     let (_, rows) = csv(&file);
     assert!(rows.len() > 9_000);
 }
@@ -200,7 +204,7 @@ fn a_full_disk_ends_a_recording_and_what_is_there_can_be_reported() {
         .unwrap();
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(
-        stderr(&output).contains("can be reported"),
+        stderr(&output).contains("`crepitus report` can read"),
         "{}",
         stderr(&output)
     );

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
-use support::{crepitus, csv, names, number, run, stderr, stdout, summary};
+use support::{crepitus, csv, is_row, names, number, run, stderr, stdout, summary, table};
 
 fn stability(out: &Path, arguments: &[&str]) -> Output {
     let out = ["--out", out.to_str().unwrap()];
@@ -308,6 +308,14 @@ fn the_map_of_stiffness_keeps_what_theory_promises() {
         assert_eq!(row["verdict"], "quiet", "{row:?}");
         assert!(row["onset_over_stiffness"] == "nan", "{row:?}");
         assert!(value(&row, "most_over_stiffness") >= 2.0, "{row:?}");
+    }
+    // The summary has the names and numbers of the file.
+    let summed = summary(&out);
+    let joints = ["presets", "extras"].map(|list| summed[list].as_array().unwrap().clone());
+    let (header, lines) = table(&out.join("margins.csv"));
+    assert_eq!(joints.concat().len(), lines.len());
+    for (joint, line) in joints.concat().iter().zip(&lines) {
+        assert!(is_row(joint, &header, line), "{joint} {line:?}");
     }
     // Anybody can run a cell.
     let scene = out.join("scene.toml");

@@ -84,3 +84,35 @@ pub(crate) fn number(cell: &str) -> f64 {
     cell.parse()
         .unwrap_or_else(|_| panic!("{cell} is no number"))
 }
+
+/// A CSV file: its header and its rows, unquoted.
+pub(crate) fn table(file: &Path) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut reader = csv::Reader::from_path(file).expect("a CSV file");
+    let cells = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect();
+    let header = cells(reader.headers().expect("a header"));
+    let rows = reader.records().map(|row| cells(&row.expect("a row")));
+    (header, rows.collect())
+}
+
+/// Whether a JSON object has the names and values of a row of a CSV file.
+pub(crate) fn is_row(object: &Value, header: &[String], row: &[String]) -> bool {
+    header
+        .iter()
+        .zip(row)
+        .all(|(name, cell)| match &object.get(name) {
+            None => panic!("{name} is not in {object}"),
+            Some(Value::Null) => ["", "nan", "inf", "-inf"].contains(&cell.as_str()),
+            Some(Value::Bool(flag)) => cell.parse() == Ok(*flag),
+            // The JSON parser of these tests is off by a last bit at times.
+            Some(Value::Number(number)) => {
+                let (x, y) = (number.as_f64().expect("a number"), self::number(cell));
+                (x - y).abs() <= f64::EPSILON * x.abs()
+            }
+            Some(Value::String(text)) => cell == text,
+            Some(Value::Array(list)) => {
+                let texts: Vec<_> = list.iter().filter_map(Value::as_str).collect();
+                *cell == texts.join(" ")
+            }
+            Some(Value::Object(_)) => false,
+        })
+}

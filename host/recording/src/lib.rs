@@ -1,21 +1,21 @@
 //! # Recordings
 //!
-//! Every sample of a device in a CSV file, with a JSON file beside it that
-//! says what it is: who made the samples, with which parameters from which
-//! tick on, and what is missing.
+//! Every sample of a device in a CSV file, with a JSON file beside it: which
+//! device made the samples, its parameters from which tick on, and the gaps.
 //!
 //! ```text
-//! blocks ──> Recorder ──> name.csv   a line a sample, appended as they come
-//!                    └──> name.json  whole at every moment: written anew at each change
+//! blocks ──> Recorder ──> name.csv   one line per sample, appended as they arrive
+//!                    └──> name.json  replaced atomically at each change
 //!
-//! name.csv, name.json ──> Recording ──> rows
+//! name.csv, name.json ──> Recording ──> rows ──> Analysis ──> object, events, summary
 //! ```
 //!
-//! Whenever the program is killed, what is on the disk can be read: the CSV
-//! file up to its last whole line, and the JSON file as it was. What the JSON
-//! file then does not say yet, the ticks of the lines do.
+//! Whenever the program is killed, the files can be read: the CSV file up to its
+//! last complete line, and the last JSON file. Gaps since then follow from the
+//! ticks of the lines.
 #![forbid(unsafe_code)]
 
+mod analysis;
 mod recorder;
 mod recording;
 mod row;
@@ -23,6 +23,7 @@ mod samples;
 mod shaft;
 mod sidecar;
 
+pub use analysis::{Analysis, Derived, Object, RecordingSummary, seconds};
 pub use recorder::{RecordError, Recorder};
 pub use recording::{ReadError, Recording, Rows};
 pub use row::{COLUMNS, Row, RowError};

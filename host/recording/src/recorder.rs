@@ -1,4 +1,4 @@
-//! Writes a recording as the samples come.
+//! Writing of a recording as the samples arrive.
 
 use crate::row::COLUMNS;
 use crate::samples::Samples;
@@ -9,17 +9,17 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Gaps that are listed; more are only counted.
+/// Limit of listed gaps; further ones are only counted.
 const LISTED_GAPS: usize = 1_000;
 
-/// Why nothing more can be recorded.
+/// Errors of recording.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// There is a recording of this name.
-    #[error("{0} exists: choose another name, or remove it")]
+    /// A recording of this name exists.
+    #[error("{0} already exists: choose another name, or remove it")]
     Exists(PathBuf),
-    /// The disk does not take it.
+    /// A write error.
     #[error("{path}: {doing}: {source}")]
     Disk {
         /// The file.
@@ -31,16 +31,16 @@ pub enum RecordError {
     },
 }
 
-/// A recording that is being made.
+/// A recording in progress.
 #[derive(Debug)]
 pub struct Recorder {
     path: PathBuf,
     csv: File,
-    /// Lines that are not written yet.
+    /// Pending lines.
     lines: String,
     sidecar: Sidecar,
     samples: Samples,
-    /// Parameters that were announced and not seen in a block yet.
+    /// Parameters announced before their first block.
     announced: Vec<(Revision, Values)>,
     /// The tick after the last block; none before the first one.
     next_tick: Option<u64>,
@@ -87,15 +87,15 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// From some block on, these parameters are in force.
+    /// Announces the parameters of a revision, before its first block.
     pub fn announce(&mut self, revision: Revision, values: &Values) {
         self.announced.push((revision, *values));
     }
 
-    /// Takes a block. [`Self::flush`] brings it to the disk.
+    /// Takes a block. [`Self::flush`] writes it.
     ///
     /// # Errors
-    /// [`RecordError`] if new parameters cannot be noted.
+    /// [`RecordError`] if new parameters cannot be written.
     pub fn block(&mut self, block: &Block) -> Result<(), RecordError> {
         match self.next_tick {
             Some(due) if block.flags.start() != self.start || block.first_tick < due => {
@@ -127,7 +127,7 @@ impl Recorder {
         }
     }
 
-    /// The parameters that a block has, if it is the first with them.
+    /// Records the parameters of a block, if it is the first with them.
     fn note_parameters(&mut self, block: &Block) -> Result<(), RecordError> {
         let known = self.sidecar.parameters.last().map(|set| set.revision);
         if known == Some(block.revision.0) {
@@ -150,26 +150,25 @@ impl Recorder {
         self.write_sidecar()
     }
 
-    /// The books so far.
+    /// Totals so far.
     pub fn totals(&self) -> Totals {
         self.sidecar.telemetry
     }
 
-    /// Brings everything so far to the CSV file.
+    /// Writes all pending lines to the CSV file.
     ///
     /// # Errors
-    /// [`RecordError`] if the disk does not take it all. What it took can be
-    /// read.
+    /// [`RecordError`] if a write fails. What was written before can be read.
     pub fn flush(&mut self) -> Result<(), RecordError> {
         let written = self.csv.write_all(self.lines.as_bytes());
         self.lines.clear();
         written.map_err(|error| disk(&self.path, "the samples cannot be written", error))
     }
 
-    /// Ends the recording in order.
+    /// Finishes the recording: flushes, and marks it complete.
     ///
     /// # Errors
-    /// [`RecordError`] if the disk does not take it all.
+    /// [`RecordError`] if a write fails.
     pub fn finish(mut self) -> Result<Sidecar, RecordError> {
         self.flush()?;
         self.csv
@@ -180,7 +179,7 @@ impl Recorder {
         Ok(self.sidecar)
     }
 
-    /// Writes the JSON file beside itself and moves it into place.
+    /// Replaces the JSON file atomically.
     fn write_sidecar(&self) -> Result<(), RecordError> {
         let path = sidecar_path(&self.path);
         let folder = match path.parent() {
@@ -190,7 +189,7 @@ impl Recorder {
         let write = || -> io::Result<()> {
             let mut builder = tempfile::Builder::new();
             builder.prefix(".crepitus-");
-            // As any other file is made, not as a secret.
+            // The usual permissions, not those of a temporary file.
             #[cfg(unix)]
             let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
             let mut file = builder.tempfile_in(folder)?;

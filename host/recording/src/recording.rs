@@ -1,4 +1,4 @@
-//! Reads a recording back.
+//! Reading of a recording.
 
 use crate::recorder::sidecar_path;
 use crate::row::{COLUMNS, Row, RowError};
@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-/// Why a recording cannot be read.
+/// Errors of reading.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
@@ -19,32 +19,32 @@ pub enum ReadError {
         /// Why not.
         source: io::Error,
     },
-    /// There is no JSON file beside it.
+    /// The JSON file is missing.
     #[error(
-        "{0} is missing: a recording is a CSV file with a JSON file of the same name beside it, \
-         as `crepitus record` makes them"
+        "{0} is missing: expected a CSV file with a JSON file of the same name beside it, as \
+         `crepitus record` writes them"
     )]
     NoSidecar(PathBuf),
-    /// The JSON file is not one of a recording.
-    #[error("{path}: not the JSON file of a recording: {source}")]
+    /// The JSON file is invalid.
+    #[error("{path}: invalid JSON file of a recording: {source}")]
     Sidecar {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
         source: serde_json::Error,
     },
-    /// A later version has written it.
-    #[error("{path}: format {found}, and this program reads format {FORMAT}: use a newer one")]
+    /// The format is unknown, of a later version.
+    #[error("{path}: expected format {FORMAT}, got {found}: use a newer version of crepitus")]
     Format {
         /// The file.
         path: PathBuf,
         /// Its format.
         found: u32,
     },
-    /// The CSV file does not begin as it should.
-    #[error("{0}: not the CSV file of a recording: its first line is not that of one")]
+    /// The header of the CSV file is wrong.
+    #[error("{0}: not the CSV file of a recording: its header does not match")]
     Header(PathBuf),
-    /// A line is not what it should be.
+    /// A line is invalid.
     #[error("{path}:{line}: {source}")]
     Row {
         /// The file.
@@ -92,13 +92,12 @@ impl Recording {
         Ok(Self { path, sidecar })
     }
 
-    /// What stands beside the samples.
+    /// The metadata.
     pub fn sidecar(&self) -> &Sidecar {
         &self.sidecar
     }
 
-    /// Its samples, one after the other. The last line may be cut off: it is
-    /// left out.
+    /// Its samples in order. An incomplete last line is left out.
     ///
     /// # Errors
     /// [`ReadError`] if the CSV file is not that of a recording.
@@ -139,7 +138,7 @@ impl Rows {
             Ok(0) => None,
             Ok(_) => {
                 self.line += 1;
-                // Without its end it was cut off.
+                // Without a newline it is incomplete.
                 self.text.pop().filter(|end| *end == '\n').map(|_| Ok(()))
             }
             Err(source) => Some(Err(ReadError::Io {

@@ -1,4 +1,4 @@
-//! A sample as a line.
+//! A sample as a line of CSV.
 
 use crepitus_protocol::LimitReason;
 use crepitus_protocol::telemetry::SampleFlags;
@@ -19,9 +19,9 @@ pub const COLUMNS: [(&str, &str); 13] = [
     ("event", "what happened in the tick: break, stick, or both"),
     (
         "model_torque_nm",
-        "what the model asks for, N·m; positive opposes growing angle",
+        "torque of the model, N·m; positive opposes growing angle",
     ),
-    ("torque_nm", "what was asked of the motor, N·m"),
+    ("torque_nm", "torque commanded to the motor, N·m"),
     (
         "current_a",
         "measured current, A; positive drives towards growing angle; empty if it was not measured",
@@ -33,7 +33,7 @@ pub const COLUMNS: [(&str, &str); 13] = [
     ),
     (
         "notes",
-        "settling: parameters on their way; lost: no count to believe; late: rendering was late",
+        "settling: parameters are ramping; lost: count rejected; late: rendering was late",
     ),
 ];
 
@@ -50,9 +50,9 @@ pub struct Row {
     pub angle_rad: f64,
     /// Velocity of the joint, rad/s.
     pub omega_rad_s: f32,
-    /// What the model asks for, N·m.
+    /// Torque of the model, N·m.
     pub model_torque_nm: f32,
-    /// What was asked of the motor, N·m.
+    /// Torque commanded to the motor, N·m.
     pub torque_nm: f32,
     /// Measured current, A.
     pub current_a: Option<f32>,
@@ -62,17 +62,17 @@ pub struct Row {
     pub flags: SampleFlags,
 }
 
-/// Which cell of a line is not what it should be.
+/// An invalid cell of a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("column {column}: {text:?} is not what it should be")]
+#[error("column {column}: invalid value {text:?}")]
 pub struct RowError {
     /// The column.
     pub column: &'static str,
-    /// What stands there.
+    /// Its text.
     pub text: String,
 }
 
-/// The columns that are words; the others are numbers.
+/// The columns of text; the others are numbers.
 const WORDS: [&str; 4] = ["phase", "event", "limit", "notes"];
 
 /// Names of the notes.
@@ -145,10 +145,10 @@ impl Row {
             .into()
     }
 
-    /// From a line without its end.
+    /// Parses a line without its newline.
     ///
     /// # Errors
-    /// [`RowError`] for the first cell that is not what it should be.
+    /// [`RowError`] for the first invalid cell.
     pub fn parse(line: &str) -> Result<Self, RowError> {
         let mut cells = line.split(',');
         let mut columns = COLUMNS.iter();
@@ -293,12 +293,12 @@ mod tests {
         let mut line = String::new();
         row.append_to(&mut line);
         for ((name, _), cell) in COLUMNS.iter().zip(line.trim_end().split(',')) {
-            let told = match &object[name] {
+            let text = match &object[name] {
                 Value::Null => String::new(),
                 Value::String(text) => text.clone(),
                 number => number.to_string(),
             };
-            assert_eq!(told, cell, "{name}");
+            assert_eq!(text, cell, "{name}");
         }
         assert_eq!(object.as_object().unwrap().len(), COLUMNS.len());
         assert_eq!(

@@ -1,11 +1,11 @@
-//! Blocks to rows.
+//! Conversion of telemetry blocks to rows.
 
 use crate::row::Row;
 use crate::shaft::Shaft;
 use crepitus_protocol::telemetry::{Block, NO_CURRENT};
 use crepitus_protocol::{TICKS_PER_S, Values};
 
-/// Makes a row of every sample, with angle and speed by the drive's own
+/// Converts samples to rows, with angle and speed from the drive's own
 /// estimator.
 #[derive(Clone, Debug)]
 pub struct Samples {
@@ -23,13 +23,12 @@ impl Default for Samples {
 }
 
 impl Samples {
-    /// These parameters are in force from the next block on.
+    /// Sets the parameters from the next block on.
     pub fn set(&mut self, values: &Values) {
         self.shaft.set(values);
     }
 
-    /// The rows of a block. Time is counted from the first one that was ever
-    /// given.
+    /// The rows of a block. Time starts at the first block.
     pub fn rows<'a>(&'a mut self, block: &'a Block) -> impl Iterator<Item = Row> + 'a {
         let first_tick = *self.first_tick.get_or_insert(block.first_tick);
         (block.first_tick..)

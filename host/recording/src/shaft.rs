@@ -1,10 +1,9 @@
-//! Counts to angle and speed, as the drive does it: the same estimator, the
-//! same numbers.
+//! Angle and speed from counts, by the drive's own estimator: the same numbers.
 
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_protocol::{DeviceSettings, TICK_S, Values};
 
-/// Follows the shaft.
+/// The shaft's estimator.
 #[derive(Clone, Debug)]
 pub(crate) struct Shaft {
     settings: EncoderSettings,
@@ -21,7 +20,7 @@ impl Shaft {
         }
     }
 
-    /// Another encoder, perhaps.
+    /// Applies parameters; another encoder resets the estimator.
     pub(crate) fn set(&mut self, values: &Values) {
         if let Ok(settings) = DeviceSettings::of(values)
             && settings.encoder != self.settings
@@ -31,8 +30,8 @@ impl Shaft {
         }
     }
 
-    /// Angle and estimated speed in a tick. After a gap the estimate begins
-    /// anew, and settles within 20 ms.
+    /// Angle and estimated speed in a tick. After a gap the estimator is reset,
+    /// and settles within 20 ms.
     pub(crate) fn see(&mut self, tick: u64, count: i32) -> (f64, f32) {
         if tick != self.next_tick {
             self.reader = None;

@@ -1,5 +1,6 @@
-//! What stands beside the samples.
+//! Metadata of a recording: its JSON file.
 
+use crepitus_model::{Convention, Parameters, Restart, Settings};
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::parameters::Kind;
 use crepitus_protocol::{Revision, TICKS_PER_S, Values, schema};
@@ -10,7 +11,7 @@ use std::fmt::Write as _;
 /// Version of the two files.
 pub(crate) const FORMAT: u32 = 1;
 
-/// A controller that has taken part.
+/// Identity of a controller.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Controller {
     /// Version of its program.
@@ -39,7 +40,7 @@ impl From<&Identity> for Controller {
     }
 }
 
-/// Parameters that were in force from a tick on.
+/// Parameters that were active from a tick on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterSet {
     /// Their revision.
@@ -50,16 +51,16 @@ pub struct ParameterSet {
     pub values: Map<String, Value>,
 }
 
-/// Samples that are missing.
+/// A gap: missing samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Gap {
-    /// The first tick that is missing.
+    /// The first missing tick.
     pub first_tick: u64,
-    /// How many are.
+    /// Number of missing samples.
     pub samples: u64,
 }
 
-/// The books: produced = received + dropped.
+/// Sample accounting: produced = received + dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Totals {
     /// Samples that the drive produced from the first to the last recorded
@@ -67,7 +68,7 @@ pub struct Totals {
     pub produced: u64,
     /// Samples that were recorded.
     pub received: u64,
-    /// Samples that were lost on the way, wherever that was.
+    /// Samples lost anywhere between drive and file.
     pub dropped: u64,
 }
 
@@ -76,9 +77,9 @@ pub struct Totals {
 pub struct Sidecar {
     /// Version of the two files.
     pub format: u32,
-    /// What it is of.
+    /// Title.
     pub title: String,
-    /// When it was begun, seconds since 1970.
+    /// Start of the recording, seconds since 1970.
     pub begun_unix_s: u64,
     /// Version of the program that has recorded it.
     pub recorder: String,
@@ -90,23 +91,23 @@ pub struct Sidecar {
     pub drive: Option<Controller>,
     /// Ticks in a second.
     pub ticks_per_s: u32,
-    /// What the columns are.
+    /// Meaning of each column.
     pub columns: Map<String, Value>,
-    /// Whether it was ended in order. If not, it was cut off, and `telemetry`
-    /// and `drops` are those of the last change.
+    /// Whether the recording was finished. If not, `telemetry` and `drops` are
+    /// those of the last update of this file.
     pub complete: bool,
-    /// Every parameter set that was in force, in order.
+    /// Every active parameter set, in order.
     pub parameters: Vec<ParameterSet>,
-    /// The books.
+    /// Sample accounting.
     pub telemetry: Totals,
-    /// What is missing, the first thousand gaps.
+    /// The first thousand gaps.
     pub drops: Vec<Gap>,
-    /// Starts of the drive while it was recorded: ticks begin anew.
+    /// Restarts of the drive during the recording; ticks restart from 0.
     pub drive_restarts: u32,
 }
 
 impl Sidecar {
-    /// Of a recording that begins now, of a device that said who it is.
+    /// Metadata of a recording that begins now.
     pub fn new(title: &str, begun_unix_s: u64, comms: &Identity, drive: Option<&Identity>) -> Self {
         Self {
             format: FORMAT,
@@ -129,13 +130,38 @@ impl Sidecar {
         }
     }
 
+    /// The settings of the stick-slip joint in a revision; none if the
+    /// revision is not in this recording.
+    pub fn joint_settings(&self, revision: Revision) -> Option<Settings> {
+        let number = |name| self.number(revision, name);
+        Some(Settings {
+            parameters: Parameters {
+                inertia_kg_m2: number("crepitus.inertia_kg_m2")?,
+                stiffness_nm_per_rad: number("crepitus.stiffness_nm_per_rad")?,
+                kinetic_torque_nm: number("crepitus.kinetic_torque_nm")?,
+                static_torque_nm: number("crepitus.static_torque_nm")?,
+                // No device has damping.
+                ..Parameters::default()
+            },
+            // The only convention that a device renders.
+            convention: Convention::Frozen,
+            restart: self
+                .value(revision, "crepitus.restart")
+                .and_then(|value| Restart::ALL.into_iter().find(|r| value == r.name()))
+                .unwrap_or_default(),
+        })
+    }
+
     /// The value of a number in the parameters of a revision.
     pub fn number(&self, revision: Revision, name: &str) -> Option<f64> {
+        self.value(revision, name).and_then(Value::as_f64)
+    }
+
+    fn value(&self, revision: Revision, name: &str) -> Option<&Value> {
         self.parameters
             .iter()
             .find(|set| set.revision == revision.0)
             .and_then(|set| set.values.get(name))
-            .and_then(Value::as_f64)
     }
 }
 

@@ -1,4 +1,4 @@
-//! How a verb fails: the text a person reads and the exit code a script reads.
+//! Failures of verbs: the message and the exit code.
 
 use crate::safe_text::{message, visible};
 use serde_json::json;
@@ -7,17 +7,16 @@ use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Why a verb did not do what it was asked.
+/// Why a verb failed.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// Bad usage or bad input: exit code 2.
     Input(String),
     /// The work failed: exit code 1.
     Work(String),
-    /// The work was done and its result says no: nothing more to say, exit
-    /// code 1.
+    /// The work was done and its result is negative: no message, exit code 1.
     Negative,
-    /// Whoever read the output has gone: nothing more to say, exit code 1.
+    /// The reader of stdout has closed it: no message, exit code 1.
     NoReader,
 }
 
@@ -27,41 +26,40 @@ impl Failure {
         Self::Input(error.to_string())
     }
 
-    /// The work failed at `path`; a place where this user may not work is bad
-    /// input.
+    /// The work failed at `path`; a path without permission is bad input.
     pub(crate) fn at(path: &Path, doing: &str, error: &io::Error) -> Self {
-        let told = format!("{}: {doing}: {error}", path.display());
+        let message = format!("{}: {doing}: {error}", path.display());
         match error.kind() {
             io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
-                Self::Input(told)
+                Self::Input(message)
             }
-            _ => Self::Work(told),
+            _ => Self::Work(message),
         }
     }
 
-    /// Says what was wrong and gives the exit code.
+    /// Prints the message and returns the exit code.
     pub(crate) fn report(&self, json: bool) -> ExitCode {
-        let (told, code) = match self {
-            Self::Input(told) => (message(told), 2),
-            Self::Work(told) => (message(told), 1),
+        let (text, code) = match self {
+            Self::Input(text) => (message(text), 2),
+            Self::Work(text) => (message(text), 1),
             Self::Negative | Self::NoReader => return ExitCode::from(1),
         };
         if json {
-            // Where stdout is gone, the exit code is all that is left.
-            let _ = print_json(&json!({ "error": { "message": told, "exit_code": code } }));
+            // If stdout is closed, the exit code still tells.
+            let _ = print_json(&json!({ "error": { "message": text, "exit_code": code } }));
         } else {
-            eprintln!("error: {told}");
+            eprintln!("error: {text}");
         }
         ExitCode::from(code)
     }
 }
 
-/// Says on stderr what was odd.
+/// Prints a warning to stderr.
 pub(crate) fn warn(warning: impl Display) {
     eprintln!("warning: {}", message(&warning.to_string()));
 }
 
-/// Writes text to stdout; a reader that has gone is a failure, not a panic.
+/// Writes text to stdout; a closed reader is a failure, not a panic.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     write(&visible(text))
 }
@@ -74,10 +72,10 @@ fn write(text: &str) -> Result<(), Failure> {
         .map_err(|_| Failure::NoReader)
 }
 
-/// Writes JSON and a line's end to stdout.
+/// Writes JSON and a newline to stdout.
 pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value)
-        .map_err(|e| Failure::Work(format!("cannot be written as JSON: {e}")))?;
-    // Its strings are escaped as JSON wants it.
+        .map_err(|e| Failure::Work(format!("the result cannot be written as JSON: {e}")))?;
+    // JSON escapes control characters in strings.
     write(&(text + "\n"))
 }

@@ -1,44 +1,44 @@
-//! A device that is followed for some time: its blocks, its state, and an end
-//! in order, whatever ends it.
+//! The loop of verbs that keep a connection open: telemetry blocks, state
+//! changes, reconnection, and disarming at the end.
 //!
-//! Ctrl-C disarms first. A line that was lost is opened again; what was armed
-//! is not armed again.
+//! Ctrl-C disarms first. A lost connection is opened again, but the device is
+//! not armed again.
 
+use crate::device_text;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::line::{Line, failure};
-use crate::told;
 use crepitus_client::{Client, Event, StateChange};
 use crepitus_protocol::State;
 use crepitus_protocol::telemetry::Block;
 use std::time::Duration;
 
-/// How long an event is waited for before Ctrl-C is looked at again.
-const PATIENCE: Duration = Duration::from_millis(20);
+/// Timeout of a poll for events; Ctrl-C is checked between polls.
+const POLL_TIMEOUT: Duration = Duration::from_millis(20);
 
-/// How long a lost line is tried.
-const RECONNECT: Duration = Duration::from_secs(10);
+/// Timeout of reconnection.
+const RECONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// Why it has ended.
+/// Why the loop ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The time is over.
+    /// The duration has elapsed.
     Time,
-    /// Ctrl-C, or whoever wanted it.
-    Asked,
+    /// Ctrl-C, or the follower asked for it.
+    Requested,
 }
 
-/// What is to be done meanwhile.
+/// What a verb does with the device meanwhile.
 pub(crate) trait Follower {
-    /// A block has come; `client` may be asked things.
+    /// Handles a telemetry block; requests to `client` are allowed.
     fn block(&mut self, client: &mut Client<Line>, block: &Block) -> Result<(), Failure>;
 
-    /// Some milliseconds have gone by: whether it is enough.
+    /// Called every few milliseconds; returns whether to stop.
     fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure>;
 }
 
-/// Follows a device until the time is over, or an end is asked for; then
-/// disarms what this has armed, whatever has happened.
+/// Runs until the duration has elapsed or a stop is requested; disarms at the
+/// end if it has armed, also after an error.
 pub(crate) fn follow(
     client: &mut Client<Line>,
     time: Option<Duration>,
@@ -49,7 +49,7 @@ pub(crate) fn follow(
     if arm {
         client.arm().map_err(failure)?;
     }
-    let result = go(client, time, arm, follower);
+    let result = run(client, time, arm, follower);
     if client.is_armed() {
         let disarmed = client.disarm().map_err(failure);
         return result.and_then(|end| disarmed.map(|()| end));
@@ -57,7 +57,7 @@ pub(crate) fn follow(
     result
 }
 
-fn go(
+fn run(
     client: &mut Client<Line>,
     time: Option<Duration>,
     arm: bool,
@@ -65,28 +65,28 @@ fn go(
 ) -> Result<End, Failure> {
     let end = time.map(|time| client.now() + time);
     loop {
-        if interrupt::asked() || follower.pause(client)? {
-            return Ok(End::Asked);
+        if interrupt::requested() || follower.pause(client)? {
+            return Ok(End::Requested);
         }
         if end.is_some_and(|end| client.now() >= end) {
             return Ok(End::Time);
         }
-        // All that has come, then the pause again.
-        let mut patience = PATIENCE;
-        while let Some(event) = client.pump(patience).map_err(failure)? {
-            patience = Duration::ZERO;
+        // All pending events, then the pause again.
+        let mut timeout = POLL_TIMEOUT;
+        while let Some(event) = client.pump(timeout).map_err(failure)? {
+            timeout = Duration::ZERO;
             match event {
                 Event::Block(arrival) => follower.block(client, &arrival.block)?,
-                Event::State(change) => told_of(&change, arm)?,
-                Event::DriveRestarted => eprintln!("warning: the drive has started anew"),
+                Event::State(change) => check_state(&change, arm)?,
+                Event::DriveRestarted => eprintln!("warning: the drive has restarted"),
                 Event::Silent(silence) => eprintln!(
-                    "warning: no samples for {} ms, though the line is open",
+                    "warning: no samples for {} ms, but the connection is open",
                     silence.as_millis()
                 ),
                 Event::Lost(error) => {
                     eprintln!(
-                        "warning: {error}; trying again for {} s",
-                        RECONNECT.as_secs()
+                        "warning: {error}; reconnecting for up to {} s",
+                        RECONNECT_TIMEOUT.as_secs()
                     );
                     reconnect(client, arm)?;
                     break;
@@ -101,21 +101,21 @@ fn go(
 }
 
 fn reconnect(client: &mut Client<Line>, arm: bool) -> Result<(), Failure> {
-    let back = client.reconnect(RECONNECT).map_err(failure)?;
-    eprintln!("the line is open again");
+    let back = client.reconnect(RECONNECT_TIMEOUT).map_err(failure)?;
+    eprintln!("reconnected");
     if arm && back.was_armed {
         return Err(Failure::Work(
-            "the device was armed as the line was lost, and has let go: it is not armed again by \
-             itself"
+            "the connection was lost while the device was armed, so it has disarmed; it is not armed \
+             again automatically: check the cable, then arm it again"
                 .to_owned(),
         ));
     }
     Ok(())
 }
 
-/// A device that was armed and is no more has a reason.
-fn told_of(change: &StateChange, arm: bool) -> Result<(), Failure> {
-    let faults = told::faults(&change.now);
+/// Prints new faults; an armed device that disarms by itself is a failure.
+fn check_state(change: &StateChange, arm: bool) -> Result<(), Failure> {
+    let faults = device_text::faults(&change.now);
     if !arm || change.now.state == State::Armed || change.before.state != State::Armed {
         for fault in faults {
             eprintln!("warning: {fault}");
@@ -123,7 +123,7 @@ fn told_of(change: &StateChange, arm: bool) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Work(if faults.is_empty() {
-        "the device was disarmed by somebody else".to_owned()
+        "another program has disarmed the device".to_owned()
     } else {
         faults.join("\n")
     }))

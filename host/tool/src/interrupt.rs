@@ -1,17 +1,16 @@
-//! Ctrl-C ends the work in order: what was being written is taken away.
+//! Ctrl-C as a request to stop, so that partial results can be removed.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-static ASKED: AtomicBool = AtomicBool::new(false);
+static REQUESTED: AtomicBool = AtomicBool::new(false);
 
-/// From now on, Ctrl-C only asks.
+/// Installs the handler: Ctrl-C sets a flag.
 pub(crate) fn listen() {
-    // Without a handler, Ctrl-C ends the program as ever: nothing is lost but
-    // the tidying up.
-    let _ = ctrlc::set_handler(|| ASKED.store(true, Ordering::Relaxed));
+    // Without a handler Ctrl-C kills the program; only the cleanup is lost.
+    let _ = ctrlc::set_handler(|| REQUESTED.store(true, Ordering::Relaxed));
 }
 
-/// Whether the person at the keyboard wants an end.
-pub(crate) fn asked() -> bool {
-    ASKED.load(Ordering::Relaxed)
+/// Whether Ctrl-C was pressed.
+pub(crate) fn requested() -> bool {
+    REQUESTED.load(Ordering::Relaxed)
 }

@@ -1,30 +1,30 @@
-//! Any key ends it: the terminal gives single keys, and is put back after.
+//! Single key presses from the terminal, whose mode is restored on drop.
 
 use crossterm::event::{Event, KeyEventKind, poll, read};
 use crossterm::terminal::{disable_raw_mode, enable_raw_mode};
 use std::io::{IsTerminal, stdin};
 use std::time::Duration;
 
-/// Listens for keys as long as it lives.
+/// Key presses while this value lives.
 pub(crate) struct Keys(bool);
 
 impl Keys {
-    /// On a terminal; elsewhere nothing is ever pressed.
+    /// Switches a terminal to raw mode; without a terminal there are no keys.
     pub(crate) fn listen() -> Self {
         Self(stdin().is_terminal() && enable_raw_mode().is_ok())
     }
 
-    /// Whether keys can be pressed.
-    pub(crate) fn are_heard(&self) -> bool {
+    /// Whether stdin is a terminal that delivers keys.
+    pub(crate) fn is_active(&self) -> bool {
         self.0
     }
 
-    /// Whether one was pressed. Ctrl-C is one.
+    /// Whether a key was pressed, Ctrl-C included.
     pub(crate) fn pressed(&self) -> bool {
         while self.0 && poll(Duration::ZERO).unwrap_or(false) {
             match read() {
                 Ok(Event::Key(key)) if key.kind == KeyEventKind::Press => return true,
-                // A terminal that is gone has nobody at it.
+                // The terminal is closed.
                 Err(_) => return true,
                 Ok(_) => {}
             }

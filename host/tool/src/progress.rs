@@ -3,14 +3,14 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 
-/// How long work may take before a bar appears.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// Work that takes less time shows no bar.
+const SHOW_AFTER: Duration = Duration::from_secs(1);
 
 /// Progress through a simulated time.
 pub(crate) struct Progress {
     begun: Instant,
     total_s: f64,
-    /// Of what the percentage is.
+    /// What the percentage is of.
     whole: &'static str,
     bar: Option<ProgressBar>,
 }
@@ -41,14 +41,14 @@ impl Progress {
 
     /// The simulation has reached `time_s`.
     pub(crate) fn reached(&mut self, time_s: f64) {
-        if self.begun.elapsed() < PATIENCE {
+        if self.begun.elapsed() < SHOW_AFTER {
             return;
         }
         let milliseconds = |s: f64| Duration::from_secs_f64(s.max(0.0)).as_millis();
         let position = u64::try_from(milliseconds(time_s)).unwrap_or(u64::MAX);
         let length = u64::try_from(milliseconds(self.total_s)).unwrap_or(u64::MAX);
         let bar = self.bar.get_or_insert_with(|| {
-            // Hidden by itself where stderr is no terminal.
+            // Hidden if stderr is not a terminal.
             let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr())
                 .with_elapsed(self.begun.elapsed());
             if let Ok(style) = ProgressStyle::with_template(&format!(

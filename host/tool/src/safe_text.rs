@@ -1,17 +1,16 @@
-//! Text that comes from files, devices and the command line, made safe for a
-//! terminal: control characters are shown, not sent, and what is repeated of an
-//! input is never long.
+//! Escaping of text from files, devices and the command line: control
+//! characters are shown, and long input is truncated.
 
 use std::borrow::Cow;
 
-/// The most that is repeated of one word, or one quotation, characters.
+/// The longest word or quotation that is repeated whole, characters.
 const LONGEST: usize = 200;
 
 /// Characters kept of a longer one.
 const KEPT: usize = 150;
 
-/// With control characters escaped, but for ends of lines and tabs; and those
-/// that turn the direction of what follows.
+/// Escapes control characters, except newlines and tabs, and characters that
+/// change the direction of text.
 pub(crate) fn visible(text: &str) -> Cow<'_, str> {
     if !text.chars().any(is_hidden) {
         return Cow::Borrowed(text);
@@ -32,8 +31,8 @@ fn is_hidden(c: char) -> bool {
     turns || (c.is_control() && !matches!(c, '\n' | '\t'))
 }
 
-/// A message: [`visible`], with long words and quotations cut, and what this
-/// program was called with.
+/// A message for a terminal: [`visible`], with long words, quotations and
+/// arguments of this program truncated.
 pub(crate) fn message(text: &str) -> String {
     let arguments = std::env::args_os().map(|argument| argument.to_string_lossy().into_owned());
     brief(text, arguments)
@@ -84,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_terminal_would_obey_is_shown() {
+    fn control_characters_are_shown() {
         assert_eq!(visible("a\u{1b}[31mb\u{7}"), "a\\u{1b}[31mb\\u{7}");
         assert_eq!(visible("over\u{202e}txt.moc"), "over\\u{202e}txt.moc");
         assert_eq!(visible("\u{9b}1A"), "\\u{9b}1A");
@@ -92,25 +91,25 @@ mod tests {
     }
 
     #[test]
-    fn no_input_is_repeated_at_length() {
+    fn long_input_is_truncated() {
         let long = "x".repeat(100_000);
-        let told = message(&format!("there is no scene {long}: look"));
-        assert!(told.len() < 250, "{}", told.len());
-        assert!(told.ends_with("… (100001 characters) look"), "{told}");
+        let text = message(&format!("there is no scene {long}: look"));
+        assert!(text.len() < 250, "{}", text.len());
+        assert!(text.ends_with("… (100001 characters) look"), "{text}");
         let words = "many words ".repeat(100);
         for quote in ['"', '`'] {
-            let told = message(&format!("key {quote}{words}{quote} is not allowed"));
-            assert!(told.len() < 250, "{told}");
-            assert!(told.ends_with("characters) is not allowed"), "{told}");
+            let text = message(&format!("key {quote}{words}{quote} is not allowed"));
+            assert!(text.len() < 250, "{text}");
+            assert!(text.ends_with("characters) is not allowed"), "{text}");
         }
         // A path needs no quotation marks.
-        let told = brief(
+        let text = brief(
             &format!("{words}: cannot be read"),
             [words.clone(), format!("--set=a.{words}")].into_iter(),
         );
         assert!(
-            told.len() < 250 && told.ends_with("cannot be read"),
-            "{told}"
+            text.len() < 250 && text.ends_with("cannot be read"),
+            "{text}"
         );
         // An open quotation is one up to the end.
         assert!(message(&format!("\"{words}")).len() < 250);

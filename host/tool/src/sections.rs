@@ -1,7 +1,22 @@
-//! The tables that reports of a run and of a recording have in common.
+//! What reports of a run and of a recording have in common: tables, and the
+//! torque levels that are marked.
 
-use crepitus_report::Section;
+use crepitus_model::{Restart, Settings};
+use crepitus_report::{Section, TorqueLevels};
 use crepitus_scene::run::TorqueSummary;
+
+/// The torque levels that a report marks.
+pub(crate) fn torque_levels(settings: &Settings) -> TorqueLevels {
+    let p = &settings.parameters;
+    let elastic = TorqueLevels::elastic(p.kinetic_torque_nm, p.static_torque_nm);
+    match settings.restart {
+        Restart::Elastic => elastic,
+        Restart::FromKinetic => TorqueLevels {
+            restart_nm: elastic.kinetic_nm,
+            ..elastic
+        },
+    }
+}
 
 /// A torque over time.
 pub(crate) fn torque_section(title: &str, t: &TorqueSummary) -> Section {

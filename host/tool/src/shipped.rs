@@ -1,4 +1,4 @@
-//! The scenes that ship, inside the program: it runs them from anywhere.
+//! The scenes that ship, embedded in the program.
 
 use crate::failure::Failure;
 use crepitus_scene::{Overrides, Scene, SceneError};
@@ -71,7 +71,7 @@ impl Shipped {
     }
 }
 
-/// The scene that a person names: a file, or the name of a scene that ships.
+/// The scene of an argument: a file, or the name of a scene that ships.
 pub(crate) fn scene(path: &Path, overrides: &Overrides) -> Result<Scene, Failure> {
     if path.exists() {
         return Scene::read(path, overrides).map_err(Failure::input);

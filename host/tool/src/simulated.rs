@@ -1,5 +1,5 @@
-//! A simulated device in this process, as a transport: real but for silicon
-//! and time, which goes on only while somebody waits.
+//! A simulated device in this process, as a transport. Its time advances only
+//! while the host waits.
 
 use crepitus_board::{Start, VirtualDevice};
 use crepitus_client::{Transport, TransportError};
@@ -7,14 +7,14 @@ use crepitus_protocol::TICKS_PER_S;
 use crepitus_scene::Scene;
 use std::time::Duration;
 
-/// Ticks that a device that takes nothing is waited for.
-const PATIENCE_TICKS: u64 = 10_000;
+/// Timeout of a write that the device does not accept, ticks.
+const TIMEOUT_TICKS: u64 = 10_000;
 
 /// A simulated device at the end of a virtual USB cable.
 pub(crate) struct Simulated {
     device: VirtualDevice,
     name: String,
-    /// What was sent was torn: a delimiter comes first.
+    /// The last write was incomplete: send a delimiter first.
     torn: bool,
 }
 
@@ -46,7 +46,7 @@ impl Transport for Simulated {
         let delimiter: &[u8] = if self.torn { &[0] } else { &[] };
         let mut rest = [delimiter, bytes].concat();
         self.torn = false;
-        for _ in 0..PATIENCE_TICKS {
+        for _ in 0..TIMEOUT_TICKS {
             let Some(host) = self.device.host() else {
                 return Err(self.lost());
             };

@@ -1,10 +1,10 @@
-//! A line on the terminal that says how the device is, while samples go by.
+//! A status line on the terminal while samples arrive.
 
 use crepitus_client::Accounting;
 use crepitus_protocol::telemetry::Block;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// The line; hidden by itself where stderr is no terminal.
+/// The line; hidden if stderr is not a terminal.
 pub(crate) struct StatusLine {
     bar: ProgressBar,
     last: Option<Block>,
@@ -19,30 +19,30 @@ impl StatusLine {
         Self { bar, last: None }
     }
 
-    /// The last of the blocks that have come.
+    /// Takes the latest block.
     pub(crate) fn block(&mut self, block: &Block) {
         self.last = Some(*block);
     }
 
-    /// Does something else with the terminal meanwhile.
+    /// Hides the line while `work` uses the terminal.
     pub(crate) fn aside<R>(&self, work: impl FnOnce() -> R) -> R {
         self.bar.suspend(work)
     }
 
-    /// Shows how it is.
-    pub(crate) fn show(&self, books: Option<&Accounting>) {
+    /// Updates the line.
+    pub(crate) fn show(&self, accounting: Option<&Accounting>) {
         if self.bar.is_hidden() {
             return;
         }
-        let (Some(block), Some(books)) = (&self.last, books) else {
+        let (Some(block), Some(accounting)) = (&self.last, accounting) else {
             return;
         };
         let torque_nm = block.samples.last().map_or(0.0, |sample| sample.torque_nm);
         self.bar.set_message(format!(
             "{} · {torque_nm:+.3} N·m · {} samples, {} dropped",
             block.flags.state().name(),
-            books.received(),
-            books.dropped()
+            accounting.received(),
+            accounting.dropped()
         ));
         self.bar.tick();
     }

@@ -1,15 +1,12 @@
 //! What the verbs that carry out a study share: the progress that they show,
-//! how they are interrupted, and the files that they leave.
+//! and how they are interrupted.
 
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Progress;
-use crepitus_scene::output::Folder;
 use crepitus_study::{StudyError, Watcher};
-use std::io::Write;
-use std::path::Path;
 
-/// Moves the progress bar, and stops when asked.
+/// Moves the progress bar, and stops at Ctrl-C.
 pub(crate) struct Watch(Progress);
 
 /// Ctrl-C.
@@ -28,14 +25,14 @@ impl Watcher for Watch {
 
     fn progress(&mut self, fraction: f64) -> Result<(), Interrupted> {
         self.0.reached(fraction);
-        if interrupt::asked() {
+        if interrupt::requested() {
             return Err(Interrupted);
         }
         Ok(())
     }
 }
 
-/// Why a study has no result.
+/// The failure of a study.
 pub(crate) fn failed(error: StudyError<Interrupted>) -> Failure {
     match error {
         StudyError::Watcher(Interrupted) => {
@@ -43,24 +40,4 @@ pub(crate) fn failed(error: StudyError<Interrupted>) -> Failure {
         }
         other => Failure::Work(format!("the study failed: {other}")),
     }
-}
-
-/// Writes names and contents of files, all or none.
-pub(crate) fn write(
-    folder: Folder,
-    out: &Path,
-    files: Vec<(String, String)>,
-) -> Result<(), Failure> {
-    for (name, content) in files {
-        folder
-            .file(&name)
-            .and_then(|mut file| {
-                file.write_all(content.as_bytes())?;
-                Folder::finish(file)
-            })
-            .map_err(|e| Failure::at(out, "writing the results", &e))?;
-    }
-    folder
-        .commit()
-        .map_err(|e| Failure::at(out, "moving the results into place", &e))
 }

@@ -1,10 +1,14 @@
-//! What `crepitus` can do: one file a verb.
+//! What `crepitus` can do. A verb is one file: its arguments with their help,
+//! and what it does. A new one is entered twice here: as a module and in the
+//! list.
 
 pub(crate) mod accuracy;
+pub(crate) mod arm;
+pub(crate) mod clear_fault;
 pub(crate) mod completions;
-pub(crate) mod control;
 pub(crate) mod demo;
 pub(crate) mod devices;
+pub(crate) mod disarm;
 pub(crate) mod doctor;
 pub(crate) mod effects;
 pub(crate) mod info;
@@ -16,4 +20,53 @@ pub(crate) mod run;
 pub(crate) mod scenes;
 pub(crate) mod serve_sim;
 pub(crate) mod stability;
+pub(crate) mod stop;
 pub(crate) mod stream;
+pub(crate) mod zero;
+
+use crate::failure::Failure;
+use clap::Subcommand;
+
+macro_rules! verbs {
+    ($($verb:ident: $module:ident),* $(,)?) => {
+        /// What the command line asks for.
+        #[derive(Debug, Subcommand)]
+        pub(crate) enum Verb {
+            $($verb($module::Arguments)),*
+        }
+
+        impl Verb {
+            /// Runs the verb.
+            pub(crate) fn run(&self, as_json: bool) -> Result<(), Failure> {
+                match self {
+                    $(Self::$verb(arguments) => $module::run(arguments, as_json)),*
+                }
+            }
+        }
+    };
+}
+
+// In the order of `--help`.
+verbs! {
+    Demo: demo,
+    Devices: devices,
+    Info: info,
+    Doctor: doctor,
+    Params: params,
+    Zero: zero,
+    Arm: arm,
+    Disarm: disarm,
+    Stop: stop,
+    ClearFault: clear_fault,
+    Stream: stream,
+    Record: record,
+    Report: report,
+    ServeSim: serve_sim,
+    Run: run,
+    Accuracy: accuracy,
+    Stability: stability,
+    Effects: effects,
+    Scenes: scenes,
+    Presets: presets,
+    Completions: completions,
+}

@@ -12,7 +12,7 @@
 //! |---|---|
 //! | what is studied | [`scenes`] |
 //! | the whole study and its results | [`study`], [`results`] |
-//! | one point of the diagram, and its file | [`point`], [`points_csv`] |
+//! | one point of the diagram, and its file | [`point`], [`points_table`] |
 //! | the torque to compare with, at the ends of steps and within them | [`reference_torque`], [`held_torque`] |
 //! | accuracy and time of a run | [`measure`], [`timing`] |
 //! | cost of a step on the device's core | [`target`] |
@@ -26,7 +26,7 @@ pub mod measure;
 pub mod need;
 pub mod orders;
 pub mod point;
-pub mod points_csv;
+pub mod points_table;
 pub mod reference_torque;
 pub mod results;
 pub mod scenes;

@@ -18,13 +18,13 @@
 //! | when a shaft is quiet, settles or rings | `cell` |
 //! | the criteria of the literature, and the linear system | `criteria` |
 //! | the map, the presets' margins, each effect | `study` |
-//! | files | [`csv`] |
+//! | files | [`tables`] |
 
 mod cell;
 mod criteria;
-pub mod csv;
 mod setting;
 mod study;
+pub mod tables;
 
 pub use cell::{Cell, Verdict};
 pub use criteria::{Criteria, most_share};

@@ -19,14 +19,14 @@
 //! | which variants a scene has | [`variant`] |
 //! | the torque at the hand in a run | `hand` |
 //! | RMS, peak, bands, differences | [`influence`] |
-//! | the whole study, its results, their file | [`study`], [`results`], [`effects_csv`] |
+//! | the whole study, its results, their file | [`study`], [`results`], [`effects_table`] |
 //! | limits, and the smallest set of effects within | [`tolerance`], `smallest`, [`mod@answer`] |
 //! | the time window that the report shows | `window` |
 //! | runs on all cores | `crate::parallel` |
 
 pub mod answer;
 pub mod build_up;
-pub mod effects_csv;
+pub mod effects_table;
 mod hand;
 pub mod influence;
 pub mod refusal;

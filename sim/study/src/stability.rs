@@ -14,11 +14,11 @@
 //! | how a case is run and judged | `source`, `observe`, `energy_audit`, `judge` |
 //! | results | [`verdict`], [`matrix`] |
 //! | an input as data, for a joint elsewhere | [`replay`] |
-//! | the results' file | [`cases_csv`] |
+//! | the file of results | [`cases_table`] |
 //! | pictures that explain a case | [`story`] |
 
 pub mod case;
-pub mod cases_csv;
+pub mod cases_table;
 pub mod catalogue;
 pub mod criterion;
 mod energy_audit;

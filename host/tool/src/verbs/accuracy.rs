@@ -10,17 +10,92 @@ mod table;
 mod target;
 mod words;
 
-use crate::cli::AccuracyArguments;
 use crate::failure::{Failure, print, print_json};
+use crate::results;
 use crate::studying::{self, Watch};
-use crepitus_scene::output::Folder;
-use crepitus_study::accuracy::{Need, Study, convergence, points_csv, study};
+use clap::Args;
+use crepitus_study::accuracy::{Need, convergence, study};
 use serde_json::json;
 use std::path::PathBuf;
 use summary::Summary;
 
+/// Show what accuracy costs in time: every solver against the reference.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus accuracy --quick
+  crepitus accuracy --quick --target
+  crepitus accuracy --scene slow-examination --out /tmp/accuracy
+  crepitus accuracy --need torque=1e-2,interval=5e-4 --rate 20000
+  crepitus accuracy --need torque=1e-2 --target
+  crepitus accuracy --need frequency=1e-6 --convention physical --precision f64
+
+Every solver, in f32 and f64 and at steps from 1 ms to 2 µs, is compared with the reference \
+on four constant speeds and a hand-like sine, and timed on this machine in CPU time. With --target it is also \
+run on an emulated STM32F405: modelled cycles, 0 wait states; not measured on hardware. The worst \
+cycles are the worst observed, over inputs with breaks, matches and reversals.
+
+A NEED is a list of limits that must hold on every scene: torque (rms error of the torque as the \
+device holds it for a step, over continuous time, N·m), peak-torque (the largest such error, N·m), \
+torque-at-tick and peak-torque-at-tick (the same at the ends of steps alone, N·m), event (worst event-time error, s), interval (worst \
+interval error, s), frequency (relative error of the cycle frequency). The answer is the \
+cheapest solver that meets them on this host; with --target the one with the fewest mean cycles on \
+the target at its tick of 50 µs in f32, equal means decided by the worst, whose worst step fits a \
+fifth of the tick. Where none does the exit code is 1. With --need, files are written only if --out \
+is given.")]
+pub(crate) struct Arguments {
+    /// Study the motion and the crepitus of this scene instead: a file, or the name of one that
+    /// ships. Its solver and its encoder are ignored.
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<PathBuf>,
+
+    /// Folder for points.csv, summary.json and report.html [default: out/accuracy].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Fewer steps and repeats: seconds instead of minutes.
+    #[arg(long)]
+    quick: bool,
+
+    /// Also run every solver, and every effect of the device, on an emulated STM32F405: cycles and
+    /// instructions of a step. Builds firmware/ladder, unless CREPITUS_IMAGES names a folder with
+    /// it. With --need these cycles choose.
+    #[arg(long)]
+    target: bool,
+
+    /// Also write each diagram of the report as an SVG file.
+    #[arg(long)]
+    pictures: bool,
+
+    /// Which solver is the cheapest that is accurate enough? For example torque=1e-2,interval=5e-4.
+    #[arg(long, value_name = "NEED")]
+    need: Option<String>,
+
+    /// Only steps of this rate, in Hz: that of the device is 20000.
+    #[arg(
+        long,
+        value_name = "HZ",
+        requires = "need",
+        allow_negative_numbers = true
+    )]
+    rate: Option<f64>,
+
+    /// The convention that the need is for [default: frozen, or that of the scene].
+    #[arg(long, value_name = "CONVENTION", requires = "need")]
+    convention: Option<String>,
+
+    /// The precision that the need is for: the device computes in f32.
+    #[arg(long, value_name = "PRECISION", requires = "need", default_value = "f32",
+          value_parser = ["f32", "f64"])]
+    precision: String,
+
+    /// Other steps, in seconds.
+    #[arg(long, value_name = "SECONDS,…", value_delimiter = ',', hide = true)]
+    steps: Vec<f64>,
+}
+
 /// Studies, and writes the files or answers the need.
-pub(crate) fn accuracy(arguments: &AccuracyArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let need = arguments
         .need
         .as_deref()
@@ -33,12 +108,8 @@ pub(crate) fn accuracy(arguments: &AccuracyArguments, as_json: bool) -> Result<(
         (None, None) => Some(PathBuf::from("out/accuracy")),
         (None, Some(_)) => None,
     };
-    // A folder that cannot be written is better known before the work.
-    let folder = out
-        .as_deref()
-        .map(|out| Folder::create(out).map_err(|e| Failure::at(out, "cannot be written", &e)))
-        .transpose()?;
-    // So is an image that cannot be built.
+    let folder = out.as_deref().map(results::folder).transpose()?;
+    // Fails before the work if the image cannot be built.
     let ladder = arguments.target.then(target::ladder).transpose()?;
     let mut study = study::run(&studied.plan, &mut Watch::new()).map_err(studying::failed)?;
     if let Some(mut ladder) = ladder {
@@ -55,10 +126,14 @@ pub(crate) fn accuracy(arguments: &AccuracyArguments, as_json: bool) -> Result<(
     study.orders.extend_from_slice(&by_motion);
     let summary = Summary::new(arguments.quick, &studied, &study);
     if let (Some(folder), Some(out)) = (folder, &out) {
-        studying::write(folder, out, files(&study, &summary, arguments.pictures)?)?;
+        results::write(
+            folder,
+            out,
+            page::files(&study, &summary, arguments.pictures)?,
+        )?;
     }
     match &need {
-        Some(need) => answer::tell(need, &studied, &study, out.as_deref(), as_json),
+        Some(need) => answer::print_answer(need, &studied, &study, out.as_deref(), as_json),
         None if as_json => print_json(&json!({ "out": out, "summary": summary })),
         None => {
             let report = out.unwrap_or_default().join("report.html");
@@ -72,21 +147,4 @@ pub(crate) fn accuracy(arguments: &AccuracyArguments, as_json: bool) -> Result<(
             ))
         }
     }
-}
-
-/// The report, the points and the summary, and the pictures if asked for.
-fn files(
-    study: &Study,
-    summary: &Summary<'_>,
-    pictures: bool,
-) -> Result<Vec<(String, String)>, Failure> {
-    let json = serde_json::to_string_pretty(summary)
-        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
-    let mut files = page::files(study, summary, pictures)?;
-    files.push((
-        "points.csv".to_owned(),
-        points_csv::points_csv(&study.points),
-    ));
-    files.push(("summary.json".to_owned(), json + "\n"));
-    Ok(files)
 }

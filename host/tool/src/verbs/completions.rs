@@ -1,22 +1,28 @@
 //! `crepitus completions SHELL`.
 
-use crate::cli::{Cli, Shell};
+use crate::cli::Cli;
 use crate::failure::{Failure, print};
-use clap::CommandFactory;
-use clap_complete::shells;
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+
+/// Print a completion script for a shell.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  crepitus completions bash > ~/.local/share/bash-completion/completions/crepitus")]
+pub(crate) struct Arguments {
+    /// The shell.
+    shell: Shell,
+}
 
 /// Prints the completion script.
-pub(crate) fn completions(shell: Shell) -> Result<(), Failure> {
-    let (mut command, mut script) = (Cli::command(), Vec::new());
-    let name = "crepitus";
-    match shell {
-        Shell::Bash => clap_complete::generate(shells::Bash, &mut command, name, &mut script),
-        Shell::Elvish => clap_complete::generate(shells::Elvish, &mut command, name, &mut script),
-        Shell::Fish => clap_complete::generate(shells::Fish, &mut command, name, &mut script),
-        Shell::Powershell => {
-            clap_complete::generate(shells::PowerShell, &mut command, name, &mut script);
-        }
-        Shell::Zsh => clap_complete::generate(shells::Zsh, &mut command, name, &mut script),
-    }
+pub(crate) fn run(arguments: &Arguments, _: bool) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(
+        arguments.shell,
+        &mut Cli::command(),
+        "crepitus",
+        &mut script,
+    );
     print(&String::from_utf8_lossy(&script))
 }

@@ -2,20 +2,20 @@
 //! the simulated leg.
 
 use super::record::Recording;
-use super::report::in_brief;
-use crate::cli::device::DemoArguments;
+use super::report::{self, in_brief};
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Follower, follow};
 use crate::line::{Line, failure};
 use crate::progress::Progress;
-use crate::recorded::{RecordedSummary, report};
 use crate::shipped;
 use crate::simulated::Simulated;
+use clap::Args;
 use crepitus_client::{Client, RequestKind};
 use crepitus_model::joint::presets::Preset;
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};
+use crepitus_recording::RecordingSummary;
 use crepitus_scene::Overrides;
 use serde_json::json;
 use std::fmt::Write as _;
@@ -23,21 +23,42 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// The leg, and what its joint begins with.
+/// Run the whole device, simulated: host, USB, both controllers, leg; record and report it.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus demo
+  crepitus demo --out /tmp/demo --json
+
+Only the hardware is simulated: the host's library, a USB stack and a virtual cable, the \
+program of the comms controller, the link, the program of the drive, and a simulated leg that an \
+examiner bends and straightens. DIR gets recording.csv, recording.json, report.html and \
+summary.json.")]
+pub(crate) struct Arguments {
+    /// Folder for the recording and its report [default: out/demo].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Also write each figure of the report as an SVG file.
+    #[arg(long)]
+    pictures: bool,
+}
+
+/// The scene of the leg, and the preset of its joint.
 const SCENE: &str = "passive-examination";
 const PRESET: &str = "coarse";
 
-/// What is changed on the way, after these shares of the time.
+/// Parameter changes during the run, at these shares of its duration.
 const CHANGES: [(f64, &str, f64); 2] = [
     (1.0 / 3.0, "crepitus.kinetic_torque_nm", 0.25),
     (2.0 / 3.0, "crepitus.stiffness_nm_per_rad", 900.0),
 ];
 
-/// Within this time a device has let go.
-const LETTING_GO: Duration = Duration::from_millis(100);
+/// Timeout of disarming.
+const DISARM_TIMEOUT: Duration = Duration::from_millis(100);
 
-/// Runs it.
-pub(crate) fn demo(arguments: &DemoArguments, as_json: bool) -> Result<(), Failure> {
+/// Runs the demo.
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let begun = Instant::now();
     let out = arguments
         .out
@@ -47,13 +68,13 @@ pub(crate) fn demo(arguments: &DemoArguments, as_json: bool) -> Result<(), Failu
     let scene = shipped::scene(Path::new(SCENE), &Overrides::default())?;
     let duration = Duration::from_secs_f64(scene.duration_s);
     let device = Simulated::of(&scene).map_err(Failure::input)?;
-    let mut say = Saying(as_json);
+    let narration = Narration { is_silent: as_json };
 
-    say.now(
+    narration.step(
         "the device",
-        "two controllers and a leg are simulated, and plugged in",
+        "two controllers and a leg, simulated and connected",
     )?;
-    let mut client = Client::connect(Line::Simulated(Box::new(device))).map_err(failure)?;
+    let mut client = Client::connect(Line::new(device)).map_err(failure)?;
     let (base, values) = client.parameters().map_err(failure)?;
     let preset = Preset::find(PRESET)
         .ok_or_else(|| Failure::Work(format!("there is no preset {PRESET}")))?;
@@ -61,10 +82,7 @@ pub(crate) fn demo(arguments: &DemoArguments, as_json: bool) -> Result<(), Failu
         .commit(base, &values.with_crepitus(&preset.parameters))
         .map_err(failure)?;
     client.zero().map_err(failure)?;
-    say.now(
-        "parameters",
-        &format!("{PRESET} is in force; the angle is zero here"),
-    )?;
+    narration.step("parameters", &format!("preset {PRESET} applied; zero set"))?;
 
     let recording = Recording::begin(&mut client, &file, &scene.title)?;
     client.subscribe().map_err(failure)?;
@@ -79,21 +97,21 @@ pub(crate) fn demo(arguments: &DemoArguments, as_json: bool) -> Result<(), Failu
         made: Vec::new(),
     };
     follow(&mut client, Some(duration), true, &mut examination)?;
-    let_go(&mut client)?;
+    wait_until_disarmed(&mut client)?;
     let Examination {
         recording, made, ..
     } = examination;
     recording.finish()?;
-    say.now("examination", &told(&client, &made))?;
+    narration.step("examination", &examination_text(&client, &made))?;
 
     let recording = crepitus_recording::Recording::open(&file).map_err(Failure::input)?;
-    let summary = report(&recording, &out, arguments.pictures)?;
+    let summary = report::write(&recording, &out, arguments.pictures)?;
     done(&summary, &out, &client, begun.elapsed(), as_json)
 }
 
-/// The folder, without the recording of the last time.
+/// Creates the folder and removes an earlier recording.
 fn prepared(out: &Path) -> Result<PathBuf, Failure> {
-    fs::create_dir_all(out).map_err(|e| Failure::at(out, "cannot be made", &e))?;
+    fs::create_dir_all(out).map_err(|e| Failure::at(out, "cannot be created", &e))?;
     let file = out.join("recording.csv");
     for old in [file.clone(), file.with_extension("json")] {
         match fs::remove_file(&old) {
@@ -106,33 +124,38 @@ fn prepared(out: &Path) -> Result<PathBuf, Failure> {
     Ok(file)
 }
 
-/// Waits until the drive has let go, which it does within milliseconds.
-fn let_go(client: &mut Client<Line>) -> Result<(), Failure> {
-    let end = client.now() + LETTING_GO;
+/// Waits until the drive reports that it has disarmed.
+fn wait_until_disarmed(client: &mut Client<Line>) -> Result<(), Failure> {
+    let end = client.now() + DISARM_TIMEOUT;
     while client.status().map_err(failure)?.state != State::Disarmed {
         if client.now() >= end {
-            return Err(Failure::Work("the device does not disarm".to_owned()));
+            return Err(Failure::Work(
+                "the device did not disarm within 100 ms: check it with `crepitus doctor`"
+                    .to_owned(),
+            ));
         }
     }
     Ok(())
 }
 
-/// What is being done, for people.
-struct Saying(bool);
+/// Prints each step, unless JSON is wanted.
+struct Narration {
+    is_silent: bool,
+}
 
-impl Saying {
-    fn now(&mut self, what: &str, text: &str) -> Result<(), Failure> {
-        if self.0 {
+impl Narration {
+    fn step(&self, what: &str, text: &str) -> Result<(), Failure> {
+        if self.is_silent {
             return Ok(());
         }
         print(&format!("{what:<12} {text}\n"))
     }
 }
 
-/// An examination that is recorded, with changes on the way.
+/// A recorded examination with parameter changes.
 struct Examination {
     recording: Recording,
-    /// When, what, to which value: those that are still to come.
+    /// Pending changes: time, parameter, value.
     changes: std::collections::VecDeque<(Duration, &'static str, f64)>,
     begin: Duration,
     progress: Progress,
@@ -160,12 +183,12 @@ impl Follower for Examination {
     }
 }
 
-fn told(client: &Client<Line>, made: &[(&'static str, f64, Revision)]) -> String {
+fn examination_text(client: &Client<Line>, made: &[(&'static str, f64, Revision)]) -> String {
     let mut text = "armed, moved, disarmed".to_owned();
     for (name, value, revision) in made {
         let _ = write!(
             text,
-            "\n{:<12} {name} = {value} on the way, revision {revision}",
+            "\n{:<12} {name} = {value} while armed, revision {revision}",
             ""
         );
     }
@@ -182,7 +205,7 @@ fn told(client: &Client<Line>, made: &[(&'static str, f64, Revision)]) -> String
 }
 
 fn done(
-    summary: &RecordedSummary,
+    summary: &RecordingSummary,
     out: &Path,
     client: &Client<Line>,
     wall: Duration,
@@ -199,7 +222,7 @@ fn done(
         }));
     }
     print(&format!(
-        "{}recording: {}\n{device_s:.1} s of the device took {wall_s:.1} s with everything\n",
+        "{}recording: {}\n{device_s:.1} s of device time took {wall_s:.1} s in all\n",
         in_brief(summary, out),
         out.join("recording.csv").display()
     ))

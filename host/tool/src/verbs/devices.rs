@@ -1,11 +1,17 @@
-//! `crepitus devices`: what is attached.
+//! `crepitus devices`.
 
 use crate::failure::{Failure, print, print_json};
+use clap::Args;
 use crepitus_client::discovery::{self, DeviceKind};
 use serde_json::json;
 
+/// List attached and simulated devices.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  crepitus devices --json")]
+pub(crate) struct Arguments {}
+
 /// Lists the devices.
-pub(crate) fn devices(as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(_: &Arguments, as_json: bool) -> Result<(), Failure> {
     let devices = discovery::devices().map_err(Failure::input)?;
     if as_json {
         let list: Vec<_> = devices
@@ -25,7 +31,7 @@ pub(crate) fn devices(as_json: bool) -> Result<(), Failure> {
     if devices.is_empty() {
         return print(
             "no device is attached\n\
-             `crepitus serve-sim` offers a simulated one; `--device sim` is one that lives for one command\n",
+             `crepitus serve-sim` starts a simulated one; `--device sim` is a simulated one for one command\n",
         );
     }
     let lines = devices.iter().map(|device| {

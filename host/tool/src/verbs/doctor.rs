@@ -1,10 +1,10 @@
-//! `crepitus doctor`: everything between this program and the motor, one after
-//! the other.
+//! `crepitus doctor`: checks of everything between this program and the motor.
 
-use crate::cli::device::DoctorArguments;
+use crate::cli::DeviceArguments;
+use crate::device_text;
 use crate::failure::{Failure, print, print_json};
 use crate::line::{Line, connect};
-use crate::told;
+use clap::Args;
 use crepitus_client::{Client, Event, RequestKind};
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
@@ -12,33 +12,47 @@ use crepitus_protocol::telemetry::{NO_CURRENT, SampleFlags};
 use serde_json::json;
 use std::time::Duration;
 
-/// How long telemetry is listened to.
+/// Check a device: what is wrong, and what to do about it.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus doctor
+  crepitus doctor --device sim
+
+Checks everything between this program and the motor in turn, and says how to fix what is wrong. \
+Nothing moves: the device is not armed. The exit code is 1 if a check fails.")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
+/// Duration of the telemetry check.
 const LISTEN: Duration = Duration::from_secs(1);
 
-/// Requests whose answers are timed.
+/// Requests of the latency check.
 const ROUND_TRIPS: u32 = 50;
 
-/// An answer that takes longer says that something is slow, ms.
+/// A longer median round trip is a problem, ms.
 const SLOW_MS: f64 = 50.0;
 
-/// What was looked at.
+/// One check.
 struct Check {
     what: &'static str,
-    /// What was found; if it is not in order, what to do.
+    /// The finding; if there is a problem, what to do.
     found: String,
     is_fine: bool,
 }
 
-/// Examines a device.
-pub(crate) fn doctor(arguments: &DoctorArguments, as_json: bool) -> Result<(), Failure> {
+/// Runs the checks.
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut checks = Vec::new();
     match connect(&arguments.device) {
         Ok(mut client) => {
             let handshake = *client.handshake();
-            let comms = told::identity(&handshake.comms);
+            let comms = device_text::identity(&handshake.comms);
             checks.push(fine("line", client.port()));
             checks.push(fine("comms", comms));
-            if let Err(error) = examine(&mut client, &mut checks) {
+            if let Err(error) = check(&mut client, &mut checks) {
                 checks.push(wrong("device", error.to_string()));
             }
         }
@@ -86,44 +100,44 @@ fn wrong(what: &'static str, found: impl Into<String>) -> Check {
     }
 }
 
-fn examine(
-    client: &mut Client<Line>,
-    checks: &mut Vec<Check>,
-) -> Result<(), crepitus_client::Error> {
+fn check(client: &mut Client<Line>, checks: &mut Vec<Check>) -> Result<(), crepitus_client::Error> {
     let handshake = *client.handshake();
     let status = client.status()?;
     checks.push(match (&handshake.drive, status.drive_present) {
         (_, false) => wrong(
             "drive",
-            "nothing comes from it: is it powered, and is the link (PC6, PC7) connected?",
+            "no messages: check its power and the link (PC6, PC7)",
         ),
-        (None, true) => wrong("drive", "it sends samples and does not say who it is"),
-        (Some(drive), true) => fine("drive", told::identity(drive)),
+        (None, true) => wrong(
+            "drive",
+            "it sends samples but has not identified itself: restart the device",
+        ),
+        (Some(drive), true) => fine("drive", device_text::identity(drive)),
     });
     if let Some(mismatch) = handshake.mismatch() {
-        checks.push(wrong("language", mismatch.to_string()));
+        checks.push(wrong("schema", mismatch.to_string()));
     }
-    let faults = told::faults(&status);
+    let faults = device_text::faults(&status);
     checks.push(if faults.is_empty() {
         fine("faults", "none")
     } else {
         wrong("faults", faults.join("\n"))
     });
     checks.push(if status.in_force == status.revision {
-        let kept = match status.saved {
-            Some(saved) if saved == status.revision => "kept",
-            _ => "not kept for the next start",
+        let saved = match status.saved {
+            Some(saved) if saved == status.revision => "saved",
+            _ => "not saved for the next start",
         };
         fine(
             "parameters",
-            format!("revision {} in force, {kept}", status.revision),
+            format!("revision {}, {saved}", status.revision),
         )
     } else {
         wrong(
             "parameters",
             format!(
-                "the drive has revision {}, and revision {} was committed: it takes them over once \
-                 it is heard",
+                "the drive applies revision {}, but revision {} was committed: check the link between \
+                 the controllers",
                 status.in_force, status.revision
             ),
         )
@@ -152,7 +166,7 @@ fn round_trips(
         } else {
             wrong(
                 "round trip",
-                format!("{text}: is the computer busy, or a hub between?"),
+                format!("{text}: close other programs, connect without a USB hub"),
             )
         });
     }
@@ -189,28 +203,30 @@ fn telemetry(
     } else {
         wrong(
             "samples",
-            format!("{text}, of {TICKS_PER_S}: is the computer busy, or a hub between?"),
+            format!(
+                "{text}, expected {TICKS_PER_S}: close other programs, connect without a USB hub"
+            ),
         )
     });
     for (what, count, remedy) in [
         (
             "encoder",
             lost,
-            "counts that no shaft makes: look at its line and shield",
+            "implausible counts: check its cable and shield",
         ),
         (
             "current",
             unmeasured,
-            "ticks without a measured current: look at the converter",
+            "ticks without a current measurement: check the converter",
         ),
         (
             "rendering",
             late,
-            "late ticks: the program is too slow for its tick",
+            "late ticks: the firmware is too slow for its tick",
         ),
     ] {
         checks.push(if count == 0 {
-            fine(what, "in order")
+            fine(what, "ok")
         } else {
             wrong(what, format!("{count} {remedy}"))
         });
@@ -218,21 +234,21 @@ fn telemetry(
     Ok(())
 }
 
-/// What was thrown away on the wires since the start.
+/// Frames discarded on the link since the start.
 fn wires(client: &mut Client<Line>, checks: &mut Vec<Check>) -> Result<(), crepitus_client::Error> {
     let counters = client.counters()?;
     let drive = |counter: DriveCounter| counters.drive.get(counter.index()).copied().unwrap_or(0);
     let comms = |counter: CommsCounter| counters.comms.get(counter.index()).copied().unwrap_or(0);
     let discarded = drive(DriveCounter::Discarded) + comms(CommsCounter::FromDriveDiscarded);
     let frames = drive(DriveCounter::Frames) + comms(CommsCounter::FromDrive);
-    let text = format!("{frames} frames in order, {discarded} thrown away");
-    // One a thousand is noise that repeats take care of.
+    let text = format!("{frames} frames received, {discarded} discarded");
+    // One in a thousand is noise; retries cover it.
     checks.push(if discarded <= frames / 1000 {
         fine("link", text)
     } else {
         wrong(
             "link",
-            format!("{text}: look at the cable between the controllers"),
+            format!("{text}: check the cable between the controllers"),
         )
     });
     Ok(())

@@ -8,19 +8,60 @@ mod smallest;
 mod summary;
 mod table;
 
-use crate::cli::EffectsArguments;
+use crate::cli::key_and_value;
 use crate::failure::{Failure, print, print_json, warn};
+use crate::results;
 use crate::shipped;
-use crate::studying::{self, Interrupted, Watch};
-use crepitus_scene::output::Folder;
+use crate::studying::{Interrupted, Watch};
+use clap::Args;
 use crepitus_scene::{Overrides, Scene, SceneError};
-use crepitus_study::effects::{EffectsError, Plan, Refusal, Tolerance, refusal, run};
+use crepitus_study::effects::{
+    EffectsError, Plan, Refusal, Tolerance, refusal, run as study_effects,
+};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use summary::Summary;
 
+/// List the effects; or show what each effect of a scene does and costs.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus effects
+  crepitus effects slow-examination
+  crepitus effects my-scene.toml --tolerance torque=5e-3
+  crepitus effects my-scene.toml --tolerance torque=0.02,events=0.01 --set duration_s=2
+
+Without a SCENE all effects are listed, with their parameters. With one, each of its effects is \
+left out in turn and each absent one added: how much that changes the torque at the hand (RMS, \
+peak, three bands of frequency, number of events), and what it costs (time of a step, states).
+
+A TOLERANCE is a list of limits: torque (rms difference of the torque at the hand, N·m), peak \
+(largest difference, N·m), events (relative difference of the number of events). The answer is \
+the smallest set of the scene's effects that stays within all of them; all sets are tried, the \
+small ones first.")]
+pub(crate) struct Arguments {
+    /// Scene file, or name of a scene that ships.
+    scene: Option<PathBuf>,
+
+    /// Folder for effects.csv, summary.json and report.html [default: out/SCENE-effects].
+    #[arg(long, value_name = "DIR", requires = "scene")]
+    out: Option<PathBuf>,
+
+    /// Which effects are enough to stay this near to the whole scene? For example torque=5e-3.
+    #[arg(long, value_name = "TOLERANCE", requires = "scene")]
+    tolerance: Option<String>,
+
+    /// Set a key of the scene.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value, requires = "scene")]
+    set: Vec<(String, String)>,
+
+    /// Also write each figure of the report as an SVG file.
+    #[arg(long, requires = "scene")]
+    pictures: bool,
+}
+
 /// Lists the effects, or studies those of a scene.
-pub(crate) fn effects(arguments: &EffectsArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let Some(path) = &arguments.scene else {
         return if as_json {
             print_json(&list::values())
@@ -30,11 +71,10 @@ pub(crate) fn effects(arguments: &EffectsArguments, as_json: bool) -> Result<(),
     };
     let plan = plan(arguments, path)?;
     let out = arguments.out.clone().unwrap_or_else(|| out(&plan.scene));
-    // A folder that cannot be written is better known before the work.
-    let folder = Folder::create(&out).map_err(|e| Failure::at(&out, "cannot be written", &e))?;
-    let study = run(&plan, &mut Watch::new()).map_err(|e| failed(&plan.scene, e))?;
+    let folder = results::folder(&out)?;
+    let study = study_effects(&plan, &mut Watch::new()).map_err(|e| failed(&plan.scene, e))?;
     let summary = Summary::new(&study);
-    studying::write(
+    results::write(
         folder,
         &out,
         page::files(&study, &summary, arguments.pictures)?,
@@ -57,7 +97,7 @@ pub(crate) fn effects(arguments: &EffectsArguments, as_json: bool) -> Result<(),
     ))
 }
 
-fn plan(arguments: &EffectsArguments, path: &Path) -> Result<Plan, Failure> {
+fn plan(arguments: &Arguments, path: &Path) -> Result<Plan, Failure> {
     let tolerance = arguments
         .tolerance
         .as_deref()
@@ -82,7 +122,7 @@ fn out(scene: &Scene) -> PathBuf {
     Path::new("out").join(name)
 }
 
-/// A refusal as a scene's own errors are told.
+/// A refusal in the form of a scene's own errors.
 fn refuse(scene: &Scene, refusal: Refusal) -> Failure {
     Failure::input(SceneError {
         file: scene.file.clone(),

@@ -1,31 +1,43 @@
-//! `crepitus info`: who a device is, how it is, what it has counted.
+//! `crepitus info`: identity, status and counters of a device.
 
-use crate::cli::device::InfoArguments;
+use crate::cli::DeviceArguments;
+use crate::device_text;
 use crate::failure::{Failure, print, print_json};
 use crate::line::{Line, failure, manage};
-use crate::told;
+use clap::Args;
 use crepitus_client::{Client, Error, Handshake};
 use crepitus_protocol::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
 use crepitus_protocol::host::{Counters, Status};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
-/// Shows a device.
-pub(crate) fn info(arguments: &InfoArguments, as_json: bool) -> Result<(), Failure> {
+/// Show identity, status and counters of a device.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus info
+  crepitus info --device sim --json")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
+/// Prints them.
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut management = manage(&arguments.device)?;
     let handshake = management.identify().map_err(failure)?;
     match management.into_client(handshake) {
-        Ok(mut client) => known(&mut client, &handshake, as_json),
+        Ok(mut client) => print_all(&mut client, &handshake, as_json),
         Err(Error::Mismatch(mismatch)) => {
-            // Who is there can be said of any version.
+            // The identity is known for any version.
             if as_json {
                 print_json(&json!({
-                    "comms": told::identity_json(&handshake.comms),
-                    "drive": handshake.drive.as_ref().map(told::identity_json),
+                    "comms": device_text::identity_json(&handshake.comms),
+                    "drive": handshake.drive.as_ref().map(device_text::identity_json),
                     "mismatch": mismatch.to_string(),
                 }))?;
             } else {
-                print(&who(&handshake))?;
+                print(&identity_text(&handshake))?;
             }
             Err(Failure::Work(mismatch.to_string()))
         }
@@ -33,75 +45,79 @@ pub(crate) fn info(arguments: &InfoArguments, as_json: bool) -> Result<(), Failu
     }
 }
 
-fn who(handshake: &Handshake) -> String {
-    let drive = handshake
-        .drive
-        .as_ref()
-        .map_or_else(|| "has not said who it is".to_owned(), told::identity);
+fn identity_text(handshake: &Handshake) -> String {
+    let drive = handshake.drive.as_ref().map_or_else(
+        || "has not identified itself".to_owned(),
+        device_text::identity,
+    );
     format!(
         "comms   {}\ndrive   {drive}\n",
-        told::identity(&handshake.comms)
+        device_text::identity(&handshake.comms)
     )
 }
 
-fn known(client: &mut Client<Line>, handshake: &Handshake, as_json: bool) -> Result<(), Failure> {
+fn print_all(
+    client: &mut Client<Line>,
+    handshake: &Handshake,
+    as_json: bool,
+) -> Result<(), Failure> {
     let status = client.status().map_err(failure)?;
     let counters = client.counters().map_err(failure)?;
     if as_json {
         return print_json(&json!({
             "port": client.port(),
-            "comms": told::identity_json(&handshake.comms),
-            "drive": handshake.drive.as_ref().map(told::identity_json),
-            "status": told::status_json(&status),
-            "faults": told::faults(&status),
+            "comms": device_text::identity_json(&handshake.comms),
+            "drive": handshake.drive.as_ref().map(device_text::identity_json),
+            "status": device_text::status_json(&status),
+            "faults": device_text::faults(&status),
             "counters": {
                 "drive": counted(&DRIVE_COUNTERS, &counters.drive),
                 "comms": counted(&COMMS_COUNTERS, &counters.comms),
             },
         }));
     }
-    let mut text = format!("port    {}\n{}", client.port(), who(handshake));
-    text.push_str(&how(&status));
+    let mut text = format!("port    {}\n{}", client.port(), identity_text(handshake));
+    text.push_str(&status_text(&status));
     text.push_str(&counter_table(&counters));
     print(&text)
 }
 
-fn how(status: &Status) -> String {
+fn status_text(status: &Status) -> String {
     let mut text = format!("state   {}", status.state.name());
     if !status.drive_present {
-        text.push_str(", nothing comes from the drive");
+        text.push_str(", no messages from the drive");
     }
     text.push('\n');
-    for fault in told::faults(status) {
+    for fault in device_text::faults(status) {
         let _ = writeln!(text, "fault   {fault}");
     }
     let saved = match status.saved {
-        Some(saved) if saved == status.revision => "kept".to_owned(),
-        Some(saved) => format!("revision {saved} is kept"),
-        None => "none is kept".to_owned(),
+        Some(saved) if saved == status.revision => "saved".to_owned(),
+        Some(saved) => format!("revision {saved} is saved"),
+        None => "none is saved".to_owned(),
     };
     let _ = writeln!(
         text,
-        "params  revision {}, {} in force at the drive, {saved}",
+        "params  revision {}, {}, {saved}",
         status.revision,
         if status.in_force == status.revision {
-            "which is".to_owned()
+            "applied by the drive".to_owned()
         } else {
-            format!("and {} is", status.in_force)
+            format!("the drive still applies {}", status.in_force)
         }
     );
     let _ = writeln!(
         text,
         "angle   {}",
         if status.zeroed {
-            "zero was set"
+            "zero is set"
         } else {
-            "zero was not set: counts begin where the device was switched on"
+            "zero is not set: counts start where the device was switched on"
         }
     );
-    let lease = status
-        .lease
-        .map_or("nobody's".to_owned(), |session| format!("host {session}'s"));
+    let lease = status.lease.map_or("none".to_owned(), |session| {
+        format!("held by host {session}")
+    });
     let _ = writeln!(text, "lease   {lease}");
     text
 }
@@ -113,7 +129,7 @@ fn counter_table(counters: &Counters) -> String {
         ("comms", &COMMS_COUNTERS, &counters.comms),
     ];
     for (who, specs, counts) in lists {
-        let _ = writeln!(text, "\ncounted by {who}");
+        let _ = writeln!(text, "\ncounters of {who}");
         for (spec, count) in specs.iter().zip(counts) {
             let _ = writeln!(text, "  {count:>10}  {}", spec.name);
         }

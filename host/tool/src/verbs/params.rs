@@ -1,9 +1,10 @@
-//! `crepitus params`: list, read, set and keep a device's parameters.
+//! `crepitus params`: list, read, set and save a device's parameters.
 
-use crate::cli::device::{DeviceArguments, ParamsAction, ParamsArguments};
+use crate::cli::{DeviceArguments, key_and_value};
 use crate::failure::{Failure, print, print_json};
 use crate::line::{connect, failure};
 use crate::shipped;
+use clap::{Args, Subcommand};
 use crepitus_client::values::{allowed_text, full_name, parse_value, show_value};
 use crepitus_model::joint::presets::Preset;
 use crepitus_protocol::parameters::{self, Kind, PARAMETERS, Parameter, When};
@@ -11,26 +12,72 @@ use crepitus_protocol::{Revision, Values};
 use crepitus_scene::Overrides;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Does it.
-pub(crate) fn params(arguments: &ParamsArguments, as_json: bool) -> Result<(), Failure> {
+/// List, read, set and save a device's parameters.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus params list
+  crepitus params get crepitus.static_torque_nm
+  crepitus params set crepitus.static_torque_nm=0.5 crepitus.kinetic_torque_nm=0.25
+  crepitus params apply fine
+  crepitus params apply scenes/bone-shaping.toml
+  crepitus params save
+
+A set is one commit: all of its values take effect between two ticks, or none; torque then changes \
+within the slew limit. Values that are not saved are lost when the device is switched off.")]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    action: Action,
+
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// List all parameters: range, default, meaning. Needs no device.
+    List,
+    /// Show the device's parameters, or some of them.
+    Get {
+        /// Names [default: all].
+        #[arg(value_name = "NAME")]
+        names: Vec<String>,
+    },
+    /// Set parameters, all or none.
+    Set {
+        /// What to set.
+        #[arg(value_name = "NAME=VALUE", required = true, value_parser = key_and_value)]
+        values: Vec<(String, String)>,
+    },
+    /// Apply a preset, or the device parameters of a scene.
+    Apply {
+        /// A preset, a scene that ships, or a scene's file.
+        what: PathBuf,
+    },
+    /// Save the current parameters for the next start.
+    Save,
+}
+
+/// Runs the action.
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let device = &arguments.device;
     match &arguments.action {
-        ParamsAction::List => list(as_json),
-        ParamsAction::Get { names } => get(device, names, as_json),
-        ParamsAction::Set { values } => set(device, values, as_json),
-        ParamsAction::Apply { what } => apply(device, what, as_json),
-        ParamsAction::Save => {
+        Action::List => list(as_json),
+        Action::Get { names } => get(device, names, as_json),
+        Action::Set { values } => set(device, values, as_json),
+        Action::Apply { what } => apply(device, what, as_json),
+        Action::Save => {
             let mut client = connect(device)?;
             client.save().map_err(failure)?;
             let (revision, _) = client.parameters().map_err(failure)?;
-            said(revision, "kept for the next start", as_json)
+            print_done(revision, "saved for the next start", as_json)
         }
     }
 }
 
-/// The parameter of a name, or what names there are like it.
+/// The parameter of a name; the error suggests a similar one.
 fn find(name: &str) -> Result<(u8, &'static Parameter), Failure> {
     parameters::find(name).ok_or_else(|| {
         let like = PARAMETERS
@@ -39,7 +86,7 @@ fn find(name: &str) -> Result<(u8, &'static Parameter), Failure> {
             .max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)))
             .unwrap_or_default();
         Failure::Input(format!(
-            "there is no parameter {name:?}: did you mean {like:?}? `crepitus params list` lists them"
+            "unknown parameter {name:?}: did you mean {like:?}? `crepitus params list` lists all"
         ))
     })
 }
@@ -145,10 +192,10 @@ fn set(
         .collect::<Result<Vec<_>, Failure>>()?;
     let mut client = connect(device)?;
     let revision = client.set(&changes).map_err(failure)?;
-    said(revision, "in force", as_json)
+    print_done(revision, "applied", as_json)
 }
 
-/// A preset's numbers, or all that a scene says of a device.
+/// Commits a preset, or the device parameters of a scene.
 fn apply(device: &DeviceArguments, what: &Path, as_json: bool) -> Result<(), Failure> {
     let preset = what.to_str().and_then(Preset::find);
     let from_scene = if preset.is_some() {
@@ -164,20 +211,20 @@ fn apply(device: &DeviceArguments, what: &Path, as_json: bool) -> Result<(), Fai
         (None, None) => now,
     };
     let revision = client.commit(base, &values).map_err(failure)?;
-    said(revision, "in force", as_json)
+    print_done(revision, "applied", as_json)
 }
 
 fn values_of_scene(what: &Path) -> Result<Values, Failure> {
     let scene = shipped::scene(what, &Overrides::default()).map_err(|failure| match failure {
         Failure::Input(text) if !what.exists() => Failure::Input(format!(
-            "{text}; nor is it a preset: `crepitus presets` lists them"
+            "{text}; it is not a preset either: `crepitus presets` lists them"
         )),
         other => other,
     })?;
     crepitus_board::values::values(&scene).map_err(Failure::input)
 }
 
-fn said(revision: Revision, what: &str, as_json: bool) -> Result<(), Failure> {
+fn print_done(revision: Revision, what: &str, as_json: bool) -> Result<(), Failure> {
     if as_json {
         print_json(&json!({ "revision": revision.0, "done": what }))
     } else {

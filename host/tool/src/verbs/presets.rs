@@ -1,14 +1,20 @@
 //! `crepitus presets`.
 
 use crate::failure::{Failure, print, print_json};
+use clap::Args;
 use crepitus_model::Parameters;
 use crepitus_model::joint::presets::{Evidence, PRESETS, Preset};
 use crepitus_model::parameters::Tabled;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
+/// List the parameter presets, with what each feels like and its source.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  crepitus presets --json")]
+pub(crate) struct Arguments {}
+
 /// Lists the presets.
-pub(crate) fn presets(as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(_: &Arguments, as_json: bool) -> Result<(), Failure> {
     if as_json {
         return print_json(&PRESETS.iter().map(to_json).collect::<Vec<_>>());
     }

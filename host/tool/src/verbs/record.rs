@@ -1,25 +1,58 @@
 //! `crepitus record`: every sample to a file.
 
-use crate::cli::device::RecordArguments;
+use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Follower, follow};
 use crate::line::{Line, connect, failure};
 use crate::status_line::StatusLine;
+use clap::Args;
 use crepitus_client::Client;
 use crepitus_protocol::Revision;
 use crepitus_protocol::telemetry::Block;
 use crepitus_recording::{Recorder, Sidecar};
 use serde_json::json;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
 use std::time::{SystemTime, UNIX_EPOCH};
 
+/// Record a device's samples to a file.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus record monday.csv --for 60s --arm
+  crepitus record try.csv --device sim --for 5s --arm --title \"First try\"
+  crepitus report monday.csv
+
+Every sample of the drive, 20000 a second, goes to FILE; parameters, units and gaps go to a JSON \
+file of the same name. A recording that was interrupted can still be reported. About 100 MB a \
+minute.")]
+pub(crate) struct Arguments {
+    /// The CSV file; it must not exist.
+    file: PathBuf,
+
+    /// Duration: 500ms, 30s, 5m [default: until Ctrl-C].
+    #[arg(long = "for", value_name = "TIME", value_parser = duration)]
+    for_s: Option<Duration>,
+
+    /// Arm first, and disarm at the end.
+    #[arg(long)]
+    arm: bool,
+
+    /// Title of the recording.
+    #[arg(long, default_value = "Recording of a device")]
+    title: String,
+
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
 /// Records.
-pub(crate) fn record(arguments: &RecordArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut client = connect(&arguments.device)?;
     let mut recording = Recording::begin(&mut client, &arguments.file, &arguments.title)?;
     client.subscribe().map_err(failure)?;
     let end = follow(&mut client, arguments.for_s, arguments.arm, &mut recording);
-    // Whatever has happened, what was recorded is brought to an end in order.
+    // Finishes the files also after an error.
     let sidecar = recording.finish()?;
     end?;
     let t = sidecar.telemetry;
@@ -32,7 +65,7 @@ pub(crate) fn record(arguments: &RecordArguments, as_json: bool) -> Result<(), F
     }
     print(&format!(
         "{}: {} samples produced = {} received + {} dropped\n\
-         `crepitus report {}` makes its report\n",
+         write its report with `crepitus report {}`\n",
         arguments.file.display(),
         t.produced,
         t.received,
@@ -41,7 +74,7 @@ pub(crate) fn record(arguments: &RecordArguments, as_json: bool) -> Result<(), F
     ))
 }
 
-/// A recording that is being made of a device.
+/// A recording in progress.
 pub(crate) struct Recording {
     recorder: Recorder,
     announced: Option<Revision>,
@@ -49,7 +82,7 @@ pub(crate) struct Recording {
 }
 
 impl Recording {
-    /// Begins one.
+    /// Creates the files.
     pub(crate) fn begin(
         client: &mut Client<Line>,
         file: &Path,
@@ -67,20 +100,20 @@ impl Recording {
         })
     }
 
-    /// Ends it in order.
+    /// Finishes the files.
     pub(crate) fn finish(self) -> Result<Sidecar, Failure> {
         self.recorder.finish().map_err(stopped)
     }
 }
 
-/// The disk does not take any more.
+/// A write error ends the recording.
 #[expect(
     clippy::needless_pass_by_value,
     reason = "used where errors are mapped"
 )]
 fn stopped(error: crepitus_recording::RecordError) -> Failure {
     Failure::Work(format!(
-        "{error}; the recording ends here, and what was written can be reported"
+        "{error}; the recording ends here, and `crepitus report` can read what was written"
     ))
 }
 

@@ -1,30 +1,150 @@
 //! `crepitus report FILE`: the report of a recording.
 
-use crate::cli::device::ReportArguments;
+mod tables;
+
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
-use crate::recorded::{RecordedSummary, report as write_report};
-use crepitus_recording::Recording;
+use crate::progress::Progress;
+use crate::results::{self, footer, report_files};
+use crate::sections::torque_levels;
+use clap::Args;
+use crepitus_protocol::{Revision, TICK_S};
+use crepitus_recording::{Analysis, Recording, RecordingSummary, Sidecar};
+use crepitus_report::{Collector, Setup, Text, TorqueLevels};
+use crepitus_scene::trace::{Column, ColumnKind};
 use serde_json::json;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// The columns that the report draws.
+const COLUMNS: [Column; 8] = {
+    const fn number(name: &'static str) -> Column {
+        Column {
+            name,
+            kind: ColumnKind::Number,
+        }
+    }
+    [
+        number("t_s"),
+        number("angle_rad"),
+        number("omega_rad_s"),
+        Column {
+            name: "phase",
+            kind: ColumnKind::Phase,
+        },
+        number("theta_rad"),
+        number("theta_dot_rad_s"),
+        number("torque_nm"),
+        number("motor_torque_nm"),
+    ]
+};
+
+/// Rows between two updates of the progress.
+const PROGRESS_ROWS: u64 = 1 << 14;
+
+/// Write the report of a recording.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus report out/demo/recording.csv
+  crepitus report monday.csv --out monday-report --pictures")]
+pub(crate) struct Arguments {
+    /// The recording: its CSV file.
+    file: PathBuf,
+
+    /// Folder for report.html and summary.json [default: FILE without its extension].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Also write each figure of the report as an SVG file.
+    #[arg(long)]
+    pictures: bool,
+}
 
 /// Reports.
-pub(crate) fn report(arguments: &ReportArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let recording = Recording::open(&arguments.file).map_err(Failure::input)?;
     let out = arguments
         .out
         .clone()
         .unwrap_or_else(|| arguments.file.with_extension(""));
     interrupt::listen();
-    let summary = write_report(&recording, &out, arguments.pictures)?;
+    let summary = write(&recording, &out, arguments.pictures)?;
     if as_json {
         return print_json(&json!({ "out": out, "summary": summary }));
     }
     print(&in_brief(&summary, &out))
 }
 
+/// Writes `report.html` and `summary.json` of a recording into `out`.
+pub(super) fn write(
+    recording: &Recording,
+    out: &Path,
+    pictures: bool,
+) -> Result<RecordingSummary, Failure> {
+    let sidecar = recording.sidecar();
+    let folder = results::folder(out)?;
+    let expected = sidecar.telemetry.received;
+    let setup = Setup {
+        columns: &COLUMNS,
+        rows_expected: expected,
+        row_step_s: TICK_S,
+        levels: levels(sidecar),
+    };
+    let mut collector = Collector::new(&setup);
+    let mut analysis = Analysis::new(sidecar);
+    let mut progress = Progress::of_reading();
+    for (n, row) in (0_u64..).zip(recording.rows().map_err(Failure::input)?) {
+        let row = row.map_err(Failure::input)?;
+        let derived = analysis.row(&row);
+        collector.row(&[
+            row.time_s,
+            row.angle_rad,
+            f64::from(row.omega_rad_s),
+            f64::from(row.flags.phase_sign()),
+            derived.object.theta_rad,
+            derived.object.theta_dot_rad_s,
+            f64::from(row.model_torque_nm),
+            derived.motor_torque_nm,
+        ]);
+        if let Some(event) = derived.event {
+            collector.event(&event);
+        }
+        if n.is_multiple_of(PROGRESS_ROWS) {
+            #[expect(clippy::cast_precision_loss, reason = "a share")]
+            progress.reached(n as f64 / expected.max(1) as f64);
+            if interrupt::requested() {
+                return Err(Failure::Work("interrupted: nothing was written".to_owned()));
+            }
+        }
+    }
+    let summary = analysis.finish();
+    let text = Text {
+        title: sidecar.title.clone(),
+        description: None,
+        warnings: summary.warnings.clone(),
+        sections: tables::sections(&summary, sidecar),
+        footer: footer(),
+    };
+    let figures = collector.finish();
+    let page = crepitus_report::html(&text, &figures);
+    let pictures = pictures.then(|| crepitus_report::pictures(&figures));
+    let files = report_files(page, &summary, pictures)?;
+    results::write(folder, out, files)?;
+    Ok(summary)
+}
+
+/// The torque levels, if they were the same all the time.
+fn levels(sidecar: &Sidecar) -> Option<TorqueLevels> {
+    let mut sets = sidecar.parameters.iter().map(|set| {
+        let settings = sidecar.joint_settings(Revision(set.revision))?;
+        Some(torque_levels(&settings))
+    });
+    let first = sets.next()??;
+    sets.all(|other| other == Some(first)).then_some(first)
+}
+
 /// A few lines.
-pub(crate) fn in_brief(s: &RecordedSummary, out: &Path) -> String {
+pub(crate) fn in_brief(s: &RecordingSummary, out: &Path) -> String {
     let warnings = s.warnings.iter().fold(String::new(), |text, warning| {
         text + "  note: " + warning + "\n"
     });

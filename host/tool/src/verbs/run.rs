@@ -1,30 +1,75 @@
-//! `crepitus run SCENE`: simulate, write the four files, say what happened.
+//! `crepitus run SCENE`: simulates a scene, writes its files, prints a summary.
 
 mod plant;
 mod tables;
 mod watch;
 
-use crate::cli::RunArguments;
+use crate::cli::key_and_value;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
+use crate::results::{self, footer, report_files};
+use crate::sections::torque_levels;
 use crate::shipped;
-use crepitus_model::Restart;
-use crepitus_report::{Setup, Text, TorqueLevels};
-use crepitus_scene::output::Folder;
+use clap::Args;
+use crepitus_report::{Setup, Text};
 use crepitus_scene::{Overrides, RunError, Scene, Summary, run as runner};
 use serde_json::json;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use watch::{Watch, WatchError};
 
+/// Simulate a scene and write its trace, events, summary and report.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus run scenes/fig6-ideal-cycle.toml
+  crepitus run slow-examination --out /tmp/exam --solver exact --step 1e-3
+  crepitus run high-speed --set effects.crepitus.preset=fine --set duration_s=2
+  crepitus run passive-examination --as-device
+
+SCENE is a file, or the name of a scene that ships. Any key of the scene can be \
+set: PATH is its name with the tables before it, VALUE is written as in the file.")]
+pub(crate) struct Arguments {
+    /// Scene file, or name of a scene that ships.
+    scene: PathBuf,
+
+    /// Folder for trace.csv, events.csv, summary.json and report.html [default: out/SCENE].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Another solver: exact, exact-events, reference, … (a wrong name lists them all).
+    #[arg(long, value_name = "KIND")]
+    solver: Option<String>,
+
+    /// Another solver step, in seconds.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    step: Option<String>,
+
+    /// Another precision: f32 or f64.
+    #[arg(long, value_name = "PRECISION")]
+    precision: Option<String>,
+
+    /// Render as the device does: input check, turn-back guard, slew and torque limits.
+    #[arg(long)]
+    as_device: bool,
+
+    /// Set a key of the scene.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value)]
+    set: Vec<(String, String)>,
+
+    /// Also write each chart of the report as an SVG file.
+    #[arg(long)]
+    pictures: bool,
+
+    /// Write only every Nth row of the trace.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    trace_every: u64,
+}
+
 /// Runs a scene.
-pub(crate) fn run(arguments: &RunArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let scene = read(arguments)?;
     let out = out_folder(arguments, &scene);
-    let (summary, files) = simulate(&scene, &out, arguments)?;
-    files
-        .commit()
-        .map_err(|e| Failure::at(&out, "moving the results into place", &e))?;
+    let summary = simulate(&scene, &out, arguments)?;
     if as_json {
         return print_json(&json!({ "out": out, "summary": summary }));
     }
@@ -39,8 +84,8 @@ pub(crate) fn run(arguments: &RunArguments, as_json: bool) -> Result<(), Failure
     ))
 }
 
-/// The scene that the arguments name, with what they change.
-fn read(arguments: &RunArguments) -> Result<Scene, Failure> {
+/// The scene that the arguments name, with their overrides.
+fn read(arguments: &Arguments) -> Result<Scene, Failure> {
     let overrides = Overrides {
         solver: arguments.solver.clone(),
         step: arguments.step.clone(),
@@ -52,44 +97,38 @@ fn read(arguments: &RunArguments) -> Result<Scene, Failure> {
 }
 
 /// `--out`, or `out/<scene>`.
-fn out_folder(arguments: &RunArguments, scene: &Scene) -> PathBuf {
+fn out_folder(arguments: &Arguments, scene: &Scene) -> PathBuf {
     arguments.out.clone().unwrap_or_else(|| {
         let name = scene.file.file_stem().unwrap_or_default();
         Path::new("out").join(name)
     })
 }
 
-/// Runs the scene into a folder that still has to be committed.
-fn simulate(
-    scene: &Scene,
-    out: &Path,
-    arguments: &RunArguments,
-) -> Result<(Summary, Folder), Failure> {
-    let failed = |doing: &str, e: &std::io::Error| Failure::at(out, doing, e);
-    let folder = Folder::create(out).map_err(|e| failed("cannot be written", &e))?;
+/// Runs the scene and writes its files.
+fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Summary, Failure> {
+    let failed = |e: &std::io::Error| Failure::at(out, "writing the results", e);
+    let folder = results::folder(out)?;
     interrupt::listen();
     let setup = Setup {
         columns: &runner::columns(scene),
         rows_expected: runner::rows(scene),
         row_step_s: scene.trace_step_s,
-        levels: levels(scene),
+        levels: scene.crepitus.map(|c| torque_levels(&c.settings)),
     };
     let mut watch = Watch::new(&folder, &setup, scene.duration_s, arguments.trace_every)
-        .map_err(|e| failed("writing the results", &e))?;
+        .map_err(|e| failed(&e))?;
     let mut summary = crepitus_scene::run(scene, &mut watch).map_err(|e| match e {
-        RunError::Observer(WatchError::Write(e)) => failed("writing the results", &e),
+        RunError::Observer(WatchError::Write(e)) => failed(&e),
         RunError::Observer(WatchError::Interrupted) => {
             Failure::Work("interrupted: nothing was written".to_owned())
         }
         RunError::Settings(e) => Failure::Input(format!("{}: {e}", scene.file.display())),
         RunError::Diverged(e) => Failure::Work(format!("{}: {e}", scene.file.display())),
-        // A kind of error that did not exist when this was written.
+        // `RunError` is non-exhaustive.
         _ => Failure::Work(format!("{}: the run failed", scene.file.display())),
     })?;
     runner::measure_costs(scene, &mut summary);
-    let mut figures = watch
-        .finish()
-        .map_err(|e| failed("writing the results", &e))?;
+    let mut figures = watch.finish().map_err(|e| failed(&e))?;
     if let Some(balance) = plant::balance(&summary) {
         figures.set_balance(balance);
     }
@@ -99,49 +138,13 @@ fn simulate(
         description: scene.description.clone(),
         warnings: summary.warnings.clone(),
         sections: tables::sections(&summary, &specs),
-        footer: format!(
-            "crepitus {} · research and education prototype, not a medical device",
-            summary.crepitus_version
-        ),
+        footer: footer(),
     };
-    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
-    let page = crepitus_report::html(&text, &figures).map_err(undrawn)?;
-    let json = serde_json::to_string_pretty(&summary)
-        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
-    let mut texts = vec![
-        ("report.html".to_owned(), page),
-        ("summary.json".to_owned(), json + "\n"),
-    ];
-    if arguments.pictures {
-        let pictures = crepitus_report::pictures(&figures).map_err(undrawn)?;
-        texts.extend(
-            pictures
-                .into_iter()
-                .map(|p| (format!("{}.svg", p.name), p.svg)),
-        );
-    }
-    for (name, content) in texts {
-        folder
-            .file(&name)
-            .and_then(|mut file| {
-                file.write_all(content.as_bytes())?;
-                Folder::finish(file)
-            })
-            .map_err(|e| failed("writing the results", &e))?;
-    }
-    Ok((summary, folder))
-}
-
-/// The torque levels that the report marks.
-fn levels(scene: &Scene) -> Option<TorqueLevels> {
-    let settings = scene.crepitus?.settings;
-    let p = &settings.parameters;
-    let elastic = TorqueLevels::elastic(p.kinetic_torque_nm, p.static_torque_nm);
-    Some(match settings.restart {
-        Restart::Elastic => elastic,
-        Restart::FromKinetic => TorqueLevels {
-            restart_nm: elastic.kinetic_nm,
-            ..elastic
-        },
-    })
+    let page = crepitus_report::html(&text, &figures);
+    let pictures = arguments
+        .pictures
+        .then(|| crepitus_report::pictures(&figures));
+    let files = report_files(page, &summary, pictures)?;
+    results::write(folder, out, files)?;
+    Ok(summary)
 }

@@ -1,15 +1,25 @@
 //! `crepitus scenes [NAME]`.
 
-use crate::cli::ScenesArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::shipped::{SHIPPED, Shipped};
-use crepitus_scene::Overrides;
-use serde_json::json;
-use std::fmt::Write;
+use clap::Args;
+use crepitus_scene::{Overrides, SceneError};
+use crepitus_table::{Cell, Table};
 use std::path::Path;
 
+/// List the scenes that ship, with what each shows.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus scenes
+  crepitus scenes fig6-ideal-cycle > my-scene.toml")]
+pub(crate) struct Arguments {
+    /// Print the file of this scene, as a start for one's own.
+    name: Option<String>,
+}
+
 /// Lists the scenes that ship, or prints one.
-pub(crate) fn scenes(arguments: &ScenesArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let Some(name) = &arguments.name {
         let name = name.trim_end_matches(".toml");
         return match Shipped::find(Path::new(name)) {
@@ -19,28 +29,30 @@ pub(crate) fn scenes(arguments: &ScenesArguments, as_json: bool) -> Result<(), F
             ))),
         };
     }
-    let mut text = String::new();
-    let mut list = Vec::new();
-    for shipped in SHIPPED {
-        let scene = shipped
-            .read(&Overrides::default())
-            .map_err(Failure::input)?;
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{:22} {}", shipped.name, scene.title);
-        list.push(json!({
-            "name": shipped.name,
-            "file": shipped.file(),
-            "title": scene.title,
-            "description": scene.description,
-            "duration_s": scene.duration_s,
-            "motion": scene.motion_kind.name(),
-            "solver": scene.solver.name(),
-            "effects": scene.effects().iter().map(|e| e.name).collect::<Vec<_>>(),
-        }));
-    }
+    let scenes = SHIPPED
+        .iter()
+        .map(|shipped| Ok((shipped, shipped.read(&Overrides::default())?)))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|e: SceneError| Failure::input(e))?;
+    let table = Table::of(&scenes)
+        .column("name", |(shipped, _)| shipped.name)
+        .headed("")
+        .column("file", |(shipped, _)| shipped.file().display().to_string())
+        .column("title", |(_, scene)| scene.title.as_str())
+        .headed("")
+        .column("description", |(_, scene)| scene.description.as_deref())
+        .column("duration_s", |(_, scene)| scene.duration_s)
+        .column("motion", |(_, scene)| scene.motion_kind.name())
+        .column("solver", |(_, scene)| scene.solver.name())
+        .column("effects", |(_, scene)| {
+            let names: Vec<_> = scene.effects().iter().map(|e| e.name).collect();
+            Cell::from(names.as_slice())
+        });
     if as_json {
-        return print_json(&list);
+        return print_json(&table);
     }
-    text.push_str("\nRun one with `crepitus run NAME`; `crepitus scenes NAME` prints its file.\n");
-    print(&text)
+    print(&format!(
+        "{}\nRun one with `crepitus run NAME`; `crepitus scenes NAME` prints its file.\n",
+        table.to_text()
+    ))
 }

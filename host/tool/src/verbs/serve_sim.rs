@@ -1,9 +1,9 @@
 //! `crepitus serve-sim`: a simulated device as a serial port, in real time.
 
-use crate::cli::device::ServeSimArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crate::shipped;
+use clap::Args;
 use crepitus_board::{Start, VirtualDevice};
 use crepitus_client::discovery::simulated_folder;
 use crepitus_protocol::TICKS_PER_S;
@@ -11,47 +11,68 @@ use crepitus_scene::Overrides;
 use crepitus_usb::pty::Pty;
 use serde_json::json;
 use std::fs;
+use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Ticks between two looks at the port.
+/// Serve a simulated device as a serial port.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus serve-sim
+  crepitus serve-sim --scene everything --name bench
+  crepitus info --device bench
+
+A simulated device as a serial port that any program can open, in real time, until Ctrl-C. \
+`crepitus devices` lists it.")]
+pub(crate) struct Arguments {
+    /// The scene that sets its leg and parameters.
+    #[arg(long, value_name = "SCENE", default_value = "passive-examination")]
+    scene: PathBuf,
+
+    /// Its name, for --device.
+    #[arg(long, value_name = "NAME", default_value = "sim-1")]
+    name: String,
+}
+
+/// Ticks between two exchanges with the port.
 const EXCHANGE_TICKS: u64 = 20;
 
-/// Beyond this the simulated time is let fall behind.
-const BEHIND: Duration = Duration::from_millis(200);
+/// Simulated time that lags more than this is not caught up.
+const MOST_LAG: Duration = Duration::from_millis(200);
 
 /// Serves until Ctrl-C.
-pub(crate) fn serve_sim(arguments: &ServeSimArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.name.is_empty() || arguments.name.contains(['/', '\\']) || arguments.name == "sim"
     {
         return Err(Failure::Input(format!(
-            "--name {:?}: a name without slashes, and not `sim`, which is the device of one command",
+            "--name {:?}: expected a name without slashes other than `sim`, which `--device` reserves",
             arguments.name
         )));
     }
     let scene = shipped::scene(&arguments.scene, &Overrides::default())?;
     let mut device = VirtualDevice::of(&scene, &Start::default()).map_err(Failure::input)?;
     let folder = simulated_folder();
-    fs::create_dir_all(&folder).map_err(|e| Failure::at(&folder, "cannot be made", &e))?;
+    fs::create_dir_all(&folder).map_err(|e| Failure::at(&folder, "cannot be created", &e))?;
     let link = folder.join(&arguments.name);
-    let mut pty = Pty::new(Some(&link)).map_err(|e| Failure::at(&link, "cannot be offered", &e))?;
+    let mut pty = Pty::new(Some(&link)).map_err(|e| Failure::at(&link, "cannot be created", &e))?;
     interrupt::listen();
     if as_json {
         print_json(&json!({ "port": link, "name": arguments.name, "scene": scene.title }))?;
     } else {
         print(&format!(
-            "{} is offered as {}\ntry `crepitus info --device {}`; Ctrl-C ends it\n",
+            "{} is served as {}\ntry `crepitus info --device {}`; Ctrl-C stops it\n",
             scene.title,
             link.display(),
             arguments.name
         ))?;
     }
     let mut clock = Clock::new();
-    while !interrupt::asked() {
+    while !interrupt::requested() {
         for _ in 0..clock.due_ticks() {
             device.tick();
             if device.board().now().is_multiple_of(EXCHANGE_TICKS) {
-                // Comms has started anew: a cable that is in stays in.
+                // After a restart of comms the cable is still connected.
                 if device.host().is_none() && device.board().comms_runs() {
                     let _ = device.plug_in();
                 }
@@ -66,7 +87,7 @@ pub(crate) fn serve_sim(arguments: &ServeSimArguments, as_json: bool) -> Result<
     Ok(())
 }
 
-/// Simulated time after the wall's.
+/// Keeps simulated time up with real time.
 struct Clock {
     begun: Instant,
     ticks: u64,
@@ -87,8 +108,8 @@ impl Clock {
         let now = u64::try_from(elapsed / per_tick.as_nanos()).unwrap_or(u64::MAX);
         let due = now.saturating_sub(self.ticks);
         self.ticks = now;
-        // A machine that was asleep does not make up for it.
-        let most = u64::try_from(BEHIND.as_nanos() / per_tick.as_nanos()).unwrap_or(u64::MAX);
+        // Time in which the computer slept is not caught up.
+        let most = u64::try_from(MOST_LAG.as_nanos() / per_tick.as_nanos()).unwrap_or(u64::MAX);
         due.min(most)
     }
 }

@@ -9,18 +9,74 @@ mod plan;
 mod summary;
 mod table;
 
-use crate::cli::StabilityArguments;
 use crate::failure::{Failure, print, print_json};
+use crate::results;
 use crate::studying::{self, Watch};
-use crepitus_scene::output::Folder;
+use clap::Args;
 use crepitus_study::stability::story::{self, Story};
 use crepitus_study::stability::{Matrix, matrix};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use summary::Summary;
 
-/// Runs the cases, writes the files, says what holds.
-pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result<(), Failure> {
+/// Try the hard cases on every solver: what holds, and by what margin.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus stability
+  crepitus stability --case sudden-stop
+  crepitus stability --case H10 --case H16 --solver exact-events --solver rk4
+  crepitus stability --long --out /tmp/stability
+  crepitus stability --coupled
+
+Every hard case runs on every solver under every convention, in f32 and f64. A cell of the matrix \
+holds, with the measured margin; or degrades: right in kind, but a number exceeds its limit; or \
+fails: the simulated joint is not the one that was asked for. Some cells must hold; if one \
+does not, the exit code is 1. With one --case, everything about it is printed.
+
+With --coupled a hand that stops is put to the whole device instead: which stiffness stays quiet \
+with which cuff, lag and friction left in the gear, and what the presets have left.")]
+#[expect(clippy::struct_excessive_bools, reason = "switches of a command line")]
+pub(crate) struct Arguments {
+    /// Only this case, by number or name: H05, reversal-in-stick. May be repeated.
+    #[arg(long = "case", value_name = "NAME")]
+    cases: Vec<String>,
+
+    /// Only this solver: exact, exact-events, rk4, … May be repeated.
+    #[arg(long = "solver", value_name = "KIND")]
+    solvers: Vec<String>,
+
+    /// Only this convention: frozen, paper or physical. May be repeated.
+    #[arg(long = "convention", value_name = "CONVENTION")]
+    conventions: Vec<String>,
+
+    /// Only this precision: the device computes in f32.
+    #[arg(long, value_name = "PRECISION", value_parser = ["f32", "f64"])]
+    precision: Option<String>,
+
+    /// Include the cases that take hours of simulated time.
+    #[arg(long)]
+    long: bool,
+
+    /// List the cases with inputs, criteria and sources, without running them.
+    #[arg(long)]
+    list: bool,
+
+    /// Map the stiffness at which the device begins to ring on a leg, instead of the cases.
+    #[arg(long, conflicts_with_all = ["cases", "solvers", "conventions", "precision", "long", "list"])]
+    coupled: bool,
+
+    /// Folder for cases.csv, summary.json and report.html [default: out/stability; out/coupled].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Also write the matrix and each picture of the report as SVG files.
+    #[arg(long)]
+    pictures: bool,
+}
+
+/// Runs the cases, writes the files, prints the matrix.
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.coupled {
         let out = arguments.out.as_deref().unwrap_or(Path::new("out/coupled"));
         return coupled::coupled(out, arguments.pictures, as_json);
@@ -37,12 +93,11 @@ pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("out/stability"));
-    // A folder that cannot be written is better known before the work.
-    let folder = Folder::create(&out).map_err(|e| Failure::at(&out, "cannot be written", &e))?;
+    let folder = results::folder(&out)?;
     let matrix = matrix::run(&plan, &mut Watch::new()).map_err(studying::failed)?;
     let summary = Summary::new(&plan, &matrix);
     let stories = stories(arguments)?;
-    studying::write(
+    results::write(
         folder,
         &out,
         page::files(&matrix, &stories, &summary, arguments.pictures)?,
@@ -56,21 +111,21 @@ pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result
             Ok(())
         };
     }
-    let told = match (matrix.rows.as_slice(), arguments.cases.is_empty()) {
+    let text = match (matrix.rows.as_slice(), arguments.cases.is_empty()) {
         ([row], false) => case_text::case(row),
         _ => table::table(&matrix, &summary),
     };
     print(&format!(
-        "{told}{}\nreport: {}\n",
+        "{text}{}\nreport: {}\n",
         table::broken(&matrix),
         out.join("report.html").display()
     ))?;
     judge(&matrix)
 }
 
-/// The stories belong to the whole catalogue; beside single cases they come
-/// only where pictures are asked for.
-fn stories(arguments: &StabilityArguments) -> Result<Vec<Story>, Failure> {
+/// The explanatory pictures: with the whole catalogue, or if `--pictures` is
+/// given.
+fn stories(arguments: &Arguments) -> Result<Vec<Story>, Failure> {
     if arguments.cases.is_empty() || arguments.pictures {
         story::all().map_err(|e| Failure::Work(format!("a story cannot be computed: {e}")))
     } else {
@@ -141,8 +196,8 @@ mod tests {
             message.contains("H01 constant-speed on exact, frozen, f32"),
             "{message}"
         );
-        let told = table::broken(&matrix);
-        assert!(told.contains("overflow at t = 0.250 s"), "{told}");
-        assert!(told.contains("the first trial"), "{told}");
+        let text = table::broken(&matrix);
+        assert!(text.contains("overflow at t = 0.250 s"), "{text}");
+        assert!(text.contains("the first trial"), "{text}");
     }
 }

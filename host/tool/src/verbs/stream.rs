@@ -1,23 +1,65 @@
-//! `crepitus stream`: samples to stdout, as they come.
+//! `crepitus stream`: samples to stdout as they arrive.
 
-use crate::cli::device::{SampleFormat, StreamArguments};
+use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print};
 use crate::following::{Follower, follow};
 use crate::line::{Line, connect, failure};
 use crate::status_line::StatusLine;
+use clap::{Args, ValueEnum};
 use crepitus_client::Client;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, TICKS_PER_S};
 use crepitus_recording::{COLUMNS, Samples};
+use std::time::Duration;
+
+/// Output format of samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum SampleFormat {
+    /// A header, and one line per sample.
+    Csv,
+    /// One JSON object per line.
+    Jsonl,
+}
+
+/// Print a device's samples as they arrive.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus stream --rate 100
+  crepitus stream --device sim --for 2s --rate 20000 --arm > samples.csv
+  crepitus stream --format jsonl --rate 10 | head
+
+On a terminal a status line is shown on stderr. A rate below the drive's 20000 Hz takes every n-th \
+sample, without a filter.")]
+pub(crate) struct Arguments {
+    /// Samples a second: 20000 divided by a whole number.
+    #[arg(long, value_name = "HZ", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=20_000))]
+    rate: u32,
+
+    /// Output format; --json means jsonl.
+    #[arg(long, default_value = "csv")]
+    format: SampleFormat,
+
+    /// Duration: 500ms, 30s, 5m [default: until Ctrl-C].
+    #[arg(long = "for", value_name = "TIME", value_parser = duration)]
+    for_s: Option<Duration>,
+
+    /// Arm first, and disarm at the end.
+    #[arg(long)]
+    arm: bool,
+
+    #[command(flatten)]
+    device: DeviceArguments,
+}
 
 /// Streams.
-pub(crate) fn stream(arguments: &StreamArguments, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let rate = arguments.rate;
     if !TICKS_PER_S.is_multiple_of(rate) {
         let every = TICKS_PER_S / rate;
         return Err(Failure::Input(format!(
-            "--rate {rate}: the drive makes {TICKS_PER_S} samples a second, and every n-th \
-             is taken: {} is every {every}th, {} every {}th",
+            "--rate {rate}: expected {TICKS_PER_S} divided by a whole number, for example {} (every \
+             {every}th sample) or {} (every {}th)",
             TICKS_PER_S / every,
             TICKS_PER_S / (every + 1),
             every + 1

@@ -24,6 +24,7 @@ pub struct EffectsStudy {
     /// Warnings of the scene's run.
     pub warnings: Vec<String>,
     /// The scene, then its variants.
+    #[serde(serialize_with = "super::effects_table::serialize")]
     pub rows: Vec<Row>,
     /// Number of timings, of which the fastest counts.
     pub timings: u32,
@@ -43,7 +44,7 @@ pub struct EffectsStudy {
 }
 
 /// The scene or one of its variants.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// How it differs from the scene.
     pub change: Change,
@@ -58,13 +59,11 @@ pub struct Row {
     /// Relative excess of the first quartile of the timings over the fastest.
     pub time_spread: f64,
     /// Its outcome.
-    #[serde(flatten)]
     pub outcome: Outcome,
 }
 
 /// Outcome of a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// It was completed.
     Ran(Ran),
@@ -76,7 +75,7 @@ pub enum Outcome {
 }
 
 /// A completed run.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ran {
     /// Torque at the hand.
     pub torque: Torque,
@@ -88,7 +87,7 @@ pub struct Ran {
 }
 
 /// Contribution of an effect: with it minus without it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Added {
     /// Root mean square of the torque that it adds at the hand, N·m.
     pub rms_nm: f64,
@@ -101,7 +100,6 @@ pub struct Added {
     /// CPU time of a step. Below the resolution of the timings only the bound
     /// is known: the effect saves as much work as it makes, or it is within
     /// the noise.
-    #[serde(flatten)]
     pub time: AddedTime,
 }
 

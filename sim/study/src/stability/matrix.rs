@@ -56,6 +56,14 @@ pub struct Matrix {
 }
 
 impl Matrix {
+    /// All cells with their cases.
+    pub fn cells(&self) -> Vec<(&Case, &Cell)> {
+        self.rows
+            .iter()
+            .flat_map(|row| row.cells.iter().map(|cell| (&row.case, cell)))
+            .collect()
+    }
+
     /// The cells that must hold and do not.
     pub fn broken(&self) -> impl Iterator<Item = (&Case, &Cell)> {
         self.rows.iter().flat_map(|row| {

@@ -10,12 +10,13 @@ use crepitus_study::accuracy::answer::{Answer, Candidate, Mark};
 use crepitus_study::accuracy::target::STEP_SHARE;
 use crepitus_study::accuracy::{Need, Question, Study, answer};
 use crepitus_study::limits::Limited;
+use crepitus_table::show::scientific;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Answers, and fails if nothing meets the need.
-pub(super) fn tell(
+/// Prints the answer; fails if nothing meets the need.
+pub(super) fn print_answer(
     need: &Need,
     studied: &Studied,
     study: &Study,
@@ -72,7 +73,7 @@ fn in_words(need: &Need, question: &Question<'_>, study: &Study, answer: &Answer
             "No solver could: any torque that is held for {} is off by {} N·m RMS at least on {}. Ask for a higher \
              --rate, for more torque, or for torque-at-tick.",
             words::step(why.step_s),
-            words::error(why.floor_nm),
+            scientific(why.floor_nm),
             why.scene
         );
     }
@@ -179,7 +180,10 @@ fn recommended(chosen: &Candidate, answer: &Answer) -> String {
                 .mark(mark.limit.criterion)
                 .map_or_else(|| "not known".to_owned(), value)
         ),
-        _ => writeln!(text, "No costlier one is better where it is tightest."),
+        _ => writeln!(
+            text,
+            "No costlier solver does better on the limiting metric."
+        ),
     };
     text
 }
@@ -189,7 +193,7 @@ fn tightest(text: &mut String, chosen: &Candidate) {
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "It is tightest in the {}: {}, {} % of the limit.",
+            "Its limiting metric is the {}: {}, {} % of the limit.",
             mark.limit.criterion.meaning(),
             value(mark),
             words::plain(mark.ratio() * 100.0)

@@ -1,9 +1,10 @@
 //! Orders of convergence by kind of motion, as a table for the terminal.
 
 use crepitus_study::accuracy::orders::{Order, Orders};
+use crepitus_table::Table;
 use std::fmt::Write;
 
-/// A block a convention, a line a rung, a column a motion; nothing without
+/// A block a convention, a line a solver, a column a motion; nothing without
 /// orders.
 pub(super) fn by_motion(orders: &[Orders]) -> String {
     let mut text = String::new();
@@ -12,27 +13,23 @@ pub(super) fn by_motion(orders: &[Orders]) -> String {
             .iter()
             .filter(|o| o.convention == convention)
             .collect();
-        let motions = distinct(mine.iter().copied(), |o| o.scene.as_str());
+        let solvers = distinct(mine.iter().copied(), |o| o.solver);
+        let mut table = Table::of(&solvers).people("solver", |solver| *solver);
+        for motion in distinct(mine.iter().copied(), |o| o.scene.as_str()) {
+            let order = |solver: &&str| {
+                let here = mine
+                    .iter()
+                    .find(|o| o.solver == *solver && o.scene == motion);
+                here.map(|o| cell(o.event_time_rms))
+            };
+            table = table.people(motion, order).right();
+        }
         // Writing to a String cannot fail.
         let _ = write!(
             text,
-            "\n{convention}, order of the event times (root mean square) in f64:\n  {:20}",
-            "solver"
+            "\n{convention}, order of the event times (root mean square) in f64:\n{}",
+            table.to_text()
         );
-        for motion in &motions {
-            let _ = write!(text, " {motion:>15}");
-        }
-        for solver in distinct(mine.iter().copied(), |o| o.solver) {
-            let _ = write!(text, "\n  {solver:20}");
-            for motion in &motions {
-                let order = mine
-                    .iter()
-                    .find(|o| o.solver == solver && o.scene == *motion)
-                    .map_or_else(String::new, |o| cell(o.event_time_rms));
-                let _ = write!(text, " {order:>15}");
-            }
-        }
-        text.push('\n');
     }
     text
 }

@@ -1,34 +1,30 @@
-//! The words of a study's report.
+//! The files of a study, and the text of its report.
 
 use super::summary::Summary;
 use super::words;
 use crate::failure::Failure;
+use crate::results::{Files, footer, report_files};
 use crepitus_model::Convention;
 use crepitus_report::Section;
 use crepitus_report::accuracy::{self, AccuracyText};
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::orders::{Order, Orders};
+use crepitus_study::accuracy::points_table::points_table;
 use crepitus_study::accuracy::{Point, Study};
 
-/// The report, and each of its diagrams as an SVG of its own if asked for:
-/// names and contents of files.
+/// The files of a study; each diagram as an SVG of its own if asked for.
 pub(super) fn files(
     study: &Study,
     summary: &Summary<'_>,
     pictures: bool,
-) -> Result<Vec<(String, String)>, Failure> {
-    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
-    let page = accuracy::html(&study.points, study.target.as_ref(), &text(study, summary))
-        .map_err(undrawn)?;
-    let mut files = vec![("report.html".to_owned(), page)];
-    if pictures {
-        let pictures = accuracy::pictures(&study.points).map_err(undrawn)?;
-        files.extend(
-            pictures
-                .into_iter()
-                .map(|p| (format!("{}.svg", p.name), p.svg)),
-        );
-    }
+) -> Result<Files, Failure> {
+    let page = accuracy::html(&study.points, study.target.as_ref(), &text(study, summary));
+    let pictures = pictures.then(|| accuracy::pictures(&study.points));
+    let mut files = report_files(page, summary, pictures)?;
+    files.push((
+        "points.csv".to_owned(),
+        points_table(&study.points).to_csv(),
+    ));
     Ok(files)
 }
 
@@ -43,10 +39,7 @@ fn text(study: &Study, summary: &Summary<'_>) -> AccuracyText {
             .to_owned(),
         notes: notes(study),
         tables,
-        footer: format!(
-            "crepitus {} · research and education prototype, not a medical device",
-            summary.crepitus_version
-        ),
+        footer: footer(),
     }
 }
 
@@ -110,7 +103,7 @@ fn missed_ends(study: &Study) -> Vec<String> {
     notes
 }
 
-/// A word of caution where the machine was busy.
+/// Warning if the timings spread: the machine was busy.
 fn unsteady(points: &[Point]) -> Option<String> {
     /// From here on two costs that differ by a fifth may be the same.
     const UNSTEADY: f64 = 0.2;

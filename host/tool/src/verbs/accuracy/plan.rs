@@ -1,6 +1,6 @@
 //! What the command line asks to be studied.
 
-use crate::cli::AccuracyArguments;
+use super::Arguments;
 use crate::failure::Failure;
 use crate::shipped;
 use crepitus_model::Convention;
@@ -24,7 +24,7 @@ pub(super) struct Studied {
     pub(super) step_s: Option<f64>,
 }
 
-pub(super) fn plan(arguments: &AccuracyArguments) -> Result<Studied, Failure> {
+pub(super) fn plan(arguments: &Arguments) -> Result<Studied, Failure> {
     let mut scenes = scenes(arguments)?;
     let convention = convention(arguments, &scenes)?;
     let precision = if arguments.precision == Precision::F64.name() {
@@ -61,7 +61,7 @@ pub(super) fn plan(arguments: &AccuracyArguments) -> Result<Studied, Failure> {
     })
 }
 
-fn scenes(arguments: &AccuracyArguments) -> Result<Vec<StudyScene>, Failure> {
+fn scenes(arguments: &Arguments) -> Result<Vec<StudyScene>, Failure> {
     let Some(path) = &arguments.scene else {
         return scenes::standard()
             .map_err(|e| Failure::Work(format!("the standard scenes are not valid: {e}")));
@@ -77,7 +77,7 @@ fn scenes(arguments: &AccuracyArguments) -> Result<Vec<StudyScene>, Failure> {
 }
 
 /// The convention that a need is for.
-fn convention(arguments: &AccuracyArguments, scenes: &[StudyScene]) -> Result<Convention, Failure> {
+fn convention(arguments: &Arguments, scenes: &[StudyScene]) -> Result<Convention, Failure> {
     let here = |c: Convention| scenes.iter().any(|s| s.settings.convention == c);
     let Some(name) = &arguments.convention else {
         return Ok(match scenes {
@@ -105,7 +105,7 @@ fn convention(arguments: &AccuracyArguments, scenes: &[StudyScene]) -> Result<Co
 }
 
 /// The one step of the need. Where the target chooses, that of its tick.
-fn step_s(arguments: &AccuracyArguments, precision: Precision) -> Result<Option<f64>, Failure> {
+fn step_s(arguments: &Arguments, precision: Precision) -> Result<Option<f64>, Failure> {
     let step_s = arguments.rate.map(step_of).transpose()?;
     if !(arguments.target && arguments.need.is_some()) {
         return Ok(step_s);
@@ -137,7 +137,7 @@ fn step_of(rate_hz: f64) -> Result<f64, Failure> {
     }
 }
 
-fn steps(arguments: &AccuracyArguments) -> Result<Vec<f64>, Failure> {
+fn steps(arguments: &Arguments) -> Result<Vec<f64>, Failure> {
     if let Some(bad) = arguments
         .steps
         .iter()

@@ -2,6 +2,8 @@
 
 use super::words;
 use crepitus_study::accuracy::{Point, Study};
+use crepitus_table::Table;
+use crepitus_table::show::{fixed, scientific};
 use std::fmt::Write;
 
 /// The device's tick, s.
@@ -19,45 +21,17 @@ pub(super) fn at_the_tick(study: &Study) -> String {
     else {
         return "no scene is long enough for any of the steps".to_owned();
     };
-    let mut text = format!("What accuracy costs at a step of {}", words::step(step_s));
-    let mut heading = "";
-    for row in rows(study, step_s) {
-        if row.convention != heading {
-            heading = row.convention;
-            // Writing to a String cannot fail.
-            let _ = write!(
-                text,
-                "\n\n{heading}, worst of {}:\n  {:20} {:9} {:>7}  {:>14}  {:>11}  {:>11}  events\n  {:38}  {:>14}  {:>11}  {:>11}",
-                scenes(study, heading),
-                "solver",
-                "precision",
-                "ns/step",
-                "event error",
-                "rms torque",
-                "rms torque",
-                "",
-                "s",
-                "held, N·m",
-                "at tick, N·m"
-            );
-        }
+    let mut text = format!("What accuracy costs at a step of {}\n", words::step(step_s));
+    for rows in rows(study, step_s).chunk_by(|a, b| a.convention == b.convention) {
+        let convention = rows.first().map_or("", |row| row.convention);
+        // Writing to a String cannot fail.
         let _ = write!(
             text,
-            "\n  {:20} {:9} {:>7.1}  {:>14}  {:>11}  {:>11}  {}",
-            row.solver,
-            row.precision,
-            row.ns_per_step,
-            words::error(row.event_s),
-            words::error(row.held_nm),
-            words::error(row.at_tick_nm),
-            if row.unmatched == 0 {
-                "all matched".to_owned()
-            } else {
-                format!("{} unmatched", row.unmatched)
-            }
+            "\n{convention}, worst of {}:\n{}",
+            scenes(study, convention),
+            table(rows).to_text()
         );
     }
-    text.push('\n');
     text.push_str(&floor(study, step_s));
     for refused in &study.refused {
         let _ = write!(
@@ -72,6 +46,26 @@ pub(super) fn at_the_tick(study: &Study) -> String {
     text
 }
 
+fn table(rows: &[Row]) -> Table<'_, Row> {
+    Table::of(rows)
+        .people("solver", |row| row.solver)
+        .people("precision", |row| row.precision)
+        .people("ns/step", |row| row.ns_per_step)
+        .rounded(fixed::<1>)
+        .people("event error, s", |row| row.event_s)
+        .rounded(scientific)
+        .group("rms torque, N·m")
+        .people("held", |row| row.held_nm)
+        .rounded(scientific)
+        .people("at tick", |row| row.at_tick_nm)
+        .rounded(scientific)
+        .group("")
+        .people("events", |row| match row.unmatched {
+            0 => "all matched".to_owned(),
+            unmatched => format!("{unmatched} unmatched"),
+        })
+}
+
 /// The least that any held torque is off.
 fn floor(study: &Study, step_s: f64) -> String {
     study
@@ -83,7 +77,7 @@ fn floor(study: &Study, step_s: f64) -> String {
             format!(
                 "\nTorque that is held for {} is off by {} N·m RMS at least, whatever the solver ({}, {}).",
                 words::step(step_s),
-                words::error(worst.held_floor_nm),
+                scientific(worst.held_floor_nm),
                 worst.scene,
                 worst.convention
             )

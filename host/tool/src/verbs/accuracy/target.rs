@@ -1,12 +1,12 @@
 //! What the ladder costs on the target: `--target`.
 
-use super::words;
 use crate::failure::Failure;
 use crate::studying::{Interrupted, Watch};
 use crepitus_emulator::on_target::{self, OnTarget};
 use crepitus_study::accuracy::target::inputs::Lengths;
 use crepitus_study::accuracy::target::{self, Row, TargetError};
 use crepitus_study::accuracy::{Study, StudyScene};
+use crepitus_table::show::scientific;
 use std::fmt::Write;
 
 /// The program on an emulated core.
@@ -68,7 +68,7 @@ pub(super) fn table(on: &target::OnTarget) -> String {
 
 fn push(text: &mut String, row: &Row) {
     let frequency = if row.is_rung {
-        words::error(row.frequency_error_rel)
+        scientific(row.frequency_error_rel)
     } else {
         String::new()
     };

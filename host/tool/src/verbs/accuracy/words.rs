@@ -1,22 +1,13 @@
 //! Numbers as a person reads them.
 
-/// An error in two digits; a dash if it is not known.
-pub(super) fn error(x: f64) -> String {
-    if x.is_nan() {
-        "–".to_owned()
-    } else if x == 0.0 {
-        "0".to_owned()
-    } else {
-        format!("{x:.1e}")
-    }
-}
+use crepitus_table::show::scientific;
 
 /// An error with its unit.
 pub(super) fn with_unit(x: f64, unit: &str) -> String {
     if unit.is_empty() {
-        error(x)
+        scientific(x)
     } else {
-        format!("{} {unit}", error(x))
+        format!("{} {unit}", scientific(x))
     }
 }
 
@@ -44,9 +35,7 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        assert_eq!(error(4.123e-5), "4.1e-5");
         assert_eq!(with_unit(0.0, "s"), "0 s");
-        assert_eq!(error(f64::NAN), "–");
         assert_eq!(step(5e-5), "50 µs");
         assert_eq!(step(1.0 / 30_000.0), "33.333333 µs");
         assert_eq!(plain(1234.5), "1234");

@@ -1,51 +1,57 @@
 //! One effect after the other as a table for the terminal.
 
 use crepitus_study::effects::build_up::{Measured, Rung};
-use std::fmt::Write;
+use crepitus_table::Table;
+use crepitus_table::show::{UNKNOWN, fixed, scaled};
 
 /// A line a set of effects; nothing if there is none.
 pub(super) fn table(rungs: &[Rung]) -> String {
     if rungs.is_empty() {
         return String::new();
     }
-    let name = |rung: &Rung| match rung.added {
-        "" => "the joint alone".to_owned(),
-        added => format!("and {added}"),
+    let measured =
+        |of: fn(&Measured) -> f64| move |rung: &Rung| rung.measured.as_ref().map_or(f64::NAN, of);
+    let range = |of: fn(&Measured) -> Option<String>| {
+        move |rung: &Rung| {
+            let text = rung.measured.as_ref().and_then(of);
+            text.unwrap_or_else(|| UNKNOWN.to_owned())
+        }
     };
-    let width = rungs
-        .iter()
-        .map(|r| name(r).chars().count())
-        .max()
-        .unwrap_or(0);
-    // Writing to a String cannot fail.
-    let mut text = format!(
-        "one after the other (second half of each run, torque at the hand without its slow part)\n\n\
-         {:width$}  {:>15} {:>10}  {:>10}  {:>10}  {:>18}  {:>18}\n",
-        "", "ripple, mN·m pp", "RMS", "lag, ms", "stick, ms", "break to break, ms", "shaft, rad/s"
-    );
-    for rung in rungs {
-        let _ = write!(text, "{:width$}  ", name(rung));
-        let _ = match (&rung.measured, &rung.failure) {
-            (Some(measured), _) => writeln!(text, "{}", line(measured)),
-            (None, failure) => writeln!(text, "{}", failure.as_deref().unwrap_or("did not run")),
-        };
-    }
-    text.push('\n');
-    text
-}
-
-fn line(m: &Measured) -> String {
-    let none = || "–".to_owned();
-    let between = match (m.shortest_s, m.longest_s) {
-        (Some(low), Some(high)) => format!("{:.2} to {:.2}", 1e3 * low, 1e3 * high),
-        _ => none(),
-    };
+    let table = Table::of(rungs)
+        .people("", |rung| match rung.added {
+            "" => "the joint alone".to_owned(),
+            added => format!("and {added}"),
+        })
+        .remark(|rung| match (&rung.measured, &rung.failure) {
+            (Some(_), _) => None,
+            (None, why) => Some(why.clone().unwrap_or_else(|| "did not run".to_owned())),
+        })
+        .people("ripple, mN·m pp", measured(|m| m.ripple_nm))
+        .rounded(scaled::<1000, 1>)
+        .people("RMS", measured(|m| m.ripple_rms_nm))
+        .rounded(scaled::<1000, 2>)
+        .people("lag, ms", measured(|m| m.lag_s))
+        .rounded(scaled::<1000, 2>)
+        .people("stick, ms", measured(|m| m.stick_s.unwrap_or(f64::NAN)))
+        .rounded(scaled::<1000, 2>)
+        .people(
+            "break to break, ms",
+            range(|m| {
+                let (low, high) = m.shortest_s.zip(m.longest_s)?;
+                Some(format!("{:.2} to {:.2}", 1e3 * low, 1e3 * high))
+            }),
+        )
+        .right()
+        .people(
+            "shaft, rad/s",
+            range(|m| {
+                let (low, high) = (fixed::<3>(m.slowest_rad_s), fixed::<3>(m.fastest_rad_s));
+                Some(format!("{low} to {high}"))
+            }),
+        )
+        .right();
     format!(
-        "{:>15.1} {:>10.2}  {:>10.2}  {:>10}  {between:>18}  {:>18}",
-        1e3 * m.ripple_nm,
-        1e3 * m.ripple_rms_nm,
-        1e3 * m.lag_s,
-        m.stick_s.map_or_else(none, |s| format!("{:.2}", 1e3 * s)),
-        format!("{:.3} to {:.3}", m.slowest_rad_s, m.fastest_rad_s),
+        "one after the other (second half of each run, torque at the hand without its slow part)\n\n{}\n",
+        table.to_text()
     )
 }

@@ -3,10 +3,11 @@
 use crepitus_model::parameters::ParameterSpec;
 use crepitus_plant::effect::{ChoiceSpec, Effect, Need};
 use crepitus_plant::effects::EFFECTS;
+use crepitus_table::{Cell, Table};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The effects for a person.
+/// The effects as text.
 pub(super) fn text() -> String {
     let mut text = String::new();
     for effect in EFFECTS {
@@ -25,58 +26,43 @@ fn push(text: &mut String, effect: &Effect) {
     for Need { effect, why } in effect.needs {
         let _ = writeln!(text, "    needs {effect}: {why}");
     }
-    let states = if effect.states.is_empty() {
-        "none".to_owned()
-    } else {
-        effect.states.join(", ")
+    let states = match effect.states {
+        [] => "none".to_owned(),
+        states => states.join(", "),
     };
     let _ = writeln!(text, "    states: {states}");
-    let width = |cells: &mut dyn Iterator<Item = String>| {
-        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
-    };
-    let keys = width(&mut effect.parameters.iter().map(|p| p.key.to_owned()))
-        .max(width(&mut effect.choices.iter().map(|c| c.key.to_owned())));
-    let values = width(&mut effect.parameters.iter().map(value));
-    let ranges = width(&mut effect.parameters.iter().map(range));
-    for p in effect.parameters {
-        let _ = writeln!(
-            text,
-            "    {:keys$} = {:values$}  {:ranges$}  {}",
-            p.key,
-            value(p),
-            range(p),
-            p.meaning
-        );
-    }
+    text.push_str(&parameters(effect).to_text());
     for ChoiceSpec {
         key,
         names,
         meaning,
     } in effect.choices
     {
-        let _ = writeln!(
-            text,
-            "    {key:keys$} = {}: {meaning}",
-            names
-                .iter()
-                .map(|n| format!("\"{n}\""))
-                .collect::<Vec<_>>()
-                .join(" | ")
-        );
+        let _ = writeln!(text, "    {key} = \"{}\": {meaning}", names.join("\" | \""));
     }
     text.push('\n');
 }
 
-/// Default and unit.
-fn value(p: &ParameterSpec) -> String {
-    match p.unit {
-        "" | "1" => number(p.default),
-        unit => format!("{} {unit}", number(p.default)),
-    }
-}
-
-fn range(p: &ParameterSpec) -> String {
-    format!("{} to {}", number(p.min), number(p.max))
+fn parameters(effect: &Effect) -> Table<'static, ParameterSpec> {
+    Table::of(effect.parameters)
+        .column("key", |p| {
+            Cell::from(p.key).shown_as(format!("    {}", p.key))
+        })
+        .headed("")
+        .column("symbol", |p| p.symbol)
+        .column("unit", |p| p.unit)
+        .column("default", |p| {
+            let unit = if p.unit == "1" { "" } else { p.unit };
+            let text = format!("= {} {unit}", number(p.default));
+            Cell::from(p.default).shown_as(text.trim_end())
+        })
+        .headed("")
+        .left()
+        .column("min", |p| p.min)
+        .column("max", |p| p.max)
+        .people("", |p| format!("{} to {}", number(p.min), number(p.max)))
+        .column("meaning", |p| p.meaning)
+        .headed("")
 }
 
 /// In as few digits as say it.
@@ -88,51 +74,26 @@ fn number(x: f64) -> String {
     }
 }
 
-/// An effect for machines.
 fn to_json(effect: &Effect) -> Value {
-    let parameters: Vec<Value> = effect
-        .parameters
-        .iter()
-        .map(|p| {
-            json!({
-                "key": p.key,
-                "symbol": p.symbol,
-                "unit": p.unit,
-                "default": p.default,
-                "min": p.min,
-                "max": p.max,
-                "meaning": p.meaning,
-            })
-        })
-        .collect();
-    let choices: Vec<Value> = effect
-        .choices
-        .iter()
-        .map(|c| {
-            json!({
-                "key": c.key,
-                "names": c.names,
-                "default": c.names.first(),
-                "meaning": c.meaning,
-            })
-        })
-        .collect();
-    let needs: Vec<Value> = effect
-        .needs
-        .iter()
-        .map(|n| json!({ "effect": n.effect, "why": n.why }))
-        .collect();
+    let choices = Table::of(effect.choices)
+        .column("key", |c| c.key)
+        .column("names", |c| c.names)
+        .column("default", |c| c.names.first().copied())
+        .column("meaning", |c| c.meaning);
+    let needs = Table::of(effect.needs)
+        .column("effect", |n| n.effect)
+        .column("why", |n| n.why);
     json!({
         "name": effect.name,
         "adds": effect.adds,
         "states": effect.states,
         "needs": needs,
-        "parameters": parameters,
+        "parameters": parameters(effect),
         "choices": choices,
     })
 }
 
-/// The effects for machines.
+/// The effects as JSON.
 pub(super) fn values() -> Vec<Value> {
     EFFECTS.iter().map(|e| to_json(e)).collect()
 }

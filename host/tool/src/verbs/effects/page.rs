@@ -2,10 +2,11 @@
 
 use super::summary::Summary;
 use crate::failure::Failure;
+use crate::results::{Files, footer, report_files};
 use crepitus_report::Section;
 use crepitus_report::effects::{self, EffectsText};
 use crepitus_study::effects::EffectsStudy;
-use crepitus_study::effects::effects_csv::effects_csv;
+use crepitus_study::effects::effects_table::effects_table;
 
 /// Names and contents of the files; each figure as an SVG of its own if asked
 /// for.
@@ -13,24 +14,14 @@ pub(super) fn files(
     study: &EffectsStudy,
     summary: &Summary<'_>,
     pictures: bool,
-) -> Result<Vec<(String, String)>, Failure> {
-    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
-    let page = effects::html(study, &text(study, summary)).map_err(undrawn)?;
-    let json = serde_json::to_string_pretty(summary)
-        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
-    let mut files = vec![
-        ("report.html".to_owned(), page),
-        ("effects.csv".to_owned(), effects_csv(study)),
-        ("summary.json".to_owned(), json + "\n"),
-    ];
-    if pictures {
-        let pictures = effects::pictures(study).map_err(undrawn)?;
-        files.extend(
-            pictures
-                .into_iter()
-                .map(|p| (format!("{}.svg", p.name), p.svg)),
-        );
-    }
+) -> Result<Files, Failure> {
+    let page = effects::html(study, &text(study, summary));
+    let pictures = pictures.then(|| effects::pictures(study));
+    let mut files = report_files(page, summary, pictures)?;
+    files.push((
+        "effects.csv".to_owned(),
+        effects_table(&study.rows).to_csv(),
+    ));
     Ok(files)
 }
 
@@ -62,10 +53,7 @@ fn text(study: &EffectsStudy, summary: &Summary<'_>) -> EffectsText {
                 row("the study took", format!("{:.1} s", study.wall_s)),
             ],
         }],
-        footer: format!(
-            "crepitus {} · research and education prototype, not a medical device",
-            summary.crepitus_version
-        ),
+        footer: footer(),
     }
 }
 

@@ -5,6 +5,7 @@ use crepitus_study::effects::Answer;
 use crepitus_study::effects::answer::{Dropped, Subset};
 use crepitus_study::effects::influence::Difference;
 use crepitus_study::limits::Limited;
+use crepitus_table::Table;
 use std::fmt::Write;
 
 /// What it is, what was dropped, and why the rest is kept.
@@ -41,7 +42,7 @@ pub(super) fn words(answer: &Answer) -> String {
     list(&mut text, "Dropped; each alone makes:", &answer.dropped);
     list(&mut text, "Kept; dropping it too would make:", &answer.kept);
     if !answer.others.is_empty() {
-        text.push_str("As small and within, but dearer or further off:\n");
+        text.push_str("As small and within the tolerance, but costlier or further off:\n");
         for other in &answer.others {
             // Writing to a String cannot fail.
             let _ = writeln!(
@@ -73,21 +74,18 @@ fn list(text: &mut String, title: &str, dropped: &[Dropped]) {
     if dropped.is_empty() {
         return;
     }
-    let _ = writeln!(text, "{title}");
     let name = |d: &Dropped| match d.along.as_slice() {
-        [] => d.effect.to_owned(),
-        along => format!("{} (and {})", d.effect, along.join(", ")),
+        [] => format!("  {}", d.effect),
+        along => format!("  {} (and {})", d.effect, along.join(", ")),
     };
-    let width = dropped.iter().map(|d| name(d).chars().count()).max();
-    let width = width.unwrap_or(0);
-    for one in dropped {
-        let what = match (&one.difference, &one.failure) {
-            (Some(d), _) => difference(d),
-            (None, Some(why)) => why.clone(),
-            (None, None) => "not known".to_owned(),
-        };
-        let _ = writeln!(text, "  {:width$}  {what}", name(one));
-    }
+    let what = |d: &Dropped| match (&d.difference, &d.failure) {
+        (Some(d), _) => difference(d),
+        (None, Some(why)) => why.clone(),
+        (None, None) => "not known".to_owned(),
+    };
+    let table = Table::of(dropped).people("", name).people("", what);
+    // Writing to a String cannot fail.
+    let _ = write!(text, "{title}\n{}", table.to_text());
 }
 
 fn difference(d: &Difference) -> String {

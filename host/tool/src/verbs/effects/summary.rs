@@ -10,7 +10,7 @@ use serde::Serialize;
 /// Version of this form.
 const SUMMARY_VERSION: u32 = 1;
 
-/// From here on a difference of the torque is worth having, N·m.
+/// Smaller differences of the torque do not matter, N·m.
 pub(super) const WORTH_HAVING_NM: f64 = 5e-3;
 
 /// A study with what it comes to.
@@ -51,7 +51,7 @@ impl<'a> Summary<'a> {
     }
 }
 
-/// What matters, what does not, and what is missing.
+/// Which effects matter, which do not, and which are missing.
 fn conclusion(study: &EffectsStudy) -> String {
     let rows = study.by_influence();
     let of = |change| rows.iter().filter(move |row| row.change == change);
@@ -90,8 +90,8 @@ fn conclusion(study: &EffectsStudy) -> String {
             nm(most)
         ));
     }
-    if let Some(dearest) = dearest(&rows) {
-        sentences.push(dearest);
+    if let Some(costliest) = costliest(&rows) {
+        sentences.push(costliest);
     }
     if sentences.is_empty() {
         "No variant of the scene runs.".to_owned()
@@ -101,24 +101,24 @@ fn conclusion(study: &EffectsStudy) -> String {
 }
 
 /// The effect of the scene that takes the most time.
-fn dearest(rows: &[&Row]) -> Option<String> {
+fn costliest(rows: &[&Row]) -> Option<String> {
     let measured = |row: &Row| row.added()?.time.ns_per_step;
-    let (dearest, cost) = rows
+    let (costliest, cost) = rows
         .iter()
         .filter(|row| row.change == Change::Without)
         .filter_map(|row| Some((row, measured(row)?)))
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(format!(
         "The costliest is {}: {:.0} of {:.0} ns a step here.",
-        dearest.effect,
+        costliest.effect,
         cost,
-        cost + dearest.ns_per_step
+        cost + costliest.ns_per_step
     ))
 }
 
-/// A word of caution where the machine was busy.
+/// Warning if the timings spread: the machine was busy.
 pub(super) fn unsteady(study: &EffectsStudy) -> Option<String> {
-    /// From here on small costs cannot be told from none.
+    /// Above this spread, small costs cannot be measured.
     const UNSTEADY: f64 = 0.1;
     let spread = study.time_spread();
     (spread > UNSTEADY).then(|| {

@@ -1,5 +1,5 @@
-//! Sees a run go by: writes its rows and events, collects the report's
-//! figures, moves the progress bar, and stops when asked.
+//! The observer of a run: writes its rows and events, collects the report's
+//! figures, moves the progress bar, and stops at Ctrl-C.
 
 use crate::interrupt;
 use crate::progress::Progress;
@@ -72,7 +72,7 @@ impl Observer for Watch {
 
     fn progress(&mut self, time_s: f64) -> Result<(), WatchError> {
         self.progress.reached(time_s);
-        if interrupt::asked() {
+        if interrupt::requested() {
             return Err(WatchError::Interrupted);
         }
         Ok(())

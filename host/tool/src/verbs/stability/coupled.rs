@@ -1,14 +1,14 @@
 //! `crepitus stability --coupled`: the Z-width of the device on a leg.
 
 use crate::failure::{Failure, print, print_json};
-use crate::studying::{self, Watch};
+use crate::results::{self, Files, footer, report_files};
+use crate::studying::Watch;
 use crepitus_report::Section;
 use crepitus_report::coupled::{self, CoupledText};
-use crepitus_scene::output::Folder;
 use crepitus_study::coupled::{
-    CoupledError, CoupledStudy, GEARS, LAGS, Margin, Setting, Verdict, csv, most_share, run,
+    CoupledError, CoupledStudy, GEARS, LAGS, Margin, Setting, Verdict, most_share, run, tables,
 };
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -23,8 +23,10 @@ struct Summary {
     version: u32,
     crepitus_version: &'static str,
     cells: Counts,
-    presets: Vec<Joint>,
-    extras: Vec<Joint>,
+    #[serde(serialize_with = "as_rows")]
+    presets: Vec<Margin>,
+    #[serde(serialize_with = "as_rows")]
+    extras: Vec<Margin>,
     wall_s: f64,
 }
 
@@ -37,36 +39,33 @@ struct Counts {
     refused: usize,
 }
 
-/// A joint on a device.
-#[derive(Serialize)]
-struct Joint {
-    preset: &'static str,
-    with: &'static str,
-    gear_friction: &'static str,
-    cuff_damping_nms_per_rad: f64,
-    verdict: Verdict,
-    /// `null` if none rings up to `most_over_stiffness`.
-    onset_over_stiffness: Option<f64>,
-    most_over_stiffness: f64,
-    /// The largest share of a friction of 0.5 N·m that may be compensated.
-    most_share: f64,
+/// Joints with the names and numbers of `margins.csv`, and what else is known
+/// of them.
+fn as_rows<S: Serializer>(joints: &[Margin], serializer: S) -> Result<S::Ok, S::Error> {
+    tables::margins(joints)
+        .column("gear_friction", |joint| joint.setting.gear.name)
+        // The largest share of a friction of 0.5 N·m that may be compensated.
+        .column("most_share", |joint| {
+            most_share(&joint.setting, FRICTION_NM)
+        })
+        .serialize(serializer)
 }
 
 /// Makes the map, writes the files, says what is left to the presets.
 pub(super) fn coupled(out: &Path, pictures: bool, as_json: bool) -> Result<(), Failure> {
-    let folder = Folder::create(out).map_err(|e| Failure::at(out, "cannot be written", &e))?;
+    let folder = results::folder(out)?;
     let study = run(&mut Watch::new()).map_err(|error| match error {
         CoupledError::Watcher(_) => Failure::Work("interrupted: nothing was written".to_owned()),
         CoupledError::Run(why) => Failure::Work(format!("the study failed: {why}")),
     })?;
     let summary = summary(&study);
-    studying::write(folder, out, files(&study, &summary, pictures)?)?;
+    results::write(folder, out, files(&study, &summary, pictures)?)?;
     if as_json {
         print_json(&json!({ "out": out, "summary": summary }))?;
     } else {
         print(&format!(
             "{}\nreport: {}\n",
-            told(&study),
+            onsets_and_margins(&study),
             out.join("report.html").display()
         ))?;
     }
@@ -99,28 +98,13 @@ fn summary(study: &CoupledStudy) -> Summary {
             Verdict::Refused => &mut cells.refused,
         } += 1;
     }
-    let joints = |margins: &[Margin]| margins.iter().map(joint).collect();
     Summary {
         version: SUMMARY_VERSION,
         crepitus_version: env!("CARGO_PKG_VERSION"),
         cells,
-        presets: joints(&study.presets),
-        extras: joints(&study.extras),
+        presets: study.presets.clone(),
+        extras: study.extras.clone(),
         wall_s: study.wall_s,
-    }
-}
-
-fn joint(margin: &Margin) -> Joint {
-    let at = &margin.setting;
-    Joint {
-        preset: at.preset.name,
-        with: at.extra.name,
-        gear_friction: at.gear.name,
-        cuff_damping_nms_per_rad: at.damping_nms_per_rad,
-        verdict: margin.verdict,
-        onset_over_stiffness: margin.onset,
-        most_over_stiffness: margin.most,
-        most_share: most_share(at, FRICTION_NM),
     }
 }
 
@@ -129,31 +113,17 @@ const FRICTION_NM: f64 = GEARS[0].friction_nm;
 
 /// The lowest stiffness that rings, for each gear and damping at the device's
 /// lag, beside the criteria; then what the presets have left.
-fn told(study: &CoupledStudy) -> String {
-    let mut text = String::from(
-        "A hand that stops: the lowest stiffness whose shaft rings, N·m/rad, with the paper's joint\n\n\
-         gear's friction                      cuff   measured    linear  Colgate–S.  Diolaiti\n",
+fn onsets_and_margins(study: &CoupledStudy) -> String {
+    let of_device: Vec<_> = study
+        .onsets
+        .iter()
+        .filter(|onset| onset.setting.lag == LAGS[1])
+        .copied()
+        .collect();
+    let mut text = format!(
+        "A hand that stops: the lowest stiffness whose shaft rings, N·m/rad, with the paper's joint\n\n{}",
+        tables::onsets(&of_device).to_text()
     );
-    let of_device = |onset: &&_| {
-        let onset: &crepitus_study::coupled::Onset = onset;
-        onset.setting.lag == LAGS[1]
-    };
-    for onset in study.onsets.iter().filter(of_device) {
-        let measured = onset
-            .measured
-            .map_or_else(|| format!("> {:.0}", onset.most), |kr| format!("{kr:.0}"));
-        let at = &onset.setting;
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "{:34} {:6} {measured:>10} {:>9.0} {:>11.0} {:>9.3e}",
-            at.gear.name,
-            at.damping_nms_per_rad,
-            onset.criteria.linear,
-            onset.criteria.colgate_schenkel,
-            onset.criteria.diolaiti,
-        );
-    }
     text.push_str("\nThe presets on the device as it is (cuff 0 and 1 N·m·s/rad)\n\n");
     let shipped = Setting::shipped().gear;
     for margin in study.presets.iter().filter(|m| m.setting.gear == shipped) {
@@ -175,28 +145,20 @@ fn told(study: &CoupledStudy) -> String {
     text
 }
 
-fn files(
-    study: &CoupledStudy,
-    summary: &Summary,
-    pictures: bool,
-) -> Result<Vec<(String, String)>, Failure> {
-    let json = serde_json::to_string_pretty(summary)
-        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
-    let mut files = vec![
+fn files(study: &CoupledStudy, summary: &Summary, pictures: bool) -> Result<Files, Failure> {
+    let page = coupled::html(study, &words(summary));
+    let pictures = pictures.then(|| Ok(coupled::pictures(study)));
+    let mut files = report_files(Ok(page), summary, pictures)?;
+    let margins = [study.presets.as_slice(), &study.extras].concat();
+    files.extend([
+        ("cells.csv".to_owned(), tables::cells(&study.cells).to_csv()),
         (
-            "report.html".to_owned(),
-            coupled::html(study, &words(summary)),
+            "onsets.csv".to_owned(),
+            tables::onsets(&study.onsets).to_csv(),
         ),
-        ("cells.csv".to_owned(), csv::cells(&study.cells)),
-        ("onsets.csv".to_owned(), csv::onsets(study)),
-        ("margins.csv".to_owned(), csv::margins(study)),
+        ("margins.csv".to_owned(), tables::margins(&margins).to_csv()),
         ("scene.toml".to_owned(), Setting::shipped().toml()),
-        ("summary.json".to_owned(), json + "\n"),
-    ];
-    if pictures {
-        let pictures = coupled::pictures(study).into_iter();
-        files.extend(pictures.map(|p| (format!("{}.svg", p.name), p.svg)));
-    }
+    ]);
     Ok(files)
 }
 
@@ -221,9 +183,6 @@ fn words(summary: &Summary) -> CoupledText {
                 row("the study took", format!("{:.1} s", summary.wall_s)),
             ],
         }],
-        footer: format!(
-            "crepitus {} · research and education prototype, not a medical device",
-            summary.crepitus_version
-        ),
+        footer: footer(),
     }
 }

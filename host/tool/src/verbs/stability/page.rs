@@ -2,40 +2,32 @@
 
 use super::summary::Summary;
 use crate::failure::Failure;
+use crate::results::{Files, footer, report_files};
 use crepitus_report::Section;
 use crepitus_report::stability::{self, StabilityText};
+use crepitus_study::stability::Matrix;
+use crepitus_study::stability::cases_table::cases_table;
 use crepitus_study::stability::story::Story;
-use crepitus_study::stability::{Matrix, cases_csv};
 
 /// The report, the cells and the summary; the matrix and each story as an SVG
 /// of its own if asked for.
 pub(super) fn files(
     matrix: &Matrix,
     stories: &[Story],
-    summary: &Summary,
+    summary: &Summary<'_>,
     pictures: bool,
-) -> Result<Vec<(String, String)>, Failure> {
-    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
-    let json = serde_json::to_string_pretty(summary)
-        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
-    let page = stability::html(matrix, stories, &text(matrix, summary)).map_err(undrawn)?;
-    let mut files = vec![
-        ("report.html".to_owned(), page),
-        ("cases.csv".to_owned(), cases_csv::cases_csv(matrix)),
-        ("summary.json".to_owned(), json + "\n"),
-    ];
-    if pictures {
-        let pictures = stability::pictures(matrix, stories).map_err(undrawn)?;
-        files.extend(
-            pictures
-                .into_iter()
-                .map(|p| (format!("{}.svg", p.name), p.svg)),
-        );
-    }
+) -> Result<Files, Failure> {
+    let page = stability::html(matrix, stories, &text(matrix, summary));
+    let pictures = pictures.then(|| stability::pictures(matrix, stories));
+    let mut files = report_files(page, summary, pictures)?;
+    files.push((
+        "cases.csv".to_owned(),
+        cases_table(&matrix.cells()).to_csv(),
+    ));
     Ok(files)
 }
 
-fn text(matrix: &Matrix, summary: &Summary) -> StabilityText {
+fn text(matrix: &Matrix, summary: &Summary<'_>) -> StabilityText {
     let counts = &summary.counts;
     let row = |name: &str, value: String| (name.to_owned(), value);
     StabilityText {
@@ -82,9 +74,6 @@ fn text(matrix: &Matrix, summary: &Summary) -> StabilityText {
                 row("the study took", format!("{:.1} s", summary.wall_s)),
             ],
         }],
-        footer: format!(
-            "crepitus {} · research and education prototype, not a medical device",
-            summary.crepitus_version
-        ),
+        footer: footer(),
     }
 }

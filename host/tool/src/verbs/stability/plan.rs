@@ -1,12 +1,12 @@
 //! Which cases and which subjects the command line asks for.
 
-use crate::cli::StabilityArguments;
+use super::Arguments;
 use crate::failure::Failure;
 use crepitus_model::Convention;
 use crepitus_scene::scene::Precision;
 use crepitus_study::stability::{Case, Plan, Rung, Subject, catalogue};
 
-pub(super) fn plan(arguments: &StabilityArguments) -> Result<Plan, Failure> {
+pub(super) fn plan(arguments: &Arguments) -> Result<Plan, Failure> {
     Ok(Plan {
         cases: cases(arguments)?,
         subjects: subjects(arguments)?,
@@ -14,7 +14,7 @@ pub(super) fn plan(arguments: &StabilityArguments) -> Result<Plan, Failure> {
 }
 
 /// Those that are named, long or not; else all, the long ones if asked for.
-fn cases(arguments: &StabilityArguments) -> Result<Vec<Case>, Failure> {
+fn cases(arguments: &Arguments) -> Result<Vec<Case>, Failure> {
     if arguments.cases.is_empty() {
         let all = catalogue::all().into_iter();
         return Ok(all.filter(|case| arguments.long || !case.long).collect());
@@ -39,7 +39,7 @@ fn cases(arguments: &StabilityArguments) -> Result<Vec<Case>, Failure> {
     Ok(cases)
 }
 
-fn subjects(arguments: &StabilityArguments) -> Result<Vec<Subject>, Failure> {
+fn subjects(arguments: &Arguments) -> Result<Vec<Subject>, Failure> {
     let solvers = chosen("solver", &arguments.solvers, &Rung::all(), Rung::name)?;
     let conventions = chosen(
         "convention",
@@ -57,7 +57,7 @@ fn subjects(arguments: &StabilityArguments) -> Result<Vec<Subject>, Failure> {
         })
         .collect();
     if subjects.is_empty() {
-        // Only a refusal leaves nobody.
+        // All chosen combinations are refused.
         let single = arguments.precision.as_deref() == Some(Precision::F32.name());
         let pairs = conventions
             .iter()

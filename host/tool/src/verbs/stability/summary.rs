@@ -1,14 +1,15 @@
 //! `summary.json` of the matrix.
 
-use crepitus_study::stability::{Cell, Margin, Matrix, Plan, Row, Verdict};
-use serde::Serialize;
+use crepitus_study::stability::cases_table::cases_table;
+use crepitus_study::stability::{Case, Cell, Matrix, Plan, Row, Verdict};
+use serde::{Serialize, Serializer};
 
 /// Version of this form.
 const SUMMARY_VERSION: u32 = 1;
 
 /// The matrix without its cells.
 #[derive(Serialize)]
-pub(super) struct Summary {
+pub(super) struct Summary<'m> {
     #[serde(rename = "summary_version")]
     version: u32,
     pub(super) crepitus_version: &'static str,
@@ -20,9 +21,10 @@ pub(super) struct Summary {
     pub(super) cells: usize,
     /// Of all cells.
     pub(super) counts: Counts,
-    pub(super) cases: Vec<CaseSummary>,
+    pub(super) cases: Vec<CaseSummary<'m>>,
     /// The cells that must hold and do not.
-    broken: Vec<CellSummary>,
+    #[serde(serialize_with = "as_rows")]
+    broken: Vec<CaseCell<'m>>,
     pub(super) wall_s: f64,
 }
 
@@ -38,34 +40,32 @@ pub(super) struct Counts {
 
 /// One case.
 #[derive(Serialize)]
-pub(super) struct CaseSummary {
+pub(super) struct CaseSummary<'m> {
     pub(super) case: &'static str,
     name: &'static str,
     pub(super) title: &'static str,
     pub(super) counts: Counts,
     /// Of the cells that must hold, and do, the one nearest to its limit.
-    pub(super) narrowest: Option<CellSummary>,
+    #[serde(serialize_with = "as_row")]
+    pub(super) narrowest: Option<CaseCell<'m>>,
 }
 
-/// One cell.
-#[derive(Clone, Serialize)]
-pub(super) struct CellSummary {
-    case: &'static str,
-    convention: &'static str,
-    solver: &'static str,
-    precision: &'static str,
-    /// In words.
-    pub(super) verdict: String,
-    measured: Option<f64>,
-    limit: Option<f64>,
-    unit: Option<&'static str>,
-    pub(super) detail: String,
-    #[serde(skip)]
-    pub(super) subject: String,
+/// A cell with its case.
+type CaseCell<'m> = (&'m Case, &'m Cell);
+
+/// Cells with the names and numbers of `cases.csv`.
+fn as_rows<S: Serializer>(cells: &[CaseCell<'_>], serializer: S) -> Result<S::Ok, S::Error> {
+    cases_table(cells).serialize(serializer)
 }
 
-impl Summary {
-    pub(super) fn new(plan: &Plan, matrix: &Matrix) -> Self {
+#[expect(clippy::ref_option, reason = "the form in which serde calls it")]
+fn as_row<S: Serializer>(cell: &Option<CaseCell<'_>>, serializer: S) -> Result<S::Ok, S::Error> {
+    let table = cases_table(cell.as_slice());
+    table.objects().next().serialize(serializer)
+}
+
+impl<'m> Summary<'m> {
+    pub(super) fn new(plan: &Plan, matrix: &'m Matrix) -> Self {
         let cases: Vec<CaseSummary> = matrix.rows.iter().map(CaseSummary::new).collect();
         let mut counts = Counts::default();
         for case in &cases {
@@ -80,10 +80,7 @@ impl Summary {
             cells: matrix.rows.iter().map(|row| row.cells.len()).sum(),
             counts,
             cases,
-            broken: matrix
-                .broken()
-                .map(|(case, cell)| CellSummary::new(case.id, cell))
-                .collect(),
+            broken: matrix.broken().collect(),
             wall_s: matrix.wall_s,
         }
     }
@@ -113,8 +110,8 @@ impl Counts {
     }
 }
 
-impl CaseSummary {
-    fn new(row: &Row) -> Self {
+impl<'m> CaseSummary<'m> {
+    fn new(row: &'m Row) -> Self {
         let held = row.cells.iter().filter(|cell| cell.must_hold);
         let held = held.filter_map(|cell| match cell.verdict {
             Verdict::Holds(margin) => Some((margin.share(), cell)),
@@ -126,28 +123,7 @@ impl CaseSummary {
             name: row.case.name,
             title: row.case.title,
             counts: Counts::of(&row.cells),
-            narrowest: narrowest.map(|(_, cell)| CellSummary::new(row.case.id, cell)),
-        }
-    }
-}
-
-impl CellSummary {
-    fn new(case: &'static str, cell: &Cell) -> Self {
-        let margin: Option<Margin> = match cell.verdict {
-            Verdict::Holds(margin) | Verdict::Degrades { margin, .. } => Some(margin),
-            Verdict::Fails { .. } => None,
-        };
-        Self {
-            case,
-            convention: cell.subject.convention.name(),
-            solver: cell.subject.solver.name(),
-            precision: cell.subject.precision.name(),
-            verdict: cell.verdict.to_string(),
-            measured: margin.map(|m| m.measured),
-            limit: margin.map(|m| m.limit),
-            unit: margin.map(|m| m.unit),
-            detail: cell.detail.clone(),
-            subject: super::table::subject(cell.subject),
+            narrowest: narrowest.map(|(_, cell)| (&row.case, cell)),
         }
     }
 }

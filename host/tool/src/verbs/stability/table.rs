@@ -2,6 +2,7 @@
 
 use super::summary::{CaseSummary, Summary};
 use crepitus_study::stability::{Matrix, Subject};
+use crepitus_table::Table;
 use std::fmt::Write;
 
 /// `exact-events, frozen, f32`.
@@ -15,27 +16,16 @@ pub(super) fn subject(subject: Subject) -> String {
 }
 
 /// A line a case.
-pub(super) fn table(matrix: &Matrix, summary: &Summary) -> String {
-    let titles = summary.cases.iter().map(|case| case.title.chars().count());
-    let width = titles.max().unwrap_or(0);
-    let mut text = format!(
-        "{:5} {:width$} {:>5} {:>7} {:>5}  narrowest of the cells that must hold\n",
-        "", "case", "hold", "degrade", "fail"
-    );
-    for case in &summary.cases {
-        let counts = &case.counts;
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "{:5} {:width$} {:>5} {:>7} {:>5}  {}",
-            case.case,
-            case.title,
-            counts.holds,
-            counts.degrades,
-            counts.fails,
-            narrowest(case)
-        );
-    }
+pub(super) fn table(matrix: &Matrix, summary: &Summary<'_>) -> String {
+    let mut text = Table::of(&summary.cases)
+        .people("", |case| case.case)
+        .people("case", |case| case.title)
+        .people("hold", |case| case.counts.holds)
+        .people("degrade", |case| case.counts.degrades)
+        .people("fail", |case| case.counts.fails)
+        .people("narrowest of the cells that must hold", narrowest)
+        .to_text();
+    // Writing to a String cannot fail.
     let counts = &summary.counts;
     let _ = writeln!(
         text,
@@ -56,11 +46,12 @@ pub(super) fn table(matrix: &Matrix, summary: &Summary) -> String {
     text
 }
 
-fn narrowest(case: &CaseSummary) -> String {
-    let held = case.narrowest.as_ref().map(|cell| {
-        let margin = cell.verdict.trim_start_matches("holds ");
+fn narrowest(case: &CaseSummary<'_>) -> String {
+    let held = case.narrowest.map(|(_, cell)| {
+        let verdict = cell.verdict.to_string();
+        let margin = verdict.trim_start_matches("holds ");
         let margin = margin.trim_start_matches('(').trim_end_matches(')');
-        format!("{margin}: {}", cell.subject)
+        format!("{margin}: {}", subject(cell.subject))
     });
     match (case.counts.broken, held) {
         (0, Some(held)) => held,

@@ -2,72 +2,43 @@
 //! bits; a column that a verdict has nothing for is empty.
 
 use super::case::Case;
-use super::matrix::{Cell, Matrix};
+use super::matrix::Cell;
 use super::verdict::{Failure, Margin, Verdict};
 use crepitus_model::Real;
-use std::fmt::Write;
+use crepitus_table::Table;
 
-/// The header. `measured` and `limit` are in `unit`; of other events than the
-/// true ones they are the counts.
-pub const HEADER: &str = "case,name,convention,solver,precision,must_hold,verdict,flagged,measured,\
-limit,unit,at_s,detail";
-
-/// The file.
-pub fn cases_csv(matrix: &Matrix) -> String {
-    let mut text = format!("{HEADER}\n");
-    for row in &matrix.rows {
-        for cell in &row.cells {
-            push_cell(&mut text, &row.case, cell);
-        }
-    }
-    text
-}
-
-fn push_cell(text: &mut String, case: &Case, cell: &Cell) {
-    let subject = cell.subject;
-    push_text(text, case.id);
-    text.push(',');
-    push_text(text, case.name);
-    // Writing to a String cannot fail.
-    let _ = write!(
-        text,
-        ",{},{},{},{},{},{},",
-        subject.convention.name(),
-        subject.solver.name(),
-        subject.precision.name(),
-        cell.must_hold,
-        cell.verdict.name(),
-        cell.verdict.is_flagged()
-    );
-    match number(&cell.verdict) {
-        Some(margin) => {
-            push_number(text, margin.measured);
-            text.push(',');
-            push_number(text, margin.limit);
-            text.push(',');
-            push_text(text, margin.unit);
-        }
-        None => text.push_str(",,"),
-    }
-    text.push(',');
-    let mut detail = cell.detail.clone();
-    if let Verdict::Fails { what, at_s, .. } = &cell.verdict {
-        if let Some(time_s) = at_s {
-            push_number(text, *time_s);
-        }
-        detail = if detail.is_empty() {
-            what.to_string()
-        } else {
-            format!("{what}: {detail}")
-        };
-    }
-    text.push(',');
-    push_text(text, &detail);
-    text.push('\n');
+/// A row a cell. `measured` and `limit` are in `unit`; of other events than
+/// the true ones they are the counts.
+pub fn cases_table<'r>(cells: &'r [(&Case, &Cell)]) -> Table<'r, (&'r Case, &'r Cell)> {
+    let margin =
+        |of: fn(Margin) -> f64| move |(_, cell): &(&Case, &Cell)| margin(&cell.verdict).map(of);
+    Table::of(cells)
+        .column("case", |(case, _)| case.id)
+        .column("name", |(case, _)| case.name)
+        .column("convention", |(_, cell)| cell.subject.convention.name())
+        .column("solver", |(_, cell)| cell.subject.solver.name())
+        .column("precision", |(_, cell)| cell.subject.precision.name())
+        .column("must_hold", |(_, cell)| cell.must_hold)
+        .column("verdict", |(_, cell)| cell.verdict.name())
+        .column("flagged", |(_, cell)| cell.verdict.is_flagged())
+        .column("measured", margin(|m| m.measured))
+        .column("limit", margin(|m| m.limit))
+        .column("unit", |(_, cell)| {
+            self::margin(&cell.verdict).map(|m| m.unit)
+        })
+        .column("at_s", |(_, cell)| match cell.verdict {
+            Verdict::Fails { at_s, .. } => at_s,
+            _ => None,
+        })
+        .column("detail", |(_, cell)| match &cell.verdict {
+            Verdict::Fails { what, .. } if cell.detail.is_empty() => what.to_string(),
+            Verdict::Fails { what, .. } => format!("{what}: {}", cell.detail),
+            _ => cell.detail.clone(),
+        })
 }
 
 /// The number of a verdict and what it is held against.
-fn number(verdict: &Verdict) -> Option<Margin> {
+fn margin(verdict: &Verdict) -> Option<Margin> {
     match *verdict {
         Verdict::Holds(margin) | Verdict::Degrades { margin, .. } => Some(margin),
         Verdict::Fails {
@@ -82,31 +53,10 @@ fn number(verdict: &Verdict) -> Option<Margin> {
     }
 }
 
-fn push_number(text: &mut String, x: f64) {
-    if x.is_finite() {
-        text.push_str(ryu::Buffer::new().format_finite(x));
-    } else if x.is_nan() {
-        text.push_str("nan");
-    } else {
-        text.push_str(if x > 0.0 { "inf" } else { "-inf" });
-    }
-}
-
-/// In quotes where it needs them (RFC 4180).
-fn push_text(text: &mut String, value: &str) {
-    if value.contains([',', '"', '\n', '\r']) {
-        text.push('"');
-        text.push_str(&value.replace('"', "\"\""));
-        text.push('"');
-    } else {
-        text.push_str(value);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stability::{Row, Subject, catalogue};
+    use crate::stability::{Matrix, Row, Subject, catalogue};
 
     /// The matrix of one case in which the first subjects stand like this.
     fn matrix(verdicts: &[(Verdict, &str)]) -> Matrix {
@@ -162,30 +112,36 @@ mod tests {
             at_s,
             flagged: true,
         };
-        let lines = read(&cases_csv(&matrix(&[
-            (
-                Verdict::Holds(margin(third, 1e-12, "N·m")),
-                "at 1 rad/s, \"slow\"",
-            ),
-            (
-                Verdict::Degrades {
-                    margin: margin(f64::NAN, 0.5, ""),
-                    flagged: false,
-                },
-                "two\nlines",
-            ),
-            (
-                fails(
-                    Failure::OtherEvents {
-                        found: 1,
-                        expected: 637,
-                    },
-                    None,
-                ),
-                "",
-            ),
-            (fails(Failure::Overflow, Some(third)), "the second trial"),
-        ])));
+        let lines = read(
+            &cases_table(
+                &matrix(&[
+                    (
+                        Verdict::Holds(margin(third, 1e-12, "N·m")),
+                        "at 1 rad/s, \"slow\"",
+                    ),
+                    (
+                        Verdict::Degrades {
+                            margin: margin(f64::NAN, 0.5, ""),
+                            flagged: false,
+                        },
+                        "two\nlines",
+                    ),
+                    (
+                        fails(
+                            Failure::OtherEvents {
+                                found: 1,
+                                expected: 637,
+                            },
+                            None,
+                        ),
+                        "",
+                    ),
+                    (fails(Failure::Overflow, Some(third)), "the second trial"),
+                ])
+                .cells(),
+            )
+            .to_csv(),
+        );
         assert_eq!(lines.len(), 5);
         let column = |name| lines[0].iter().position(|h| h == name).unwrap();
         let of = |line: usize, name| lines[line][column(name)].as_str();

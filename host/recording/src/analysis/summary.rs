@@ -1,40 +1,58 @@
-//! What a recording says in numbers.
+//! The summary of a recording.
 
+use crate::row::Row;
+use crate::sidecar::{Controller, ParameterSet, Sidecar, Totals};
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{LimitReason, TICK_S};
-use crepitus_recording::{Controller, ParameterSet, Row, Sidecar, Totals};
 use crepitus_scene::run::TorqueSummary;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// `summary.json` of a recording.
+/// Totals of a recording: its `summary.json`.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct RecordedSummary {
-    pub(crate) title: String,
-    pub(crate) crepitus_version: &'static str,
-    pub(crate) begun_unix_s: u64,
-    pub(crate) comms: Controller,
-    pub(crate) drive: Option<Controller>,
-    /// Whether the recording was ended in order.
-    pub(crate) complete: bool,
-    pub(crate) duration_s: f64,
-    pub(crate) armed_s: f64,
-    pub(crate) telemetry: Totals,
-    pub(crate) gaps: usize,
-    pub(crate) drive_restarts: u32,
-    pub(crate) breaks: u64,
-    pub(crate) sticks: u64,
-    pub(crate) fastest_rad_s: f64,
-    /// Of the model, while armed.
-    pub(crate) model_torque: Option<TorqueSummary>,
-    /// Asked of the motor, while armed.
-    pub(crate) torque: Option<TorqueSummary>,
-    /// Seconds of armed time in which each reason limited the torque.
-    pub(crate) limited_s: BTreeMap<&'static str, f64>,
-    pub(crate) lost_samples: u64,
-    pub(crate) late_ticks: u64,
-    pub(crate) parameters: Vec<ParameterSet>,
-    pub(crate) warnings: Vec<String>,
+pub struct RecordingSummary {
+    /// What was recorded, in words.
+    pub title: String,
+    /// Version of the program that has made this summary.
+    pub crepitus_version: &'static str,
+    /// When the recording was begun, seconds since 1970.
+    pub begun_unix_s: u64,
+    /// The comms controller.
+    pub comms: Controller,
+    /// The drive controller.
+    pub drive: Option<Controller>,
+    /// Whether the recording was finished, not cut off.
+    pub complete: bool,
+    /// Recorded time, s.
+    pub duration_s: f64,
+    /// Recorded time while armed, s.
+    pub armed_s: f64,
+    /// Samples produced, received and dropped.
+    pub telemetry: Totals,
+    /// Number of gaps.
+    pub gaps: usize,
+    /// Starts of the drive during the recording.
+    pub drive_restarts: u32,
+    /// Breaks while armed.
+    pub breaks: u64,
+    /// Sticks while armed.
+    pub sticks: u64,
+    /// Highest speed of the joint, rad/s.
+    pub fastest_rad_s: f64,
+    /// Torque of the model while armed.
+    pub model_torque: Option<TorqueSummary>,
+    /// Torque commanded to the motor while armed.
+    pub torque: Option<TorqueSummary>,
+    /// Armed time in which each reason limited the torque, s.
+    pub limited_s: BTreeMap<&'static str, f64>,
+    /// Samples whose count was rejected.
+    pub lost_samples: u64,
+    /// Ticks whose rendering was late.
+    pub late_ticks: u64,
+    /// Every parameter set in use, in order.
+    pub parameters: Vec<ParameterSet>,
+    /// What to know before relying on the numbers.
+    pub warnings: Vec<String>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +77,7 @@ impl Default for Sum {
 }
 
 impl Sum {
-    fn note(&mut self, x: f64) {
+    fn add(&mut self, x: f64) {
         self.count += 1;
         self.min = self.min.min(x);
         self.max = self.max.max(x);
@@ -78,7 +96,7 @@ impl Sum {
     }
 }
 
-/// Adds up rows.
+/// Running totals of rows.
 #[derive(Debug, Default)]
 pub(super) struct Tally {
     rows: u64,
@@ -104,23 +122,23 @@ impl Tally {
         }
         self.breaks += u64::from(flags.has(SampleFlags::BREAK));
         self.sticks += u64::from(flags.has(SampleFlags::STICK));
-        self.armed.note(f64::from(row.model_torque_nm));
-        self.asked.note(f64::from(row.torque_nm));
+        self.armed.add(f64::from(row.model_torque_nm));
+        self.asked.add(f64::from(row.torque_nm));
         if flags.limit() != LimitReason::None {
             *self.limited.entry(flags.limit().name()).or_default() += 1;
         }
     }
 
-    pub(super) fn finish(self, sidecar: &Sidecar) -> RecordedSummary {
+    pub(super) fn finish(self, sidecar: &Sidecar) -> RecordingSummary {
         let mut telemetry = sidecar.telemetry;
         let mut warnings = Vec::new();
         if !sidecar.complete {
             warnings.push(
-                "The recording was cut off: the program that made it was stopped. What it had \
-                 written until then is here."
+                "The recording is incomplete: the program that made it was stopped. This report has \
+                 what was written until then."
                     .to_owned(),
             );
-            // The lines know more than the JSON file.
+            // The CSV file is newer than the JSON file.
             telemetry.received = self.rows;
             telemetry.produced = self.rows + telemetry.dropped;
         }
@@ -134,14 +152,14 @@ impl Tally {
         }
         if sidecar.drive_restarts > 0 {
             warnings.push(format!(
-                "The drive started {} times meanwhile.",
+                "The drive restarted {} times during the recording.",
                 sidecar.drive_restarts
             ));
         }
         if self.armed.count == 0 && self.rows > 0 {
-            warnings.push("The device was never armed: there was no torque.".to_owned());
+            warnings.push("The device was never armed, so there was no torque.".to_owned());
         }
-        RecordedSummary {
+        RecordingSummary {
             title: sidecar.title.clone(),
             crepitus_version: env!("CARGO_PKG_VERSION"),
             begun_unix_s: sidecar.begun_unix_s,
@@ -171,8 +189,8 @@ impl Tally {
     }
 }
 
-/// So many ticks, s.
+/// The length of so many ticks, s.
 #[expect(clippy::cast_precision_loss, reason = "centuries of ticks")]
-pub(super) fn seconds(ticks: u64) -> f64 {
+pub fn seconds(ticks: u64) -> f64 {
     ticks as f64 * TICK_S
 }

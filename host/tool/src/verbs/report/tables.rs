@@ -1,15 +1,14 @@
 //! The tables of a recording's report.
 
-use super::tally::{RecordedSummary, seconds};
 use crate::sections::{section, torque_section};
-use crepitus_recording::{Controller, ParameterSet, Sidecar};
+use crepitus_recording::{Controller, ParameterSet, RecordingSummary, Sidecar, seconds};
 use crepitus_report::Section;
 use serde_json::Value;
 
 /// Gaps that are shown.
 const SHOWN_GAPS: usize = 20;
 
-pub(super) fn sections(s: &RecordedSummary, sidecar: &Sidecar) -> Vec<Section> {
+pub(super) fn sections(s: &RecordingSummary, sidecar: &Sidecar) -> Vec<Section> {
     let mut sections = vec![recording(s)];
     sections.extend(
         s.model_torque
@@ -17,7 +16,7 @@ pub(super) fn sections(s: &RecordedSummary, sidecar: &Sidecar) -> Vec<Section> {
     );
     sections.extend(
         s.torque
-            .map(|t| torque_section("Torque asked of the motor while armed", &t)),
+            .map(|t| torque_section("Torque commanded to the motor while armed", &t)),
     );
     if !s.limited_s.is_empty() {
         let rows = s
@@ -38,7 +37,7 @@ pub(super) fn sections(s: &RecordedSummary, sidecar: &Sidecar) -> Vec<Section> {
                 format!("{} samples, {:.4} s", gap.samples, seconds(gap.samples)),
             )
         });
-        sections.push(named("What is missing", rows));
+        sections.push(named("Missing samples", rows));
     }
     sections
 }
@@ -51,7 +50,7 @@ fn named(title: &str, rows: impl IntoIterator<Item = (String, String)>) -> Secti
     }
 }
 
-fn recording(s: &RecordedSummary) -> Section {
+fn recording(s: &RecordingSummary) -> Section {
     let device = |c: &Controller| format!("{} (serial {})", c.version, c.serial);
     let t = &s.telemetry;
     let mut rows = vec![
@@ -76,7 +75,7 @@ fn recording(s: &RecordedSummary) -> Section {
     ];
     rows.extend(s.drive.as_ref().map(|drive| ("drive", device(drive))));
     if s.lost_samples > 0 {
-        rows.push(("counts not believed", s.lost_samples.to_string()));
+        rows.push(("rejected counts", s.lost_samples.to_string()));
     }
     if s.late_ticks > 0 {
         rows.push(("late ticks", s.late_ticks.to_string()));

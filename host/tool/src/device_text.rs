@@ -1,4 +1,4 @@
-//! How a device is, as a person reads it.
+//! Identity, status and faults of a device, as text and as JSON.
 
 use crepitus_client::fault_text;
 use crepitus_protocol::host::Status;
@@ -6,18 +6,18 @@ use crepitus_protocol::management::Identity;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
-/// Version, language, number.
+/// Version, schema hash, serial number, cause of the last reset.
 pub(crate) fn identity(identity: &Identity) -> String {
     let [major, minor, patch] = identity.version;
     format!(
-        "version {major}.{minor}.{patch}, language {:016x}, serial {}, started by {}",
+        "version {major}.{minor}.{patch}, schema {:016x}, serial {}, started by {}",
         identity.schema,
         serial(identity),
         identity.reset.name()
     )
 }
 
-/// The same, for machines.
+/// The same as JSON.
 pub(crate) fn identity_json(identity: &Identity) -> Value {
     let [major, minor, patch] = identity.version;
     json!({
@@ -29,7 +29,7 @@ pub(crate) fn identity_json(identity: &Identity) -> Value {
     })
 }
 
-/// The chip's number: as text where it is some, otherwise hexadecimal.
+/// The chip's serial number: as text if it is printable, else hexadecimal.
 fn serial(identity: &Identity) -> String {
     let bytes = &identity.serial;
     if bytes.iter().all(u8::is_ascii_graphic) {
@@ -43,7 +43,7 @@ fn serial(identity: &Identity) -> String {
     }
 }
 
-/// The faults of a device, in words.
+/// The text of each active fault.
 pub(crate) fn faults(status: &Status) -> Vec<String> {
     [status.drive_fault, status.comms_fault]
         .into_iter()
@@ -52,7 +52,7 @@ pub(crate) fn faults(status: &Status) -> Vec<String> {
         .collect()
 }
 
-/// How it is, for machines.
+/// The status as JSON.
 pub(crate) fn status_json(status: &Status) -> Value {
     json!({
         "state": status.state.name(),

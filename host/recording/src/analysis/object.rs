@@ -1,17 +1,20 @@
-//! The imaginary object, from what a device says of it.
+//! The imaginary object, reconstructed from a device's samples.
 
+use crate::row::Row;
+use crate::sidecar::Sidecar;
 use crepitus_model::Parameters;
 use crepitus_model::joint::oscillator::Oscillator;
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{Revision, TICK_S};
-use crepitus_recording::{Row, Sidecar};
 use crepitus_scene::trace::{EventKind, EventRecord};
 
-/// Angle and velocity of the object; NaN where they are not known.
+/// Angle and velocity of the imaginary object; NaN where they are unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Object {
-    pub(super) theta_rad: f64,
-    pub(super) theta_dot_rad_s: f64,
+pub struct Object {
+    /// Its angle, rad.
+    pub theta_rad: f64,
+    /// Its velocity, rad/s.
+    pub theta_dot_rad_s: f64,
 }
 
 const UNKNOWN: Object = Object {
@@ -19,11 +22,11 @@ const UNKNOWN: Object = Object {
     theta_dot_rad_s: f64::NAN,
 };
 
-/// Follows the object. In a stick its angle is torque over stiffness; in a
+/// Follows the object from row to row. In a stick its angle is torque over stiffness; in a
 /// slip it swings about sense·Tk/kr from where the stick broke, with the
 /// shaft's speed.
 #[derive(Debug, Default)]
-pub(super) struct Joint {
+pub(super) struct ObjectTracker {
     parameters: Option<(u32, Parameters)>,
     object: Option<Object>,
     previous: Option<(i8, f64)>,
@@ -31,7 +34,7 @@ pub(super) struct Joint {
     before: Option<(i8, f64)>,
 }
 
-impl Joint {
+impl ObjectTracker {
     /// The object in this row.
     pub(super) fn follow(&mut self, row: &Row, sidecar: &Sidecar) -> Object {
         let parameters = self.parameters(row.revision, sidecar);
@@ -100,15 +103,7 @@ impl Joint {
         {
             return Some(parameters);
         }
-        let number = |name| sidecar.number(Revision(revision), name);
-        let parameters = Parameters {
-            inertia_kg_m2: number("crepitus.inertia_kg_m2")?,
-            stiffness_nm_per_rad: number("crepitus.stiffness_nm_per_rad")?,
-            kinetic_torque_nm: number("crepitus.kinetic_torque_nm")?,
-            static_torque_nm: number("crepitus.static_torque_nm")?,
-            // No device has damping.
-            ..Parameters::default()
-        };
+        let parameters = sidecar.joint_settings(Revision(revision))?.parameters;
         self.parameters = Some((revision, parameters));
         Some(parameters)
     }

@@ -1,0 +1,27 @@
+//! Verbs that are one request to a device.
+
+use crate::cli::DeviceArguments;
+use crate::failure::{Failure, print, print_json};
+use crate::line::{Line, connect, failure};
+use crepitus_client::{Client, Error};
+use serde_json::json;
+
+/// Connects, sends the request and prints `done`.
+pub(crate) fn execute(
+    device: &DeviceArguments,
+    done: &str,
+    as_json: bool,
+    request: impl FnOnce(&mut Client<Line>) -> Result<(), Error>,
+) -> Result<(), Failure> {
+    request(&mut connect(device)?).map_err(failure)?;
+    print_done(done, as_json)
+}
+
+/// Prints what was done.
+pub(crate) fn print_done(done: &str, as_json: bool) -> Result<(), Failure> {
+    if as_json {
+        print_json(&json!({ "done": done }))
+    } else {
+        print(&format!("{done}\n"))
+    }
+}

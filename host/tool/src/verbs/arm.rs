@@ -1,0 +1,68 @@
+//! `crepitus arm`.
+
+use crate::cli::{DeviceArguments, duration};
+use crate::device_command::print_done;
+use crate::failure::Failure;
+use crate::following::{End, Follower, follow};
+use crate::keys::Keys;
+use crate::line::{Line, connect};
+use clap::Args;
+use crepitus_client::Client;
+use crepitus_protocol::telemetry::Block;
+use std::time::Duration;
+
+/// Turn torque on while this command runs.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus arm --for 60s
+  crepitus arm --device sim --for 2s
+
+Torque stays on while this command renews its lease. Any key or Ctrl-C disarms; if this program is \
+killed, the lease expires and the device disarms within 250 ms.")]
+pub(crate) struct Arguments {
+    /// Duration: 30s, 5m [default: until a key is pressed].
+    #[arg(long = "for", value_name = "TIME", value_parser = duration)]
+    for_s: Option<Duration>,
+
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
+/// Stops at a key press; the lease is renewed meanwhile.
+struct UntilKey {
+    keys: Option<Keys>,
+}
+
+impl Follower for UntilKey {
+    fn block(&mut self, _: &mut Client<Line>, _: &Block) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure> {
+        // After arming, so that an error is printed in the normal mode.
+        let keys = self.keys.get_or_insert_with(|| {
+            let is_armed = if client.is_armed() {
+                "armed"
+            } else {
+                "not armed"
+            };
+            eprintln!("{is_armed}: any key disarms");
+            Keys::listen()
+        });
+        Ok(keys.is_active() && keys.pressed())
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let mut client = connect(&arguments.device)?;
+    let mut until_key = UntilKey { keys: None };
+    let end = follow(&mut client, arguments.for_s, true, &mut until_key);
+    // Restores the terminal before anything is printed.
+    drop(until_key);
+    let done = match end? {
+        End::Time => "disarmed: the duration has elapsed",
+        End::Requested => "disarmed",
+    };
+    print_done(done, as_json)
+}

@@ -1,0 +1,48 @@
+//! A table on a page.
+
+use crate::{Column, Table, groups};
+use maud::{Markup, html};
+
+impl<R> Table<'_, R> {
+    /// The columns that have a heading, rounded, as a `table` element. The
+    /// first is the heading of its row; cells of numbers have the class
+    /// `number`, headings of groups `group`, remarks `remark`.
+    pub fn to_html(&self) -> Markup {
+        let columns: Vec<_> = self.for_people().collect();
+        html! {
+            table.grid {
+                thead {
+                    @if columns.iter().any(|(_, column)| !column.group.is_empty()) {
+                        tr {
+                            @for (heading, count) in groups(&columns) {
+                                th.group colspan=(count) scope="colgroup" { (heading) }
+                            }
+                        }
+                    }
+                    tr {
+                        @for (heading, column) in &columns {
+                            th.number[column.right] scope="col" { (heading) }
+                        }
+                    }
+                }
+                tbody { @for row in 0..self.rows.len() { (self.line(&columns, row)) } }
+            }
+        }
+    }
+
+    fn line(&self, columns: &[(&str, &Column)], row: usize) -> Markup {
+        let remark = self.remark_of(row);
+        let kept = remark.map_or(columns.len(), |(from, _)| from);
+        html! {
+            tr {
+                @for (place, (_, column)) in columns.iter().take(kept).enumerate() {
+                    @if place == 0 { th scope="row" { (column.text(row)) } }
+                    @else { td.number[column.right] { (column.text(row)) } }
+                }
+                @if let Some((_, text)) = remark {
+                    td.remark colspan=(columns.len().saturating_sub(kept)) { (text) }
+                }
+            }
+        }
+    }
+}

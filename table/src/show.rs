@@ -1,0 +1,53 @@
+//! Numbers for people: rounded, a dash where they are not known.
+
+/// How people see the numbers of a column.
+pub type Show = fn(f64) -> String;
+
+/// A number that is not known.
+pub const UNKNOWN: &str = "–";
+
+/// With so many decimals.
+pub fn fixed<const DECIMALS: usize>(x: f64) -> String {
+    scaled::<1, DECIMALS>(x)
+}
+
+/// Multiplied, for a smaller unit, with so many decimals.
+pub fn scaled<const FACTOR: u32, const DECIMALS: usize>(x: f64) -> String {
+    if x.is_nan() {
+        UNKNOWN.to_owned()
+    } else {
+        format!("{:.DECIMALS$}", f64::from(FACTOR) * x)
+    }
+}
+
+/// A torque in N·m as mN·m, with as many digits as it is worth.
+pub fn milli(nm: f64) -> String {
+    match 1e3 * nm {
+        x if x.is_nan() => UNKNOWN.to_owned(),
+        0.0 => "0".to_owned(),
+        x if x < 0.0095 => format!("{x:.0e}"),
+        x if x < 10.0 => format!("{x:.2}"),
+        x if x < 1000.0 => format!("{x:.1}"),
+        x => format!("{x:.0}"),
+    }
+}
+
+/// With two digits and a power of ten: `4.1e-5`.
+pub fn scientific(x: f64) -> String {
+    if x.is_nan() {
+        UNKNOWN.to_owned()
+    } else if x == 0.0 {
+        "0".to_owned()
+    } else {
+        format!("{x:.1e}")
+    }
+}
+
+/// A whole number with its sign; zero has none.
+pub fn signed(x: f64) -> String {
+    if x == 0.0 {
+        "0".to_owned()
+    } else {
+        format!("{x:+.0}")
+    }
+}
