@@ -1,4 +1,4 @@
-//! Images: what of an ELF file lies in flash, and the names in it.
+//! Images: the flash content of an ELF file, and its symbols.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -16,15 +16,15 @@ pub enum ImageError {
     /// The file cannot be read.
     #[error("{path}: {source}")]
     Read {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
-    /// It is no ELF file of 32 bits, little endian, for ARM; or it is cut off.
+    /// Not an ELF file of 32 bits, little endian, for ARM; or truncated.
     #[error("no ELF image for ARM: {0}")]
     NoImage(&'static str),
-    /// A segment is to be loaded where there is no flash.
+    /// A segment is outside of flash.
     #[error("a segment at {0:#x} is outside of flash")]
     OutsideFlash(u32),
 }
@@ -32,16 +32,16 @@ pub enum ImageError {
 /// A symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Symbol {
-    /// Where it is; of a function, without the bit that says Thumb.
+    /// Its address; for a function, without the Thumb bit.
     pub address: u32,
-    /// Bytes.
+    /// Its size, bytes.
     pub size: u32,
 }
 
 /// An image.
 #[derive(Clone, Debug, Default)]
 pub struct Image {
-    /// What lies in flash, from its beginning.
+    /// Content of flash.
     pub flash: Vec<u8>,
     symbols: BTreeMap<String, Symbol>,
 }
@@ -137,7 +137,7 @@ impl Image {
         self.symbols.iter().map(|(name, at)| (name.as_str(), *at))
     }
 
-    /// The handler of an exception, as the table of vectors says.
+    /// The handler of an exception, from the vector table.
     pub fn vector(&self, exception: u16) -> Option<u32> {
         let begin = 4 * usize::from(exception);
         let bytes = self.flash.get(begin..begin + 4)?;
