@@ -2,7 +2,7 @@
 //! motion.
 //!
 //! A piece is [`PIECE`] cases. Its rows are written at once when it is done,
-//! so a run that is cut off goes on with the first piece that is not whole.
+//! so an interrupted run continues with the first incomplete piece.
 //! `notable` lists the cases that do not simply agree, as `number:verdict`.
 
 use crate::compare::{Comparison, Difference, Verdict, compare};
@@ -35,7 +35,7 @@ pub struct Counts {
     pub agreed: u64,
     /// Of these, cases whose tolerance followed the conditioning.
     pub conditioned: u64,
-    /// Cases that rounding decides from some event on.
+    /// Cases decided by rounding from some event on.
     pub undecidable: u64,
     /// Cases with a real difference.
     pub disagreed: u64,
@@ -209,10 +209,10 @@ impl Tally {
     }
 }
 
-/// Runs a piece; `progress` hears of every case.
+/// Runs a piece; `progress` is called for every case.
 ///
 /// # Errors
-/// Where no child process can be started.
+/// If no child process can be started.
 pub fn run_piece(
     program: &Path,
     limit: Duration,
@@ -229,10 +229,10 @@ pub fn run_piece(
     Ok(tally)
 }
 
-/// The whole pieces of a journal, in order of the file.
+/// The complete pieces of a journal, in order of the file.
 ///
 /// # Errors
-/// Where the file exists and cannot be read.
+/// If the file exists and cannot be read.
 pub fn read(path: &Path) -> io::Result<Vec<Vec<Row>>> {
     if !path.exists() {
         return Ok(Vec::new());
