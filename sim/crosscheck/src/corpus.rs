@@ -73,7 +73,7 @@ pub struct Case {
     pub kind: MotionKind,
     /// The motion.
     pub motion: Motion,
-    /// How long, s.
+    /// Duration, s.
     pub duration_s: f64,
 }
 

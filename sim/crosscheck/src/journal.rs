@@ -111,7 +111,7 @@ pub struct Row {
     pub convention: Convention,
     /// Its motion.
     pub motion: MotionKind,
-    /// What was counted.
+    /// The counts.
     pub counts: Counts,
 }
 
@@ -249,7 +249,7 @@ pub fn read(path: &Path) -> io::Result<Vec<Vec<Row>>> {
 /// Writes a journal with these pieces and nothing else.
 ///
 /// # Errors
-/// What the file system says.
+/// Errors of the file system.
 pub fn rewrite(path: &Path, pieces: &[Vec<Row>]) -> io::Result<()> {
     let mut text = format!("{HEADER}\n");
     for row in pieces.iter().flatten() {
@@ -262,7 +262,7 @@ pub fn rewrite(path: &Path, pieces: &[Vec<Row>]) -> io::Result<()> {
 /// Appends a piece in one write.
 ///
 /// # Errors
-/// What the file system says.
+/// Errors of the file system.
 pub fn append(path: &Path, rows: &[Row]) -> io::Result<()> {
     let mut text = String::new();
     for row in rows {

@@ -37,7 +37,7 @@ pub struct Problem<'a> {
     pub settings: &'a Settings,
     /// The motion of the shaft.
     pub motion: &'a Motion,
-    /// How long, s.
+    /// Duration, s.
     pub duration_s: f64,
     /// The most events to find.
     pub most_events: usize,

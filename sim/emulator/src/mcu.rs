@@ -77,7 +77,7 @@ pub struct Access {
     pub at: Time,
     /// Of the register.
     pub address: u32,
-    /// What was read or written.
+    /// The value read or written.
     pub value: u32,
     /// Written, not read.
     pub is_write: bool,

@@ -3,7 +3,7 @@
 use crepitus_model::encoder::EncoderSettings;
 use crepitus_plant::encoder::Encoder;
 
-/// How the encoder is connected.
+/// Wiring of the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EncoderWiring {
     /// Correctly.
