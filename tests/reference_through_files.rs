@@ -39,11 +39,7 @@ fn scene(case: &Value) -> String {
             knots + "]"
         }
     };
-    let convention = match case["convention"].as_str().unwrap() {
-        "full" => "physical",
-        "paper7" => "paper",
-        other => other,
-    };
+    let convention = case["convention"].as_str().unwrap();
     format!(
         "version = 1\ntitle = \"case\"\nduration_s = {}\n[motion]\n{motion}\n[solver]\nkind = \"reference\"\n\
          [effects.crepitus]\nconvention = \"{convention}\"\ninertia_kg_m2 = {}\nstiffness_nm_per_rad = {}\n\
@@ -62,13 +58,13 @@ fn reference_cases_hold_through_the_files() {
     let mut checked = 0;
     for name in [
         "c01_const_0p05",
-        "s07p_sine_0p25Hz_paper7",
+        "s07p_sine_0p25Hz_paper",
         "m23_lambda_0p1_below",
         "m23_lambda_0p1_above",
         "j21_light_1e-8",
         "k15_stiff",
         "q10_velocity_jumps",
-        "w27_wander_full",
+        "w27_wander_physical",
         "w27z_wander_frozen",
         "z14_zero_kinetic",
     ] {

@@ -8,8 +8,8 @@ kinetic Tk). T is the friction torque on the object:
     J theta'' + c theta' + kr theta = T
 
   stick    theta' = Omega, theta = theta0 + phi(t) - phi(t0); the torque this requires is
-           T = kr theta + J Omega' + c Omega    (convention "full"), or
-           T = kr theta                         (conventions "paper7" and "frozen").
+           T = kr theta + J Omega' + c Omega    (convention "physical"), or
+           T = kr theta                         (conventions "paper" and "frozen").
   break    first t with s T = Ts; slip in the direction s = sign(T) begins. Also at a knot of the
            drive: Omega jumps ("velocity_jump", s = sign(Omega(t+) - theta'); "frozen" does not
            break), or Omega' jumps so that |T| > Ts ("accel_jump"); or at t = 0 ("initial").
@@ -21,7 +21,7 @@ kinetic Tk). T is the friction torque on the object:
            1e-26), else "reverse": slip with s' = sign of that torque. A jump of Omega across
            theta' is a "reverse" at once (reason velocity_jump).
   touch    only for Ts = Tk: g reaches 0 with g' = 0 and rises again; the slip goes on.
-  frozen   breaks like paper7; the slip lasts (pi + 2 atan(|Omega(t0)| sqrt(J kr)/(Ts - Tk)))/wn
+  frozen   breaks like paper; the slip lasts (pi + 2 atan(|Omega(t0)| sqrt(J kr)/(Ts - Tk)))/wn
            whatever Omega does; then stick at theta = s (2 Tk - Ts)/kr. Needs c = 0.
 
 How the first root of g (or of Ts - s T in stick) is found with certainty: from g, g' at t and a
@@ -181,9 +181,9 @@ class Slip:
 def simulate(case, number):
     """All events of a case up to its t_end; number turns a parameter's text into an mpf."""
     J, kr, c, Tk, Ts = (number(case["params"][k]) for k in ("J", "kr", "c", "Tk", "Ts"))
-    frozen, full = case["convention"] == "frozen", case["convention"] == "full"
-    assert (frozen and c == 0) or full or case["convention"] == "paper7"
-    Jr, cr = (J, c) if full else (0, 0)         # what counts in the torque required to stick
+    frozen, physical = case["convention"] == "frozen", case["convention"] == "physical"
+    assert (frozen and c == 0) or physical or case["convention"] == "paper"
+    Jr, cr = (J, c) if physical else (0, 0)         # what counts in the torque required to stick
     t_end = number(case["t_end"])
     segs = segments(case["drive"], t_end, number)
     events = []
@@ -340,7 +340,7 @@ WANDER = linear((0, 0.3), (0.049, -0.288), (0.118, -0.684, 0.057), (0.17, -0.567
 def all_cases():
     cases = {}
 
-    def add(name, description, drive, t_end, convention="full", **params):
+    def add(name, description, drive, t_end, convention="physical", **params):
         cases[name] = dict(name=name, description=description, convention=convention,
                            params={k: repr(float(v)) for k, v in (PAPER | params).items()},
                            drive=drive, t_end=repr(float(t_end)))
@@ -353,14 +353,14 @@ def all_cases():
     add("n06_const_minus_1", "constant -1 rad/s", const(-1), 1)
     add("c03z_const_0p5_frozen", "constant 0.5 rad/s", const(0.5), 1, "frozen")
     add("s07_sine_0p25Hz", "45 degrees at 0.25 Hz", knee(0.25), 4)
-    add("s07p_sine_0p25Hz_paper7", "45 degrees at 0.25 Hz", knee(0.25), 4, "paper7")
+    add("s07p_sine_0p25Hz_paper", "45 degrees at 0.25 Hz", knee(0.25), 4, "paper")
     add("s08_sine_0p5Hz", "45 degrees at 0.5 Hz", knee(0.5), 4)
-    add("s08p_sine_0p5Hz_paper7", "45 degrees at 0.5 Hz", knee(0.5), 4, "paper7")
+    add("s08p_sine_0p5Hz_paper", "45 degrees at 0.5 Hz", knee(0.5), 4, "paper")
     add("t09_through_zero", "Omega passes 0 during slip", THROUGH_ZERO, 0.6)
     add("q10_velocity_jumps", "Omega jumps, in stick and in slip", JUMPS, 1)
-    add("q10p_velocity_jumps_paper7", "Omega jumps, in stick and in slip", JUMPS, 1, "paper7")
+    add("q10p_velocity_jumps_paper", "Omega jumps, in stick and in slip", JUMPS, 1, "paper")
     add("q10z_velocity_jumps_frozen", "Omega jumps, in stick and in slip", JUMPS, 1, "frozen")
-    add("r11p_small_reversals_paper7", "3 mrad: reversals inside stick", sine(0.003, 1), 3, "paper7")
+    add("r11p_small_reversals_paper", "3 mrad: reversals inside stick", sine(0.003, 1), 3, "paper")
     add("r11z_small_reversals_frozen", "3 mrad: reversals inside stick", sine(0.003, 1), 3, "frozen")
     add("p12_presliding", "0.9 mrad at 1 Hz: never reaches Ts", sine(0.0009, 1), 3)
     add("d13_equal_torques", "Ts = Tk: breaks once, grazes ever after", const(1), 1, Tk=0.3, Ts=0.3)
@@ -388,8 +388,8 @@ def all_cases():
     add("o25_nearly_critical_below", "damping ratio 1 - 1e-10", TURNING, 0.7, J=0.0625, c=10 * (1 - 1e-10))
     add("o25_nearly_critical_above", "damping ratio 1 + 1e-10", TURNING, 0.7, J=0.0625, c=10 * (1 + 1e-10))
     add("o26_damped_sine", "damping ratio 0.2", sine(0.02, 1), 3, c=0.8)
-    add("o26p_damped_sine_paper7", "damping ratio 0.2", sine(0.02, 1), 3, "paper7", c=0.8)
-    for letter, convention in (("", "full"), ("p", "paper7"), ("z", "frozen")):
+    add("o26p_damped_sine_paper", "damping ratio 0.2", sine(0.02, 1), 3, "paper", c=0.8)
+    for letter, convention in (("", "physical"), ("p", "paper"), ("z", "frozen")):
         add(f"w27{letter}_wander_{convention}", "random-looking velocity with jumps", WANDER, 1.05,
             convention)
     return cases
@@ -417,6 +417,7 @@ def validate(folder):
     good = True
     for path in sorted(pathlib.Path(folder).glob("*.json")):
         case = json.loads(path.read_text())
+        case["convention"] = {"full": "physical", "paper7": "paper"}.get(case["convention"], case["convention"])
         events, theirs = simulate(case, mpf), case["events"]
         labels = ("type", "phase_from", "phase_to", "reason")
         same = [[e.get(k) for k in labels] for e in events] == [[e.get(k) for k in labels] for e in theirs]

@@ -22,16 +22,16 @@ use crepitus_scene::Scene;
 /// Ticks of the drive in a tick of comms.
 const COMMS_TICKS: u64 = 20;
 
-/// Ticks that a controller takes to start.
+/// Start-up time of a controller, ticks.
 const START_TICKS: u64 = 200;
 
-/// An enable line: what drives it, and what is broken about it.
+/// An enable line: its driver and its fault.
 #[derive(Clone, Copy, Debug, Default)]
 struct EnableLine {
     driven: bool,
-    /// As read back: a tick later.
+    /// Read-back: a tick later.
     read: bool,
-    /// It stays like this whatever drives it.
+    /// Stuck at this level.
     stuck: Option<bool>,
 }
 
@@ -41,7 +41,7 @@ impl EnableLine {
     }
 }
 
-/// Which controller.
+/// A controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Controller {
     /// The drive.
@@ -50,30 +50,30 @@ pub enum Controller {
     Comms,
 }
 
-/// What a controller is doing.
+/// State of a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Health {
     Runs,
-    /// It does nothing any more; its pins stay as they are.
+    /// It hangs; its pins stay as they are.
     Hangs,
     /// It starts at this tick; its pins are pulled down.
     StartsAt(u64, ResetCause),
 }
 
-/// How a board starts.
+/// Initial state of a board.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Start {
     /// Seed of the link's faults.
     pub seed: u64,
-    /// Parameters that comms has kept.
+    /// Parameters stored by comms.
     pub saved: Option<(Revision, Values)>,
     /// The drive's first tick, and number of its first block.
     pub tick: u64,
     /// Number of the drive's first block.
     pub sequence: u16,
-    /// What the encoder's counter begins with.
+    /// Initial count of the encoder.
     pub count: i32,
-    /// What comms' counters begin with.
+    /// Initial value of comms' counters.
     pub counters: u32,
 }
 
@@ -94,23 +94,23 @@ pub struct Board {
     comms_line: EnableLine,
     drive_health: Health,
     comms_health: Health,
-    /// Which start of each is the next.
+    /// Start counter of each.
     starts: [u16; 2],
-    /// What the bridge was told last.
+    /// Last command to the bridge.
     bridge: Bridge,
-    /// What comms keeps over a restart.
+    /// Parameters that comms stores over a restart.
     kept: Option<(Revision, Values)>,
     keeps: bool,
     comms_has_restarted: bool,
     /// The comparator at the shunt works.
     trips: bool,
-    /// It has let go of the bridge, until the drive does.
-    is_broken: bool,
-    /// The drive's converter gives currents.
+    /// It has opened the bridge, until the drive floats it.
+    comparator_tripped: bool,
+    /// The drive's converter works.
     converts: bool,
     /// The drive's rendering is ready in time.
     renders: bool,
-    /// Language of the drive's program, from its next start on.
+    /// Schema hash of the drive's program, from its next start on.
     drive_schema: u64,
     tick: u64,
 }
@@ -138,8 +138,8 @@ impl Board {
     /// The board of a scene's leg, just switched on.
     ///
     /// # Errors
-    /// [`ValueError`] if the defaults of the device are not allowed: a mistake
-    /// in their table, which a test would have found.
+    /// [`ValueError`] if the defaults of the device are invalid: a mistake in
+    /// their table, which a test would have found.
     pub fn new(scene: &Scene, start: &Start) -> Result<Self, ValueError> {
         let mut leg = Leg::new(scene);
         leg.preset_count(start.count);
@@ -172,7 +172,7 @@ impl Board {
             keeps: true,
             comms_has_restarted: false,
             trips: true,
-            is_broken: false,
+            comparator_tripped: false,
             converts: true,
             renders: true,
             drive_schema: schema::HASH,
@@ -182,7 +182,7 @@ impl Board {
 
     /// One tick of 50 µs.
     pub fn tick(&mut self) {
-        self.start_who_is_due();
+        self.start_due_controllers();
         let drive_runs = self.drive_health == Health::Runs;
         if drive_runs {
             self.drive.sample_encoder(self.leg.count().cast_unsigned());
@@ -191,17 +191,17 @@ impl Board {
             }
         }
         self.leg.first_half();
-        self.watch_current();
+        self.check_comparator();
         if drive_runs {
             let outputs = self.drive.command_motor(&Inputs {
                 current_a: self.converts.then(|| single(self.leg.current_a())),
                 enable_is_on: self.drive_line.read,
-                is_broken: self.is_broken,
+                is_broken: self.comparator_tripped,
             });
-            self.obey(outputs);
+            self.execute(outputs);
         }
         self.leg.second_half();
-        self.watch_current();
+        self.check_comparator();
         self.switch();
         self.drive_line.read = self.drive_line.is_on();
         self.carry();
@@ -217,26 +217,26 @@ impl Board {
         self.tick += 1;
     }
 
-    /// The comparator at the shunt, which no program stands behind.
-    fn watch_current(&mut self) {
+    /// The comparator at the shunt, which needs no program.
+    fn check_comparator(&mut self) {
         if self.bridge == Bridge::Float {
-            self.is_broken = false;
+            self.comparator_tripped = false;
         } else if self.trips && self.leg.winding_current_a().abs() > f64::from(TRIP_A) {
-            self.is_broken = true;
+            self.comparator_tripped = true;
             self.switch();
         }
     }
 
-    fn obey(&mut self, outputs: Outputs) {
+    fn execute(&mut self, outputs: Outputs) {
         self.drive_line.driven = outputs.enable;
         self.bridge = outputs.bridge;
-        // Letting go is at once; a voltage loads with the next period.
+        // Floating is immediate; a voltage loads with the next period.
         if self.bridge == Bridge::Float || !self.drive_line.is_on() {
             self.leg.set_terminals(Terminals::Open);
         }
     }
 
-    /// The bridge, as both lines let it.
+    /// The bridge, as far as both lines enable it.
     fn switch(&mut self) {
         let terminals = match self.bridge {
             Bridge::Driven(volts) if self.is_driven() => Terminals::Driven(f64::from(volts)),
@@ -245,7 +245,7 @@ impl Board {
         self.leg.set_terminals(terminals);
     }
 
-    /// What goes over the link.
+    /// Transfers bytes over the link.
     fn carry(&mut self) {
         let Self {
             drive,
@@ -295,13 +295,13 @@ impl Board {
         if outputs.reboot {
             self.reset(Controller::Comms, ResetCause::Asked);
         }
-        // A line that comms takes away is away at once.
+        // When comms disables its line, that is immediate.
         if !self.comms_line.is_on() {
             self.leg.set_terminals(Terminals::Open);
         }
     }
 
-    fn start_who_is_due(&mut self) {
+    fn start_due_controllers(&mut self) {
         if let Health::StartsAt(tick, cause) = self.drive_health
             && tick <= self.tick
         {
@@ -314,7 +314,7 @@ impl Board {
                 counter: self.leg.count().cast_unsigned(),
                 ..drive::Boot::default()
             };
-            // Its defaults were allowed at the first start.
+            // Its defaults were valid at the first start.
             if let Ok(drive) = Drive::new(&boot) {
                 self.drive = drive;
                 self.drive_health = Health::Runs;
@@ -376,11 +376,11 @@ impl Board {
         &mut self.up
     }
 
-    /// Whether the motor is being driven: told to, and let by both lines and
+    /// Whether the motor is driven: commanded, and enabled by both lines and
     /// the comparator.
     pub fn is_driven(&self) -> bool {
         matches!(self.bridge, Bridge::Driven(_))
-            && !self.is_broken
+            && !self.comparator_tripped
             && self.drive_line.is_on()
             && self.comms_line.is_on()
     }
@@ -390,8 +390,8 @@ impl Board {
         self.comms_health == Health::Runs
     }
 
-    /// Whether comms has started anew since this was asked last: its USB
-    /// device has gone, and a new one is there.
+    /// Whether comms has restarted since the last call: its USB device has been
+    /// replaced by a new one.
     pub fn take_comms_restart(&mut self) -> bool {
         std::mem::take(&mut self.comms_has_restarted)
     }
@@ -399,7 +399,7 @@ impl Board {
 
 /// Faults of the board.
 impl Board {
-    /// An enable line stays like this, or is mended.
+    /// Makes an enable line stuck, or repairs it.
     pub fn set_stuck(&mut self, controller: Controller, stuck: Option<bool>) {
         match controller {
             Controller::Drive => self.drive_line.stuck = stuck,
@@ -413,12 +413,12 @@ impl Board {
         *self.health(controller) = Health::Hangs;
     }
 
-    /// A controller is reset: its pins fall, and it starts anew.
+    /// A controller is reset: its pins fall, and it restarts.
     pub fn reset(&mut self, controller: Controller, cause: ResetCause) {
         self.reset_for(controller, cause, START_TICKS);
     }
 
-    /// The same, of a controller that takes so many ticks to start.
+    /// The same, with a start-up time in ticks.
     pub fn reset_for(&mut self, controller: Controller, cause: ResetCause, ticks: u64) {
         *self.health(controller) = Health::StartsAt(self.tick + ticks, cause);
         match controller {
@@ -436,28 +436,27 @@ impl Board {
         self.switch();
     }
 
-    /// Whether parameters can be kept.
+    /// Sets whether parameters can be stored.
     pub fn set_storage(&mut self, works: bool) {
         self.keeps = works;
     }
 
-    /// The comparator at the shunt works, or is as blind as the sensor.
+    /// Sets whether the comparator at the shunt works.
     pub fn set_trip(&mut self, works: bool) {
         self.trips = works;
     }
 
-    /// The drive's converter works, or gives no currents any more.
+    /// Sets whether the drive's converter works.
     pub fn set_converter(&mut self, works: bool) {
         self.converts = works;
     }
 
-    /// The drive's model is ready within its tick, or never.
+    /// Sets whether the drive's model is ready within its tick, or never.
     pub fn set_rendering(&mut self, in_time: bool) {
         self.renders = in_time;
     }
 
-    /// From its next start on the drive's program says that it speaks this
-    /// language.
+    /// Sets the schema hash of the drive's program from its next start on.
     pub fn set_drive_schema(&mut self, schema: u64) {
         self.drive_schema = schema;
     }

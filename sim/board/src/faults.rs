@@ -1,10 +1,9 @@
-//! What can go wrong on a wire, frame by frame, and again the same way for the
-//! same seed.
+//! Faults of a wire, frame by frame, reproducible by seed.
 
 use crepitus_protocol::frame::{FRAME_BYTES, Frame};
 use fastrand::Rng;
 
-/// How bad a wire is. Shares are of frames, 0 to 1.
+/// Faults of a wire. Shares are of frames, 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Faults {
     /// Share of frames that vanish.
@@ -15,8 +14,8 @@ pub struct Faults {
     pub duplication: f64,
     /// Share of frames whose end is missing.
     pub truncation: f64,
-    /// Ticks that a frame is on its way, at most: each takes between none and
-    /// these, and may be overtaken.
+    /// Largest delay of a frame, ticks: each has a random one up to this, and
+    /// may be overtaken.
     pub delay_ticks: u32,
     /// The wire is cut: nothing arrives.
     pub is_cut: bool,
@@ -25,13 +24,13 @@ pub struct Faults {
 /// Puts faults into a wire.
 #[derive(Clone, Debug)]
 pub struct FaultInjector {
-    /// From now on.
+    /// Current faults.
     pub faults: Faults,
     rng: Rng,
 }
 
 impl FaultInjector {
-    /// A good wire, whose faults will be those of this seed.
+    /// A wire without faults; later ones depend on this seed.
     pub fn new(seed: u64) -> Self {
         Self {
             faults: Faults::default(),
@@ -39,7 +38,7 @@ impl FaultInjector {
         }
     }
 
-    /// What arrives of a frame: so many ticks late, these bytes.
+    /// Passes a frame; `arrives` gets delay, ticks, and bytes of each arrival.
     pub fn pass(&mut self, frame: &Frame, mut arrives: impl FnMut(u64, &[u8])) {
         let faults = self.faults;
         if faults.is_cut || self.happens(faults.loss) {

@@ -1,5 +1,4 @@
-//! What the drive's peripherals touch: motor, encoder and current sensor on a
-//! leg that somebody moves as a scene says.
+//! Motor, encoder and current sensor on a leg that moves as a scene says.
 //!
 //! ```text
 //! tick n       first half        second half
@@ -7,10 +6,10 @@
 //!   count(), bridge     current_a()         count(), bridge
 //! ```
 //!
-//! A tick is gone through in two halves, because the drive samples the current
+//! A tick is simulated in two halves, because the drive samples the current
 //! in its middle. The bridge may be switched between any two halves and holds
-//! what it was told last: PWM loads at a tick's start, an emergency off comes
-//! when it comes.
+//! its last command: PWM loads at a tick's start, an emergency off is
+//! immediate.
 //!
 //! Of a scene's effects the leg has those of the mechanics (`drivetrain`,
 //! `backlash`, `cuff`, `limb`, `hand`); a motor's winding is always there, with
@@ -18,7 +17,7 @@
 //! `friction-compensation`, `bone-shaping`, the current loop of `motor`) is
 //! the board's to do.
 //!
-//! Strokes, sines and constant velocities go on for ever. Velocity knots and
+//! Strokes, sines and constant velocities continue for ever. Velocity knots and
 //! recordings are followed to the end of the scene; the motion then slows down
 //! within a tenth of a second, and rests.
 
@@ -47,18 +46,18 @@ pub struct Leg {
     steps_per_half: u32,
     counter: Counter,
     current_sensor: CurrentSensor,
-    /// What the bridge was told.
+    /// Command to the bridge.
     terminals: Terminals,
     is_supplied: bool,
-    /// Impulse felt and charge as the tick began.
+    /// Impulse at the hand and charge at the start of the tick.
     begun: (f64, f64),
     felt_nm: f64,
     motor_nm: f64,
 }
 
 impl Leg {
-    /// The leg of a scene, as its motion begins. The bridge is open, the
-    /// counter at zero, wherever the leg is.
+    /// The leg of a scene at the start of its motion. The bridge is open, the
+    /// counter zero, whatever the angle.
     pub fn new(scene: &Scene) -> Self {
         // A scene's steps are those of a tick.
         let steps_per_half = scene.substeps.div_ceil(2);
@@ -80,7 +79,7 @@ impl Leg {
         }
     }
 
-    /// The first half of a tick. At its end the current is to be sampled.
+    /// The first half of a tick. The current is sampled at its end.
     pub fn first_half(&mut self) {
         self.begun = (self.plant.felt_nms(), self.plant.actuator().charge_c());
         self.half();
@@ -103,7 +102,7 @@ impl Leg {
         self.counter.turn_to(self.plant.shaft().angle_rad);
     }
 
-    /// What the bridge does from now on.
+    /// Sets the command to the bridge.
     pub fn set_terminals(&mut self, terminals: Terminals) {
         self.terminals = terminals;
         self.switch();
@@ -123,17 +122,17 @@ impl Leg {
         self.counter.count()
     }
 
-    /// The counter shows `count` now, and counts on from there.
+    /// Sets the counter to `count`.
     pub fn preset_count(&mut self, count: i32) {
         self.counter.preset(count);
     }
 
-    /// What the current sensor shows now, A.
+    /// Reading of the current sensor, A.
     pub fn current_a(&self) -> f64 {
         self.current_sensor.shows(self.winding_current_a())
     }
 
-    /// The current that there is, A; positive drives towards growing angle.
+    /// The true current, A; positive drives towards growing angle.
     pub fn winding_current_a(&self) -> f64 {
         self.plant.actuator().current_a()
     }
@@ -147,7 +146,7 @@ impl Leg {
         }
     }
 
-    /// Time since the motion's beginning, s.
+    /// Time since the start of the motion, s.
     pub fn time_s(&self) -> f64 {
         self.walk.time_s()
     }
@@ -162,14 +161,14 @@ impl Leg {
         self.plant.leg()
     }
 
-    /// Torque that the hand felt in the last tick, its mean, N·m; positive
-    /// opposes growing angle. Zero if nobody holds the leg.
+    /// Mean torque at the hand in the last tick, N·m; positive opposes growing
+    /// angle. Zero if the leg is free.
     pub fn felt_nm(&self) -> f64 {
         self.felt_nm
     }
 
-    /// Torque of the motor at the joint in the last tick, its mean, N·m;
-    /// positive opposes growing angle.
+    /// Mean torque of the motor at the joint in the last tick, N·m; positive
+    /// opposes growing angle.
     pub fn motor_nm(&self) -> f64 {
         self.motor_nm
     }
@@ -180,20 +179,20 @@ impl Leg {
     }
 }
 
-/// Faults, which can be put in and taken out at any time.
+/// Faults, which can be set and cleared at any time.
 impl Leg {
     /// Rewires the encoder.
     pub fn set_encoder_wiring(&mut self, wiring: EncoderWiring) {
         self.counter.wiring = wiring;
     }
 
-    /// Mends or breaks the current sensor.
+    /// Breaks or repairs the current sensor.
     pub fn set_current_sensor(&mut self, sensor: CurrentSensor) {
         self.current_sensor = sensor;
     }
 
     /// Turns the motor's supply on or off. Without it the terminals are open,
-    /// whatever the bridge is told; a current dies away into the capacitors of
+    /// whatever the bridge's command; a current decays into the capacitors of
     /// the supply, which still hold its voltage.
     pub fn set_supply(&mut self, is_on: bool) {
         self.is_supplied = is_on;

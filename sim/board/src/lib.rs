@@ -1,19 +1,19 @@
 //! # A device without silicon
 //!
-//! The real programs of both controllers, natively, with a leg that somebody
-//! moves as a scene says; the link between them, the USB cable to the host,
-//! and everything that can go wrong with any of it.
+//! The real programs of both controllers, natively, with a leg that moves as
+//! a scene says; the link between them, the USB cable to the host, and the
+//! faults of each.
 //!
 //! | to find | look in |
 //! |---|---|
 //! | the two controllers and their lines | [`board`] |
-//! | what their peripherals touch | [`leg`] |
+//! | motor, encoder and leg | [`leg`] |
 //! | the link, and its faults | [`wire`], [`faults`] |
 //! | the device at the end of a USB cable | [`virtual_device`] |
-//! | the parameters that a scene calls for | [`values`] |
+//! | the parameters of a scene | [`values`] |
 //!
 //! Real: every line of `device`, `protocol` and `model`, and the USB stack.
-//! Virtual: silicon, bus, leg and time, which goes on only as it is made to.
+//! Virtual: silicon, bus, leg and time, which advances only tick by tick.
 #![forbid(unsafe_code)]
 
 pub mod board;

@@ -1,4 +1,4 @@
-//! The device's parameters that a scene calls for.
+//! The device's parameters of a scene.
 
 use crepitus_model::{Convention, Restart};
 use crepitus_plant::effects::EFFECTS;
@@ -11,15 +11,15 @@ use crepitus_scene::Scene;
 #[non_exhaustive]
 pub enum NotRendered {
     /// The firmware renders one convention.
-    #[error("a device renders the convention \"frozen\" only, and the scene asks for \"{0}\"")]
+    #[error("a device renders the convention \"frozen\" only; the scene has \"{0}\"")]
     Convention(&'static str),
     /// The convention has no damping.
-    #[error("a device renders a joint without damping, and the scene gives it some")]
+    #[error("a device renders a joint without damping only; set damping_nms_per_rad to 0")]
     Damping,
 }
 
-/// The values of a scene: what it lists is on, what it does not list is off,
-/// what it says nothing about has its default.
+/// The values of a scene: its effects are enabled, others disabled, and
+/// unspecified parameters have their defaults.
 ///
 /// # Errors
 /// [`NotRendered`] if no device can render it.

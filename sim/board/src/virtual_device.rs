@@ -1,11 +1,11 @@
-//! A board at the end of a USB cable: what a host's program talks to.
+//! A board at the end of a USB cable, for a host's program.
 //!
 //! ```text
 //! program ── bytes ── CdcHost ══ packets ══ SoftBus ── usb-device, usbd-serial ── Comms ── link ── Drive ── leg
 //! ```
 //!
-//! Time goes on only when somebody makes it: [`VirtualDevice::tick`] is 50 µs
-//! of everything, one packet each way on the bus among it.
+//! Time advances only by [`VirtualDevice::tick`]: 50 µs of everything,
+//! including one packet each way on the bus.
 
 use crate::board::{Board, Start};
 use crate::values::{NotRendered, values};
@@ -21,7 +21,7 @@ use usb_device::bus::UsbBusAllocator;
 /// Turns of the bus in a frame.
 const FRAME_TICKS: u64 = 20;
 
-/// What a device says of itself on the bus.
+/// Strings of the USB descriptors.
 const IDENTITY: UsbIdentity<'static> = UsbIdentity {
     manufacturer: "Crepitus",
     product: "Crepitus simulated device",
@@ -35,11 +35,11 @@ pub enum VirtualError {
     /// No device can render the scene.
     #[error(transparent)]
     Scene(#[from] NotRendered),
-    /// The device's own defaults are not allowed.
-    #[error("the device's defaults are not allowed: {0:?}")]
+    /// The device's own defaults are invalid.
+    #[error("the device's defaults are invalid: {0:?}")]
     Defaults(ValueError),
-    /// The USB stack refused its description.
-    #[error("the USB device cannot be described: {0:?}")]
+    /// The USB stack refused the descriptors.
+    #[error("the USB stack refused the descriptors: {0:?}")]
     Port(UsbPortError),
     /// The host could not enumerate it.
     #[error("the virtual USB device cannot be enumerated")]
@@ -72,13 +72,12 @@ impl Usb {
 pub struct VirtualDevice {
     board: Board,
     usb: Usb,
-    /// What went over earlier connections.
+    /// Traffic of earlier connections.
     earlier: Traffic,
 }
 
 impl VirtualDevice {
-    /// The device of a scene, with the scene's parameters kept in it, plugged
-    /// in.
+    /// The device of a scene, with the scene's parameters stored, plugged in.
     ///
     /// # Errors
     /// [`VirtualError`] if no device can render the scene.
@@ -97,11 +96,11 @@ impl VirtualDevice {
         Ok(device)
     }
 
-    /// Pushes the plug in, and has the host find the device.
+    /// Plugs the device in, and enumerates it.
     ///
     /// # Errors
-    /// [`VirtualError::Enumeration`] if it does not find one: comms hangs, or
-    /// is just starting.
+    /// [`VirtualError::Enumeration`] if that fails: comms hangs, or is just
+    /// starting.
     pub fn plug_in(&mut self) -> Result<(), VirtualError> {
         self.unplug();
         let Self { board, usb, .. } = self;
@@ -129,13 +128,13 @@ impl VirtualDevice {
         self.usb.host.is_some()
     }
 
-    /// 50 µs of everything. A device that does not answer any more is gone,
-    /// until it is plugged in again.
+    /// 50 µs of everything. A device that does not answer is disconnected until
+    /// it is plugged in again.
     pub fn tick(&mut self) {
         turn(&mut self.board, &mut self.usb.port);
         if self.board.take_comms_restart() {
             self.unplug();
-            // The new start describes itself as the one before.
+            // The descriptors are the same as before.
             if let Ok(usb) = Usb::new() {
                 self.usb = usb;
             }
@@ -166,7 +165,7 @@ impl VirtualDevice {
         self.usb.host.as_mut()
     }
 
-    /// What has gone over the bus, over all connections.
+    /// Traffic of the bus, over all connections.
     pub fn traffic(&self) -> Traffic {
         let now = self
             .usb
@@ -184,7 +183,7 @@ impl VirtualDevice {
     }
 }
 
-/// What the device does in 50 µs.
+/// Runs the device for 50 µs.
 fn turn(board: &mut Board, port: &mut UsbPort<'static, SoftBus>) {
     board.tick();
     if board.comms_runs() {

@@ -8,10 +8,10 @@ use std::collections::VecDeque;
 /// Bytes that the UART carries in a tick: 4.2 Mbaud, ten bits a byte, 50 µs.
 pub const BYTES_PER_TICK: usize = 21;
 
-/// Frames that the sender has a place for, the one that it makes among them.
+/// Frame buffers of the sender, including the one being encoded.
 const PLACES: usize = 3;
 
-/// What has gone over a wire.
+/// Traffic of a wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
     /// Frames sent.
@@ -25,19 +25,19 @@ pub struct Traffic {
 /// One direction of the link.
 #[derive(Clone, Debug)]
 pub struct Wire {
-    /// What goes wrong on it.
+    /// Its faults.
     pub injector: FaultInjector,
-    /// The frame that is being sent, and how much of it is.
+    /// The frame being sent, and the number of bytes sent.
     sending: Option<(Frame, usize)>,
-    /// Those after it.
+    /// Frames after it.
     waiting: VecDeque<Frame>,
-    /// Frames that are on their way, with the tick of their arrival.
+    /// Frames in transit, with the tick of their arrival.
     on_the_way: VecDeque<(u64, Vec<u8>)>,
     traffic: Traffic,
 }
 
 impl Wire {
-    /// A good wire, whose faults will be those of this seed.
+    /// A wire without faults; later ones depend on this seed.
     pub fn new(seed: u64) -> Self {
         Self {
             injector: FaultInjector::new(seed),
@@ -48,19 +48,19 @@ impl Wire {
         }
     }
 
-    /// What has gone over it.
+    /// Its traffic.
     pub fn traffic(&self) -> Traffic {
         self.traffic
     }
 
-    /// The sender has been reset: what it was sending ends here.
+    /// Resets the sender: the frame being sent ends here.
     pub fn sender_reset(&mut self) {
         self.sending = None;
         self.waiting.clear();
     }
 
-    /// One tick: asks the sender for a frame, tells it whether there is a place
-    /// for one that it begins, and gives the receiver what arrives.
+    /// One tick: asks the sender for a frame, with whether a buffer is free for
+    /// a new one, and passes arriving bytes to the receiver.
     pub fn tick(
         &mut self,
         now: u64,

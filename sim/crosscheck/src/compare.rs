@@ -8,12 +8,12 @@
 //! |Δθ| ≤ 10⁻¹¹·max(|θ|, Ts/kr) + 2⁻⁴⁹·|φ| + |θ̇|·(bound of Δt)
 //! |ΔT| ≤ 10⁻¹¹·Ts + kr·(bound of Δθ)
 //! ```
-//! Where that fails, the case is solved [`TRIALS`] times more with
-//! [rounding](crate::rounding) of ±[`UNITS`] units. What these solutions differ
-//! by at an event, times [`MARGIN`], is allowed on top. If one of them has
-//! another sequence from an event on, the case is **undecidable** from there:
-//! its own rounding decides, and only what comes before counts. Whatever else
-//! differs is **real**.
+//! If that fails, the case is solved [`TRIALS`] times more with
+//! [rounding](crate::rounding) of ±[`UNITS`] units. The difference of these
+//! solutions at an event, times [`MARGIN`], is added to the tolerance. If one of
+//! them has another sequence from an event on, the case is **undecidable** from
+//! there: rounding decides, and only earlier events are compared. Any other
+//! difference is **real**.
 
 use crate::corpus::{Case, MOST_EVENTS};
 use crate::double_double::Dd;
@@ -30,7 +30,7 @@ pub const TRIALS: u64 = 8;
 /// Rounding of every number in them, units of 2⁻⁵³: what a torque may be
 /// beyond the limit and still count as at it is tens of roundings too.
 pub const UNITS: f64 = 32.0;
-/// How much of their differences is allowed.
+/// Factor of their differences in the tolerance.
 pub const MARGIN: f64 = 2.0;
 
 /// Why rounding decides a case.
@@ -64,7 +64,7 @@ impl Doubt {
     }
 }
 
-/// What two solutions differ in.
+/// Difference of two solutions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Difference {
     /// Kind or sense, or an event that one does not have.

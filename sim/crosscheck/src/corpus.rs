@@ -6,7 +6,7 @@
 //!
 //! Most cases come from a physically wide core, one in seven from the whole
 //! ranges of `crepitus_model::parameters`. The speed is chosen by λ = (Ts −
-//! Tk)/(Ω·√(J·kr)) in most, so that neither stick nor slip is all there is,
+//! Tk)/(Ω·√(J·kr)) in most, so that both stick and slip occur,
 //! and the duration in cycles of the crepitus.
 
 mod joint;
@@ -73,7 +73,7 @@ pub struct Case {
     pub kind: MotionKind,
     /// The motion.
     pub motion: Motion,
-    /// How long, s.
+    /// Duration, s.
     pub duration_s: f64,
 }
 
@@ -172,7 +172,7 @@ fn motion(rng: &mut Rng, kind: MotionKind, scale: Scale) -> Option<(Motion, f64)
                     rng.f64() * stroke_s
                 },
             };
-            // The span may have drowned in the angle it begins at.
+            // The span may be below the rounding of the start angle.
             let exact_s = strokes.stroke_s();
             if !(exact_s > 0.5 * stroke_s && exact_s < 2.0 * stroke_s) {
                 return None;

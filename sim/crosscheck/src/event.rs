@@ -1,14 +1,14 @@
-//! What the solver reports.
+//! Events reported by the solver.
 
 use crate::double_double::Dd;
 use crepitus_model::EventKind;
 
-/// What made an event happen.
+/// Cause of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
     /// The torque reached a limit smoothly.
     Limit,
-    /// A stick could not be at the start.
+    /// A stick was impossible at the start.
     Start,
     /// The shaft's velocity jumped.
     VelocityJump,
@@ -23,11 +23,11 @@ pub enum Cause {
 /// One event.
 #[derive(Clone, Copy, Debug)]
 pub struct Event {
-    /// What happened.
+    /// Its kind.
     pub kind: EventKind,
-    /// Why.
+    /// Its cause.
     pub cause: Cause,
-    /// When, s.
+    /// Its time, s.
     pub time_s: Dd,
     /// The sense before: −1, 0 (stick), +1.
     pub from: i8,
@@ -49,7 +49,7 @@ pub struct Event {
     pub excess: Option<f64>,
 }
 
-/// All that happened up to the end.
+/// All events up to the end.
 #[derive(Clone, Debug, Default)]
 pub struct History {
     /// The events in order.

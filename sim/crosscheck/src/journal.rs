@@ -2,7 +2,7 @@
 //! motion.
 //!
 //! A piece is [`PIECE`] cases. Its rows are written at once when it is done,
-//! so a run that is cut off goes on with the first piece that is not whole.
+//! so an interrupted run continues with the first incomplete piece.
 //! `notable` lists the cases that do not simply agree, as `number:verdict`.
 
 use crate::compare::{Comparison, Difference, Verdict, compare};
@@ -35,7 +35,7 @@ pub struct Counts {
     pub agreed: u64,
     /// Of these, cases whose tolerance followed the conditioning.
     pub conditioned: u64,
-    /// Cases that rounding decides from some event on.
+    /// Cases decided by rounding from some event on.
     pub undecidable: u64,
     /// Cases with a real difference.
     pub disagreed: u64,
@@ -111,7 +111,7 @@ pub struct Row {
     pub convention: Convention,
     /// Its motion.
     pub motion: MotionKind,
-    /// What was counted.
+    /// The counts.
     pub counts: Counts,
 }
 
@@ -209,10 +209,10 @@ impl Tally {
     }
 }
 
-/// Runs a piece; `progress` hears of every case.
+/// Runs a piece; `progress` is called for every case.
 ///
 /// # Errors
-/// Where no child process can be started.
+/// If no child process can be started.
 pub fn run_piece(
     program: &Path,
     limit: Duration,
@@ -229,10 +229,10 @@ pub fn run_piece(
     Ok(tally)
 }
 
-/// The whole pieces of a journal, in order of the file.
+/// The complete pieces of a journal, in order of the file.
 ///
 /// # Errors
-/// Where the file exists and cannot be read.
+/// If the file exists and cannot be read.
 pub fn read(path: &Path) -> io::Result<Vec<Vec<Row>>> {
     if !path.exists() {
         return Ok(Vec::new());
@@ -249,7 +249,7 @@ pub fn read(path: &Path) -> io::Result<Vec<Vec<Row>>> {
 /// Writes a journal with these pieces and nothing else.
 ///
 /// # Errors
-/// What the file system says.
+/// Errors of the file system.
 pub fn rewrite(path: &Path, pieces: &[Vec<Row>]) -> io::Result<()> {
     let mut text = format!("{HEADER}\n");
     for row in pieces.iter().flatten() {
@@ -262,7 +262,7 @@ pub fn rewrite(path: &Path, pieces: &[Vec<Row>]) -> io::Result<()> {
 /// Appends a piece in one write.
 ///
 /// # Errors
-/// What the file system says.
+/// Errors of the file system.
 pub fn append(path: &Path, rows: &[Row]) -> io::Result<()> {
     let mut text = String::new();
     for row in rows {

@@ -1,17 +1,17 @@
 //! # A second solver, and a corpus to compare it on
 //!
-//! `reference` is what every other solver is measured against. This crate
-//! judges `reference`: it solves the same problems by other mathematics, with
+//! Every other solver is measured against `reference`. This crate checks
+//! `reference`: it solves the same problems by other mathematics, with
 //! twice the digits, on thousands of random cases. The book's page on the
 //! cross-check has the equations and the figures.
 //!
 //! | to find | look in |
 //! |---|---|
 //! | numbers of 31 digits; sine and arc tangent from their series | [`double_double`], [`circle`] |
-//! | Taylor polynomials with a bound of the rest; their first zero | [`series`], [`mod@first_fall`] |
+//! | Taylor polynomials with a bound of the remainder; their first zero | [`series`], [`mod@first_fall`] |
 //! | the shaft's and the object's motion as such polynomials | [`shaft`], [`swing`] |
 //! | the joint from event to event | [`solver`], [`event`] |
-//! | what f64 cannot decide | [`rounding`] |
+//! | cases decided by the rounding of f64 | [`rounding`] |
 //! | the random cases | [`corpus`] |
 //! | `reference` under a time limit, and its sign law | [`theirs`], [`wire`], [`watched`] |
 //! | the verdict on a case | [`compare`] |

@@ -1,4 +1,4 @@
-//! `crepitus-crosscheck`: runs the corpus, adds it up, shows a case.
+//! `crepitus-crosscheck`: runs the corpus, sums it up, shows a case.
 
 mod show;
 
@@ -25,7 +25,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Verb {
-    /// Runs the corpus in pieces; a run that was cut off goes on.
+    /// Runs the corpus in pieces; an interrupted run continues.
     ///
     /// Example: crepitus-crosscheck corpus --to 1000 --out out/corpus.csv
     Corpus {
@@ -42,7 +42,7 @@ enum Verb {
         #[arg(long, default_value_t = LIMIT.as_secs())]
         limit_s: u64,
     },
-    /// Adds up a journal and prints its tables.
+    /// Sums up a journal and prints its tables.
     Summary {
         /// The journal.
         #[arg(long, default_value = JOURNAL)]
@@ -91,7 +91,7 @@ fn main() -> ExitCode {
 
 fn corpus(from: u64, to: u64, out: &Path, limit: Duration) -> io::Result<bool> {
     let mut pieces = journal::read(out)?;
-    // What a cut left half written goes.
+    // Drops an incomplete piece of an interrupted run.
     journal::rewrite(out, &pieces)?;
     let program = std::env::current_exe()?;
     let bar = ProgressBar::new(to.div_ceil(PIECE).saturating_sub(from / PIECE) * PIECE);
@@ -119,7 +119,7 @@ fn summary(out: &Path) -> io::Result<bool> {
     Ok(report(&pieces))
 }
 
-/// Prints the tables; whether all is well.
+/// Prints the tables; returns whether all is well.
 fn report(pieces: &[Vec<journal::Row>]) -> bool {
     let summary = Summary::of(pieces);
     print!("{}", summary.markdown());
@@ -130,8 +130,8 @@ fn report(pieces: &[Vec<journal::Row>]) -> bool {
 }
 
 fn reference(from: u64, to: u64) -> io::Result<bool> {
-    // The parent holds our input open. Where it has gone, a case that never
-    // ends must not go on without it.
+    // The parent holds our input open. When it has ended, a case that never
+    // ends must end, too.
     std::thread::spawn(|| {
         let _ = io::copy(&mut io::stdin(), &mut io::sink());
         std::process::exit(1);

@@ -1,8 +1,8 @@
-//! What an f64 solver could not have known better.
+//! Sensitivity to the rounding of an f64 solver.
 //!
-//! A disagreement says something only where the answer does not hang on the
+//! A disagreement is meaningful only if the answer does not depend on the
 //! last bit of an f64. So the same problem is solved again, as exactly, but
-//! with every number that an f64 solver has to keep replaced by a neighbour:
+//! with every number that an f64 solver has to store replaced by a neighbour:
 //! the parameters and the motion's numbers once, and the time, the angle and
 //! the velocity at the end of every step and at every event. A change is
 //! uniform within ± `units` · 2⁻⁵³ of the number's natural size.

@@ -1,10 +1,10 @@
-//! A Taylor polynomial with a bound of what it leaves out.
+//! A Taylor polynomial with a bound of its remainder.
 //!
 //! ```text
 //! f(t₀ + h·σ) = Σ cₖ·σᵏ + r(σ),   |r(σ)| ≤ error,   0 ≤ σ ≤ 1
 //! ```
-//! The coefficients carry the power of the length h, so that they are of one
-//! unit and their sizes say at once what each term is worth.
+//! The coefficients include the power of the length h, so that they have one
+//! unit and their sizes are those of the terms.
 
 use crate::double_double::Dd;
 use std::sync::LazyLock;

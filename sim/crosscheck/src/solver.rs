@@ -4,9 +4,9 @@
 //! stick    θ = θ₀ + φ − φ₀      T = kr·θ            (`physical`: + J·Ω̇ + c·Ω)
 //! slip s   J·θ̈ + c·θ̇ + kr·θ = s·Tk, until s·(Ω − θ̇) falls to zero
 //! ```
-//! This file holds the joint's numbers and what every phase shares; `stick`,
-//! `slip` and `frozen` beside it are the phases, `boundary` what happens where
-//! the motion's pieces meet.
+//! This file holds the joint's numbers and code shared by all phases; `stick`,
+//! `slip` and `frozen` beside it are the phases, `boundary` the boundaries of
+//! the motion's pieces.
 
 mod boundary;
 mod frozen;
@@ -22,24 +22,24 @@ use crate::swing::Object;
 use crepitus_model::{Convention, EventKind, Restart, Settings};
 use crepitus_plant::{Motion, Piece};
 
-/// What a torque may exceed Ts by and still count as at it, relative: far
-/// above the rounding of 31 digits, far below that of 16.
+/// Relative tolerance of a torque at Ts: far above the rounding of 31 digits,
+/// far below that of 16.
 const AT_LIMIT: f64 = 1e-24;
 /// The most steps of a solution.
 const MOST_STEPS: u32 = 400_000;
 /// The most events at one time.
 const MOST_AT_ONCE: usize = 8;
 
-/// What is solved.
+/// A problem to solve.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a> {
     /// The joint.
     pub settings: &'a Settings,
     /// The motion of the shaft.
     pub motion: &'a Motion,
-    /// How long, s.
+    /// Duration, s.
     pub duration_s: f64,
-    /// The most events that are of interest.
+    /// The most events to find.
     pub most_events: usize,
 }
 
@@ -51,7 +51,7 @@ struct Joint {
     damping: Dd,
     kinetic_nm: Dd,
     static_nm: Dd,
-    /// What of J and c counts in the torque of a stick.
+    /// J and c as far as the torque of a stick includes them.
     stick_inertia: Dd,
     stick_damping: Dd,
     convention: Convention,
@@ -59,7 +59,7 @@ struct Joint {
     object: Object,
 }
 
-/// What the object does. Senses are ±1.
+/// State of the object. Senses are ±1.
 #[derive(Clone, Copy, Debug)]
 enum Phase {
     /// It moves with the shaft; `fresh` where the torque may begin at a limit.
@@ -80,7 +80,7 @@ enum Gap {
     Opening(Dd),
 }
 
-/// A solution under way.
+/// A solution in progress.
 struct Solver<'a> {
     problem: Problem<'a>,
     joint: Joint,
@@ -175,7 +175,7 @@ impl Joint {
         )
     }
 
-    /// kr·θ + J·Ω̇ + c·Ω of a stick, whatever the convention counts.
+    /// kr·θ + J·Ω̇ + c·Ω of a stick, under any convention.
     fn true_torque(&self, theta: Dd, shaft: &Shaft) -> Series {
         Self::torque(self.stiffness, self.inertia, self.damping, theta, shaft)
     }
@@ -238,7 +238,7 @@ impl Solver<'_> {
         Ok(())
     }
 
-    /// Rejects what does not get on.
+    /// Rejects a solution without progress.
     fn check(&mut self) -> Result<(), Unsolved> {
         self.steps += 1;
         let time_s = self.time_s.to_f64();
@@ -282,8 +282,8 @@ impl Solver<'_> {
         Shaft::new(&self.piece, &self.changes, self.time_s, length_s)
     }
 
-    /// Goes on to a time, after a step: exactly to the horizon where it was
-    /// meant.
+    /// Advances to a time, after a step: exactly to the horizon if that was
+    /// intended.
     fn pass(&mut self, length_s: Dd) -> bool {
         let horizon = self.horizon_s();
         let next = self.time_s + length_s;

@@ -1,4 +1,4 @@
-//! What a journal adds up to.
+//! Sums of a journal.
 
 use crate::corpus::MotionKind;
 use crate::journal::{Counts, PIECE, Row};
@@ -11,12 +11,12 @@ use std::fmt::Write;
 pub struct Summary {
     /// By convention and motion.
     cells: Vec<(Convention, MotionKind, Counts)>,
-    /// What does not add up.
+    /// Inconsistencies.
     pub faults: Vec<String>,
 }
 
 impl Summary {
-    /// Adds up pieces, and checks that they do.
+    /// Adds up pieces, and checks their consistency.
     pub fn of(pieces: &[Vec<Row>]) -> Self {
         let mut faults = Vec::new();
         let mut cells: Vec<_> = Convention::ALL

@@ -6,11 +6,11 @@
 //! ```text
 //! xₖ₊₂ = −[(c·h/J)·(k+1)·xₖ₊₁ + (kr·h²/J)·xₖ]/((k+1)(k+2))
 //! ```
-//! How much the series leaves out is known from the energy. Every derivative
+//! The remainder is bounded by the energy. Every derivative
 //! of x obeys the same equation, and R² = (x⁽ⁿ⁺¹⁾)² + ωn²·(x⁽ⁿ⁾)² never grows
 //! under it, for no damping, critical damping or any other. So, by Lagrange's
-//! form of the remainder, with R of the first derivative left out as it is at
-//! the beginning of the step,
+//! form of the remainder, with R of the first omitted derivative at the
+//! beginning of the step,
 //!
 //! ```text
 //! |v − Σ| ≤ R·hⁿ/n! = √(((n+1)·xₙ₊₁/h)² + (ωn·xₙ)²)
@@ -22,7 +22,7 @@ use crate::series::{MOST, Series, number, reciprocal};
 
 /// The degree n of x.
 const DEGREE: usize = MOST - 2;
-/// What a step may leave out, relative to √(v² + ωn²x²): 2⁻¹⁰⁰.
+/// Largest remainder of a step, relative to √(v² + ωn²x²): 2⁻¹⁰⁰.
 const LEFT_OUT: f64 = 8e-31;
 
 /// The numbers of the free motion.

@@ -2,8 +2,8 @@
 //!
 //! A solver that loops for ever is a disagreement like any other, but a thread
 //! cannot be ended. So a child runs one case after another and reports each;
-//! where a report does not come in time, or the child dies, that case is noted
-//! as such and another child goes on with the next.
+//! if a report times out, or the child dies, that is the case's result, and
+//! another child continues with the next.
 
 use crate::theirs::Theirs;
 use crate::wire;
@@ -13,11 +13,11 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-/// How long one case may take by default. Cases take milliseconds; on a machine that is
-/// busy with other work they may take a thousand times that.
+/// Default timeout of a case. Cases take milliseconds; on a busy machine they may take a
+/// thousand times that.
 pub const LIMIT: Duration = Duration::from_secs(10);
 
-/// What became of a case.
+/// Result of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
     /// It was solved.
@@ -55,7 +55,7 @@ impl Watched {
             .arg("reference")
             .args(["--from", &self.next.to_string()])
             .args(["--to", &self.end.to_string()])
-            // Held open: a child whose parent has gone ends by itself.
+            // Held open: a child ends when its parent has ended.
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

@@ -21,7 +21,7 @@ fn number(word: &str) -> Option<f64> {
 /// Writes one case.
 ///
 /// # Errors
-/// What the writer says.
+/// Errors of the writer.
 pub fn write(out: &mut impl Write, case: u64, theirs: &Theirs) -> io::Result<()> {
     writeln!(
         out,

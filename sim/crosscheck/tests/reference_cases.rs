@@ -79,8 +79,8 @@ fn settings(json: &Value) -> Settings {
         },
         convention: match text(&json["convention"]) {
             "frozen" => Convention::Frozen,
-            "paper7" => Convention::Paper,
-            "full" => Convention::Physical,
+            "paper" => Convention::Paper,
+            "physical" => Convention::Physical,
             other => panic!("unknown convention {other}"),
         },
         ..Settings::default()

@@ -52,7 +52,7 @@ const SEED: u64 = 1;
 /// only cost time.
 const READY_CLOCKS: u64 = 400;
 
-/// The parts that somebody outside of the chip touches.
+/// The parts that are accessed from outside of the chip.
 pub(crate) struct Chip {
     pub(crate) bus: Arc<Bus>,
     pub(crate) rcc: Arc<Rcc>,
@@ -65,8 +65,8 @@ pub(crate) struct Chip {
     pub(crate) dma: [Arc<Dma>; 2],
     /// Channels A and B of the encoder.
     pub(crate) quadrature: [WireSource; 2],
-    /// The watchdog has bitten.
-    pub(crate) bitten: Arc<AtomicBool>,
+    /// The watchdog has fired.
+    pub(crate) watchdog_fired: Arc<AtomicBool>,
     /// The inputs of the reset flags.
     pub(crate) causes: wires::Causes,
 }
@@ -118,10 +118,10 @@ impl Chip {
             gate,
             rng,
         ));
-        let bitten = Latch::new();
+        let watchdog_fired = Latch::new();
         let watchdog = Arc::new(Iwdg::with_window(false));
         watchdog
-            .connect("reset", nets.to(bitten.clone(), 0))
+            .connect("reset", nets.to(watchdog_fired.clone(), 0))
             .expect("it has a reset");
         parts.push(Part::of_library(
             "IWDG",
@@ -148,7 +148,7 @@ impl Chip {
             usart,
             dma,
             quadrature,
-            bitten: bitten.flag(),
+            watchdog_fired: watchdog_fired.flag(),
             causes,
         }
     }

@@ -1,4 +1,4 @@
-//! Which cycles a task takes: from the entry into its exception to the end of
+//! Cycles of a task: from the entry into its exception to the end of
 //! its return, without those of the tasks that interrupt it.
 //!
 //! Modelled cycles, 0 wait states: a load or a store is two, a branch that is
@@ -10,20 +10,20 @@ use crate::mcu::{Step, Watch};
 use crate::time::Time;
 use std::collections::BTreeMap;
 
-/// What a task has cost.
+/// Cost of a task.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// How often it has run.
+    /// Number of runs.
     pub calls: u64,
-    /// Cycles, all of them.
+    /// All cycles.
     pub cycles: u64,
     /// Cycles of the worst run.
     pub worst_cycles: u64,
-    /// Instructions, all of them.
+    /// All instructions.
     pub instructions: u64,
     /// Instructions of the longest run.
     pub worst_instructions: u64,
-    /// From begin to end with all that interrupts it, the worst.
+    /// Worst time from start to end, interruptions included.
     pub worst_span: Time,
 }
 
@@ -43,12 +43,12 @@ struct Run {
     instructions: u64,
 }
 
-/// Keeps the books.
+/// Cycle accounting.
 #[derive(Clone, Debug, Default)]
 pub struct Cycles {
     runs: Vec<Run>,
     costs: BTreeMap<u16, Cost>,
-    /// Which exception has interrupted which.
+    /// Number of preemptions by pair of exceptions.
     preemptions: BTreeMap<(u16, u16), u64>,
     /// Cycles in exceptions, tick by tick from the first step on.
     busy: Vec<u64>,
@@ -81,7 +81,7 @@ impl Cycles {
         self.busy.iter().copied().max().unwrap_or(0)
     }
 
-    /// Forgets what it has seen, but for what runs now.
+    /// Clears all but the running tasks.
     pub fn clear(&mut self) {
         self.costs.clear();
         self.preemptions.clear();
@@ -148,8 +148,7 @@ impl Watch for Cycles {
         }
         let top = self.runs.last();
         if top.is_some_and(|run| run.exception != step.exception) {
-            // Straight from one to the next, with the cost of the way charged
-            // to the first.
+            // Tail-chaining, charged to the first.
             self.end(step.at);
             self.begin_run(step, 0);
         }

@@ -1,4 +1,4 @@
-//! What the library lacks.
+//! Devices that the library lacks.
 //!
 //! | device | for |
 //! |---|---|

@@ -8,11 +8,11 @@
 //!                              motor supply
 //! ```
 //!
-//! Leg and chip take turns, half a tick at a time. The halves are in step with
-//! the bridge's timer once it runs: a tick begins at its bottom. What the leg
-//! sees of the bridge is its mean voltage: shares of the period times supply,
-//! without dead time. The encoder's edges come evenly within the last six
-//! tenths of a half. The comparator at the shunt looks as a half ends.
+//! Leg and chip run alternately, half a tick at a time. The halves are
+//! synchronised with the bridge's timer once it runs: a tick begins at its
+//! bottom. The leg gets the bridge's mean voltage: duty times supply,
+//! without dead time. The encoder's edges are evenly spaced in the last six
+//! tenths of a half. The comparator at the shunt is evaluated as a half ends.
 
 mod access;
 mod encoder_edges;
@@ -48,7 +48,7 @@ const BREAK: Pin = Pin::new('B', 12);
 /// Share of the converter's reference per ampere: 33 mΩ, 20 V/V, of 3.3 V.
 const SHARE_PER_A: f64 = 20.0 * 0.033 / 3.3;
 
-/// What is broken, or switched off.
+/// Faults of the board.
 #[derive(Clone, Copy, Debug, Default)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -59,11 +59,11 @@ pub struct Faults {
     pub down_is_cut: bool,
     /// Nothing from the drive arrives.
     pub up_is_cut: bool,
-    /// Comms does nothing any more; its line stays as it is.
+    /// Comms hangs; its line stays as it is.
     pub comms_hangs: bool,
-    /// The comparator at the shunt sees nothing.
+    /// The comparator at the shunt never trips.
     pub trip_is_blind: bool,
-    /// The drive's line stays like this whatever drives it.
+    /// The drive's line is stuck at this level.
     pub line_is_stuck: Option<bool>,
 }
 
@@ -72,7 +72,7 @@ pub struct DriveBoard {
     mcu: Stm32f405,
     leg: Leg,
     comms: Comms,
-    /// What is broken.
+    /// Current faults.
     pub faults: Faults,
     comms_line: bool,
     down: Down,
@@ -81,9 +81,9 @@ pub struct DriveBoard {
     /// Halves since the board was switched on.
     halves: u64,
     is_second: bool,
-    /// Where the next half ends.
+    /// End of the next half.
     end: Time,
-    is_in_step: bool,
+    is_synchronised: bool,
     resets: Vec<(Time, Reset)>,
 }
 
@@ -126,26 +126,26 @@ impl DriveBoard {
             halves: 0,
             is_second: false,
             end: Time::ZERO,
-            is_in_step: false,
+            is_synchronised: false,
             resets: Vec::new(),
         }
     }
 
-    /// So many ticks.
+    /// Runs a number of ticks.
     pub fn run(&mut self, ticks: u64) {
         for _ in 0..2 * ticks {
             self.half(None);
         }
     }
 
-    /// As [`Self::run`], with every step of the core for `watch`.
+    /// As [`Self::run`], passing every step of the core to `watch`.
     pub fn watch(&mut self, ticks: u64, watch: &mut dyn Watch) {
         for _ in 0..2 * ticks {
             self.half(Some(watch));
         }
     }
 
-    /// Goes on to the middle of a tick, if it is not there.
+    /// Runs to the middle of a tick, unless already there.
     pub fn to_the_middle(&mut self) {
         if !self.is_second {
             self.half(None);
@@ -154,7 +154,7 @@ impl DriveBoard {
 
     /// Half a tick of everything.
     pub fn half(&mut self, mut watch: Option<&mut dyn Watch>) {
-        self.go_in_step();
+        self.synchronise();
         self.connect();
         let before = self.leg.count();
         if self.is_second {
@@ -172,7 +172,7 @@ impl DriveBoard {
             self.mcu.drive_encoder(channel, level);
         }
         go(&mut self.mcu, self.end, &mut watch);
-        self.look_at_current();
+        self.check_comparator();
         self.carry();
         if self.halves.is_multiple_of(COMMS_HALVES) && !self.faults.comms_hangs {
             self.comms_millisecond();
@@ -180,26 +180,26 @@ impl DriveBoard {
         self.halves += 1;
         self.is_second = !self.is_second;
         let resets = self.mcu.take_resets();
-        self.is_in_step &= resets.is_empty();
+        self.is_synchronised &= resets.is_empty();
         self.resets.extend(resets);
     }
 
-    /// Once the bridge's timer runs, halves end where it is at its bottom or
-    /// its top.
-    fn go_in_step(&mut self) {
-        if self.is_in_step {
+    /// Once the bridge's timer runs, aligns the ends of halves with its bottom
+    /// and top.
+    fn synchronise(&mut self) {
+        if self.is_synchronised {
             return;
         }
         let Some(phase) = half_bridges::phase(&self.mcu) else {
             return;
         };
-        self.is_in_step = true;
+        self.is_synchronised = true;
         self.is_second = phase >= HALF;
         let into = if self.is_second { phase - HALF } else { phase };
         self.end = self.mcu.now() - into;
     }
 
-    /// Lines and terminals, as they are now.
+    /// Updates lines and terminals.
     fn connect(&mut self) {
         let line = self.line_is_on();
         self.mcu.drive_pin(LINE_BACK, line);
@@ -211,13 +211,13 @@ impl DriveBoard {
         self.leg.set_terminals(terminals);
     }
 
-    fn look_at_current(&mut self) {
+    fn check_comparator(&mut self) {
         let is_over = self.leg.winding_current_a().abs() > f64::from(TRIP_A);
         self.mcu
             .drive_pin(BREAK, !is_over || self.faults.trip_is_blind);
     }
 
-    /// What goes over the link.
+    /// Transfers bytes over the link.
     fn carry(&mut self) {
         let Self {
             mcu, comms, faults, ..
@@ -268,16 +268,16 @@ impl DriveBoard {
         self.line_is_on() && terminals != Terminals::Open
     }
 
-    /// Whether the motor is driven: the drive does, and comms lets it.
+    /// Whether the motor is driven: by the drive, and enabled by comms.
     pub fn is_driven(&self) -> bool {
         self.drive_is_on() && self.comms_line
     }
 
-    /// The supply falls for a moment.
+    /// Simulates a brief drop of the supply.
     pub fn brown_out(&mut self) {
         self.resets.push((self.mcu.now(), Reset::BrownOut));
         self.mcu.reset(Reset::BrownOut);
-        self.is_in_step = false;
+        self.is_synchronised = false;
     }
 }
 

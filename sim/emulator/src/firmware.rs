@@ -1,9 +1,9 @@
-//! Where the images come from.
+//! Building and finding the images.
 //!
 //! `CREPITUS_IMAGES` names a folder with `drive`, `comms` and `ladder`. Without
 //! it each is built in `firmware/` by `cargo build --release`, once in a
-//! process, into `firmware/target`. Where that cannot be done, for want of the target
-//! `thumbv7em-none-eabihf`, a test says so in a line and is left out;
+//! process, into `firmware/target`. If the target `thumbv7em-none-eabihf` is
+//! not installed, a test prints that and is skipped;
 //! with `CREPITUS_NEEDS_TARGET` set it fails instead.
 
 use crate::image::{Image, ImageError};
@@ -46,7 +46,7 @@ pub enum NoImage {
     /// Cargo could not build it.
     #[error("firmware/ cannot be built: {0}")]
     NotBuilt(String),
-    /// The file is no image.
+    /// The file is not a valid image.
     #[error(transparent)]
     Image(#[from] ImageError),
 }
@@ -76,12 +76,12 @@ pub fn path(program: Program) -> Result<PathBuf, NoImage> {
     Ok(folder.join(program.name()))
 }
 
-/// The image of a program, for a test; none, and a line about it, where it
-/// cannot be built.
+/// The image of a program, for a test; `None`, and a printed line, if the
+/// target is not installed.
 ///
 /// # Panics
 /// If there is none although `CREPITUS_NEEDS_TARGET` is set, or for any other
-/// reason than the target that is not installed.
+/// reason.
 pub fn image_for_test(program: Program) -> Option<Image> {
     match image(program) {
         Ok(image) => Some(image),
@@ -115,7 +115,7 @@ fn build(firmware: &Path, program: Program) -> Result<(), String> {
             &format!("crepitus-firmware-{}", program.name()),
         ])
         .current_dir(firmware)
-        // What Cargo tells the tests of the host is not for the firmware.
+        // Cargo's variables for the tests of the host are not for the firmware.
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
         .env_remove("CARGO_BUILD_TARGET")

@@ -7,9 +7,9 @@
 //!                                          └──> calls of the step function
 //! ```
 //!
-//! A call counts from the first instruction of the function to the one that
+//! A call is counted from the first instruction of the function to the one that
 //! returns from it, with all that it calls. The branch to it and the copying
-//! of inputs and outputs do not count.
+//! of inputs and outputs are excluded.
 
 mod calls;
 mod native;
@@ -27,23 +27,23 @@ use crepitus_ladder::exchange::{
 };
 use crepitus_ladder::{Call, Plan};
 
-/// The most that a command may take, in time of the core's 16 MHz.
-const PATIENCE: Time = Time::from_us(60_000_000);
+/// Timeout of a command, in time of the core's 16 MHz.
+const TIMEOUT: Time = Time::from_us(60_000_000);
 
-/// Between two looks at the command.
-const LOOK: Time = Time::from_us(200);
+/// Interval between two polls of the command.
+const POLL_INTERVAL: Time = Time::from_us(200);
 
 /// Why there is no result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LadderError {
-    /// The program does not take the plan.
+    /// The program refuses the plan.
     #[error("the program on the target refuses the plan")]
     Refused,
-    /// The program does not come to an end.
+    /// The program timed out.
     #[error("the program on the target does not answer: the core is at {pc:#x}")]
     NoAnswer {
-        /// Where it is.
+        /// Its program counter.
         pc: u32,
     },
     /// A step gives other bits than on the host.
@@ -51,28 +51,28 @@ pub enum LadderError {
         "step {step} of {subject} gives {target:08x?} on the target and {host:08x?} on the host"
     )]
     Differs {
-        /// Of what.
+        /// The subject.
         subject: &'static str,
-        /// Which.
+        /// Index of the step.
         step: usize,
-        /// What the target gives.
+        /// The target's output.
         target: Output,
-        /// What the host gives.
+        /// The host's output.
         host: Output,
     },
-    /// The program has used something that is not modelled.
-    #[error("the program on the target has used what is not modelled: {0}")]
+    /// The program has used a feature that is not modelled.
+    #[error("the program on the target uses features that are not modelled: {0}")]
     NotModelled(String),
 }
 
-/// What came of the steps of a plan.
+/// Results of the steps of a plan.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Run {
-    /// Of each step, its output.
+    /// Output of each step.
     pub outputs: Vec<Output>,
-    /// Of each step, its cost.
+    /// Cost of each step.
     pub calls: Vec<Call>,
-    /// Where the step function is.
+    /// Address of the step function.
     pub entry: u32,
 }
 
@@ -82,14 +82,14 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// Of the image of [`Program::Ladder`](crate::firmware::Program::Ladder).
+    /// A core with the image of [`Program::Ladder`](crate::firmware::Program::Ladder).
     pub fn new(image: &Image) -> Self {
         let mut mcu = Stm32f405::new(image);
         mcu.poke(at(COMMAND), 0);
         Self { mcu }
     }
 
-    /// Runs a plan over its inputs; `plan.steps` is of no matter.
+    /// Runs a plan over its inputs; `plan.steps` is ignored.
     ///
     /// # Errors
     /// [`LadderError`].
@@ -135,7 +135,7 @@ impl Ladder {
         }
     }
 
-    /// Sets the subject up; where its step function is.
+    /// Sets the subject up; returns the address of its step function.
     fn begin(&mut self, plan: &Plan) -> Result<u32, LadderError> {
         self.poke(PLAN, &plan.encode());
         self.command(BEGIN, None)?;
@@ -149,14 +149,14 @@ impl Ladder {
     /// Gives a command, and waits until it is done.
     fn command(&mut self, command: u32, calls: Option<&mut Calls>) -> Result<(), LadderError> {
         self.poke(COMMAND, &[command]);
-        let end = self.mcu.now() + PATIENCE;
+        let end = self.mcu.now() + TIMEOUT;
         let mut watch = calls.map(|calls| calls as &mut dyn Watch);
         while self.peek(COMMAND) != 0 {
             if self.mcu.now() > end || self.mcu.is_locked_up() {
                 let pc = self.mcu.program_counter();
                 return Err(LadderError::NoAnswer { pc });
             }
-            let until = self.mcu.now() + LOOK;
+            let until = self.mcu.now() + POLL_INTERVAL;
             match &mut watch {
                 Some(watch) => self.mcu.watch_until(until, &mut **watch),
                 None => self.mcu.run_until(until),

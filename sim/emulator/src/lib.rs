@@ -1,26 +1,26 @@
 //! # The real images, on emulated silicon
 //!
-//! The ELF files that are flashed, instruction by instruction, with the same
-//! simulated leg as everywhere.
+//! The ELF files that are flashed run instruction by instruction, with the
+//! simulator's leg.
 //!
 //! | to find | look in |
 //! |---|---|
 //! | the drive with leg, link and comms | [`drive_board`] |
-//! | what a microcontroller is here | [`mcu`] |
-//! | the one there is | [`stm32f405`] |
-//! | which cycles a task takes | [`cycles`] |
-//! | what a step of each solver costs | [`ladder`] |
-//! | where the images come from | [`firmware`], [`image`] |
-//! | the same for a program that can do without | [`on_target`] |
+//! | the interface of a microcontroller | [`mcu`] |
+//! | its implementation | [`stm32f405`] |
+//! | cycles of a task | [`cycles`] |
+//! | cost of a step of each solver | [`ladder`] |
+//! | building and reading images | [`firmware`], [`image`] |
+//! | the ladder as an optional feature | [`on_target`] |
 //!
-//! Time is exact and virtual: nothing reads a clock, and two runs of the same
-//! are the same to the last bit of memory.
+//! Time is exact and virtual: nothing reads a clock, and runs are reproducible
+//! to the last bit of memory.
 //!
 //! # What is not modelled
 //! Wait states of flash and its cache, contention on the bus, time that DMA
 //! takes: cycles are *modelled, 0 wait states*, never measured. Start-up of
-//! crystal and PLL is shortened. See [`mcu::Mcu::not_modelled`] for what a
-//! program has used in vain.
+//! crystal and PLL is shortened. [`mcu::Mcu::not_modelled`] lists features
+//! that a program has used although they are not modelled.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "core")]

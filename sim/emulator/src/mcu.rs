@@ -1,6 +1,6 @@
-//! A microcontroller that runs an image, whoever emulates it.
+//! Interface of a microcontroller that runs an image.
 //!
-//! The boards of this crate know this trait only; [`crate::Stm32f405`] is the
+//! The boards of this crate use this trait only; [`crate::Stm32f405`] is the
 //! one implementation, with the library `rsemu` behind it.
 
 use crate::devices::usart::Character;
@@ -36,9 +36,9 @@ impl Pin {
 /// Why a chip is reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reset {
-    /// Power comes after it was off: memory has anything in it.
+    /// Power-on: memory is undefined.
     PowerOn,
-    /// The supply fell for a moment: memory stays.
+    /// A brief drop of the supply: memory stays.
     BrownOut,
     /// The independent watchdog.
     Watchdog,
@@ -48,7 +48,7 @@ pub enum Reset {
     Pin,
 }
 
-/// What goes on in the core, for whoever watches: see [`crate::cycles`].
+/// Observer of the core: see [`crate::cycles`].
 pub trait Watch {
     /// A step of the core has ended: an instruction, or the entry into an
     /// exception.
@@ -60,9 +60,9 @@ pub trait Watch {
 pub struct Step {
     /// Where the core was before it.
     pub pc: u32,
-    /// The exception that was being handled after it; 0 if none.
+    /// The exception being handled after it; 0 if none.
     pub exception: u16,
-    /// Exceptions that had begun and not ended after it.
+    /// Number of active exceptions after it.
     pub active: u32,
     /// Cycles that it took.
     pub cycles: u32,
@@ -77,7 +77,7 @@ pub struct Access {
     pub at: Time,
     /// Of the register.
     pub address: u32,
-    /// What was read or written.
+    /// The value read or written.
     pub value: u32,
     /// Written, not read.
     pub is_write: bool,
@@ -88,41 +88,41 @@ pub trait Mcu {
     /// Runs until `until`, and at most one instruction beyond.
     fn run_until(&mut self, until: Time);
 
-    /// As [`Self::run_until`]; tells `watch` of every step. Slower.
+    /// As [`Self::run_until`], passing every step to `watch`. Slower.
     fn watch_until(&mut self, until: Time, watch: &mut dyn Watch);
 
-    /// How far it has come.
+    /// Current time.
     fn now(&self) -> Time;
 
     /// The core's cycles since it was switched on; none pass while it sleeps.
     fn cycles(&self) -> u64;
 
-    /// A word of memory or of a register, without touching it; none where
-    /// there is nothing.
+    /// A word of memory or of a register, without side effects; `None` at an
+    /// unmapped address.
     fn peek(&self, address: u32) -> Option<u32>;
 
     /// Writes a word as a debugger does.
     fn poke(&mut self, address: u32, value: u32);
 
-    /// Every access to these registers is written down from now on.
+    /// Records every access to these registers from now on.
     fn listen(&mut self, registers: &[u32]);
 
-    /// What was written down since this was asked last, in its order.
+    /// Takes the accesses recorded since the last call, in order.
     fn take_accesses(&mut self) -> Vec<Access>;
 
     /// The level at a pin, as the chip sees it.
     fn pin(&self, pin: Pin) -> bool;
 
-    /// What drives a pin from outside.
+    /// Drives a pin from outside.
     fn drive_pin(&mut self, pin: Pin, level: bool);
 
     /// Share of its reference at the input of the converter.
     fn set_analog(&mut self, share: f64);
 
-    /// A character for the link's receiver; they come in their order.
+    /// Feeds a character to the link's receiver, in order.
     fn link_feed(&mut self, character: Character);
 
-    /// What the link's sender has sent since this was asked last.
+    /// Takes the characters sent by the link since the last call.
     fn link_take(&mut self) -> Vec<Character>;
 
     /// Units of time of a character on the link, as the program has set it.
@@ -131,21 +131,20 @@ pub trait Mcu {
     /// Resets the chip.
     fn reset(&mut self, reset: Reset);
 
-    /// Resets that the chip has done by itself since this was asked last.
+    /// Takes the chip's own resets since the last call.
     fn take_resets(&mut self) -> Vec<(Time, Reset)>;
 
-    /// The core stops where it is, all else goes on: what a program that hangs
-    /// with interrupts masked looks like from outside. A reset ends it.
+    /// Stops the core while all else runs: like a program that hangs with
+    /// interrupts masked. A reset ends it.
     fn set_hung(&mut self, is_hung: bool);
 
-    /// The core can neither go on nor handle it.
+    /// Whether the core is in lock-up.
     fn is_locked_up(&self) -> bool;
 
-    /// A hash of memory, core and registers: of two runs that are the same it
-    /// is the same.
+    /// A hash of memory, core and registers, for comparing two runs.
     fn state_hash(&self) -> u64;
 
-    /// What the program has used and is not modelled; addresses with nothing
-    /// behind them, parts whose clock was off. Empty if all is well.
+    /// Features used by the program that are not modelled; unmapped addresses,
+    /// parts whose clock was off. Empty if all is well.
     fn not_modelled(&self) -> Vec<String>;
 }

@@ -1,11 +1,11 @@
-//! Steps of the ladder on the target, for programs that can do without: the
-//! core is a large part of their build, behind the feature `core`.
+//! Steps of the ladder on the target, as an optional feature: the core is a
+//! large part of a program's build, behind the feature `core`.
 
 use crepitus_ladder::exchange::Input;
 use crepitus_ladder::{Call, Plan};
 
-/// Runs the steps of a plan, compares every output with the host's, and gives
-/// what each has cost; or says why not.
+/// Runs the steps of a plan, compares every output with the host's, and returns
+/// the cost of each; or the reason of a failure.
 pub type OnTarget = Box<dyn FnMut(&Plan, &[Input]) -> Result<Vec<Call>, String>>;
 
 /// Why there is no target.
@@ -22,7 +22,7 @@ pub enum NoTarget {
     NoImage(String),
 }
 
-/// The ladder on an emulated core; `on_build` is told if its image has to be
+/// The ladder on an emulated core; `on_build` is called if its image has to be
 /// built first.
 ///
 /// # Errors
@@ -43,7 +43,7 @@ pub fn ladder(on_build: impl FnOnce()) -> Result<OnTarget, NoTarget> {
     }))
 }
 
-/// There is none in this program.
+/// Fails: the program was built without the core.
 ///
 /// # Errors
 /// Always [`NoTarget::NoCore`].

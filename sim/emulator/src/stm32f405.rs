@@ -7,8 +7,8 @@
 //! then that thing, at its time
 //! ```
 //!
-//! So an interrupt is there with the step after its event, and a register says
-//! what it says when the instruction that reads it begins.
+//! So an interrupt is pending with the step after its event, and a register is
+//! read with its value at the start of the instruction.
 
 mod as_mcu;
 
@@ -25,14 +25,14 @@ use std::sync::atomic::Ordering::Relaxed;
 /// SysTick is enabled.
 const SYSTICK_ENABLE: u32 = 1;
 
-/// Interval at which the core is asked whether it wants a reset, or sleeps
+/// Interval at which the core is polled for a reset request, or for sleep
 /// with its own timer running: 10 µs.
 const LOOK_UNITS: u64 = 3_360;
 
-/// The library takes the eight words of a frame as loads and stores of their
-/// own, on top of the 12 and 10 cycles that have them in already: so many
+/// The library counts the eight words of a frame as separate loads and stores,
+/// in addition to the 12 and 10 cycles that include them: this number of
 /// cycles too many at every entry and every return. `tests/timing.rs` has the
-/// known answer. Its own cycle counter, DWT, keeps them.
+/// known answer. Its own cycle counter, DWT, is not corrected.
 const FRAME_CYCLES: u64 = 8;
 
 /// No entry and no return takes less, counted like that.
@@ -45,16 +45,16 @@ pub struct Stm32f405 {
     memory: Memory,
     now: u64,
     cycles: u64,
-    /// Exceptions that have begun and not ended.
+    /// Number of active exceptions.
     active: u32,
     is_hung: bool,
     resets: Vec<(Time, Reset)>,
 }
 
-/// Watches nothing.
-struct Nobody;
+/// An observer that does nothing.
+struct NoWatch;
 
-impl Watch for Nobody {
+impl Watch for NoWatch {
     fn step(&mut self, _: &Step) {}
 }
 
@@ -93,7 +93,7 @@ impl Stm32f405 {
         self.settle();
     }
 
-    /// The converter works, or never ends a conversion.
+    /// Sets whether the converter never ends a conversion.
     pub fn set_converter_dead(&mut self, is_dead: bool) {
         self.chip.adc.set_dead(is_dead);
     }
@@ -122,7 +122,7 @@ impl Stm32f405 {
         self.core.reg(number)
     }
 
-    /// The exception that is being handled; 0 if none.
+    /// The exception being handled; 0 if none.
     pub fn exception(&self) -> u16 {
         self.core.current_exception().0
     }
@@ -141,7 +141,7 @@ impl Stm32f405 {
     fn go_to(&mut self, until: u64, watch: Option<&mut dyn Watch>) {
         match watch {
             Some(watch) => self.run::<true>(until, watch),
-            None => self.run::<false>(until, &mut Nobody),
+            None => self.run::<false>(until, &mut NoWatch),
         }
     }
 
@@ -207,7 +207,7 @@ impl Stm32f405 {
     }
 
     fn reset_if_asked(&mut self) {
-        let cause = if self.chip.bitten.swap(false, Relaxed) {
+        let cause = if self.chip.watchdog_fired.swap(false, Relaxed) {
             Reset::Watchdog
         } else if self.core.reset_requested() {
             Reset::Software

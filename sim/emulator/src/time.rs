@@ -1,5 +1,5 @@
-//! Virtual time: exact counts of 1/336 MHz, in which every clock of the chip
-//! that matters has a whole number of units to a tick.
+//! Virtual time: exact counts of 1/336 MHz, in which a tick of every relevant
+//! clock of the chip is a whole number of units.
 //!
 //! | clock | MHz | units a tick |
 //! |---|---|---|
@@ -15,20 +15,20 @@ use std::ops::{Add, AddAssign, Sub};
 /// Units in a second.
 pub const UNITS_PER_S: u64 = 336_000_000;
 
-/// A point in virtual time, or a span of it. Wraps after 1,700 years.
+/// A time or a duration. Wraps after 1,700 years.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Time(u64);
 
 impl Time {
-    /// The beginning.
+    /// Zero.
     pub const ZERO: Self = Self(0);
 
-    /// So many units.
+    /// Converts from units.
     pub const fn from_units(units: u64) -> Self {
         Self(units)
     }
 
-    /// So many microseconds.
+    /// Converts from microseconds.
     pub const fn from_us(us: u64) -> Self {
         Self(us * (UNITS_PER_S / 1_000_000))
     }
@@ -43,7 +43,7 @@ impl Time {
         self.0 / 2
     }
 
-    /// Seconds, for people.
+    /// Seconds, for display.
     #[expect(clippy::cast_precision_loss, reason = "for people")]
     pub fn as_s(self) -> f64 {
         self.0 as f64 / UNITS_PER_S as f64

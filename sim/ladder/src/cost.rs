@@ -1,4 +1,4 @@
-//! What steps have cost.
+//! Cost of steps.
 
 /// The cost of one call of the step function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -7,27 +7,27 @@ pub struct Call {
     pub cycles: u32,
     /// Instructions.
     pub instructions: u32,
-    /// Hash of the addresses that it went through, in their order.
+    /// Hash of the executed addresses, in order.
     pub path: u64,
 }
 
 /// The cost of many calls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// How many.
+    /// Number of calls.
     pub calls: u64,
-    /// Cycles, all of them.
+    /// All cycles.
     pub cycles: u64,
     /// Cycles of the worst call.
     pub worst_cycles: u32,
-    /// Instructions, all of them.
+    /// All instructions.
     pub instructions: u64,
     /// Instructions of the longest call.
     pub worst_instructions: u32,
 }
 
 impl Call {
-    /// One instruction more, at `pc`, in so many cycles.
+    /// Adds an instruction at `pc` with its cycles.
     pub fn add(&mut self, pc: u32, cycles: u32) {
         const PRIME: u64 = 0x0000_0100_0000_01b3;
         self.cycles += cycles;
@@ -37,7 +37,7 @@ impl Call {
 }
 
 impl Cost {
-    /// Of these calls.
+    /// Cost of these calls.
     pub fn of(calls: &[Call]) -> Self {
         let mut cost = Self::default();
         for call in calls {
@@ -52,7 +52,7 @@ impl Cost {
         cost
     }
 
-    /// These calls as well.
+    /// Adds further calls.
     pub fn add(&mut self, other: &Self) {
         self.calls += other.calls;
         self.cycles += other.cycles;

@@ -1,14 +1,14 @@
-//! The block of memory between the program and whoever runs it.
+//! The block of memory between the program and its emulator.
 //!
 //! | word | written by | |
 //! |---|---|---|
-//! | 0 | both | what to do: [`BEGIN`], [`RUN`], or both; 0 once it is done |
+//! | 0 | both | command: [`BEGIN`], [`RUN`], or both; 0 once it is done |
 //! | 1 | program | [`IDLE`], [`READY`] or [`REFUSED`] |
 //! | 2 | program | address of the function whose calls are the steps |
 //! | 3 to 31 | the other | the [`Plan`](crate::Plan) |
 //! | 32 on | both | the steps, four words each |
 //!
-//! A step's words are its input; the program puts its output in their place.
+//! A step's words are its input; the program replaces them by its output.
 //!
 //! | | words of an input | words of an output |
 //! |---|---|---|
@@ -16,27 +16,27 @@
 //! | encoder | count, –, –, kind | Δφ, Ω |
 //! | friction compensation | Ω | torque |
 //! | bone shaping | Δφ, jump of the torque | torque |
-//! | current loop | A wanted, A measured | V |
+//! | current loop | A commanded, A measured | V |
 
 use core::sync::atomic::AtomicU32;
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
-/// Where the block is on the target: from the sixteenth kilobyte of RAM on.
+/// Address of the block on the target: from the sixteenth kilobyte of RAM on.
 pub const ADDRESS: u32 = 0x2000_4000;
 
 /// Its words on the target: 96 KB.
 pub const WORDS: usize = 24 << 10;
 
-/// Command: take the plan.
+/// Command: read the plan.
 pub const BEGIN: u32 = 1;
-/// Command: make the steps.
+/// Command: run the steps.
 pub const RUN: u32 = 2;
 
-/// State: there was no plan yet.
+/// State: no plan yet.
 pub const IDLE: u32 = 0;
-/// State: the plan stands.
+/// State: the plan is accepted.
 pub const READY: u32 = 1;
-/// State: the plan is none, or its settings are not allowed.
+/// State: the plan or its settings are invalid.
 pub const REFUSED: u32 = 2;
 
 /// The word of the command.
@@ -55,7 +55,7 @@ pub const STEP_WORDS: usize = 4;
 /// The most steps at a time on the target.
 pub const MOST_STEPS: usize = (WORDS - STEPS) / STEP_WORDS;
 
-/// What an input is.
+/// Kind of an input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// A sample.
@@ -63,20 +63,20 @@ pub enum Kind {
     Taken,
     /// A tick without one.
     Lost,
-    /// A sample; just before it the other numbers of the plan are committed.
+    /// A sample; just before it the other parameters of the plan are committed.
     Commit,
 }
 
-/// What goes into a step.
+/// Input of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Input {
     /// Three numbers, as bits.
     pub words: [u32; 3],
-    /// What they are.
+    /// Their kind.
     pub kind: Kind,
 }
 
-/// What comes out of it: as bits.
+/// Output of a step, as bits.
 pub type Output = [u32; 3];
 
 /// The block.
@@ -84,29 +84,29 @@ pub type Output = [u32; 3];
 pub struct Exchange<'a>(&'a [AtomicU32]);
 
 impl<'a> Exchange<'a> {
-    /// Around memory that both sides see.
+    /// An exchange in memory shared by both sides.
     pub fn new(words: &'a [AtomicU32]) -> Self {
         Self(words)
     }
 
-    /// A word; 0 where there is none.
+    /// A word; 0 outside the block.
     pub fn get(&self, word: usize) -> u32 {
         self.0.get(word).map_or(0, |word| word.load(Relaxed))
     }
 
-    /// Sets a word, where there is one.
+    /// Sets a word within the block.
     pub fn set(&self, word: usize, value: u32) {
         if let Some(word) = self.0.get(word) {
             word.store(value, Relaxed);
         }
     }
 
-    /// The command, and all that was written before it.
+    /// Reads the command; acquires all that was written before it.
     pub fn command(&self) -> u32 {
         self.0.first().map_or(0, |word| word.load(Acquire))
     }
 
-    /// The command is done, with all that was written for it.
+    /// Marks the command as done; releases all that was written for it.
     pub(crate) fn done(&self) {
         if let Some(word) = self.0.first() {
             word.store(0, Release);
@@ -136,7 +136,7 @@ impl<'a> Exchange<'a> {
 }
 
 impl Input {
-    /// As the words of the block.
+    /// Encodes the input as words of the block.
     pub fn encode(&self) -> [u32; STEP_WORDS] {
         let [a, b, c] = self.words;
         let kind = match self.kind {

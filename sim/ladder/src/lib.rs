@@ -1,9 +1,9 @@
-//! # What a step costs, wherever it runs
+//! # Cost of a step, on host and target
 //!
 //! Every rung of the solver ladder and every effect that runs on the device,
 //! as subjects that are stepped from a block of memory. The same code runs on
-//! the host and, as `firmware/ladder`, on the target: whoever emulates that
-//! puts a plan into the block, and finds there what came of it.
+//! the host and, as `firmware/ladder`, on the target: its emulator writes a
+//! plan into the block, and reads the results there.
 //!
 //! ```text
 //!            ┌──────────── the exchange ────────────┐
@@ -14,15 +14,15 @@
 //!
 //! | to find | look in |
 //! |---|---|
-//! | what is measured, and the names | [`subject`] |
+//! | the subjects and their names | [`subject`] |
 //! | the words of the block | [`exchange`], [`plan`] |
-//! | what one step of each is | [`measured`] |
+//! | one step of each subject | [`measured`] |
 //! | the program | [`mod@serve`] |
-//! | what its steps have cost, in numbers | [`cost`] |
+//! | cost of its steps | [`cost`] |
 //!
 //! A step is one call of one function that is never inlined. Its address is in
-//! the block, so that whoever counts needs no symbols; what it costs to get the
-//! inputs there and the outputs away is outside of it.
+//! the block, so that counting needs no symbols; copying inputs and outputs is
+//! outside of it.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(

@@ -14,9 +14,9 @@ use crepitus_model::{
     StickSlip,
 };
 
-/// Something that is stepped.
+/// A subject that is stepped.
 pub trait Measured {
-    /// A commit of other numbers, outside of the step.
+    /// A commit of other parameters, outside of the step.
     fn commit(&mut self, _next: StepCoefficients<f32>) {}
 
     /// One step.
@@ -29,7 +29,7 @@ pub fn step<M: Measured>(subject: &mut M, input: &Input) -> Output {
     subject.step(input)
 }
 
-/// The events of a step.
+/// Events of a step.
 #[derive(Default)]
 struct Happened {
     kinds: u32,
@@ -100,7 +100,7 @@ impl<J: StickSlip<f32>> Measured for Guarded<f32, J> {
     }
 }
 
-/// The renderer, and how fast its numbers move.
+/// The renderer, and the slew limit of its parameters.
 pub struct Rendered {
     /// The joint of the firmware.
     pub renderer: Renderer<f32, ExactEvents>,

@@ -1,19 +1,19 @@
-//! What is to be run.
+//! The plan of a run.
 
 use crate::exchange::{Exchange, PLAN, STEPS};
 use crate::subject::Subject;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::{Parameters, Restart, Settings, SettingsError, Validated};
 
-/// A subject, its numbers, and how many steps of it.
+/// A subject, its parameters, and its number of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
-    /// What.
+    /// The subject.
     pub subject: Subject,
-    /// The joint's numbers, and those that a commit brings. (The next commit
-    /// brings the first ones back.)
+    /// The joint's parameters, and those of a commit. (The next commit restores
+    /// the first ones.)
     pub parameters: [Parameters; 2],
-    /// How a stick begins.
+    /// Restart rule of a stick.
     pub restart: Restart,
     /// The step, s.
     pub step_s: f64,
@@ -26,11 +26,11 @@ pub struct Plan {
 /// Words of a plan.
 const WORDS: usize = STEPS - PLAN;
 
-/// Those before the numbers of the joint.
+/// Words before the joint's parameters.
 const HEAD: usize = 6;
 
 impl Plan {
-    /// A subject with the paper's numbers at the device's tick, from rest.
+    /// A subject with the paper's parameters at the device's tick, from rest.
     pub fn of(subject: Subject) -> Self {
         Self {
             subject,
@@ -45,7 +45,7 @@ impl Plan {
     /// The settings of its joint.
     ///
     /// # Errors
-    /// [`SettingsError`] if they are not allowed.
+    /// [`SettingsError`] if they are invalid.
     pub fn settings(&self, which: usize) -> Result<Validated<Settings>, SettingsError> {
         let [first, second] = self.parameters;
         Settings {
@@ -56,7 +56,7 @@ impl Plan {
         .validate()
     }
 
-    /// As words from [`PLAN`] on.
+    /// Encodes the plan as words from [`PLAN`] on.
     pub fn encode(&self) -> [u32; WORDS] {
         let mut words = [0; WORDS];
         let step = self.step_s.to_bits();
@@ -77,7 +77,7 @@ impl Plan {
         words
     }
 
-    /// From the words of a block; none if there is no such subject.
+    /// Decodes the words of a block; `None` for an unknown subject.
     pub fn decode(exchange: &Exchange<'_>) -> Option<Self> {
         let word = |n: usize| exchange.get(PLAN + n);
         let number = |n| f64::from_bits(u64::from(word(n)) | u64::from(word(n + 1)) << 32);

@@ -1,4 +1,4 @@
-//! The program: takes a plan, makes its steps, waits for the next command.
+//! The program: reads a plan, runs its steps, waits for the next command.
 
 use crate::exchange::{BEGIN, ENTRY, Exchange, Input, Kind, Output, READY, REFUSED, RUN, STATE};
 use crate::measured::{Effect, Joint, Measured, Rendered, step};
@@ -16,8 +16,8 @@ use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{CurrentLoop, Guarded, Renderer, SettingsError, StepCoefficients, StickSlip};
 
-/// Serves one command after the other. `wait` is called as there is none, and
-/// says whether there will be another.
+/// Executes one command after the other. `wait` is called while there is none,
+/// and returns whether there will be another.
 pub fn serve(exchange: &Exchange<'_>, wait: &mut dyn FnMut() -> bool) {
     let mut here = Here { exchange, wait };
     let mut goes_on = here.next();
@@ -40,7 +40,7 @@ struct Here<'a> {
 }
 
 impl Here<'_> {
-    /// Waits for a command; whether there is one.
+    /// Waits for a command; returns whether there is one.
     fn next(&mut self) -> bool {
         while self.exchange.command() == 0 {
             if !(self.wait)() {
@@ -50,7 +50,8 @@ impl Here<'_> {
         true
     }
 
-    /// One plan, until a command brings another one; whether one does.
+    /// Executes a plan until a command brings another one; returns whether one
+    /// does.
     fn serve(&mut self, plan: &Plan) -> Result<bool, SettingsError> {
         let step_s = plan.step_s;
         Ok(match plan.subject {
@@ -108,13 +109,14 @@ impl Here<'_> {
         )
     }
 
-    /// Steps of a subject, command after command; whether another plan comes.
+    /// Runs steps of a subject, command after command; returns whether another
+    /// plan comes.
     fn run<M: Measured>(
         &mut self,
         mut subject: M,
         coefficients: Option<[StepCoefficients<f32>; 2]>,
     ) -> bool {
-        // What is called is not known here, so it is called.
+        // The callee is opaque here, so it is not inlined.
         let step: fn(&mut M, &Input) -> Output = black_box(step::<M>);
         self.exchange.set(ENTRY, address(step as usize));
         self.exchange.set(STATE, READY);
@@ -146,13 +148,13 @@ impl Here<'_> {
     }
 }
 
-/// Where code is, on the target.
+/// Address of code on the target.
 #[expect(clippy::cast_possible_truncation, reason = "32 bits on the target")]
 fn address(of: usize) -> u32 {
     of as u32 & !1
 }
 
-/// Runs the law that it gets.
+/// Runs a law.
 struct EffectVisitor<'a, 'b> {
     here: &'a mut Here<'b>,
 }
@@ -165,7 +167,7 @@ impl LawVisitor<f32> for EffectVisitor<'_, '_> {
     }
 }
 
-/// Runs the joint that it gets.
+/// Runs a joint.
 struct Visitor<'a, 'b, const CHECKED: bool> {
     here: &'a mut Here<'b>,
     plan: &'a Plan,

@@ -1,18 +1,18 @@
-//! What is measured.
+//! The measured subjects.
 
 use crepitus_model::Convention;
 use crepitus_model::render::effects::SPECS;
 use crepitus_model::solver::Solver;
 
-/// Something that the device could run in every tick.
+/// Code that the device could run in every tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Subject {
     /// A rung of the ladder under a convention.
     Rung(Convention, Solver),
-    /// `exact-events` behind the check of its input.
+    /// `exact-events` with an input check.
     Checked(Convention),
-    /// What the firmware renders: `frozen` with `exact-events`, behind the
-    /// check of its input, with the ramp of a commit and the turn-back guard.
+    /// The firmware's renderer: `frozen` with `exact-events`, input check, the
+    /// ramp of a commit and the turn-back guard.
     Renderer,
     /// Counts of the motor's encoder to angle and speed.
     Encoder,
@@ -22,7 +22,7 @@ pub enum Subject {
     CurrentLoop,
 }
 
-/// Those that are no rungs.
+/// Subjects that are not rungs.
 const DEVICE: [Subject; 5] = [
     Subject::Checked(Convention::Frozen),
     Subject::Checked(Convention::Paper),
@@ -32,8 +32,8 @@ const DEVICE: [Subject; 5] = [
 ];
 
 impl Subject {
-    /// All of them: each rung under every convention where it has a meaning,
-    /// then what else the device does.
+    /// All subjects: each rung under every convention where it has a meaning,
+    /// then the device's other code.
     pub fn all() -> impl Iterator<Item = Self> {
         let rungs = Convention::ALL.into_iter().flat_map(|convention| {
             Solver::ALL
@@ -47,8 +47,8 @@ impl Subject {
             .chain([Self::CurrentLoop])
     }
 
-    /// Its name: of a rung as in scene files, of an effect as `crepitus
-    /// effects` lists it, of the rest as the model's documents call it.
+    /// Its name: of a rung as in scene files, of an effect as in `crepitus
+    /// effects`, of others as in the model's documents.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rung(_, solver) => solver.name(),
@@ -69,7 +69,7 @@ impl Subject {
         }
     }
 
-    /// Its place among all.
+    /// Its index among all.
     pub(crate) fn code(self) -> u32 {
         (0..)
             .zip(Self::all())
@@ -77,7 +77,7 @@ impl Subject {
             .map_or(u32::MAX, |(code, _)| code)
     }
 
-    /// The one of this place.
+    /// The subject of this index.
     pub(crate) fn of_code(code: u32) -> Option<Self> {
         (0..)
             .zip(Self::all())

@@ -47,8 +47,9 @@ fn read(path: &Path) -> Case {
     let p = |name: &str| number(&json["params"][name]);
     let convention = match json["convention"].as_str().unwrap() {
         "frozen" => Convention::Frozen,
-        "paper7" => Convention::Paper,
-        "full" => Convention::Physical,
+        // The second name is that of files of schema stickslip-truth/1.
+        "paper" | "paper7" => Convention::Paper,
+        "physical" | "full" => Convention::Physical,
         other => panic!("unknown convention {other}"),
     };
     let settings = Settings {

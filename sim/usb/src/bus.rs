@@ -151,7 +151,7 @@ impl UsbBus for SoftBus {
     fn poll(&self) -> PollResult {
         let mut peripheral = lock(&self.peripheral);
         if peripheral.reset == ResetStage::Pending {
-            peripheral.reset = ResetStage::Told;
+            peripheral.reset = ResetStage::Reported;
             return PollResult::Reset;
         }
         let events = peripheral.endpoint_events();

@@ -1,4 +1,4 @@
-//! The host's end of a software bus: what a host, a hub and a hand do to a cable.
+//! The host's end of a software bus: a cable, with its host and hub.
 
 use std::sync::{Arc, Mutex};
 
@@ -16,12 +16,12 @@ impl SoftCable {
         Self { peripheral }
     }
 
-    /// Pushes the plug in. Nothing happens until a host resets the bus.
+    /// Plugs the cable in. Nothing happens until a host resets the bus.
     pub fn plug_in(&mut self) {
         lock(&self.peripheral).plugged = true;
     }
 
-    /// Pulls the plug: the host gets no answer any more, the device sees an idle bus.
+    /// Unplugs the cable: the host gets no answer, the device an idle bus.
     pub fn unplug(&mut self) {
         let mut peripheral = lock(&self.peripheral);
         peripheral.plugged = false;

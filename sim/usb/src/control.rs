@@ -6,7 +6,7 @@ use crate::wire::{Handshake, Packet, Token, UsbWire};
 pub const TURNS_PER_FRAME: u32 = 20;
 
 /// A device answers a control request within 500 ms (USB 2.0, 9.2.6.4).
-const PATIENCE: u32 = 500 * TURNS_PER_FRAME;
+const TIMEOUT_TURNS: u32 = 500 * TURNS_PER_FRAME;
 
 /// The eight bytes of a SETUP packet, without the length of the data stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,27 +49,27 @@ pub enum TransferError {
         /// The endpoint's number.
         endpoint: u8,
     },
-    /// Nobody answers any more.
+    /// The device does not answer.
     #[error("the device does not answer")]
     Detached,
-    /// The device answered "not now" for longer than the standard allows.
+    /// The device answered NAK for longer than the standard allows.
     #[error("the device is not ready after {turns} turns of 50 µs")]
     TimedOut {
-        /// How many turns the device was given.
+        /// Turns of the device so far.
         turns: u32,
     },
     /// The data stage of a control transfer is at most 65,535 bytes.
     #[error("{bytes} bytes do not fit a control transfer")]
     TooLong {
-        /// What was to be sent, bytes.
+        /// Bytes to send.
         bytes: usize,
     },
     /// The device sent more than was asked for.
-    #[error("the device sent {received} bytes where {requested} were asked for")]
+    #[error("the device sent {received} bytes where {requested} were requested")]
     Overrun {
-        /// What it sent, bytes.
+        /// Bytes received.
         received: usize,
-        /// What was asked for, bytes.
+        /// Bytes requested.
         requested: u16,
     },
 }
@@ -149,7 +149,7 @@ fn persist<W: UsbWire>(
     run: &mut impl FnMut(&mut W),
     mut transaction: impl FnMut(&mut W) -> Handshake,
 ) -> Result<Packet, TransferError> {
-    for _ in 0..PATIENCE {
+    for _ in 0..TIMEOUT_TURNS {
         match transaction(wire) {
             Handshake::Ack(packet) => return Ok(packet),
             Handshake::Nak => run(wire),
@@ -157,5 +157,7 @@ fn persist<W: UsbWire>(
             Handshake::Absent => return Err(TransferError::Detached),
         }
     }
-    Err(TransferError::TimedOut { turns: PATIENCE })
+    Err(TransferError::TimedOut {
+        turns: TIMEOUT_TURNS,
+    })
 }

@@ -17,7 +17,7 @@ pub mod descriptor_type {
     pub const ENDPOINT: u8 = 5;
 }
 
-/// What is wrong with the bytes of a descriptor.
+/// An invalid descriptor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DescriptorError {
@@ -42,7 +42,7 @@ pub enum DescriptorError {
         kind: u8,
         /// `bLength`.
         length: usize,
-        /// What the standard says.
+        /// The length of the standard.
         expected: usize,
     },
     /// An endpoint before the first interface.

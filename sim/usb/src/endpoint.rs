@@ -1,7 +1,7 @@
-//! The endpoints of the software bus: what the endpoint hardware of a full-speed device holds.
+//! The endpoints of the software bus: state of a full-speed device's endpoint hardware.
 //!
 //! Each endpoint and direction has one packet buffer, as in the peripherals the firmware uses.
-//! Both ends look at it: the host's transactions from one side, the device stack from the other.
+//! Both ends access it: the host's transactions and the device stack.
 
 use crate::wire::{Handshake, Packet};
 use usb_device::{Result, UsbError};
@@ -16,13 +16,13 @@ pub(crate) struct InEndpoint {
     pub(crate) max_packet: Option<usize>,
     /// Waiting for the host to fetch it.
     pub(crate) packet: Option<Packet>,
-    /// A packet has been fetched and the device stack does not know it yet.
+    /// A packet has been fetched; not yet reported to the device stack.
     pub(crate) complete: bool,
     pub(crate) stalled: bool,
 }
 
 impl InEndpoint {
-    /// Back to the state after a bus reset.
+    /// Restores the state after a bus reset.
     pub(crate) fn reset(&mut self) {
         self.abandon();
         self.complete = false;

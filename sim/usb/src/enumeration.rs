@@ -17,8 +17,8 @@ const RESET_RECOVERY: u32 = 10 * TURNS_PER_FRAME;
 /// A device may need 2 ms to take its new address (USB 2.0, 9.2.6.3).
 const ADDRESS_RECOVERY: u32 = 2 * TURNS_PER_FRAME;
 
-/// 115,200 baud, one stop bit, no parity, eight bits: what a serial program asks for. A device
-/// without a UART behind it has no use for it.
+/// 115,200 baud, one stop bit, no parity, eight bits: the usual request of a serial program,
+/// ignored by a device without a UART.
 const LINE_CODING: [u8; 7] = [0x00, 0xc2, 0x01, 0x00, 0, 0, 8];
 const CONTROL_LINES_DTR_RTS: u16 = 0b11;
 
@@ -88,22 +88,22 @@ pub enum EnumerationError {
     Transfer {
         /// The request.
         step: Step,
-        /// What happened to it.
+        /// Why.
         #[source]
         cause: TransferError,
     },
-    /// The device's answer makes no sense, or it is not a serial port.
+    /// The device's answer is invalid, or it is not a serial port.
     #[error("{step}: {cause}")]
     Descriptor {
         /// The request.
         step: Step,
-        /// What is wrong with the answer.
+        /// The error in the answer.
         #[source]
         cause: DescriptorError,
     },
 }
 
-/// A configured serial port and what it said about itself.
+/// A configured serial port with its descriptors.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CdcDevice {
     /// Its control endpoint, for further requests.
@@ -114,16 +114,16 @@ pub struct CdcDevice {
     pub configuration: ConfigurationDescriptor,
     /// Where the serial port is.
     pub function: SerialFunction,
-    /// Who made it.
+    /// Manufacturer.
     pub manufacturer: Option<String>,
-    /// What it is.
+    /// Product.
     pub product: Option<String>,
-    /// Which of them it is.
+    /// Serial number.
     pub serial_number: Option<String>,
 }
 
 impl CdcDevice {
-    /// Resets the bus and brings the device on it to work.
+    /// Resets the bus and configures the device on it.
     ///
     /// `run` lets the device run for one turn of 50 µs; recovery times and time-outs of the
     /// standard are counted in turns.
@@ -137,7 +137,7 @@ impl CdcDevice {
     ) -> Result<Self, EnumerationError> {
         wire.bus_reset();
         recover(wire, run, RESET_RECOVERY);
-        let mut asking = Asking {
+        let mut asking = Enumerator {
             wire,
             run,
             pipe: ControlPipe {
@@ -186,13 +186,13 @@ impl CdcDevice {
 }
 
 /// The host in the middle of an enumeration.
-struct Asking<'a, W, R> {
+struct Enumerator<'a, W, R> {
     wire: &'a mut W,
     run: &'a mut R,
     pipe: ControlPipe,
 }
 
-impl<W: UsbWire, R: FnMut(&mut W)> Asking<'_, W, R> {
+impl<W: UsbWire, R: FnMut(&mut W)> Enumerator<'_, W, R> {
     fn descriptor(
         &mut self,
         step: Step,
@@ -212,7 +212,7 @@ impl<W: UsbWire, R: FnMut(&mut W)> Asking<'_, W, R> {
             .map_err(|cause| EnumerationError::Transfer { step, cause })
     }
 
-    fn tell(
+    fn send(
         &mut self,
         step: Step,
         request: ControlRequest,
@@ -230,7 +230,7 @@ impl<W: UsbWire, R: FnMut(&mut W)> Asking<'_, W, R> {
             value: u16::from(ADDRESS),
             index: 0,
         };
-        self.tell(Step::SetAddress, request, &[])?;
+        self.send(Step::SetAddress, request, &[])?;
         recover(self.wire, self.run, ADDRESS_RECOVERY);
         self.pipe.address = ADDRESS;
         Ok(())
@@ -262,7 +262,7 @@ impl<W: UsbWire, R: FnMut(&mut W)> Asking<'_, W, R> {
             value: u16::from(value),
             index: 0,
         };
-        self.tell(Step::SetConfiguration, request, &[])
+        self.send(Step::SetConfiguration, request, &[])
     }
 
     /// What opening the port does: line coding, then DTR and RTS.
@@ -273,13 +273,13 @@ impl<W: UsbWire, R: FnMut(&mut W)> Asking<'_, W, R> {
             value: 0,
             index: u16::from(interface),
         };
-        self.tell(Step::SetLineCoding, line_coding, &LINE_CODING)?;
+        self.send(Step::SetLineCoding, line_coding, &LINE_CODING)?;
         let control_lines = ControlRequest {
             request: request::SET_CONTROL_LINE_STATE,
             value: CONTROL_LINES_DTR_RTS,
             ..line_coding
         };
-        self.tell(Step::SetControlLineState, control_lines, &[])
+        self.send(Step::SetControlLineState, control_lines, &[])
     }
 }
 

@@ -4,15 +4,14 @@
 //!   queue ──▶ outgoing ──▶ OUT packets ──▶ device
 //!   received ◀── incoming ◀── transfer ◀── IN packets ◀── device
 //! ```
-//! The bus is honest in two respects a program would otherwise notice only on hardware:
+//! The bus is realistic in two respects that usually matter only on hardware:
 //! - A frame of 1 ms carries 1,500 bytes. A bulk packet takes its data and 13 bytes (USB 2.0,
 //!   table 5-9), so 19 full packets fit, both directions together: 1.2 MB/s at best.
 //! - Bytes become readable when the transfer they came in ends: with a short packet, or when the
-//!   host's buffer is full. A device that forgets the zero-length packet is found out.
+//!   host's buffer is full. A device that forgets the zero-length packet is detected.
 //!
-//! What it leaves out: a "not now" costs no time on the bus (a real host repeats it only in time
-//! that nothing else wants), and the notification endpoint is not polled (the device has nothing
-//! to say there).
+//! Not modelled: a NAK takes no time on the bus (a real host repeats it only in unused time), and
+//! the notification endpoint is not polled (the device does not use it).
 
 use std::collections::VecDeque;
 
@@ -28,12 +27,12 @@ const TRANSACTION_OVERHEAD: usize = 13;
 /// The buffer of one IN transfer, bytes. Drivers use 128 to some thousands; a large one is the
 /// harder test for a device.
 const TRANSFER_BYTES: usize = 4_096;
-/// What waits for the program at most, bytes; then the host stops fetching.
+/// Capacity of the queue to the program, bytes; when full, the host stops fetching.
 const INCOMING_BYTES: usize = 64 * 1024;
-/// What waits for the device at most, bytes.
+/// Capacity of the queue to the device, bytes.
 const OUTGOING_BYTES: usize = 64 * 1024;
 
-/// What has crossed the bus since enumeration.
+/// Traffic on the bus since enumeration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
     /// Frames begun.
@@ -54,8 +53,8 @@ pub struct Traffic {
 
 /// A host with one serial port open.
 ///
-/// When the device goes away ([`TransferError::Detached`]) the value is of no more use: enumerate
-/// anew for a fresh one. What was queued or half received goes with it, as with a real port.
+/// When the device is disconnected ([`TransferError::Detached`]) the value is useless: enumerate
+/// again for a new one. Queued or half received data is lost, as with a real port.
 #[derive(Clone, Debug)]
 pub struct CdcHost {
     device: CdcDevice,
@@ -91,7 +90,7 @@ impl CdcHost {
         &self.device
     }
 
-    /// What has crossed the bus.
+    /// Traffic on the bus.
     pub fn traffic(&self) -> Traffic {
         self.traffic
     }
@@ -128,8 +127,8 @@ impl CdcHost {
         self.incoming.drain(..).collect()
     }
 
-    /// Whether a program has the port open. Without one the host fetches nothing, so the device
-    /// has to keep, or drop, what it wants to say; what was fetched and not read is discarded.
+    /// Sets whether a program has the port open. Without one the host fetches nothing, so the device
+    /// has to queue or drop its data; data fetched and not read is discarded.
     pub fn set_open(&mut self, open: bool) {
         self.fetching = open;
         if !open {
@@ -142,7 +141,7 @@ impl CdcHost {
     ///
     /// # Errors
     ///
-    /// As [`poll`](Self::poll); the rest of the frame does not take place.
+    /// As [`poll`](Self::poll); the rest of the frame is skipped.
     pub fn frame<W: UsbWire>(
         &mut self,
         wire: &mut W,
@@ -156,7 +155,7 @@ impl CdcHost {
         Ok(())
     }
 
-    /// A new frame begins: there is bus time again. For simulations that interleave
+    /// Starts a new frame with its bus time. For simulations that interleave
     /// [`poll`](Self::poll) with the device themselves.
     pub fn start_frame(&mut self) {
         self.frame_bytes_left = FRAME_BYTES;
@@ -247,7 +246,7 @@ impl CdcHost {
     }
 }
 
-/// The packet, or `None` for "not now".
+/// The packet, or `None` for NAK.
 fn accepted(answer: Handshake, pipe: EndpointDescriptor) -> Result<Option<Packet>, TransferError> {
     match answer {
         Handshake::Ack(packet) => Ok(Some(packet)),

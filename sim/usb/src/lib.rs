@@ -17,15 +17,15 @@
 //! ```
 //!
 //! **Real**: the device stack and the serial class, the device's own port, every request of an
-//! enumeration, packets, short and zero-length packets, "not now", stalls, bus resets, suspend,
+//! enumeration, packets, short and zero-length packets, NAKs, stalls, bus resets, suspend,
 //! the bandwidth of a full-speed bus, and a pulled cable.
 //!
 //! **Virtual**: the peripheral and its registers, the host's driver, and time. The device makes
-//! progress only when the caller lets it run, in turns of 50 µs; nothing here waits, sleeps or
-//! looks at a clock, so a run is the same every time, as fast as the machine can.
+//! progress only when the caller lets it run, in turns of 50 µs; nothing here blocks, sleeps or
+//! reads a clock, so a run is deterministic, as fast as the machine can.
 //!
-//! **Left out**: bit errors with their retries and data toggles, the time a "not now" takes on the
-//! bus, hubs and a second device, high speed, isochronous and interrupt transfers (the serial
+//! **Not modelled**: bit errors with their retries and data toggles, the bus time of a NAK,
+//! hubs and a second device, high speed, isochronous and interrupt transfers (the serial
 //! class has nothing to notify), remote wake-up. A pty carries bytes, not line coding or DTR.
 //!
 //! ```

@@ -1,4 +1,4 @@
-//! What the two ends of a software bus share: the state of a USB peripheral.
+//! State of a USB peripheral, shared by the two ends of a software bus.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -13,7 +13,7 @@ pub(crate) struct Peripheral {
     pub(crate) plugged: bool,
     pub(crate) suspended: bool,
     pub(crate) reset: ResetStage,
-    /// The device stack has not been told of this.
+    /// Not yet reported to the device stack.
     pub(crate) line_event: Option<LineEvent>,
     pub(crate) address: u8,
     /// A SETUP packet the device stack has not read yet.
@@ -22,19 +22,19 @@ pub(crate) struct Peripheral {
     pub(crate) out_endpoints: [OutEndpoint; ENDPOINTS],
 }
 
-/// How far a bus reset has come. Until it is done the device is deaf.
+/// Progress of a bus reset. Until it is done the device does not answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum ResetStage {
-    /// The host has reset the bus; the device stack has not been told.
+    /// The host has reset the bus; not yet reported to the device stack.
     Pending,
-    /// The device stack knows and has yet to set its endpoints up. So it is at power-on.
+    /// Reported; the device stack has yet to set its endpoints up. Initial state at power-on.
     #[default]
-    Told,
+    Reported,
     /// The endpoints are set up: the device answers at address 0.
     Done,
 }
 
-/// The frames have stopped, or come again.
+/// Frames have stopped or resumed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum LineEvent {
     Suspend,
@@ -52,7 +52,7 @@ pub(crate) struct EndpointEvents {
 impl Peripheral {
     /// The device stack has set its endpoints up, unless a further reset came in the meantime.
     pub(crate) fn endpoints_set_up(&mut self) {
-        if self.reset == ResetStage::Told {
+        if self.reset == ResetStage::Reported {
             self.reset = ResetStage::Done;
         }
     }

@@ -3,9 +3,9 @@
 //! ```text
 //!   program ── /dev/pts/N ══ master (here) ── CdcHost ── bus ── device
 //! ```
-//! Both directions are bounded and nothing waits. What the program does not read stays in the
-//! pty's buffer, then in the host's queue, then in the device, which drops and counts. While no
-//! program has the port open, the host fetches nothing at all, as with a real port.
+//! Both directions are bounded and nothing blocks. Unread data fills the pty's buffer, then the
+//! host's queue, then the device's, which drops and counts. While no program has the port open,
+//! the host fetches nothing at all, as with a real port.
 //!
 //! A pty is not quite a serial port: line coding, DTR and RTS that a program sets do not reach the
 //! device.
@@ -25,9 +25,9 @@ use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcseta
 
 use crate::host::CdcHost;
 
-/// Where the system puts the ends that programs open.
+/// Folder of the ends that programs open.
 const DIRECTORY: &str = "/dev/pts";
-/// How much one exchange moves from the program at most, bytes.
+/// The most bytes that one exchange moves from the program.
 const CHUNK: usize = 4_096;
 
 /// A pty whose other end a program opens as a serial port.
@@ -61,7 +61,7 @@ impl Pty {
             link: None,
             was_open: false,
         };
-        // Until a first program has closed it, a new pty does not say that nobody has it open.
+        // A new pty reports that no program has it open only after one has closed it.
         pty.clean()?;
         if let Some(link) = link {
             make_link(&pty.path, link)?;
@@ -70,7 +70,7 @@ impl Pty {
         Ok(pty)
     }
 
-    /// What a program opens: the link if there is one.
+    /// The path for a program: the link if there is one.
     pub fn path(&self) -> &Path {
         self.link.as_deref().unwrap_or(&self.path)
     }

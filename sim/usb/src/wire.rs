@@ -1,11 +1,11 @@
 //! The wire between a host and a device, at the level of transactions.
 //!
 //! A host calls, a device answers; one call is one transaction of USB 2.0 chapter 8 (token, data,
-//! handshake). Everything above this seam is a host, everything below it a device: a
+//! handshake). Everything above this interface is a host, everything below it a device: a
 //! [`SoftBus`](crate::bus::SoftBus), or an emulated USB core.
 //!
-//! Nothing here knows time. [`Handshake::Nak`] means "not now": whoever owns the simulation lets
-//! the device run and asks again.
+//! There is no time here. After [`Handshake::Nak`] the owner of the simulation lets
+//! the device run and retries.
 //!
 //! Not modelled: bit errors, and therefore time-outs, retries and data toggles.
 
@@ -60,7 +60,7 @@ impl PartialEq for Packet {
 
 impl Eq for Packet {}
 
-/// Whom a transaction is for. The direction is in the kind of transaction.
+/// Address of a transaction. The direction is in the kind of transaction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token {
     /// The device's address, 0 until it is given one.
@@ -79,7 +79,7 @@ pub enum Handshake {
     Nak,
     /// The endpoint is halted, or the control request is refused.
     Stall,
-    /// Nobody answers: no device, another address, no such endpoint, or a device in reset.
+    /// No answer: no device, another address, no such endpoint, or a device in reset.
     Absent,
 }
 

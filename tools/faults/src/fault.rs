@@ -10,7 +10,7 @@ const LIST: &str = include_str!("../faults.toml");
 /// Marks of the expression that a fault replaces.
 const MARKS: [char; 2] = ['«', '»'];
 
-/// One way to get the model wrong.
+/// A fault of the model.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fault {
@@ -18,17 +18,17 @@ pub struct Fault {
     pub name: String,
     /// What is wrong, in one line.
     pub what: String,
-    /// The file that it is planted in, from the root of the repository.
+    /// The file to plant it in, from the root of the repository.
     pub file: String,
-    /// A text that stands once in the file; the expression between its marks
+    /// A text that occurs once in the file; the expression between its marks
     /// is replaced.
     pub text: String,
-    /// The expression that stands there instead.
+    /// The replacement.
     pub with: String,
-    /// Why the hard cases cannot notice it, where they cannot.
+    /// Why the hard cases cannot detect it, if they cannot.
     #[serde(default)]
     pub unseen_by_cases: Option<String>,
-    /// Why the model's tests cannot notice it, where they cannot.
+    /// Why the model's tests cannot detect it, if they cannot.
     #[serde(default)]
     pub unseen_by_tests: Option<String>,
 }
@@ -36,13 +36,13 @@ pub struct Fault {
 /// Why a list or a fault cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum FaultError {
-    /// The list is not what it should be.
+    /// The list is invalid.
     #[error("faults.toml: {0}")]
     List(#[from] toml::de::Error),
     /// No expression is marked.
     #[error("fault `{0}`: its text has no expression between « and »")]
     Marks(String),
-    /// The text does not stand in its file, or not once.
+    /// The text does not occur in its file exactly once.
     #[error(
         "fault `{name}`: its text stands {found} times in {file}, expected once; the source has changed, so \
          change the fault in tools/faults/faults.toml"
@@ -52,10 +52,10 @@ pub enum FaultError {
         name: String,
         /// The file.
         file: String,
-        /// How often.
+        /// Number of occurrences.
         found: usize,
     },
-    /// Two faults want parts of one expression.
+    /// Two faults replace parts of one expression.
     #[error(
         "faults `{0}` and `{1}` overlap: both must replace the same expression, or different ones"
     )]
@@ -77,10 +77,10 @@ pub fn all() -> Result<Vec<Fault>, FaultError> {
 }
 
 impl Fault {
-    /// Where in a source the expression stands that it replaces, in bytes.
+    /// Range of the replaced expression in a source, in bytes.
     ///
     /// # Errors
-    /// [`FaultError::Text`] unless its text stands in the source exactly once.
+    /// [`FaultError::Text`] unless its text occurs in the source exactly once.
     pub fn place(&self, source: &str) -> Result<(usize, usize), FaultError> {
         let parts: Vec<&str> = self.text.split(MARKS).collect();
         let [before, expression, after] = parts[..] else {

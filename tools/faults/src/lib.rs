@@ -1,4 +1,4 @@
-//! Planted faults: does a check notice when the model is wrong?
+//! Planted faults: does a check detect a wrong model?
 //!
 //! ```text
 //! faults.toml ─> scratch copy of the sources, each fault behind a switch, built once
@@ -6,7 +6,7 @@
 //!                  └─> the model's tests, likewise        ─┴─> docs/planted-faults.md
 //! ```
 //!
-//! A fault replaces an expression in an exact text that stands once in its
+//! A fault replaces an expression in an exact text that occurs once in its
 //! file. The work tree is never changed: the faults are planted in a copy.
 //! There each is one branch of an `if`, so that one build serves them all
 //! (mutant schemata: Untch, Offutt and Harrold 1993).

@@ -1,5 +1,5 @@
 //! `crepitus-faults`: plants the faults of `faults.toml` one at a time and
-//! writes which hard cases and which of the model's tests notice them.
+//! writes which hard cases and which of the model's tests detect them.
 
 use clap::Parser;
 use crepitus_faults::fault::Fault;
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Plants faults in a copy of the sources and reports what notices them.
+/// Plants faults in a copy of the sources and reports the checks that detect them.
 #[derive(Parser)]
 #[command(
     after_help = "Example: cargo run -p crepitus-faults -- --only period-in-f32\n\n\
@@ -21,7 +21,7 @@ struct Arguments {
     /// Try only this fault; may be given several times.
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
-    /// List the faults and end.
+    /// List the faults and exit.
     #[arg(long)]
     list: bool,
     /// Run the hard cases only, and leave the model's tests to a later run.
@@ -30,7 +30,7 @@ struct Arguments {
     /// Root of the repository.
     #[arg(long, value_name = "DIR", default_value = ".")]
     root: PathBuf,
-    /// Scratch folder: the copy, its build, what is known so far.
+    /// Scratch folder: the copy, its build, results so far.
     #[arg(long, value_name = "DIR", default_value = "target/faults")]
     scratch: PathBuf,
     /// Write the page of all faults here.
@@ -110,7 +110,7 @@ fn work(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
     })
 }
 
-/// Tries what is not known yet; built when first needed.
+/// Tries faults without a result; built when first needed.
 struct Bench<'a> {
     arguments: &'a Arguments,
     scratch: &'a Path,
@@ -132,7 +132,7 @@ impl Bench<'_> {
         Ok(self.workshop.insert(open))
     }
 
-    /// The outcome of a fault, with what was `known` of it before.
+    /// The outcome of a fault, with its `known` results.
     fn complete(
         &mut self,
         number: usize,

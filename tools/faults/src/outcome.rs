@@ -1,4 +1,4 @@
-//! What noticed a fault, kept as a file so that a run can go on where it ended.
+//! The checks that detect a fault, stored so that a run can be continued.
 
 use crate::fault::Fault;
 use crate::tree::write_if_changed;
@@ -8,14 +8,14 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
 use std::path::Path;
 
-/// What noticed a fault.
+/// The checks that detect a fault.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Outcome {
     /// The fault.
     pub name: String,
-    /// Of what this came: the sources and the fault.
+    /// Fingerprint of the sources and the fault.
     pub fingerprint: u64,
-    /// Every hard case, in the order of the catalogue, and what became of it.
+    /// Result of every hard case, in the order of the catalogue.
     pub cases: Vec<CaseOutcome>,
     /// Whether the model's tests were run.
     pub tested: bool,
@@ -23,29 +23,29 @@ pub struct Outcome {
     pub test: Option<String>,
 }
 
-/// What became of a hard case.
+/// Result of a hard case.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CaseOutcome {
     /// Its number.
     pub id: String,
-    /// What it found; nothing where it holds.
+    /// What it found; `None` if it holds.
     pub found: Option<String>,
 }
 
 impl Outcome {
-    /// The cases that notice the fault.
+    /// The cases that detect the fault.
     pub fn noticed_by(&self) -> impl Iterator<Item = &CaseOutcome> {
         self.cases.iter().filter(|case| case.found.is_some())
     }
 
-    /// What is known of a fault from an earlier run on the same sources.
+    /// The outcome of a fault in an earlier run on the same sources.
     pub fn load(folder: &Path, name: &str, fingerprint: u64) -> Option<Self> {
         let text = fs::read_to_string(folder.join(format!("{name}.json"))).ok()?;
         let known: Self = serde_json::from_str(&text).ok()?;
         (known.fingerprint == fingerprint).then_some(known)
     }
 
-    /// Keeps it.
+    /// Stores it.
     ///
     /// # Errors
     /// What the file system says.
@@ -62,8 +62,8 @@ pub fn fingerprint(sources: u64, fault: &Fault) -> u64 {
     hasher.finish()
 }
 
-/// Reads the lines of `broken_cases`; a case that has no line after one that
-/// began has hung or has ended the program.
+/// Reads the lines of `broken_cases`; a case without a line has hung or ended
+/// the program.
 pub fn read_cases(text: &str, ended: bool, all: &[String]) -> Vec<CaseOutcome> {
     let mut cases = Vec::new();
     for line in text.lines() {

@@ -1,4 +1,4 @@
-//! What came of all faults as a page of the book.
+//! Results of all faults, as a page of the book.
 
 use crate::fault::Fault;
 use crate::outcome::Outcome;
@@ -71,7 +71,7 @@ pub fn page(outcomes: &[(Fault, Outcome)]) -> String {
     text
 }
 
-/// The faults that one side does not notice, with the reason.
+/// The faults that one side does not detect, with the reason.
 fn unseen(text: &mut String, outcomes: &[(Fault, Outcome)]) {
     for (fault, outcome) in outcomes {
         let sides = [
@@ -93,7 +93,7 @@ fn unseen(text: &mut String, outcomes: &[(Fault, Outcome)]) {
     }
 }
 
-/// The matrix: a line a fault, a column a case that notices something.
+/// The matrix: a line a fault, a column a case that detects some fault.
 fn matrix(text: &mut String, outcomes: &[(Fault, Outcome)]) {
     let ids: BTreeSet<&str> = outcomes
         .iter()

@@ -10,11 +10,11 @@ use std::time::{Duration, Instant};
 /// How a program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// It said that all is well.
+    /// Exit code 0.
     Success,
-    /// It ended with another exit code, or a signal.
+    /// Another exit code, or a signal.
     Failure,
-    /// It was ended after its time was over.
+    /// It was killed after its timeout.
     Timeout,
 }
 

@@ -6,16 +6,15 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What stands in the root and a build of the model's tests and the hard cases
+/// Entries of the root that a build of the model's tests and the hard cases
 /// does not need.
 const LEFT_OUT: [&str; 5] = [".git", "target", "out", "docs", "bench"];
 
-/// What the outcome of a fault depends on.
+/// Folders that the outcome of a fault depends on.
 const DECIDES: [&str; 5] = ["model", "sim/ladder", "sim/plant", "sim/scene", "sim/study"];
 
 /// Makes `to` a copy of the sources in `from`, with other texts for some files.
-/// A file that is already the same is left alone, so that it is not built
-/// again.
+/// A file that is already the same is not written, so that it is not rebuilt.
 ///
 /// # Errors
 /// What the file system says.
@@ -28,7 +27,7 @@ pub fn copy(from: &Path, to: &Path, others: &BTreeMap<PathBuf, String>) -> io::R
         };
         write_if_changed(&to.join(&file), &bytes)?;
     }
-    // What has gone from the sources must not be built.
+    // Files removed from the sources must not be built.
     for file in files(to)? {
         if !from.join(&file).exists() {
             fs::remove_file(to.join(&file))?;
@@ -77,7 +76,7 @@ fn files(root: &Path) -> io::Result<Vec<PathBuf>> {
                 continue;
             }
             if entry.file_type()?.is_dir() {
-                // What a build has made says so.
+                // Build output is marked like this.
                 if !entry.path().join("CACHEDIR.TAG").exists() {
                     folders.push(path);
                 }

@@ -13,19 +13,19 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-/// Longer than any build takes, with waiting for its turn.
+/// Timeout of a build, waiting for others included.
 const BUILD: Duration = Duration::from_hours(1);
 
-/// Many times what the slowest program takes on a slow machine.
+/// Timeout of a program: many times that of the slowest on a slow machine.
 const RUN: Duration = Duration::from_mins(3);
 
-/// The variable that says which fault is in force; 0 is none.
+/// The variable with the number of the active fault; 0 is none.
 const SWITCH: &str = "CREPITUS_FAULT";
 
-/// The crate that all faults are in.
+/// The crate of all faults.
 const CRATE: &str = "model/src/lib.rs";
 
-/// What the copy's model has beside the faults.
+/// Code added to the copy's model for the faults.
 const PLANTED: &str = "
 /// The planted fault that is in force.
 #[allow(missing_docs)]
@@ -50,23 +50,23 @@ pub enum TrialError {
     /// It does not apply.
     #[error(transparent)]
     Fault(#[from] FaultError),
-    /// A file or a program.
+    /// A file or a program failed.
     #[error("{what}: {source}")]
     Io {
-        /// Which.
+        /// The file or program.
         what: String,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// The sources with the faults do not build.
     #[error("the sources with the faults do not build: see {}", .0.display())]
     Build(PathBuf),
-    /// Without any fault something fails.
+    /// Something fails without any fault.
     #[error("without a fault this fails: {0}")]
     Baseline(String),
 }
 
-/// Adds what it was about to an error of the file system.
+/// Adds the file to an error of the file system.
 fn io(what: &Path) -> impl FnOnce(io::Error) -> TrialError + '_ {
     move |source| TrialError::Io {
         what: what.display().to_string(),
@@ -74,7 +74,7 @@ fn io(what: &Path) -> impl FnOnce(io::Error) -> TrialError + '_ {
     }
 }
 
-/// The programs that notice faults.
+/// The programs that detect faults.
 #[derive(Clone, Debug)]
 pub struct Workshop {
     scratch: PathBuf,
@@ -240,18 +240,18 @@ impl Workshop {
         Ok((end, fs::read_to_string(&log).map_err(io(&log))?))
     }
 
-    /// Builds, and says which programs came of it.
+    /// Builds, and returns the programs.
     fn build(&self, cargo: &str, arguments: &[&str]) -> Result<Vec<Program>, TrialError> {
         let log = self.scratch.join("build.txt");
-        // Never that of the work tree: to cargo the copy's crates are the same, and
-        // their faults would stay there.
+        // Never that of the work tree: to Cargo the copy's crates are the same, and
+        // their faults would remain there.
         let target = self.scratch.join("target");
         let mut command = Command::new(cargo);
         command
             .args(arguments)
             .args(["--quiet", "--message-format", "json"])
             .current_dir(&self.tree)
-            // Each fault stands in brackets, of which some are not needed.
+            // Each fault is in brackets, some of which are not needed.
             .env("RUSTFLAGS", "--cap-lints allow")
             .env("CARGO_TARGET_DIR", target);
         let end = run(&mut command, &log, BUILD).map_err(io(Path::new(cargo)))?;

@@ -9,7 +9,7 @@ use std::ops::Range;
 pub enum Target {
     /// To this address.
     Known(u32),
-    /// To a place that the code does not tell.
+    /// Unknown from the code.
     Unknown,
 }
 
@@ -20,7 +20,7 @@ pub enum Leave {
     Return,
     /// Into another function that returns in its place.
     Tail(Target),
-    /// The code ends without having gone anywhere.
+    /// The code ends without a jump or return.
     RunsOut,
 }
 

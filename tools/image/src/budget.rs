@@ -1,4 +1,4 @@
-//! The budget file: what an image may take, and what somebody has looked at.
+//! The budget file: limits of an image, and reviewed allowances.
 //!
 //! ```toml
 //! tolerance_percent = 2.0                # what a recorded size may grow by
@@ -113,7 +113,7 @@ pub struct Recorded {
     pub stack: Spanned<u32>,
 }
 
-/// Addresses for something else than the program.
+/// Addresses reserved for other uses than the program.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reserved {
@@ -121,7 +121,7 @@ pub struct Reserved {
     pub from: u32,
     /// The one behind the last.
     pub to: u32,
-    /// For what.
+    /// Their use.
     pub what: String,
 }
 
@@ -156,12 +156,12 @@ pub struct End {
 pub struct BoundedLoops {
     /// The function; for a library's, a last `*` stands for any end.
     pub function: String,
-    /// The most rounds of each of its loops, in the order of their lines. If
-    /// the compiler has dissolved some of them, the largest is for all others.
+    /// The most iterations of each of its loops, in the order of their lines. If
+    /// the compiler has removed some of them, the largest is for all others.
     #[serde(default)]
     pub bounds: Vec<u64>,
-    /// Instead: the most rounds of any of its loops. Only for a library, whose
-    /// lines nobody here has under his eyes.
+    /// Instead: the most iterations of any of its loops. Only for a library,
+    /// whose lines are not in this repository.
     pub at_most: Option<u64>,
     /// Why they hold.
     pub reason: String,
@@ -173,12 +173,12 @@ pub struct BoundedLoops {
 pub struct IndirectCalls {
     /// The function.
     pub function: String,
-    /// How many there are in it.
+    /// Their number in it.
     #[serde(default = "one")]
     pub calls: usize,
     /// Every function that they can reach.
     pub targets: Vec<String>,
-    /// Why it is these.
+    /// Why these.
     pub reason: String,
 }
 
@@ -215,7 +215,7 @@ impl Budget {
     ///
     /// # Errors
     ///
-    /// [`ImageError::Budget`] with the position of what is wrong.
+    /// [`ImageError::Budget`] with the position of the error.
     pub fn parse(path: &Path, text: &str) -> Result<Self, ImageError> {
         let error = |what: String| ImageError::Budget {
             path: path.to_owned(),
@@ -249,7 +249,7 @@ impl BoundedLoops {
         }
     }
 
-    /// The most rounds of the loop at place `n` of `count`.
+    /// The most iterations of loop `n` of `count`.
     pub fn bound(&self, n: usize, count: usize) -> Option<u64> {
         let listed = match count.cmp(&self.bounds.len()) {
             Ordering::Less => self.bounds.iter().max(),
@@ -261,7 +261,7 @@ impl BoundedLoops {
 }
 
 impl ImageBudget {
-    /// What somebody vouches for: the kind, the function, the reason.
+    /// All allowances: the kind, the function, the reason.
     pub fn vouched(&self) -> impl Iterator<Item = (&'static str, &str, &str)> {
         let loops = self.loops.iter().map(|e| ("loops", &e.function, &e.reason));
         let ends = self.ends.iter().map(|e| ("ends", &e.function, &e.reason));
@@ -307,7 +307,7 @@ pub fn bless(text: &str, changes: &[(&Spanned<u32>, u32)]) -> String {
     text
 }
 
-/// A number as TOML lets people read it.
+/// A number as TOML with groups of digits.
 fn underscored(number: u32) -> String {
     crate::text::grouped(number, '_')
 }

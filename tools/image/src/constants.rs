@@ -1,22 +1,22 @@
-//! Constants in registers, so that a call through a register whose value the
-//! code itself fixes counts as what it is: a direct call.
+//! Constants in registers, so that a call through a register with a constant
+//! value is treated as a direct call.
 //!
 //! Compilers make such calls to save space (`movw`, `movt`, then `blx` several
 //! times) and linkers to reach far (`movw`, `movt`, `bx` in a veneer). A
-//! register is known where every way to the instruction gives it the same
-//! value, and forgotten wherever something *may* have written it.
+//! register is known if every path to the instruction gives it the same
+//! value, and unknown after anything that *may* write it.
 
 use crate::body::{Body, Leave, Target};
 use crate::decode::{Constant, Flow, Instruction, Register};
 use crate::elf::Image;
 
-/// What is known of `r0` to `r14`; the outer `None`: not reached yet.
+/// Known values of `r0` to `r14`; the outer `None`: not reached yet.
 type Known = [Option<u32>; 15];
 
 /// Registers that a called function may change: r0 to r3, r12, lr.
 const CALL_CHANGES: u16 = 0x500F;
 
-/// Replaces unknown targets by those that constants give away.
+/// Replaces unknown targets by those known from constants.
 pub fn resolve(image: &Image, body: &mut Body) {
     let unknown = |target| target == Some(Target::Unknown);
     let open = body
@@ -45,7 +45,7 @@ pub fn resolve(image: &Image, body: &mut Body) {
     }
 }
 
-/// What is known before each step.
+/// Known values before each step.
 fn flow(image: &Image, body: &Body) -> Vec<Option<Known>> {
     let mut before: Vec<Option<Known>> = vec![None; body.steps.len()];
     if let Some(entry) = before.first_mut() {
@@ -68,7 +68,7 @@ fn flow(image: &Image, body: &Body) -> Vec<Option<Known>> {
     before
 }
 
-/// Keeps what both agree on; true if that is news.
+/// Intersects known values; returns whether that is a change.
 fn meet(known: &mut Option<Known>, other: &Known) -> bool {
     let Some(registers) = known else {
         *known = Some(*other);
@@ -103,7 +103,7 @@ fn after(image: &Image, it: &Instruction, call: bool, before: Known) -> Known {
         Constant::Literal(to, word) => Some((to, image.constant_word(word))),
         Constant::Copy { to, from } => Some((to, get(from))),
     };
-    // Inside an `it` block it may not have happened.
+    // Inside an `it` block it may not be executed.
     if let Some((to, value)) = made
         && !it.conditional
         && let Some(register) = known.get_mut(usize::from(to))

@@ -1,12 +1,12 @@
 //! One Thumb-2 instruction, as far as control flow and the stack go.
 //!
-//! Not a disassembler: of each instruction this knows its length, where
-//! control goes next, what it does to `sp`, whether it needs the FPU, and
+//! Not a disassembler: of each instruction this knows its length, the next
+//! address, its effect on `sp`, whether it needs the FPU, and
 //! which registers it *may* write (too many rather than too few), and it
-//! recognises how constants get into registers, because calls go through
+//! recognises loads of constants into registers, because calls use
 //! them. That is little enough to check by hand against the manual and covers
-//! ARMv7E-M with FPv4 whole: an encoding without an effect on flow or stack
-//! needs no case of its own.
+//! all of ARMv7E-M with FPv4: an encoding without an effect on flow or stack
+//! needs no case.
 //!
 //! `tests.rs` holds an example of each. Over all of `core`, `alloc` and
 //! `compiler_builtins` for `thumbv7em-none-eabihf` (106,375 instructions)
@@ -71,7 +71,7 @@ pub enum Stack {
     Down(u32),
     /// It goes up again.
     Up(u32),
-    /// It is set to something that the instruction alone does not tell.
+    /// It is set to an unknown value.
     Dynamic,
 }
 

@@ -12,13 +12,13 @@ type File<'data> = ElfFile<'data, FileHeader32<LittleEndian>>;
 /// A part of the file that is programmed or reserved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Segment {
-    /// Where it is programmed.
+    /// Load address.
     pub load: u32,
-    /// Where it stands while the program runs.
+    /// Address at run time.
     pub address: u32,
     /// Bytes to program.
     pub file_size: u32,
-    /// Bytes that it takes while the program runs.
+    /// Bytes at run time.
     pub memory_size: u32,
 }
 
@@ -27,7 +27,7 @@ pub struct Segment {
 pub struct Section {
     /// Its name.
     pub name: String,
-    /// Where it stands.
+    /// Its address.
     pub address: u32,
     /// Its size in bytes.
     pub size: u32,
@@ -35,7 +35,7 @@ pub struct Section {
     pub executable: bool,
     /// The program may write to it.
     pub writable: bool,
-    /// What the file holds of it; nothing for `.bss` and the like.
+    /// Its content in the file; empty for `.bss` and the like.
     pub bytes: Vec<u8>,
 }
 
@@ -44,11 +44,11 @@ pub struct Section {
 pub struct Symbol {
     /// Demangled, without hash; several where symbols share an address.
     pub names: Vec<String>,
-    /// Its size in bytes; 0 where the symbol does not tell.
+    /// Its size in bytes; 0 if the symbol has none.
     pub size: u32,
 }
 
-/// What a mapping symbol says about the bytes from there on.
+/// Kind of the bytes from a mapping symbol on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Content {
     /// Thumb instructions.
@@ -75,7 +75,7 @@ impl Image {
     ///
     /// # Errors
     ///
-    /// [`ImageError`] if it is no ELF file for this machine, or is stripped.
+    /// [`ImageError`] if it is not an ELF file for this machine, or is stripped.
     pub fn parse(bytes: &[u8]) -> Result<Self, ImageError> {
         let file = File::parse(bytes)?;
         if file.elf_header().e_machine(LittleEndian) != EM_ARM {
@@ -105,7 +105,7 @@ impl Image {
                 _ => None,
             };
             if let Some(content) = content {
-                // A stretch of data without length ends where code begins.
+                // An empty range of data ends where code begins.
                 let known = self.mapping.entry(address).or_insert(content);
                 if content == Content::Code {
                     *known = content;

@@ -1,4 +1,4 @@
-//! What keeps an image from being examined at all.
+//! Errors that prevent the check of an image.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ pub enum ImageError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The file is not an ELF file that can be parsed.
@@ -20,15 +20,15 @@ pub enum ImageError {
     /// The file is an ELF file, but for another machine.
     #[error("not a 32-bit little-endian ARM executable")]
     Machine,
-    /// Without mapping symbols code and data cannot be told apart.
+    /// Without mapping symbols code and data cannot be distinguished.
     #[error(
         "no mapping symbols ($t, $d): code and data cannot be told apart; do not strip the image"
     )]
     Stripped,
-    /// Nothing says where the interrupts begin.
+    /// There is no vector table.
     #[error("no section .vector_table")]
     NoVectors,
-    /// `memory.x` says something that is not understood.
+    /// `memory.x` cannot be parsed.
     #[error("memory layout, line {line}: {what}")]
     Memory {
         /// Line, from 1.
@@ -36,20 +36,20 @@ pub enum ImageError {
         /// What was found or is missing.
         what: String,
     },
-    /// The budget file is not what it should be.
+    /// The budget file is invalid.
     #[error("{}: {what}", path.display())]
     Budget {
         /// The budget file.
         path: PathBuf,
-        /// What is wrong, with its position.
+        /// The error, with its position.
         what: String,
     },
-    /// A symbol was asked for that the image does not have.
+    /// The image does not have this symbol.
     #[error("no function {name} in the image{}", hint(near.as_deref()))]
     NoFunction {
         /// The name as given.
         name: String,
-        /// A name that resembles it.
+        /// A similar name.
         near: Option<String>,
     },
 }

@@ -21,7 +21,7 @@ use vouched::Vouched;
 pub(crate) use sizes::change_percent;
 pub(crate) use vouched::unknown_calls;
 
-/// An image taken apart, next to its budget.
+/// An analysed image, with its budget.
 pub struct Gate<'a> {
     name_of_image: &'a str,
     image: &'a Image,
@@ -45,7 +45,7 @@ pub struct Subject<'a> {
     pub memory: &'a [Region],
     /// Its budget.
     pub budget: &'a ImageBudget,
-    /// What recorded sizes may grow by.
+    /// Allowed growth of recorded sizes.
     pub tolerance_percent: f64,
 }
 
@@ -86,7 +86,7 @@ pub fn examine(name: &str, subject: Subject<'_>) -> Result<Report, ImageError> {
 }
 
 impl Gate<'_> {
-    /// An instruction's place for people: function, address, source line.
+    /// An instruction's place for display: function, address, source line.
     fn place(&self, address: u32) -> String {
         let name = self.program.at(address).map_or("?", Function::name);
         let line = self.lines.at(address);

@@ -1,9 +1,9 @@
-//! # Firmware images, examined
+//! # Checks of firmware images
 //!
-//! The gate that a firmware image passes before it is taken: its sizes, where
-//! it is loaded, how deep its stack gets, and what its interrupts can reach.
-//! All from the finished ELF file, without running it and without a
-//! disassembler from outside.
+//! The gate of a firmware image: its sizes, load addresses, worst stack, and
+//! the code reachable from its interrupts.
+//! All from the finished ELF file, without running it and without an external
+//! disassembler.
 //!
 //! ```text
 //! ELF ── elf ──> sections, symbols ── sweep, decode ──> instructions
@@ -18,22 +18,22 @@
 //! |---|---|
 //! | the form of the budget file | [`budget`] |
 //! | the checks themselves | [`gate`] |
-//! | which instructions are understood, and how | [`decode`] |
-//! | what counts as a loop, and which never end | [`loops`] |
-//! | how the worst stack adds up | [`stack`] |
-//! | which functions mean a panic | [`panics`] |
+//! | decoded instructions | [`decode`] |
+//! | loops, and endless loops | [`loops`] |
+//! | the sum of the worst stack | [`stack`] |
+//! | functions that mean a panic | [`panics`] |
 //!
-//! **What it cannot see.** It reads control flow, not values: whether a bound
-//! that the budget states for a loop holds is for the reader of the budget
-//! file to judge, and so are the targets given for calls through pointers.
-//! Faults by address, waiting for hardware inside a bounded loop, the time
-//! that anything takes, vector tables that are moved at run time and code
-//! that is copied or made at run time are beyond it. The stack of thread mode
-//! is a lower bound where it calls through pointers; the report says so.
-//! Handlers of faults add to it only where the budget lists them. Loops are
-//! those of the machine code: where the compiler has made one of two nested
-//! loops without anything between them, one bound covers both. Where it has
-//! dissolved a loop, its bound stays for one that comes later in that function.
+//! **Limits.** It analyses control flow, not values: whether a loop keeps the
+//! bound of the budget is for the reader of the budget file to judge, and so
+//! are the targets given for calls through pointers.
+//! Faults by address, waiting for hardware inside a bounded loop, execution
+//! time, vector tables that are moved at run time and code
+//! that is copied or made at run time are not checked. The stack of thread mode
+//! is a lower bound if it calls through pointers; the report says so.
+//! Fault handlers add to it only if the budget lists them. Loops are
+//! those of the machine code: if the compiler has merged two nested
+//! loops without anything between them, one bound covers both. If it has
+//! removed a loop, its bound applies to a later one in that function.
 
 pub mod body;
 pub mod budget;

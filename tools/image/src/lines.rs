@@ -3,13 +3,13 @@
 use addr2line::Loader;
 use std::path::Path;
 
-/// Looks lines up.
+/// Source lines of an image.
 #[derive(Default)]
 pub struct Lines {
     loader: Option<Loader>,
 }
 
-/// A function that stands at an address, by itself or inlined.
+/// A function at an address, by itself or inlined.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Frame {
     /// Its name, demangled.
@@ -19,7 +19,7 @@ pub struct Frame {
     /// The line in it that the address belongs to, or where the next was
     /// inlined; 0 for what the compiler made of several lines.
     pub line: u32,
-    /// The file belongs to somebody's library.
+    /// The file belongs to a library.
     pub library: bool,
 }
 
@@ -82,7 +82,7 @@ fn is_library(file: &str) -> bool {
     file.starts_with("/rustc/") || file.contains("/registry/src/") || file.contains("/library/")
 }
 
-/// Without the part that only says where somebody keeps his files.
+/// A path without the folder of the registry or toolchain.
 fn short(file: &str) -> String {
     if let Some((_, behind)) = file.split_once("/registry/src/") {
         return behind.split_once('/').map_or(behind, |(_, b)| b).to_owned();

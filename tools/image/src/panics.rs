@@ -1,7 +1,7 @@
 //! Functions that mean a panic, by their names.
 
-/// Whether control that gets here has panicked, or has run into a handler of
-/// faults, which to an interrupt is the same.
+/// Whether control that gets here has panicked, or is in a fault handler,
+/// which to an interrupt is the same.
 ///
 /// Names are demangled and without hash. The path decides where a name alone
 /// could be anybody's: `core::result::unwrap_failed`, but not

@@ -1,4 +1,4 @@
-//! The program: its functions, who calls whom, and who never returns.
+//! The program: its functions, their calls, and those that never return.
 
 use crate::body::{Body, Leave, Target};
 use crate::constants;
@@ -24,7 +24,7 @@ pub struct Function {
 impl Function {
     /// The name to show.
     pub fn name(&self) -> &str {
-        // Weak aliases of the default handler would hide what it is.
+        // Prefer this name to weak aliases of the default handler.
         let telling = self.names.iter().find(|n| n.starts_with("DefaultHandler"));
         telling
             .or(self.names.first())
@@ -51,7 +51,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// Takes an image apart.
+    /// Analyses an image.
     pub fn new(image: &Image) -> Self {
         let instructions = sweep(image);
         let mut functions = BTreeMap::new();
@@ -91,7 +91,7 @@ impl Program {
         program
     }
 
-    /// The function whose code stands at an address.
+    /// The function whose code is at an address.
     pub fn at(&self, address: u32) -> Option<&Function> {
         let (_, function) = self.functions.range(..=address).next_back()?;
         let last = function.body.steps.last()?;
@@ -134,8 +134,8 @@ impl Program {
         frame
     }
 
-    /// Takes away the way on behind calls that never return, until nothing
-    /// changes: what only calls such functions does not return either.
+    /// Removes the flow after calls that never return, until nothing
+    /// changes: a function that only calls such functions does not return either.
     fn cut_after_calls_without_return(&mut self) {
         loop {
             let returning = self.find_returning();

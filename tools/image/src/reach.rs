@@ -1,4 +1,4 @@
-//! What a function can reach, with the shortest way there.
+//! Functions reachable from a function, with the shortest call path.
 
 use crate::program::{Function, Program};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -12,8 +12,8 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// Walks from `root`. `vouched` adds callees that the code does not tell;
-    /// beyond functions that `ends` names nothing is followed.
+    /// Walks from `root`. `vouched` adds callees unknown from the code; calls
+    /// of functions in `ends` are not followed.
     pub fn new(
         program: &Program,
         root: u32,

@@ -1,4 +1,4 @@
-//! What the examination of an image found, as data.
+//! Results of the check of an image, as data.
 
 use serde::Serialize;
 
@@ -12,25 +12,25 @@ pub struct Report {
     pub image: String,
     /// Sizes against the record.
     pub sizes: Vec<Size>,
-    /// How the worst stack adds up, thread mode first.
+    /// Levels of the worst stack, thread mode first.
     pub levels: Vec<Level>,
     /// The interrupts.
     pub interrupts: Vec<InterruptRow>,
     /// Loops that gated interrupts reach, with their bounds.
     pub loops: Vec<LoopRow>,
-    /// What is wrong.
+    /// Failures.
     pub failures: Vec<Finding>,
-    /// What is worth knowing.
+    /// Hints.
     pub hints: Vec<Finding>,
 }
 
 impl Report {
-    /// Whether nothing is wrong.
+    /// Whether there are no failures.
     pub fn passes(&self) -> bool {
         self.failures.is_empty()
     }
 
-    /// Makes the sizes of now the ones on record.
+    /// Records the current sizes.
     pub fn take_record(&mut self) {
         let of_sizes = |finding: &Finding| finding.check == RECORD;
         self.failures.retain(|finding| !of_sizes(finding));
@@ -46,11 +46,11 @@ impl Report {
 pub struct Size {
     /// `flash`, `ram` or `stack`.
     pub what: &'static str,
-    /// What it is now.
+    /// The current size.
     pub used: u32,
-    /// What is on record.
+    /// The recorded size.
     pub recorded: u32,
-    /// What there is.
+    /// The available size.
     pub available: u32,
     /// The number is a lower bound only.
     pub at_least: bool,
@@ -61,11 +61,11 @@ pub struct Size {
 pub struct Level {
     /// RTIC's priority; thread mode is 0.
     pub priority: u8,
-    /// Where the level's worst path begins.
+    /// The first function of the level's worst path.
     pub root: String,
-    /// What the processor pushes when it begins.
+    /// Bytes pushed by the processor at its entry.
     pub exception: u32,
-    /// What its functions use.
+    /// Bytes used by its functions.
     pub bytes: u32,
     /// The worst path: functions with their own share.
     pub path: Vec<(String, u32)>,
@@ -82,13 +82,13 @@ pub struct InterruptRow {
     pub irq: i16,
     /// Its priority.
     pub priority: u8,
-    /// Whether it is held to the rules.
+    /// Whether it is checked.
     pub gated: bool,
-    /// How many functions it reaches.
+    /// Number of functions that it reaches.
     pub functions: usize,
-    /// How many instructions these have.
+    /// Number of their instructions.
     pub instructions: usize,
-    /// How many loops.
+    /// Number of their loops.
     pub loops: usize,
     /// Its worst stack, in bytes.
     pub stack: u32,
@@ -103,15 +103,15 @@ pub struct LoopRow {
     pub function: String,
     /// Its line there, and the line of the library that it comes from.
     pub place: String,
-    /// In how many places it was inlined.
+    /// Number of places where it was inlined.
     pub copies: usize,
-    /// The most rounds, if somebody said.
+    /// The most iterations, if the budget has a bound.
     pub bound: Option<u64>,
-    /// Why.
+    /// The reason of the bound.
     pub reason: Option<String>,
 }
 
-/// Something that is wrong, or worth knowing.
+/// A failure or a hint.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Finding {
     /// The check that found it.

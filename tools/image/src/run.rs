@@ -41,7 +41,7 @@ pub(crate) fn check(arguments: &CheckArguments, json: bool) -> Result<bool, Stri
     if arguments.bless {
         let blessed = bless(&source, &changes);
         std::fs::write(path, blessed).map_err(|e| at(path, e))?;
-        // Only what no new record can put right remains.
+        // Only failures that a new record cannot resolve remain.
         for report in &mut reports {
             report.take_record();
         }
@@ -79,7 +79,7 @@ fn examined(
     examine(name, subject).map_err(|e| format!("{}: {e}", elf.display()))
 }
 
-/// `look`: always well, unless something cannot be read.
+/// `look`: succeeds unless something cannot be read.
 pub(crate) fn look(arguments: &LookArguments, json: bool) -> Result<bool, String> {
     let image = read_image(&arguments.elf)?;
     let looks = look::look(&image, &arguments.roots);

@@ -1,14 +1,14 @@
 //! How deep the stack gets: inside a function, and along its calls.
 //!
 //! Inside a function every `push`, `vpush`, `sub sp` and write-back to `sp` is
-//! followed along the control flow; a call is charged with what is in use at
-//! that very place, not with the function's whole frame.
+//! followed along the control flow; a call is charged with the stack in use at
+//! that instruction, not with the function's whole frame.
 
 use crate::body::{Body, Leave, Target};
 use crate::decode::Stack;
 use std::collections::BTreeMap;
 
-/// Deeper than this no controller's stack gets: the count does not converge.
+/// Deeper than any controller's stack: the count does not converge.
 const ABSURD: u32 = 1 << 20;
 
 /// A function's own use of the stack, in bytes.
@@ -16,11 +16,11 @@ const ABSURD: u32 = 1 << 20;
 pub struct Frame {
     /// The most that it uses by itself.
     pub deepest: u32,
-    /// What is in use at each call, and the callee; tail calls are calls too.
+    /// Stack in use at each call, and the callee; tail calls are calls, too.
     pub calls: Vec<(u32, u32)>,
     /// Where `sp` is set to something unknown, or grows in a loop.
     pub dynamic: Vec<u32>,
-    /// It calls or jumps where the code does not tell.
+    /// It has calls or jumps with unknown target.
     pub unknown_calls: bool,
 }
 
@@ -38,7 +38,7 @@ pub fn frame(body: &Body) -> Frame {
         };
         let after = match step.it.stack {
             Stack::Down(bytes) => before.saturating_add(bytes),
-            // A pop that may not happen leaves the stack as it is.
+            // A conditional pop may leave the stack unchanged.
             Stack::Up(_) if step.it.conditional => before,
             Stack::Up(bytes) => before.saturating_sub(bytes),
             Stack::Same | Stack::Dynamic => before,
@@ -101,17 +101,17 @@ pub struct Depths<'a> {
     recursive: Vec<u32>,
 }
 
-/// What the frame alone does not tell of a function.
+/// Properties of a function beyond its frame.
 #[derive(Debug, Clone, Default)]
 pub struct Extra {
     /// An allowance for a computed stack pointer: bytes on top of the frame.
     pub dynamic: Option<u32>,
-    /// Where its unknown calls go.
+    /// Targets of its unknown calls.
     pub targets: Option<Vec<u32>>,
 }
 
 impl<'a> Depths<'a> {
-    /// Over these functions; `extra` adds what somebody vouches for.
+    /// Stacks of these functions; `extra` adds the budget's allowances.
     pub fn new(frames: &'a BTreeMap<u32, Frame>, extra: &'a dyn Fn(u32) -> Extra) -> Self {
         Self {
             frames,

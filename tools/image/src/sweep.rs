@@ -1,7 +1,7 @@
 //! All instructions of an image, in the order of their addresses.
 //!
-//! Mapping symbols say where instructions begin and where literals and jump
-//! tables lie, so a straight sweep cannot get out of step.
+//! Mapping symbols mark instructions, literals and jump tables, so a linear
+//! sweep stays aligned.
 
 use crate::decode::{Flow, Instruction, decode, is_wide, it_block};
 use crate::elf::{Content, Image, Section};

@@ -1,4 +1,4 @@
-//! A report for people.
+//! A report as text.
 
 use crate::gate::change_percent;
 use crate::report::{Finding, Report};

@@ -3,10 +3,10 @@
 use crate::elf::Image;
 use crate::error::ImageError;
 
-/// What the table says.
+/// Content of the table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Vectors {
-    /// Where it stands.
+    /// Its address.
     pub address: u32,
     /// The stack pointer at reset.
     pub stack: u32,

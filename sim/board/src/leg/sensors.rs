@@ -1,12 +1,12 @@
-//! The two sensors of the drive, and what can be wrong with them.
+//! The two sensors of the drive, and their faults.
 
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_plant::encoder::Encoder;
 
-/// How the encoder is connected.
+/// Wiring of the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EncoderWiring {
-    /// As it should be.
+    /// Correctly.
     #[default]
     Right,
     /// Channels A and B are swapped: it counts the other way.
@@ -15,15 +15,15 @@ pub enum EncoderWiring {
     Unplugged,
 }
 
-/// What the current sensor shows.
+/// Reading of the current sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum CurrentSensor {
-    /// The current.
+    /// The true current.
     #[default]
     Right,
-    /// The current and this much more, A.
+    /// The current plus an offset, A.
     Offset(f64),
-    /// This, A, whatever the current.
+    /// A constant, A.
     StuckAt(f64),
 }
 
@@ -66,7 +66,7 @@ impl Counter {
         self.count = count;
     }
 
-    /// The shaft has turned to this angle.
+    /// Turns the shaft to an angle.
     pub(super) fn turn_to(&mut self, angle_rad: f64) {
         let edges = self.encoder.count(angle_rad);
         let turned = edges.wrapping_sub(self.edges);

@@ -1,4 +1,4 @@
-//! The joint of a case, and the speed and duration that suit it.
+//! The joint of a case, with a suitable speed and duration.
 
 use super::{MotionKind, log_uniform, uniform};
 use crepitus_model::parameters::Tabled;
@@ -8,10 +8,10 @@ use std::f64::consts::{PI, TAU};
 
 /// One case in so many is drawn from the whole ranges.
 const EXTREME: u32 = 7;
-/// The most that the object may swing in a case, rad: what it costs.
+/// The most that the object may swing in a case, rad, which limits its cost.
 const MOST_SWING_RAD: f64 = 1e4;
 
-/// How fast and how long.
+/// Speed and duration of a case.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scale {
     /// Typical highest speed, rad/s.
@@ -37,7 +37,7 @@ pub(super) fn draw(
         (
             log_uniform(rng, inertia_range.min, inertia_range.max),
             log_uniform(rng, stiffness_range.min, stiffness_range.max),
-            // From 0 on; a logarithm needs a beginning.
+            // From 0 on; a logarithm needs a lower end.
             log_uniform(rng, 1e-9, static_range.max),
         )
     } else {

@@ -1,8 +1,8 @@
 //! The start, and where two pieces of the motion meet.
 //!
-//! A jump of Ω tears a stick loose and turns a slip round if the shaft jumps
-//! past the object; a jump of Ω̇ breaks a `physical` stick that it asks too
-//! much of. A `frozen` joint notices neither. Pieces that are not marked as
+//! A jump of Ω breaks a stick and reverses a slip if the shaft jumps past the
+//! object; a jump of Ω̇ breaks a `physical` stick if it exceeds the limit. A
+//! `frozen` joint ignores both. Pieces that are not marked as
 //! jumping have one velocity at their boundary, though perhaps not to the bit.
 
 use super::{Certain, Gap, Phase, SlipStart, Solver};
@@ -47,7 +47,7 @@ impl Solver<'_> {
         })
     }
 
-    /// Over a boundary, which the time has just reached.
+    /// Crosses a boundary, which the time has just reached.
     pub(super) fn cross(&mut self) -> Result<(), Unsolved> {
         let old = self.piece;
         // Velocity and torque just before, from a series of the old piece.

@@ -1,8 +1,8 @@
 //! Slip: the object swings freely until the shaft's lead has fallen to zero.
 //!
 //! The gap g = s·(Ω − θ̇) is a series. A slip that begins with g = 0 is divided
-//! by the power of σ with which it opens, so that its beginning is no zero of
-//! what is searched; so is the way on from a touch (Ts = Tk: the velocities
+//! by the power of σ with which it opens, so that its beginning is not a zero of
+//! the searched function; likewise after a touch (Ts = Tk: the velocities
 //! meet and part again).
 
 use super::{AT_LIMIT, Certain, Gap, Phase, SlipStart, Solver};
@@ -14,7 +14,7 @@ use crate::shaft::{Shaft, speed_size_rad_s};
 use crate::swing::Swing;
 use crepitus_model::Convention;
 
-/// Room for what a series of the gap leaves out after division by σⁿ.
+/// Margin for the remainder of a series of the gap after division by σⁿ.
 fn opened(gap: &Series, slope: Dd) -> Option<Series> {
     if slope > Dd::ZERO {
         return Some(gap.with(1, slope).without_leading(1));
@@ -26,7 +26,7 @@ fn opened(gap: &Series, slope: Dd) -> Option<Series> {
 }
 
 impl Solver<'_> {
-    /// One step of a slip; whether the horizon is reached.
+    /// One step of a slip; returns whether the horizon is reached.
     pub(super) fn slip(&mut self, sense: f64, gap: Gap) -> Result<bool, Unsolved> {
         let center = self.joint.kinetic_nm * sense / self.joint.stiffness;
         let x = self.theta - center;
@@ -39,7 +39,7 @@ impl Solver<'_> {
             Gap::Open => Some(series),
             Gap::Opening(slope) => opened(&series, slope * length_s),
         };
-        // Nothing moves against anything: that is at rest for ever.
+        // No relative motion: at rest for ever.
         let Some(searched) = searched else {
             if series.size() > AT_LIMIT * (shaft.omega.size() + swing.v.size()) {
                 return Err(Unsolved::Inconsistent {
@@ -71,7 +71,7 @@ impl Solver<'_> {
         }
     }
 
-    /// To the end of a step without an event.
+    /// Advances to the end of a step without an event.
     fn swing_on(&mut self, swing: &Swing, center: Dd, gap: Gap) -> bool {
         let (x, v) = (swing.x.end(), swing.v.end());
         let object = &self.joint.object;
@@ -86,8 +86,8 @@ impl Solver<'_> {
         self.pass(swing.length_s)
     }
 
-    /// The velocities meet: stick where the static limit can hold the object,
-    /// otherwise slip on in the other sense.
+    /// The velocities meet: stick if the static limit can hold the object,
+    /// otherwise slip in the other sense.
     fn meet(
         &mut self,
         sense: f64,
@@ -100,7 +100,7 @@ impl Solver<'_> {
         self.settle(sense, omega, omega_dot, half_width_s)
     }
 
-    /// What becomes of equal velocities.
+    /// The phase after equal velocities.
     pub(super) fn settle(
         &mut self,
         sense: f64,

@@ -12,7 +12,7 @@ use crate::first_fall::{Fall, Root, first_fall};
 use crate::series::Series;
 use crepitus_model::Convention;
 
-/// How a series that may begin at zero leaves it.
+/// How a series that may begin at zero continues.
 #[allow(clippy::large_enum_variant, reason = "on the stack for one step")]
 pub(super) enum Leaving {
     /// Above zero; divided by the power of σ that is zero at the start.
@@ -23,7 +23,7 @@ pub(super) enum Leaving {
     Nowhere,
 }
 
-/// How `series`, which is at zero if its start is within `slack`, goes on.
+/// How `series`, which is at zero if its start is within `slack`, continues.
 pub(super) fn leaving(series: &Series, slack: f64) -> Leaving {
     let c = series.coefficients();
     let start = c[0].to_f64();
@@ -42,7 +42,7 @@ pub(super) fn leaving(series: &Series, slack: f64) -> Leaving {
 }
 
 impl Solver<'_> {
-    /// One step of a stick; whether the horizon is reached.
+    /// One step of a stick; returns whether the horizon is reached.
     pub(super) fn stick(&mut self, fresh: bool) -> Result<bool, Unsolved> {
         let length_s = self.reach_s();
         let shaft = self.shaft(length_s);
@@ -80,7 +80,7 @@ impl Solver<'_> {
         let half_width_s = root.half_width * length_s.to_f64();
         let (omega, omega_dot) = (shaft.omega.value(root.at), shaft.omega_dot.value(root.at));
         self.reach_limit(sense, omega, omega_dot, half_width_s)?;
-        // On the horizon the next piece decides how a slip goes on.
+        // On the horizon the next piece decides how a slip continues.
         Ok(at_end)
     }
 
@@ -119,7 +119,7 @@ impl Solver<'_> {
         })
     }
 
-    /// One step of a held stick; whether the horizon is reached.
+    /// One step of a held stick; returns whether the horizon is reached.
     pub(super) fn held(&mut self, sense: f64) -> Result<bool, Unsolved> {
         let length_s = self.reach_s();
         let shaft = self.shaft(length_s);

@@ -1,5 +1,5 @@
 //! The peripheral bus: finds the part at an address, brings it up to date,
-//! and notices what the access has changed.
+//! and detects what the access has changed.
 
 use super::clocks::Rates;
 use super::part::{Part, lock};
@@ -35,13 +35,13 @@ pub(crate) struct Bus {
     rcc: Arc<Rcc>,
     rcc_place: usize,
     dma: [Arc<Dma>; 2],
-    /// Something has been touched: deadlines and requests may be others.
+    /// A part has been accessed: deadlines and requests may have changed.
     is_touched: AtomicBool,
-    /// Parts to be asked anew.
+    /// Parts to be polled again.
     touched: Mutex<Vec<usize>>,
-    /// Addresses that were used and have nothing behind them.
+    /// Unmapped addresses that were accessed.
     strays: Mutex<BTreeSet<u32>>,
-    /// Registers whose accesses are written down, if there are any.
+    /// Whether accesses to some registers are recorded.
     listens: AtomicBool,
     listened: Mutex<Vec<u32>>,
     accesses: Mutex<Vec<Access>>,
@@ -84,7 +84,7 @@ impl Bus {
         self.parts.iter().position(|part| part.base == page)
     }
 
-    /// Something outside of the chip touches a part: brings it up to date.
+    /// Brings a part up to date, before it is accessed from outside.
     pub(crate) fn touch(&self, name: &str) {
         if let Some(place) = self.parts.iter().position(|part| part.name == name) {
             self.parts[place].advance(self.now(), &self.rates);
@@ -133,13 +133,13 @@ impl Bus {
         }
     }
 
-    /// When something happens by itself next.
+    /// Time of the next event of a part.
     pub(crate) fn deadline(&self) -> u64 {
         let deadlines = self.parts.iter().map(Part::deadline);
         deadlines.min().unwrap_or(u64::MAX)
     }
 
-    /// All that happens by itself until `now`, in its order.
+    /// Processes all events of parts until `now`, in order.
     pub(crate) fn advance(&self, now: u64) {
         loop {
             let next = (0..self.parts.len()).min_by_key(|place| self.parts[*place].deadline());
@@ -157,7 +157,7 @@ impl Bus {
         self.now.store(now, Relaxed);
     }
 
-    /// Everything as after a reset of the chip.
+    /// Resets all parts.
     pub(crate) fn reset(&self) {
         for part in &self.parts {
             part.peripheral.reset();
@@ -170,7 +170,7 @@ impl Bus {
         self.look_ahead();
     }
 
-    /// Where the registers of all parts begin.
+    /// Base addresses of all parts.
     pub(crate) fn bases(&self) -> impl Iterator<Item = u32> {
         self.parts.iter().map(|part| part.base)
     }
@@ -193,19 +193,19 @@ impl Bus {
         }
     }
 
-    /// Addresses that a program has used without anything behind them, or of
-    /// a part whose clock was off.
+    /// Unmapped addresses that a program has accessed, or those of a part whose
+    /// clock was off.
     pub(crate) fn strays(&self) -> Vec<u32> {
         lock(&self.strays).iter().copied().collect()
     }
 
-    /// Writes down every access to these registers from now on.
+    /// Records every access to these registers from now on.
     pub(crate) fn listen(&self, registers: &[u32]) {
         self.listens.store(!registers.is_empty(), Relaxed);
         *lock(&self.listened) = registers.to_vec();
     }
 
-    /// What was written down since this was asked last.
+    /// Takes the accesses recorded since the last call.
     pub(crate) fn take_accesses(&self) -> Vec<Access> {
         std::mem::take(&mut *lock(&self.accesses))
     }
@@ -231,7 +231,7 @@ impl Bus {
     }
 }
 
-/// A stretch of the bus that the core and the DMA see at `base`.
+/// A window of the bus at address `base` of the core and the DMA.
 pub(crate) struct Window {
     pub(crate) bus: Arc<Bus>,
     pub(crate) base: u32,

@@ -1,11 +1,11 @@
-//! How fast each clock of the chip is, as its reset and clock controller says.
+//! Frequencies of the chip's clocks, from its reset and clock controller.
 
 use crate::time::UNITS_PER_S;
 use rsemu::dev::stm32::rcc::{ClockOutput, Clocks};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// What a part of the chip counts.
+/// The clock of a part of the chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Clock {
     /// The core, its memory and the DMA.
@@ -75,7 +75,7 @@ impl Rates {
         self.units[clock as usize].store(units.max(1), Relaxed);
     }
 
-    /// The program may have changed the tree; whether it has.
+    /// Reads the clock tree; returns whether the program has changed it.
     pub(crate) fn refresh(&self) -> bool {
         let generation = self.tree.generation();
         if self.generation.swap(generation, Relaxed) == generation {

@@ -1,4 +1,4 @@
-//! What the core and the DMA see at which address.
+//! Memory map of the core and the DMA.
 //!
 //! | address | what | core | DMA |
 //! |---|---|---|---|
@@ -27,7 +27,7 @@ const NUMBER: [u8; 12] = *b"\x01\x00\x02\x00\x03EMUL405";
 /// The memories that a program can change.
 pub(crate) struct Memory {
     pub(crate) space: Arc<AddressSpace>,
-    /// What the DMA sees; the controllers hold it weakly.
+    /// Address space of the DMA; the controllers hold it weakly.
     _dma_space: Arc<AddressSpace>,
     pub(crate) ram: Arc<RamStore>,
     pub(crate) ccm: Arc<RamStore>,
@@ -73,7 +73,7 @@ impl Memory {
         }
     }
 
-    /// Power was off: anything may be in it.
+    /// Makes the content undefined, as after power was off.
     pub(crate) fn forget(&self) {
         let noise = |size: u64| -> Vec<u8> {
             let bytes = (0..size).map(|n| ((n * 167) >> 3).to_le_bytes()[0]);

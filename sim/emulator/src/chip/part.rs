@@ -6,15 +6,15 @@ use rsemu::core::space::{MemOps, RegionKind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// What a part does besides having registers.
+/// Behaviour of a part besides its registers.
 pub(crate) trait Peripheral: Send + Sync {
-    /// Its clock has come to this tick, counted from its first.
+    /// Advances its clock to this tick, counted from its first.
     fn advance_to(&self, tick: u64);
 
-    /// The tick at which it does something by itself next.
+    /// Tick of its next event.
     fn next_event(&self) -> Option<u64>;
 
-    /// As after a reset.
+    /// Resets it.
     fn reset(&self);
 }
 
@@ -81,7 +81,7 @@ impl Gate {
     }
 }
 
-/// How far a part's clock has come.
+/// Phase of a part's clock.
 #[derive(Clone, Copy, Debug, Default)]
 struct Phase {
     tick: u64,
@@ -98,12 +98,12 @@ pub(crate) struct Part {
     pub(crate) clock: Clock,
     pub(crate) gate: Option<Gate>,
     pub(crate) is_clocked: AtomicBool,
-    /// When it does something by itself next, in units.
+    /// Time of its next event, in units.
     deadline: AtomicU64,
     phase: Mutex<Phase>,
 }
 
-/// No lock here is held by who panics.
+/// Locks a mutex; no code panics while holding one.
 pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -176,7 +176,7 @@ impl Part {
         }
     }
 
-    /// Asks when it does something next.
+    /// Updates the time of its next event.
     pub(crate) fn look_ahead(&self, rates: &Rates) {
         let deadline = match self.peripheral.next_event() {
             Some(tick) if self.is_clocked.load(Relaxed) => {
@@ -188,7 +188,7 @@ impl Part {
         self.deadline.store(deadline, Relaxed);
     }
 
-    /// When it does something by itself next.
+    /// Time of its next event.
     pub(crate) fn deadline(&self) -> u64 {
         self.deadline.load(Relaxed)
     }

@@ -1,4 +1,4 @@
-//! A hash of a state: of two runs that are the same it is the same.
+//! A hash of a state, for comparing two runs.
 
 /// FNV-1a, eight bytes at a time.
 pub(crate) struct Hash(u64);

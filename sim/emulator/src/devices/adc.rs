@@ -7,10 +7,10 @@
 //! Modelled: one converter of the three, regular conversions of a sequence of
 //! any length, started by software or on an edge of a timer's trigger output;
 //! sampling times, prescaler, 12 bits right-aligned; EOC, OVR, STRT and the
-//! interrupts of EOC and OVR. The voltage is the one that there is as sampling
-//! ends. Not modelled: injected conversions, DMA, the analog watchdog, other
-//! resolutions and triggers, continuous mode; a program that asks for them is
-//! told so by [`Adc::is_asked_too_much`].
+//! interrupts of EOC and OVR. The voltage is that at the end of
+//! sampling. Not modelled: injected conversions, DMA, the analog watchdog, other
+//! resolutions and triggers, continuous mode; [`Adc::uses_unmodelled_features`]
+//! reports their use.
 
 use super::registers::Words;
 use crate::chip::bus::Now;
@@ -48,7 +48,7 @@ const TOP: f64 = 4095.0;
 /// The trigger outputs that are wired, with their numbers in EXTSEL.
 pub(crate) const TRIGGERS: [(&str, u32); 3] = [("TIM2", 6), ("TIM3", 8), ("TIM8", 14)];
 
-/// What stands at the converter's input, as share of its reference.
+/// Voltage at the converter's input, as share of its reference.
 pub(crate) type Input = Arc<Mutex<f64>>;
 
 #[derive(Debug, Default)]
@@ -60,9 +60,9 @@ struct State {
     sqr: [u32; 3],
     dr: u32,
     ccr: u32,
-    /// Place in the sequence of what is being converted, when it ends.
+    /// Index in the sequence of the current conversion, and its end.
     converting: Option<(u32, u64)>,
-    /// When its sampling ends, if it has not.
+    /// End of its sampling, if it has not ended.
     sampling: Option<u64>,
     sampled: f64,
     trigger_levels: u32,
@@ -92,12 +92,12 @@ impl Adc {
         }
     }
 
-    /// Whether a program has asked for what is not modelled.
-    pub(crate) fn is_asked_too_much(&self) -> bool {
+    /// Whether a program has used a feature that is not modelled.
+    pub(crate) fn uses_unmodelled_features(&self) -> bool {
         self.asked_too_much.load(Relaxed)
     }
 
-    /// From now on it converts, or never ends a conversion.
+    /// Sets whether it never ends a conversion.
     pub(crate) fn set_dead(&self, is_dead: bool) {
         lock(&self.state).is_dead = is_dead;
     }
@@ -148,7 +148,7 @@ impl Adc {
         let Some((place, end)) = state.converting.filter(|(_, end)| *end == at) else {
             return;
         };
-        // Without DMA an overrun is noticed only with EOCS.
+        // Without DMA an overrun is detected only with EOCS.
         if state.sr & EOC != 0 && state.cr2 & EOCS != 0 {
             state.sr |= OVR;
         }
@@ -174,7 +174,7 @@ impl Adc {
         [state.sampling, end].into_iter().flatten().min()
     }
 
-    fn tell(&self) {
+    fn update_outputs(&self) {
         let state = lock(&self.state);
         let ends = state.sr & EOC != 0 && state.cr1 & EOCIE != 0;
         let overran = state.sr & OVR != 0 && state.cr1 & OVRIE != 0;
@@ -191,7 +191,7 @@ impl Peripheral for Adc {
                 self.happen(&mut state, at);
             }
         }
-        self.tell();
+        self.update_outputs();
     }
 
     fn next_event(&self) -> Option<u64> {
@@ -208,7 +208,7 @@ impl Peripheral for Adc {
                 ..State::default()
             };
         }
-        self.tell();
+        self.update_outputs();
     }
 }
 
@@ -254,7 +254,7 @@ impl Words for Adc {
             }
         };
         if !is_debugger {
-            self.tell();
+            self.update_outputs();
         }
         value
     }
@@ -291,6 +291,6 @@ impl Words for Adc {
                 self.asked_too_much.store(true, Relaxed);
             }
         }
-        self.tell();
+        self.update_outputs();
     }
 }

@@ -2,10 +2,10 @@
 //! none.
 //!
 //! Modelled: BKE, BKP, BG; BIF and its interrupt; MOE that falls with the
-//! break and cannot rise while it is there; the lock of level 1 over BDTR and
-//! of CR2's idle levels. Not modelled: dead time (its register can be looked
-//! at), outputs that come back by themselves (AOE), higher levels of the lock
-//! over CCER and CCMR; [`Brake::is_asked_too_much`] tells of AOE.
+//! break and cannot rise while it is active; the lock of level 1 over BDTR and
+//! of CR2's idle levels. Not modelled: dead time (its register can be read),
+//! outputs that return automatically (AOE), higher levels of the lock
+//! over CCER and CCMR; [`Brake::uses_unmodelled_features`] reports AOE.
 
 use crate::chip::part::{Peripheral, lock};
 use rsemu::core::space::{MemAttrs, MemOps, MemResult};
@@ -68,8 +68,8 @@ impl Brake {
         }
     }
 
-    /// Whether a program has asked for what is not modelled.
-    pub(crate) fn is_asked_too_much(&self) -> bool {
+    /// Whether a program has used a feature that is not modelled.
+    pub(crate) fn uses_unmodelled_features(&self) -> bool {
         self.asked_too_much.load(Relaxed)
     }
 
@@ -85,8 +85,8 @@ impl Brake {
             .write(offset, &value.to_le_bytes(), MemAttrs::DEFAULT);
     }
 
-    /// Whether the break is there now.
-    fn is_broken(&self, bdtr: u32) -> bool {
+    /// Whether the break is active.
+    fn is_break_active(&self, bdtr: u32) -> bool {
         let is_high = lock(&self.state).input;
         bdtr & BKE != 0 && is_high == (bdtr & BKP != 0)
     }
@@ -94,28 +94,28 @@ impl Brake {
     /// The level at the pin; low if nothing is connected.
     pub(crate) fn set_input(&self, is_high: bool) {
         lock(&self.state).input = is_high;
-        self.look(false);
+        self.update(false);
     }
 
-    /// Breaks if there is a reason to.
-    fn look(&self, by_program: bool) {
+    /// Triggers the break if it is active or the program requests it.
+    fn update(&self, by_program: bool) {
         let bdtr = self.word(BDTR);
-        if by_program || self.is_broken(bdtr) {
+        if by_program || self.is_break_active(bdtr) {
             lock(&self.state).has_broken = true;
             if bdtr & MOE != 0 {
                 self.set_word(BDTR, bdtr & !MOE);
             }
         }
-        self.tell();
+        self.update_outputs();
     }
 
-    fn tell(&self) {
+    fn update_outputs(&self) {
         let has_broken = lock(&self.state).has_broken;
         let level = has_broken && self.word(DIER) & BREAK != 0;
         self.interrupt.set(Level::from(level));
     }
 
-    /// What may be written to BDTR.
+    /// The bits of BDTR that the lock lets the program write.
     fn permitted(&self, value: u32) -> u32 {
         let held = {
             let mut state = lock(&self.state);
@@ -133,7 +133,7 @@ impl Brake {
         if value & AOE != 0 {
             self.asked_too_much.store(true, Relaxed);
         }
-        if self.is_broken(value) {
+        if self.is_break_active(value) {
             value & !MOE
         } else {
             value
@@ -157,7 +157,7 @@ impl Peripheral for Brake {
             input,
             ..State::default()
         };
-        self.tell();
+        self.update_outputs();
     }
 }
 
@@ -181,18 +181,18 @@ impl MemOps for Brake {
         let value = u32::from_le_bytes(bytes);
         if offset == BDTR {
             self.set_word(BDTR, self.permitted(value));
-            self.look(false);
+            self.update(false);
             return Ok(());
         }
         self.timer.write(offset, from, attrs)?;
         match offset {
-            EGR if value & BREAK != 0 => self.look(true),
+            EGR if value & BREAK != 0 => self.update(true),
             SR if value & BREAK == 0 => {
                 lock(&self.state).has_broken = false;
-                // It cannot be forgotten while it is there.
-                self.look(false);
+                // It cannot be cleared while it is active.
+                self.update(false);
             }
-            DIER => self.tell(),
+            DIER => self.update_outputs(),
             _ => {}
         }
         Ok(())

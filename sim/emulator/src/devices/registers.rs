@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 /// Words at multiples of four.
 pub(crate) trait Words: Send + Sync {
-    /// Reads the word at `offset`; a debugger's look changes nothing.
+    /// Reads the word at `offset`; a debugger's read has no side effects.
     fn read(&self, offset: u32, is_debugger: bool) -> u32;
 
     /// Writes the word at `offset`.

@@ -5,11 +5,10 @@
 //! DR <─ one received <──────────── 10 bits ── feed()
 //! ```
 //!
-//! Every character takes its time on the wire. Modelled: TXE, TC, RXNE, IDLE,
+//! Every character takes its duration on the wire. Modelled: TXE, TC, RXNE, IDLE,
 //! ORE, FE and their interrupts, DMA requests both ways, 16 and 8 samples a
 //! bit. Not modelled: parity, other lengths than 8N1, noise, flow control,
-//! half duplex; a program that asks for them is told so by
-//! [`Usart::is_asked_too_much`].
+//! half duplex; [`Usart::uses_unmodelled_features`] reports their use.
 
 use super::registers::Words;
 use crate::chip::bus::Now;
@@ -51,9 +50,9 @@ const BITS: u64 = 10;
 pub struct Character {
     /// When its stop bit ends, in units of time.
     pub at: u64,
-    /// What it is.
+    /// Its byte.
     pub byte: u8,
-    /// Its stop bit is none.
+    /// Its stop bit is invalid.
     pub is_broken: bool,
 }
 
@@ -110,12 +109,12 @@ impl Usart {
         usart
     }
 
-    /// A character comes; they come in their order.
+    /// Feeds a character to the receiver, in order.
     pub(crate) fn feed(&self, character: Character) {
         lock(&self.state).arriving.push_back(character);
     }
 
-    /// What has been sent since this was asked last.
+    /// Takes the characters sent since the last call.
     pub(crate) fn take_sent(&self) -> Vec<Character> {
         std::mem::take(&mut *lock(&self.sent))
     }
@@ -125,8 +124,8 @@ impl Usart {
         self.units(&lock(&self.state))
     }
 
-    /// Whether a program has asked for what is not modelled.
-    pub(crate) fn is_asked_too_much(&self) -> bool {
+    /// Whether a program has used a feature that is not modelled.
+    pub(crate) fn uses_unmodelled_features(&self) -> bool {
         self.asked_too_much.load(Relaxed)
     }
 
@@ -139,8 +138,8 @@ impl Usart {
         BITS * u64::from(divisor.max(1)) * self.rates.units(Clock::Apb2)
     }
 
-    /// Tells interrupt controller and DMA.
-    fn tell(&self) {
+    /// Updates the interrupt and the DMA requests.
+    fn update_outputs(&self) {
         let (interrupts, room, data) = {
             let state = lock(&self.state);
             let (sr, cr1, cr3) = (state.sr, state.cr1, state.cr3);
@@ -172,7 +171,7 @@ impl Usart {
         state.sr |= TXE;
     }
 
-    /// What happens at `at`.
+    /// Processes the events at `at`.
     fn happen(&self, state: &mut State, at: u64) {
         if let Some(character) = state.shifting.filter(|character| character.at == at) {
             state.shifting = None;
@@ -229,7 +228,7 @@ impl Peripheral for Usart {
             }
         }
         if has_happened {
-            self.tell();
+            self.update_outputs();
         }
     }
 
@@ -240,7 +239,7 @@ impl Peripheral for Usart {
     fn reset(&self) {
         {
             let mut state = lock(&self.state);
-            // What is on the wire does not know of the reset.
+            // Characters on the wire are unaffected by the reset.
             let arriving = std::mem::take(&mut state.arriving);
             *state = State {
                 sr: TC | TXE,
@@ -248,7 +247,7 @@ impl Peripheral for Usart {
                 ..State::default()
             };
         }
-        self.tell();
+        self.update_outputs();
     }
 }
 
@@ -278,7 +277,7 @@ impl Words for Usart {
             }
         };
         if !is_debugger {
-            self.tell();
+            self.update_outputs();
         }
         value
     }
@@ -315,6 +314,6 @@ impl Words for Usart {
                 self.asked_too_much.store(true, Relaxed);
             }
         }
-        self.tell();
+        self.update_outputs();
     }
 }

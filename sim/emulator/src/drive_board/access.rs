@@ -1,4 +1,4 @@
-//! What is on the board, to look at and to break.
+//! Access to the parts of the board, for tests and faults.
 
 use super::DriveBoard;
 use crate::devices::usart::Character;
@@ -44,9 +44,9 @@ impl DriveBoard {
         &mut self.comms
     }
 
-    /// What goes to the drive and comes from it is kept from now on, for
-    /// [`Self::to_drive`] and [`Self::from_drive`].
-    pub fn keep_bytes(&mut self) {
+    /// Records the bytes of the link from now on, for [`Self::to_drive`] and
+    /// [`Self::from_drive`].
+    pub fn record_bytes(&mut self) {
         self.down.keeps = true;
         self.up.keeps = true;
     }
@@ -61,8 +61,8 @@ impl DriveBoard {
         &self.up.kept
     }
 
-    /// Whether halves are in step with the bridge's timer: the image runs.
-    pub fn is_in_step(&self) -> bool {
-        self.is_in_step
+    /// Whether halves are synchronised with the bridge's timer: the image runs.
+    pub fn is_synchronised(&self) -> bool {
+        self.is_synchronised
     }
 }

@@ -6,11 +6,11 @@ use crate::time::Time;
 /// Levels of A and B, count by count: A leads as counts grow.
 const LEVELS: [(bool, bool); 4] = [(false, false), (true, false), (true, true), (false, true)];
 
-/// In hundredths of a half tick: edges come from here on, and until here.
+/// First and last time of an edge, hundredths of a half tick.
 const FIRST: u64 = 40;
 const LAST: u64 = 95;
 
-/// Where the channels are.
+/// State of the channels.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Edges {
     place: u32,

@@ -1,4 +1,4 @@
-//! What TIM1 makes of the motor's terminals.
+//! The motor's terminals, from TIM1.
 //!
 //! Read from its registers and those of its pins, not from switched levels: a
 //! half is on while its two pins belong to the timer, its two outputs are

@@ -17,7 +17,7 @@ pub(super) struct Down {
 }
 
 impl Down {
-    /// What begins between `begin` and `end`.
+    /// Characters that begin between `begin` and `end`.
     pub(super) fn carry(
         &mut self,
         begin: Time,
@@ -54,7 +54,7 @@ pub(super) struct Up {
 }
 
 impl Up {
-    /// What has arrived until `now`.
+    /// Bytes that have arrived by `now`.
     pub(super) fn carry(&mut self, sent: Vec<Character>, now: Time) -> Vec<u8> {
         self.waiting.extend(sent);
         let is_here = |character: &Character| character.at <= now.units();

@@ -13,7 +13,7 @@ pub struct Calls {
 }
 
 impl Calls {
-    /// Of the function that begins at `entry`.
+    /// Calls of the function at `entry`.
     pub fn new(entry: u32) -> Self {
         Self {
             entry,
@@ -23,7 +23,7 @@ impl Calls {
         }
     }
 
-    /// The core has gone through the instruction at `pc`, in so many cycles.
+    /// Records an executed instruction and its cycles.
     pub fn instruction(&mut self, pc: u32, cycles: u32) {
         /// Of `blx` with a register, which is how an unknown function is
         /// called.

@@ -7,7 +7,7 @@ use crepitus_ladder::exchange::{
 use crepitus_ladder::{Plan, serve};
 use std::sync::atomic::AtomicU32;
 
-/// What the steps of a plan give on the host.
+/// Outputs of a plan's steps on the host.
 ///
 /// # Errors
 /// [`LadderError::Refused`].

@@ -147,9 +147,9 @@ impl Mcu for Stm32f405 {
         let strays = self.chip.bus.strays();
         let strays = strays.iter().map(|address| format!("{address:#010x}"));
         let asked = [
-            ("USART6", self.chip.usart.is_asked_too_much()),
-            ("ADC1", self.chip.adc.is_asked_too_much()),
-            ("TIM1", self.chip.brake.is_asked_too_much()),
+            ("USART6", self.chip.usart.uses_unmodelled_features()),
+            ("ADC1", self.chip.adc.uses_unmodelled_features()),
+            ("TIM1", self.chip.brake.uses_unmodelled_features()),
         ];
         let asked = asked.iter().filter(|(_, is_asked)| *is_asked);
         strays

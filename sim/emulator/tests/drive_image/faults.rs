@@ -128,7 +128,7 @@ fn a_brown_out() {
         host.run(1);
         assert!(!host.board.drive_is_on());
     }
-    assert!(host.board.is_in_step(), "it has started again");
+    assert!(host.board.is_synchronised(), "it has started again");
     assert_eq!(drive_fault(&mut host), Fault::DriveBrownOut.code());
 }
 
@@ -173,7 +173,7 @@ fn a_stack_that_was_written_over() {
         host.run(1);
         assert!(!host.board.drive_is_on());
     }
-    assert!(host.board.is_in_step(), "it has started again");
+    assert!(host.board.is_synchronised(), "it has started again");
     assert_eq!(drive_fault(&mut host), Fault::DrivePanic.code());
 }
 

@@ -56,7 +56,7 @@ impl Host {
     pub(crate) fn listening(image: &Image, scene: &Scene, registers: &[u32]) -> Self {
         let values = values(scene).expect("a scene for the device");
         let mut board = DriveBoard::new(image, scene, Some((Revision(1), values)));
-        board.keep_bytes();
+        board.record_bytes();
         board.mcu_mut().listen(registers);
         let mut host = Self {
             board,
@@ -70,7 +70,7 @@ impl Host {
             blocks: Vec::new(),
         };
         for _ in 0..BOOT_TICKS {
-            if host.board.is_in_step() {
+            if host.board.is_synchronised() {
                 return host;
             }
             host.run(1);

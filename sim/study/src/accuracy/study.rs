@@ -35,7 +35,7 @@ const MOST_STEPS: u64 = 20_000_000;
 /// Cost of a step of the reference, in steps of a rung.
 const REFERENCE_WEIGHT: f64 = 10.0;
 
-/// What to study.
+/// Plan of a study.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The scenes, each under its convention.

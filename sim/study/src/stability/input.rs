@@ -47,7 +47,7 @@ pub enum Input {
     Sampled {
         /// The motion.
         shaft: Shaft,
-        /// How long, s.
+        /// Duration, s.
         duration_s: f64,
         /// The step, s.
         step_s: f64,
@@ -56,7 +56,7 @@ pub enum Input {
     Repeated {
         /// Ω, rad/s.
         omega_rad_s: f64,
-        /// How long, s.
+        /// Duration, s.
         duration_s: f64,
         /// The step, s.
         step_s: f64,
@@ -66,9 +66,9 @@ pub enum Input {
     Encoder {
         /// The motion.
         shaft: Shaft,
-        /// How long, s.
+        /// Duration, s.
         duration_s: f64,
-        /// How often the counter is read, Hz.
+        /// Rate of reading the counter, Hz.
         rate_hz: f64,
         /// Lines of the encoder's disc.
         lines: f64,
@@ -86,7 +86,7 @@ pub enum Input {
         most_rad_s: f64,
         /// Seed of the random numbers.
         seed: u64,
-        /// How long, s.
+        /// Duration, s.
         duration_s: f64,
         /// The step, s.
         step_s: f64,
@@ -100,7 +100,7 @@ pub enum Input {
         damping_nms_per_rad: f64,
         /// Velocity at the start, rad/s.
         omega_rad_s: f64,
-        /// How long, s.
+        /// Duration, s.
         duration_s: f64,
         /// The step, s.
         step_s: f64,
@@ -111,7 +111,7 @@ pub enum Input {
         shaft: Shaft,
         /// The fault.
         fault: Fault,
-        /// How long, s.
+        /// Duration, s.
         duration_s: f64,
         /// The step, s.
         step_s: f64,
@@ -123,7 +123,7 @@ pub enum Input {
         shaft: Shaft,
         /// The changes.
         changes: Vec<Change>,
-        /// How long, s.
+        /// Duration, s.
         duration_s: f64,
         /// The step, s.
         step_s: f64,
@@ -132,7 +132,7 @@ pub enum Input {
     ShakingHand {
         /// The shaking motion.
         shake: Shake,
-        /// How long, s.
+        /// Duration, s.
         duration_s: f64,
         /// The step, s.
         step_s: f64,

@@ -8,7 +8,7 @@ use crate::report::{Finding, LoopRow};
 use std::collections::BTreeSet;
 
 impl Gate<'_> {
-    /// Compares what was found with the bounds of the budget.
+    /// Compares the loops found with the bounds of the budget.
     pub(super) fn check_bounds(&self, found: &mut Found<'_>) {
         let catalogue = std::mem::take(&mut found.loops);
         for (function, loops) in &catalogue {
@@ -52,7 +52,7 @@ impl Gate<'_> {
         }
     }
 
-    /// What to write down for the loops of a function.
+    /// The missing entry for the loops of a function.
     fn unbounded(&self, function: &str, loops: &Loops, what: String) -> Finding {
         let mut at = loops.path.clone();
         at.extend(loops.spots.values().map(|c| format!("loop {}", c.place)));
@@ -70,8 +70,8 @@ impl Gate<'_> {
         finding("loop", what, at, &todo)
     }
 
-    /// Functions that are still there, and of whose loops none is left: the
-    /// compiler may make them anew as soon as something around them changes.
+    /// Functions that still exist, but without any loop: the compiler may emit
+    /// loops again as soon as something around them changes.
     pub(super) fn note_dissolved(&self, reached: &BTreeSet<u32>, found: &mut Found<'_>) {
         let without = self.vouched.without_loops();
         if without.is_empty() {

@@ -1,4 +1,4 @@
-//! What gated interrupts may not reach.
+//! Code that gated interrupts must not reach.
 
 use super::layout::Root;
 use super::loops::Catalogue;
@@ -185,7 +185,7 @@ impl Gate<'_> {
         found.fail(site, what, "stack");
     }
 
-    /// What is said to end an interrupt must not return.
+    /// A function listed in `ends` must not return.
     fn check_ends(&self, found: &mut Found<'_>) {
         for function in self.program.functions.values() {
             if self.vouched.ends(function) && self.program.returning.contains(&function.address) {

@@ -1,11 +1,11 @@
-//! Loops that gated interrupts reach, by where they stand in the source.
+//! Loops that gated interrupts reach, by their place in the source.
 //!
-//! Compilers inline, so a loop is known by the function that holds it in the
-//! source, not by the symbol that it ended up in: of the inlined functions
+//! Compilers inline, so a loop is identified by the function that holds it in
+//! the source, not by its symbol in the image: of the inlined functions
 //! that *all* its instructions have in common, the innermost that is not from
-//! a library. In that function it is told from others by its line, and by the
+//! a library. In that function it is distinguished by its line, and by the
 //! line in the library that it comes from. So a bound survives edits above it
-//! and another mood of the inliner, and a new loop is a new one. Without debug
+//! and changes of inlining, and a new loop is a new one. Without debug
 //! information it is the symbol and the address.
 
 use super::code::Found;
@@ -16,7 +16,7 @@ use crate::loops::Loop;
 use crate::program::Function;
 use std::collections::BTreeMap;
 
-/// Where a loop stands in its function.
+/// Place of a loop in its function.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Spot {
     /// Line, the place in a library, and how many loops of the same spot it
@@ -50,7 +50,7 @@ struct Origin {
     owner: String,
     /// Its spot there.
     spot: Spot,
-    /// The same for people.
+    /// The same for display.
     place: String,
     /// The spot is in this repository.
     is_own: bool,
@@ -60,7 +60,7 @@ struct Origin {
 pub(super) type Catalogue = BTreeMap<String, Loops>;
 
 impl Gate<'_> {
-    /// Notes the loops of a function; endless ones are wrong at once.
+    /// Records the loops of a function; endless ones are failures.
     pub(super) fn note_loops(
         &self,
         root: &Root<'_>,
@@ -145,7 +145,7 @@ impl Gate<'_> {
     /// The frames that all instructions of a loop share, with the lines of its
     /// first one. Frames are the same if they were inlined at the same place.
     fn common_frames(&self, l: &Loop) -> Vec<Frame> {
-        // What was made of several lines says little about where it is from.
+        // Instructions made of several lines have no useful place.
         let telling = |frames: &Vec<Frame>| frames.last().is_some_and(|inner| inner.line > 0);
         let addresses = std::iter::once(&l.address).chain(&l.instructions);
         let frames = addresses.map(|&address| self.lines.frames(address));

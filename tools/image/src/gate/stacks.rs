@@ -20,7 +20,7 @@ impl Gate<'_> {
             let function = self.program.functions.get(&address);
             let mut extra = function.map_or_else(Extra::default, |f| self.vouched.extra(f));
             if address == reset {
-                // It may set the stack pointer to where it is already.
+                // It may set the stack pointer to its present value.
                 extra.dynamic = extra.dynamic.or(Some(0));
             }
             extra
@@ -80,7 +80,7 @@ impl Gate<'_> {
         }
     }
 
-    /// Where a stack is a lower bound only, and nothing else says so.
+    /// A hint for each stack that is a lower bound without another finding.
     fn tell_open(&self, priority: u8, worst: &Worst, report: &mut Report) {
         if worst.open.is_empty() {
             return;

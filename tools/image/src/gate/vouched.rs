@@ -1,4 +1,4 @@
-//! What the budget file vouches for, looked up in the image.
+//! Allowances of the budget file, looked up in the image.
 
 use crate::body::{Leave, Target};
 use crate::budget::{BoundedLoops, DynamicStack, ImageBudget, IndirectCalls};
@@ -8,7 +8,7 @@ use crate::stack::Extra;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The allowances, and which of them something needed.
+/// The allowances, and which of them were needed.
 pub(super) struct Vouched<'a> {
     budget: &'a ImageBudget,
     targets: BTreeMap<&'a str, Vec<u32>>,
@@ -90,7 +90,7 @@ impl<'a> Vouched<'a> {
         entry.is_some()
     }
 
-    /// What counts for a function's stack on top of its frame.
+    /// Stack of a function on top of its frame.
     pub(super) fn extra(&self, function: &Function) -> Extra {
         let dynamic = function
             .body
@@ -143,7 +143,7 @@ impl<'a> Vouched<'a> {
     }
 }
 
-/// How many calls and jumps of a function go where the code does not tell.
+/// Number of calls and jumps of a function with unknown target.
 pub(crate) fn unknown_calls(function: &Function) -> usize {
     let unknown = |step: &&crate::body::Step| {
         step.call == Some(Target::Unknown) || step.leave == Some(Leave::Tail(Target::Unknown))

@@ -1,17 +1,17 @@
-//! What is run on the target.
+//! Inputs for the target.
 //!
-//! | input | what is in it | for |
+//! | input | content | for |
 //! |---|---|---|
-//! | a scene | the stretch of it that is timed on the host too | all; means are over these |
+//! | a scene | the part that is timed on the host, too | all; means are over these |
 //! | `wander` | a hand that wanders: breaks, matches, reversals in stick and in slip | all |
 //! | `shaking hand` | 50 Hz, to and fro within a stick and its slip | all |
-//! | `white velocities` | every step ends at another velocity, up to 5 rad/s: the largest jump that the check of the input believes | all |
-//! | `gaps` | `wander` with samples missing, one to six at a time, and some that no shaft can make | what checks its input |
-//! | `commits` | `wander` while the parameters move to others and back | the renderer |
+//! | `white velocities` | every step ends at another velocity, up to 5 rad/s: the largest jump that the input check accepts | all |
+//! | `gaps` | `wander` with samples missing, one to six at a time, and some implausible ones | subjects with an input check |
+//! | `commits` | `wander` while the parameters change and change back | the renderer |
 //! | `extremes` | numbers at and beyond every limit | effects |
 //!
-//! The effects get what the device would give them there: counts of the
-//! encoder, jumps of the rendered torque, the current that it asks for.
+//! The effects get their inputs in the device: counts of the encoder, jumps of
+//! the rendered torque, the commanded current.
 
 mod device;
 
@@ -27,16 +27,15 @@ use crepitus_model::{SettingsError, ShaftStep};
 /// The device's tick, s.
 pub const TICK_S: f64 = 5e-5;
 
-/// With both senses the largest change that the check of the input believes,
-/// rad/s.
+/// With both senses the largest change that the input check accepts, rad/s.
 const WHITE_RAD_S: f64 = 5.0;
 
-/// How many steps of each input are run.
+/// Number of steps of each input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lengths {
-    /// Of a scene.
+    /// Steps of a scene.
     pub scene: u32,
-    /// Of a hard input.
+    /// Steps of a hard input.
     pub hard: u32,
 }
 
@@ -57,13 +56,13 @@ impl Lengths {
 /// A plan and its inputs.
 #[derive(Clone, Debug)]
 pub struct Task<'a> {
-    /// What the input is.
+    /// Name of the input.
     pub name: String,
-    /// The scene that it is a stretch of.
+    /// The scene that it is a part of.
     pub scene: Option<&'a StudyScene>,
-    /// What is run.
+    /// The plan.
     pub plan: Plan,
-    /// Over what.
+    /// Its inputs.
     pub inputs: Vec<Input>,
 }
 
@@ -136,7 +135,7 @@ fn plan(subject: Subject, motion: &[ShaftStep<f32>]) -> Plan {
     }
 }
 
-/// Around the end of its first quarter, as it is timed on the host.
+/// The part around the end of a scene's first quarter, as timed on the host.
 fn stretch(scene: &StudyScene, length: u32) -> Motion {
     let sampling = Sampling::new(&scene.motion, scene.duration_s, TICK_S);
     let length = sampling.steps().min(length.into());
@@ -147,7 +146,7 @@ fn stretch(scene: &StudyScene, length: u32) -> Motion {
     motion
 }
 
-/// Motions for the worst step; the first has everything.
+/// Motions for the worst step; the first covers all phases.
 fn motions(length: u32) -> Result<Vec<(&'static str, Motion)>, SettingsError> {
     let duration_s = |seconds: f64| seconds.min(f64::from(length) * TICK_S);
     let sampled = |shaft, seconds| Hard::Sampled {

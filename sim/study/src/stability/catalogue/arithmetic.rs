@@ -1,4 +1,4 @@
-//! The same numbers whatever computes them.
+//! The same numbers on every processor.
 
 use super::motions::{ACCELERATION_JUMPS, DWELL, SLOW, STOP, THROUGH_ZERO, VELOCITY_JUMPS, WANDER};
 use super::tools::{TICK_S, at_tick, events, joint, knee, paper_joint, sine, trial};
@@ -48,7 +48,7 @@ fn reference_cases() -> Vec<([f64; 5], Shaft, f64)> {
     ]
 }
 
-/// Reference cases that ask for more than 24 bits.
+/// Reference cases that need more than 24 bits.
 fn double_only() -> Vec<([f64; 5], Shaft, f64)> {
     let constant = Shaft::Constant;
     let damped = |c| [0.01, 400.0, c, 0.2, 0.4];
@@ -67,8 +67,8 @@ pub(super) fn precisions() -> Case {
         name: "precisions",
         title: "f32 finds the events that 50 digits find",
         hard: "All reference cases at the device's tick, under every convention: with 24 bits each event must be \
-               the same event, in the same order. f64 alone is asked two of them: damping at \
-               1 ± 1e-6 of critical (H11 asks 1 ± 1e-3), and Ts = 1.0001 Tk, whose sticks of 150 ns are the noise \
+               the same event, in the same order. Two of them are for f64 only: damping at \
+               1 ± 1e-6 of critical (H11 has 1 ± 1e-3), and Ts = 1.0001 Tk, whose sticks of 150 ns are the noise \
                of its matches.",
         source: "tests/reference-cases, computed with 50 digits",
         long: false,
@@ -100,7 +100,7 @@ pub(super) fn golden() -> Case {
         hard: "A fused multiply-add, another sine or a reordered sum changes the last bit, and then firmware, \
                software in the loop and host are no longer one program. These hashes of every torque of six runs \
                are the numbers that the firmware must reproduce. It does: the same runs on an emulated STM32F405 \
-               (`cargo test -p crepitus-emulator --test ladder golden`) give these hashes, and QEMU goes through \
+               (`cargo test -p crepitus-emulator --test ladder golden`) give these hashes, and QEMU executes \
                the same instructions.",
         source: "the hashes are of this model's own torques",
         long: false,

@@ -1,4 +1,4 @@
-//! Parameters that change under way, where a change is easily got wrong.
+//! Hard changes of parameters during a run.
 
 use super::tools::{changed, joint, paper_joint, rendered, slip_s, trial};
 use crate::stability::case::{Case, located};
@@ -13,8 +13,8 @@ pub(super) fn equal_torques_ramp() -> Case {
     Case {
         id: "H43",
         name: "equal-torques-ramp",
-        title: "Ts and Tk a hair apart, both on their way",
-        hard: "Each number of a ramp is rounded by itself: where Tk and Ts are one rounding apart, Tk may come out \
+        title: "Ts and Tk one rounding apart, both ramping",
+        hard: "Each number of a ramp is rounded separately: if Tk and Ts are one rounding apart, Tk may come out \
                above Ts, and a slip then shows more than the static limit.",
         source: "|T| is at most the static limit in force, to the bit",
         long: false,
@@ -63,7 +63,7 @@ pub(super) fn softer_under_load() -> Case {
         id: "H44",
         name: "softer-under-load",
         title: "The spring gets forty times softer under a stick",
-        hard: "The angle stays, so the torque falls with the stiffness: a ramp that looks at Tk and Ts only has nothing \
+        hard: "The angle stays, so the torque falls with the stiffness: a ramp that depends on Tk and Ts only has nothing \
                to do, takes one tick, and drops 0.35 N·m at once.",
         source: "model/src/render/ramp.rs: n = Ts·ln(kr/kr′)/(slew·h)",
         long: false,
@@ -104,8 +104,8 @@ pub(super) fn stronger_in_a_slip() -> Case {
         id: "H45",
         name: "stronger-in-a-slip",
         title: "Torques and stiffness change inside a slip, whose end then lies elsewhere",
-        hard: "The restart angle (2Tk − Ts)/kr of the new numbers may hold more than the old spring held when it broke: \
-               a slip would end with energy that nobody put in.",
+        hard: "The restart angle (2Tk − Ts)/kr of the new numbers may store more than the old spring did at the break: \
+               a slip would end with energy from nowhere.",
         source: "model/src/solver/frozen.rs: the angle of a slip's end is at most that of its break, scaled as the spring is",
         long: false,
         must: located,
@@ -161,7 +161,7 @@ pub(super) fn commits_while_blind() -> Case {
         id: "H46",
         name: "commits-while-blind",
         title: "A commit every tick while samples are lost",
-        hard: "Each commit begins a ramp before the last one has ended, some in the tick after a break, some while the \
+        hard: "Each commit starts a ramp before the last one has ended, some in the tick after a break, some while the \
                torque is held. Commits of the numbers in force must change nothing, to the bit.",
         source: "docs/stability.md, Energy from nowhere: a commit is one atomic exchange",
         long: false,
@@ -232,8 +232,8 @@ pub(super) fn guard_memory() -> Case {
         id: "H47",
         name: "guard-memory",
         title: "A hand that turns back a little in slip after slip, and one that turns back for good",
-        hard: "Less than two counts are noise, in each slip anew: a guard that adds them up over slips switches off the \
-               torque of a hand that holds still, and one that forgets to switch it on again takes the next stick away.",
+        hard: "Less than two counts in a slip are noise: a guard that adds them up over slips switches off the \
+               torque of a hand that holds still, and one that does not switch it on again suppresses the next stick.",
         source: "model/src/render/turn_back.rs: 2 counts of 35.7 µrad; 60 and 40 µrad in two slips, then 200 µrad in one",
         long: false,
         must: located,
@@ -286,7 +286,7 @@ pub(super) fn guard_memory() -> Case {
                     Input::Rendered(run(Shaft::Knots(RETREAT), 0.05)),
                     [ticks(375, 383)],
                 ),
-                // Out of sight then, nothing is held and nothing begins anew.
+                // Samples are lost then: no torque is held, no stick restarts.
                 trial(
                     settings,
                     Input::Rendered(Rendered {

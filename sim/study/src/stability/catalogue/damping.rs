@@ -1,4 +1,4 @@
-//! A damped object: the effect just there, just gone, and long gone.
+//! A damped object: just below, just above and far above critical damping.
 
 use super::tools::{LOCATED, at_tick, events, exactly, joint, trial};
 use crate::stability::case::{Case, Trial, located};
@@ -14,7 +14,7 @@ pub(super) fn near_critical_damping() -> Case {
         name: "near-critical-damping",
         title: "Damping just below and above the one at which stick-slip ceases",
         hard: "Below it the object still catches up with the shaft, above it no more: the velocities graze, and a \
-               search for a change of sign sees neither. Damping of the method's own, −ωn·h/2 or +ωn·h/2 for the \
+               search for a change of sign finds neither. Numerical damping, −ωn·h/2 or +ωn·h/2 for the \
                Eulers, decides alone.",
         source: "one slip's energy balance, tests/reference-cases, m23, on both sides of it (1 ± 1e-6); \
                  1 ± 1e-3 for f32, whose own numbers are 6e-8 apart",
@@ -22,7 +22,7 @@ pub(super) fn near_critical_damping() -> Case {
         must: located,
         trials: |subject| {
             // The critical c for Ω = 1 and 0.1 rad/s; under `paper` the break
-            // does not feel the damper, so its slips begin a little harder.
+            // torque excludes the damper, so its slips begin with more torque.
             let critical = match subject.convention {
                 // The closed form has no damping.
                 Convention::Frozen => return Vec::new(),
@@ -78,7 +78,7 @@ pub(super) fn strong_damping() -> Case {
         name: "strong-damping",
         title: "Damping ratio 0.02: slides for ever after one break",
         hard: "The object's motion decays through all exponents into subnormal numbers. A method with negative \
-               damping of its own rings instead, and sticks again.",
+               numerical damping rings instead, and sticks again.",
         source: "tests/reference-cases, e18, with 50 digits",
         long: false,
         must: located,

@@ -1,5 +1,5 @@
-//! What a joint meets in a device: samples that are none, parameters that
-//! change under way, and a hand that turns back.
+//! A joint in a device: invalid samples, parameters that change during a run,
+//! and a hand that turns back.
 
 use super::tools::{TICK_S, changed, faulty, joint, paper_joint, trial};
 use crate::stability::case::{Case, located};
@@ -14,10 +14,10 @@ pub(super) fn impossible_samples() -> Case {
     Case {
         id: "H21",
         name: "impossible-samples",
-        title: "Samples that are no number, infinite, or what no shaft can do",
-        hard: "One NaN in a state is a NaN for ever. A sample passes a check before the joint sees it; what does not \
-               pass is counted, the torque is held for 20 ticks and then let go of at 100 N·m/s, and up to three \
-               missing ticks are made up for afterwards, so that the cycles stay on time.",
+        title: "Samples that are NaN, infinite, or implausible",
+        hard: "One NaN in a state is a NaN for ever. A check rejects samples before the joint gets them; a rejected one \
+               is counted, the torque is held for 20 ticks and then ramped down at 100 N·m/s, and up to three \
+               missing ticks are caught up afterwards, so that the cycles stay on time.",
         source: "model/src/render/input_check.rs: the device's limits are 50 rad/s and 10 rad/s in a tick",
         long: false,
         must: located,
@@ -55,9 +55,9 @@ pub(super) fn gap() -> Case {
         id: "H28",
         name: "gap",
         title: "No sample for a tenth of a second while the shaft moves on",
-        hard: "What the shaft did meanwhile cannot be known. The torque has been let go of; the joint goes on in a new \
-               stick, from the torque that is shown, and the torque goes on from there. Later events are those of a joint \
-               that was put down there.",
+        hard: "The shaft's motion meanwhile is unknown. The torque has been ramped down; the joint continues in a new \
+               stick that begins with the torque then shown. Later events are those of a joint \
+               that was started there.",
         source: "model/src/render/held.rs: no torque step above Ts − (2Tk − Ts), a valid phase at the end",
         long: false,
         must: located,
@@ -75,7 +75,7 @@ pub(super) fn gap() -> Case {
                 least: 60,
                 most: 62,
             };
-            // Put down at 0.6 s with nothing on the spring: 0.4 N·m later it breaks.
+            // Restarted at 0.6 s with an unloaded spring: 0.4 N·m later it breaks.
             let first = Criterion::FirstBreakAfter {
                 from_s: 0.500_1,
                 at_s: 0.6 + p.static_torque_nm / p.stiffness_nm_per_rad,
@@ -98,10 +98,10 @@ pub(super) fn parameter_changes() -> Case {
         id: "H29",
         name: "parameter-changes",
         title: "Parameters change in the middle of a stick and of a slip",
-        hard: "A spring wound to 0.4 N·m at 10 N·m/rad holds 8 mJ; make it 400 N·m/rad without a thought, and it holds \
+        hard: "A spring wound to 0.4 N·m at 10 N·m/rad holds 8 mJ; set it to 400 N·m/rad at once, and it holds \
                0.32 J and shows 16 N·m. A commit is a ramp: torques keep the slew limit, θ is scaled so that stored \
                energy never rises, and |T| is at most the static limit in force at every tick. Frozen only: it is \
-               what the device renders and changes under way.",
+               what the device renders and changes while armed.",
         source: "docs/stability.md, Energy from nowhere",
         long: false,
         must: located,
@@ -175,8 +175,8 @@ pub(super) fn shaking_hand() -> Case {
         name: "shaking-hand",
         title: "A hand that turns back inside every slip gets no energy for it",
         hard: "A frozen slip shows s·Tk until its time is over; a hand that turns back meanwhile would be pushed along, \
-               and a sampled spring gives back more than it took. With the turn-back guard all that returns is what \
-               the spring held and what sampling gives away, also with the torque one or two ticks late. An encoder's \
+               and a sampled spring gives back more than it took. With the turn-back guard only that energy returns which \
+               the spring stored and sampling generates, also with the torque one or two ticks late. An encoder's \
                staircase holds half a count more at the limit, Ts·Δ/2.",
         source: "docs/stability.md, A hand that turns back; measured with an energy observer",
         long: false,

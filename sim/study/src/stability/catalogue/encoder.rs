@@ -1,4 +1,4 @@
-//! A shaft that is seen through an encoder, and one that a hand holds.
+//! A shaft measured by an encoder, and one held by a hand.
 
 use super::tools::{cycle_hz, most_hz, paper_joint, trial};
 use crate::stability::case::{Case, Trial, located};
@@ -69,7 +69,7 @@ pub(super) fn counter_wrap() -> Case {
     }
 }
 
-/// What is asked of a joint behind an encoder at a steady speed.
+/// Criteria for a joint behind an encoder at a steady speed.
 fn behind_encoder(subject: Subject, omega_rad_s: f64, input: Input) -> Trial {
     let settings = paper_joint(subject.convention);
     let p = &settings.parameters;
@@ -99,9 +99,9 @@ pub(super) fn quantised_velocity() -> Case {
         name: "quantised-velocity",
         title: "Ω from an encoder of 512 to 2000 lines at 1 and 20 kHz",
         hard: "One count is 36 µrad, and between two samples at 20 kHz there is mostly none: the velocity is an \
-               estimate, and its slope at every count is steeper than (Ts − Tk)/J. Frozen looks at Ω once a cycle. \
-               Under paper and physical a slip ends where the noise meets the object's velocity, and the overlap \
-               to meet in is 0.5 % at 1 rad/s: these are shown, and not required to hold.",
+               estimate, and its slope at every count is steeper than (Ts − Tk)/J. Frozen uses Ω once a cycle. \
+               Under paper and physical a slip ends where the noise meets the object's velocity, and their overlap \
+               is only 0.5 % at 1 rad/s: these are shown, and not required to hold.",
         source: "closed form of the cycle; the estimator that ships, bandwidth 50 Hz",
         long: false,
         must: frozen_located,
@@ -133,10 +133,10 @@ pub(super) fn jitter_and_loss() -> Case {
         id: "H27",
         name: "jitter-and-loss",
         title: "Readings up to a tenth of a period early or late, and one in twenty lost",
-        hard: "The model believes that every step is equally long. What comes late in one step comes early in the \
+        hard: "The model assumes steps of equal length. A reading late in one step is early in the \
                next: the angle stays exact, the velocity gets noise that grows with the speed. A lost reading is \
-               made up for by the next one, which has travelled twice as far: angle and time stay exact, and only \
-               the torque stands still for a tick.",
+               recovered by the next one, which has travelled twice as far: angle and time stay exact, and only \
+               the torque is held for a tick.",
         source: "closed form of the cycle; an angle that is counted is not lost with a reading",
         long: false,
         must: frozen_located,
@@ -169,7 +169,7 @@ pub(super) fn hand() -> Case {
         name: "sampled-spring",
         title: "A hand on the sampled spring, damped just below and above b = K·T/2",
         hard: "A spring that is sampled and held gives back more than it took, K·T/2 worth of negative damping. \
-               This is no fault of the joint but of sampling, and the run must show it as theory has it: below the \
+               The cause is sampling, not the joint, and the run must agree with theory: below the \
                limit of Colgate and Schenkel the swing grows, above it decays. Physical adds the object's inertia \
                to the loop and is left out.",
         source: "Colgate and Schenkel 1997, b > K·T/2; numbers from the eigenvalues of the exact discrete loop, over 2.5 s",

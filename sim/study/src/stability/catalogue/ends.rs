@@ -1,5 +1,5 @@
-//! Motions that end with the run, a shaft that comes to rest on an object that
-//! has, and a step with more events than it may report.
+//! Motions that end with the run, a shaft that comes to rest where the object
+//! rests, and a step with more events than it may report.
 
 use super::motions::{DWELL, STOP, WANDER};
 use super::tools::{LOCATED, at_tick, events, joint, paper_joint, trial};
@@ -29,10 +29,10 @@ pub(super) fn motion_ends_with_the_run() -> Case {
         id: "H48",
         name: "motion-ends-with-the-run",
         title: "The last knot, the last row and the last stroke are the end of the run",
-        hard: "What comes after the last piece is asked for and is not there: who looks for the piece after the end \
+        hard: "There is no piece after the last: a solver that asks for the piece after the end \
                gets the last one again and never finishes, or reads a velocity that no motion has. Mirrored, everything \
                must be the mirror image up to the last bit.",
-        source: "issue 14: a recording as long as its scene; the reference joins for knots and strokes",
+        source: "a recording as long as its scene; the same for knots and strokes, by the reference",
         long: false,
         must: located,
         trials: |subject| {
@@ -87,7 +87,7 @@ pub(super) fn motion_ends_with_the_run() -> Case {
 
 pub(super) fn dead_object() -> Case {
     // Sliding at 0.3 rad/s, the damped object comes to rest within five seconds,
-    // also in f64; then the shaft stops, rests and goes on.
+    // also in f64; then the shaft stops, rests and continues.
     const STOPS: &[(f64, f64, f64)] = &[
         (0.0, 0.3, 0.3),
         (5.0, 0.3, 0.3),
@@ -102,7 +102,7 @@ pub(super) fn dead_object() -> Case {
         title: "The shaft comes to rest exactly where the object has",
         hard: "Both velocities are zero from the same instant on: a tie. The slip has not been overtaken, and it has \
                nothing left to overtake. Either it ends there in a stick at Tk, or it goes on; both show Tk as long as \
-               the shaft rests, and no third thing may happen. Ours ends in a stick, as dry friction does, and the \
+               the shaft rests, and nothing else is allowed. Ours ends in a stick, as dry friction does, and the \
                next movement winds it to Ts.",
         source: "documented tie; from Tk to Ts is half a millirad, 35 ms after 6 s, and 27.5 ms where c·Ω helps",
         long: false,
@@ -152,7 +152,7 @@ pub(super) fn event_cap() -> Case {
         name: "event-cap",
         title: "Twenty events in a step that may report eight",
         hard: "The rest waits for the next step, where as many wait again: no number of cycles can be right, and the \
-               torque must stay within its limits all the same. A scene says so in a warning and gives no frequency.",
+               torque must stay within its limits all the same. A scene warns and gives no frequency.",
         source: "a stick of 4 µs and a slip of 0.6 µs in steps of 50 µs; the cap is EVENTS_PER_STEP",
         long: false,
         must: located,

@@ -13,7 +13,7 @@ pub(super) fn stiff() -> Case {
         name: "stiff",
         title: "ωn·h = 3.16: two steps a cycle",
         hard: "The object swings faster than the step. Explicit methods blow up above ωn·h = 2, implicit Euler \
-               damps the swing away, and who looks at the ends of steps only sees one cycle in twenty.",
+               damps the swing away, and a method without location finds one cycle in twenty.",
         source: "tests/reference-cases, k15, with 50 digits",
         long: false,
         must: located,
@@ -77,7 +77,7 @@ pub(super) fn soft_and_strong() -> Case {
         id: "H15",
         name: "soft-and-strong",
         title: "A soft spring, a very soft one, and a million newton metres",
-        hard: "A stick winds up by 400 or 2500 rad in steps of 1 mrad: in f32 a plain sum stands still once the \
+        hard: "A stick winds up by 400 or 2500 rad in steps of 1 mrad: in f32 a plain sum stops growing once the \
                step is half its last digit, and the break comes late or never.",
         source: "tests/reference-cases, l16, with 50 digits; closed form of the cycle",
         long: false,
@@ -87,7 +87,7 @@ pub(super) fn soft_and_strong() -> Case {
                 let input = at_tick(Shaft::Constant(omega), duration_s);
                 trial(joint(subject.convention, values), input, [events(within_s)])
             };
-            // Of a sum of 4e5 steps rounding is all there is.
+            // The only error is the rounding of a sum of 4e5 steps.
             let summed = Limits {
                 f64: 1e-9,
                 f32: LOCATED.f32,
@@ -124,10 +124,10 @@ pub(super) fn storm() -> Case {
     Case {
         id: "H32",
         name: "storm",
-        title: "A shaft without memory: white velocity of ±50 rad/s",
+        title: "White velocity of ±50 rad/s",
         hard: "A broken sensor looks like this. Accelerations of 2e6 rad/s² and jumps at every fourth step lead \
-               through every branch; the work of a step must stay bounded, and no number may be lost.",
-        source: "what holds for any motion: |T| ≤ Ts, at most 8 events a step, no number that is none",
+               through every branch; the work of a step must stay bounded, and everything finite.",
+        source: "what holds for any motion: |T| ≤ Ts, at most 8 events a step, no NaN",
         long: false,
         must: located,
         trials: |subject| storm_trials(subject, 1..=2, 5.0),
@@ -151,8 +151,8 @@ pub(super) fn high_speed() -> Case {
         name: "high-speed",
         title: "Up to a million radians per second",
         hard: "A stick lasts a nanosecond, and v² + ωn²x² is 1e12. Under paper and physical the velocities overlap \
-               by λ²/2 = 5e-15 of the speed, which no number of f32 and few of f64 can hold: there it is only \
-               asked to survive. A frozen slip must last the whole period 2π/ωn.",
+               by λ²/2 = 5e-15 of the speed, which no number of f32 and few of f64 can hold: there only the \
+               common bounds must hold. A frozen slip must last the whole period 2π/ωn.",
         source: "what holds for any motion: |T| ≤ Ts; a slip of any speed lasts less than 2π/ωn",
         long: false,
         must: located,

@@ -1,5 +1,4 @@
-//! Samples that are lost while the joint carries a torque, and velocities that
-//! no shaft reaches in a tick.
+//! Samples lost while the joint carries a torque, and implausible velocities.
 
 use super::tools::{TICK_S, cycle_hz, exactly, faulty, paper_joint, rendered, sine, trial};
 use crate::stability::case::{Case, located};
@@ -13,8 +12,8 @@ pub(super) fn gap_under_load() -> Case {
         id: "H38",
         name: "gap-under-load",
         title: "4 to 25 samples lost in the middle of a stick",
-        hard: "Too many to make up for: the joint is put down anew, with the torque that was held and on a shaft that \
-               moves. From 0 N·m instead the hand feels a blow, and a joint that is put down at rest takes the shaft's \
+        hard: "Too many to catch up: the joint is restarted with the held torque and on a shaft that \
+               moves. From 0 N·m instead the hand feels a blow, and a joint that is restarted at rest takes the shaft's \
                next velocity for a jump and breaks.",
         source: "model/src/render/held.rs: held for 20 ticks, then 100 N·m/s; 400 N·m/rad · 0.1 rad/s is 2 mN·m a tick",
         long: false,
@@ -23,8 +22,8 @@ pub(super) fn gap_under_load() -> Case {
             let settings = paper_joint(subject.convention);
             let mut trials = Vec::new();
             for (sign, lost) in [(1.0, 4_u32), (1.0, 10), (-1.0, 10), (1.0, 20), (-1.0, 25)] {
-                // Sample 100 is the first that is lost, of 190; the one after
-                // the gap brings travel that nobody can place.
+                // Sample 100 of 190 is the first lost one; the one after the
+                // gap brings travel of unknown timing.
                 let lost = f64::from(lost);
                 let fault = Fault::Gap {
                     from_s: 99.5 * TICK_S,
@@ -57,10 +56,10 @@ pub(super) fn losses_with_the_motion() -> Case {
         id: "H39",
         name: "losses-with-the-motion",
         title: "Every sample is lost while the shaft moves backwards",
-        hard: "Losses that keep time with the motion do not average out: only the forward half of each swing is seen, \
-               and an angle that is summed from it would run away. Each pass winds a spring that was let go of, breaks \
+        hard: "Losses in phase with the motion do not average out: only the forward half of each swing is sampled, \
+               and an angle summed from it would diverge. Each pass winds an unloaded spring, breaks \
                once and comes to rest.",
-        source: "0.9 mrad never breaks a stick that sees it whole; seen by halves it winds 1.8 mrad a pass",
+        source: "0.9 mrad never breaks a stick that gets all samples; with half of them it winds 1.8 mrad a pass",
         long: false,
         must: located,
         trials: |subject| {
@@ -92,7 +91,7 @@ pub(super) fn retreat_in_a_gap() -> Case {
         name: "retreat-in-a-gap",
         title: "A hand that retreats in every gap gets no energy for it",
         hard: "While samples are lost the torque is held, and pushes a hand that retreats. A stick that then begins with \
-               all of that torque holds the energy a second time, gap after gap. It begins with what the spring would \
+               all of that torque stores the energy a second time, gap after gap. It begins with what the spring would \
                have left, and then a gap returns no more than a spring that is sampled as rarely.",
         source: "|T′| = max(0, |T| − kr·x), model/src/render/held.rs; the bound with n ticks between two samples",
         long: false,
@@ -138,7 +137,7 @@ pub(super) fn velocity_outliers() -> Case {
         id: "H40",
         name: "velocity-outliers",
         title: "Every seventh velocity is 20 rad/s off",
-        hard: "Slow enough for a shaft, but no shaft gets there in a tick. Let through, it tears a stick loose under \
+        hard: "A plausible speed, but not within a tick. Unless rejected, it breaks a stick under \
                `paper` and `physical`, and lengthens a `frozen` slip that begins there by a millisecond.",
         source: "the device's limit is 10 rad/s in a tick",
         long: false,

@@ -10,9 +10,9 @@ pub(super) fn steps() -> Case {
     Case {
         id: "H20",
         name: "bad-steps",
-        title: "Steps of no length, of negative length, of no number",
+        title: "Steps of zero length, of negative length, of NaN",
         hard: "A step of zero divides by zero, a negative one runs time backwards, and NaN passes every comparison \
-               that is written the wrong way round. After 1000 s a joint of the paper has seen 31,831 cycles in one step.",
+                that is written the wrong way round. In a step of 1000 s a joint of the paper makes 31,831 cycles.",
         source: "the documented errors of StepCoefficients and of a step",
         long: false,
         must: located,
@@ -44,7 +44,7 @@ pub(super) fn parameters() -> Case {
     Case {
         id: "H22",
         name: "bad-parameters",
-        title: "Parameters that make no joint",
+        title: "Invalid parameters",
         hard: "A spring or an inertia of zero divides by zero, Tk above Ts turns the drop into a push, negative \
                damping feeds the swing, and NaN slips through a check that asks whether a value is too large.",
         source: "the documented errors of Settings",

@@ -86,7 +86,7 @@ pub(super) fn velocity_jumps() -> Case {
         id: "H06",
         name: "velocity-jumps",
         title: "Ω jumps by half a radian per second",
-        hard: "A jump tears a stick loose whatever its torque, and can throw a slip into the other sense at once; \
+        hard: "A jump breaks a stick whatever its torque, and can reverse a slip at once; \
                the event belongs to the instant of the jump and the torque to the new sense.",
         source: "tests/reference-cases, q10, q10p and q10z, with 50 digits",
         long: false,
@@ -107,8 +107,8 @@ pub(super) fn through_zero() -> Case {
         id: "H07",
         name: "through-zero",
         title: "Ω passes zero during a slip",
-        hard: "Friction follows the velocity relative to the object, not the shaft's: who looks at the sign of Ω \
-               turns the torque round too early.",
+        hard: "Friction follows the velocity relative to the object, not the shaft's: a method that uses the sign of Ω \
+               reverses the torque too early.",
         source: "tests/reference-cases, t09, with 50 digits",
         long: false,
         must: located,
@@ -139,7 +139,7 @@ pub(super) fn fast_swing() -> Case {
         name: "fast-swing",
         title: "45° at 2 Hz: the inertia alone exceeds Ts",
         hard: "J·Ω̇ is above Ts from the first instant, so there is no stick to start from, and a velocity match \
-               asks for three times what stick can hold: it must reverse, and never show it.",
+               needs three times the static limit: it must reverse, and never show that torque.",
         source: "tests/reference-cases, f19 and f19s, with 50 digits",
         long: false,
         must: located,
@@ -163,7 +163,7 @@ pub(super) fn sudden_stop() -> Case {
         id: "H17",
         name: "sudden-stop",
         title: "1 rad/s stops within 50 ms",
-        hard: "The object keeps √(J·kr)·Ω = 2 N·m of swing, and the match asks stick for 1.6 N·m, four times Ts. \
+        hard: "The object keeps √(J·kr)·Ω = 2 N·m of swing, and a stick after the match needs 1.6 N·m, four times Ts. \
                What is shown must stay within Ts, and the ringing must end.",
         source: "tests/reference-cases, g20 and g20z, with 50 digits",
         long: false,
@@ -204,7 +204,7 @@ pub(super) fn hard_braking() -> Case {
         title: "The hand brakes harder than (Ts − Tk)/J = 20 rad/s²",
         hard: "The paper's torque leaves the inertia out, so a stick breaks although the object would at once be \
                faster than the shaft: it sticks again in the same instant, without end (Zeno). An encoder's \
-               velocity brakes so hard at every count.",
+               velocity decelerates that much at every count.",
         source: "J·Ω̇ against Ts − Tk in eq. (7)",
         long: false,
         must: located,

@@ -1,4 +1,4 @@
-//! Where the last digits decide.
+//! Cases decided by the last digits.
 
 use super::tools::{LOCATED, TICK_S, at_tick, events, exactly, joint, paper_joint, slip_s, trial};
 use crate::stability::case::{Case, located};
@@ -48,8 +48,8 @@ pub(super) fn subnormal_decay() -> Case {
         id: "H53",
         name: "subnormal-decay",
         title: "A decay ends at zero and not among the subnormal numbers",
-        hard: "A damped object that slides for ever swings less and less. Its velocity passes through every exponent \
-               there is, and some processors compute with the last of them a hundred times slower.",
+        hard: "A damped object that slides for ever swings less and less. Its velocity passes through every exponent, \
+               and some processors are a hundred times slower with subnormal numbers.",
         source: "damping ratio 0.5: e^(−100 t) is 1e-38 after 0.9 s and 1e-308 after 7 s; Real::AT_REST",
         long: false,
         must: located,
@@ -68,8 +68,8 @@ pub(super) fn subnormal_decay() -> Case {
     }
 }
 
-/// Who looks only at the ends of a step's stretches for a match, after a break
-/// that is located within it.
+/// Subjects that check for a match only at the end of a step, after a break
+/// located within it.
 fn interpolates(subject: Subject) -> bool {
     subject.solver == Rung::Ladder(Solver::ExactInterpolated)
         && subject.convention != Convention::Frozen
@@ -80,8 +80,8 @@ pub(super) fn break_at_a_sample() -> Case {
         id: "H54",
         name: "break-at-a-sample",
         title: "A break a rounding before the sample",
-        hard: "What is left of the step is shorter than a rounding of the velocities: object and shaft are still equal, \
-               and who looks at the end of it only sees a lead that never was, lost. It would stick again at once.",
+        hard: "The rest of the step is shorter than a rounding of the velocities: object and shaft are still equal, \
+               and a method that checks only its end finds no lead, takes that for a match, and sticks at once.",
         source: "Ts/(kr·Ω) a whole number of steps, and a few roundings less",
         long: false,
         must: interpolates,
@@ -125,8 +125,8 @@ pub(super) fn slip_without_lead() -> Case {
         id: "H55",
         name: "slip-without-lead",
         title: "A slip begins with equal velocities and equal accelerations",
-        hard: "The velocities touch where the slip begins, and part with the third derivative only. Who takes a touch \
-               for a match ends the slip where it began; who waits for them to part by a bound that is too wide misses \
+        hard: "The velocities touch where the slip begins, and part with the third derivative only. To take a touch \
+               for a match ends the slip where it began; to wait until they part by too wide a bound misses \
                the match that soon follows.",
         source: "found by a random search, kept in model/tests/invariances.rs; events by the reference",
         long: false,

@@ -1,4 +1,4 @@
-//! A steady shaft, or none that moves: what is known in closed form.
+//! A shaft at constant speed or at rest, with closed forms.
 
 use super::tools::{LOCATED, at_tick, events, exactly, joint, most_hz, paper_joint, sine, trial};
 use crate::stability::case::{Case, Trial, located};
@@ -83,7 +83,7 @@ fn rest_trials(subject: Subject, duration_s: f64) -> Vec<Trial> {
             };
             let criteria = [
                 exactly(Counted::Events, 0),
-                // One step later the last acceleration is over too.
+                // One step later the last acceleration is over, too.
                 Criterion::TorqueStays { from_s: 0.101 },
             ];
             trial(paper_joint(subject.convention), input, criteria)
@@ -96,7 +96,7 @@ pub(super) fn rest() -> Case {
         id: "H03",
         name: "rest",
         title: "A shaft at rest, slack and loaded to 0.9 Ts",
-        hard: "A regularised friction law creeps under load; rounding that is added each step drifts; a comparison \
+        hard: "A regularised friction law creeps under load; rounding errors accumulate; a comparison \
                of two zeros can start a slip.",
         source: "at rest nothing in eqs. (1) to (11) moves",
         long: false,
@@ -122,7 +122,7 @@ pub(super) fn equal_torques() -> Case {
         name: "equal-torques",
         title: "Ts = Tk: breaks once and slides for ever",
         hard: "Once per period the velocities touch without crossing, with the torque exactly at the limit: a root \
-               of even multiplicity, where rounding decides between nothing and a stick of no length.",
+               of even multiplicity, where rounding decides between no event and a stick of zero length.",
         source: "with Ts = Tk a slip takes nothing from the spring; tests/reference-cases, d13, with 50 digits",
         long: false,
         must: located,

@@ -39,9 +39,9 @@ pub(super) fn grazing() -> Case {
     Case {
         id: "H30",
         name: "grazing",
-        title: "The shaft runs away from the object, just so or just not",
+        title: "The shaft just outruns the object, or just does not",
         hard: "At the critical acceleration the velocities touch in a double root. A millionth to either side \
-               decides whether there is a stick at all; f32 cannot tell them apart and is only shown.",
+               decides whether there is a stick at all; f32 cannot distinguish them and is only shown.",
         source: "critical Ω̇ = 0.161328451492413 and 1.51421157788459 rad/s² by bisection with 40 digits",
         long: false,
         must: |subject| located(subject) && subject.precision == Precision::F64,
@@ -76,7 +76,7 @@ pub(super) fn simultaneous() -> Case {
         name: "simultaneous",
         title: "A break exactly on a sample, on a knot, on a jump, and as the shaft stops",
         hard: "Two events at one instant: rounding puts the break on either side of the sample, and each side \
-               could report it, or neither. Which side it is may differ; how often must not.",
+               could report it, or neither. The side may differ; the number must not.",
         source: "an event on a boundary is recorded once, whichever side it falls on",
         long: false,
         must: located,

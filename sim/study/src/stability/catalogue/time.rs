@@ -1,4 +1,4 @@
-//! The step, and very many of them.
+//! The length of a step, and very many steps.
 
 use super::tools::{TICK_S, cycle_hz, paper_joint, trial};
 use crate::stability::case::{Case, Trial, located};
@@ -23,8 +23,8 @@ pub(super) fn step_length() -> Case {
         name: "step-length",
         title: "The frequency does not depend on the step",
         hard: "What a knee sounds like must not change with the sampling rate. Without location each event is up \
-               to a step late, and the errors of break and match add up or cancel as the step likes.",
-        source: "closed form of the cycle; 5e-7 to either side of it for those who locate both events, 5e-4 for the others",
+               to a step late, and the errors of break and match add up or cancel depending on the step.",
+        source: "closed form of the cycle; within 5e-7 of it for rungs that locate both events, 5e-4 for the others",
         long: false,
         must: located,
         trials: |subject| {
@@ -74,8 +74,8 @@ pub(super) fn a_day_short() -> Case {
         id: "H23",
         name: "endurance",
         title: "100 seconds at the device's tick",
-        hard: "Two million steps: a frequency error of 1e-5, a fortieth of a cent, is what rounding of the slip's \
-               duration alone can cost, and any drift of the torque's band adds up.",
+        hard: "Two million steps: a frequency error of 1e-5, a fortieth of a cent, can come from rounding of the slip's \
+               duration alone, and any drift of the torque's band accumulates.",
         source: "closed form of the cycle; a tick of f32 keeps 1e-7 of its fraction",
         long: false,
         must: located,
@@ -102,8 +102,8 @@ pub(super) fn no_clock() -> Case {
         id: "H24",
         name: "no-clock",
         title: "Events come on time after more than 1024 s",
-        hard: "A clock t += h in f32 loses digits as it grows: with 50 µs it stands still at 1024 s, with 1 ms its \
-               last digit is an eighth of the step by then. There must be none.",
+        hard: "A clock t += h in f32 loses digits as it grows: with 50 µs it stops at 1024 s, with 1 ms its \
+               last digit is an eighth of the step by then. There must be no such clock.",
         source: "at 1024 s half a step of an f32 is 61 µs, more than a tick",
         long: false,
         must: located,

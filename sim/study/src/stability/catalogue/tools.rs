@@ -1,4 +1,4 @@
-//! What the files of the catalogue share.
+//! Helpers shared by the files of the catalogue.
 
 use crate::stability::case::Trial;
 use crate::stability::criterion::{Counted, Criterion, Limits};
@@ -8,14 +8,14 @@ use crepitus_model::{Convention, Parameters, Settings};
 /// The device's tick, s.
 pub(super) const TICK_S: f64 = 5e-5;
 
-/// Where events must be when Ω is linear within every step, so that a solver
-/// that locates them has nothing to lose but rounding.
+/// Tolerance of events when Ω is linear within every step, so that a solver
+/// that locates them only has rounding errors.
 pub(super) const LOCATED: Limits = Limits {
     f64: 1e-12,
     f32: 2e-5,
 };
 
-/// Where events must be on a motion that is not linear within a step.
+/// Tolerance of events on a motion that is not linear within a step.
 pub(super) const SAMPLED: Limits = Limits {
     f64: 1e-6,
     f32: 2e-5,
@@ -81,7 +81,7 @@ pub(super) fn changed(shaft: Shaft, duration_s: f64, changes: &[(f64, Parameters
     }
 }
 
-/// A joint as the device renders it, with nothing lost and nothing committed.
+/// A joint as the device renders it, without losses and commits.
 pub(super) fn rendered(shaft: Shaft, duration_s: f64) -> Rendered {
     Rendered {
         shaft,
@@ -125,7 +125,7 @@ pub(super) fn trial<const N: usize>(
     }
 }
 
-/// Exactly so many.
+/// Exactly this number of events.
 pub(super) fn exactly(what: Counted, count: u64) -> Criterion {
     Criterion::Count {
         what,
@@ -154,7 +154,7 @@ pub(super) fn slip_s(p: &Parameters, omega_rad_s: f64) -> f64 {
     2.0 * (std::f64::consts::PI - lag) / p.natural_rad_s()
 }
 
-/// The highest cycle frequency there is, Hz: ωn/2π.
+/// The highest possible cycle frequency, Hz: ωn/2π.
 pub(super) fn most_hz(p: &Parameters) -> f64 {
     p.natural_rad_s() / std::f64::consts::TAU
 }

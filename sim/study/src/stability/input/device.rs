@@ -49,7 +49,7 @@ pub struct Rendered {
     pub commit_every: u64,
     /// The committed parameters, in turn.
     pub commits: Vec<Parameters>,
-    /// How long, s.
+    /// Duration, s.
     pub duration_s: f64,
     /// The step, s.
     pub step_s: f64,

@@ -142,9 +142,9 @@ impl fmt::Display for Fault {
         match *self {
             Self::Impossible { every } => write!(
                 f,
-                "every {every}th sample no number, infinite, 1 rad or 60 rad/s off, in turn"
+                "every {every}th sample NaN, infinite, 1 rad or 60 rad/s off, in turn"
             ),
-            Self::Blind { from_s } => write!(f, "no number from {} on", Time(from_s)),
+            Self::Blind { from_s } => write!(f, "NaN from {} on", Time(from_s)),
             Self::Gap { from_s, to_s } => {
                 write!(f, "no sample from {} to {}", Time(from_s), Time(to_s))
             }

@@ -1,4 +1,4 @@
-//! Inputs as the device has them.
+//! Inputs as in the device.
 
 use crepitus_ladder::exchange::{Input, Kind};
 use crepitus_ladder::{Plan, Subject};
@@ -12,7 +12,7 @@ use crepitus_plant::encoder::Encoder;
 /// Torque at the joint for a current of the motor, N·m/A.
 const NM_PER_A: f32 = 3.33;
 
-/// What a subject gets while the shaft moves.
+/// Inputs of a subject while the shaft moves.
 pub(super) fn usual(plan: &Plan, motion: &[ShaftStep<f32>]) -> Result<Vec<Input>, SettingsError> {
     Ok(match plan.subject {
         Subject::Rung(..) | Subject::Checked(_) | Subject::Renderer => {
@@ -35,10 +35,10 @@ pub(super) fn usual(plan: &Plan, motion: &[ShaftStep<f32>]) -> Result<Vec<Input>
     })
 }
 
-/// With samples missing, one to six at a time, and some that are refused. The
-/// next sample has the travel of those that are missing.
+/// Inputs with missing samples, one to six at a time, and some refused ones.
+/// The next sample has the travel of the missing ones.
 pub(super) fn gaps(motion: &[ShaftStep<f32>]) -> Vec<Input> {
-    /// Steps from one gap to the next: from those there are all phases.
+    /// Steps from one gap to the next, so that gaps occur in all phases.
     const EVERY: usize = 23;
     let mut travel = 0.0;
     let mut inputs = Vec::new();
@@ -62,9 +62,9 @@ pub(super) fn gaps(motion: &[ShaftStep<f32>]) -> Vec<Input> {
     inputs
 }
 
-/// While the parameters move to others and back.
+/// Inputs while the parameters change and change back.
 pub(super) fn commits(plan: &Plan, motion: &[ShaftStep<f32>]) -> (Plan, Vec<Input>) {
-    /// Longer than the way to the others: 2.5 ms at 100 N·m/s.
+    /// Longer than a ramp: 2.5 ms at 100 N·m/s.
     const EVERY: usize = 61;
     let [first, _] = plan.parameters;
     let second = Parameters {
@@ -120,7 +120,7 @@ fn input(numbers: [f32; 3]) -> Input {
     }
 }
 
-/// What the counter of the encoder says.
+/// Counts of the encoder.
 fn counts(motion: &[ShaftStep<f32>]) -> Vec<Input> {
     let encoder = Encoder::new(&EncoderSettings::default());
     let mut phi_rad = 0.0;
