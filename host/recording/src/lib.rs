@@ -16,6 +16,7 @@
 //! file then does not say yet, the ticks of the lines do.
 #![forbid(unsafe_code)]
 
+mod arming;
 mod recorder;
 mod recording;
 mod row;
@@ -23,6 +24,7 @@ mod samples;
 mod shaft;
 mod sidecar;
 
+pub use arming::ArmingPushes;
 pub use recorder::{RecordError, Recorder};
 pub use recording::{ReadError, Recording, Rows};
 pub use row::{COLUMNS, Row, RowError};

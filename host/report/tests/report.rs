@@ -4,7 +4,7 @@
 //! The pages are left in the target's `tmp` directory to be looked at.
 
 mod fixture;
-#[path = "fixture/markup.rs"]
+#[path = "../../plot/tests/markup.rs"]
 mod markup;
 
 use std::cell::RefCell;
@@ -16,7 +16,9 @@ use crepitus_report::{
 };
 use crepitus_scene::trace::Column;
 use fixture::{KINETIC, Motion, Run, STATIC, plant};
-use markup::{assert_balanced, assert_drawn, count};
+use markup::{
+    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, charts, count,
+};
 
 /// A run of this motion, with as many rows as it announces.
 fn collect(motion: Motion, rows: u32, step: f64, encoder: bool) -> Figures {
@@ -84,7 +86,7 @@ fn text(title: &str) -> Text {
 /// Draws, checks what every page must keep to, and leaves the page to be
 /// looked at.
 fn page(name: &str, text: &Text, figures: &Figures) -> String {
-    let page = html(text, figures).expect("drawn");
+    let page = html(text, figures);
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.html"));
     std::fs::write(path, &page).expect("written");
     assert!(page.len() < 500_000, "{name}: {} bytes", page.len());
@@ -92,6 +94,10 @@ fn page(name: &str, text: &Text, figures: &Figures) -> String {
         assert!(!page.contains(forbidden), "{name} contains {forbidden}");
     }
     assert_balanced(&page);
+    assert_fits_a_phone(&page);
+    for chart in charts(&page) {
+        assert!(assert_labels_inside(&chart) > 3);
+    }
     page
 }
 
@@ -350,7 +356,7 @@ fn a_coupled_run_with_all_effects() {
     ] {
         assert!(page.contains(present), "{present}");
     }
-    let pictures = pictures(&figures).expect("drawn");
+    let pictures = pictures(&figures);
     for picture in &pictures {
         assert_drawn(&picture.svg);
     }

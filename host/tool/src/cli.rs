@@ -2,6 +2,7 @@
 
 pub(crate) mod device;
 
+use crate::pictures::PictureFormat;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use device::{
     ArmArguments, ClearFaultArguments, DemoArguments, DisarmArguments, DoctorArguments,
@@ -137,9 +138,10 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value)]
     pub(crate) set: Vec<(String, String)>,
 
-    /// Write each chart of the report as an SVG file of its own, too.
-    #[arg(long)]
-    pub(crate) pictures: bool,
+    /// Write each chart of the report as a file of its own, too.
+    #[arg(long, value_name = "svg|pdf", num_args = 0..=1, require_equals = true,
+          default_missing_value = "svg")]
+    pub(crate) pictures: Option<PictureFormat>,
 
     /// Write only every Nth row of the trace.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
@@ -189,9 +191,10 @@ pub(crate) struct AccuracyArguments {
     #[arg(long)]
     pub(crate) target: bool,
 
-    /// Write each diagram of the report as an SVG file of its own, too.
-    #[arg(long)]
-    pub(crate) pictures: bool,
+    /// Write each diagram of the report as a file of its own, too.
+    #[arg(long, value_name = "svg|pdf", num_args = 0..=1, require_equals = true,
+          default_missing_value = "svg")]
+    pub(crate) pictures: Option<PictureFormat>,
 
     /// Which solver is the cheapest that is accurate enough? For example torque=1e-2,interval=5e-4.
     #[arg(long, value_name = "NEED")]
@@ -270,9 +273,10 @@ pub(crate) struct StabilityArguments {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
-    /// Write the matrix and each picture of the report as an SVG file of its own, too.
-    #[arg(long)]
-    pub(crate) pictures: bool,
+    /// Write the matrix and each picture of the report as a file of its own, too.
+    #[arg(long, value_name = "svg|pdf", num_args = 0..=1, require_equals = true,
+          default_missing_value = "svg")]
+    pub(crate) pictures: Option<PictureFormat>,
 }
 
 #[derive(Debug, Args)]
@@ -307,9 +311,10 @@ pub(crate) struct EffectsArguments {
     #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value, requires = "scene")]
     pub(crate) set: Vec<(String, String)>,
 
-    /// Write each figure of the report as an SVG file of its own, too.
-    #[arg(long, requires = "scene")]
-    pub(crate) pictures: bool,
+    /// Write each figure of the report as a file of its own, too.
+    #[arg(long, value_name = "svg|pdf", num_args = 0..=1, require_equals = true,
+          default_missing_value = "svg", requires = "scene")]
+    pub(crate) pictures: Option<PictureFormat>,
 }
 
 #[derive(Debug, Args)]

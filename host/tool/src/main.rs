@@ -6,6 +6,7 @@ mod following;
 mod interrupt;
 mod keys;
 mod line;
+mod pictures;
 mod progress;
 mod recorded;
 mod safe_text;

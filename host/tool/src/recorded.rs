@@ -11,10 +11,11 @@ mod tally;
 
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::pictures::{self, PictureFormat};
 use crate::progress::Progress;
 use crepitus_protocol::{Revision, TICK_S};
-use crepitus_recording::{Recording, Row, Sidecar};
-use crepitus_report::{Collector, Setup, Text, TorqueLevels};
+use crepitus_recording::{ArmingPushes, Recording, Row, Sidecar};
+use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
 use crepitus_scene::output::Folder;
 use crepitus_scene::trace::{Column, ColumnKind};
 use joint::Joint;
@@ -53,7 +54,7 @@ const PROGRESS_ROWS: u64 = 1 << 14;
 pub(crate) fn report(
     recording: &Recording,
     out: &Path,
-    pictures: bool,
+    pictures: Option<PictureFormat>,
 ) -> Result<RecordedSummary, Failure> {
     let sidecar = recording.sidecar();
     let failed = |doing: &str, e: &std::io::Error| Failure::at(out, doing, e);
@@ -66,6 +67,10 @@ pub(crate) fn report(
         levels: levels(sidecar),
     };
     let mut collector = Collector::new(&setup);
+    for (at, name) in sidecar.changes() {
+        collector.mark(Mark { at, name });
+    }
+    let mut pushes = ArmingPushes::default();
     let mut tally = Tally::default();
     let mut joint = Joint::default();
     let mut progress = Progress::of_reading();
@@ -85,6 +90,9 @@ pub(crate) fn report(
         collector.row(&values);
         if let Some(event) = joint.event(&row, &object) {
             collector.event(&event);
+        }
+        if let Some((from_s, to_s)) = pushes.row(&row) {
+            collector.arming_push(from_s, to_s);
         }
         tally.row(&row);
         if n.is_multiple_of(PROGRESS_ROWS) {
@@ -107,29 +115,23 @@ pub(crate) fn report(
         ),
     };
     let figures = collector.finish();
-    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
     let json = serde_json::to_string_pretty(&summary)
         .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
     let mut texts = vec![
         (
             "report.html".to_owned(),
-            crepitus_report::html(&text, &figures).map_err(undrawn)?,
+            crepitus_report::html(&text, &figures).into(),
         ),
-        ("summary.json".to_owned(), json + "\n"),
+        ("summary.json".to_owned(), (json + "\n").into()),
     ];
-    if pictures {
-        let drawn = crepitus_report::pictures(&figures).map_err(undrawn)?;
-        texts.extend(
-            drawn
-                .into_iter()
-                .map(|p| (format!("{}.svg", p.name), p.svg)),
-        );
-    }
+    texts.extend(pictures::files(pictures, || {
+        crepitus_report::pictures(&figures)
+    })?);
     for (name, content) in texts {
         folder
             .file(&name)
             .and_then(|mut file| {
-                file.write_all(content.as_bytes())?;
+                file.write_all(&content)?;
                 Folder::finish(file)
             })
             .map_err(|e| failed("writing the report", &e))?;

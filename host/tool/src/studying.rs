@@ -3,6 +3,7 @@
 
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::pictures::Files;
 use crate::progress::Progress;
 use crepitus_scene::output::Folder;
 use crepitus_study::{StudyError, Watcher};
@@ -46,16 +47,12 @@ pub(crate) fn failed(error: StudyError<Interrupted>) -> Failure {
 }
 
 /// Writes names and contents of files, all or none.
-pub(crate) fn write(
-    folder: Folder,
-    out: &Path,
-    files: Vec<(String, String)>,
-) -> Result<(), Failure> {
+pub(crate) fn write(folder: Folder, out: &Path, files: Files) -> Result<(), Failure> {
     for (name, content) in files {
         folder
             .file(&name)
             .and_then(|mut file| {
-                file.write_all(content.as_bytes())?;
+                file.write_all(&content)?;
                 Folder::finish(file)
             })
             .map_err(|e| Failure::at(out, "writing the results", &e))?;

@@ -12,7 +12,6 @@
 //! | what each effect does to the torque at the hand, and what it costs | [`effects`] |
 //! | a motion cut into steps | [`sampling`] |
 //! | the true events, which belongs to which, and the errors | [`true_events`], [`matching`], [`event_errors`] |
-//! | the spectrum of a torque | [`spectrum`] |
 //! | limits as a text gives them | [`limits`] |
 //! | progress, and how a study ends early | [`watcher`] |
 
@@ -24,7 +23,6 @@ pub mod limits;
 pub mod matching;
 mod parallel;
 pub mod sampling;
-pub mod spectrum;
 pub mod stability;
 pub mod true_events;
 pub mod watcher;

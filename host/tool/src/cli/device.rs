@@ -1,5 +1,6 @@
 //! The command line of the verbs that talk to a device.
 
+use crate::pictures::PictureFormat;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -37,9 +38,10 @@ pub(crate) struct DemoArguments {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
-    /// Write each figure of the report as an SVG file of its own, too.
-    #[arg(long)]
-    pub(crate) pictures: bool,
+    /// Write each figure of the report as a file of its own, too.
+    #[arg(long, value_name = "svg|pdf", num_args = 0..=1, require_equals = true,
+          default_missing_value = "svg")]
+    pub(crate) pictures: Option<PictureFormat>,
 }
 
 #[derive(Debug, Args)]
@@ -257,9 +259,10 @@ pub(crate) struct ReportArguments {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
-    /// Write each figure of the report as an SVG file of its own, too.
-    #[arg(long)]
-    pub(crate) pictures: bool,
+    /// Write each figure of the report as a file of its own, too.
+    #[arg(long, value_name = "svg|pdf", num_args = 0..=1, require_equals = true,
+          default_missing_value = "svg")]
+    pub(crate) pictures: Option<PictureFormat>,
 }
 
 #[derive(Debug, Args)]

@@ -12,6 +12,7 @@ mod words;
 
 use crate::cli::AccuracyArguments;
 use crate::failure::{Failure, print, print_json};
+use crate::pictures::{Files, PictureFormat};
 use crate::studying::{self, Watch};
 use crepitus_scene::output::Folder;
 use crepitus_study::accuracy::{Need, Study, convergence, points_csv, study};
@@ -78,15 +79,15 @@ pub(crate) fn accuracy(arguments: &AccuracyArguments, as_json: bool) -> Result<(
 fn files(
     study: &Study,
     summary: &Summary<'_>,
-    pictures: bool,
-) -> Result<Vec<(String, String)>, Failure> {
+    pictures: Option<PictureFormat>,
+) -> Result<Files, Failure> {
     let json = serde_json::to_string_pretty(summary)
         .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
     let mut files = page::files(study, summary, pictures)?;
     files.push((
         "points.csv".to_owned(),
-        points_csv::points_csv(&study.points),
+        points_csv::points_csv(&study.points).into(),
     ));
-    files.push(("summary.json".to_owned(), json + "\n"));
+    files.push(("summary.json".to_owned(), (json + "\n").into()));
     Ok(files)
 }

@@ -7,6 +7,7 @@ mod watch;
 use crate::cli::RunArguments;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
+use crate::pictures::{self};
 use crate::shipped;
 use crepitus_model::Restart;
 use crepitus_report::{Setup, Text, TorqueLevels};
@@ -104,27 +105,21 @@ fn simulate(
             summary.crepitus_version
         ),
     };
-    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
-    let page = crepitus_report::html(&text, &figures).map_err(undrawn)?;
+    let page = crepitus_report::html(&text, &figures);
     let json = serde_json::to_string_pretty(&summary)
         .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
     let mut texts = vec![
-        ("report.html".to_owned(), page),
-        ("summary.json".to_owned(), json + "\n"),
+        ("report.html".to_owned(), page.into()),
+        ("summary.json".to_owned(), (json + "\n").into()),
     ];
-    if arguments.pictures {
-        let pictures = crepitus_report::pictures(&figures).map_err(undrawn)?;
-        texts.extend(
-            pictures
-                .into_iter()
-                .map(|p| (format!("{}.svg", p.name), p.svg)),
-        );
-    }
+    texts.extend(pictures::files(arguments.pictures, || {
+        crepitus_report::pictures(&figures)
+    })?);
     for (name, content) in texts {
         folder
             .file(&name)
             .and_then(|mut file| {
-                file.write_all(content.as_bytes())?;
+                file.write_all(&content)?;
                 Folder::finish(file)
             })
             .map_err(|e| failed("writing the results", &e))?;

@@ -71,7 +71,7 @@ pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result
 /// The stories belong to the whole catalogue; beside single cases they come
 /// only where pictures are asked for.
 fn stories(arguments: &StabilityArguments) -> Result<Vec<Story>, Failure> {
-    if arguments.cases.is_empty() || arguments.pictures {
+    if arguments.cases.is_empty() || arguments.pictures.is_some() {
         story::all().map_err(|e| Failure::Work(format!("a story cannot be computed: {e}")))
     } else {
         Ok(Vec::new())

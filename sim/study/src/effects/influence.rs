@@ -1,7 +1,7 @@
 //! What a torque is like over a run, and what it is like beside another.
 
-use crate::spectrum::Welch;
 use crepitus_model::Real;
+use crepitus_spectrum::Welch;
 use serde::Serialize;
 
 /// Bands in use for the vibration of joints, Hz.

@@ -3,40 +3,33 @@
 use super::summary::Summary;
 use super::words;
 use crate::failure::Failure;
+use crate::pictures::{self, Files, PictureFormat};
 use crepitus_model::Convention;
-use crepitus_report::Section;
-use crepitus_report::accuracy::{self, AccuracyText};
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::orders::{Order, Orders};
 use crepitus_study::accuracy::{Point, Study};
+use crepitus_study_pages::{Section, StudyText, accuracy};
 
 /// The report, and each of its diagrams as an SVG of its own if asked for:
 /// names and contents of files.
 pub(super) fn files(
     study: &Study,
     summary: &Summary<'_>,
-    pictures: bool,
-) -> Result<Vec<(String, String)>, Failure> {
-    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
-    let page = accuracy::html(&study.points, study.target.as_ref(), &text(study, summary))
-        .map_err(undrawn)?;
-    let mut files = vec![("report.html".to_owned(), page)];
-    if pictures {
-        let pictures = accuracy::pictures(&study.points).map_err(undrawn)?;
-        files.extend(
-            pictures
-                .into_iter()
-                .map(|p| (format!("{}.svg", p.name), p.svg)),
-        );
-    }
+    format: Option<PictureFormat>,
+) -> Result<Files, Failure> {
+    let page = accuracy::html(&study.points, study.target.as_ref(), &text(study, summary));
+    let mut files = vec![("report.html".to_owned(), page.into())];
+    files.extend(pictures::files(format, || {
+        accuracy::pictures(&study.points)
+    })?);
     Ok(files)
 }
 
-fn text(study: &Study, summary: &Summary<'_>) -> AccuracyText {
+fn text(study: &Study, summary: &Summary<'_>) -> StudyText {
     let mut tables = vec![studied(study, summary)];
     tables.extend(convergence(study));
     tables.extend(refused(study));
-    AccuracyText {
+    StudyText {
         title: "What accuracy costs in time".to_owned(),
         intro: "Every solver, in single and double precision and at a range of steps, against the event-driven \
                 reference. A solver down and to the left of another is both better and cheaper."

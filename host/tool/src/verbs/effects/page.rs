@@ -2,46 +2,38 @@
 
 use super::summary::Summary;
 use crate::failure::Failure;
-use crepitus_report::Section;
-use crepitus_report::effects::{self, EffectsText};
+use crate::pictures::{self, Files, PictureFormat};
 use crepitus_study::effects::EffectsStudy;
 use crepitus_study::effects::effects_csv::effects_csv;
+use crepitus_study_pages::{Section, StudyText, effects};
 
 /// Names and contents of the files; each figure as an SVG of its own if asked
 /// for.
 pub(super) fn files(
     study: &EffectsStudy,
     summary: &Summary<'_>,
-    pictures: bool,
-) -> Result<Vec<(String, String)>, Failure> {
-    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
-    let page = effects::html(study, &text(study, summary)).map_err(undrawn)?;
+    format: Option<PictureFormat>,
+) -> Result<Files, Failure> {
+    let page = effects::html(study, &text(study, summary));
     let json = serde_json::to_string_pretty(summary)
         .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
     let mut files = vec![
-        ("report.html".to_owned(), page),
-        ("effects.csv".to_owned(), effects_csv(study)),
-        ("summary.json".to_owned(), json + "\n"),
+        ("report.html".to_owned(), page.into()),
+        ("effects.csv".to_owned(), effects_csv(study).into()),
+        ("summary.json".to_owned(), (json + "\n").into()),
     ];
-    if pictures {
-        let pictures = effects::pictures(study).map_err(undrawn)?;
-        files.extend(
-            pictures
-                .into_iter()
-                .map(|p| (format!("{}.svg", p.name), p.svg)),
-        );
-    }
+    files.extend(pictures::files(format, || effects::pictures(study))?);
     Ok(files)
 }
 
-fn text(study: &EffectsStudy, summary: &Summary<'_>) -> EffectsText {
+fn text(study: &EffectsStudy, summary: &Summary<'_>) -> StudyText {
     let row = |name: &str, value: String| (name.to_owned(), value);
     let effects = if study.effects.is_empty() {
         "none".to_owned()
     } else {
         study.effects.join(", ")
     };
-    EffectsText {
+    StudyText {
         title: format!("What each effect does and costs: {}", study.title),
         intro: format!(
             "Each effect of the scene is left out in turn, and each absent one added.\n{}",

@@ -1,13 +1,13 @@
 //! `crepitus stability --coupled`: the Z-width of the device on a leg.
 
 use crate::failure::{Failure, print, print_json};
+use crate::pictures::{self, Files, PictureFormat};
 use crate::studying::{self, Watch};
-use crepitus_report::Section;
-use crepitus_report::coupled::{self, CoupledText};
 use crepitus_scene::output::Folder;
 use crepitus_study::coupled::{
     CoupledError, CoupledStudy, GEARS, LAGS, Margin, Setting, Verdict, csv, most_share, run,
 };
+use crepitus_study_pages::{Section, StudyText, coupled};
 use serde::Serialize;
 use serde_json::json;
 use std::fmt::Write as _;
@@ -53,7 +53,11 @@ struct Joint {
 }
 
 /// Makes the map, writes the files, says what is left to the presets.
-pub(super) fn coupled(out: &Path, pictures: bool, as_json: bool) -> Result<(), Failure> {
+pub(super) fn coupled(
+    out: &Path,
+    pictures: Option<PictureFormat>,
+    as_json: bool,
+) -> Result<(), Failure> {
     let folder = Folder::create(out).map_err(|e| Failure::at(out, "cannot be written", &e))?;
     let study = run(&mut Watch::new()).map_err(|error| match error {
         CoupledError::Watcher(_) => Failure::Work("interrupted: nothing was written".to_owned()),
@@ -178,32 +182,29 @@ fn told(study: &CoupledStudy) -> String {
 fn files(
     study: &CoupledStudy,
     summary: &Summary,
-    pictures: bool,
-) -> Result<Vec<(String, String)>, Failure> {
+    format: Option<PictureFormat>,
+) -> Result<Files, Failure> {
     let json = serde_json::to_string_pretty(summary)
         .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
     let mut files = vec![
         (
             "report.html".to_owned(),
-            coupled::html(study, &words(summary)),
+            coupled::html(study, &words(summary)).into(),
         ),
-        ("cells.csv".to_owned(), csv::cells(&study.cells)),
-        ("onsets.csv".to_owned(), csv::onsets(study)),
-        ("margins.csv".to_owned(), csv::margins(study)),
-        ("scene.toml".to_owned(), Setting::shipped().toml()),
-        ("summary.json".to_owned(), json + "\n"),
+        ("cells.csv".to_owned(), csv::cells(&study.cells).into()),
+        ("onsets.csv".to_owned(), csv::onsets(study).into()),
+        ("margins.csv".to_owned(), csv::margins(study).into()),
+        ("scene.toml".to_owned(), Setting::shipped().toml().into()),
+        ("summary.json".to_owned(), (json + "\n").into()),
     ];
-    if pictures {
-        let pictures = coupled::pictures(study).into_iter();
-        files.extend(pictures.map(|p| (format!("{}.svg", p.name), p.svg)));
-    }
+    files.extend(pictures::files(format, || coupled::pictures(study))?);
     Ok(files)
 }
 
-fn words(summary: &Summary) -> CoupledText {
+fn words(summary: &Summary) -> StudyText {
     let row = |name: &str, value: String| (name.to_owned(), value);
     let cells = &summary.cells;
-    CoupledText {
+    StudyText {
         title: "Where the device stays quiet on a leg".to_owned(),
         intro: "A hand moves the leg at 0.5 rad/s, stops, and rests. Does the motor's shaft come to rest, too? Each cell \
                 is a run of three seconds with what the drive renders: encoder, joint, guard, limits, current loop. A \
@@ -221,6 +222,7 @@ fn words(summary: &Summary) -> CoupledText {
                 row("the study took", format!("{:.1} s", summary.wall_s)),
             ],
         }],
+        notes: Vec::new(),
         footer: format!(
             "crepitus {} · research and education prototype, not a medical device",
             summary.crepitus_version

@@ -2,10 +2,10 @@
 
 use super::summary::Summary;
 use crate::failure::Failure;
-use crepitus_report::Section;
-use crepitus_report::stability::{self, StabilityText};
+use crate::pictures::{self, Files, PictureFormat};
 use crepitus_study::stability::story::Story;
 use crepitus_study::stability::{Matrix, cases_csv};
+use crepitus_study_pages::{Section, StudyText, stability};
 
 /// The report, the cells and the summary; the matrix and each story as an SVG
 /// of its own if asked for.
@@ -13,32 +13,26 @@ pub(super) fn files(
     matrix: &Matrix,
     stories: &[Story],
     summary: &Summary,
-    pictures: bool,
-) -> Result<Vec<(String, String)>, Failure> {
-    let undrawn = |e| Failure::Work(format!("the report cannot be drawn: {e}"));
+    format: Option<PictureFormat>,
+) -> Result<Files, Failure> {
     let json = serde_json::to_string_pretty(summary)
         .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
-    let page = stability::html(matrix, stories, &text(matrix, summary)).map_err(undrawn)?;
+    let page = stability::html(matrix, stories, &text(matrix, summary));
     let mut files = vec![
-        ("report.html".to_owned(), page),
-        ("cases.csv".to_owned(), cases_csv::cases_csv(matrix)),
-        ("summary.json".to_owned(), json + "\n"),
+        ("report.html".to_owned(), page.into()),
+        ("cases.csv".to_owned(), cases_csv::cases_csv(matrix).into()),
+        ("summary.json".to_owned(), (json + "\n").into()),
     ];
-    if pictures {
-        let pictures = stability::pictures(matrix, stories).map_err(undrawn)?;
-        files.extend(
-            pictures
-                .into_iter()
-                .map(|p| (format!("{}.svg", p.name), p.svg)),
-        );
-    }
+    files.extend(pictures::files(format, || {
+        stability::pictures(matrix, stories)
+    })?);
     Ok(files)
 }
 
-fn text(matrix: &Matrix, summary: &Summary) -> StabilityText {
+fn text(matrix: &Matrix, summary: &Summary) -> StudyText {
     let counts = &summary.counts;
     let row = |name: &str, value: String| (name.to_owned(), value);
-    StabilityText {
+    StudyText {
         title: match matrix.rows.as_slice() {
             [only] => only.case.title.to_owned(),
             _ => "Which hard cases hold".to_owned(),
@@ -82,6 +76,7 @@ fn text(matrix: &Matrix, summary: &Summary) -> StabilityText {
                 row("the study took", format!("{:.1} s", summary.wall_s)),
             ],
         }],
+        notes: Vec::new(),
         footer: format!(
             "crepitus {} · research and education prototype, not a medical device",
             summary.crepitus_version
