@@ -29,6 +29,8 @@ pub fn assert_drawn(svg: &str) {
     assert!(!svg.contains("var("), "a variable is left");
     let mut options = resvg::usvg::Options::default();
     options.fontdb_mut().load_system_fonts();
+    // The widest of those in use; without it the letters are left out.
+    options.fontdb_mut().set_sans_serif_family("DejaVu Sans");
     let tree = resvg::usvg::Tree::from_str(svg, &options).expect("an SVG document");
     let size = tree.size().to_int_size();
     let (width, height) = (size.width(), size.height());

@@ -80,7 +80,9 @@ pub(super) fn place(signs: &[Sign<'_>], frame: Frame) -> Vec<(f64, f64)> {
             };
             let covered = |spot: &Spot| {
                 let outside = spot.width * spot.height - spot.shared(&inside);
-                10.0 * outside + taken.iter().map(|t| spot.shared(t)).sum::<f64>()
+                // Whole pixels: rounding must not decide.
+                let shared: f64 = taken.iter().map(|t| spot.shared(t)).sum();
+                (10.0 * outside + shared).round() + 0.0
             };
             let best = beside
                 .into_iter()
