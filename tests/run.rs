@@ -356,7 +356,7 @@ fn pictures_are_svg_or_pdf() {
         assert_eq!(text.matches(&page).count(), 1, "{name}: {page}");
         assert_eq!(text.matches("/Type /Page\n").count(), 1, "{name}");
     }
-    let refused = run("fig6-ideal-cycle", home.path(), &["--pictures=bmp"]);
+    let refused = run(&["run", "fig6-ideal-cycle", "--pictures=bmp"]);
     assert_eq!(refused.status.code(), Some(2));
     assert!(
         stderr(&refused).contains("expected svg or pdf"),
