@@ -103,7 +103,7 @@ mod tests {
         );
         assert!(pdf.contains("/FontFile"), "glyphs are embedded");
         // Colours, strokes, shown text.
-        for operator in [" SCN\n", "\nS\n", " Tf\n", "TJ\n"] {
+        for operator in [" SCN\n", "\nS\n", " Tf\n", " Tj\n"] {
             assert!(pdf.contains(operator), "{operator:?}");
         }
     }

@@ -6,7 +6,7 @@ use crate::layout::Frame;
 use crate::marker::Marker;
 use crate::palette::{GRID, Ink, LEVEL, TEXT};
 use crate::simplify::simplify;
-use crate::text::{LINE, SIZE, width};
+use crate::text::LINE;
 use crate::thinned::Point;
 
 /// What nobody sees, CSS pixels.
@@ -155,16 +155,13 @@ impl Plot {
                     ..Stroke::new(TEXT, 1.0)
                 },
             );
-            let long = width(name, SIZE);
-            if !named || name.is_empty() || long > self.frame.right - self.frame.left {
+            let long = Drawing::label_width(name);
+            let Frame { left, right, .. } = self.frame;
+            if !named || name.is_empty() || long > right - left {
                 continue;
             }
-            // At the right edge to the left of the line.
-            let start = if x + 5.0 + long < self.frame.right {
-                x + 5.0
-            } else {
-                x - 5.0 - long
-            };
+            // Right of its line, or as near as the edges let it.
+            let start = (x + 5.0).min(right - long);
             let row = ends
                 .iter()
                 .position(|end| *end < start - 5.0)
@@ -234,6 +231,28 @@ mod tests {
         };
         assert_eq!(place("first").0, 505.0);
         assert!(place("second").1 > place("first").1 + 12.0);
-        assert!(place("third").0 < 890.0 - 5.0 && place("third").1 == place("first").1);
+        let end = place("third").0 + Drawing::label_width("third");
+        assert!(end <= 900.0 && place("third").1 == place("first").1);
+        // Too long for this side of its line, and for the whole panel.
+        let long = "a name so long that it takes more than half of the panel, and some more";
+        let mut plot = self::plot();
+        plot.moments(&[mark(6.0, &long), mark(7.0, &long.repeat(3))], true);
+        let out = plot.over.finish();
+        assert_eq!(
+            (out.matches("<path").count(), out.matches("<text").count()),
+            (2, 1)
+        );
+        let start = out
+            .split_once("x=\"")
+            .expect("a text")
+            .1
+            .split_once('"')
+            .expect("its end")
+            .0;
+        let start: f64 = start.parse().expect("a number");
+        assert!(
+            start >= 100.0 && start + Drawing::label_width(&long) <= 900.01,
+            "{start}"
+        );
     }
 }

@@ -69,11 +69,15 @@ fn chart(figures: &Figures, shown: &Shown, course: &Course) -> Chart {
     let time = time_axis(&course.points());
     let panel = Panel::new(HEIGHT, time, (shown.axis, course.axis(4)), |plot| {
         if shown.has_pushes {
-            figures.draw_pushes(plot);
+            figures.shade_pushes(plot);
         }
         course.draw(plot, figures.bins(), TORQUE);
         plot.grid();
-        figures.draw_marks(plot, true);
+        if shown.has_pushes {
+            figures.draw_motor_marks(plot);
+        } else {
+            figures.draw_marks(plot, true);
+        }
     });
     let svg = stack(WIDTH, shown.title, vec![panel.x_title(Some("Time (s)"))]);
     let heading = match course.shown().beyond {

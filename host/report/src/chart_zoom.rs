@@ -179,7 +179,7 @@ fn chart(figures: &Figures, window: &Window, label: &str) -> Svg {
     let panel = Panel::new(TORQUE_HEIGHT, time.clone(), ("Torque (N·m)", y), |plot| {
         shade(plot, &spans);
         if !motor.is_empty() {
-            figures.draw_pushes(plot);
+            figures.shade_pushes(plot);
         }
         plot.grid();
         levels::draw(plot, &levels);
@@ -196,7 +196,11 @@ fn chart(figures: &Figures, window: &Window, label: &str) -> Svg {
                 plot.mark((event.time_s, torque), marker, TORQUE);
             }
         }
-        figures.draw_marks(plot, true);
+        if motor.is_empty() {
+            figures.draw_marks(plot, true);
+        } else {
+            figures.draw_motor_marks(plot);
+        }
     });
     let panel = panel.x_title(titled(!figures.has_object && !feels));
     let mut panels = vec![panel.names(names).right(levels::ROOM)];

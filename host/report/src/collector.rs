@@ -83,14 +83,26 @@ impl Figures {
         plot.moments(&self.marks, named);
     }
 
-    /// Shades and names on a panel of the motor's torque when it was pushed.
-    pub(crate) fn draw_pushes(&self, plot: &mut Plot) {
-        plot.shade(self.pushes.iter().copied(), RANGE);
-        let named = self.pushes.iter().map(|(from, _)| Mark {
-            at: from.max(plot.x().low()),
+    /// Shades on a panel of the motor's torque when it was pushed.
+    pub(crate) fn shade_pushes(&self, plot: &mut Plot) {
+        let (low, high) = (plot.x().low(), plot.x().high());
+        let seen = self
+            .pushes
+            .iter()
+            .filter(|(from, to)| *to >= low && *from <= high);
+        plot.shade(seen.copied(), RANGE);
+    }
+
+    /// As [`draw_marks`](Self::draw_marks), and names the pushes that begin
+    /// there.
+    pub(crate) fn draw_motor_marks(&self, plot: &mut Plot) {
+        let pushes = self.pushes.iter().map(|(from, _)| Mark {
+            at: *from,
             name: "arming: polarity test".to_owned(),
         });
-        plot.moments(&named.collect::<Vec<_>>(), true);
+        let mut marks: Vec<Mark> = pushes.chain(self.marks.iter().cloned()).collect();
+        marks.sort_by(|a, b| a.at.total_cmp(&b.at));
+        plot.moments(&marks, true);
     }
 
     /// How many bins of a [`Course`](crate::course::Course) to draw as one,

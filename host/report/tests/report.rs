@@ -4,7 +4,7 @@
 //! The pages are left in the target's `tmp` directory to be looked at.
 
 mod fixture;
-#[path = "../../plot/tests/markup.rs"]
+#[path = "../../plot/tests/support/markup.rs"]
 mod markup;
 
 use std::cell::RefCell;
@@ -453,7 +453,7 @@ fn what_never_moves_has_no_chart_and_peaks_do_not_hide_the_rest() {
 
 /// A recording of so many seconds: torque, motor, two changes of parameters,
 /// and the push that arms it.
-fn recorded(rows: u32) -> Figures {
+fn recorded(rows: u32, pushed_s: f64) -> Figures {
     let names = ["motor_torque_nm"];
     let columns = plant::columns(Run::columns(true, false), &names);
     let collector = RefCell::new(Collector::new(&setup(&columns, rows, 5e-5)));
@@ -466,7 +466,9 @@ fn recorded(rows: u32) -> Figures {
             name: name.to_owned(),
         });
     }
-    collector.borrow_mut().arming_push(0.0, 0.016);
+    collector
+        .borrow_mut()
+        .arming_push(pushed_s, pushed_s + 0.016);
     let last_s = f64::from(rows - 1) * 5e-5;
     Run::new(Motion::Constant { speed: 1.0 }, last_s, 5e-5).play(
         |row| collector.borrow_mut().row(&plant::row(row, row[6], &names)),
@@ -478,7 +480,7 @@ fn recorded(rows: u32) -> Figures {
 #[test]
 fn every_chart_over_time_says_when_parameters_changed() {
     for rows in [12_001, 200_001] {
-        let page = page("recorded", &text("A recording"), &recorded(rows));
+        let page = page("recorded", &text("A recording"), &recorded(rows, 0.0));
         let over_time = charts(&page).filter(|chart| chart.contains(">Time (s)<"));
         let mut charts = 0;
         for chart in
@@ -511,7 +513,7 @@ fn every_chart_over_time_says_when_parameters_changed() {
 
 #[test]
 fn the_push_that_arms_is_shaded_and_named_on_the_motors_torque() {
-    let page = page("armed", &text("A recording"), &recorded(12_001));
+    let page = page("armed", &text("A recording"), &recorded(12_001, 0.0));
     let named: Vec<String> = charts(&page)
         .filter(|chart| chart.contains(">arming: polarity test</text>"))
         .collect();
@@ -519,4 +521,7 @@ fn the_push_that_arms_is_shaded_and_named_on_the_motors_torque() {
     assert_eq!(named.len(), 2);
     assert!(named.iter().all(|chart| chart.contains("fill=\"#c8d5e0\"")));
     assert!(page.contains("no torque that was rendered, and in no table"));
+    // A zoom on another stretch of time does not show it.
+    let later = html(&text("A recording"), &recorded(200_001, 5.0));
+    assert_eq!(count(&later, ">arming: polarity test</text>"), 1);
 }

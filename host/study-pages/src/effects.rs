@@ -33,9 +33,14 @@ pub fn pictures(study: &EffectsStudy) -> Vec<Picture> {
 }
 
 fn figures(study: &EffectsStudy) -> Vec<Figure> {
-    let stories = [&study.story, &study.build_up_story].into_iter().flatten();
+    let felt = study.hand_torque.as_ref().map(story::hand_torque::story);
+    let stories = felt
+        .into_iter()
+        .chain(story::build_up::story(&study.build_up_torques));
     let charts = influence::figure(study)
         .into_iter()
         .chain(bands::figure(study));
-    charts.chain(stories.map(story::figure)).collect()
+    charts
+        .chain(stories.map(|told| story::figure(&told)))
+        .collect()
 }

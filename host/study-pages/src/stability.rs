@@ -20,18 +20,18 @@ mod picture;
 mod scale;
 
 use crepitus_study::stability::Matrix;
-use crepitus_study::stability::story::Story;
+use crepitus_study::stability::story::Stories;
 
 use crate::{Picture, StudyText, story};
 
 /// The report as one HTML page, complete in itself.
-pub fn html(matrix: &Matrix, stories: &[Story], text: &StudyText) -> String {
+pub fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText) -> String {
     page::html(matrix, stories, text)
 }
 
 /// The matrix, in brief, and every story as files of their own.
-pub fn pictures(matrix: &Matrix, stories: &[Story]) -> Vec<Picture> {
-    let figures: Vec<_> = stories.iter().map(story::figure).collect();
+pub fn pictures(matrix: &Matrix, stories: Option<&Stories>) -> Vec<Picture> {
+    let figures = stories.map(story::figures).unwrap_or_default();
     let mut pictures = vec![picture::picture(matrix)];
     pictures.extend(crepitus_plot::pictures(&figures));
     pictures

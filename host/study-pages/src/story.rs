@@ -1,11 +1,21 @@
-//! A story of the stability study as one chart: its panels one above the
-//! other, each with a heading, on one width.
+//! Stories: pictures of one or several panels, one above the other, each with a
+//! heading, on one width.
+//!
+//! One file a story, with a function that makes it of a study's data.
+
+pub(crate) mod build_up;
+pub(crate) mod hand_torque;
+mod implicit_euler;
+mod parameter_change;
+mod restick_rules;
+mod turn_back;
 
 use crepitus_plot::palette::{CURVES, Ink, LEVEL, TEXT};
 use crepitus_plot::{
-    Anchor, Axis, Chart, Figure, Key, Marker, Panel, Plot, Point, Sign, Stroke, Svg, extent, stack,
+    Anchor, Axis, Chart, Figure, Key, Mark, Marker, Panel, Plot, Point, Sign, Stroke, Svg, extent,
+    stack,
 };
-use crepitus_study::stability::story::{Mark, Panel as Told, Scale, Series, Story};
+use crepitus_study::stability::story::Stories;
 
 /// CSS pixels.
 const WIDTH: f64 = 960.0;
@@ -21,8 +31,120 @@ const NAMES: f64 = 84.0;
 /// and in lightness.
 const INKS: [Ink; 4] = [CURVES[7], CURVES[0], CURVES[2], CURVES[3]];
 
+/// The stories of hard cases as figures of a page, or files.
+pub fn figures(stories: &Stories) -> Vec<Figure> {
+    [
+        implicit_euler::story(&stories.implicit_euler),
+        restick_rules::story(&stories.restick_rules),
+        parameter_change::story(&stories.parameter_change),
+        turn_back::story(&stories.turn_back),
+    ]
+    .iter()
+    .map(figure)
+    .collect()
+}
+
+/// A picture of one or several panels, one above the other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Story {
+    /// Name of its file: `implicit-euler`.
+    pub(crate) name: &'static str,
+    /// What it says, in a line.
+    pub(crate) title: &'static str,
+    /// What one sees, with the numbers.
+    pub(crate) caption: String,
+    /// From top to bottom.
+    pub(crate) panels: Vec<Told>,
+}
+
+/// One pair of axes, and what it shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Told {
+    /// What it shows.
+    pub(crate) heading: String,
+    /// The axis to the right.
+    pub(crate) x: Scale,
+    /// The axis upwards.
+    pub(crate) y: Scale,
+    /// The lines, the first at the back.
+    pub(crate) series: Vec<Series>,
+    /// Horizontal lines with names: limits of y.
+    pub(crate) levels: Vec<Mark>,
+    /// Vertical lines with names: limits of x.
+    pub(crate) bounds: Vec<Mark>,
+}
+
+/// What an axis shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Scale {
+    /// Quantity and unit: `Time (s)`. Panels below each other that share it,
+    /// and the range, share the axis.
+    pub(crate) label: &'static str,
+    /// Whether it is logarithmic.
+    pub(crate) logarithmic: bool,
+    /// From where to where; `None` covers what is there. What is outside in y
+    /// stands at the edge, what is outside in x is left out.
+    pub(crate) range: Option<(f64, f64)>,
+}
+
+/// One line. Lines of one name look the same in all panels of a story.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Series {
+    /// For the legend.
+    pub(crate) name: &'static str,
+    /// Whether each point has a sign of its own: measured one by one.
+    pub(crate) dotted: bool,
+    /// From left to right.
+    pub(crate) points: Vec<(f64, f64)>,
+}
+
+impl Scale {
+    /// A linear axis over what is there.
+    pub(crate) fn linear(label: &'static str) -> Self {
+        Self {
+            label,
+            ..Self::default()
+        }
+    }
+
+    /// A logarithmic axis over what is there.
+    pub(crate) fn logarithmic(label: &'static str) -> Self {
+        Self {
+            logarithmic: true,
+            ..Self::linear(label)
+        }
+    }
+
+    /// The axis from `low` to `high`.
+    #[must_use]
+    pub(crate) fn within(self, low: f64, high: f64) -> Self {
+        Self {
+            range: Some((low, high)),
+            ..self
+        }
+    }
+}
+
+impl Series {
+    /// A line without signs.
+    pub(crate) fn line(name: &'static str, points: Vec<(f64, f64)>) -> Self {
+        Self {
+            name,
+            dotted: false,
+            points,
+        }
+    }
+}
+
+fn mark(at: f64, name: &str) -> Mark {
+    Mark {
+        at,
+        name: name.to_owned(),
+    }
+}
+
 /// The story as a figure of a page, or a file.
-pub fn figure(story: &Story) -> Figure {
+pub(crate) fn figure(story: &Story) -> Figure {
     let names = names(story);
     Figure {
         name: story.name,

@@ -3,7 +3,7 @@
 //!
 //! The pages are left in the target's `tmp` directory to be looked at.
 
-#[path = "../../plot/tests/markup.rs"]
+#[path = "../../plot/tests/support/markup.rs"]
 mod markup;
 
 use std::path::Path;
@@ -13,8 +13,7 @@ use crepitus_study::effects::answer::{Dropped, Subset};
 use crepitus_study::effects::influence::{Difference, Torque};
 use crepitus_study::effects::results::{Added, Outcome, Ran};
 use crepitus_study::effects::variant::Change;
-use crepitus_study::effects::{Answer, EffectsStudy, Row};
-use crepitus_study::stability::story::{Panel, Scale, Series, Story};
+use crepitus_study::effects::{Answer, EffectsStudy, HandTorque, Row, VariantTorque};
 use crepitus_study_pages::effects::{html, pictures};
 use crepitus_study_pages::{Section, StudyText};
 use markup::{
@@ -91,18 +90,17 @@ fn study() -> EffectsStudy {
         timings: 25,
         answer: None,
         build_up: Vec::new(),
-        build_up_story: None,
+        build_up_torques: Vec::new(),
         wall_s: 1.5,
-        story: Some(Story {
-            name: "hand-torque",
-            title: "What the hand feels, with and without",
-            caption: "Made up.".to_owned(),
-            panels: vec![Panel {
-                heading: "without crepitus".to_owned(),
-                x: Scale::linear("Time (s)").within(0.0, 1.0),
-                y: Scale::linear("Torque (N·m)"),
-                series: vec![Series::line("the scene", vec![(0.0, 0.0), (1.0, 0.3)])],
-                ..Panel::default()
+        hand_torque: Some(HandTorque {
+            from_s: 0.0,
+            to_s: 1.0,
+            less_trend: false,
+            scene_nm: vec![(0.0, 0.0), (1.0, 0.3)],
+            variants: vec![VariantTorque {
+                name: "without crepitus".to_owned(),
+                change: Change::Without,
+                torque_nm: vec![(0.0, 0.1), (1.0, 0.1)],
             }],
         }),
     }
@@ -230,7 +228,7 @@ fn the_smallest_set_says_what_was_dropped_and_why() {
 #[test]
 fn odd_numbers_are_drawn_or_left_out() {
     let mut odd = study();
-    odd.story = None;
+    odd.hand_torque = None;
     odd.rows.truncate(2);
     for (rms_nm, ns) in [
         (0.0, 0.0),

@@ -15,7 +15,7 @@
 //! | what came of it | [`verdict`], [`matrix`] |
 //! | an input as data, for a joint elsewhere | [`replay`] |
 //! | the file of it | [`cases_csv`] |
-//! | pictures that explain a case | [`story`] |
+//! | runs that explain a case | [`story`] |
 
 mod books;
 pub mod case;

@@ -1,7 +1,7 @@
 //! The page of the matrix.
 
 use crepitus_study::stability::Matrix;
-use crepitus_study::stability::story::Story;
+use crepitus_study::stability::story::Stories;
 use maud::{Markup, html};
 
 use super::{details, heat_map, look, scale};
@@ -10,7 +10,7 @@ use crepitus_plot::page;
 
 const LAYOUT: &str = include_str!("page.css");
 
-pub(super) fn html(matrix: &Matrix, stories: &[Story], text: &StudyText) -> String {
+pub(super) fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText) -> String {
     let body = html! {
         header {
             p.kicker { "Crepitus · which hard cases hold" }
@@ -21,7 +21,7 @@ pub(super) fn html(matrix: &Matrix, stories: &[Story], text: &StudyText) -> Stri
         main {
             @if matrix.rows.is_empty() { p { "There are no cases." } }
             @else { (how_to_read()) (heat_map::table(matrix)) }
-            @for told in stories { (page::figure(&story::figure(told))) }
+            @for told in stories.map(story::figures).unwrap_or_default() { (page::figure(&told)) }
             (details::cases(matrix))
             (page::tables(&text.tables))
         }

@@ -13,7 +13,7 @@ use crate::cli::StabilityArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::studying::{self, Watch};
 use crepitus_scene::output::Folder;
-use crepitus_study::stability::story::{self, Story};
+use crepitus_study::stability::story::{self, Stories};
 use crepitus_study::stability::{Matrix, matrix};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -45,7 +45,7 @@ pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result
     studying::write(
         folder,
         &out,
-        page::files(&matrix, &stories, &summary, arguments.pictures)?,
+        page::files(&matrix, stories.as_ref(), &summary, arguments.pictures)?,
     )?;
     if as_json {
         print_json(&json!({ "out": out, "summary": summary }))?;
@@ -70,11 +70,13 @@ pub(crate) fn stability(arguments: &StabilityArguments, as_json: bool) -> Result
 
 /// The stories belong to the whole catalogue; beside single cases they come
 /// only where pictures are asked for.
-fn stories(arguments: &StabilityArguments) -> Result<Vec<Story>, Failure> {
+fn stories(arguments: &StabilityArguments) -> Result<Option<Stories>, Failure> {
     if arguments.cases.is_empty() || arguments.pictures.is_some() {
-        story::all().map_err(|e| Failure::Work(format!("a story cannot be computed: {e}")))
+        story::all()
+            .map(Some)
+            .map_err(|e| Failure::Work(format!("a story cannot be computed: {e}")))
     } else {
-        Ok(Vec::new())
+        Ok(None)
     }
 }
 

@@ -3,7 +3,7 @@
 use super::summary::Summary;
 use crate::failure::Failure;
 use crate::pictures::{self, Files, PictureFormat};
-use crepitus_study::stability::story::Story;
+use crepitus_study::stability::story::Stories;
 use crepitus_study::stability::{Matrix, cases_csv};
 use crepitus_study_pages::{Section, StudyText, stability};
 
@@ -11,7 +11,7 @@ use crepitus_study_pages::{Section, StudyText, stability};
 /// of its own if asked for.
 pub(super) fn files(
     matrix: &Matrix,
-    stories: &[Story],
+    stories: Option<&Stories>,
     summary: &Summary,
     format: Option<PictureFormat>,
 ) -> Result<Files, Failure> {
