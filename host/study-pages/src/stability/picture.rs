@@ -11,9 +11,9 @@ use super::look::{self, Look};
 use super::scale::{self, Tone};
 
 /// All in CSS pixels.
-const WIDTH: f64 = 800.0;
+const WIDTH: f64 = 820.0;
 /// Names of cases.
-const NAMES: f64 = 184.0;
+const NAMES: f64 = 204.0;
 /// Between conventions.
 const GAP: f64 = 8.0;
 /// Names of conventions and rungs.
