@@ -236,7 +236,7 @@ mod tests {
         // Too long for this side of its line, and for the whole panel.
         let long = "a name so long that it takes more than half of the panel, and some more";
         let mut plot = self::plot();
-        plot.moments(&[mark(6.0, &long), mark(7.0, &long.repeat(3))], true);
+        plot.moments(&[mark(6.0, long), mark(7.0, &long.repeat(3))], true);
         let out = plot.over.finish();
         assert_eq!(
             (out.matches("<path").count(), out.matches("<text").count()),
@@ -251,7 +251,7 @@ mod tests {
             .0;
         let start: f64 = start.parse().expect("a number");
         assert!(
-            start >= 100.0 && start + Drawing::label_width(&long) <= 900.01,
+            start >= 100.0 && start + Drawing::label_width(long) <= 900.01,
             "{start}"
         );
     }

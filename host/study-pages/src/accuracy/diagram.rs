@@ -61,7 +61,7 @@ pub(crate) fn side_by_side(study: &Study, pair: &Pair, measure: Measure) -> Vec<
         let x = Axis::decades(*cost.start(), *cost.end(), 6);
         let y = Axis::decades(*error.start(), *error.end(), 9);
         let panel = Panel::new(HEIGHT, x, (measure.axis(), y), |plot| {
-            draw(plot, &axes, measure, curves)
+            draw(plot, &axes, measure, curves);
         })
         .x_title(Some(COST))
         .right(right);

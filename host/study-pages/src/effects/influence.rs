@@ -47,7 +47,7 @@ pub(super) fn figure(study: &EffectsStudy) -> Option<Figure> {
     let (x, y, floor) = axes(&rows);
     let lines = Measure::HeldTorque.lines().iter();
     let panel = Panel::new(HEIGHT, x, ("Influence (N·m RMS)", y), |plot| {
-        draw(plot, &rows, &floor)
+        draw(plot, &rows, &floor);
     })
     .x_title(Some("Cost (ns a step, on one core of this machine)"))
     .names(
