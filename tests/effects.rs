@@ -219,6 +219,13 @@ fn the_default_folder_is_named_after_the_scene_and_pictures_come_if_asked_for() 
 }
 
 #[test]
+fn pictures_need_a_scene() {
+    let output = effects(&["--pictures"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("needs a SCENE"));
+}
+
+#[test]
 fn without_a_scene_the_table_of_effects_is_told() {
     let output = effects(&[]);
     assert_eq!(output.status.code(), Some(0));

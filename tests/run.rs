@@ -305,3 +305,62 @@ fn completions_know_the_verbs() {
         assert!(stdout(&output).contains("presets"), "{shell}");
     }
 }
+
+#[test]
+fn pictures_are_svg_or_pdf() {
+    let home = tempfile::tempdir().unwrap();
+    let pictures = |format: &str| {
+        let out = home.path().join(format);
+        let output = crepitus()
+            .args([
+                "run",
+                "fig6-ideal-cycle",
+                "--set",
+                "duration_s=0.2",
+                format,
+                "--out",
+            ])
+            .arg(&out)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        out
+    };
+    let of = |folder: &std::path::Path, kind: &str| -> Vec<String> {
+        let names = names(folder).into_iter();
+        names
+            .filter_map(|name| Some(name.strip_suffix(kind)?.to_owned()))
+            .collect()
+    };
+    let (svg, pdf) = (pictures("--pictures"), pictures("--pictures=pdf"));
+    assert_eq!(of(&svg, ".svg"), of(&pdf, ".pdf"));
+    assert!(of(&pdf, ".svg").is_empty() && of(&svg, ".svg").len() > 3);
+    for name in of(&pdf, ".pdf") {
+        let drawn = fs::read_to_string(svg.join(format!("{name}.svg"))).unwrap();
+        let size = drawn
+            .split_once("viewBox=\"0 0 ")
+            .unwrap()
+            .1
+            .split_once('"')
+            .unwrap()
+            .0;
+        let points: Vec<f64> = size.split(' ').map(|px| number(px) * 0.75).collect();
+        let file = fs::read(pdf.join(format!("{name}.pdf"))).unwrap();
+        assert!(
+            file.starts_with(b"%PDF-") && file.len() > 5000,
+            "{name}: {} bytes",
+            file.len()
+        );
+        let text = String::from_utf8_lossy(&file);
+        let page = format!("/MediaBox [0 0 {} {}]", points[0], points[1]);
+        assert_eq!(text.matches(&page).count(), 1, "{name}: {page}");
+        assert_eq!(text.matches("/Type /Page\n").count(), 1, "{name}");
+    }
+    let refused = run(&["run", "fig6-ideal-cycle", "--pictures=bmp"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        stderr(&refused).contains("expected svg or pdf"),
+        "{}",
+        stderr(&refused)
+    );
+}

@@ -16,6 +16,7 @@
 #![forbid(unsafe_code)]
 
 mod analysis;
+mod arming;
 mod recorder;
 mod recording;
 mod row;
@@ -24,6 +25,7 @@ mod shaft;
 mod sidecar;
 
 pub use analysis::{Analysis, Derived, Object, RecordingSummary, seconds};
+pub use arming::ArmingPushes;
 pub use recorder::{RecordError, Recorder};
 pub use recording::{ReadError, Recording, Rows};
 pub use row::{COLUMNS, Row, RowError};

@@ -152,6 +152,35 @@ impl Sidecar {
         })
     }
 
+    /// When other parameters took effect, s since the first sample, and in a
+    /// few words which.
+    pub fn changes(&self) -> Vec<(f64, String)> {
+        let begin = self.parameters.first().map_or(0, |first| first.first_tick);
+        self.parameters
+            .windows(2)
+            .map(|pair| {
+                let (before, after) = (&pair[0], &pair[1]);
+                let ticks = after.first_tick.saturating_sub(begin);
+                #[expect(clippy::cast_precision_loss, reason = "centuries of ticks")]
+                let at_s = ticks as f64 / f64::from(TICKS_PER_S);
+                let changed: Vec<_> = after
+                    .values
+                    .iter()
+                    .filter(|(name, value)| before.values.get(*name) != Some(value))
+                    .collect();
+                let what = match changed.as_slice() {
+                    [(name, value)] => {
+                        let short = name.split_once('.').map_or(name.as_str(), |(_, key)| key);
+                        format!(": {short} = {value}")
+                    }
+                    [] => String::new(),
+                    several => format!(": {} parameters", several.len()),
+                };
+                (at_s, format!("revision {}{what}", after.revision))
+            })
+            .collect()
+    }
+
     /// The value of a number in the parameters of a revision.
     pub fn number(&self, revision: Revision, name: &str) -> Option<f64> {
         self.value(revision, name).and_then(Value::as_f64)
@@ -183,4 +212,38 @@ pub fn named_values(values: &Values) -> Map<String, Value> {
             (name, value)
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changes_of_parameters_have_a_time_and_a_name() {
+        let identity = Identity::default();
+        let mut sidecar = Sidecar::new("a knee", 0, &identity, None);
+        assert_eq!(sidecar.changes(), []);
+        let mut set = |revision, first_tick, kinetic: f64, stiffness: f64| {
+            let values = json!({ "crepitus.kinetic_torque_nm": kinetic, "crepitus.stiffness_nm_per_rad": stiffness });
+            let Value::Object(values) = values else {
+                return;
+            };
+            sidecar.parameters.push(ParameterSet {
+                revision,
+                first_tick,
+                values,
+            });
+        };
+        set(2, 320, 0.2, 400.0);
+        set(3, 80_320, 0.25, 400.0);
+        set(4, 160_320, 0.2, 900.0);
+        let named = |name: &str| name.to_owned();
+        assert_eq!(
+            sidecar.changes(),
+            [
+                (4.0, named("revision 3: kinetic_torque_nm = 0.25")),
+                (8.0, named("revision 4: 2 parameters"))
+            ]
+        );
+    }
 }

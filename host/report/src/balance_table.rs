@@ -1,10 +1,11 @@
 //! The energy balance of a plant as a table: a term a row, an account a
 //! column.
 
+use crepitus_plot::page::scrolling;
 use maud::{Markup, html};
 
 use crate::balance::{Account, Balance};
-use crate::number::{fixed, scientific};
+use crepitus_plot::number::{fixed, scientific};
 
 /// What the table needs of a style sheet.
 pub(crate) const STYLE: &str = include_str!("balance_table.css");
@@ -25,7 +26,7 @@ pub(crate) fn table(balance: &Balance) -> Option<Markup> {
     Some(html! {
         section.table {
             h2 { "Energy balance of the plant" }
-            div.box tabindex="0" role="group" aria-label="Table" {
+            (scrolling("Table", &html! {
                 table.balance {
                     thead {
                         tr {
@@ -50,7 +51,7 @@ pub(crate) fn table(balance: &Balance) -> Option<Markup> {
                         }
                     }
                 }
-            }
+            }))
             p.caption {
                 (sentence(&accounts)) " What they leave over is numerical error: "
                 (scientific(1e3 * balance.residual_j)) " mJ, "

@@ -1,36 +1,31 @@
 //! Where the energy of a plant came from and where it went, as bars.
 
-use plotters::element::{Rectangle, Text};
-use plotters::style::Color;
-use plotters::style::text_anchor::{HPos, VPos};
+use crepitus_plot::number::rounded;
+use crepitus_plot::palette::{AXIS, CURVES, Ink, OBJECT, TEXT, TORQUE};
+use crepitus_plot::{Anchor, Chart, Drawing, Figure, Key, Sign};
 
-use crate::ReportError;
 use crate::balance::{Account, Balance};
-use crate::canvas::{Area, Fault, px, svg, text_style};
 use crate::collector::Figures;
-use crate::figure::{Chart, Figure, Key, Sign};
-use crate::number::rounded;
-use crate::palette::{AXIS, CURVES, Ink, OBJECT, TEXT, TORQUE};
 
 /// CSS pixels.
-const WIDTH: u32 = 960;
-const HEAD: u32 = 34;
-const ROW: u32 = 27;
-const BAR: u32 = 17;
+const WIDTH: f64 = 960.0;
+const HEAD: f64 = 34.0;
+const ROW: f64 = 27.0;
+const BAR: f64 = 17.0;
 /// Where bars begin, and where the longest ends.
-const LEFT: u32 = 250;
-const RIGHT: u32 = 850;
+const LEFT: f64 = 250.0;
+const RIGHT: f64 = 850.0;
 
 /// Terms below this share of the whole are one bar together.
 const SMALL: f64 = 0.002;
 
-/// What each account is drawn in, with its name in the style sheet.
-fn ink(account: Account) -> (&'static str, Ink) {
+/// What each account is drawn in.
+fn ink(account: Account) -> Ink {
     match account {
-        Account::Given => ("object", OBJECT),
-        Account::Stored => ("green", CURVES[2]),
-        Account::Lost => ("vermillion", CURVES[0]),
-        Account::Rendered => ("torque", TORQUE),
+        Account::Given => OBJECT,
+        Account::Stored => CURVES[2],
+        Account::Lost => CURVES[0],
+        Account::Rendered => TORQUE,
     }
 }
 
@@ -42,29 +37,25 @@ struct Bar {
     account: Option<Account>,
 }
 
-pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
-    let Some(balance) = &figures.balance else {
-        return Ok(None);
-    };
+pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
+    let balance = figures.balance.as_ref()?;
     let (from, to) = (bars(balance, 1.0), bars(balance, -1.0));
     let total: f64 = from.iter().map(|bar| bar.joule).sum();
     if total.is_nan() || total <= 0.0 || to.is_empty() {
-        return Ok(None);
+        return None;
     }
-    let rows = u32::try_from(from.len() + to.len()).unwrap_or(0);
-    let svg = svg(
-        (WIDTH, 2 * HEAD + rows * ROW + 8),
+    let longest = from
+        .iter()
+        .chain(&to)
+        .map(|bar| bar.joule)
+        .fold(0.0, f64::max);
+    let mut drawing = Drawing::default();
+    let next = group(&mut drawing, 0.0, "It came from", &from, longest);
+    let end = group(&mut drawing, next, "It went to", &to, longest);
+    let svg = drawing.svg(
+        (WIDTH, end + 8.0),
         "Where the energy came from and where it went",
-        |area| {
-            let longest = from
-                .iter()
-                .chain(&to)
-                .map(|bar| bar.joule)
-                .fold(0.0, f64::max);
-            let next = group(area, 0, "It came from", &from, longest)?;
-            group(area, next, "It went to", &to, longest).map(|_| ())
-        },
-    )?;
+    );
     let small = if from.iter().chain(&to).any(|bar| bar.account.is_none()) {
         format!(
             " Terms of less than {} % are one bar; the table below has all.",
@@ -81,24 +72,20 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
     let legend = Account::ALL
         .into_iter()
         .filter(|account| drawn(*account))
-        .map(|account| Key::new(Sign::Patch(ink(account).0), words(account)))
+        .map(|account| Key::new(Sign::Patch(ink(account)), words(account)))
         .collect();
-    Ok(Some(Figure {
+    Some(Figure {
         name: "energy",
         title: "Where the energy went",
         legend,
-        charts: vec![Chart {
-            heading: None,
-            svg,
-            half: false,
-        }],
+        charts: vec![Chart::full(svg)],
         caption: format!(
             "Over the whole run {} mJ came in and went out. Both halves are on one scale and have \
              the same sum: what a part stored at the start and no longer holds at the end came \
              from it, what was given to the plant and taken back went there.{small}",
             rounded(1e3 * total),
         ),
-    }))
+    })
 }
 
 fn words(account: Account) -> &'static str {
@@ -140,36 +127,20 @@ fn bars(balance: &Balance, direction: f64) -> Vec<Bar> {
 }
 
 /// Draws a heading and its bars, and says where the next heading goes.
-fn group(area: &Area, top: u32, heading: &str, bars: &[Bar], longest: f64) -> Result<u32, Fault> {
-    let text = |x: u32, y: u32, words: String, side| {
-        let style = text_style(TEXT, side, VPos::Center);
-        area.draw(&Text::new(words, (at(x), at(y)), style))
-    };
-    text(4, top + HEAD / 2 + 2, heading.to_owned(), HPos::Left)?;
-    for (i, bar) in (0..).zip(bars) {
-        let y = top + HEAD + i * ROW;
-        let middle = y + ROW / 2;
-        text(LEFT - 10, middle, bar.name.clone(), HPos::Right)?;
-        let ink = bar.account.map_or(AXIS, |account| ink(account).1);
-        let length = bar.joule / longest * f64::from(px(RIGHT - LEFT));
-        // At most the width of the picture.
-        #[allow(clippy::cast_possible_truncation)]
-        let end = at(LEFT) + length.round().max(1.0) as i32;
-        let edge = (ROW - BAR) / 2;
-        area.draw(&Rectangle::new(
-            [(at(LEFT), at(y + edge)), (end, at(y + edge + BAR))],
-            ink.marker().filled(),
-        ))?;
-        let style = text_style(TEXT, HPos::Left, VPos::Center);
+fn group(drawing: &mut Drawing, top: f64, heading: &str, bars: &[Bar], longest: f64) -> f64 {
+    drawing.text((4.0, top + HEAD / 2.0 + 2.0), Anchor::Start, TEXT, heading);
+    let mut y = top + HEAD;
+    for bar in bars {
+        let middle = y + ROW / 2.0;
+        drawing.text((LEFT - 10.0, middle), Anchor::End, TEXT, &bar.name);
+        let end = LEFT + (bar.joule / longest * (RIGHT - LEFT)).max(0.5);
+        let corners = [(LEFT, middle - BAR / 2.0), (end, middle + BAR / 2.0)];
+        drawing.rectangles([corners], bar.account.map_or(AXIS, ink));
         let value = format!("{} mJ", rounded(1e3 * bar.joule));
-        area.draw(&Text::new(value, (end + at(8), at(middle)), style))?;
+        drawing.text((end + 8.0, middle), Anchor::Start, TEXT, &value);
+        y += ROW;
     }
-    let rows = u32::try_from(bars.len()).unwrap_or(0);
-    Ok(top + HEAD + rows * ROW)
-}
-
-fn at(pixels: u32) -> i32 {
-    i32::try_from(px(pixels)).unwrap_or(0)
+    y
 }
 
 #[cfg(test)]

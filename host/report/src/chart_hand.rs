@@ -1,61 +1,45 @@
 //! What the hand feels over the whole run: the torque that a force sensor on
 //! the leg shows, and its fast part.
 
-use crate::ReportError;
-use crate::axis::Axis;
-use crate::canvas::{Area, Drawn, Panel, px, svg};
+use crepitus_plot::number::rounded;
+use crepitus_plot::palette::RANGE;
+use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Sign, stack};
+
 use crate::chart_motion::time_axis;
-use crate::chart_torque::shade;
 use crate::collector::Figures;
 use crate::course::Course;
-use crate::figure::{Chart, Figure, Key, Sign, phase_keys};
 use crate::levels;
-use crate::number::rounded;
+use crate::phases::{self, shade};
 use crate::plant::{LEG, Plant};
 
-const HEIGHT: u32 = 220;
+const HEIGHT: f64 = 220.0;
 /// With the numbers of the time.
-const LAST_HEIGHT: u32 = 260;
+const LAST_HEIGHT: f64 = 260.0;
 
-pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
-    let Some(plant) = figures.plant.as_ref().filter(|p| !p.hand.is_empty()) else {
-        return Ok(None);
-    };
+pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
+    let plant = figures.plant.as_ref().filter(|p| !p.hand.is_empty())?;
     let has_fast = !plant.fast.is_empty() && !plant.fast.is_zero();
-    let height = LAST_HEIGHT + if has_fast { HEIGHT } else { 0 };
-    let svg = svg(
-        (960, height),
-        "Torque at the hand over the whole run",
-        |area| {
-            if has_fast {
-                let (above, below) = area.split_vertically(px(HEIGHT));
-                draw(&above, figures, &plant.hand, false, "Torque (N·m)")?;
-                draw(&below, figures, &plant.fast, true, "Fast part (N·m)")
-            } else {
-                draw(area, figures, &plant.hand, true, "Torque (N·m)")
-            }
-        },
-    )?;
-    let mut legend = vec![Key::new(Sign::Line("green"), "hand torque")];
+    let mut panels = vec![panel(figures, &plant.hand, true, !has_fast, "Torque (N·m)")];
+    if has_fast {
+        panels.push(panel(figures, &plant.fast, false, true, "Fast part (N·m)"));
+    }
+    let svg = stack(960.0, "Torque at the hand over the whole run", panels);
+    let mut legend = vec![Key::new(Sign::Line(LEG), "hand torque")];
     if figures.bins().is_some() {
         legend = vec![
-            Key::new(Sign::Patch("range"), "range"),
-            Key::new(Sign::Line("green"), "mean"),
+            Key::new(Sign::Patch(RANGE), "range"),
+            Key::new(Sign::Line(LEG), "mean"),
         ];
     } else if figures.has_object {
-        legend.extend(phase_keys(figures.envelope.phases()));
+        legend.extend(phases::keys(figures.envelope.phases()));
     }
-    Ok(Some(Figure {
+    Some(Figure {
         name: "hand",
         title: "What the hand feels",
         legend,
-        charts: vec![Chart {
-            heading: None,
-            svg,
-            half: false,
-        }],
+        charts: vec![Chart::full(svg)],
         caption: caption(plant, has_fast),
-    }))
+    })
 }
 
 fn caption(plant: &Plant, has_fast: bool) -> String {
@@ -105,30 +89,33 @@ fn caption(plant: &Plant, has_fast: bool) -> String {
     whole + &fast + &peaks
 }
 
-fn draw(area: &Area, figures: &Figures, course: &Course, last: bool, title: &str) -> Drawn {
-    let points = course.points();
+fn panel<'f>(
+    figures: &'f Figures,
+    course: &'f Course,
+    first: bool,
+    last: bool,
+    title: &'static str,
+) -> Panel<'f> {
     let bins = figures.bins();
+    let window = &figures.whole;
     // That of the torque above, so that the two can be compared.
-    let time = if bins.is_none() && !figures.whole.torque.is_empty() {
-        Axis::linear(figures.whole.start, figures.whole.end, 8)
+    let time = if bins.is_none() && !window.torque.is_empty() {
+        Axis::linear(window.start, window.end, 8)
     } else {
-        time_axis(&points)
+        time_axis(&course.points())
     };
-    let mut plot = Panel {
-        x: time,
-        y: course.axis(5),
-        x_title: last.then_some("Time (s)"),
-        y_title: title,
-        right: levels::ROOM,
-    }
-    .on(area)?;
-    if bins.is_none() {
-        let window = &figures.whole;
-        shade(&mut plot, &window.spans(window.start, window.end))?;
-        plot.grid()?;
-        course.draw(&mut plot, bins, LEG)
-    } else {
-        course.draw(&mut plot, bins, LEG)?;
-        plot.grid()
-    }
+    let height = if last { LAST_HEIGHT } else { HEIGHT };
+    Panel::new(height, time, (title, course.axis(5)), move |plot| {
+        if bins.is_none() {
+            shade(plot, &window.spans(window.start, window.end));
+            plot.grid();
+            course.draw(plot, bins, LEG);
+        } else {
+            course.draw(plot, bins, LEG);
+            plot.grid();
+        }
+        figures.draw_marks(plot, first);
+    })
+    .x_title(last.then_some("Time (s)"))
+    .right(levels::ROOM)
 }

@@ -1,21 +1,16 @@
 //! Angle and speed of the shaft over the whole run, and of leg and hand where
 //! they move on their own.
 
-use crate::ReportError;
-use crate::axis::Axis;
-use crate::canvas::{Area, Drawn, Panel, px, svg};
-use crate::collector::Figures;
-use crate::figure::{Chart, Figure, Key, Sign};
-use crate::number::{count, rounded};
-use crate::palette::{ENCODER, LEVEL, OBJECT, SHAFT};
-use crate::plant::{Follower, LEG};
-use crate::thinned::Point;
+use crepitus_plot::number::{count, rounded};
+use crepitus_plot::palette::{ENCODER, LEVEL, OBJECT, SHAFT};
+use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Plot, Point, Sign, Stroke, stack};
 
-const ANGLE_HEIGHT: u32 = 190;
-const SPEED_HEIGHT: u32 = 235;
-/// Without the numbers of the time.
-const SPEED_HEIGHT_ABOVE: u32 = 190;
-const AHEAD_HEIGHT: u32 = 200;
+use crate::collector::Figures;
+use crate::plant::{Follower, LEG};
+
+const HEIGHT: f64 = 190.0;
+/// With the numbers of the time.
+const FOOT: f64 = 45.0;
 
 /// From rad to degrees, of y.
 pub(crate) fn degrees(points: &[Point]) -> Vec<Point> {
@@ -64,9 +59,9 @@ struct Lines {
     intended: Beside,
 }
 
-pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
+pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
     if figures.angle.is_empty() && figures.omega.is_empty() {
-        return Ok(None);
+        return None;
     }
     let plant = figures.plant.as_ref();
     let lines = Lines {
@@ -77,33 +72,23 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         intended: Beside::of(plant.map(|p| &p.intended)),
     };
     let beside = lines.leg.is_there() || lines.intended.is_there();
-    let (height, label) = if beside {
-        (
-            ANGLE_HEIGHT + SPEED_HEIGHT_ABOVE + AHEAD_HEIGHT,
-            "Angle and speed of shaft and leg over the whole run",
-        )
+    let label = if beside {
+        "Angle and speed of shaft and leg over the whole run"
     } else {
-        (
-            ANGLE_HEIGHT + SPEED_HEIGHT,
-            "Shaft angle and shaft speed over the whole run",
-        )
+        "Shaft angle and shaft speed over the whole run"
     };
-    let svg = svg((960, height), label, |area| draw(area, &lines, beside))?;
+    let svg = stack(960.0, label, panels(figures, &lines, beside));
     let (legend, caption) = words(figures, &lines);
-    Ok(Some(Figure {
+    Some(Figure {
         name: "motion",
         title: "Motion",
         legend,
-        charts: vec![Chart {
-            heading: None,
-            svg,
-            half: false,
-        }],
+        charts: vec![Chart::full(svg)],
         caption,
-    }))
+    })
 }
 
-fn draw(area: &Area, lines: &Lines, beside: bool) -> Drawn {
+fn panels<'f>(figures: &'f Figures, lines: &'f Lines, beside: bool) -> Vec<Panel<'f>> {
     let Lines {
         angle,
         speed,
@@ -111,77 +96,57 @@ fn draw(area: &Area, lines: &Lines, beside: bool) -> Drawn {
         leg,
         intended,
     } = lines;
-    let values = |lines: [&[Point]; 3]| -> Vec<f64> {
-        lines
-            .iter()
-            .flat_map(|line| line.iter().map(|p| p.y))
-            .collect()
+    let axis = |lines: &[&[Point]], also: Option<f64>, ticks| {
+        let values = lines.iter().flat_map(|line| line.iter().map(|p| p.y));
+        Axis::covering(values.chain(also), ticks)
     };
     let time = time_axis(if angle.is_empty() { speed } else { angle });
-    let (above, below) = area.split_vertically(px(ANGLE_HEIGHT));
-    let mut plot = Panel {
-        x: time.clone(),
-        y: Axis::covering(values([angle, &leg.angle, &intended.angle]), 5),
-        x_title: None,
-        y_title: "Angle (°)",
-        right: 16,
-    }
-    .on(&above)?;
-    plot.grid()?;
-    plot.line(angle, OBJECT, 7)?;
-    plot.line(&leg.angle, LEG, 6)?;
-    plot.line(&intended.angle, LEVEL, 6)?;
-
-    let (middle, below) = if beside {
-        let (middle, below) = below.split_vertically(px(SPEED_HEIGHT_ABOVE));
-        (middle, Some(below))
-    } else {
-        (below, None)
-    };
-    let mut speeds = values([speed, encoder, &leg.speed]);
-    speeds.extend(intended.speed.iter().map(|p| p.y));
+    let of_hand = |plot: &mut Plot, line: &[Point]| plot.stroke(line, Stroke::dashed(LEVEL, 1.5));
+    let angles = axis(&[angle, &leg.angle, &intended.angle], None, 5);
+    let mut panels = vec![Panel::new(
+        HEIGHT,
+        time.clone(),
+        ("Angle (°)", angles),
+        move |plot| {
+            plot.grid();
+            plot.line(angle, OBJECT, 1.75);
+            plot.line(&leg.angle, LEG, 1.5);
+            of_hand(plot, &intended.angle);
+            figures.draw_marks(plot, true);
+        },
+    )];
     // With zero: a steady speed should look steady.
-    speeds.push(0.0);
-    let mut plot = Panel {
-        x: time.clone(),
-        y: Axis::covering(speeds, 5),
-        x_title: below.is_none().then_some("Time (s)"),
-        y_title: "Speed (°/s)",
-        right: 16,
+    let speeds = axis(&[speed, encoder, &leg.speed, &intended.speed], Some(0.0), 5);
+    let height = if beside { HEIGHT } else { HEIGHT + FOOT };
+    let speeds = Panel::new(height, time.clone(), ("Speed (°/s)", speeds), move |plot| {
+        plot.grid();
+        // Wider, so that it shows even where it is exact.
+        plot.line(encoder, ENCODER, 3.0);
+        plot.line(speed, SHAFT, 1.5);
+        plot.line(&leg.speed, LEG, 1.5);
+        of_hand(plot, &intended.speed);
+        figures.draw_marks(plot, false);
+    });
+    panels.push(speeds.x_title((!beside).then_some("Time (s)")));
+    if beside {
+        let ahead = axis(&[&leg.ahead, &intended.ahead], Some(0.0), 4);
+        let ahead = Panel::new(HEIGHT + 10.0, time, ("Ahead (°)", ahead), move |plot| {
+            plot.grid();
+            plot.line(&leg.ahead, LEG, 1.5);
+            of_hand(plot, &intended.ahead);
+            figures.draw_marks(plot, false);
+        });
+        panels.push(ahead.x_title(Some("Time (s)")));
     }
-    .on(&middle)?;
-    plot.grid()?;
-    // Wider, so that it shows even where it is exact.
-    plot.line(encoder, ENCODER, 12)?;
-    plot.line(speed, SHAFT, 6)?;
-    plot.line(&leg.speed, LEG, 6)?;
-    plot.line(&intended.speed, LEVEL, 6)?;
-
-    let Some(below) = below else {
-        return Ok(());
-    };
-    let mut plot = Panel {
-        x: time,
-        y: Axis::covering(
-            values([&leg.ahead, &intended.ahead, &[Point::new(0.0, 0.0)]]),
-            4,
-        ),
-        x_title: Some("Time (s)"),
-        y_title: "Ahead (°)",
-        right: 16,
-    }
-    .on(&below)?;
-    plot.grid()?;
-    plot.line(&leg.ahead, LEG, 6)?;
-    plot.line(&intended.ahead, LEVEL, 6)
+    panels
 }
 
 fn words(figures: &Figures, lines: &Lines) -> (Vec<Key>, String) {
     let mut legend = vec![
-        Key::new(Sign::Line("object"), "shaft angle φ"),
-        Key::new(Sign::Line("shaft"), "shaft speed Ω"),
+        Key::new(Sign::Line(OBJECT), "shaft angle φ"),
+        Key::new(Sign::Line(SHAFT), "shaft speed Ω"),
     ];
-    let (low, high) = crate::axis::extent(lines.speed.iter().map(|p| p.y));
+    let (low, high) = crepitus_plot::extent(lines.speed.iter().map(|p| p.y));
     let (low, high) = (rounded(low), rounded(high));
     let of_shaft = if figures.plant.is_some() {
         " of the shaft"
@@ -198,7 +163,7 @@ fn words(figures: &Figures, lines: &Lines) -> (Vec<Key>, String) {
         count(figures.rows),
     );
     if !lines.encoder.is_empty() {
-        legend.push(Key::new(Sign::Line("encoder"), "speed by the encoder"));
+        legend.push(Key::new(Sign::Line(ENCODER), "speed by the encoder"));
         caption.push_str(
             " The wide line behind the true speed is the encoder's estimate: where it \
              strays, that is quantisation and delay.",
@@ -206,18 +171,21 @@ fn words(figures: &Figures, lines: &Lines) -> (Vec<Key>, String) {
     }
     let (leg, intended) = (lines.leg.is_there(), lines.intended.is_there());
     if leg {
-        legend.push(Key::new(Sign::Line("green"), "leg"));
+        legend.push(Key::new(Sign::Line(LEG), "leg"));
         caption.push_str(
             " The shaft is that of the motor, behind the gear; the leg moves on its own as far \
              as gear and cuff give.",
         );
     }
     if intended {
-        legend.push(Key::new(Sign::Line("level"), "intended by the hand"));
+        legend.push(Key::new(Sign::Line(LEVEL), "intended by the hand"));
         caption.push_str(" The dashed line is the motion that the hand drives the leg toward.");
     }
     if leg || intended {
         caption.push_str(" At the bottom: how far each is ahead of the shaft.");
+    }
+    if !figures.marks.is_empty() {
+        caption.push_str(" Dotted lines: from there on other parameters were in force.");
     }
     (legend, caption)
 }

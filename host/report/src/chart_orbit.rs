@@ -3,25 +3,24 @@
 
 use crepitus_model::Phase;
 
-use crate::ReportError;
-use crate::axis::Axis;
-use crate::canvas::{Area, Drawn, Panel, svg};
-use crate::chart_zoom::windows;
+use crepitus_plot::palette::{Ink, OBJECT, SHAFT, TORQUE};
+use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Plot, Point, Sign, stack};
+
+use crate::chart_zoom::{Titled, windows};
 use crate::collector::Figures;
-use crate::figure::{Chart, Figure, Key, Sign, Titled};
 use crate::hysteresis::Range;
 use crate::orbit::Segment;
-use crate::palette::{Ink, OBJECT, SHAFT, TORQUE};
-use crate::thinned::Point;
 
-const HALF: (u32, u32) = (470, 340);
-const FULL: (u32, u32) = (960, 360);
+/// Width and height, CSS pixels.
+const HALF: (f64, f64) = (470.0, 340.0);
+const FULL: (f64, f64) = (960.0, 360.0);
 const X_TITLE: &str = "Shaft angle φ (°)";
+const WHOLE: &str = "The whole run";
 const Y_TITLE: &str = "Object angle θ (mrad)";
 
-pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
+pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
     if !figures.has_object {
-        return Ok(None);
+        return None;
     }
     let mut charts = Vec::new();
     let mut phases = Vec::new();
@@ -35,7 +34,7 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
             continue;
         }
         phases.extend(path.iter().map(|segment| segment.phase));
-        charts.push(chart(title, true, |area| draw_path(area, &path, true))?);
+        charts.push(path_chart(title, true, &path));
     }
     // Next to one other chart; alone or below two it takes the full width.
     let half = charts.len() == 1;
@@ -44,30 +43,26 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         // A few cycles a bin, as in the overview of the torque.
         let cycle = figures.hysteresis.travel() / figures.envelope.breaks().max(1) as f64;
         let both = figures.hysteresis.ranges(3.0 * cycle);
-        charts.push(chart("The whole run".to_owned(), half, |area| {
-            draw_ranges(area, &both, half)
-        })?);
+        charts.push(range_chart(half, &both));
         ranges = Some(both);
     } else {
         let path = figures.whole.orbit.segments(whole.0, whole.1);
         if !path.is_empty() {
             phases.extend(path.iter().map(|segment| segment.phase));
-            charts.push(chart("The whole run".to_owned(), half, |area| {
-                draw_path(area, &path, half)
-            })?);
+            charts.push(path_chart(WHOLE.to_owned(), half, &path));
         }
     }
     if charts.is_empty() {
-        return Ok(None);
+        return None;
     }
     let (legend, caption) = words(&phases, ranges.as_ref());
-    Ok(Some(Figure {
+    Some(Figure {
         name: "theta-phi",
         title: "Imaginary object against shaft",
         legend,
         charts,
         caption,
-    }))
+    })
 }
 
 /// Legend and caption for what was drawn.
@@ -75,19 +70,19 @@ fn words(phases: &[Phase], ranges: Option<&[Vec<Range>; 2]>) -> (Vec<Key>, Strin
     let mut legend = Vec::new();
     let mut parts = Vec::new();
     if phases.contains(&Phase::Stick) {
-        legend.push(Key::new(Sign::Line("torque"), "stick"));
+        legend.push(Key::new(Sign::Line(TORQUE), "stick"));
         parts.push("Where the object sticks, θ and φ grow by the same amount.");
     }
     if phases.iter().any(|phase| *phase != Phase::Stick) {
-        legend.push(Key::new(Sign::Line("object"), "slip"));
+        legend.push(Key::new(Sign::Line(OBJECT), "slip"));
         parts.push("Where it slips, θ swings while the shaft moves on.");
     }
     if let Some([flexing, extending]) = ranges {
         if !flexing.is_empty() {
-            legend.push(Key::new(Sign::Line("object"), "flexing, range"));
+            legend.push(Key::new(Sign::Line(OBJECT), "flexing, range"));
         }
         if !extending.is_empty() {
-            legend.push(Key::new(Sign::Line("shaft"), "extending, range"));
+            legend.push(Key::new(Sign::Line(SHAFT), "extending, range"));
         }
         parts.push(
             "Over the whole run the bands span all that θ did at each angle, for each \
@@ -98,26 +93,16 @@ fn words(phases: &[Phase], ranges: Option<&[Vec<Range>; 2]>) -> (Vec<Key>, Strin
     (legend, parts.join(" "))
 }
 
-fn chart(
-    heading: String,
-    half: bool,
-    draw: impl FnOnce(&Area) -> Drawn,
-) -> Result<Chart, ReportError> {
+fn chart(heading: String, half: bool, points: &[Point], draw: impl FnOnce(&mut Plot)) -> Chart {
+    let (width, height) = if half { HALF } else { FULL };
+    let x = Axis::covering(points.iter().map(|p| p.x), if half { 5 } else { 9 });
+    let y = Axis::covering(points.iter().map(|p| p.y), 5);
+    let panel = Panel::new(height, x, (Y_TITLE, y), draw).x_title(Some(X_TITLE));
     let label = format!("Object angle against shaft angle: {heading}");
-    Ok(Chart {
-        svg: svg(if half { HALF } else { FULL }, &label, draw)?,
+    Chart {
+        svg: stack(width, &label, vec![panel]),
         heading: Some(heading),
         half,
-    })
-}
-
-fn axes(points: &[Point], half: bool) -> Panel<'static> {
-    Panel {
-        x: Axis::covering(points.iter().map(|p| p.x), if half { 5 } else { 9 }),
-        y: Axis::covering(points.iter().map(|p| p.y), 5),
-        x_title: Some(X_TITLE),
-        y_title: Y_TITLE,
-        right: 16,
     }
 }
 
@@ -126,7 +111,7 @@ fn shown(angle: f64, theta: f64) -> Point {
     Point::new(angle.to_degrees(), 1e3 * theta)
 }
 
-fn draw_path(area: &Area, path: &[Segment], half: bool) -> Drawn {
+fn path_chart(heading: String, half: bool, path: &[Segment]) -> Chart {
     let lines: Vec<(Phase, Vec<Point>)> = path
         .iter()
         .map(|segment| {
@@ -138,37 +123,41 @@ fn draw_path(area: &Area, path: &[Segment], half: bool) -> Drawn {
         .iter()
         .flat_map(|(_, points)| points.clone())
         .collect();
-    let mut plot = axes(&all, half).on(area)?;
-    plot.grid()?;
-    for slipping in [true, false] {
-        for (phase, points) in &lines {
-            if (*phase != Phase::Stick) == slipping {
-                let (ink, width) = if slipping { (OBJECT, 6) } else { (TORQUE, 10) };
-                plot.line(points, ink, width)?;
+    chart(heading, half, &all, |plot| {
+        plot.grid();
+        for slipping in [true, false] {
+            let (ink, width) = if slipping {
+                (OBJECT, 1.5)
+            } else {
+                (TORQUE, 2.5)
+            };
+            for (phase, points) in &lines {
+                if (*phase != Phase::Stick) == slipping {
+                    plot.line(points, ink, width);
+                }
             }
         }
-    }
-    Ok(())
+    })
 }
 
-fn draw_ranges(area: &Area, [flexing, extending]: &[Vec<Range>; 2], half: bool) -> Drawn {
+fn range_chart(half: bool, [flexing, extending]: &[Vec<Range>; 2]) -> Chart {
     let edge = |ranges: &[Range], pick: fn(&Range) -> f64| -> Vec<Point> {
         ranges.iter().map(|r| shown(r.angle, pick(r))).collect()
     };
-    let mut all = Vec::new();
-    for ranges in [flexing, extending] {
-        all.extend(edge(ranges, |r| r.low));
-        all.extend(edge(ranges, |r| r.high));
-    }
-    let mut plot = axes(&all, half).on(area)?;
-    plot.grid()?;
-    let inks: [(&[Range], Ink); 2] = [(flexing, OBJECT), (extending, SHAFT)];
-    for (ranges, ink) in inks {
-        plot.veil(&edge(ranges, |r| r.low), &edge(ranges, |r| r.high), ink)?;
-    }
-    for (ranges, ink) in inks {
-        plot.line(&edge(ranges, |r| r.low), ink, 6)?;
-        plot.line(&edge(ranges, |r| r.high), ink, 6)?;
-    }
-    Ok(())
+    let edges: [(Ink, Vec<Point>, Vec<Point>); 2] = [(OBJECT, flexing), (SHAFT, extending)]
+        .map(|(ink, ranges)| (ink, edge(ranges, |r| r.low), edge(ranges, |r| r.high)));
+    let all: Vec<Point> = edges
+        .iter()
+        .flat_map(|(_, low, high)| [low.clone(), high.clone()].concat())
+        .collect();
+    chart(WHOLE.to_owned(), half, &all, |plot| {
+        plot.grid();
+        for (ink, low, high) in &edges {
+            plot.band(low, high, *ink, 0.25);
+        }
+        for (ink, low, high) in &edges {
+            plot.line(low, *ink, 1.5);
+            plot.line(high, *ink, 1.5);
+        }
+    })
 }

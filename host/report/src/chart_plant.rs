@@ -1,21 +1,20 @@
 //! A small chart for each column of the plant's effects, over the whole run.
 
-use crate::ReportError;
-use crate::canvas::{Panel, svg};
+use crepitus_plot::number::rounded;
+use crepitus_plot::palette::{RANGE, TORQUE};
+use crepitus_plot::{Chart, Figure, Key, Panel, Sign, stack};
+
 use crate::chart_motion::time_axis;
 use crate::collector::Figures;
 use crate::course::Course;
-use crate::figure::{Chart, Figure, Key, Sign};
-use crate::number::rounded;
-use crate::palette::TORQUE;
 use crate::plant::Shown;
 
-const HALF: (u32, u32) = (470, 230);
+/// CSS pixels.
+const WIDTH: f64 = 470.0;
+const HEIGHT: f64 = 230.0;
 
-pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
-    let Some(plant) = &figures.plant else {
-        return Ok(None);
-    };
+pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
+    let plant = figures.plant.as_ref()?;
     let mut charts = Vec::new();
     let mut still = Vec::new();
     for (shown, course) in &plant.columns {
@@ -25,16 +24,16 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         if course.is_zero() {
             still.push(shown.title);
         } else {
-            charts.push(chart(figures, shown, course)?);
+            charts.push(chart(figures, shown, course));
         }
     }
     if charts.is_empty() && still.is_empty() {
-        return Ok(None);
+        return None;
     }
     let legend = match figures.bins() {
         Some(_) if !charts.is_empty() => vec![
-            Key::new(Sign::Patch("range"), "range"),
-            Key::new(Sign::Line("torque"), "mean"),
+            Key::new(Sign::Patch(RANGE), "range"),
+            Key::new(Sign::Line(TORQUE), "mean"),
         ],
         _ => Vec::new(),
     };
@@ -48,38 +47,46 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
     } else {
         format!(" Zero all the time: {}.", still.join("; "))
     };
+    let pushed = if figures.pushes.is_empty() {
+        ""
+    } else {
+        " Arming pushes the motor for 16 ms, to and fro, to see that encoder and motor turn the same \
+         way: no torque that was rendered, and in no table."
+    };
     let caption = format!(
-        "What the effects of the plant do over the whole run, at the joint{of_motor}.{still}"
+        "What the effects of the plant do over the whole run, at the joint{of_motor}.{still}{pushed}"
     );
-    Ok(Some(Figure {
+    Some(Figure {
         name: "effects",
         title: "Effects",
         legend,
         charts,
         caption,
-    }))
+    })
 }
 
-fn chart(figures: &Figures, shown: &Shown, course: &Course) -> Result<Chart, ReportError> {
-    let svg = svg(HALF, shown.title, |area| {
-        let mut plot = Panel {
-            x: time_axis(&course.points()),
-            y: course.axis(4),
-            x_title: Some("Time (s)"),
-            y_title: shown.axis,
-            right: 16,
+fn chart(figures: &Figures, shown: &Shown, course: &Course) -> Chart {
+    let time = time_axis(&course.points());
+    let panel = Panel::new(HEIGHT, time, (shown.axis, course.axis(4)), |plot| {
+        if shown.has_pushes {
+            figures.shade_pushes(plot);
         }
-        .on(area)?;
-        course.draw(&mut plot, figures.bins(), TORQUE)?;
-        plot.grid()
-    })?;
+        course.draw(plot, figures.bins(), TORQUE);
+        plot.grid();
+        if shown.has_pushes {
+            figures.draw_motor_marks(plot);
+        } else {
+            figures.draw_marks(plot, true);
+        }
+    });
+    let svg = stack(WIDTH, shown.title, vec![panel.x_title(Some("Time (s)"))]);
     let heading = match course.shown().beyond {
         Some(beyond) => format!("{}; up to {} beyond the axis", shown.title, rounded(beyond)),
         None => shown.title.to_owned(),
     };
-    Ok(Chart {
+    Chart {
         heading: Some(heading),
         svg,
         half: true,
-    })
+    }
 }

@@ -1,22 +1,18 @@
 //! The amplitude spectrum of the torque, and of that at the hand.
 
-use plotters::element::Text;
-use plotters::style::text_anchor::{HPos, VPos};
+use crepitus_plot::number::{count, rounded};
+use crepitus_plot::palette::{BAND, Ink, TEXT, TORQUE};
+use crepitus_plot::{
+    Anchor, Axis, Chart, Figure, Key, Panel, Plot, Point, Sign, Svg, extent, stack,
+};
 
-use crate::ReportError;
-use crate::axis::{Axis, extent};
-use crate::canvas::{Area, Drawn, Fault, Panel, px, svg, text_style};
 use crate::collector::Figures;
-use crate::figure::{Chart, Figure, Key, Sign};
-use crate::number::{count, rounded};
-use crate::palette::{BAND, Ink, TEXT, TORQUE};
 use crate::plant::LEG;
 use crate::spectrum::{Spectrum, Welch};
-use crate::thinned::Point;
 
 /// Room above the plot, CSS pixels: at its foot, and for a row of numbers.
-const STRIP: u32 = 4;
-const STRIP_ROW: u32 = 22;
+const STRIP: f64 = 4.0;
+const STRIP_ROW: f64 = 22.0;
 
 const LOWEST_HZ: f64 = 0.5;
 const HIGHEST_HZ: f64 = 500.0;
@@ -37,23 +33,16 @@ const HAND: &str = "hand";
 struct Curve<'s> {
     name: &'static str,
     ink: Ink,
-    /// Of the ink, in the style sheet.
-    class: &'static str,
     spectrum: &'s Spectrum,
     /// Amplitudes in mN·m at the frequencies that are shown.
     points: Vec<Point>,
 }
 
 impl<'s> Curve<'s> {
-    fn new(
-        name: &'static str,
-        (class, ink): (&'static str, Ink),
-        spectrum: Option<&'s Spectrum>,
-    ) -> Option<Self> {
+    fn new(name: &'static str, ink: Ink, spectrum: Option<&'s Spectrum>) -> Option<Self> {
         spectrum.map(|spectrum| Self {
             name,
             ink,
-            class,
             spectrum,
             points: spectrum
                 .points
@@ -69,10 +58,10 @@ impl<'s> Curve<'s> {
     }
 }
 
-pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
+pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
     let hand = figures.plant.as_ref().filter(|p| !p.hand.is_empty());
     if !(figures.has_torque || hand.is_some()) || figures.rows == 0 {
-        return Ok(None);
+        return None;
     }
     let title = match (figures.has_torque, hand) {
         (true, Some(_)) => "Spectra of the torques",
@@ -80,21 +69,17 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         (false, _) => "Spectrum of the hand torque",
     };
     let nothing = |caption: String| {
-        Ok(Some(Figure {
+        Some(Figure {
             name: "spectrum",
             title,
             legend: Vec::new(),
             charts: Vec::new(),
             caption,
-        }))
+        })
     };
     let mut curves: Vec<Curve> = [
-        Curve::new("model", ("torque", TORQUE), figures.spectrum.as_ref()),
-        Curve::new(
-            HAND,
-            ("green", LEG),
-            hand.and_then(|p| p.hand_spectrum.as_ref()),
-        ),
+        Curve::new("model", TORQUE, figures.spectrum.as_ref()),
+        Curve::new(HAND, LEG, hand.and_then(|p| p.hand_spectrum.as_ref())),
     ]
     .into_iter()
     .flatten()
@@ -111,42 +96,22 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
     if curves.is_empty() {
         return nothing("Not drawn: the torque does not vibrate.".to_owned());
     }
-    let strip = if hand.is_some() {
-        STRIP + u32::try_from(curves.len()).unwrap_or(0) * STRIP_ROW
-    } else {
-        0
-    };
-    let svg = svg(
-        (960, 340 + strip),
-        "Amplitude of the torque against frequency",
-        |area| {
-            let (above, below) = area.split_vertically(px(strip));
-            let centres = draw(&below, &curves)?;
-            if strip > 0 {
-                draw_strip(&above, &curves, &centres)?;
-            }
-            Ok(())
-        },
-    )?;
+    let svg = chart(&curves, hand.is_some());
     let legend = if hand.is_some() {
         curves
             .iter()
-            .map(|curve| Key::new(Sign::Line(curve.class), curve.name))
+            .map(|curve| Key::new(Sign::Line(curve.ink), curve.name))
             .collect()
     } else {
         Vec::new()
     };
-    Ok(Some(Figure {
+    Some(Figure {
         name: "spectrum",
         title,
         legend,
-        charts: vec![Chart {
-            heading: None,
-            svg,
-            half: false,
-        }],
+        charts: vec![Chart::full(svg)],
         caption: caption(&curves, &method, (figures.has_torque, hand.is_some())),
-    }))
+    })
 }
 
 /// What makes a peak a line: it is so many times as high as the lowest point
@@ -235,9 +200,8 @@ fn caption(curves: &[Curve], method: &str, (model, names): (bool, bool)) -> Stri
     )
 }
 
-/// Draws the curves, and says where the middles of the bands are, in grid
-/// lines; none for a band beyond the axis.
-fn draw(area: &Area, curves: &[Curve]) -> Result<[Option<i32>; 3], Fault> {
+/// The curves; with the root mean square of each band above it, if wanted.
+fn chart(curves: &[Curve], with_numbers: bool) -> Svg {
     let points = || curves.iter().flat_map(|curve| &curve.points);
     let (low, high) = extent(points().map(|p| p.y));
     let top = 10_f64.powf(high.log10().ceil());
@@ -260,59 +224,59 @@ fn draw(area: &Area, curves: &[Curve]) -> Result<[Option<i32>; 3], Fault> {
         highest
     };
     let (from, to) = (LOWEST_HZ.max(lowest.min(1.0)), to.max(10.0));
-    let mut plot = Panel {
-        x: Axis::logarithmic(from, to, &FREQUENCIES),
-        y: Axis::logarithmic(bottom, top, &decades),
-        x_title: Some("Frequency (Hz)"),
-        y_title: "Amplitude (mN·m)",
-        right: 24,
-    }
-    .on(area)?;
-    let style = text_style(TEXT, HPos::Center, VPos::Top);
-    for (low, high, _, shaded) in BANDS {
-        if shaded && low < to {
-            plot.shade(low, high, BAND)?;
+    let strip = if with_numbers {
+        STRIP + STRIP_ROW * curves.len() as f64
+    } else {
+        0.0
+    };
+    let x = Axis::logarithmic(from, to, &FREQUENCIES);
+    let y = Axis::logarithmic(bottom, top, &decades);
+    let panel = Panel::new(340.0, x, ("Amplitude (mN·m)", y), |plot| {
+        let shaded = BANDS
+            .into_iter()
+            .filter(|(low, .., shaded)| *shaded && *low < to);
+        plot.shade(shaded.map(|(low, high, ..)| (low, high)), BAND);
+        plot.grid();
+        for curve in curves {
+            plot.line(&curve.points, curve.ink, 1.25);
         }
-    }
-    plot.grid()?;
-    for curve in curves {
-        plot.line(&curve.points, curve.ink, 5)?;
-    }
-    let mut centres = [None; 3];
-    for ((low, high, name, _), centre) in BANDS.into_iter().zip(&mut centres) {
-        if low < to {
-            let middle = (low * high.min(to)).sqrt();
-            plot.text((middle, top), (0, 16), name, &style)?;
-            *centre = Some(plot.at((middle, top)).0);
-        }
-    }
-    Ok(centres)
+        names(plot, if with_numbers { curves } else { &[] }, to);
+    });
+    let panel = panel
+        .x_title(Some("Frequency (Hz)"))
+        .head(strip, None)
+        .right(24.0);
+    stack(
+        960.0,
+        "Amplitude of the torque against frequency",
+        vec![panel],
+    )
 }
 
-/// The root mean square of each band above its middle, a curve a row.
-fn draw_strip(area: &Area, curves: &[Curve], centres: &[Option<i32>; 3]) -> Drawn {
-    let write = |x: i32, row: u32, words: String, ink: Ink, side: HPos| {
-        let y = px(STRIP_ROW * row + STRIP_ROW / 2 + 4);
-        let style = text_style(ink, side, VPos::Center);
-        area.draw(&Text::new(words, (x, i32::try_from(y).unwrap_or(0)), style))
-    };
-    for (row, curve) in (0..).zip(curves) {
+/// The name of each band, and in rows above it the root mean square of each
+/// curve in it.
+fn names(plot: &mut Plot, curves: &[Curve], to: f64) {
+    let frame = plot.frame();
+    let height =
+        |row: usize| frame.top - STRIP - 10.0 - STRIP_ROW * ((curves.len() - row) as f64 - 0.5);
+    for (row, curve) in curves.iter().enumerate() {
         let name = format!("{}, RMS in the band (mN·m)", curve.name);
-        write(
-            i32::try_from(px(78)).unwrap_or(0),
-            row,
-            name,
+        plot.over.text(
+            (frame.left + 4.0, height(row)),
+            Anchor::Start,
             curve.ink,
-            HPos::Left,
-        )?;
-        for ((low, high, ..), centre) in BANDS.into_iter().zip(centres) {
-            if let Some(x) = centre {
-                let rms = rounded(1e3 * curve.spectrum.rms(low, high));
-                write(*x, row, rms, curve.ink, HPos::Center)?;
-            }
+            &name,
+        );
+    }
+    for (low, high, name, _) in BANDS.into_iter().filter(|(low, ..)| *low < to) {
+        let (x, top) = plot.at(((low * high.min(to)).sqrt(), plot.y().high()));
+        plot.over.text((x, top + 12.0), Anchor::Middle, TEXT, name);
+        for (row, curve) in curves.iter().enumerate() {
+            let rms = rounded(1e3 * curve.spectrum.rms(low, high));
+            plot.over
+                .text((x, height(row)), Anchor::Middle, curve.ink, &rms);
         }
     }
-    Ok(())
 }
 
 #[cfg(test)]

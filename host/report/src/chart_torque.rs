@@ -4,44 +4,23 @@
 //! be a solid block: there the chart shows the range that the torque covers,
 //! its mean, and the share of time that each phase takes.
 
-use crepitus_model::{Phase, Sense};
+use crepitus_plot::number::{count, rounded};
+use crepitus_plot::palette::{RANGE, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, TORQUE};
+use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Plot, Point, Sign, extent, stack};
 
-use crate::ReportError;
-use crate::axis::{Axis, extent};
-use crate::canvas::{Area, Drawn, Panel, Plot, px, svg};
 use crate::chart_motion::time_axis;
 use crate::collector::Figures;
 use crate::envelope::Bin;
-use crate::figure::{Chart, Figure, Key, Sign, phase_keys};
 use crate::levels;
-use crate::number::{count, rounded};
-use crate::palette::{Ink, RANGE, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, TORQUE};
-use crate::thinned::Point;
-use crate::window::Span;
+use crate::phases::{self, shade};
 
-const HEIGHT: u32 = 330;
-const RANGE_HEIGHT: u32 = 270;
-const SHARE_HEIGHT: u32 = 120;
+const HEIGHT: f64 = 330.0;
+const RANGE_HEIGHT: f64 = 270.0;
+const SHARE_HEIGHT: f64 = 120.0;
 
-pub(crate) fn phase_ink(phase: Phase) -> Ink {
-    match phase {
-        Phase::Stick => STICK,
-        Phase::Slip(Sense::Positive) => SLIP_POSITIVE,
-        Phase::Slip(Sense::Negative) => SLIP_NEGATIVE,
-    }
-}
-
-/// Shades the phases over the full height of a panel.
-pub(crate) fn shade(plot: &mut Plot, spans: &[Span]) -> Drawn {
-    for span in spans {
-        plot.shade(span.from, span.to, phase_ink(span.phase))?;
-    }
-    Ok(())
-}
-
-pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
+pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
     if figures.whole.torque.is_empty() {
-        return Ok(None);
+        return None;
     }
     let torque = figures.whole.torque.points();
     let (low, high) = extent(torque.iter().map(|p| p.y));
@@ -58,14 +37,12 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         }
     );
     let label = "Torque of the joint over the whole run";
-    let (svg, mut legend, caption) = if figures.whole.overflowed() {
+    let (panels, mut legend, caption) = if figures.whole.overflowed() {
         (
-            svg((960, RANGE_HEIGHT + SHARE_HEIGHT), label, |area| {
-                draw_range(area, figures, &torque)
-            })?,
+            range(figures, &torque),
             vec![
-                Key::new(Sign::Patch("range"), "range of the torque"),
-                Key::new(Sign::Line("torque"), "mean torque"),
+                Key::new(Sign::Patch(RANGE), "range of the torque"),
+                Key::new(Sign::Line(TORQUE), "mean torque"),
             ],
             "The torque of the joint; positive torque opposes flexion. There are too \
              many cycles to draw each: the band spans the lowest and the highest torque of \
@@ -74,19 +51,17 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         )
     } else {
         (
-            svg((960, HEIGHT), label, |area| {
-                draw_line(area, figures, &torque)
-            })?,
-            vec![Key::new(Sign::Line("torque"), "torque")],
+            vec![line(figures, &torque)],
+            vec![Key::new(Sign::Line(TORQUE), "torque")],
             "The torque of the joint; positive torque opposes flexion. The background \
              shows the phase of the imaginary object: where it sticks the torque rises with \
              the angle like that of a spring, where it slips the torque stays at Tk.",
         )
     };
     if figures.has_object {
-        legend.extend(phase_keys(figures.envelope.phases()));
+        legend.extend(phases::keys(figures.envelope.phases()));
     }
-    Ok(Some(Figure {
+    Some(Figure {
         name: "torque",
         title: if figures.plant.is_some() {
             "Torque of the model"
@@ -94,33 +69,31 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
             "Torque"
         },
         legend,
-        charts: vec![Chart {
-            heading: None,
-            svg,
-            half: false,
-        }],
+        charts: vec![Chart::full(stack(960.0, label, panels))],
         caption: format!("{caption} {numbers}"),
-    }))
+    })
 }
 
-fn draw_line(area: &Area, figures: &Figures, torque: &[Point]) -> Drawn {
+fn line<'f>(figures: &'f Figures, torque: &'f [Point]) -> Panel<'f> {
     let window = &figures.whole;
     let levels = levels::levels_in(figures.levels, torque);
-    let mut plot = Panel {
-        x: Axis::linear(window.start, window.end, 8),
-        y: levels::torque_axis(torque, &levels),
-        x_title: Some("Time (s)"),
-        y_title: "Torque (N·m)",
-        right: levels::ROOM,
-    }
-    .on(area)?;
-    shade(&mut plot, &window.spans(window.start, window.end))?;
-    plot.grid()?;
-    levels::draw(&mut plot, &levels, HEIGHT)?;
-    plot.line(torque, TORQUE, 6)
+    let y = levels::torque_axis(torque, &levels);
+    let names = levels::names(&y, &levels, HEIGHT);
+    let time = Axis::linear(window.start, window.end, 8);
+    let panel = Panel::new(HEIGHT, time, ("Torque (N·m)", y), move |plot| {
+        shade(plot, &window.spans(window.start, window.end));
+        plot.grid();
+        levels::draw(plot, &levels);
+        plot.line(torque, TORQUE, 1.5);
+        figures.draw_marks(plot, true);
+    });
+    panel
+        .x_title(Some("Time (s)"))
+        .names(names)
+        .right(levels::ROOM)
 }
 
-fn draw_range(area: &Area, figures: &Figures, torque: &[Point]) -> Drawn {
+fn range<'f>(figures: &'f Figures, torque: &[Point]) -> Vec<Panel<'f>> {
     let bins = figures.envelope.cycle_bins();
     // Two points a bin: steps, since extremes belong to the whole bin.
     let edge = |pick: fn(&Bin) -> f64| -> Vec<Point> {
@@ -136,34 +109,39 @@ fn draw_range(area: &Area, figures: &Figures, torque: &[Point]) -> Drawn {
         .collect();
     let time = time_axis(torque);
     let levels = levels::levels_in(figures.levels, torque);
-    let (above, below) = area.split_vertically(px(RANGE_HEIGHT));
-    let mut plot = Panel {
-        x: time.clone(),
-        y: levels::torque_axis(torque, &levels),
-        x_title: None,
-        y_title: "Torque (N·m)",
-        right: levels::ROOM,
-    }
-    .on(&above)?;
-    plot.band(&edge(|bin| bin.low), &edge(|bin| bin.high), RANGE)?;
-    plot.grid()?;
-    levels::draw(&mut plot, &levels, RANGE_HEIGHT)?;
-    plot.line(&mean, TORQUE, 6)?;
-
-    let mut plot = Panel {
-        x: time,
-        y: Axis::linear(0.0, 100.0, 2),
-        x_title: Some("Time (s)"),
-        y_title: "Time (%)",
-        right: levels::ROOM,
-    }
-    .on(&below)?;
-    draw_shares(&mut plot, &bins)?;
-    plot.grid()
+    let y = levels::torque_axis(torque, &levels);
+    let names = levels::names(&y, &levels, RANGE_HEIGHT);
+    let (low, high) = (edge(|bin| bin.low), edge(|bin| bin.high));
+    let above = Panel::new(
+        RANGE_HEIGHT,
+        time.clone(),
+        ("Torque (N·m)", y),
+        move |plot| {
+            plot.band(&low, &high, RANGE, 1.0);
+            plot.grid();
+            levels::draw(plot, &levels);
+            plot.line(&mean, TORQUE, 1.5);
+            figures.draw_marks(plot, true);
+        },
+    );
+    let below = Panel::new(
+        SHARE_HEIGHT,
+        time,
+        ("Time (%)", Axis::linear(0.0, 100.0, 2)),
+        move |plot| {
+            draw_shares(plot, &bins);
+            plot.grid();
+            figures.draw_marks(plot, false);
+        },
+    );
+    vec![
+        above.names(names).right(levels::ROOM),
+        below.x_title(Some("Time (s)")),
+    ]
 }
 
 /// Stick at the bottom, the slips above it.
-fn draw_shares(plot: &mut Plot, bins: &[Bin]) -> Drawn {
+fn draw_shares(plot: &mut Plot, bins: &[Bin]) {
     let mut floor = Vec::new();
     let mut over_stick = Vec::new();
     let mut over_positive = Vec::new();
@@ -179,7 +157,7 @@ fn draw_shares(plot: &mut Plot, bins: &[Bin]) -> Drawn {
             }
         }
     }
-    plot.band(&floor, &over_stick, STICK)?;
-    plot.band(&over_stick, &over_positive, SLIP_POSITIVE)?;
-    plot.band(&over_positive, &ceiling, SLIP_NEGATIVE)
+    plot.band(&floor, &over_stick, STICK, 1.0);
+    plot.band(&over_stick, &over_positive, SLIP_POSITIVE, 1.0);
+    plot.band(&over_positive, &ceiling, SLIP_NEGATIVE, 1.0);
 }

@@ -4,26 +4,29 @@
 
 use crepitus_model::EventKind;
 
-use crate::ReportError;
-use crate::axis::Axis;
-use crate::canvas::{Area, Drawn, Panel, px, svg};
+use crepitus_plot::number::rounded;
+use crepitus_plot::palette::{CURVES, Ink, OBJECT, SHAFT, TORQUE};
+use crepitus_plot::{Axis, Chart, Figure, Key, Marker, Panel, Point, Sign, Svg, stack};
+
 use crate::chart_motion::degrees;
-use crate::chart_torque::shade;
 use crate::collector::Figures;
-use crate::figure::{Chart, Figure, Key, Sign, Titled, phase_keys};
 use crate::levels;
-use crate::number::rounded;
-use crate::palette::{CURVES, Ink, OBJECT, SHAFT, TORQUE};
+use crate::phases::{self, shade};
 use crate::plant::{LEG, Plant};
-use crate::thinned::Point;
 use crate::window::Window;
 
-const TORQUE_HEIGHT: u32 = 290;
-const HAND_HEIGHT: u32 = 150;
-const VELOCITY_HEIGHT: u32 = 235;
+const TORQUE_HEIGHT: f64 = 290.0;
+const HAND_HEIGHT: f64 = 150.0;
+const VELOCITY_HEIGHT: f64 = 235.0;
 
-/// The torque of the motor: `purple` in the style sheet.
+/// The torque of the motor.
 const MOTOR: Ink = CURVES[3];
+
+/// A window with the words that say which one it is.
+pub(crate) struct Titled<'w> {
+    pub(crate) title: String,
+    pub(crate) window: &'w Window,
+}
 
 const MARK_KEYS: [Key; 3] = [
     Key::new(Sign::Mark("▲"), "break"),
@@ -64,23 +67,14 @@ pub(crate) fn windows(figures: &Figures) -> Vec<Titled<'_>> {
     list
 }
 
-pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
+pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
     let windows = windows(figures);
     if windows.is_empty() {
-        return Ok(None);
+        return None;
     }
     let mut charts = Vec::new();
     for Titled { title, window } in &windows {
-        let mut height = TORQUE_HEIGHT;
-        if feels(window) {
-            height += HAND_HEIGHT;
-        }
-        if figures.has_object {
-            height += VELOCITY_HEIGHT;
-        }
-        let svg = svg((960, height), &format!("A few cycles: {title}"), |area| {
-            draw(area, figures, window)
-        })?;
+        let svg = chart(figures, window, &format!("A few cycles: {title}"));
         charts.push(Chart {
             heading: Some(title.clone()),
             svg,
@@ -89,21 +83,21 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
     }
     let happened = figures.onset.is_some();
     let mut legend = if figures.plant.is_some() {
-        vec![Key::new(Sign::Line("torque"), "torque of the model")]
+        vec![Key::new(Sign::Line(TORQUE), "torque of the model")]
     } else {
-        vec![Key::new(Sign::Line("torque"), "torque")]
+        vec![Key::new(Sign::Line(TORQUE), "torque")]
     };
     let any = |is: fn(&Window) -> bool| windows.iter().any(|titled| is(titled.window));
     if any(|window| !window.motor.is_empty()) {
-        legend.push(Key::new(Sign::Line("purple"), "torque of the motor"));
+        legend.push(Key::new(Sign::Line(MOTOR), "torque of the motor"));
     }
     if any(feels) {
-        legend.push(Key::new(Sign::Line("green"), "hand torque, fast part"));
+        legend.push(Key::new(Sign::Line(LEG), "hand torque, fast part"));
     }
     if figures.has_object {
-        legend.push(Key::new(Sign::Line("shaft"), "shaft velocity Ω"));
-        legend.push(Key::new(Sign::Line("object"), "object velocity θ̇"));
-        legend.extend(phase_keys(windows.iter().flat_map(|titled| {
+        legend.push(Key::new(Sign::Line(SHAFT), "shaft velocity Ω"));
+        legend.push(Key::new(Sign::Line(OBJECT), "object velocity θ̇"));
+        legend.extend(phases::keys(windows.iter().flat_map(|titled| {
             let (from, to) = titled.window.view();
             titled.window.spans(from, to).into_iter().map(|s| s.phase)
         })));
@@ -143,7 +137,7 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
              something else strikes.",
         );
     }
-    Ok(Some(Figure {
+    Some(Figure {
         name: "zoom",
         title: if happened {
             "A zoom on a few cycles"
@@ -153,7 +147,7 @@ pub(crate) fn figure(figures: &Figures) -> Result<Option<Figure>, ReportError> {
         legend,
         charts,
         caption,
-    }))
+    })
 }
 
 /// Whether it is known what the hand feels of the cycles.
@@ -169,7 +163,7 @@ fn inside(points: Vec<Point>, (from, to): (f64, f64)) -> Vec<Point> {
         .collect()
 }
 
-fn draw(area: &Area, figures: &Figures, window: &Window) -> Drawn {
+fn chart(figures: &Figures, window: &Window, label: &str) -> Svg {
     let view = window.view();
     let torque = inside(window.torque.points(), view);
     let motor = inside(window.motor.points(), view);
@@ -177,66 +171,65 @@ fn draw(area: &Area, figures: &Figures, window: &Window) -> Drawn {
     let spans = window.spans(view.0, view.1);
     let room = 0.015 * (view.1 - view.0);
     let time = Axis::linear(view.0 - room, view.1 + room, 8);
-    let (above, below) = area.split_vertically(px(TORQUE_HEIGHT));
+    let feels = feels(window);
+    let titled = |last: bool| last.then_some("Time (s)");
 
-    let mut plot = Panel {
-        x: time.clone(),
-        y: levels::torque_axis(&[torque.as_slice(), &motor].concat(), &levels),
-        x_title: (!figures.has_object && !feels(window)).then_some("Time (s)"),
-        y_title: "Torque (N·m)",
-        right: levels::ROOM,
-    }
-    .on(&above)?;
-    shade(&mut plot, &spans)?;
-    plot.grid()?;
-    levels::draw(&mut plot, &levels, TORQUE_HEIGHT)?;
-    plot.line(&motor, MOTOR, 6)?;
-    plot.line(&torque, TORQUE, 7)?;
-    for event in window.events() {
-        // A break is marked where it happens, the others where they lead to.
-        let torque = match event.kind {
-            EventKind::Break => event.torque_before_nm,
-            EventKind::Stick | EventKind::Reverse => event.torque_after_nm,
-        };
-        if torque.is_finite() && (view.0..=view.1).contains(&event.time_s) {
-            plot.mark((event.time_s, torque), event.kind, TORQUE)?;
+    let y = levels::torque_axis(&[torque.as_slice(), &motor].concat(), &levels);
+    let names = levels::names(&y, &levels, TORQUE_HEIGHT);
+    let panel = Panel::new(TORQUE_HEIGHT, time.clone(), ("Torque (N·m)", y), |plot| {
+        shade(plot, &spans);
+        if !motor.is_empty() {
+            figures.shade_pushes(plot);
         }
-    }
-    let below = if feels(window) {
-        let (middle, below) = below.split_vertically(px(HAND_HEIGHT));
+        plot.grid();
+        levels::draw(plot, &levels);
+        plot.line(&motor, MOTOR, 1.5);
+        plot.line(&torque, TORQUE, 1.75);
+        for event in window.events() {
+            // A break is marked where it happens, the others where they lead to.
+            let (marker, torque) = match event.kind {
+                EventKind::Break => (Marker::Triangle, event.torque_before_nm),
+                EventKind::Stick => (Marker::Circle, event.torque_after_nm),
+                EventKind::Reverse => (Marker::Diamond, event.torque_after_nm),
+            };
+            if torque.is_finite() && (view.0..=view.1).contains(&event.time_s) {
+                plot.mark((event.time_s, torque), marker, TORQUE);
+            }
+        }
+        if motor.is_empty() {
+            figures.draw_marks(plot, true);
+        } else {
+            figures.draw_motor_marks(plot);
+        }
+    });
+    let panel = panel.x_title(titled(!figures.has_object && !feels));
+    let mut panels = vec![panel.names(names).right(levels::ROOM)];
+    if feels {
         let fast = inside(window.hand_fast.points(), view);
-        let mut plot = Panel {
-            x: time.clone(),
-            y: Axis::covering(fast.iter().map(|p| p.y), 3),
-            x_title: (!figures.has_object).then_some("Time (s)"),
-            y_title: "Hand (N·m)",
-            right: levels::ROOM,
-        }
-        .on(&middle)?;
-        shade(&mut plot, &spans)?;
-        plot.grid()?;
-        plot.line(&fast, LEG, 6)?;
-        below
-    } else {
-        below
-    };
-    if !figures.has_object {
-        return Ok(());
+        let y = Axis::covering(fast.iter().map(|p| p.y), 3);
+        let spans = &spans;
+        let panel = Panel::new(HAND_HEIGHT, time.clone(), ("Hand (N·m)", y), move |plot| {
+            shade(plot, spans);
+            plot.grid();
+            plot.line(&fast, LEG, 1.5);
+            figures.draw_marks(plot, false);
+        });
+        panels.push(panel.x_title(titled(!figures.has_object)));
     }
-
-    let shaft = degrees(&inside(window.omega.points(), view));
-    let object = degrees(&inside(window.theta_dot.points(), view));
-    let mut plot = Panel {
-        x: time,
-        y: Axis::covering(shaft.iter().chain(&object).map(|p| p.y), 5),
-        x_title: Some("Time (s)"),
-        y_title: "Velocity (°/s)",
-        right: levels::ROOM,
+    if figures.has_object {
+        let shaft = degrees(&inside(window.omega.points(), view));
+        let object = degrees(&inside(window.theta_dot.points(), view));
+        let y = Axis::covering(shaft.iter().chain(&object).map(|p| p.y), 5);
+        let spans = &spans;
+        let panel = Panel::new(VELOCITY_HEIGHT, time, ("Velocity (°/s)", y), move |plot| {
+            shade(plot, spans);
+            plot.grid();
+            // Wider: while the object sticks it covers the shaft.
+            plot.line(&shaft, SHAFT, 4.0);
+            plot.line(&object, OBJECT, 1.5);
+            figures.draw_marks(plot, false);
+        });
+        panels.push(panel.x_title(titled(true)));
     }
-    .on(&below)?;
-    shade(&mut plot, &spans)?;
-    plot.grid()?;
-    // Wider: while the object sticks it covers the shaft.
-    plot.line(&shaft, SHAFT, 16)?;
-    plot.line(&object, OBJECT, 6)
+    stack(960.0, label, panels)
 }

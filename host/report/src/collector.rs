@@ -13,8 +13,9 @@ use crate::fast_part::{FastPart, Seen};
 use crate::hysteresis::Hysteresis;
 use crate::plant::{Plant, PlantCollector};
 use crate::spectrum::{Spectrum, Welch};
-use crate::thinned::Thinned;
 use crate::window::Window;
+use crepitus_plot::palette::RANGE;
+use crepitus_plot::{Mark, Plot, Thinned};
 
 /// Bins of the lines over the whole run: more than a chart has pixels.
 const LINE: usize = 1600;
@@ -39,6 +40,8 @@ pub struct Collector {
     plant: Option<PlantCollector>,
     /// Only where there is a hand.
     fast: Option<FastPart>,
+    marks: Vec<Mark>,
+    pushes: Vec<(f64, f64)>,
 }
 
 /// What is left of a run when it is over: enough to draw it.
@@ -62,12 +65,44 @@ pub struct Figures {
     pub(crate) spectrum: Option<Spectrum>,
     pub(crate) plant: Option<Plant>,
     pub(crate) balance: Option<Balance>,
+    /// When parameters changed.
+    pub(crate) marks: Vec<Mark>,
+    /// When the motor was pushed to arm it, s.
+    pub(crate) pushes: Vec<(f64, f64)>,
 }
 
 impl Figures {
     /// Adds where the energy of the plant came from and went.
     pub fn set_balance(&mut self, balance: Balance) {
         self.balance = Some(balance);
+    }
+
+    /// Draws on a panel over time when parameters changed; the first panel of a
+    /// chart names it.
+    pub(crate) fn draw_marks(&self, plot: &mut Plot, named: bool) {
+        plot.moments(&self.marks, named);
+    }
+
+    /// Shades on a panel of the motor's torque when it was pushed.
+    pub(crate) fn shade_pushes(&self, plot: &mut Plot) {
+        let (low, high) = (plot.x().low(), plot.x().high());
+        let seen = self
+            .pushes
+            .iter()
+            .filter(|(from, to)| *to >= low && *from <= high);
+        plot.shade(seen.copied(), RANGE);
+    }
+
+    /// As [`draw_marks`](Self::draw_marks), and names the pushes that begin
+    /// there.
+    pub(crate) fn draw_motor_marks(&self, plot: &mut Plot) {
+        let pushes = self.pushes.iter().map(|(from, _)| Mark {
+            at: *from,
+            name: "arming: polarity test".to_owned(),
+        });
+        let mut marks: Vec<Mark> = pushes.chain(self.marks.iter().cloned()).collect();
+        marks.sort_by(|a, b| a.at.total_cmp(&b.at));
+        plot.moments(&marks, true);
     }
 
     /// How many bins of a [`Course`](crate::course::Course) to draw as one,
@@ -116,6 +151,8 @@ impl Collector {
                 .flatten(),
             plant,
             fast,
+            marks: Vec::new(),
+            pushes: Vec::new(),
         }
     }
 
@@ -142,6 +179,18 @@ impl Collector {
         } else {
             self.take_row(&sample);
         }
+    }
+
+    /// Marks a moment on every chart over time: parameters changed, for
+    /// example.
+    pub fn mark(&mut self, mark: Mark) {
+        self.marks.push(mark);
+    }
+
+    /// Takes a stretch of time, s, in which arming pushed the motor to test its
+    /// polarity; its torque is none that was rendered.
+    pub fn arming_push(&mut self, from_s: f64, to_s: f64) {
+        self.pushes.push((from_s, to_s));
     }
 
     /// Takes one event.
@@ -219,6 +268,8 @@ impl Collector {
             spectrum: self.welch.and_then(Welch::finish),
             plant: self.plant.map(PlantCollector::finish),
             balance: None,
+            marks: self.marks,
+            pushes: self.pushes,
         }
     }
 }

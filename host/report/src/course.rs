@@ -1,11 +1,9 @@
 //! How a column goes over a whole run: a line; or, where cycles are too many
 //! to draw each, the range that it covers and its mean.
 
-use crate::axis::{Axis, extent};
-use crate::canvas::{Drawn, Plot};
 use crate::envelope::{Bin, Envelope};
-use crate::palette::{Ink, RANGE};
-use crate::thinned::{Point, Thinned};
+use crepitus_plot::palette::{Ink, RANGE};
+use crepitus_plot::{Axis, Plot, Point, Thinned, extent};
 
 /// See the module.
 #[derive(Clone, Debug)]
@@ -111,9 +109,10 @@ impl Course {
     }
 
     /// Draws it: as range and mean of so many bins each, or as a line.
-    pub(crate) fn draw(&self, plot: &mut Plot, bins: Option<usize>, ink: Ink) -> Drawn {
+    pub(crate) fn draw(&self, plot: &mut Plot, bins: Option<usize>, ink: Ink) {
         let Some(bins) = bins else {
-            return plot.line(&self.points(), ink, 6);
+            plot.line(&self.points(), ink, 1.5);
+            return;
         };
         let bins: Vec<Bin> = self
             .envelope
@@ -131,8 +130,8 @@ impl Course {
             .iter()
             .map(|bin| Point::new(bin.middle(), bin.mean()))
             .collect();
-        plot.band(&edge(|bin| bin.low), &edge(|bin| bin.high), RANGE)?;
-        plot.line(&mean, ink, 6)
+        plot.band(&edge(|bin| bin.low), &edge(|bin| bin.high), RANGE, 1.0);
+        plot.line(&mean, ink, 1.5);
     }
 
     #[cfg(test)]

@@ -1,19 +1,15 @@
 //! The torque levels as dashed lines with names at the right edge.
 
-use plotters::style::text_anchor::{HPos, VPos};
+use crepitus_plot::number::rounded;
+use crepitus_plot::{Axis, Plot, Point, extent};
 
-use crate::axis::{Axis, extent};
-use crate::canvas::{Drawn, Plot, px, text_style};
 use crate::channels::TorqueLevels;
-use crate::number::rounded;
-use crate::palette::{LEVEL, TEXT};
-use crate::thinned::Point;
 
 /// Room for the names at the right of a panel, CSS pixels.
-pub(crate) const ROOM: u32 = 112;
+pub(crate) const ROOM: f64 = 112.0;
 
 /// A level that is drawn: signed, with its name.
-type Level = (f64, String);
+pub(crate) type Level = (f64, String);
 
 /// The levels of the senses in which the torque ever was.
 pub(crate) fn levels_in(levels: Option<TorqueLevels>, torque: &[Point]) -> Vec<Level> {
@@ -62,22 +58,25 @@ pub(crate) fn torque_axis(torque: &[Point], levels: &[Level]) -> Axis {
     )
 }
 
-/// Draws the lines, and one label for names that would overlap. `height` is
-/// that of the panel in CSS pixels.
-pub(crate) fn draw(plot: &mut Plot, levels: &[Level], height: u32) -> Drawn {
+/// The dashed lines.
+pub(crate) fn draw(plot: &mut Plot, levels: &[Level]) {
     for (value, _) in levels {
-        plot.across(*value, LEVEL, 5)?;
+        plot.across(*value);
     }
+}
+
+/// Names at the right edge, one for levels whose names would overlap. `height`
+/// is that of the panel in CSS pixels.
+pub(crate) fn names(axis: &Axis, levels: &[Level], height: f64) -> Vec<(f64, String)> {
     let mut sorted: Vec<&Level> = levels.iter().collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let style = text_style(TEXT, HPos::Left, VPos::Center);
-    let edge = plot.x().high();
-    let too_near = 17.0 / f64::from(height);
+    let too_near = 17.0 / height;
+    let mut labels = Vec::new();
     let mut rest = sorted.as_slice();
     while let Some((first, _)) = rest.split_first() {
         let near = rest
             .iter()
-            .take_while(|level| plot.y().place(level.0) - plot.y().place(first.0) < too_near)
+            .take_while(|level| axis.place(level.0) - axis.place(first.0) < too_near)
             .count();
         let (group, after) = rest.split_at(near.max(1));
         rest = after;
@@ -90,14 +89,9 @@ pub(crate) fn draw(plot: &mut Plot, levels: &[Level], height: u32) -> Drawn {
         } else {
             names.join(", ")
         };
-        // Eight pixels to the right of the edge.
-        plot.text((edge, middle), (offset(8), 0), &label, &style)?;
+        labels.push((middle, label));
     }
-    Ok(())
-}
-
-fn offset(pixels: u32) -> i32 {
-    i32::try_from(px(pixels)).unwrap_or(0)
+    labels
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use crepitus_model::Phase;
 use crepitus_scene::trace::EventRecord;
 
 use crate::channels::Sample;
-use crate::thinned::Point;
+use crepitus_plot::Point;
 
 #[derive(Clone, Copy, Debug)]
 struct Stop {

@@ -5,9 +5,9 @@ use crepitus_scene::trace::Column;
 
 use crate::channels::{Channels, Sample, Setup};
 use crate::course::Course;
-use crate::palette::{CURVES, Ink};
 use crate::spectrum::{Spectrum, Welch};
-use crate::thinned::Thinned;
+use crepitus_plot::Thinned;
+use crepitus_plot::palette::{CURVES, Ink};
 
 /// The side of the leg: its motion, and the torque at the hand. `green` in
 /// the style sheet.
@@ -27,6 +27,8 @@ pub(crate) struct Shown {
     pub(crate) of_motor: bool,
     /// Added to the model's torque before it is commanded.
     pub(crate) is_stage: bool,
+    /// Shows the push that arms the motor.
+    pub(crate) has_pushes: bool,
 }
 
 const fn shown(column: &'static str, title: &'static str, axis: &'static str) -> Shown {
@@ -37,6 +39,7 @@ const fn shown(column: &'static str, title: &'static str, axis: &'static str) ->
         scale: 1.0,
         of_motor: false,
         is_stage: false,
+        has_pushes: false,
     }
 }
 
@@ -62,11 +65,14 @@ const SHOWN: [Shown; 9] = [
     stage("shaping_nm", "Bone shaping, added to the model’s torque"),
     of_motor("motor_current_a", "Motor current", "Current (A)"),
     of_motor("motor_voltage_v", "Motor voltage", "Voltage (V)"),
-    shown(
-        "motor_torque_nm",
-        "Motor torque, at the joint",
-        "Torque (N·m)",
-    ),
+    Shown {
+        has_pushes: true,
+        ..shown(
+            "motor_torque_nm",
+            "Motor torque, at the joint",
+            "Torque (N·m)",
+        )
+    },
     shown("gear_friction_nm", "Friction of the gear", "Torque (N·m)"),
     Shown {
         scale: 180.0 / std::f64::consts::PI,

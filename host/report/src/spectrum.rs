@@ -1,5 +1,5 @@
 //! The amplitude spectrum of a torque as points to draw; how it comes about
-//! is in [`crepitus_study::spectrum`].
+//! is in [`crepitus_spectrum`].
 //!
 //! Where there is a plant the torque at the hand holds the weight of a leg,
 //! thousands of times what crepitus vibrates, which would leak from below into
@@ -8,9 +8,9 @@
 //! nothing is left would make a mountain of what leaks down from above: below
 //! [`SLOW_HZ`] the spectrum is that of the torque itself.
 
-use crepitus_study::spectrum;
+use crepitus_spectrum as spectrum;
 
-use crate::thinned::Point;
+use crepitus_plot::Point;
 
 /// What is known of a spectrum at the end of a run.
 #[derive(Clone, Debug)]

@@ -1,14 +1,7 @@
 //! The words of a report, as its author hands them over. All of them are
 //! escaped on the page.
 
-/// One table of the summary.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Section {
-    /// The heading of the table.
-    pub title: String,
-    /// What is reported, and its value with its unit.
-    pub rows: Vec<(String, String)>,
-}
+use crepitus_plot::page::Section;
 
 /// The words of a report.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use crepitus_scene::trace::EventRecord;
 
 use crate::channels::Sample;
 use crate::orbit::Orbit;
-use crate::thinned::Thinned;
+use crepitus_plot::Thinned;
 
 /// A stretch of time in one phase.
 #[derive(Clone, Copy, Debug, PartialEq)]

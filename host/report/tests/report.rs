@@ -4,19 +4,21 @@
 //! The pages are left in the target's `tmp` directory to be looked at.
 
 mod fixture;
-#[path = "fixture/markup.rs"]
+#[path = "../../plot/tests/support/markup.rs"]
 mod markup;
 
 use std::cell::RefCell;
 use std::path::Path;
 
 use crepitus_report::{
-    Account, Balance, Collector, EnergyTerm, Figures, Section, Setup, Text, TorqueLevels, html,
-    pictures,
+    Account, Balance, Collector, EnergyTerm, Figures, Mark, Section, Setup, Text, TorqueLevels,
+    html, pictures,
 };
 use crepitus_scene::trace::Column;
 use fixture::{KINETIC, Motion, Run, STATIC, plant};
-use markup::{assert_balanced, assert_drawn, count};
+use markup::{
+    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, charts, count,
+};
 
 /// A run of this motion, with as many rows as it announces.
 fn collect(motion: Motion, rows: u32, step: f64, encoder: bool) -> Figures {
@@ -84,7 +86,7 @@ fn text(title: &str) -> Text {
 /// Draws, checks what every page must keep to, and leaves the page to be
 /// looked at.
 fn page(name: &str, text: &Text, figures: &Figures) -> String {
-    let page = html(text, figures).expect("drawn");
+    let page = html(text, figures);
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.html"));
     std::fs::write(path, &page).expect("written");
     assert!(page.len() < 500_000, "{name}: {} bytes", page.len());
@@ -92,6 +94,10 @@ fn page(name: &str, text: &Text, figures: &Figures) -> String {
         assert!(!page.contains(forbidden), "{name} contains {forbidden}");
     }
     assert_balanced(&page);
+    assert_fits_a_phone(&page);
+    for chart in charts(&page) {
+        assert!(assert_labels_inside(&chart) > 3);
+    }
     page
 }
 
@@ -350,7 +356,7 @@ fn a_coupled_run_with_all_effects() {
     ] {
         assert!(page.contains(present), "{present}");
     }
-    let pictures = pictures(&figures).expect("drawn");
+    let pictures = pictures(&figures);
     for picture in &pictures {
         assert_drawn(&picture.svg);
     }
@@ -443,4 +449,79 @@ fn what_never_moves_has_no_chart_and_peaks_do_not_hide_the_rest() {
     assert_eq!(count(&page, "<svg "), 4);
     assert!(page.contains("Zero all the time: Bone shaping"));
     assert!(page.contains("Peaks of up to 69"));
+}
+
+/// A recording of so many seconds: torque, motor, two changes of parameters,
+/// and the push that arms it.
+fn recorded(rows: u32, pushed_s: f64) -> Figures {
+    let names = ["motor_torque_nm"];
+    let columns = plant::columns(Run::columns(true, false), &names);
+    let collector = RefCell::new(Collector::new(&setup(&columns, rows, 5e-5)));
+    for (at, name) in [
+        (0.1, "revision 3: kinetic_torque_nm = 0.25"),
+        (0.4, "revision 4: 2 parameters"),
+    ] {
+        collector.borrow_mut().mark(Mark {
+            at,
+            name: name.to_owned(),
+        });
+    }
+    collector
+        .borrow_mut()
+        .arming_push(pushed_s, pushed_s + 0.016);
+    let last_s = f64::from(rows - 1) * 5e-5;
+    Run::new(Motion::Constant { speed: 1.0 }, last_s, 5e-5).play(
+        |row| collector.borrow_mut().row(&plant::row(row, row[6], &names)),
+        |event| collector.borrow_mut().event(event),
+    );
+    collector.into_inner().finish()
+}
+
+#[test]
+fn every_chart_over_time_says_when_parameters_changed() {
+    for rows in [12_001, 200_001] {
+        let page = page("recorded", &text("A recording"), &recorded(rows, 0.0));
+        let over_time = charts(&page).filter(|chart| chart.contains(">Time (s)<"));
+        let mut charts = 0;
+        for chart in
+            over_time.filter(|chart| chart.contains("whole run") || chart.contains("Motor torque"))
+        {
+            charts += 1;
+            // Named once, and a line in each panel.
+            let panels = count(&chart, "rotate(-90");
+            let of_push = usize::from(chart.contains("Motor torque"));
+            assert_eq!(
+                count(&chart, "stroke-dasharray=\"2 3\""),
+                2 * panels + of_push,
+                "{chart:.200}"
+            );
+            assert_eq!(
+                count(&chart, ">revision 3: kinetic_torque_nm = 0.25</text>"),
+                1
+            );
+        }
+        // Motion, torque, motor.
+        assert_eq!(charts, 3, "{rows}");
+    }
+    let page = page(
+        "not-recorded",
+        &text("No change"),
+        &collect(SINE, 12_001, 5e-5, false),
+    );
+    assert_eq!(count(&page, "stroke-dasharray=\"2 3\""), 0);
+}
+
+#[test]
+fn the_push_that_arms_is_shaded_and_named_on_the_motors_torque() {
+    let page = page("armed", &text("A recording"), &recorded(12_001, 0.0));
+    let named: Vec<String> = charts(&page)
+        .filter(|chart| chart.contains(">arming: polarity test</text>"))
+        .collect();
+    // The motor's own chart, and the zoom in which it begins.
+    assert_eq!(named.len(), 2);
+    assert!(named.iter().all(|chart| chart.contains("fill=\"#c8d5e0\"")));
+    assert!(page.contains("no torque that was rendered, and in no table"));
+    // A zoom on another stretch of time does not show it.
+    let later = html(&text("A recording"), &recorded(200_001, 5.0));
+    assert_eq!(count(&later, ">arming: polarity test</text>"), 1);
 }

@@ -8,6 +8,7 @@ mod following;
 mod interrupt;
 mod keys;
 mod line;
+mod pictures;
 mod progress;
 mod results;
 mod safe_text;

@@ -1,14 +1,13 @@
 //! The files that a run, a study or a recording's report leaves.
 
 use crate::failure::Failure;
-use crepitus_report::{Picture, ReportError};
 use crepitus_scene::output::Folder;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 
 /// Names and contents of files.
-pub(crate) type Files = Vec<(String, String)>;
+pub(crate) type Files = Vec<(String, Vec<u8>)>;
 
 /// The folder of the results, not yet in place. Called before the work, so
 /// that a folder without write permission fails early.
@@ -16,25 +15,19 @@ pub(crate) fn folder(out: &Path) -> Result<Folder, Failure> {
     Folder::create(out).map_err(|e| Failure::at(out, "cannot be written", &e))
 }
 
-/// `report.html` and `summary.json`, and each picture as an SVG file.
+/// `report.html` and `summary.json`, and the pictures.
 pub(crate) fn report_files(
-    page: Result<String, ReportError>,
+    page: String,
     summary: &impl Serialize,
-    pictures: Option<Result<Vec<Picture>, ReportError>>,
+    pictures: Files,
 ) -> Result<Files, Failure> {
-    let undrawn = |e: ReportError| Failure::Work(format!("the report cannot be drawn: {e}"));
     let summary = serde_json::to_string_pretty(summary)
         .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
     let mut files = vec![
-        ("report.html".to_owned(), page.map_err(undrawn)?),
-        ("summary.json".to_owned(), summary + "\n"),
+        ("report.html".to_owned(), page.into()),
+        ("summary.json".to_owned(), (summary + "\n").into()),
     ];
-    let pictures = pictures.transpose().map_err(undrawn)?.unwrap_or_default();
-    files.extend(
-        pictures
-            .into_iter()
-            .map(|p| (format!("{}.svg", p.name), p.svg)),
-    );
+    files.extend(pictures);
     Ok(files)
 }
 
@@ -44,7 +37,7 @@ pub(crate) fn write(folder: Folder, out: &Path, files: Files) -> Result<(), Fail
         folder
             .file(&name)
             .and_then(|mut file| {
-                file.write_all(content.as_bytes())?;
+                file.write_all(&content)?;
                 Folder::finish(file)
             })
             .map_err(|e| Failure::at(out, "writing the results", &e))?;

@@ -5,7 +5,7 @@
 //! scene ─────> torque at the hand, tick by tick ─┐
 //! variants ──> torque at the hand ───────────────┴─> influence ─┐
 //! scene and variants in turn ──> time of a step ────────────────┴─> rows ─┬─> effects.csv
-//!                                                                         └─> a story
+//!                                                                         └─> torques
 //! sets of effects, growing ──> the smallest one within a tolerance ─────────> answer
 //! ```
 //!
@@ -42,3 +42,4 @@ pub use refusal::{Refusal, refusal};
 pub use results::{EffectsStudy, Row};
 pub use study::{EffectsError, Plan, run};
 pub use tolerance::Tolerance;
+pub use window::{HandTorque, VariantTorque};

@@ -12,7 +12,6 @@
 //! | influence of each effect on the torque at the hand, and its cost | [`effects`] |
 //! | a motion cut into steps | [`sampling`] |
 //! | the true events, their matching, and the errors | [`true_events`], [`matching`], [`event_errors`] |
-//! | the spectrum of a torque | [`spectrum`] |
 //! | limits parsed from text | [`limits`] |
 //! | progress and cancellation of a study | [`watcher`] |
 
@@ -24,7 +23,6 @@ pub mod limits;
 pub mod matching;
 mod parallel;
 pub mod sampling;
-pub mod spectrum;
 pub mod stability;
 pub mod true_events;
 pub mod watcher;

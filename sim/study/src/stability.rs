@@ -15,7 +15,7 @@
 //! | results | [`verdict`], [`matrix`] |
 //! | an input as data, for a joint elsewhere | [`replay`] |
 //! | the file of results | [`cases_table`] |
-//! | pictures that explain a case | [`story`] |
+//! | runs that explain a case | [`story`] |
 
 pub mod case;
 pub mod cases_table;

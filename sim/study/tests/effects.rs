@@ -146,14 +146,14 @@ fn every_variant_is_what_two_runs_say() {
     assert_eq!(named("motor").added().unwrap().states, 2);
     // The weight of the leg is most of what the hand feels.
     assert_eq!(study.by_influence()[0].effect, "limb");
-    let story = study.story.as_ref().unwrap();
-    assert_eq!(story.panels.len(), 5);
-    for panel in &story.panels {
-        assert_eq!(panel.series[0].points.len(), panel.series[1].points.len());
-        assert_eq!(panel.series[0].points[0].0, panel.series[1].points[0].0);
+    let felt = study.hand_torque.as_ref().unwrap();
+    assert_eq!(felt.variants.len(), 5);
+    for variant in &felt.variants {
+        assert_eq!(variant.torque_nm.len(), felt.scene_nm.len());
+        assert_eq!(variant.torque_nm[0].0, felt.scene_nm[0].0);
     }
     // A slow course that both lines lack drops out of their difference.
-    let [own, other] = [0, 1].map(|line| story.panels[0].series[line].points[100]);
+    let (own, other) = (felt.scene_nm[100], felt.variants[0].torque_nm[100]);
     let at_s = own.0;
     #[expect(
         clippy::cast_possible_truncation,

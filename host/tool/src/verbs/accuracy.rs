@@ -11,6 +11,7 @@ mod target;
 mod words;
 
 use crate::failure::{Failure, print, print_json};
+use crate::pictures::Pictures;
 use crate::results;
 use crate::studying::{self, Watch};
 use clap::Args;
@@ -63,9 +64,8 @@ pub(crate) struct Arguments {
     #[arg(long)]
     target: bool,
 
-    /// Also write each diagram of the report as an SVG file.
-    #[arg(long)]
-    pictures: bool,
+    #[command(flatten)]
+    pictures: Pictures,
 
     /// Which solver is the cheapest that is accurate enough? For example torque=1e-2,interval=5e-4.
     #[arg(long, value_name = "NEED")]
@@ -129,7 +129,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         results::write(
             folder,
             out,
-            page::files(&study, &summary, arguments.pictures)?,
+            page::files(&study, &summary, &arguments.pictures)?,
         )?;
     }
     match &need {

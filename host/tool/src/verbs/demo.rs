@@ -6,6 +6,7 @@ use super::report::{self, in_brief};
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Follower, follow};
 use crate::line::{Line, failure};
+use crate::pictures::Pictures;
 use crate::progress::Progress;
 use crate::shipped;
 use crate::simulated::Simulated;
@@ -39,9 +40,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Also write each figure of the report as an SVG file.
-    #[arg(long)]
-    pictures: bool,
+    #[command(flatten)]
+    pictures: Pictures,
 }
 
 /// The scene of the leg, and the preset of its joint.
@@ -105,7 +105,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     narration.step("examination", &examination_text(&client, &made))?;
 
     let recording = crepitus_recording::Recording::open(&file).map_err(Failure::input)?;
-    let summary = report::write(&recording, &out, arguments.pictures)?;
+    let summary = report::write(&recording, &out, &arguments.pictures)?;
     done(&summary, &out, &client, begun.elapsed(), as_json)
 }
 

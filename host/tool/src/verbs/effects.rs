@@ -10,6 +10,7 @@ mod table;
 
 use crate::cli::key_and_value;
 use crate::failure::{Failure, print, print_json, warn};
+use crate::pictures::Pictures;
 use crate::results;
 use crate::shipped;
 use crate::studying::{Interrupted, Watch};
@@ -55,14 +56,18 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value, requires = "scene")]
     set: Vec<(String, String)>,
 
-    /// Also write each figure of the report as an SVG file.
-    #[arg(long, requires = "scene")]
-    pictures: bool,
+    #[command(flatten)]
+    pictures: Pictures,
 }
 
 /// Lists the effects, or studies those of a scene.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let Some(path) = &arguments.scene else {
+        if arguments.pictures.wanted() {
+            return Err(Failure::input(
+                "--pictures needs a SCENE: a list of effects has no figures",
+            ));
+        }
         return if as_json {
             print_json(&list::values())
         } else {
@@ -77,7 +82,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     results::write(
         folder,
         &out,
-        page::files(&study, &summary, arguments.pictures)?,
+        page::files(&study, &summary, &arguments.pictures)?,
     )?;
     if as_json {
         return print_json(&json!({ "out": out, "summary": summary }));

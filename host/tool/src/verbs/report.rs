@@ -4,13 +4,14 @@ mod tables;
 
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
+use crate::pictures::Pictures;
 use crate::progress::Progress;
 use crate::results::{self, footer, report_files};
 use crate::sections::torque_levels;
 use clap::Args;
 use crepitus_protocol::{Revision, TICK_S};
-use crepitus_recording::{Analysis, Recording, RecordingSummary, Sidecar};
-use crepitus_report::{Collector, Setup, Text, TorqueLevels};
+use crepitus_recording::{Analysis, ArmingPushes, Recording, RecordingSummary, Sidecar};
+use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
 use crepitus_scene::trace::{Column, ColumnKind};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -55,9 +56,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Also write each figure of the report as an SVG file.
-    #[arg(long)]
-    pictures: bool,
+    #[command(flatten)]
+    pictures: Pictures,
 }
 
 /// Reports.
@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .clone()
         .unwrap_or_else(|| arguments.file.with_extension(""));
     interrupt::listen();
-    let summary = write(&recording, &out, arguments.pictures)?;
+    let summary = write(&recording, &out, &arguments.pictures)?;
     if as_json {
         return print_json(&json!({ "out": out, "summary": summary }));
     }
@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 pub(super) fn write(
     recording: &Recording,
     out: &Path,
-    pictures: bool,
+    pictures: &Pictures,
 ) -> Result<RecordingSummary, Failure> {
     let sidecar = recording.sidecar();
     let folder = results::folder(out)?;
@@ -91,6 +91,10 @@ pub(super) fn write(
         levels: levels(sidecar),
     };
     let mut collector = Collector::new(&setup);
+    for (at, name) in sidecar.changes() {
+        collector.mark(Mark { at, name });
+    }
+    let mut pushes = ArmingPushes::default();
     let mut analysis = Analysis::new(sidecar);
     let mut progress = Progress::of_reading();
     for (n, row) in (0_u64..).zip(recording.rows().map_err(Failure::input)?) {
@@ -108,6 +112,9 @@ pub(super) fn write(
         ]);
         if let Some(event) = derived.event {
             collector.event(&event);
+        }
+        if let Some((from_s, to_s)) = pushes.row(&row) {
+            collector.arming_push(from_s, to_s);
         }
         if n.is_multiple_of(PROGRESS_ROWS) {
             #[expect(clippy::cast_precision_loss, reason = "a share")]
@@ -127,7 +134,7 @@ pub(super) fn write(
     };
     let figures = collector.finish();
     let page = crepitus_report::html(&text, &figures);
-    let pictures = pictures.then(|| crepitus_report::pictures(&figures));
+    let pictures = pictures.files(|| crepitus_report::pictures(&figures))?;
     let files = report_files(page, &summary, pictures)?;
     results::write(folder, out, files)?;
     Ok(summary)

@@ -7,6 +7,7 @@ mod watch;
 use crate::cli::key_and_value;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
+use crate::pictures::Pictures;
 use crate::results::{self, footer, report_files};
 use crate::sections::torque_levels;
 use crate::shipped;
@@ -56,9 +57,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value)]
     set: Vec<(String, String)>,
 
-    /// Also write each chart of the report as an SVG file.
-    #[arg(long)]
-    pictures: bool,
+    #[command(flatten)]
+    pictures: Pictures,
 
     /// Write only every Nth row of the trace.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
@@ -143,7 +143,7 @@ fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Summary,
     let page = crepitus_report::html(&text, &figures);
     let pictures = arguments
         .pictures
-        .then(|| crepitus_report::pictures(&figures));
+        .files(|| crepitus_report::pictures(&figures))?;
     let files = report_files(page, &summary, pictures)?;
     results::write(folder, out, files)?;
     Ok(summary)

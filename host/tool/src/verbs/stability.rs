@@ -10,10 +10,11 @@ mod summary;
 mod table;
 
 use crate::failure::{Failure, print, print_json};
+use crate::pictures::Pictures;
 use crate::results;
 use crate::studying::{self, Watch};
 use clap::Args;
-use crepitus_study::stability::story::{self, Story};
+use crepitus_study::stability::story::{self, Stories};
 use crepitus_study::stability::{Matrix, matrix};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -36,7 +37,6 @@ does not, the exit code is 1. With one --case, everything about it is printed.
 
 With --coupled a hand that stops is put to the whole device instead: which stiffness stays quiet \
 with which cuff, lag and friction left in the gear, and what the presets have left.")]
-#[expect(clippy::struct_excessive_bools, reason = "switches of a command line")]
 pub(crate) struct Arguments {
     /// Only this case, by number or name: H05, reversal-in-stick. May be repeated.
     #[arg(long = "case", value_name = "NAME")]
@@ -70,16 +70,15 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Also write the matrix and each picture of the report as SVG files.
-    #[arg(long)]
-    pictures: bool,
+    #[command(flatten)]
+    pictures: Pictures,
 }
 
 /// Runs the cases, writes the files, prints the matrix.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.coupled {
         let out = arguments.out.as_deref().unwrap_or(Path::new("out/coupled"));
-        return coupled::coupled(out, arguments.pictures, as_json);
+        return coupled::coupled(out, &arguments.pictures, as_json);
     }
     let plan = plan::plan(arguments)?;
     if arguments.list {
@@ -100,7 +99,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     results::write(
         folder,
         &out,
-        page::files(&matrix, &stories, &summary, arguments.pictures)?,
+        page::files(&matrix, stories.as_ref(), &summary, &arguments.pictures)?,
     )?;
     if as_json {
         print_json(&json!({ "out": out, "summary": summary }))?;
@@ -123,13 +122,14 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     judge(&matrix)
 }
 
-/// The explanatory pictures: with the whole catalogue, or if `--pictures` is
-/// given.
-fn stories(arguments: &Arguments) -> Result<Vec<Story>, Failure> {
-    if arguments.cases.is_empty() || arguments.pictures {
-        story::all().map_err(|e| Failure::Work(format!("a story cannot be computed: {e}")))
+/// The stories: with the whole catalogue, or if `--pictures` is given.
+fn stories(arguments: &Arguments) -> Result<Option<Stories>, Failure> {
+    if arguments.cases.is_empty() || arguments.pictures.wanted() {
+        story::all()
+            .map(Some)
+            .map_err(|e| Failure::Work(format!("a story cannot be computed: {e}")))
     } else {
-        Ok(Vec::new())
+        Ok(None)
     }
 }
 

@@ -163,7 +163,7 @@ fn cost(times: &mut [f64]) -> Cost {
 }
 
 /// A quantile of sorted numbers, linear between them; NaN if there are none.
-pub(crate) fn quantile(sorted: &[f64], q: f64) -> f64 {
+pub fn quantile(sorted: &[f64], q: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else {
         return f64::NAN;
     };

@@ -6,7 +6,7 @@
 mod signals;
 
 use crate::parallel::{Meter, each};
-use crate::stability::story::{Panel, Scale, Series, Story};
+use crate::stability::story::Line;
 use crate::watcher::Watcher;
 use crepitus_plant::effect::{Effect, Part};
 use crepitus_scene::Scene;
@@ -16,17 +16,25 @@ use signals::Signals;
 /// The shown part at the end of each run, s.
 const SHOWN_S: f64 = 0.2;
 
-/// Names of the two lines of the picture.
-const MODEL: &str = "torque of the model";
-const HAND: &str = "torque at the hand";
-
 /// The joint with one effect after the other.
 #[derive(Clone, Debug)]
 pub struct BuildUp {
     /// The joint with its sensor, then with one more effect each.
     pub rungs: Vec<Rung>,
     /// The torques at the end of each run.
-    pub story: Story,
+    pub torques: Vec<RungTorques>,
+}
+
+/// The torques at the end of one run, without their slow part; N·m, against
+/// time, s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RungTorques {
+    /// What came last; empty for the joint alone.
+    pub added: &'static str,
+    /// Of the model.
+    pub model_nm: Line,
+    /// At the hand.
+    pub hand_nm: Line,
 }
 
 /// One set of effects.
@@ -81,11 +89,16 @@ pub(super) fn build_up<W: Watcher>(
         Signals::of(scene, meter)
     })?;
     let mut rungs = Vec::new();
-    let mut panels = Vec::new();
+    let mut torques = Vec::new();
     for ((added, _), signals) in scenes.iter().zip(signals) {
         let (measured, failure) = match signals {
             Ok(signals) => {
-                panels.push(panel(added, &signals));
+                let (model_nm, hand_nm) = signals.last(SHOWN_S);
+                torques.push(RungTorques {
+                    added,
+                    model_nm,
+                    hand_nm,
+                });
                 (Some(signals.measure()), None)
             }
             Err(failure) => (None, Some(failure)),
@@ -96,17 +109,7 @@ pub(super) fn build_up<W: Watcher>(
             failure,
         });
     }
-    Ok(Some(BuildUp {
-        rungs,
-        story: Story {
-            name: "build-up",
-            title: "From the joint to the hand, one effect at a time",
-            caption: "The end of each run: the model's torque, and what a force sensor between leg and hand shows, \
-                      both without their slow part. Each panel has one effect more than the one above it."
-                .to_owned(),
-            panels,
-        },
-    }))
+    Ok(Some(BuildUp { rungs, torques }))
 }
 
 /// Number of runs.
@@ -130,25 +133,6 @@ fn prefixes(scene: &Scene) -> Vec<(&'static str, Scene)> {
             .map(|(i, e)| (e.name, scene.first(i + 1))),
     );
     prefixes
-}
-
-fn panel(added: &'static str, signals: &Signals) -> Panel {
-    let (model, hand) = signals.last(SHOWN_S);
-    let (from, to) = (
-        model.first().map_or(0.0, |p| p.0),
-        model.last().map_or(1.0, |p| p.0),
-    );
-    Panel {
-        heading: if added.is_empty() {
-            "the joint alone".to_owned()
-        } else {
-            format!("and {added}")
-        },
-        x: Scale::linear("Time (s)").within(from, to),
-        y: Scale::linear("Torque less trend (N·m)").within(-0.32, 0.32),
-        series: vec![Series::line(MODEL, model), Series::line(HAND, hand)],
-        ..Panel::default()
-    }
 }
 
 #[cfg(test)]
@@ -183,7 +167,7 @@ mod tests {
         let built = built(&["crepitus", "encoder", "motor", "drivetrain", "cuff"]).unwrap();
         let added: Vec<_> = built.rungs.iter().map(|r| r.added).collect();
         assert_eq!(added, ["", "motor", "drivetrain", "cuff"]);
-        assert_eq!(built.story.panels.len(), 4);
+        assert_eq!(built.torques.len(), 4);
         let of = |i: usize| built.rungs[i].measured.unwrap();
         // Alone, the hand feels the model's torque.
         assert_eq!(of(0).lag_s, 0.0);

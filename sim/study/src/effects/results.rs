@@ -2,9 +2,10 @@
 
 use super::answer::Answer;
 use super::build_up::Rung;
+use super::build_up::RungTorques;
 use super::influence::Torque;
 use super::variant::Change;
-use crate::stability::story::Story;
+use super::window::HandTorque;
 use crepitus_scene::run::AddedTime;
 use serde::Serialize;
 
@@ -34,13 +35,13 @@ pub struct EffectsStudy {
     pub build_up: Vec<Rung>,
     /// Duration of the study, s.
     pub wall_s: f64,
-    /// The picture of `build_up`.
+    /// The torques of `build_up`.
     #[serde(skip)]
-    pub build_up_story: Option<Story>,
+    pub build_up_torques: Vec<RungTorques>,
     /// The torque at the hand in the window of largest differences: of the
     /// scene, and of the variants that differ most.
     #[serde(skip)]
-    pub story: Option<Story>,
+    pub hand_torque: Option<HandTorque>,
 }
 
 /// The scene or one of its variants.

@@ -8,7 +8,7 @@ use super::refusal::{Refusal, refusal};
 use super::results::{Added, EffectsStudy, Outcome, Ran, Row};
 use super::tolerance::Tolerance;
 use super::variant::{Change, Variant, states, variants};
-use super::window::{Candidate, Profile, SHOWN, story};
+use super::window::{Candidate, Profile, SHOWN, shown_torques};
 use crate::parallel::{Meter, each};
 use crate::watcher::Watcher;
 use crepitus_model::Real;
@@ -93,10 +93,11 @@ pub fn run<W: Watcher>(
     }
     let answer = find(plan, &whole, &meter, watcher).map_err(EffectsError::Watcher)?;
     let candidates = candidates(&variants, &variant_runs, &rows[1..]);
-    let story = story(&whole, scene, candidates, &meter, watcher).map_err(EffectsError::Watcher)?;
+    let hand_torque =
+        shown_torques(&whole, scene, candidates, &meter, watcher).map_err(EffectsError::Watcher)?;
     let built = build_up(scene, &meter, watcher).map_err(EffectsError::Watcher)?;
-    let (build_up, build_up_story) =
-        built.map_or_else(Default::default, |b| (b.rungs, Some(b.story)));
+    let (build_up, build_up_torques) =
+        built.map_or_else(Default::default, |b| (b.rungs, b.torques));
     Ok(EffectsStudy {
         scene: scene.file.display().to_string(),
         title: scene.title.clone(),
@@ -108,9 +109,9 @@ pub fn run<W: Watcher>(
         timings: TIMINGS,
         answer,
         build_up,
-        build_up_story,
+        build_up_torques,
         wall_s: begun.elapsed().as_secs_f64(),
-        story,
+        hand_torque,
     })
 }
 

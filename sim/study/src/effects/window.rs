@@ -1,7 +1,6 @@
 //! The torque at the hand in a short window, where the variants that differ
 //! most differ most: of each with and without its effect.
 
-mod panel;
 mod profile;
 mod trend;
 
@@ -11,11 +10,10 @@ use super::hand::hand_torque;
 use super::study::WholeRun;
 use super::variant::Change;
 use crate::parallel::{Meter, each};
-use crate::stability::story::{Panel, Scale, Series, Story};
+use crate::stability::story::Line;
 use crate::watcher::Watcher;
 use crepitus_model::Real;
 use crepitus_scene::Scene;
-use panel::panel;
 use trend::Trend;
 
 /// The most variants that are shown.
@@ -31,6 +29,34 @@ const LEAD: usize = 8;
 const SHORTEST_S: f64 = 0.05;
 const LONGEST_S: f64 = 0.5;
 
+/// The torque at the hand in a telling window: of a scene, and of the variants
+/// that change it most.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HandTorque {
+    /// Where it begins, s.
+    pub from_s: f64,
+    /// Where it ends, s.
+    pub to_s: f64,
+    /// Whether the slow course of the scene's torque, a parabola, is taken
+    /// from all lines.
+    pub less_trend: bool,
+    /// Of the scene, N·m, against time, s.
+    pub scene_nm: Line,
+    /// Those that differ most first.
+    pub variants: Vec<VariantTorque>,
+}
+
+/// One of the variants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VariantTorque {
+    /// What it is called.
+    pub name: String,
+    /// What was done to the scene.
+    pub change: Change,
+    /// N·m, against time, s.
+    pub torque_nm: Line,
+}
+
 /// A variant that may be shown.
 pub(super) struct Candidate<'a> {
     pub(super) scene: &'a Scene,
@@ -40,14 +66,14 @@ pub(super) struct Candidate<'a> {
     pub(super) profile: &'a Profile,
 }
 
-/// The story of those that differ most; none if none differs.
-pub(super) fn story<W: Watcher>(
+/// The torques of those that differ most; none if none differs.
+pub(super) fn shown_torques<W: Watcher>(
     whole: &WholeRun,
     scene: &Scene,
     mut candidates: Vec<Candidate<'_>>,
     meter: &Meter,
     watcher: &mut W,
-) -> Result<Option<Story>, W::Error> {
+) -> Result<Option<HandTorque>, W::Error> {
     candidates.retain(|c| c.rms_nm > 0.0);
     candidates.sort_by(|a, b| b.rms_nm.total_cmp(&a.rms_nm));
     candidates.truncate(SHOWN);
@@ -77,51 +103,24 @@ pub(super) fn story<W: Watcher>(
     let points = |signal: &[f64]| {
         let times = (from..).map(time_s);
         let torques = signal.iter().enumerate().map(|(i, nm)| nm - trend.at(i));
-        times.zip(torques).collect::<Vec<_>>()
+        times.zip(torques).collect::<Line>()
     };
-    let panels = candidates
+    let variants = candidates
         .iter()
         .zip(heard)
-        .map(|(candidate, signal)| {
-            let name = match candidate.change {
-                Change::With => WITH,
-                Change::Scene | Change::Without => WITHOUT,
-            };
-            Panel {
-                x: Scale::linear("Time (s)").within(time_s(from), time_s(to - 1)),
-                series: vec![
-                    Series::line("the scene", points(own)),
-                    Series::line(name, points(&signal)),
-                ],
-                ..panel(&candidate.name, &trend, own, &signal)
-            }
-        })
-        .collect();
-    Ok(Some(Story {
-        name: "hand-torque",
-        title: "What the hand feels, with and without",
-        caption: format!(
-            "The torque at the hand of the scene, and of the {} that change it most, from {:.3} to {:.3} s: \
-             where, taken together, they change it most. Each panel has its own scale.{}",
-            match candidates.len() {
-                1 => "variant".to_owned(),
-                n => format!("{n} variants"),
-            },
-            time_s(from),
-            time_s(to - 1),
-            if trend.matters {
-                " The slow course of the scene's torque, a parabola, is taken from both lines: beside the weight of a \
-                 leg nothing else would be seen."
-            } else {
-                ""
-            },
-        ),
-        panels,
+        .map(|(candidate, signal)| VariantTorque {
+            name: candidate.name.clone(),
+            change: candidate.change,
+            torque_nm: points(&signal),
+        });
+    Ok(Some(HandTorque {
+        from_s: time_s(from),
+        to_s: time_s(to - 1),
+        less_trend: trend.matters,
+        scene_nm: points(own),
+        variants: variants.collect(),
     }))
 }
-
-const WITHOUT: &str = "with the effect left out";
-const WITH: &str = "with the effect added";
 
 /// The ticks of the window, from its first up to its last.
 fn window(whole: &WholeRun, candidates: &[Candidate<'_>], tick_s: f64) -> (usize, usize) {

@@ -3,36 +3,36 @@
 use super::summary::Summary;
 use super::words;
 use crate::failure::Failure;
+use crate::pictures::Pictures;
 use crate::results::{Files, footer, report_files};
 use crepitus_model::Convention;
-use crepitus_report::Section;
-use crepitus_report::accuracy::{self, AccuracyText};
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::orders::{Order, Orders};
 use crepitus_study::accuracy::points_table::points_table;
 use crepitus_study::accuracy::{Point, Study};
+use crepitus_study_pages::{Section, StudyText, accuracy};
 
 /// The files of a study; each diagram as an SVG of its own if asked for.
 pub(super) fn files(
     study: &Study,
     summary: &Summary<'_>,
-    pictures: bool,
+    pictures: &Pictures,
 ) -> Result<Files, Failure> {
     let page = accuracy::html(&study.points, study.target.as_ref(), &text(study, summary));
-    let pictures = pictures.then(|| accuracy::pictures(&study.points));
+    let pictures = pictures.files(|| accuracy::pictures(&study.points))?;
     let mut files = report_files(page, summary, pictures)?;
     files.push((
         "points.csv".to_owned(),
-        points_table(&study.points).to_csv(),
+        points_table(&study.points).to_csv().into(),
     ));
     Ok(files)
 }
 
-fn text(study: &Study, summary: &Summary<'_>) -> AccuracyText {
+fn text(study: &Study, summary: &Summary<'_>) -> StudyText {
     let mut tables = vec![studied(study, summary)];
     tables.extend(convergence(study));
     tables.extend(refused(study));
-    AccuracyText {
+    StudyText {
         title: "What accuracy costs in time".to_owned(),
         intro: "Every solver, in single and double precision and at a range of steps, against the event-driven \
                 reference. A solver down and to the left of another is both better and cheaper."

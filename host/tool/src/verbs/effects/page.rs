@@ -2,37 +2,37 @@
 
 use super::summary::Summary;
 use crate::failure::Failure;
+use crate::pictures::Pictures;
 use crate::results::{Files, footer, report_files};
-use crepitus_report::Section;
-use crepitus_report::effects::{self, EffectsText};
 use crepitus_study::effects::EffectsStudy;
 use crepitus_study::effects::effects_table::effects_table;
+use crepitus_study_pages::{Section, StudyText, effects};
 
 /// Names and contents of the files; each figure as an SVG of its own if asked
 /// for.
 pub(super) fn files(
     study: &EffectsStudy,
     summary: &Summary<'_>,
-    pictures: bool,
+    pictures: &Pictures,
 ) -> Result<Files, Failure> {
     let page = effects::html(study, &text(study, summary));
-    let pictures = pictures.then(|| effects::pictures(study));
+    let pictures = pictures.files(|| effects::pictures(study))?;
     let mut files = report_files(page, summary, pictures)?;
     files.push((
         "effects.csv".to_owned(),
-        effects_table(&study.rows).to_csv(),
+        effects_table(&study.rows).to_csv().into(),
     ));
     Ok(files)
 }
 
-fn text(study: &EffectsStudy, summary: &Summary<'_>) -> EffectsText {
+fn text(study: &EffectsStudy, summary: &Summary<'_>) -> StudyText {
     let row = |name: &str, value: String| (name.to_owned(), value);
     let effects = if study.effects.is_empty() {
         "none".to_owned()
     } else {
         study.effects.join(", ")
     };
-    EffectsText {
+    StudyText {
         title: format!("What each effect does and costs: {}", study.title),
         intro: format!(
             "Each effect of the scene is left out in turn, and each absent one added.\n{}",

@@ -1,13 +1,13 @@
 //! `crepitus stability --coupled`: the Z-width of the device on a leg.
 
 use crate::failure::{Failure, print, print_json};
+use crate::pictures::Pictures;
 use crate::results::{self, Files, footer, report_files};
 use crate::studying::Watch;
-use crepitus_report::Section;
-use crepitus_report::coupled::{self, CoupledText};
 use crepitus_study::coupled::{
     CoupledError, CoupledStudy, GEARS, LAGS, Margin, Setting, Verdict, most_share, run, tables,
 };
+use crepitus_study_pages::{Section, StudyText, coupled};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 use std::fmt::Write as _;
@@ -52,7 +52,7 @@ fn as_rows<S: Serializer>(joints: &[Margin], serializer: S) -> Result<S::Ok, S::
 }
 
 /// Makes the map, writes the files, says what is left to the presets.
-pub(super) fn coupled(out: &Path, pictures: bool, as_json: bool) -> Result<(), Failure> {
+pub(super) fn coupled(out: &Path, pictures: &Pictures, as_json: bool) -> Result<(), Failure> {
     let folder = results::folder(out)?;
     let study = run(&mut Watch::new()).map_err(|error| match error {
         CoupledError::Watcher(_) => Failure::Work("interrupted: nothing was written".to_owned()),
@@ -145,27 +145,33 @@ fn onsets_and_margins(study: &CoupledStudy) -> String {
     text
 }
 
-fn files(study: &CoupledStudy, summary: &Summary, pictures: bool) -> Result<Files, Failure> {
+fn files(study: &CoupledStudy, summary: &Summary, pictures: &Pictures) -> Result<Files, Failure> {
     let page = coupled::html(study, &words(summary));
-    let pictures = pictures.then(|| Ok(coupled::pictures(study)));
-    let mut files = report_files(Ok(page), summary, pictures)?;
+    let pictures = pictures.files(|| coupled::pictures(study))?;
+    let mut files = report_files(page, summary, pictures)?;
     let margins = [study.presets.as_slice(), &study.extras].concat();
     files.extend([
-        ("cells.csv".to_owned(), tables::cells(&study.cells).to_csv()),
+        (
+            "cells.csv".to_owned(),
+            tables::cells(&study.cells).to_csv().into(),
+        ),
         (
             "onsets.csv".to_owned(),
-            tables::onsets(&study.onsets).to_csv(),
+            tables::onsets(&study.onsets).to_csv().into(),
         ),
-        ("margins.csv".to_owned(), tables::margins(&margins).to_csv()),
-        ("scene.toml".to_owned(), Setting::shipped().toml()),
+        (
+            "margins.csv".to_owned(),
+            tables::margins(&margins).to_csv().into(),
+        ),
+        ("scene.toml".to_owned(), Setting::shipped().toml().into()),
     ]);
     Ok(files)
 }
 
-fn words(summary: &Summary) -> CoupledText {
+fn words(summary: &Summary) -> StudyText {
     let row = |name: &str, value: String| (name.to_owned(), value);
     let cells = &summary.cells;
-    CoupledText {
+    StudyText {
         title: "Where the device stays quiet on a leg".to_owned(),
         intro: "A hand moves the leg at 0.5 rad/s, stops, and rests. Does the motor's shaft come to rest, too? Each cell \
                 is a run of three seconds with what the drive renders: encoder, joint, guard, limits, current loop. A \
@@ -183,6 +189,7 @@ fn words(summary: &Summary) -> CoupledText {
                 row("the study took", format!("{:.1} s", summary.wall_s)),
             ],
         }],
+        notes: Vec::new(),
         footer: footer(),
     }
 }

@@ -2,35 +2,35 @@
 
 use super::summary::Summary;
 use crate::failure::Failure;
+use crate::pictures::Pictures;
 use crate::results::{Files, footer, report_files};
-use crepitus_report::Section;
-use crepitus_report::stability::{self, StabilityText};
 use crepitus_study::stability::Matrix;
 use crepitus_study::stability::cases_table::cases_table;
-use crepitus_study::stability::story::Story;
+use crepitus_study::stability::story::Stories;
+use crepitus_study_pages::{Section, StudyText, stability};
 
 /// The report, the cells and the summary; the matrix and each story as an SVG
 /// of its own if asked for.
 pub(super) fn files(
     matrix: &Matrix,
-    stories: &[Story],
+    stories: Option<&Stories>,
     summary: &Summary<'_>,
-    pictures: bool,
+    pictures: &Pictures,
 ) -> Result<Files, Failure> {
     let page = stability::html(matrix, stories, &text(matrix, summary));
-    let pictures = pictures.then(|| stability::pictures(matrix, stories));
+    let pictures = pictures.files(|| stability::pictures(matrix, stories))?;
     let mut files = report_files(page, summary, pictures)?;
     files.push((
         "cases.csv".to_owned(),
-        cases_table(&matrix.cells()).to_csv(),
+        cases_table(&matrix.cells()).to_csv().into(),
     ));
     Ok(files)
 }
 
-fn text(matrix: &Matrix, summary: &Summary<'_>) -> StabilityText {
+fn text(matrix: &Matrix, summary: &Summary<'_>) -> StudyText {
     let counts = &summary.counts;
     let row = |name: &str, value: String| (name.to_owned(), value);
-    StabilityText {
+    StudyText {
         title: match matrix.rows.as_slice() {
             [only] => only.case.title.to_owned(),
             _ => "Which hard cases hold".to_owned(),
@@ -74,6 +74,7 @@ fn text(matrix: &Matrix, summary: &Summary<'_>) -> StabilityText {
                 row("the study took", format!("{:.1} s", summary.wall_s)),
             ],
         }],
+        notes: Vec::new(),
         footer: footer(),
     }
 }

@@ -1,7 +1,7 @@
 //! What a change of stiffness does to a wound spring: without a thought it
 //! injects energy from nowhere; committed and ramped it injects none.
 
-use super::{Mark, Panel, Scale, Series, Story};
+use super::Line;
 use crate::sampling::Sampling;
 use crate::stability::parameter_changes::SLEW_NM_PER_S;
 use crepitus_model::joint::oscillator::Oscillator;
@@ -21,102 +21,56 @@ const STIFFER_S: f64 = 0.039;
 const SOFTER_S: f64 = 0.09;
 /// How long the run is, s.
 const SHOWN_S: f64 = 0.13;
-/// The smallest energy that is drawn, J.
-const LEAST_J: f64 = 3e-4;
-
-const COMMITTED: &str = "committed and ramped";
-const NAIVE: &str = "replaced as they are";
-
-/// Lines against time, s.
-#[derive(Default)]
-struct Lines {
-    torque_nm: Vec<(f64, f64)>,
-    stored_j: Vec<(f64, f64)>,
+/// See the module.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterChange {
+    /// Ts and Tk, N·m.
+    pub levels_nm: (f64, f64),
+    /// When the spring is made stiffer, and when soft again, s.
+    pub changes_s: (f64, f64),
+    /// How long the run is, s.
+    pub shown_s: f64,
+    /// One step, s.
+    pub step_s: f64,
+    /// The slew limit of the device, N·m/s.
+    pub slew_nm_per_s: f64,
+    /// Committed and ramped, as the device does it.
+    pub committed: Change,
+    /// Replaced as they are.
+    pub naive: Change,
 }
 
-impl Lines {
+/// One way to do it; against time, s.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Change {
+    /// Torque, N·m.
+    pub torque_nm: Line,
+    /// Energy of spring and object, J.
+    pub stored_j: Line,
+}
+
+impl Change {
     fn add(&mut self, time_s: f64, torque_nm: f64, stored_j: f64) {
         self.torque_nm.push((time_s, torque_nm));
-        self.stored_j.push((time_s, stored_j.max(LEAST_J)));
+        self.stored_j.push((time_s, stored_j));
     }
 }
 
 /// See the module.
-pub(super) fn parameter_change() -> Result<Story, SettingsError> {
+pub(super) fn parameter_change() -> Result<ParameterChange, SettingsError> {
     let stiff = Parameters::default();
     let soft = Parameters {
         stiffness_nm_per_rad: 10.0,
         ..stiff
     };
-    let committed = committed(&valid(soft)?, &valid(stiff)?)?;
-    let naive = naive(&soft, &stiff)?;
-    let at_change = |lines: &[(f64, f64)], after_s: f64| {
-        let next = lines.iter().find(|(t, _)| *t > after_s);
-        next.map_or(0.0, |(_, y)| *y)
-    };
-    // Just before and just after, whatever rounding makes of the time.
-    let (before_s, after_s) = (STIFFER_S - 1.5 * STEP_S, STIFFER_S + 0.5 * STEP_S);
-    let before_j = at_change(&committed.stored_j, before_s);
-    let time = || Scale::linear("Time (s)").within(0.0, SHOWN_S);
-    // Named in the first panel, where there is room.
-    let marks = |names: [&str; 2]| {
-        vec![
-            Mark::new(STIFFER_S, names[0]),
-            Mark::new(SOFTER_S, names[1]),
-        ]
-    };
-    Ok(Story {
-        name: "parameter-change",
-        title: "A stiffer spring, and no energy from nowhere",
-        caption: format!(
-            "A hand has wound a spring of 10 N·m/rad to {:.2} N·m when its stiffness is set to 400 N·m/rad. Replaced as \
-             it is, spring and object hold {:.2} J instead of {:.1} mJ, show {:.1} N·m for a moment, and go on swinging. \
-             Committed as the device does it, θ is scaled so that the torque goes on and the energy falls to {:.1} mJ. \
-             Back to the soft spring the torque may only fall at {SLEW_NM_PER_S} N·m/s, so the stiffness takes its time.",
-            at_change(&committed.torque_nm, before_s),
-            at_change(&naive.stored_j, after_s),
-            before_j * 1e3,
-            at_change(&naive.torque_nm, after_s),
-            at_change(&committed.stored_j, after_s) * 1e3,
-        ),
-        panels: vec![
-            Panel {
-                heading: "Torque (without a limit, to show what would be asked for)".to_owned(),
-                x: time(),
-                y: Scale::linear("Torque (N·m)").within(-1.0, 17.0),
-                series: vec![
-                    Series::line(NAIVE, naive.torque_nm),
-                    Series::line(COMMITTED, committed.torque_nm.clone()),
-                ],
-                levels: Vec::new(),
-                bounds: marks(["kr 10 → 400", "kr 400 → 10"]),
-            },
-            Panel {
-                heading: "The same, near Ts and Tk".to_owned(),
-                x: time(),
-                y: Scale::linear("Torque (N·m)").within(-0.05, 0.45),
-                series: vec![Series::line(COMMITTED, committed.torque_nm)],
-                levels: vec![
-                    Mark::new(stiff.static_torque_nm, "Ts"),
-                    Mark::new(stiff.kinetic_torque_nm, "Tk"),
-                ],
-                bounds: marks(["", ""]),
-            },
-            Panel {
-                heading: "Energy of spring and object".to_owned(),
-                x: time(),
-                y: Scale {
-                    logarithmic: true,
-                    ..Scale::linear("Energy (J)").within(LEAST_J, 1.0)
-                },
-                series: vec![
-                    Series::line(NAIVE, naive.stored_j),
-                    Series::line(COMMITTED, committed.stored_j),
-                ],
-                levels: Vec::new(),
-                bounds: marks(["", ""]),
-            },
-        ],
+    Ok(ParameterChange {
+        levels_nm: (stiff.static_torque_nm, stiff.kinetic_torque_nm),
+        changes_s: (STIFFER_S, SOFTER_S),
+        shown_s: SHOWN_S,
+        step_s: STEP_S,
+        slew_nm_per_s: SLEW_NM_PER_S,
+        committed: committed(&valid(soft)?, &valid(stiff)?)?,
+        naive: naive(&soft, &stiff)?,
     })
 }
 
@@ -137,7 +91,7 @@ fn energy_j(a: &StepCoefficients<f64>, theta: f64, theta_dot: f64) -> f64 {
 fn committed(
     soft: &Validated<Settings>,
     stiff: &Validated<Settings>,
-) -> Result<Lines, SettingsError> {
+) -> Result<Change, SettingsError> {
     let (soft, stiff) = (
         StepCoefficients::new(soft, STEP_S)?,
         StepCoefficients::new(stiff, STEP_S)?,
@@ -146,7 +100,7 @@ fn committed(
     let sampling = Sampling::new(&motion, SHOWN_S, STEP_S);
     let mut joint = Frozen::<f64, ExactEvents>::new(soft, OMEGA_RAD_S);
     let mut ramp = Ramp::at(soft);
-    let mut lines = Lines::default();
+    let mut lines = Change::default();
     let mut walk = sampling.walk_from(0);
     let mut chunk: Vec<ShaftStep<f64>> = Vec::new();
     for n in 0..sampling.steps() {
@@ -179,11 +133,11 @@ fn committed(
 
 /// What the equations say if the numbers are replaced and the state is not
 /// looked at: the stick's angle goes on, and the far too strong spring swings.
-fn naive(soft: &Parameters, stiff: &Parameters) -> Result<Lines, SettingsError> {
+fn naive(soft: &Parameters, stiff: &Parameters) -> Result<Change, SettingsError> {
     let swing = Oscillator::<f64>::of(stiff).transition(STEP_S);
     let soft: StepCoefficients<f64> = StepCoefficients::new(&valid(*soft)?, STEP_S)?;
     let stiff = StepCoefficients::new(&valid(*stiff)?, STEP_S)?;
-    let mut lines = Lines::default();
+    let mut lines = Change::default();
     let mut time_s = 0.0;
     while time_s < STIFFER_S - 0.5 * STEP_S {
         time_s += STEP_S;

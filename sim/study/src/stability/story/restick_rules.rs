@@ -1,10 +1,10 @@
 //! The paper's two rules for the end of a slip, on one movement of a knee: two
 //! different products.
 
-use super::trace::{Run, Trace};
-use super::{Mark, Panel, Scale, Series, Story};
+use super::Line;
+use super::trace::Run;
 use crepitus_model::solver::Solver;
-use crepitus_model::{Convention, Real, Settings, SettingsError};
+use crepitus_model::{Convention, Settings, SettingsError};
 use crepitus_plant::Motion;
 
 /// Amplitude of the knee's sine, degrees.
@@ -17,13 +17,37 @@ const DURATION_S: f64 = 4.0;
 const STEP_S: f64 = 5e-5;
 
 /// See the module.
-pub(super) fn restick_rules() -> Result<Story, SettingsError> {
+#[derive(Clone, Debug, PartialEq)]
+pub struct RestickRules {
+    /// Amplitude of the knee's sine, degrees.
+    pub amplitude_deg: f64,
+    /// Its frequency, Hz.
+    pub frequency_hz: f64,
+    /// How long it is shown, s.
+    pub duration_s: f64,
+    /// Ts, N·m.
+    pub static_torque_nm: f64,
+    /// Frozen, then physical.
+    pub rules: Vec<Rule>,
+    /// Speed of the shaft, rad/s, against time, s.
+    pub omega_rad_s: Line,
+}
+
+/// One of the two.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rule {
+    /// Which.
+    pub convention: Convention,
+    /// Torque, N·m, against time, s.
+    pub torque_nm: Line,
+    /// When the object broke loose, s.
+    pub breaks_s: Vec<f64>,
+}
+
+/// See the module.
+pub(super) fn restick_rules() -> Result<RestickRules, SettingsError> {
     let motion = Motion::sine(AMPLITUDE_DEG.to_radians(), FREQUENCY_HZ, -90.0);
-    let time = || Scale::linear("Time (s)").within(0.0, DURATION_S);
-    let mut torques = Vec::new();
-    let mut counts = Vec::new();
-    let mut totals = Vec::new();
-    for convention in [Convention::Frozen, Convention::Physical] {
+    let rule = |convention| {
         let settings = Settings {
             convention,
             ..Settings::default()
@@ -37,62 +61,23 @@ pub(super) fn restick_rules() -> Result<Story, SettingsError> {
             step_s: STEP_S,
         }
         .trace()?;
-        let total = trace.breaks_s.len();
-        let p = &settings.parameters;
-        counts.push(Series::line(convention.name(), counted(&trace)));
-        torques.push(Panel {
-            heading: format!("Torque under {}: {total} cycles", convention.name()),
-            x: time(),
-            y: Scale::linear("Torque (N·m)").within(-0.44, 0.44),
-            series: vec![Series::line(convention.name(), trace.torque_nm)],
-            levels: vec![
-                Mark::new(p.static_torque_nm, "Ts"),
-                Mark::new(-p.static_torque_nm, "−Ts"),
-            ],
-            bounds: Vec::new(),
-        });
-        totals.push(total);
-    }
-    let mut panels = torques;
-    panels.push(Panel {
-        heading: format!("Cycles so far: {} and {} at the end", totals[0], totals[1]),
-        x: time(),
-        y: Scale::linear("Breaks"),
-        series: counts,
-        ..Panel::default()
-    });
-    panels.push(Panel {
-        heading: "Speed of the shaft".to_owned(),
-        x: time(),
-        y: Scale::linear("Ω (rad/s)"),
-        series: vec![Series::line("shaft", speed(&motion))],
-        ..Panel::default()
-    });
-    Ok(Story {
-        name: "restick-rules",
-        title: "One knee pass under the paper's two rules",
-        caption: format!(
-            "A pass of {AMPLITUDE_DEG}° at {FREQUENCY_HZ} Hz, there and back. Eqs. (10) and (11) of the paper fix the \
-             duration of a slip when it begins: under frozen the joint grates {} times. Eq. (8) ends a slip when the \
-             object is as fast as the shaft: under physical it grates {} times, because a hand that speeds up leaves \
-             the object behind. At a steady speed the two rules agree; both are the paper's.",
-            totals[0], totals[1]
-        ),
-        panels,
+        Ok(Rule {
+            convention,
+            torque_nm: trace.torque_nm,
+            breaks_s: trace.breaks_s,
+        })
+    };
+    Ok(RestickRules {
+        amplitude_deg: AMPLITUDE_DEG,
+        frequency_hz: FREQUENCY_HZ,
+        duration_s: DURATION_S,
+        static_torque_nm: Settings::default().parameters.static_torque_nm,
+        rules: [Convention::Frozen, Convention::Physical]
+            .into_iter()
+            .map(rule)
+            .collect::<Result<_, SettingsError>>()?,
+        omega_rad_s: speed(&motion),
     })
-}
-
-/// How many breaks there were so far: a staircase.
-fn counted(trace: &Trace) -> Vec<(f64, f64)> {
-    let mut line = vec![(0.0, 0.0)];
-    let mut count = 0_u64;
-    for time_s in &trace.breaks_s {
-        line.push((*time_s, f64::from_whole(count)));
-        count += 1;
-        line.push((*time_s, f64::from_whole(count)));
-    }
-    line.push((DURATION_S, f64::from_whole(count)));
-    line
 }
 
 /// Ω against time.
@@ -110,11 +95,9 @@ mod tests {
     #[test]
     fn the_rules_differ_as_the_reference_does() {
         let story = restick_rules().unwrap();
-        let last = |series: &Series| series.points.last().unwrap().1;
-        let counts = &story.panels[2].series;
-        assert_eq!((last(&counts[0]), last(&counts[1])), (124.0, 3.0));
-        assert!(story.panels[0].heading.contains("124 cycles"));
-        let lowest = story.panels[0].series[0].points.iter();
+        let breaks: Vec<usize> = story.rules.iter().map(|rule| rule.breaks_s.len()).collect();
+        assert_eq!(breaks, [124, 3]);
+        let lowest = story.rules[0].torque_nm.iter();
         assert!(lowest.map(|p| p.1).fold(0.0, f64::min) >= -0.4);
     }
 }

@@ -1,0 +1,82 @@
+//! A figure as a page shows it: heading, legend, charts, caption.
+
+use crate::curve_style::CurveStyle;
+use crate::drawing::Svg;
+use crate::palette::Ink;
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// For files.
+    pub name: &'static str,
+    /// Above all.
+    pub title: &'static str,
+    /// What lines, patches and signs mean.
+    pub legend: Vec<Key>,
+    /// In order.
+    pub charts: Vec<Chart>,
+    /// What one sees and how to read it.
+    pub caption: String,
+}
+
+/// One chart.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// Above it.
+    pub heading: Option<String>,
+    /// The drawing.
+    pub svg: Svg,
+    /// Two of these stand side by side where there is room.
+    pub half: bool,
+}
+
+impl Chart {
+    /// A chart over the full width, without a heading.
+    pub fn full(svg: Svg) -> Self {
+        Self {
+            heading: None,
+            svg,
+            half: false,
+        }
+    }
+}
+
+/// One entry of a legend.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    pub(crate) sign: Sign,
+    /// What it means.
+    pub text: &'static str,
+}
+
+/// How a legend shows what it explains.
+#[derive(Clone, Copy, Debug)]
+pub enum Sign {
+    /// A line.
+    Line(Ink),
+    /// A filled patch.
+    Patch(Ink),
+    /// A character.
+    Mark(&'static str),
+    /// A curve with its sign.
+    Curve(CurveStyle),
+    /// The sign of a curve, filled.
+    Filled(CurveStyle),
+}
+
+impl Sign {
+    /// CSS pixels.
+    pub(crate) fn width(self) -> f64 {
+        match self {
+            Self::Line(_) | Self::Patch(_) | Self::Mark(_) => 18.0,
+            Self::Curve(_) | Self::Filled(_) => 44.0,
+        }
+    }
+}
+
+impl Key {
+    /// A sign and what it means.
+    pub const fn new(sign: Sign, text: &'static str) -> Self {
+        Self { sign, text }
+    }
+}

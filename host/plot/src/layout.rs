@@ -1,0 +1,86 @@
+//! How much room the axes of charts need at their edges, so that no label is
+//! cut.
+
+use crate::panel::Panel;
+use crate::text::{LINE, SIZE, lines, width};
+
+/// The inside of a pair of axes, CSS pixels of the whole chart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Where x begins.
+    pub left: f64,
+    /// Where y ends.
+    pub top: f64,
+    /// Where x ends.
+    pub right: f64,
+    /// Where y begins.
+    pub bottom: f64,
+}
+
+/// Length of a tick.
+pub(crate) const TICK: f64 = 4.0;
+/// Least room at the edges.
+const LEFT: f64 = 74.0;
+const TOP: f64 = 10.0;
+const FOOT: f64 = 48.0;
+const FOOT_WITHOUT_NUMBERS: f64 = 6.0;
+/// Between a label and what is beside it.
+pub(crate) const GAP: f64 = 8.0;
+const EDGE: f64 = 3.0;
+
+/// Frames of panels one above the other; all begin and end at the same x.
+pub(crate) fn frames(total: f64, panels: &[Panel]) -> Vec<Frame> {
+    let most = |room: fn(&Panel) -> f64| panels.iter().map(room).fold(0.0, f64::max).ceil();
+    let (left, right) = (most(left), most(right));
+    let mut top = 0.0;
+    panels
+        .iter()
+        .map(|panel| {
+            let frame = Frame {
+                left,
+                top: top + panel.head + TOP,
+                right: (total - right).max(left + 1.0),
+                bottom: top + panel.head + panel.height - foot(panel),
+            };
+            top += panel.head + panel.height;
+            frame
+        })
+        .collect()
+}
+
+/// Lines of the title of y; half of it may stand beyond each end.
+pub(crate) fn y_title<'p>(panel: &Panel<'p>) -> Vec<&'p str> {
+    lines(panel.y_title, panel.head + panel.height - EDGE)
+}
+
+pub(crate) fn foot(panel: &Panel) -> f64 {
+    if panel.x_title.is_some() {
+        FOOT
+    } else {
+        FOOT_WITHOUT_NUMBERS
+    }
+}
+
+fn left(panel: &Panel) -> f64 {
+    let labels = panel
+        .y
+        .labels()
+        .map(|(_, label)| width(&label, SIZE))
+        .fold(0.0, f64::max);
+    let titles = LINE * y_title(panel).len() as f64;
+    LEFT.max(EDGE + titles + GAP + labels + GAP)
+}
+
+fn right(panel: &Panel) -> f64 {
+    let names = panel
+        .names
+        .iter()
+        .map(|(_, name)| GAP + width(name, SIZE))
+        .fold(0.0, f64::max);
+    // The last number of x may reach beyond its tick.
+    let last = match (panel.x_title, panel.x.labels().last()) {
+        (Some(_), Some((at, label))) if panel.x.place(at) > 0.9 => 0.5 * width(&label, SIZE),
+        _ => 0.0,
+    };
+    panel.right.max(names + EDGE).max(last + EDGE)
+}

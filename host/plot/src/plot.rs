@@ -1,0 +1,258 @@
+//! Drawing between a pair of axes, in the units of the data.
+
+use crate::axis::Axis;
+use crate::drawing::{Anchor, Drawing, Stroke};
+use crate::layout::Frame;
+use crate::marker::Marker;
+use crate::palette::{GRID, Ink, LEVEL, TEXT};
+use crate::simplify::simplify;
+use crate::text::LINE;
+use crate::thinned::Point;
+
+/// What nobody sees, CSS pixels.
+const TOLERANCE: f64 = 0.15;
+
+/// See the module.
+#[derive(Debug)]
+pub struct Plot {
+    x: Axis,
+    y: Axis,
+    frame: Frame,
+    /// What is drawn, in CSS pixels of the whole chart.
+    pub over: Drawing,
+}
+
+/// A moment with its name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// Its value of x.
+    pub at: f64,
+    /// What happened, in a few words.
+    pub name: String,
+}
+
+impl Plot {
+    pub(crate) fn new(x: Axis, y: Axis, frame: Frame, over: Drawing) -> Self {
+        Self { x, y, frame, over }
+    }
+
+    /// The axis to the right.
+    pub fn x(&self) -> &Axis {
+        &self.x
+    }
+
+    /// The axis upwards.
+    pub fn y(&self) -> &Axis {
+        &self.y
+    }
+
+    /// Its edges.
+    pub fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    /// Where a point stands, CSS pixels of the whole chart; what is outside
+    /// stands at the edge.
+    pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        let Frame {
+            left,
+            top,
+            right,
+            bottom,
+        } = self.frame;
+        (
+            left + self.x.place(x) * (right - left),
+            bottom - self.y.place(y) * (bottom - top),
+        )
+    }
+
+    /// Lines at the ticks: after shading, before curves.
+    pub fn grid(&mut self) {
+        let Frame {
+            left,
+            top,
+            right,
+            bottom,
+        } = self.frame;
+        let upright = self
+            .x
+            .labels()
+            .map(|(value, _)| self.at((value, self.y.low())).0);
+        let level = self
+            .y
+            .labels()
+            .map(|(value, _)| self.at((self.x.low(), value)).1);
+        let mut lines: Vec<_> = upright.map(|x| [(x, top), (x, bottom)]).collect();
+        lines.extend(level.map(|y| [(left, y), (right, y)]));
+        // Opaque enough on either paper.
+        let mut grid = Drawing::default();
+        grid.lines(lines, Stroke::new(GRID, 1.0));
+        self.over
+            .push(&maud::html! { g stroke-opacity="0.11" { (maud::PreEscaped(grid.finish())) } });
+    }
+
+    /// Stretches of x over the full height.
+    pub fn shade(&mut self, stretches: impl IntoIterator<Item = (f64, f64)>, ink: Ink) {
+        let (low, high) = (self.y.low(), self.y.high());
+        let corners: Vec<_> = stretches
+            .into_iter()
+            .map(|(from, to)| [self.at((from, low)), self.at((to, high))])
+            .collect();
+        self.over.rectangles(corners, ink);
+    }
+
+    /// A line through points, as wide as this, CSS pixels.
+    pub fn line(&mut self, points: &[Point], ink: Ink, width: f64) {
+        self.stroke(points, Stroke::new(ink, width));
+    }
+
+    /// A line through points.
+    pub fn stroke(&mut self, points: &[Point], stroke: Stroke) {
+        let path = self.visible(points);
+        self.over.line(&path, stroke);
+    }
+
+    /// A filled band between a lower and an upper line; less opaque than 1
+    /// lets others show through.
+    pub fn band(&mut self, lower: &[Point], upper: &[Point], ink: Ink, opacity: f64) {
+        let mut outline = self.visible(lower);
+        outline.extend(self.visible(upper).into_iter().rev());
+        self.over.area(&outline, ink, opacity);
+    }
+
+    /// The points that can be seen to matter, CSS pixels.
+    fn visible(&self, points: &[Point]) -> Vec<(f64, f64)> {
+        let path: Vec<_> = points
+            .iter()
+            .map(|point| self.at((point.x, point.y)))
+            .collect();
+        simplify(&path, TOLERANCE)
+    }
+
+    /// A dashed line across, at a level of y.
+    pub fn across(&mut self, y: f64) {
+        let ends = [(self.x.low(), y), (self.x.high(), y)].map(|end| self.at(end));
+        self.over.line(&ends, Stroke::dashed(LEVEL, 1.25));
+    }
+
+    /// The sign of an event.
+    pub fn mark(&mut self, at: (f64, f64), marker: Marker, ink: Ink) {
+        self.over.sign(self.at(at), marker, ink);
+    }
+
+    /// Thin lines at moments, in this panel with or without their names, which
+    /// stand at the top, below each other where they would touch.
+    pub fn moments(&mut self, marks: &[Mark], named: bool) {
+        let mut ends: Vec<f64> = Vec::new();
+        let (low, high) = (self.x.low(), self.x.high());
+        for Mark { at, name } in marks.iter().filter(|mark| (low..=high).contains(&mark.at)) {
+            let (x, bottom) = self.at((*at, self.y.low()));
+            let top = self.frame.top;
+            self.over.line(
+                &[(x, top), (x, bottom)],
+                Stroke {
+                    dashes: "2 3",
+                    ..Stroke::new(TEXT, 1.0)
+                },
+            );
+            let long = Drawing::label_width(name);
+            let Frame { left, right, .. } = self.frame;
+            if !named || name.is_empty() || long > right - left {
+                continue;
+            }
+            // Right of its line, or as near as the edges let it.
+            let start = (x + 5.0).min(right - long);
+            let row = ends
+                .iter()
+                .position(|end| *end < start - 5.0)
+                .unwrap_or(ends.len());
+            let y = top + LINE * (row as f64 + 0.6);
+            if y + LINE < bottom {
+                ends.resize(ends.len().max(row + 1), 0.0);
+                ends[row] = start + long;
+                self.over.label((start, y), Anchor::Start, TEXT, name);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plot() -> Plot {
+        let frame = Frame {
+            left: 100.0,
+            top: 10.0,
+            right: 900.0,
+            bottom: 210.0,
+        };
+        let axis = || Axis::linear(0.0, 10.0, 5);
+        Plot::new(axis(), axis(), frame, Drawing::default())
+    }
+
+    #[test]
+    fn what_is_outside_stands_at_the_edge() {
+        let plot = plot();
+        assert_eq!(plot.at((5.0, 5.0)), (500.0, 110.0));
+        assert_eq!(plot.at((-5.0, 99.0)), (100.0, 10.0));
+    }
+
+    #[test]
+    fn names_of_moments_do_not_touch_and_stay_inside() {
+        let mut plot = plot();
+        let mark = |at, name: &str| Mark {
+            at,
+            name: name.to_owned(),
+        };
+        plot.moments(
+            &[
+                mark(5.0, "first"),
+                mark(5.1, "second"),
+                mark(9.9, "third"),
+                mark(99.0, "never"),
+            ],
+            true,
+        );
+        let out = plot.over.finish();
+        assert_eq!(out.matches("<path").count(), 3);
+        let place = |name: &str| {
+            let (before, _) = out.split_once(name).expect("a name");
+            let tag = before.rsplit_once("<text").expect("a text").1;
+            let number = |key: &str| {
+                let rest = tag.split_once(key).expect("an attribute").1;
+                rest.split_once('"')
+                    .expect("its end")
+                    .0
+                    .parse::<f64>()
+                    .expect("a number")
+            };
+            (number("x=\""), number("y=\""))
+        };
+        assert_eq!(place("first").0, 505.0);
+        assert!(place("second").1 > place("first").1 + 12.0);
+        let end = place("third").0 + Drawing::label_width("third");
+        assert!(end <= 900.0 && place("third").1 == place("first").1);
+        // Too long for this side of its line, and for the whole panel.
+        let long = "a name so long that it takes more than half of the panel, and some more";
+        let mut plot = self::plot();
+        plot.moments(&[mark(6.0, long), mark(7.0, &long.repeat(3))], true);
+        let out = plot.over.finish();
+        assert_eq!(
+            (out.matches("<path").count(), out.matches("<text").count()),
+            (2, 1)
+        );
+        let start = out
+            .split_once("x=\"")
+            .expect("a text")
+            .1
+            .split_once('"')
+            .expect("its end")
+            .0;
+        let start: f64 = start.parse().expect("a number");
+        assert!(
+            start >= 100.0 && start + Drawing::label_width(long) <= 900.01,
+            "{start}"
+        );
+    }
+}

@@ -1,0 +1,46 @@
+//! The report of the study of effects: what each effect of a scene does to the
+//! torque at the hand, against what it costs.
+//!
+//! ```text
+//! EffectsStudy ─┬─> table ──────────────────────────────┐
+//!               ├─> influence against cost ─┐           ├─> page
+//!               ├─> bands, a row a variant ─┼─> pictures┤
+//!               ├─> story: the torque ──────┘           │
+//!               └─> the smallest set ───────────────────┘
+//! ```
+
+mod bands;
+mod influence;
+mod look;
+mod page;
+mod smallest;
+mod spots;
+mod table;
+
+use crepitus_plot::{Figure, pictures as of_figures};
+use crepitus_study::effects::EffectsStudy;
+
+use crate::{Picture, StudyText, story};
+
+/// The report as one HTML page, complete in itself.
+pub fn html(study: &EffectsStudy, text: &StudyText) -> String {
+    page::html(study, text)
+}
+
+/// Every figure as a file of its own.
+pub fn pictures(study: &EffectsStudy) -> Vec<Picture> {
+    of_figures(&figures(study))
+}
+
+fn figures(study: &EffectsStudy) -> Vec<Figure> {
+    let felt = study.hand_torque.as_ref().map(story::hand_torque::story);
+    let stories = felt
+        .into_iter()
+        .chain(story::build_up::story(&study.build_up_torques));
+    let charts = influence::figure(study)
+        .into_iter()
+        .chain(bands::figure(study));
+    charts
+        .chain(stories.map(|told| story::figure(&told)))
+        .collect()
+}
