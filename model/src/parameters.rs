@@ -303,6 +303,18 @@ macro_rules! settings {
 
 pub(crate) use settings;
 
+/// Whether two names are the same, at compile time.
+pub const fn same(a: &str, b: &str) -> bool {
+    let (mut a, mut b) = (a.as_bytes(), b.as_bytes());
+    while let ([x, more_a @ ..], [y, more_b @ ..]) = (a, b) {
+        if *x != *y {
+            return false;
+        }
+        (a, b) = (more_a, more_b);
+    }
+    a.is_empty() && b.is_empty()
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;

@@ -28,7 +28,7 @@ pub mod turn_back;
 use crate::joint::{Event, Phase, ShaftStep, StickSlip};
 use crate::real::Real;
 use core::marker::PhantomData;
-use effects::Added;
+use effects::{Added, Phases};
 use input_check::{Checked, Sample};
 
 /// Why the torque shown is not the one that the model asks for. The numbers
@@ -63,6 +63,8 @@ pub struct Shown<F> {
     pub jump_nm: F,
     /// Torque added by each effect besides the joint, N·m.
     pub added: Added<F>,
+    /// The phase of each.
+    pub phases: Phases,
     /// What the stick-slip object does; stick without one.
     pub phase: Phase,
     /// Parameters are on their way.
@@ -79,6 +81,7 @@ impl<F: Real> Shown<F> {
             model_torque_nm: self.model_torque_nm.to_f64(),
             jump_nm: self.jump_nm.to_f64(),
             added: self.added.to_f64(),
+            phases: self.phases,
             phase: self.phase,
             settling: self.settling,
             limit: self.limit,
@@ -93,6 +96,7 @@ impl<F: Real> Shown<F> {
             model_torque_nm: F::ZERO,
             jump_nm: F::ZERO,
             added: Added::NONE,
+            phases: Phases(0),
             phase: Phase::Stick,
             settling: false,
             limit: Limit::None,

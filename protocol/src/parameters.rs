@@ -100,6 +100,7 @@ const _: () = {
 /// The ids of the parameters that code asks for by name.
 pub mod id {
     use super::Parameter;
+    use crepitus_model::parameters::same;
 
     /// `crepitus.render`.
     pub const CREPITUS: u8 = named("crepitus", "render");
@@ -129,17 +130,6 @@ pub mod id {
             parameters = rest;
         }
         panic!("there is no such parameter")
-    }
-
-    const fn same(a: &str, b: &str) -> bool {
-        let (mut a, mut b) = (a.as_bytes(), b.as_bytes());
-        while let ([x, more_a @ ..], [y, more_b @ ..]) = (a, b) {
-            if *x != *y {
-                return false;
-            }
-            (a, b) = (more_a, more_b);
-        }
-        a.is_empty() && b.is_empty()
     }
 }
 

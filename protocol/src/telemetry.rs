@@ -22,6 +22,7 @@
 
 use crate::revision::Revision;
 use crate::state::{LimitReason, State};
+use crepitus_model::render::effects::Phases;
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -95,6 +96,8 @@ impl SampleFlags {
     pub const STICK: u16 = 1 << 9;
     /// Rendering was late: the torque is that of the tick before.
     pub const LATE: u16 = 1 << 10;
+    /// Where the [`Phases`] of the device's effects begin.
+    pub const PHASES_SHIFT: u32 = 11;
 
     /// With these bits.
     #[must_use]
@@ -125,6 +128,18 @@ impl SampleFlags {
             2 => -1,
             _ => 0,
         }
+    }
+
+    /// With the phases of the effects.
+    #[must_use]
+    pub const fn with_phases(self, phases: Phases) -> Self {
+        const { assert!(Self::PHASES_SHIFT + Phases::BITS <= u16::BITS) };
+        Self(self.0 | phases.0 << Self::PHASES_SHIFT)
+    }
+
+    /// The phases of the effects.
+    pub const fn phases(self) -> Phases {
+        Phases(self.0 >> Self::PHASES_SHIFT)
     }
 
     /// With this reason.

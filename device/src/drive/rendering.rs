@@ -126,6 +126,7 @@ fn with(flags: SampleFlags, shown: &Shown<f32>) -> SampleFlags {
     flags
         .with_phase(shown.phase.sign())
         .with(SampleFlags::SETTLING, shown.settling)
+        .with_phases(shown.phases)
         .with_limit(match shown.limit {
             Limit::None => LimitReason::None,
             Limit::Torque => LimitReason::Torque,

@@ -1,5 +1,6 @@
 //! A sample as a line of CSV.
 
+use crepitus_model::render::effects::Phases;
 use crepitus_protocol::LimitReason;
 use crepitus_protocol::telemetry::SampleFlags;
 use serde_json::{Map, Number, Value};
@@ -33,7 +34,7 @@ pub const COLUMNS: [(&str, &str); 13] = [
     ),
     (
         "notes",
-        "settling: parameters are ramping; lost: count rejected; late: rendering was late",
+        "settling: parameters are ramping; lost: count rejected; late: rendering was late; EFFECT:PHASE: an effect that is not at rest",
     ),
 ];
 
@@ -124,6 +125,10 @@ impl Row {
                 line.push_str(name);
                 separator = "+";
             }
+        }
+        for (effect, phase) in self.flags.phases().named() {
+            let _ = write!(line, "{separator}{}:{phase}", effect.name);
+            separator = "+";
         }
         line.push('\n');
     }
@@ -228,11 +233,16 @@ fn flags(
         .with(SampleFlags::ENERGISED, reason != LimitReason::NotArmed)
         .with_limit(reason);
     for name in set.1.split('+').filter(|name| !name.is_empty()) {
-        let (bit, _) = NOTES
-            .iter()
-            .find(|(_, known)| *known == name)
-            .ok_or_else(|| wrong(set))?;
-        flags = flags.with(*bit, true);
+        flags = match name.split_once(':') {
+            Some((effect, phase)) => Phases::default()
+                .with_named(effect, phase)
+                .map(|phases| flags.with_phases(phases)),
+            None => NOTES
+                .iter()
+                .find(|(_, known)| *known == name)
+                .map(|(bit, _)| flags.with(*bit, true)),
+        }
+        .ok_or_else(|| wrong(set))?;
     }
     Ok(flags)
 }

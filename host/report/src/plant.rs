@@ -1,6 +1,7 @@
 //! What a plant adds to the figures: the leg, the hand, and the columns of
 //! its effects. A scene without a plant has none of this.
 
+use crepitus_model::render::effects::{EffectSpec, SPECS};
 use crepitus_scene::trace::Column;
 
 use crate::channels::{Channels, Sample, Setup};
@@ -43,10 +44,11 @@ const fn shown(column: &'static str, title: &'static str, axis: &'static str) ->
     }
 }
 
-const fn stage(column: &'static str, title: &'static str) -> Shown {
+/// Of an effect of the device.
+const fn stage(spec: &EffectSpec) -> Shown {
     Shown {
         is_stage: true,
-        ..shown(column, title, "Torque (N·m)")
+        ..shown(spec.column, spec.title, "Torque (N·m)")
     }
 }
 
@@ -57,12 +59,8 @@ const fn of_motor(column: &'static str, title: &'static str, axis: &'static str)
     }
 }
 
-const SHOWN: [Shown; 9] = [
-    stage(
-        "compensation_nm",
-        "Friction compensation, added to the model’s torque",
-    ),
-    stage("shaping_nm", "Bone shaping, added to the model’s torque"),
+/// Of the plant.
+const SHOWN: [Shown; 7] = [
     of_motor("motor_current_a", "Motor current", "Current (A)"),
     of_motor("motor_voltage_v", "Motor voltage", "Voltage (V)"),
     Shown {
@@ -227,8 +225,12 @@ fn columns(columns: &[Column]) -> Vec<(usize, Shown)> {
         .iter()
         .enumerate()
         .filter_map(|(at, column)| {
-            let shown = SHOWN.iter().find(|shown| shown.column == column.name)?;
-            Some((at, *shown))
+            let shown = SPECS
+                .iter()
+                .map(stage)
+                .chain(SHOWN)
+                .find(|shown| shown.column == column.name)?;
+            Some((at, shown))
         })
         .collect()
 }

@@ -160,6 +160,8 @@ impl<F: Real> DeviceEffect<F> for BoneShaping<F> {
         adds: "a ringing of the rendered torque where cuff and tissue swallow that of the bone",
         states: &["ringing", "its rate"],
         column: "shaping_nm",
+        title: "Bone shaping, added to the model’s torque",
+        phases: None,
         needs: &[Need {
             effect: "crepitus",
             why: "it rings where the model's torque jumps",

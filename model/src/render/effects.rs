@@ -8,9 +8,11 @@
 #[macro_use]
 mod table;
 mod faded;
+mod phases;
 mod slewed;
 
 pub use faded::Faded;
+pub use phases::{PhaseSpec, Phases};
 pub use slewed::Slewed;
 
 use super::bone_shaping::{BoneShaping, BoneShapingSettings};
@@ -37,6 +39,10 @@ pub struct EffectSpec {
     pub states: &'static [&'static str],
     /// Column of a trace: the torque that it adds, N·m.
     pub column: &'static str,
+    /// Title of the chart of that torque.
+    pub title: &'static str,
+    /// Its phases, if it has several.
+    pub phases: Option<PhaseSpec>,
     /// Effects without which it has no meaning.
     pub needs: &'static [Need],
     /// Its parameters.
@@ -84,6 +90,11 @@ pub trait DeviceEffect<F: Real>: Sized {
 
     /// The torque to add in this tick, N·m.
     fn added_nm(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &Shown<F>) -> F;
+
+    /// The number of its phase.
+    fn phase(&self) -> u16 {
+        0
+    }
 }
 
 /// An effect on a device that runs.
@@ -97,6 +108,22 @@ pub trait Switched<F, E> {
     /// From the next tick on: another law, or none, where `law` is given; and
     /// torque that changes for it by at most `slew_nm` a tick.
     fn change(&mut self, law: Option<Option<E>>, slew_nm: F);
+
+    /// The law in force.
+    fn law(&self) -> Option<&E>;
+}
+
+/// What else is shown of an effect that has acted.
+#[inline]
+fn note<F: Real, E: DeviceEffect<F>>(law: Option<&E>, added_nm: F, shown: &mut Shown<F>) {
+    if E::IS_SYMPTOM {
+        shown.model_torque_nm += added_nm;
+    }
+    if const { E::SPEC.phase_bits() > 0 }
+        && let Some(law) = law
+    {
+        shown.phases = shown.phases.with(const { E::SPEC.place() }, law.phase());
+    }
 }
 
 /// Runs code with the law of an effect.

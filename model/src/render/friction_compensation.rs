@@ -118,6 +118,8 @@ impl<F: Real> DeviceEffect<F> for FrictionCompensation<F> {
         adds: "the device's feed-forward against a share of the gear's dry friction",
         states: &[],
         column: "compensation_nm",
+        title: "Friction compensation, added to the model’s torque",
+        phases: None,
         needs: &[Need {
             effect: "drivetrain",
             why: "without it there is no friction to compensate",

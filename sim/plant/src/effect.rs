@@ -30,7 +30,7 @@ pub struct Effect {
 
 impl Effect {
     /// An effect of the device, from the model's table.
-    pub const fn of_device(spec: &EffectSpec) -> Self {
+    pub const fn of_device(spec: &'static EffectSpec) -> Self {
         Self {
             name: spec.name,
             adds: spec.adds,
@@ -38,7 +38,7 @@ impl Effect {
             parameters: spec.parameters,
             choices: &[],
             needs: spec.needs,
-            part: Part::Stage(spec.column),
+            part: Part::Stage(spec),
         }
     }
 }
@@ -98,9 +98,9 @@ pub enum Part {
     Joint,
     /// What the device knows of the shaft.
     Sensor,
-    /// A stage of the device after the symptoms, which its
-    /// [pipeline](crepitus_model::render) renders; its column in a trace.
-    Stage(&'static str),
+    /// A stage of the device after the joint, which its
+    /// [pipeline](crepitus_model::render) renders.
+    Stage(&'static EffectSpec),
     /// What turns the command into torque.
     Actuator(MakeActuator),
     /// A part of the chain, right of those before it in the table.

@@ -136,7 +136,13 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
     if scene.is_coupled()
         && let Ok(plant) = scene.assemble()
     {
-        columns.extend(stages::listed(scene).map(|(_, column)| number(column)));
+        for spec in stages::listed(scene) {
+            columns.push(number(spec.column));
+            columns.extend(spec.phases.map(|phases| Column {
+                name: phases.column,
+                kind: ColumnKind::Whole,
+            }));
+        }
         if scene.is_device {
             columns.extend(device::COLUMNS);
         }

@@ -38,6 +38,11 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Faded<F, E> {
     }
 
     #[inline]
+    fn law(&self) -> Option<&E> {
+        self.law.as_ref()
+    }
+
+    #[inline]
     fn tick(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &mut Shown<F>) -> F {
         if let Some(law) = &mut self.law {
             self.last_nm = law.added_nm(seen, input, shown);

@@ -32,6 +32,11 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Slewed<F, E> {
     }
 
     #[inline]
+    fn law(&self) -> Option<&E> {
+        self.law.as_ref()
+    }
+
+    #[inline]
     fn tick(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &mut Shown<F>) -> F {
         let target_nm = match &mut self.law {
             Some(law) => law.added_nm(seen, input, shown),

@@ -139,9 +139,7 @@ macro_rules! effects {
                     let added_nm = law.added_nm(seen, input, shown);
                     shown.torque_nm += added_nm;
                     shown.added.$effect = added_nm;
-                    if <$law<F> as DeviceEffect<F>>::IS_SYMPTOM {
-                        shown.model_torque_nm += added_nm;
-                    }
+                    note(Some(law), added_nm, shown);
                 })*
             }
         }
@@ -152,9 +150,7 @@ macro_rules! effects {
                 $(
                     let added_nm = self.$effect.tick(seen, input, shown);
                     shown.added.$effect = added_nm;
-                    if <$law<F> as DeviceEffect<F>>::IS_SYMPTOM {
-                        shown.model_torque_nm += added_nm;
-                    }
+                    note(self.$effect.law(), added_nm, shown);
                 )*
             }
         }

@@ -10,7 +10,7 @@ use crate::any_joint::Precise;
 use crate::scene::Scene;
 use crate::trace::EventRecord;
 use crate::walk::Walk;
-use crepitus_model::render::effects::SPECS;
+use crepitus_model::render::effects::{EffectSpec, SPECS};
 use crepitus_model::solver::Solver;
 use crepitus_plant::boundary::MotionStep;
 use crepitus_plant::chain::Impacts;
@@ -79,9 +79,9 @@ pub const FELT_COLUMN: &str = "hand_torque_nm";
 /// tick, which [`FELT_COLUMN`] leaves out: a plant that can have impacts has it.
 pub const STRUCK_COLUMN: &str = "hand_impact_nms";
 
-/// A stage behind the symptoms, what it adds now, and the work of that.
+/// An effect of the device, what it adds now, and the work of that.
 struct Stage {
-    effect: &'static str,
+    spec: &'static EffectSpec,
     /// Its place in the model's table.
     place: usize,
     added_nm: f64,
@@ -102,9 +102,9 @@ pub(super) fn simulate<F: Precise>(
         device: device::<F>(scene, solver, tick_s, &shaft)?,
         plant,
         stages: stages::listed(scene)
-            .map(|(effect, _)| Stage {
-                effect,
-                place: SPECS.iter().take_while(|s| s.name != effect).count(),
+            .map(|spec| Stage {
+                spec,
+                place: SPECS.iter().take_while(|s| s.name != spec.name).count(),
                 added_nm: 0.0,
                 work_j: 0.0,
             })
@@ -146,9 +146,13 @@ impl Run {
                 row.clear();
                 row.extend([time_s, before.angle_rad, before.omega_rad_s]);
                 self.device.write(&mut row);
-                row.extend(self.stages.iter().map(|s| s.added_nm));
+                let shown = self.device.shown();
+                for stage in &self.stages {
+                    row.push(stage.added_nm);
+                    let phase = stage.spec.phases.map(|_| shown.phases.get(stage.spec));
+                    row.extend(phase.map(f64::from));
+                }
                 if scene.is_device {
-                    let shown = self.device.shown();
                     row.extend([shown.torque_nm, f64::from(shown.limit as u8)]);
                 }
                 self.plant.write(&mut row);
@@ -208,7 +212,11 @@ impl Run {
                 balance: self.plant.balance(),
                 rendering: Rendering {
                     held,
-                    stages: self.stages.iter().map(|s| (s.effect, s.work_j)).collect(),
+                    stages: self
+                        .stages
+                        .iter()
+                        .map(|s| (s.spec.name, s.work_j))
+                        .collect(),
                     limits: scene.is_device.then_some(limited),
                     absorbed: self.plant.absorbed_j(),
                 },

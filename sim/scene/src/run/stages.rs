@@ -6,7 +6,7 @@ use crate::scene::Scene;
 use crepitus_model::control::device_limits::LimitSettings;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::joint::shaft::Linear;
-use crepitus_model::render::effects::{Effects, SwitchedEffects};
+use crepitus_model::render::effects::{EffectSpec, Effects, SwitchedEffects};
 use crepitus_model::render::input_check::{Checked, InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
 use crepitus_model::render::{Addition, Bare, Check, Limits, Pipeline, Seen, Shown, Symptom};
@@ -73,14 +73,14 @@ pub(super) fn crepitus<F: Real, L: Locate<F, Shape = Linear>>(
     ))
 }
 
-/// The stages behind the symptoms that a scene lists, with their columns, in
-/// the order in which they act.
-pub(super) fn listed(scene: &Scene) -> impl Iterator<Item = (&'static str, &'static str)> {
+/// The effects of the device that a scene lists, in the order in which they
+/// act.
+pub(super) fn listed(scene: &Scene) -> impl Iterator<Item = &'static EffectSpec> {
     scene
         .listed
         .iter()
         .filter_map(|listed| match listed.effect.part {
-            Part::Stage(column) => Some((listed.effect.name, column)),
+            Part::Stage(spec) => Some(spec),
             _ => None,
         })
 }
