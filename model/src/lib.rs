@@ -69,9 +69,9 @@ pub use joint::{
 pub use parameters::Tabled;
 pub use real::Real;
 pub use render::Pipeline;
-pub use render::bone_shaping::BoneShaping;
 pub use render::crepitus::{Crepitus, Renderer};
-pub use render::friction_compensation::FrictionCompensation;
+pub use render::effects::bone_shaping::BoneShaping;
+pub use render::effects::friction_compensation::FrictionCompensation;
 pub use render::guarded::Guarded;
 pub use render::input_check::Sample;
 pub use solver::frozen::Frozen;

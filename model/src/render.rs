@@ -14,10 +14,8 @@
 //! Every reason why less than what the model asks for is shown has a name, a
 //! [`Limit`]; the last one that acts is reported.
 
-pub mod bone_shaping;
 pub mod crepitus;
 pub mod effects;
-pub mod friction_compensation;
 pub mod guarded;
 pub mod held;
 pub mod input_check;
@@ -288,8 +286,8 @@ impl<F: Real> Seen<F> {
 mod tests {
     use super::*;
     use crate::render::effects::EffectSettings;
+    use crate::render::effects::friction_compensation::FrictionCompensationSettings;
     use crate::render::effects::tests::TIMING;
-    use crate::render::friction_compensation::FrictionCompensationSettings;
     use crate::solver::locate::ExactEvents;
     use crate::{Frozen, Settings, StepCoefficients};
 

@@ -12,9 +12,9 @@ mod support;
 
 use crepitus_model::control::current_loop::CurrentLoopSettings;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
-use crepitus_model::render::bone_shaping::BoneShapingSettings;
+use crepitus_model::render::effects::bone_shaping::BoneShapingSettings;
+use crepitus_model::render::effects::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::render::effects::{DeviceEffect, Timing};
-use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
     BoneShaping, CurrentLoop, FrictionCompensation, Frozen, Real, Settings, ShaftStep,

@@ -7,7 +7,9 @@
 
 #[macro_use]
 mod table;
+pub mod bone_shaping;
 mod faded;
+pub mod friction_compensation;
 mod phases;
 mod slewed;
 
@@ -15,8 +17,6 @@ pub use faded::Faded;
 pub use phases::{PhaseSpec, Phases};
 pub use slewed::Slewed;
 
-use super::bone_shaping::{BoneShaping, BoneShapingSettings};
-use super::friction_compensation::{FrictionCompensation, FrictionCompensationSettings};
 use super::input_check::Checked;
 use super::{Addition, Seen, Shown};
 use crate::joint::SettingsError;
@@ -170,7 +170,10 @@ pub(crate) mod tests {
 
     #[test]
     fn a_line_of_the_table_is_in_everything_that_follows_from_it() {
-        let numbers: std::vec::Vec<f64> = FrictionCompensationSettings::defaults().values().into();
+        let numbers: std::vec::Vec<f64> =
+            friction_compensation::FrictionCompensationSettings::defaults()
+                .values()
+                .into();
         let settings = EffectSettings::given(|name| {
             (name == "friction-compensation").then_some(numbers.as_slice())
         });

@@ -1,28 +1,28 @@
 //! The effects that a scene can call for: one file each here, or in the model,
 //! whose [table](crepitus_model::render::effects) has those of the device.
 
+pub mod backlash;
+pub mod crepitus;
+pub mod cuff;
+pub mod drivetrain;
+pub mod encoder;
+pub mod hand;
+pub mod limb;
+pub mod motor;
+
 use crate::effect::Effect;
 use crepitus_model::render::effects::SPECS;
 
-/// Declares the effects' files and the table of them.
-macro_rules! effects {
-    ($($file:ident),* $(,)?) => {
-        $(pub mod $file;)*
-
-        const OWN: &[Effect] = &[$($file::EFFECT),*];
-    };
-}
-
-effects! {
-    crepitus,
-    encoder,
-    motor,
-    drivetrain,
-    backlash,
-    cuff,
-    limb,
-    hand,
-}
+const OWN: [Effect; 8] = [
+    crepitus::EFFECT,
+    encoder::EFFECT,
+    motor::EFFECT,
+    drivetrain::EFFECT,
+    backlash::EFFECT,
+    cuff::EFFECT,
+    limb::EFFECT,
+    hand::EFFECT,
+];
 
 const COUNT: usize = OWN.len() + SPECS.len();
 

@@ -144,8 +144,8 @@ fn is_of(effect: &Effect, function: &str) -> bool {
         "crepitus" => "crepitus_model::solver::frozen",
         "encoder" => "crepitus_model::control::encoder",
         "motor" => "crepitus_model::control::current_loop",
-        "friction-compensation" => "crepitus_model::render::friction_compensation",
-        "bone-shaping" => "crepitus_model::render::bone_shaping",
+        "friction-compensation" => "crepitus_model::render::effects::friction_compensation",
+        "bone-shaping" => "crepitus_model::render::effects::bone_shaping",
         _ => "no such function",
     };
     let winding =

@@ -75,7 +75,7 @@ impl<F: Real, E> Faded<F, E> {
 mod tests {
     use super::*;
     use crate::BoneShaping;
-    use crate::render::bone_shaping::BoneShapingSettings;
+    use crate::render::effects::bone_shaping::BoneShapingSettings;
     use crate::render::effects::tests::{TIMING, after, seen};
     use std::vec::Vec;
 

@@ -61,8 +61,8 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Slewed<F, E> {
 mod tests {
     use super::*;
     use crate::FrictionCompensation;
+    use crate::render::effects::friction_compensation::FrictionCompensationSettings;
     use crate::render::effects::tests::{TIMING, after, seen};
-    use crate::render::friction_compensation::FrictionCompensationSettings;
 
     /// 0.4 N·m along.
     fn slewed(slew_nm: f32) -> Slewed<f32, FrictionCompensation<f32>> {

@@ -4,15 +4,15 @@
 macro_rules! effects {
     ($($effect:ident: $law:ident, $settings:ident;)*) => {
         /// The effects, in the order in which they act.
-        pub const SPECS: &[EffectSpec] = &[$(<$law<f64> as DeviceEffect<f64>>::SPEC),*];
+        pub const SPECS: &[EffectSpec] = &[$(<$effect::$law<f64> as DeviceEffect<f64>>::SPEC),*];
 
         /// The device's parameters of each.
-        pub const DEVICE: &[&[Parameter]] = &[$($settings::DEVICE),*];
+        pub const DEVICE: &[&[Parameter]] = &[$($effect::$settings::DEVICE),*];
 
         /// Parameters of the effects; one that is off is absent.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct EffectSettings {
-            $(#[doc = concat!("`", stringify!($effect), "`.")] pub $effect: Option<$settings>,)*
+            $(#[doc = concat!("`", stringify!($effect), "`.")] pub $effect: Option<$effect::$settings>,)*
         }
 
         /// The torque of each, N·m.
@@ -24,19 +24,19 @@ macro_rules! effects {
         /// The laws alone, around a bare solver.
         #[derive(Clone, Debug, PartialEq)]
         pub struct Effects<F> {
-            $(#[doc = concat!("`", stringify!($effect), "`.")] pub $effect: Option<$law<F>>,)*
+            $(#[doc = concat!("`", stringify!($effect), "`.")] pub $effect: Option<$effect::$law<F>>,)*
         }
 
         /// The effects of a device that runs.
         #[derive(Clone, Debug)]
         pub struct SwitchedEffects<F: Real> {
-            $($effect: <$law<F> as DeviceEffect<F>>::Switched,)*
+            $($effect: <$effect::$law<F> as DeviceEffect<F>>::Switched,)*
         }
 
         /// Other laws, where they are other ones.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct EffectChanges<F> {
-            $($effect: Option<Option<$law<F>>>,)*
+            $($effect: Option<Option<$effect::$law<F>>>,)*
         }
 
         impl EffectSettings {
@@ -44,7 +44,7 @@ macro_rules! effects {
             pub fn read(source: &impl Source) -> Self {
                 Self {
                     $($effect: source
-                        .is_on(const { switch($settings::DEVICE) })
+                        .is_on(const { switch($effect::$settings::DEVICE) })
                         .then(|| source.read()),)*
                 }
             }
@@ -53,7 +53,7 @@ macro_rules! effects {
             /// table.
             pub fn given<'a>(numbers: impl Fn(&str) -> Option<&'a [f64]>) -> Self {
                 Self {
-                    $($effect: numbers(<$law<f64> as DeviceEffect<f64>>::SPEC.name).map(filled),)*
+                    $($effect: numbers(<$effect::$law<f64> as DeviceEffect<f64>>::SPEC.name).map(filled),)*
                 }
             }
 
@@ -64,7 +64,7 @@ macro_rules! effects {
             pub fn laws<F: Real>(&self, timing: &Timing) -> Result<Effects<F>, SettingsError> {
                 Ok(Effects {
                     $($effect: match &self.$effect {
-                        Some(settings) => Some($law::new(settings, timing)?),
+                        Some(settings) => Some($effect::$law::new(settings, timing)?),
                         None => None,
                     },)*
                 })
@@ -97,7 +97,7 @@ macro_rules! effects {
 
             /// Of those that render a disorder, N·m.
             pub fn symptoms_nm(&self) -> F {
-                [$((<$law<F> as DeviceEffect<F>>::IS_SYMPTOM, self.$effect)),*]
+                [$((<$effect::$law<F> as DeviceEffect<F>>::IS_SYMPTOM, self.$effect)),*]
                     .into_iter()
                     .filter(|(is_symptom, _)| *is_symptom)
                     .fold(F::ZERO, |sum, (_, nm)| sum + nm)
@@ -168,8 +168,8 @@ macro_rules! effects {
             let mut left = place;
             $(
                 if left == 0 {
-                    let law = $law::new(&$settings::defaults(), timing)?;
-                    return Ok(Some(visitor.visit::<$law<F>>(law)));
+                    let law = $effect::$law::new(&$effect::$settings::defaults(), timing)?;
+                    return Ok(Some(visitor.visit::<$effect::$law<F>>(law)));
                 }
                 left = left.wrapping_sub(1);
             )*

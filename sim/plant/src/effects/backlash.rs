@@ -147,7 +147,8 @@ impl Backlash {
         if self.right_kg_m2.is_finite() {
             let sum = rotor_kg_m2 + self.right_kg_m2;
             self.lost_j += 0.5 * rotor_kg_m2 * self.right_kg_m2 / sum * slip * slip;
-            self.impacts.note(rotor_kg_m2 * self.right_kg_m2 / sum * slip);
+            self.impacts
+                .note(rotor_kg_m2 * self.right_kg_m2 / sum * slip);
             joint.omega_rad_s += rotor_kg_m2 / sum * slip;
             0.0
         } else {

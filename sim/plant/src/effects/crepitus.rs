@@ -3,7 +3,7 @@
 
 use crate::effect::{Effect, Part};
 use crepitus_model::Parameters;
-use crepitus_model::parameters::{Tabled};
+use crepitus_model::parameters::Tabled;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {

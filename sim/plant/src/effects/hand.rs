@@ -15,9 +15,9 @@
 //! Who lifts a leg knows its weight: if the scene has a `limb`, the hand adds
 //! the torque that holds it at the intended angle, so the leg does not sag.
 
+use crate::boundary::{Boundary, MotionStep, Stretch};
 use crate::chain::{Body, Chain, Flow, Push, Settled, Weight};
 use crate::effect::{Effect, Part, numbers};
-use crate::boundary::{Boundary, MotionStep, Stretch};
 use crate::energy_balance::{Account, EnergyBalance};
 use crepitus_model::parameters::ParameterSpec;
 

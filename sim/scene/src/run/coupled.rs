@@ -145,17 +145,7 @@ impl Run {
             if wants_rows && n % every == 0 {
                 row.clear();
                 row.extend([time_s, before.angle_rad, before.omega_rad_s]);
-                self.device.write(&mut row);
-                let shown = self.device.shown();
-                for stage in &self.stages {
-                    row.push(stage.added_nm);
-                    let phase = stage.spec.phases.map(|_| shown.phases.get(stage.spec));
-                    row.extend(phase.map(f64::from));
-                }
-                if scene.is_device {
-                    row.extend([shown.torque_nm, f64::from(shown.limit as u8)]);
-                }
-                self.plant.write(&mut row);
+                self.write(scene, &mut row);
                 if is_felt {
                     row.push(felt_nm);
                     if has_impacts {
@@ -226,6 +216,21 @@ impl Run {
                 warnings: self.plant.warnings(),
             }),
         })
+    }
+
+    /// Writes the columns of the device and of the plant.
+    fn write(&self, scene: &Scene, row: &mut Vec<f64>) {
+        self.device.write(row);
+        let shown = self.device.shown();
+        for stage in &self.stages {
+            row.push(stage.added_nm);
+            let phase = stage.spec.phases.map(|_| shown.phases.get(stage.spec));
+            row.extend(phase.map(f64::from));
+        }
+        if scene.is_device {
+            row.extend([shown.torque_nm, f64::from(shown.limit as u8)]);
+        }
+        self.plant.write(row);
     }
 
     /// Commands what the device shows in the next tick. The joint's torque, and

@@ -8,7 +8,7 @@ use crepitus_model::Convention;
 use crepitus_model::control::device_limits::LimitSettings;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Tabled;
-use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
+use crepitus_model::render::effects::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::render::turn_back::most_rad_per_count;
 use crepitus_plant::assembly::Listed;
 use crepitus_plant::effect::numbers;

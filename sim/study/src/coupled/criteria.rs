@@ -17,7 +17,7 @@
 use super::setting::{Lag, Setting, TICK_S};
 use crepitus_model::Parameters;
 use crepitus_model::control::encoder::EncoderSettings;
-use crepitus_model::render::friction_compensation::least_left_nm;
+use crepitus_model::render::effects::friction_compensation::least_left_nm;
 use crepitus_plant::effect::Effect;
 use crepitus_plant::effects::{cuff, drivetrain, hand};
 use std::f64::consts::TAU;

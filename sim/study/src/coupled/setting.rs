@@ -1,7 +1,7 @@
 //! The varied settings, and the scene of each.
 
 use crepitus_model::joint::presets::{PRESETS, Preset};
-use crepitus_model::render::friction_compensation::FrictionCompensationSettings;
+use crepitus_model::render::effects::friction_compensation::FrictionCompensationSettings;
 use crepitus_scene::scene::Overrides;
 use crepitus_scene::{Scene, SceneError};
 use std::fmt::Write;

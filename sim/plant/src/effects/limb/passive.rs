@@ -99,7 +99,10 @@ mod tests {
             let passive = Passive::for_hip_deg(hip);
             for (knee, moment) in KNEE_DEG.into_iter().zip(moments) {
                 let found = passive.moment_nm(knee.to_radians());
-                assert!((found - moment).abs() < 0.051, "{found} at {knee}, hip {hip}");
+                assert!(
+                    (found - moment).abs() < 0.051,
+                    "{found} at {knee}, hip {hip}"
+                );
             }
         }
         for (hip, zero) in [(0.0_f64, 13.9_f64), (30.0, 25.8), (90.0, 61.2)] {
@@ -119,8 +122,11 @@ mod tests {
             let at = from + (f64::from(i) + 0.5) * h;
             integral -= h * passive.moment_nm(at);
             let (low, high) = (at - 1e-6, at + 1e-6);
-            let (low, high, [_, slope, bend]) =
-                (passive.expand(low), passive.expand(high), passive.expand(at));
+            let (low, high, [_, slope, bend]) = (
+                passive.expand(low),
+                passive.expand(high),
+                passive.expand(at),
+            );
             let differs = |i: usize, known: f64| {
                 let found = (high[i] - low[i]) / 2e-6;
                 (found - known).abs() > 1e-3 * (1.0 + known.abs())
@@ -128,7 +134,10 @@ mod tests {
             assert!(!differs(0, slope) && !differs(1, bend), "at {at}");
         }
         let stored = passive.stored_j(to) - passive.stored_j(from);
-        assert!((stored - integral).abs() < 1e-5 * integral.abs(), "{stored} {integral}");
+        assert!(
+            (stored - integral).abs() < 1e-5 * integral.abs(),
+            "{stored} {integral}"
+        );
         assert_eq!(passive.stored_j(0.0), 0.0);
     }
 }

@@ -18,9 +18,9 @@
 
 use crate::actuator::Actuator;
 use crate::chain::{Push, Step, Verdict, sense_of};
+use crate::effects::motor::winding::{Course, Winding};
 use crate::effects::motor::{COLUMNS, MotorNumbers, NAME};
 use crate::energy_balance::{Account, EnergyBalance};
-use crate::effects::motor::winding::{Course, Winding};
 use crepitus_model::Sense;
 
 /// Voltage over a diode that conducts, V.
