@@ -114,7 +114,10 @@ mod tests {
             spec("none", &[]),
             spec("one", &["rest"]),
             spec("two", &["rest", "contact"]),
-            SPECS[0],
+            EffectSpec {
+                phases: None,
+                ..SPECS[0]
+            },
             spec("four", &["rest", "a", "b", "c"]),
             spec("five", &["rest", "a", "b", "c", "d"]),
         ];
