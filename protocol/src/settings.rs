@@ -173,6 +173,8 @@ mod tests {
     use super::*;
     use crepitus_model::joint::presets::PRESETS;
     use crepitus_model::parameters::Tabled;
+    use crepitus_model::render::effects;
+    use std::vec::Vec;
 
     #[test]
     fn defaults_are_the_papers_joint_and_nothing_else() {
@@ -200,7 +202,7 @@ mod tests {
         }
         let s = DeviceSettings::of(&values).unwrap();
         let p = s.crepitus.unwrap().parameters;
-        let rebuilt = [
+        let crepitus = [
             1.0,
             p.inertia_kg_m2,
             p.stiffness_nm_per_rad,
@@ -209,17 +211,32 @@ mod tests {
             f64::from(u8::from(
                 s.crepitus.unwrap().restart == Restart::FromKinetic,
             )),
-        ]
-        .into_iter()
-        .chain(s.encoder.values())
-        .chain([1.0])
-        .chain(s.effects.friction_compensation.unwrap().values())
-        .chain([1.0])
-        .chain(s.effects.bone_shaping.unwrap().values())
-        .chain(s.current_loop.values())
-        .chain([s.torque_constant_nm_per_a])
-        .chain(s.limits.values());
-        assert!(rebuilt.eq(values.0));
+        ];
+        let of = |group: &str| -> Vec<f64> {
+            let own = PARAMETERS.iter().zip(values.0);
+            own.filter(|(parameter, _)| parameter.group == group)
+                .map(|(_, value)| value)
+                .collect()
+        };
+        assert_eq!(of("crepitus"), crepitus);
+        assert_eq!(of("encoder"), s.encoder.values());
+        assert_eq!(of("limits"), s.limits.values());
+        let torque_constant = [s.torque_constant_nm_per_a];
+        assert_eq!(
+            of("motor"),
+            [s.current_loop.values().as_slice(), &torque_constant].concat()
+        );
+        for spec in effects::SPECS {
+            assert_eq!(of(spec.name).first(), Some(&1.0), "{}", spec.name);
+        }
+        let numbers: Vec<_> = (effects::SPECS.iter())
+            .map(|spec| (spec.name, of(spec.name)))
+            .collect();
+        let effects = EffectSettings::given(|name| {
+            let (_, numbers) = numbers.iter().find(|(group, _)| *group == name)?;
+            numbers.get(1..)
+        });
+        assert_eq!(s.effects, effects);
     }
 
     #[test]

@@ -32,13 +32,16 @@ pub(crate) fn torque_section(title: &str, t: &TorqueSummary) -> Section {
 }
 
 /// A table of what is reported and its value.
-pub(crate) fn section<'a>(
+pub(crate) fn section(
     title: &str,
-    rows: impl IntoIterator<Item = (&'a str, String)>,
+    rows: impl IntoIterator<Item = (impl Into<String>, String)>,
 ) -> Section {
     Section {
         title: title.to_owned(),
-        rows: rows.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
+        rows: rows
+            .into_iter()
+            .map(|(name, value)| (name.into(), value))
+            .collect(),
     }
 }
 

@@ -50,7 +50,9 @@ fn serve(mut master: TTYPort, _slave: &TTYPort, is_over: &AtomicBool) {
         if let Ok(count) = master.read(&mut bytes) {
             device.hear(&bytes[..count]);
         }
-        while Duration::from_millis(device.now_ms()) < began.elapsed() {
+        // The device waits for a busy machine: its buffer would run over.
+        if Duration::from_millis(device.now_ms()) < began.elapsed() && device.waiting(0).is_empty()
+        {
             device.millisecond();
         }
         let waiting = device.waiting(0);

@@ -23,7 +23,7 @@ pub(super) fn sections(s: &RecordingSummary, sidecar: &Sidecar) -> Vec<Section> 
             .limited_s
             .iter()
             .map(|(reason, time_s)| ((*reason).to_owned(), format!("{time_s:.3} s")));
-        sections.push(named("What limited the torque", rows));
+        sections.push(section("What limited the torque", rows));
     }
     let mut before: Option<&ParameterSet> = None;
     for set in &s.parameters {
@@ -37,17 +37,9 @@ pub(super) fn sections(s: &RecordingSummary, sidecar: &Sidecar) -> Vec<Section> 
                 format!("{} samples, {:.4} s", gap.samples, seconds(gap.samples)),
             )
         });
-        sections.push(named("Missing samples", rows));
+        sections.push(section("Missing samples", rows));
     }
     sections
-}
-
-/// A table whose rows have names of their own.
-fn named(title: &str, rows: impl IntoIterator<Item = (String, String)>) -> Section {
-    Section {
-        title: title.to_owned(),
-        rows: rows.into_iter().collect(),
-    }
 }
 
 fn recording(s: &RecordingSummary) -> Section {
@@ -99,7 +91,7 @@ fn parameters(set: &ParameterSet, before: Option<&ParameterSet>, sidecar: &Sidec
         .iter()
         .filter(|(name, value)| before.is_none_or(|before| before.values.get(*name) != Some(value)))
         .map(|(name, value)| (name.clone(), shown(value)));
-    named(&title, rows)
+    section(&title, rows)
 }
 
 fn shown(value: &Value) -> String {

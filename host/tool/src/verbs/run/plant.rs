@@ -4,6 +4,7 @@
 use crate::sections::{millijoule, nm, section};
 use crepitus_report::{Account, Balance, EnergyTerm, Section};
 use crepitus_scene::Summary;
+use std::borrow::Cow;
 
 /// A line on the hand and one on the balance, as far as there are any.
 pub(super) fn in_brief(s: &Summary) -> Vec<String> {
@@ -62,38 +63,40 @@ pub(super) fn balance(s: &Summary) -> Option<Balance> {
 /// is nothing to render.
 pub(super) fn rendered_section(s: &Summary) -> Option<Section> {
     let rendering = &s.plant_energy.as_ref()?.rendering;
-    let mut rows: Vec<(&str, String)> = Vec::new();
+    let mut rows: Vec<(Cow<'_, str>, String)> = Vec::new();
     if s.energy.is_some() {
-        rows.push(("the model’s torque took", millijoule(rendering.model_j)));
         rows.push((
-            "holding it over each tick, and what the sensor does not see, added",
+            "the model’s torque took".into(),
+            millijoule(rendering.model_j),
+        ));
+        rows.push((
+            "holding it over each tick, and what the sensor does not see, added".into(),
             millijoule(rendering.sampling_j),
         ));
     }
     for stage in &rendering.stages {
         rows.push((
-            match stage.effect {
-                "friction-compensation" => "friction compensation added",
-                "bone-shaping" => "bone shaping added",
-                other => other,
-            },
+            format!("{} added", stage.effect.replace('-', " ")).into(),
             millijoule(stage.joule),
         ));
     }
     if let Some(limits_j) = rendering.limits_j {
-        rows.push(("the device’s guards and limits added", millijoule(limits_j)));
+        rows.push((
+            "the device’s guards and limits added".into(),
+            millijoule(limits_j),
+        ));
     }
     if rows.is_empty() && rendering.absorbed_j == 0.0 {
         return None;
     }
     if s.effects.iter().any(|e| e.name == "motor") {
         rows.push((
-            "the motor added, where its torque was not the one commanded",
+            "the motor added, where its torque was not the one commanded".into(),
             millijoule(rendering.actuator_j),
         ));
     }
     rows.push((
-        "in all: taken out of the mechanics",
+        "in all: taken out of the mechanics".into(),
         millijoule(rendering.absorbed_j),
     ));
     Some(section("Work of the rendered torque", rows))
