@@ -1,4 +1,4 @@
-//! What is no message changes nothing but counters, however long it is.
+//! Invalid frames of any length change nothing but counters.
 
 mod support;
 
@@ -15,8 +15,8 @@ use support::{Bench, Boots};
 /// Two packets and two bytes: every length at which USB or COBS could err.
 const LONGEST: usize = 130;
 
-/// Bodies of this length that are no message: of no lane, and of each lane
-/// with bytes that no message has.
+/// Invalid bodies of this length: of an unknown lane, and of each lane with
+/// invalid bytes.
 fn bodies(length: usize) -> Vec<Vec<u8>> {
     let mut bodies = vec![vec![0; length], vec![0xff; length]];
     for lane in Lane::ALL {
@@ -29,7 +29,7 @@ fn bodies(length: usize) -> Vec<Vec<u8>> {
     bodies
 }
 
-/// All that comms has for the host.
+/// All bytes queued for the host.
 fn sent(comms: &mut Comms) -> Vec<u8> {
     let mut all = Vec::new();
     while !comms.to_send().is_empty() {
@@ -104,10 +104,10 @@ fn bodies_of_every_length_do_nothing_to_the_drive() {
     assert!(!drive.take_reboot());
 }
 
-/// Noise, half a frame, delimiters, a frame that never ends: and a device
-/// that is then used as if nothing had been.
+/// A device works normally after noise, half a frame, delimiters, and a frame
+/// that never ends.
 #[test]
-fn garbage_before_the_first_frame_is_forgotten() {
+fn garbage_before_the_first_frame_is_discarded() {
     let half = encode_bytes(Lane::Management, b"H\x07").unwrap();
     for garbage in [
         &b"AT+CGMM\r\n"[..],
@@ -132,8 +132,8 @@ fn garbage_before_the_first_frame_is_forgotten() {
     }
 }
 
-/// A request that was eaten by what stood before it is repeated, with its
-/// number, and carried out once.
+/// A request lost to garbage before it is retried with its sequence number and
+/// carried out once.
 #[test]
 fn a_request_that_was_lost_is_repeated() {
     let mut bench = Bench::new(&Boots::new());
@@ -158,9 +158,9 @@ fn a_request_that_was_lost_is_repeated() {
     assert_eq!((requests(&bench), replies), (1, 3));
 }
 
-/// Whatever comes behind the bytes of a question is a later version's.
+/// Extra bytes of a management request, from a later version, are ignored.
 #[test]
-fn a_longer_question_is_answered() {
+fn a_longer_management_request_is_answered() {
     let mut comms = Comms::new(&Boots::new().comms);
     sent(&mut comms);
     let question = Question {

@@ -1,4 +1,4 @@
-//! The host's side of the lane that never changes.
+//! Management requests from the host.
 
 use crate::comms::Comms;
 use crepitus_protocol::Lane;
@@ -6,12 +6,12 @@ use crepitus_protocol::frame;
 use crepitus_protocol::host::Refusal;
 use crepitus_protocol::management::{Answer, Question, What};
 
-/// Time for what was said last to arrive, ms.
+/// Delay before a reboot, so that the last reply is sent, ms.
 const REBOOT_MS: u64 = 20;
 
 impl Comms {
-    /// Who is there, stop, reboot.
-    pub(super) fn host_asks(&mut self, question: Question) {
+    /// Answers hello, stop and reboot.
+    pub(super) fn answer_management(&mut self, question: Question) {
         let token = question.token;
         let answer = match question.what {
             What::Hello => Answer::Hello {
@@ -20,14 +20,14 @@ impl Comms {
                 drive: self.drive.identity().copied().unwrap_or_default(),
             },
             What::Stop => {
-                self.let_go(Refusal::Aborted);
-                self.to_drive.ask(What::Stop);
+                self.release(Refusal::Aborted);
+                self.to_drive.queue_management(What::Stop);
                 Answer::Stop { token, done: true }
             }
             What::Reboot => {
-                let done = !self.supervision.is_wanted();
+                let done = !self.supervision.is_enable_requested();
                 if done {
-                    self.to_drive.ask(What::Reboot);
+                    self.to_drive.queue_management(What::Reboot);
                     self.reboot_ms = Some(self.now_ms.saturating_add(REBOOT_MS));
                 }
                 Answer::Reboot { token, done }

@@ -1,5 +1,5 @@
-//! Both controllers, natively, with the wires between them and a motor that
-//! does what it is told: what the tests of the device share.
+//! Shared by the tests of the device: both controllers, the wires between them
+//! and an ideal motor.
 
 #![allow(dead_code, reason = "each test program uses its part")]
 
@@ -24,7 +24,7 @@ pub(crate) const TICKS_PER_MS: u32 = 20;
 /// Bytes that the link carries in a tick: 4.2 Mbaud, ten bits a byte.
 const LINK_BYTES: usize = 21;
 
-/// Who a controller is.
+/// Identity of a controller.
 pub(crate) fn identity(role: Role) -> Identity {
     Identity {
         role,
@@ -33,7 +33,7 @@ pub(crate) fn identity(role: Role) -> Identity {
     }
 }
 
-/// How both start.
+/// Boot-time inputs of both.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Boots {
     pub(crate) drive: drive::Boot,
@@ -49,7 +49,7 @@ impl Boots {
     }
 }
 
-/// A device on a bench, and what a host has received of it.
+/// A device on a bench, and the bytes that a host has received.
 pub(crate) struct Bench {
     pub(crate) drive: Drive,
     pub(crate) comms: Comms,
@@ -128,7 +128,7 @@ impl Bench {
         let outputs = self.drive.command_motor(&drive::command::Inputs {
             current_a: Some(self.motor.current_a()),
             enable_is_on: self.enable[0],
-            is_broken: false,
+            has_tripped: false,
         });
         self.enable[0] = outputs.enable;
         let is_powered = self.enable == [true; 2];
@@ -168,7 +168,7 @@ impl Bench {
         }
     }
 
-    /// Tells comms something that has no reply.
+    /// Sends comms a request without reply.
     pub(crate) fn tell(&mut self, ask: Ask) {
         let request = Request {
             session: self.session,
@@ -179,7 +179,7 @@ impl Bench {
         self.comms.received(&frame);
     }
 
-    /// Asks, and runs until the answer is there.
+    /// Sends a request and runs until the reply arrives.
     pub(crate) fn ask(&mut self, ask: Ask) -> Result<Answer, Refusal> {
         self.number = self.number.wrapping_add(1);
         self.tell(ask);
@@ -194,7 +194,7 @@ impl Bench {
         panic!("no answer to {ask:?}");
     }
 
-    /// Runs for so many milliseconds, renewing the lease.
+    /// Runs for this many milliseconds, renewing the lease.
     pub(crate) fn run_leased(&mut self, ms: u32) {
         for n in 0..ms {
             if n % 50 == 0 {
@@ -204,7 +204,7 @@ impl Bench {
         }
     }
 
-    /// Runs until the drive is there with the parameters of comms.
+    /// Runs until the drive has applied the parameters of comms.
     pub(crate) fn settle(&mut self) {
         for _ in 0..200 {
             self.millisecond();

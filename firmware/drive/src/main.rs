@@ -185,7 +185,7 @@ mod app {
         let inputs = Inputs {
             current_a: part.converter.take_a(),
             enable_is_on: part.line.is_on(),
-            is_broken: part.bridge.break_has_fired(),
+            has_tripped: part.bridge.break_has_fired(),
         };
         let (counters, was_armed) = (cx.shared.counters, cx.shared.was_armed);
         let mut shared = (
@@ -200,7 +200,7 @@ mod app {
             };
             // By reference: a copy takes microseconds.
             if let Some(new) = plan {
-                command.take_over(new, counters);
+                command.apply(new, counters);
                 *plan = None;
             }
             let outputs = command.tick(&inputs, sampled, rendered.as_ref(), counters);
@@ -275,7 +275,7 @@ mod app {
             cx.shared.rendering_plan.lock(|slot| {
                 // By reference: a copy takes microseconds.
                 if let Some(plan) = slot {
-                    rendering.take_over(plan, sampled.omega_rad_s);
+                    rendering.apply(plan, sampled.omega_rad_s);
                     *slot = None;
                 }
             });

@@ -72,7 +72,7 @@ struct Readings {
     /// Instead of what the winding does.
     current_a: Option<f32>,
     line: Option<bool>,
-    is_broken: bool,
+    has_tripped: bool,
     is_late: bool,
     is_idle: bool,
 }
@@ -85,7 +85,7 @@ impl Readings {
             has_current: true,
             current_a: None,
             line: None,
-            is_broken: false,
+            has_tripped: false,
             is_late: false,
             is_idle: true,
         }
@@ -98,7 +98,7 @@ impl Readings {
             has_current: how & 1 == 0,
             current_a: (how & 2 != 0).then(|| bytes.f32()),
             line: (how & 4 != 0).then_some(how & 8 != 0),
-            is_broken: how & 0x30 == 0x30,
+            has_tripped: how & 0x30 == 0x30,
             is_late: how & 0x40 != 0,
             is_idle: how & 0x80 == 0,
         }
@@ -333,7 +333,7 @@ impl Bench {
         let inputs = Inputs {
             current_a: readings.has_current.then_some(current_a),
             enable_is_on: readings.line.unwrap_or(self.line_is_on),
-            is_broken: readings.is_broken,
+            has_tripped: readings.has_tripped,
         };
         let outputs = self.drive.command_motor(&inputs);
         if readings.is_idle {
@@ -366,7 +366,7 @@ impl Bench {
             return;
         };
         assert!(volts.is_finite() && outputs.enable && live);
-        assert!(!inputs.is_broken && inputs.current_a.is_some());
+        assert!(!inputs.has_tripped && inputs.current_a.is_some());
         let heard = self.heard.expect("a heartbeat");
         assert!(tick - heard < HEARTBEAT_TICKS, "{} ticks", tick - heard);
         assert!(tick < self.lease_end, "the lease has ended");

@@ -196,7 +196,7 @@ impl Board {
             let outputs = self.drive.command_motor(&Inputs {
                 current_a: self.converts.then(|| single(self.leg.current_a())),
                 enable_is_on: self.drive_line.read,
-                is_broken: self.comparator_tripped,
+                has_tripped: self.comparator_tripped,
             });
             self.execute(outputs);
         }
@@ -258,8 +258,8 @@ impl Board {
         let comms_runs = self.comms_health == Health::Runs;
         down.tick(
             self.tick,
-            |has_place| {
-                (comms_runs && has_place)
+            |has_buffer| {
+                (comms_runs && has_buffer)
                     .then(|| comms.link_to_send())
                     .flatten()
             },
@@ -271,7 +271,7 @@ impl Board {
         );
         up.tick(
             self.tick,
-            |has_place| drive_runs.then(|| drive.link_to_send(has_place)).flatten(),
+            |has_buffer| drive_runs.then(|| drive.link_to_send(has_buffer)).flatten(),
             |byte| {
                 if comms_runs {
                     comms.link_received(byte);

@@ -194,7 +194,7 @@ impl Device {
         let outputs = self.drive.command_motor(&drive::command::Inputs {
             current_a: Some(current_a),
             enable_is_on: self.drive_line,
-            is_broken: false,
+            has_tripped: false,
         });
         self.drive.prepare();
         self.drive_line = outputs.enable;
