@@ -32,7 +32,7 @@ pub mod sampler;
 use crate::counters::Counters;
 use command::{Command, Inputs, Outputs};
 use commits::Commits;
-use crepitus_protocol::frame::{FRAME_BYTES, Frame, Place};
+use crepitus_protocol::frame::{FRAME_BYTES, Frame, FrameBuffer};
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::{Fault, Revision, State, ValueError, Values};
 use link_task::{LinkTask, Shared};
@@ -65,7 +65,7 @@ pub struct Drive {
     sampler: Sampler,
     rendering: Rendering,
     command: Command,
-    link: LinkTask<Place>,
+    link: LinkTask<FrameBuffer>,
     /// Passed between the tasks.
     commits: Commits,
     prepared: Option<Prepared>,
@@ -173,10 +173,10 @@ impl Drive {
         if is_busy {
             return;
         }
-        let Some((revision, gathered)) = self.commits.take() else {
+        let Some((revision, reassembly)) = self.commits.take() else {
             return;
         };
-        let Some(values) = Commits::verified(&gathered, &self.counters) else {
+        let Some(values) = Commits::verified(&reassembly, &self.counters) else {
             return;
         };
         let is_live = self.command.safety().is_live();
@@ -197,12 +197,12 @@ impl Drive {
     /// frame.
     pub fn link_to_send(&mut self, has_buffer: bool) -> Option<Frame> {
         let (link, mut parts, counters) = self.link();
-        let place = || has_buffer.then_some([0; FRAME_BYTES]);
-        let made = link.next_frame(place, &mut parts, counters)?;
+        let buffer = || has_buffer.then_some([0; FRAME_BYTES]);
+        let made = link.next_frame(buffer, &mut parts, counters)?;
         Some(made.frame())
     }
 
-    fn link(&mut self) -> (&mut LinkTask<Place>, Parts<'_>, &Counters) {
+    fn link(&mut self) -> (&mut LinkTask<FrameBuffer>, Parts<'_>, &Counters) {
         let parts = Parts {
             command: &mut self.command,
             sampler: &mut self.sampler,

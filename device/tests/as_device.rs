@@ -5,7 +5,7 @@ mod support;
 
 use crepitus_board::values::values;
 use crepitus_model::render::Limit;
-use crepitus_protocol::host::{Answer, Ask};
+use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{Fault, LimitReason, State};
 use crepitus_scene::scene::Overrides;
@@ -133,11 +133,11 @@ fn drive(scene: &Scene, rows: &[Row]) -> Bench {
     let base = bench.comms.revision();
     let values = values(scene).expect("a joint of the device");
     assert!(matches!(
-        bench.ask(Ask::Commit { base, values }),
+        bench.ask(Operation::Commit { base, values }),
         Ok(Answer::Committed { .. })
     ));
-    bench.ask(Ask::Zero).expect("zeroed");
-    bench.ask(Ask::Arm).expect("armed");
+    bench.ask(Operation::Zero).expect("zeroed");
+    bench.ask(Operation::Arm).expect("armed");
     // Until the slew limit no longer applies.
     bench.run_leased(200);
     assert_eq!(bench.drive.state(), State::Armed);

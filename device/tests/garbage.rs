@@ -7,8 +7,8 @@ use crepitus_device::usb_port::HostBytes;
 use crepitus_device::{Comms, Drive};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::frame::{encode_body, encode_bytes};
-use crepitus_protocol::host::{Answer, Ask, Reply};
-use crepitus_protocol::management::{self, Question, What};
+use crepitus_protocol::host::{Answer, Operation, Reply};
+use crepitus_protocol::management::{self, Action, ManagementRequest};
 use crepitus_protocol::{Decoder, Lane, State};
 use support::{Bench, Boots};
 
@@ -125,10 +125,13 @@ fn garbage_before_the_first_frame_is_discarded() {
         // The delimiter that a host sends first; the link has none, and loses
         // a frame.
         bench.comms.received(&[0]);
-        assert!(matches!(bench.ask(Ask::Status), Ok(Answer::Status(_))));
+        assert!(matches!(
+            bench.ask(Operation::Status),
+            Ok(Answer::Status(_))
+        ));
         bench.settle();
-        assert_eq!(bench.ask(Ask::Arm), Ok(Answer::Done));
-        assert_eq!(bench.ask(Ask::Disarm), Ok(Answer::Done));
+        assert_eq!(bench.ask(Operation::Arm), Ok(Answer::Done));
+        assert_eq!(bench.ask(Operation::Disarm), Ok(Answer::Done));
     }
 }
 
@@ -139,13 +142,13 @@ fn a_request_that_was_lost_is_repeated() {
     let mut bench = Bench::new(&Boots::new());
     bench.comms.received(b"no delimiter follows");
     bench.number = 7;
-    bench.tell(Ask::Parameters);
+    bench.tell(Operation::Parameters);
     bench.millisecond();
     let requests = |bench: &Bench| bench.comms.counters().get(CommsCounter::Requests);
     assert_eq!(requests(&bench), 0);
     sent(&mut bench.comms);
     for _ in 0..3 {
-        bench.tell(Ask::Parameters);
+        bench.tell(Operation::Parameters);
     }
     let (mut decoder, mut replies) = (Decoder::new(), 0);
     for byte in sent(&mut bench.comms) {
@@ -163,8 +166,8 @@ fn a_request_that_was_lost_is_repeated() {
 fn a_longer_management_request_is_answered() {
     let mut comms = Comms::new(&Boots::new().comms);
     sent(&mut comms);
-    let question = Question {
-        what: What::Hello,
+    let question = ManagementRequest {
+        action: Action::Hello,
         token: 200,
     };
     for extra in 0..=LONGEST {

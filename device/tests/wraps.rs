@@ -5,7 +5,7 @@ mod support;
 use crepitus_device::Drive;
 use crepitus_device::drive::command::Inputs;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
-use crepitus_protocol::host::{Answer, Ask};
+use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::link::{DriveStatus, FromDrive, Order, ToDrive};
 use crepitus_protocol::parameters::id;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
@@ -30,12 +30,12 @@ fn a_device_works_through_every_wrap() {
     bench.number = u16::MAX - 3;
     bench.settle();
     assert_eq!(bench.drive.revision(), Revision(u32::MAX));
-    let Ok(Answer::Subscribed { first_tick }) = bench.ask(Ask::Subscribe) else {
+    let Ok(Answer::Subscribed { first_tick }) = bench.ask(Operation::Subscribe) else {
         panic!("no subscription");
     };
     let mut values = Values::default();
     values.set(id::STATIC_TORQUE, 0.5);
-    let commit = Ask::Commit {
+    let commit = Operation::Commit {
         base: Revision(u32::MAX),
         values,
     };
@@ -43,12 +43,12 @@ fn a_device_works_through_every_wrap() {
         revision: Revision(1),
     };
     assert_eq!(bench.ask(commit), Ok(committed));
-    assert_eq!(bench.ask(Ask::Zero), Ok(Answer::Done));
-    assert_eq!(bench.ask(Ask::Arm), Ok(Answer::Done));
+    assert_eq!(bench.ask(Operation::Zero), Ok(Answer::Done));
+    assert_eq!(bench.ask(Operation::Arm), Ok(Answer::Done));
     bench.motor.hand_nm = 1.0;
     bench.run_leased(600);
     assert_eq!(bench.comms.state(), State::Armed);
-    assert_eq!(bench.ask(Ask::Disarm), Ok(Answer::Done));
+    assert_eq!(bench.ask(Operation::Disarm), Ok(Answer::Done));
     assert!(bench.number < 10, "the number of requests has wrapped");
     bench.run_leased(3);
 
@@ -97,7 +97,7 @@ fn check_accounting(blocks: &[Block], first_tick: u64) {
 fn dropped_samples_are_accounted_for_through_the_wrap() {
     let mut bench = Bench::new(&boots());
     bench.settle();
-    let Ok(Answer::Subscribed { first_tick }) = bench.ask(Ask::Subscribe) else {
+    let Ok(Answer::Subscribed { first_tick }) = bench.ask(Operation::Subscribe) else {
         panic!("no subscription");
     };
     for n in 0..400 {

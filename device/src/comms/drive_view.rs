@@ -148,7 +148,7 @@ impl DriveView {
     fn status_since(&self, start: u16) -> Option<&DriveStatus> {
         self.status
             .as_ref()
-            .filter(|status| status.heard == Some(start))
+            .filter(|status| status.comms_start == Some(start))
     }
 }
 

@@ -6,15 +6,15 @@ use crate::comms::sessions::RequestClass;
 use crate::comms::subscription::Subscription;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::frame::{self, Frame};
-use crepitus_protocol::host::{Answer, Ask, Counters, Refusal, Reply, Request, Status};
+use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Reply, Request, Status};
 use crepitus_protocol::link::Order;
-use crepitus_protocol::management::Question;
+use crepitus_protocol::management::ManagementRequest;
 use crepitus_protocol::{Fault, Lane, Revision, Session, State, Values};
 
 /// A decoded frame from a host.
 #[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
 enum HostMessage {
-    Management(Question),
+    Management(ManagementRequest),
     Request(Request),
 }
 
@@ -34,7 +34,9 @@ impl Comms {
             None => return,
             Some(Err(_)) => return self.counters.count(CommsCounter::FromHostDiscarded),
             Some(Ok(body)) => match body.lane() {
-                Some(Lane::Management) => Question::of(body.payload).map(HostMessage::Management),
+                Some(Lane::Management) => {
+                    ManagementRequest::of(body.payload).map(HostMessage::Management)
+                }
                 Some(Lane::Request) => body.message().map(HostMessage::Request),
                 _ => None,
             },
@@ -51,7 +53,7 @@ impl Comms {
     }
 
     fn request(&mut self, request: &Request) {
-        if request.ask == Ask::Renew {
+        if request.operation == Operation::Renew {
             let seen_tick = self.drive.seen_tick();
             if self.lease.renew(request.session, self.now_ms, seen_tick) {
                 self.counters.count(CommsCounter::Renewals);
@@ -81,37 +83,37 @@ impl Comms {
 
     fn begin(&mut self, request: &Request) -> StartResult {
         let answered = |answer| Ok(Started::Replied(answer));
-        match &request.ask {
-            Ask::Renew => answered(Answer::Done),
-            Ask::Status => answered(Answer::Status(self.status())),
-            Ask::Counters => answered(Answer::Counters(Counters {
+        match &request.operation {
+            Operation::Renew => answered(Answer::Done),
+            Operation::Status => answered(Answer::Status(self.status())),
+            Operation::Counters => answered(Answer::Counters(Counters {
                 drive: self.drive.counters(),
                 comms: self.counters.all(),
             })),
-            Ask::Parameters => answered(Answer::Parameters {
+            Operation::Parameters => answered(Answer::Parameters {
                 revision: self.parameters.revision(),
                 values: *self.parameters.values(),
             }),
             // The first tick of the stream is not known yet.
-            Ask::Subscribe if !self.drive.is_known() => Err(Refusal::DriveSilent),
-            Ask::Subscribe => {
+            Operation::Subscribe if !self.drive.is_known() => Err(Refusal::DriveSilent),
+            Operation::Subscribe => {
                 let first_tick = self.drive.next_tick();
                 self.subscription = Some(Subscription::new(first_tick));
                 answered(Answer::Subscribed { first_tick })
             }
-            Ask::Unsubscribe => {
+            Operation::Unsubscribe => {
                 self.subscription = None;
                 answered(Answer::Done)
             }
-            Ask::Disarm => {
+            Operation::Disarm => {
                 self.release(Refusal::Aborted);
                 answered(Answer::Done)
             }
-            Ask::Commit { base, values } => self.commit(request, *base, values),
-            Ask::Save => self.save(request),
-            Ask::Zero => self.command(request, Order::Zero),
-            Ask::ClearFault => self.clear_fault(request),
-            Ask::Arm => self.arm(request),
+            Operation::Commit { base, values } => self.commit(request, *base, values),
+            Operation::Save => self.save(request),
+            Operation::Zero => self.command(request, Order::Zero),
+            Operation::ClearFault => self.clear_fault(request),
+            Operation::Arm => self.arm(request),
         }
     }
 

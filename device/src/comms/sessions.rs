@@ -93,13 +93,13 @@ impl Sessions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_protocol::host::{Answer, Ask};
+    use crepitus_protocol::host::{Answer, Operation};
 
     fn request(session: u32, number: u16) -> Request {
         Request {
             session: Session(session),
             number,
-            ask: Ask::Status,
+            operation: Operation::Status,
         }
     }
 

@@ -27,7 +27,7 @@ impl Supervision {
             enable_requested: false,
             was_armed: false,
             fault: match reset {
-                ResetCause::Power | ResetCause::Asked => None,
+                ResetCause::Power | ResetCause::Requested => None,
                 ResetCause::Watchdog => Some(Fault::CommsWatchdog),
                 ResetCause::BrownOut => Some(Fault::CommsBrownOut),
                 ResetCause::Panic => Some(Fault::CommsPanic),

@@ -2,7 +2,7 @@
 
 use crepitus_protocol::frame::{self, Frame};
 use crepitus_protocol::link::{Heartbeat, Order, ToDrive};
-use crepitus_protocol::management::{Question, What};
+use crepitus_protocol::management::{Action, ManagementRequest};
 use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::{Lane, Revision, Values};
 
@@ -17,7 +17,7 @@ const HELLO_RETRY_MS: u64 = 10;
 pub(super) struct ToDriveQueue {
     now_ms: u64,
     heartbeat_due: bool,
-    management: Option<Question>,
+    management: Option<ManagementRequest>,
     commit: CommitProgress,
     command_ms: Option<(u16, u64)>,
     hello_ms: u64,
@@ -65,8 +65,8 @@ impl ToDriveQueue {
     }
 
     /// Queues a management request.
-    pub(super) fn queue_management(&mut self, what: What) {
-        self.management = Some(Question { what, token: 0 });
+    pub(super) fn queue_management(&mut self, action: Action) {
+        self.management = Some(ManagementRequest { action, token: 0 });
     }
 
     /// Sequence number for the next command.
@@ -112,8 +112,8 @@ impl ToDriveQueue {
         }
         if hello_due && self.now_ms >= self.hello_ms {
             self.hello_ms = self.now_ms.saturating_add(HELLO_RETRY_MS);
-            let question = Question {
-                what: What::Hello,
+            let question = ManagementRequest {
+                action: Action::Hello,
                 token: 0,
             };
             return frame::encode_bytes(Lane::Management, &question.bytes()).ok();

@@ -2,14 +2,14 @@
 
 use crate::counters::Counters;
 use crepitus_protocol::counters::DriveCounter;
-use crepitus_protocol::pieces::{Gathered, Piece};
+use crepitus_protocol::pieces::{Piece, Reassembly};
 use crepitus_protocol::{Revision, ValueError, Values};
 
 /// Received commits and their outcomes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Commits {
     /// The latest commit, until its preparation begins.
-    pending: Option<(Revision, Gathered)>,
+    pending: Option<(Revision, Reassembly)>,
     /// The latest revision received since this boot of comms.
     latest: Option<Revision>,
     /// The revision prepared last; it takes effect with a block.
@@ -42,26 +42,27 @@ impl Commits {
         if is_known {
             return;
         }
-        let is_begun = self.pending.as_ref().is_some_and(|(pending, gathered)| {
-            *pending == revision && gathered.checksum() == checksum
+        let is_begun = self.pending.as_ref().is_some_and(|(pending, reassembly)| {
+            *pending == revision && reassembly.checksum() == checksum
         });
         if !is_begun {
-            self.pending = Some((revision, Gathered::new(checksum)));
+            self.pending = Some((revision, Reassembly::new(checksum)));
         }
-        if let Some((_, gathered)) = &mut self.pending {
-            gathered.add(piece);
+        if let Some((_, reassembly)) = &mut self.pending {
+            reassembly.add(piece);
         }
     }
 
     /// Takes the pending commit once complete; see [`Self::verified`].
-    pub fn take(&mut self) -> Option<(Revision, Gathered)> {
-        self.pending.take_if(|(_, gathered)| gathered.is_complete())
+    pub fn take(&mut self) -> Option<(Revision, Reassembly)> {
+        self.pending
+            .take_if(|(_, reassembly)| reassembly.is_complete())
     }
 
     /// Returns the values of a commit if its checksum is valid; comms repeats an
     /// invalid one. The checksum takes long, so call this outside a lock.
-    pub fn verified(gathered: &Gathered, counters: &Counters) -> Option<Values> {
-        let values = gathered.values().copied().map(Values);
+    pub fn verified(reassembly: &Reassembly, counters: &Counters) -> Option<Values> {
+        let values = reassembly.values().copied().map(Values);
         if values.is_none() {
             counters.count(DriveCounter::Discarded);
         }
@@ -140,8 +141,8 @@ mod tests {
         }
 
         fn take(&mut self) -> Option<(Revision, Values)> {
-            let (revision, gathered) = self.commits.take()?;
-            Some((revision, Commits::verified(&gathered, &self.counters)?))
+            let (revision, reassembly) = self.commits.take()?;
+            Some((revision, Commits::verified(&reassembly, &self.counters)?))
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::counters::Counters;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::link::{DriveRefusal, Outcome};
-use crepitus_protocol::management::{Answer, Identity, Question, What};
+use crepitus_protocol::management::{Action, Answer, Identity, ManagementRequest};
 
 use crate::drive::heartbeat_monitor::is_fresh;
 
@@ -53,16 +53,16 @@ impl Link {
     }
 
     /// Queues the reply to a management request.
-    pub fn answer(&mut self, question: Question, own: &Identity, done: bool) {
+    pub fn answer(&mut self, question: ManagementRequest, own: &Identity, done: bool) {
         let token = question.token;
-        self.answer = Some(match question.what {
-            What::Hello => Answer::Hello {
+        self.answer = Some(match question.action {
+            Action::Hello => Answer::Hello {
                 token,
                 own: *own,
                 drive: *own,
             },
-            What::Stop => Answer::Stop { token, done },
-            What::Reboot => Answer::Reboot { token, done },
+            Action::Stop => Answer::Stop { token, done },
+            Action::Reboot => Answer::Reboot { token, done },
         });
     }
 

@@ -10,9 +10,9 @@ use crate::drive::outgoing::{Outgoing, PIECE_SAMPLES};
 use crate::drive::sampler::Sampler;
 use core::borrow::BorrowMut;
 use crepitus_protocol::counters::DriveCounter;
-use crepitus_protocol::frame::{Made, Place};
+use crepitus_protocol::frame::{EncodedFrame, FrameBuffer};
 use crepitus_protocol::link::{DriveRefusal, DriveStatus, Order, ToDrive};
-use crepitus_protocol::management::{Identity, Question, What};
+use crepitus_protocol::management::{Action, Identity, ManagementRequest};
 use crepitus_protocol::{Decoder, Fault, Lane, Revision, State};
 
 /// Resources shared with the other tasks. The firmware holds a lock while
@@ -44,7 +44,7 @@ pub struct LinkTask<P> {
     reported: (State, Option<Fault>, Revision, bool),
 }
 
-impl<P: BorrowMut<Place>> LinkTask<P> {
+impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
     /// The state after boot.
     pub fn new(identity: Identity, start: u16) -> Self {
         Self {
@@ -76,7 +76,7 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
                 }
             }
             Some(Lane::Management) => {
-                if let Some(question) = Question::of(body.payload) {
+                if let Some(question) = ManagementRequest::of(body.payload) {
                     counters.count(DriveCounter::Frames);
                     return self.handle_management(question, shared);
                 }
@@ -134,7 +134,7 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
         spare: impl FnOnce() -> Option<P>,
         shared: &mut impl Shared,
         counters: &Counters,
-    ) -> Option<Made<P>> {
+    ) -> Option<EncodedFrame<P>> {
         self.poll_changes(shared);
         if self.outgoing.is_idle() {
             self.start_frame(spare, shared, counters);
@@ -211,7 +211,7 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
             DriveStatus {
                 tick: now,
                 start: self.start,
-                heard: safety.comms_start(),
+                comms_start: safety.comms_start(),
                 state: safety.state(),
                 fault: safety.fault().map_or(0, Fault::code),
                 revision: command.revision(),
@@ -229,16 +229,16 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
         core::mem::take(&mut self.reboot_requested)
     }
 
-    fn handle_management(&mut self, question: Question, shared: &mut impl Shared) {
+    fn handle_management(&mut self, question: ManagementRequest, shared: &mut impl Shared) {
         let is_live = shared.command(|command| {
-            if question.what == What::Stop {
+            if question.action == Action::Stop {
                 command.safety_mut().disarm();
             }
             command.safety().is_live()
         });
-        let done = match question.what {
-            What::Hello | What::Stop => true,
-            What::Reboot => {
+        let done = match question.action {
+            Action::Hello | Action::Stop => true,
+            Action::Reboot => {
                 self.reboot_requested = !is_live;
                 self.reboot_requested
             }

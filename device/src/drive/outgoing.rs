@@ -4,7 +4,7 @@
 use core::borrow::BorrowMut;
 use crepitus_protocol::Lane;
 use crepitus_protocol::counters::DRIVE_COUNT;
-use crepitus_protocol::frame::{self, Encoder, Made, Place, TooLong};
+use crepitus_protocol::frame::{self, EncodedFrame, Encoder, FrameBuffer, TooLong};
 use crepitus_protocol::link::{COUNTER_BYTES, DriveStatus};
 use crepitus_protocol::management::{Answer, AnswerBytes};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, SAMPLE_BYTES, Sample};
@@ -52,7 +52,7 @@ impl<P> Default for Outgoing<P> {
     }
 }
 
-impl<P: BorrowMut<Place>> Outgoing<P> {
+impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
     /// Whether no frame is in progress.
     pub fn is_idle(&self) -> bool {
         self.current.is_none()
@@ -101,7 +101,7 @@ impl<P: BorrowMut<Place>> Outgoing<P> {
     }
 
     /// Encodes samples of the block; returns the finished frame after the last.
-    pub fn samples(&mut self, piece: &[Sample; PIECE_SAMPLES]) -> Option<Made<P>> {
+    pub fn samples(&mut self, piece: &[Sample; PIECE_SAMPLES]) -> Option<EncodedFrame<P>> {
         let (encoder, Rest::Samples(next)) = self.current.as_mut()? else {
             return None;
         };
@@ -119,7 +119,7 @@ impl<P: BorrowMut<Place>> Outgoing<P> {
 
     /// Encodes the next piece of a reply or a status; returns the finished frame
     /// after the last.
-    pub fn piece(&mut self) -> Option<Made<P>> {
+    pub fn piece(&mut self) -> Option<EncodedFrame<P>> {
         let (encoder, rest) = self.current.as_mut()?;
         let is_whole = match rest {
             Rest::Answer(next) => {
@@ -150,7 +150,7 @@ impl<P: BorrowMut<Place>> Outgoing<P> {
         if is_whole { self.finish() } else { None }
     }
 
-    fn finish(&mut self) -> Option<Made<P>> {
+    fn finish(&mut self) -> Option<EncodedFrame<P>> {
         let (encoder, _) = self.current.take()?;
         encoder.finish().ok()
     }
@@ -163,7 +163,7 @@ mod tests {
     use crepitus_protocol::link::FromDrive;
     use crepitus_protocol::management::Identity;
 
-    type Places = Outgoing<Place>;
+    type Places = Outgoing<FrameBuffer>;
 
     /// What a few runs make, and how many it takes.
     fn run(outgoing: &mut Places, block: &Block) -> (Frame, usize) {

@@ -55,7 +55,7 @@ impl Safety {
     /// The state after boot: an unexpected reset is a fault.
     pub fn new(reset: ResetCause) -> Self {
         let fault = match reset {
-            ResetCause::Power | ResetCause::Asked => None,
+            ResetCause::Power | ResetCause::Requested => None,
             ResetCause::Watchdog => Some(Fault::DriveWatchdog),
             ResetCause::BrownOut => Some(Fault::DriveBrownOut),
             ResetCause::Panic => Some(Fault::DrivePanic),

@@ -11,7 +11,7 @@ use crepitus_device::drive::rendering::Rendered;
 use crepitus_device::drive::{self, Drive};
 use crepitus_device::usb_port::HostBytes;
 use crepitus_protocol::frame::FRAME_BYTES;
-use crepitus_protocol::host::{Answer, Ask, Refusal, Reply, Request};
+use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request};
 use crepitus_protocol::management::{Identity, Role};
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Lane, Session, frame, schema};
@@ -169,20 +169,20 @@ impl Bench {
     }
 
     /// Sends comms a request without reply.
-    pub(crate) fn tell(&mut self, ask: Ask) {
+    pub(crate) fn tell(&mut self, operation: Operation) {
         let request = Request {
             session: self.session,
             number: self.number,
-            ask,
+            operation,
         };
         let frame = frame::encode(Lane::Request, &request).unwrap();
         self.comms.received(&frame);
     }
 
     /// Sends a request and runs until the reply arrives.
-    pub(crate) fn ask(&mut self, ask: Ask) -> Result<Answer, Refusal> {
+    pub(crate) fn ask(&mut self, operation: Operation) -> Result<Answer, Refusal> {
         self.number = self.number.wrapping_add(1);
-        self.tell(ask);
+        self.tell(operation);
         for _ in 0..700 {
             self.millisecond();
             let (session, number) = (self.session, self.number);
@@ -191,14 +191,14 @@ impl Bench {
                 return self.replies.remove(place).answer;
             }
         }
-        panic!("no answer to {ask:?}");
+        panic!("no answer to {operation:?}");
     }
 
     /// Runs for this many milliseconds, renewing the lease.
     pub(crate) fn run_leased(&mut self, ms: u32) {
         for n in 0..ms {
             if n % 50 == 0 {
-                self.tell(Ask::Renew);
+                self.tell(Operation::Renew);
             }
             self.millisecond();
         }

@@ -51,7 +51,7 @@ mod app {
     use crepitus_device::drive::rendering::{Rendered, Rendering};
     use crepitus_device::drive::sampler::{Sampled, Sampler};
     use crepitus_protocol::Fault;
-    use crepitus_protocol::frame::Place;
+    use crepitus_protocol::frame::FrameBuffer;
     use stm32f4xx_hal::pac::Interrupt;
 
     /// Starts `render_torque`; otherwise unused.
@@ -109,7 +109,7 @@ mod app {
         watchdog: Watchdog,
     }
 
-    #[init(local = [buffers: [Place; BUFFERS] = [EMPTY_BUFFER; BUFFERS]])]
+    #[init(local = [buffers: [FrameBuffer; BUFFERS] = [EMPTY_BUFFER; BUFFERS]])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let board = DriveBoard::new(cx.device, cx.local.buffers.each_mut());
         let start = board.start;

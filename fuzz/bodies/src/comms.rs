@@ -20,9 +20,9 @@ use crepitus_device::Comms;
 use crepitus_device::comms::{Boot, Inputs, Outputs};
 use crepitus_device::usb_port::HostBytes;
 use crepitus_protocol::counters::CommsCounter;
-use crepitus_protocol::host::{Ask, Request};
+use crepitus_protocol::host::{Operation, Request};
 use crepitus_protocol::link::{Order, ToDrive};
-use crepitus_protocol::management::{Identity, Question, ResetCause, What};
+use crepitus_protocol::management::{Action, Identity, ManagementRequest, ResetCause};
 use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::{
     Decoder, DeviceSettings, LEASE_TICKS, Lane, Revision, Session, Values, frame, schema,
@@ -136,19 +136,19 @@ impl Bench {
             }
             2 | 3 => {
                 let place = usize::from(bytes.byte()) % self.numbers.len();
-                let ask = self.ask(bytes);
+                let operation = self.ask(bytes);
                 let number = &mut self.numbers[place];
                 match bytes.byte() {
                     // Repeated; but of a subscription nobody could tell which
                     // one it is that begins.
-                    0..=47 if ask != Ask::Subscribe => {}
+                    0..=47 if operation != Operation::Subscribe => {}
                     48..=63 => *number = number.wrapping_add(bytes.u16()),
                     _ => *number = number.wrapping_add(1),
                 }
                 let request = Request {
                     session: Session(u32::try_from(place).unwrap_or(0) * 0x1001),
                     number: *number,
-                    ask,
+                    operation,
                 };
                 let frame = frame::encode(Lane::Request, &request);
                 self.say(&frame.expect("every message fits"));
@@ -159,8 +159,8 @@ impl Bench {
                 self.say(&raw);
             }
             5 => {
-                let question = Question {
-                    what: link_words::what(bytes),
+                let question = ManagementRequest {
+                    action: link_words::action(bytes),
                     token: bytes.byte(),
                 };
                 let frame = frame::encode_bytes(Lane::Management, &question.bytes());
@@ -189,13 +189,13 @@ impl Bench {
         }
     }
 
-    fn ask(&mut self, bytes: &mut Bytes<'_>) -> Ask {
+    fn ask(&mut self, bytes: &mut Bytes<'_>) -> Operation {
         match bytes.byte() % 16 {
-            0 | 1 => Ask::Renew,
-            2 => Ask::Status,
-            3 => Ask::Counters,
-            4 => Ask::Parameters,
-            5 | 6 => Ask::Commit {
+            0 | 1 => Operation::Renew,
+            2 => Operation::Status,
+            3 => Operation::Counters,
+            4 => Operation::Parameters,
+            5 | 6 => Operation::Commit {
                 base: if bytes.byte() < 224 {
                     self.comms.revision()
                 } else {
@@ -203,13 +203,13 @@ impl Bench {
                 },
                 values: link_words::values(bytes),
             },
-            7 => Ask::Save,
-            8 => Ask::Zero,
-            9..=11 => Ask::Arm,
-            12 => Ask::Disarm,
-            13 => Ask::ClearFault,
-            14 => Ask::Subscribe,
-            _ => Ask::Unsubscribe,
+            7 => Operation::Save,
+            8 => Operation::Zero,
+            9..=11 => Operation::Arm,
+            12 => Operation::Disarm,
+            13 => Operation::ClearFault,
+            14 => Operation::Subscribe,
+            _ => Operation::Unsubscribe,
         }
     }
 
@@ -222,7 +222,7 @@ impl Bench {
                     request = body.message::<Request>();
                 }
                 Some(Ok(body)) if body.lane() == Some(Lane::Management) => {
-                    question = Question::of(body.payload);
+                    question = ManagementRequest::of(body.payload);
                 }
                 _ => {}
             }
@@ -232,9 +232,9 @@ impl Bench {
             if let Some(request) = request {
                 self.note(&request, is_new);
             }
-            match question.map(|question| question.what) {
-                Some(What::Stop) => (self.wants, self.lease_ms) = (false, None),
-                Some(What::Reboot) => self.may_reboot = true,
+            match question.map(|question| question.action) {
+                Some(Action::Stop) => (self.wants, self.lease_ms) = (false, None),
+                Some(Action::Reboot) => self.may_reboot = true,
                 _ => {}
             }
         }
@@ -242,19 +242,19 @@ impl Bench {
 
     fn note(&mut self, request: &Request, is_new: bool) {
         self.host.asked(request);
-        match request.ask {
-            Ask::Renew if self.is_leased() => self.lease_ms = Some(self.now_ms),
+        match request.operation {
+            Operation::Renew if self.is_leased() => self.lease_ms = Some(self.now_ms),
             _ if !is_new => {}
             // Whether or not it is refused.
-            Ask::Arm => (self.wants, self.lease_ms) = (true, Some(self.now_ms)),
-            Ask::Disarm => (self.wants, self.lease_ms) = (false, None),
-            Ask::Commit { values, .. } => {
+            Operation::Arm => (self.wants, self.lease_ms) = (true, Some(self.now_ms)),
+            Operation::Disarm => (self.wants, self.lease_ms) = (false, None),
+            Operation::Commit { values, .. } => {
                 self.numbered += 1;
                 if DeviceSettings::of(&values).is_ok() {
                     self.values.push(values);
                 }
             }
-            Ask::Save => self.may_save = true,
+            Operation::Save => self.may_save = true,
             _ => {}
         }
     }
@@ -342,7 +342,7 @@ impl Bench {
                     let message = body.message().expect("a message");
                     self.told(&message);
                 }
-                Some(Lane::Management) => assert!(Question::of(body.payload).is_some()),
+                Some(Lane::Management) => assert!(ManagementRequest::of(body.payload).is_some()),
                 other => panic!("{other:?} for the drive"),
             }
         }

@@ -20,7 +20,7 @@ use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::link::{FromDrive, Heartbeat, Order, STALE_TICKS, ToDrive};
-use crepitus_protocol::management::{Answer, Identity, Question, ResetCause};
+use crepitus_protocol::management::{Answer, Identity, ManagementRequest, ResetCause};
 use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, SampleFlags};
 use crepitus_protocol::{
@@ -114,7 +114,7 @@ struct Bench {
     ticks: u64,
     /// Hears what the drive hears.
     ear: Decoder,
-    heard: Option<u64>,
+    comms_start: Option<u64>,
     lease_end: u64,
     sent: Vec<(Revision, Values)>,
     number: u16,
@@ -138,7 +138,7 @@ impl Bench {
             line_is_on: false,
             ticks: 0,
             ear: Decoder::new(),
-            heard: None,
+            comms_start: None,
             lease_end: 0,
             sent: Vec::new(),
             number: 0,
@@ -205,8 +205,8 @@ impl Bench {
                 self.hear(&raw);
             }
             6 => {
-                let question = Question {
-                    what: link_words::what(bytes),
+                let question = ManagementRequest {
+                    action: link_words::action(bytes),
                     token: bytes.byte(),
                 };
                 let frame = frame::encode_bytes(Lane::Management, &question.bytes());
@@ -305,7 +305,7 @@ impl Bench {
     fn note(&mut self, now: u64, heartbeat: &Heartbeat) {
         let seen = heartbeat.seen_tick;
         if seen <= now && now - seen <= STALE_TICKS {
-            self.heard = Some(now);
+            self.comms_start = Some(now);
             self.lease_end = seen.saturating_add(u64::from(heartbeat.lease_left));
             if !heartbeat.enable {
                 let state = self.drive.state();
@@ -367,7 +367,7 @@ impl Bench {
         };
         assert!(volts.is_finite() && outputs.enable && live);
         assert!(!inputs.has_tripped && inputs.current_a.is_some());
-        let heard = self.heard.expect("a heartbeat");
+        let heard = self.comms_start.expect("a heartbeat");
         assert!(tick - heard < HEARTBEAT_TICKS, "{} ticks", tick - heard);
         assert!(tick < self.lease_end, "the lease has ended");
         self.astray = if inputs.enable_is_on {

@@ -8,7 +8,7 @@ use crepitus_protocol::link::{
     DriveRefusal, DriveStatus, FromDrive, Heartbeat, Order, Outcome, ToDrive,
 };
 use crepitus_protocol::management::{Answer, Identity, Role};
-use crepitus_protocol::pieces::Gathered;
+use crepitus_protocol::pieces::Reassembly;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, BlockFlags};
 use crepitus_protocol::{Lane, Revision, State, ValueError, schema};
 
@@ -22,21 +22,21 @@ pub(crate) struct DriveSide {
     comms_start: u16,
     has_said_hello: bool,
     has_refused: bool,
-    gathered: (Revision, Gathered),
+    reassembly: (Revision, Reassembly),
 }
 
 impl DriveSide {
     pub(crate) fn new(comms_start: u16) -> Self {
         Self {
             status: DriveStatus {
-                heard: Some(comms_start),
+                comms_start: Some(comms_start),
                 ..DriveStatus::default()
             },
             sequence: 0,
             comms_start,
             has_said_hello: false,
             has_refused: false,
-            gathered: (Revision::NONE, Gathered::new(0)),
+            reassembly: (Revision::NONE, Reassembly::new(0)),
         }
     }
 
@@ -65,11 +65,11 @@ impl DriveSide {
                 checksum,
                 piece,
             } => {
-                if self.gathered.0 != revision || self.gathered.1.checksum() != checksum {
-                    self.gathered = (revision, Gathered::new(checksum));
+                if self.reassembly.0 != revision || self.reassembly.1.checksum() != checksum {
+                    self.reassembly = (revision, Reassembly::new(checksum));
                 }
-                self.gathered.1.add(&piece);
-                if self.gathered.1.values().is_some() {
+                self.reassembly.1.add(&piece);
+                if self.reassembly.1.values().is_some() {
                     self.status.revision = revision;
                 }
             }
@@ -168,7 +168,7 @@ impl DriveSide {
             }
             5 => {
                 self.status.revision = Revision(u32::from(bytes.byte()));
-                self.status.heard = bytes.choice(&[None, Some(self.comms_start), Some(99)]);
+                self.status.comms_start = bytes.choice(&[None, Some(self.comms_start), Some(99)]);
                 self.status()
             }
             6 => {

@@ -12,7 +12,7 @@ use crepitus_protocol::decoder::Body;
 use crepitus_protocol::frame::{self, BODY_BYTES, CRC, Frame};
 use crepitus_protocol::host::{Reply, Request};
 use crepitus_protocol::link::{FromDrive, ToDrive};
-use crepitus_protocol::management::{Answer, Question};
+use crepitus_protocol::management::{Answer, ManagementRequest};
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Lane};
 use serde::Serialize;
@@ -103,7 +103,7 @@ fn understood(body: &Body<'_>) {
     match body.lane() {
         None => {}
         Some(Lane::Management) => {
-            if let Some(question) = Question::of(body.payload) {
+            if let Some(question) = ManagementRequest::of(body.payload) {
                 assert_eq!(question.bytes(), body.payload[..2]);
             }
         }

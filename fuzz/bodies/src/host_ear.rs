@@ -1,6 +1,6 @@
 //! What a host hears of comms, and may expect to hear.
 
-use crepitus_protocol::host::{Answer, Ask, Reply, Request};
+use crepitus_protocol::host::{Answer, Operation, Reply, Request};
 use crepitus_protocol::management;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 use crepitus_protocol::{Decoder, Lane, Session, Values};
@@ -30,9 +30,9 @@ impl HostEar {
     /// A request was sent.
     pub(crate) fn asked(&mut self, request: &Request) {
         let key = (request.session.0, request.number);
-        match request.ask {
-            Ask::Renew => return,
-            Ask::Subscribe => {
+        match request.operation {
+            Operation::Renew => return,
+            Operation::Subscribe => {
                 self.subscription = Some((request.session, request.number));
                 self.books = None;
             }

@@ -1,4 +1,4 @@
-//! What a device does not do, and why, said so that a person can mend it.
+//! Rejected requests as text, with cause and remedy.
 
 use crate::faults::fault_text;
 use crate::request_kind::RequestKind;
@@ -9,12 +9,12 @@ use crepitus_protocol::parameters::{id, with_id};
 use crepitus_protocol::{ValueError, Values};
 use std::fmt;
 
-/// A request that the device has refused.
+/// A rejected request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refused {
-    /// What was asked.
-    pub what: RequestKind,
-    /// Why it was not done.
+    /// The request.
+    pub request: RequestKind,
+    /// The reason.
     pub refusal: Refusal,
     /// The values of a commit.
     pub values: Option<Values>,
@@ -24,45 +24,45 @@ impl std::error::Error for Refused {}
 
 impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let what = self.what;
+        let request = self.request;
         match self.refusal {
             Refusal::Values(error) => self.values_text(f, error),
             Refusal::Stale { revision } => write!(
                 f,
-                "`{what}` is refused: the parameters have changed since they were read \
+                "`{request}` is refused: the parameters have changed since they were read \
                  (they are at revision {revision} now); read them again"
             ),
             Refusal::Leased { by } => write!(
                 f,
-                "`{what}` is refused: another host (session {by}) has armed the device; \
+                "`{request}` is refused: another host (session {by}) has armed the device; \
                  end that program, or `crepitus stop`"
             ),
             Refusal::DriveSilent => write!(
                 f,
-                "`{what}` is refused: nothing comes from the drive; \
+                "`{request}` is refused: nothing comes from the drive; \
                  look at its power and at the cable between the controllers"
             ),
-            Refusal::Unconfirmed if what == RequestKind::Commit => f.write_str(
+            Refusal::Unconfirmed if request == RequestKind::Commit => f.write_str(
                 "the drive has not confirmed the parameters in time: it cannot be heard, or still \
                  goes over to those before; they come into force afterwards: ask for the status",
             ),
             Refusal::Unconfirmed => write!(
                 f,
-                "the drive has not confirmed `{what}` in time, and may have done it: \
+                "the drive has not confirmed `{request}` in time, and may have done it: \
                  ask for the status"
             ),
             Refusal::Faulted { code } => write!(
                 f,
-                "`{what}` is refused, a fault stands in the way: {}",
+                "`{request}` is refused, a fault stands in the way: {}",
                 fault_text(code)
             ),
-            Refusal::Armed => needs_disarmed(f, what),
+            Refusal::Armed => needs_disarmed(f, request),
             Refusal::Busy => write!(
                 f,
-                "`{what}` is refused: the device still works on another request, or still goes \
+                "`{request}` is refused: the device still works on another request, or still goes \
                  over to other parameters; try again"
             ),
-            Refusal::Drive(refusal) => drive_text(f, what, refusal),
+            Refusal::Drive(refusal) => drive_text(f, request, refusal),
             Refusal::Storage => f.write_str(
                 "the parameters could not be kept: the flash memory of comms does not take them; \
                  they are in force until the next start",
@@ -70,12 +70,12 @@ impl fmt::Display for Refused {
             Refusal::Aborted => {
                 write!(
                     f,
-                    "`{what}` was given up: a stop, a disarm or a fault came first"
+                    "`{request}` was given up: a stop, a disarm or a fault came first"
                 )
             }
             _ => write!(
                 f,
-                "`{what}` is refused for a reason that this tool does not know: \
+                "`{request}` is refused for a reason that this tool does not know: \
                  install the tool of the device's version"
             ),
         }
@@ -159,43 +159,50 @@ pub(crate) fn name_of(id: u8) -> String {
     with_id(id).map_or_else(|| format!("parameter {id}"), full_name)
 }
 
-fn needs_disarmed(f: &mut fmt::Formatter<'_>, what: RequestKind) -> fmt::Result {
-    if what == RequestKind::Arm {
+fn needs_disarmed(f: &mut fmt::Formatter<'_>, request: RequestKind) -> fmt::Result {
+    if request == RequestKind::Arm {
         f.write_str("`arm` is refused: the device is armed already")
     } else {
-        write!(f, "`{what}` is refused while there is torque: disarm first")
+        write!(
+            f,
+            "`{request}` is refused while there is torque: disarm first"
+        )
     }
 }
 
-fn drive_text(f: &mut fmt::Formatter<'_>, what: RequestKind, refusal: DriveRefusal) -> fmt::Result {
+fn drive_text(
+    f: &mut fmt::Formatter<'_>,
+    request: RequestKind,
+    refusal: DriveRefusal,
+) -> fmt::Result {
     match refusal {
         DriveRefusal::NoParameters => write!(
             f,
-            "the drive refuses `{what}`: it was given no parameters yet; try again in a second"
+            "the drive refuses `{request}`: it was given no parameters yet; try again in a second"
         ),
         DriveRefusal::NoLease => write!(
             f,
-            "the drive refuses `{what}`: the lease was not renewed in time; \
+            "the drive refuses `{request}`: the lease was not renewed in time; \
              this host is too busy, or the line too slow"
         ),
         DriveRefusal::Faulted { code } => write!(
             f,
-            "the drive refuses `{what}`, a fault stands in the way: {}",
+            "the drive refuses `{request}`, a fault stands in the way: {}",
             fault_text(code)
         ),
-        DriveRefusal::Armed => needs_disarmed(f, what),
+        DriveRefusal::Armed => needs_disarmed(f, request),
         DriveRefusal::NoEncoder => write!(
             f,
-            "the drive refuses `{what}`: the encoder counts more than a shaft can turn; \
+            "the drive refuses `{request}`: the encoder counts more than a shaft can turn; \
              look at its lines and plug"
         ),
         DriveRefusal::Aborted => write!(
             f,
-            "the drive has given up `{what}`: a stop, a disarm or a fault came first"
+            "the drive has given up `{request}`: a stop, a disarm or a fault came first"
         ),
         _ => write!(
             f,
-            "the drive refuses `{what}` for a reason that this tool does not know: \
+            "the drive refuses `{request}` for a reason that this tool does not know: \
              install the tool of the device's version"
         ),
     }

@@ -4,7 +4,7 @@
 use crate::hex::hex;
 use crate::management;
 use crepitus_protocol::counters::{COMMS_COUNT, DRIVE_COUNT};
-use crepitus_protocol::host::{Answer, Ask, Counters, Refusal, Reply, Request, Status};
+use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Reply, Request, Status};
 use crepitus_protocol::link::{
     DriveRefusal, DriveStatus, FromDrive, Heartbeat, Order, Outcome, ToDrive,
 };
@@ -101,55 +101,55 @@ fn values() -> Values {
 
 const VALUES: &str = "the value of each parameter is half its id";
 
-/// Names of questions. A new one does not compile until it is here, and fails
+/// Names of requests. A new one does not compile until it is here, and fails
 /// until it has an example.
-fn ask_name(ask: &Ask) -> &'static str {
-    match ask {
-        Ask::Renew => "renew",
-        Ask::Status => "status",
-        Ask::Counters => "counters",
-        Ask::Parameters => "parameters",
-        Ask::Commit { .. } => "commit",
-        Ask::Save => "save",
-        Ask::Zero => "zero",
-        Ask::Arm => "arm",
-        Ask::Disarm => "disarm",
-        Ask::ClearFault => "clear-fault",
-        Ask::Subscribe => "subscribe",
-        Ask::Unsubscribe => "unsubscribe",
+fn ask_name(operation: &Operation) -> &'static str {
+    match operation {
+        Operation::Renew => "renew",
+        Operation::Status => "status",
+        Operation::Counters => "counters",
+        Operation::Parameters => "parameters",
+        Operation::Commit { .. } => "commit",
+        Operation::Save => "save",
+        Operation::Zero => "zero",
+        Operation::Arm => "arm",
+        Operation::Disarm => "disarm",
+        Operation::ClearFault => "clear-fault",
+        Operation::Subscribe => "subscribe",
+        Operation::Unsubscribe => "unsubscribe",
     }
 }
 
 fn requests() -> Vec<Example> {
-    let commit = Ask::Commit {
+    let commit = Operation::Commit {
         base: Revision(300),
         values: values(),
     };
     let asks = [
-        Ask::Renew,
-        Ask::Status,
-        Ask::Counters,
-        Ask::Parameters,
+        Operation::Renew,
+        Operation::Status,
+        Operation::Counters,
+        Operation::Parameters,
         commit,
-        Ask::Save,
-        Ask::Zero,
-        Ask::Arm,
-        Ask::Disarm,
-        Ask::ClearFault,
-        Ask::Subscribe,
-        Ask::Unsubscribe,
+        Operation::Save,
+        Operation::Zero,
+        Operation::Arm,
+        Operation::Disarm,
+        Operation::ClearFault,
+        Operation::Subscribe,
+        Operation::Unsubscribe,
     ];
     (0x1fe..)
         .zip(asks)
-        .map(|(number, ask)| {
+        .map(|(number, operation)| {
             let request = Request {
                 session: HOST,
                 number,
-                ask,
+                operation,
             };
-            let means = (ask == commit)
-                .then(|| format!("Request {{ session: Session(305419896), number: {number}, ask: Commit {{ base: Revision(300), values }} }}; {VALUES}"));
-            let name = format!("request.{}", ask_name(&ask));
+            let means = (operation == commit)
+                .then(|| format!("Request {{ session: Session(305419896), number: {number}, operation: Commit {{ base: Revision(300), values }} }}; {VALUES}"));
+            let name = format!("request.{}", ask_name(&operation));
             example(Lane::Request, &name, &request, means.as_deref())
         })
         .collect()
@@ -358,7 +358,7 @@ fn from_drive() -> Vec<Example> {
     let full = DriveStatus {
         tick: 20_000_000_040,
         start: 7,
-        heard: Some(9),
+        comms_start: Some(9),
         state: State::Armed,
         fault: 0,
         revision: Revision(300),

@@ -211,7 +211,7 @@ impl Board {
         if drive_runs {
             self.drive.prepare();
             if self.drive.take_reboot() {
-                self.reset(Controller::Drive, ResetCause::Asked);
+                self.reset(Controller::Drive, ResetCause::Requested);
             }
         }
         self.tick += 1;
@@ -293,7 +293,7 @@ impl Board {
             self.comms.saved(self.keeps);
         }
         if outputs.reboot {
-            self.reset(Controller::Comms, ResetCause::Asked);
+            self.reset(Controller::Comms, ResetCause::Requested);
         }
         // When comms disables its line, that is immediate.
         if !self.comms_line.is_on() {

@@ -40,10 +40,10 @@ fn a_device_that_says_nothing_is_given_up() {
     let (shared, port) = device();
     shared.borrow_mut().to_host.swallow = usize::MAX;
     let error = Client::connect(port).unwrap_err();
-    let Error::NoAnswer { what, tries, .. } = &error else {
+    let Error::NoAnswer { request, tries, .. } = &error else {
         panic!("{error}");
     };
-    assert_eq!((*what, *tries), (RequestKind::Hello, 10));
+    assert_eq!((*request, *tries), (RequestKind::Hello, 10));
     assert_eq!(
         error.to_string(),
         "no answer from bench to `hello`, asked 10 times within 1000 ms: \
@@ -109,7 +109,7 @@ fn a_device_of_another_language_can_be_stopped() {
     assert_eq!(
         refused,
         Error::NotDone {
-            what: RequestKind::Reboot
+            request: RequestKind::Reboot
         }
     );
     stranger.stop().unwrap();
@@ -147,7 +147,7 @@ fn reboots_start_both_controllers_anew() {
     assert!(status.uptime_ms < 100 && !status.zeroed, "{status:?}");
     assert_eq!(
         client.identify().unwrap().drive.unwrap().reset,
-        ResetCause::Asked
+        ResetCause::Requested
     );
-    assert_eq!(shared.borrow().comms_identity.reset, ResetCause::Asked);
+    assert_eq!(shared.borrow().comms_identity.reset, ResetCause::Requested);
 }

@@ -120,7 +120,7 @@ fn another_language_is_found_out_at_once() {
         let mut device = shared.borrow_mut();
         device.unplug();
         device.comms_identity.schema ^= 1;
-        device.start_comms(ResetCause::Asked);
+        device.start_comms(ResetCause::Requested);
         device.is_plugged = true;
     }
     let error = client.reconnect(ms(10_000)).unwrap_err();

@@ -4,7 +4,7 @@ use crate::support::{Device, Port, client, connected, device, ms, pump_for};
 use crepitus_client::{Error, RequestKind, Transport};
 use crepitus_protocol::counters::CommsCounter::{self, RepeatedRequests, Requests};
 use crepitus_protocol::frame;
-use crepitus_protocol::host::{Answer, Ask, Reply, Request};
+use crepitus_protocol::host::{Answer, Operation, Reply, Request};
 use crepitus_protocol::parameters::id;
 use crepitus_protocol::{Lane, Revision, Session, State};
 
@@ -88,7 +88,7 @@ fn a_busy_device_is_asked_until_it_has_time() {
     let request = Request {
         session: Session(2),
         number: 1,
-        ask: Ask::Zero,
+        operation: Operation::Zero,
     };
     other
         .send(&frame::encode(Lane::Request, &request).unwrap())

@@ -53,9 +53,9 @@ fn every_refusal_says_what_to_do() {
         Refusal::Storage,
         Refusal::Aborted,
     ];
-    let text = |what, refusal, values| {
+    let text = |request, refusal, values| {
         Refused {
-            what,
+            request,
             refusal,
             values,
         }
@@ -68,8 +68,8 @@ fn every_refusal_says_what_to_do() {
     }
     lines.push(text(RequestKind::Commit, Refusal::Unconfirmed, None));
     for refusal in others.into_iter().chain(drive.map(Refusal::Drive)) {
-        for what in [RequestKind::Arm, RequestKind::Zero] {
-            lines.push(text(what, refusal, None));
+        for request in [RequestKind::Arm, RequestKind::Zero] {
+            lines.push(text(request, refusal, None));
         }
     }
     golden("refusals", &lines.join("\n"));

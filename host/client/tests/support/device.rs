@@ -166,10 +166,10 @@ impl Device {
         }
         self.send_to_hosts();
         if outputs.reboot {
-            self.start_comms(ResetCause::Asked);
+            self.start_comms(ResetCause::Requested);
         }
         if self.drive.take_reboot() {
-            self.start_drive(ResetCause::Asked);
+            self.start_drive(ResetCause::Requested);
         }
     }
 
