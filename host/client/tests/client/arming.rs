@@ -118,8 +118,8 @@ fn one_host_has_the_lease_and_the_others_are_refused() {
     let error = second.arm().unwrap_err();
     assert_eq!(
         error.to_string(),
-        "`arm` is refused: another host (session 00000001) has armed the device; \
-         end that program, or `crepitus stop`"
+        "`arm` is rejected: another host (session 00000001) holds the lease; \
+         end that program, or run `crepitus stop`"
     );
     for refused in [
         refusal(second.zero()),

@@ -46,8 +46,8 @@ fn a_device_that_says_nothing_is_given_up() {
     assert_eq!((*request, *tries), (RequestKind::Hello, 10));
     assert_eq!(
         error.to_string(),
-        "no answer from bench to `hello`, asked 10 times within 1000 ms: \
-         is it a Crepitus device, and is it switched on?"
+        "timeout: no reply from bench to `hello` after 10 tries in 1000 ms; \
+         check that it is a Crepitus device and that it has power"
     );
 }
 
@@ -61,7 +61,7 @@ fn a_device_whose_drive_is_silent_is_connected_all_the_same() {
 }
 
 #[test]
-fn another_language_is_said_with_what_to_do() {
+fn a_schema_mismatch_is_reported_with_its_remedy() {
     for (name, comms, drive) in [
         ("older-comms", ([0, 0, 9], 0x0123_4567_89ab_cdef), None),
         ("newer-comms", ([0, 2, 0], 0xfedc_ba98_7654_3210), None),
@@ -89,13 +89,13 @@ fn another_language_is_said_with_what_to_do() {
         let error = Client::connect(port).unwrap_err();
         assert!(matches!(error, Error::Mismatch(_)), "{error}");
         let ours = format!("{:016x}", schema::HASH);
-        let text = error.to_string().replace(&ours, "(this language)");
+        let text = error.to_string().replace(&ours, "(this schema)");
         golden(name, &text);
     }
 }
 
 #[test]
-fn a_device_of_another_language_can_be_stopped() {
+fn a_device_with_another_schema_can_be_stopped() {
     let (shared, port) = device();
     let mut owner = client(port, 1);
     owner.arm().unwrap();
@@ -122,7 +122,7 @@ fn a_device_of_another_language_can_be_stopped() {
 }
 
 #[test]
-fn a_drive_of_another_language_alone_is_a_fault_and_no_end() {
+fn a_drive_with_another_schema_is_a_fault_but_no_mismatch() {
     let (shared, port) = device();
     {
         let mut device = shared.borrow_mut();

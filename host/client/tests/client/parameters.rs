@@ -1,4 +1,4 @@
-//! Parameters: read, set, refused, kept.
+//! Parameters: read, set, rejected, saved.
 
 use crate::support::{Port, client, connected, device, ms, pump_for, refusal};
 use crepitus_client::{Client, Error};
@@ -54,25 +54,25 @@ fn a_set_works_while_armed() {
 }
 
 #[test]
-fn what_is_not_allowed_is_refused_with_what_is() {
+fn invalid_values_are_rejected_with_the_valid_ones() {
     let (_, mut client) = connected();
     let restart = place("crepitus.restart");
     for (changes, error, text) in [
         (
             &[(id::TORQUE_LIMIT, 9.0)][..],
             ValueError::OutOfRange { id: 26 },
-            "limits.torque_nm = 9 is not allowed: it is between 0 and 6.5 N·m; nothing was changed",
+            "invalid value limits.torque_nm = 9: must be between 0 and 6.5 N·m; nothing was changed",
         ),
         (
             &[(id::STATIC_TORQUE, f64::NAN)],
             ValueError::OutOfRange { id: 4 },
-            "crepitus.static_torque_nm = NaN is not allowed: it is between 0 and 1e6 N·m; \
+            "invalid value crepitus.static_torque_nm = NaN: must be between 0 and 1e6 N·m; \
              nothing was changed",
         ),
         (
             &[(restart, 2.0)],
             ValueError::OutOfRange { id: 5 },
-            "crepitus.restart = 2 is not allowed: it is `elastic` or `from-kinetic`; \
+            "invalid value crepitus.restart = 2: must be `elastic` or `from-kinetic`; \
              nothing was changed",
         ),
         (
@@ -119,8 +119,8 @@ fn a_commit_from_old_values_is_stale() {
     let error = client.commit(base, &values).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "`commit` is refused: the parameters have changed since they were read \
-         (they are at revision 2 now); read them again"
+        "`commit` is rejected: the parameters have changed since they were read \
+         (now revision 2); read them again"
     );
     let revision = Revision(2);
     assert_eq!(refusal::<()>(Err(error)), Refusal::Stale { revision });
@@ -219,9 +219,8 @@ fn a_set_does_not_undo_what_another_host_has_just_set() {
     let error = client.set(&[(id::STATIC_TORQUE, 0.5)]).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "crepitus.static_torque_nm was to become 0.5, and another host has just changed it \
-         from 0.4 to 0.9 (revision 2): nothing was set; look whether that is what you want, \
-         and set it again"
+        "cannot set crepitus.static_torque_nm to 0.5: another host has just changed it \
+         from 0.4 to 0.9 (revision 2); nothing was set; check its new value and set it again"
     );
     let mut client = overtaken(&[(id::STATIC_TORQUE, 0.5)]);
     assert_eq!(

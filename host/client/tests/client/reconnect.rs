@@ -75,7 +75,7 @@ fn what_was_being_asked_is_told() {
     let error = client.zero().unwrap_err();
     assert_eq!(
         error.to_string(),
-        "bench is gone (no such device): the device was unplugged, switched off or started again"
+        "connection to bench lost (no such device): the device was unplugged, switched off or rebooted"
     );
     shared.borrow_mut().is_plugged = true;
     let back = client.reconnect(ms(100)).unwrap();
@@ -114,7 +114,7 @@ fn a_device_that_was_switched_off_begins_anew() {
 }
 
 #[test]
-fn another_language_is_found_out_at_once() {
+fn another_schema_is_detected_at_once() {
     let (shared, mut client) = connected();
     {
         let mut device = shared.borrow_mut();

@@ -143,21 +143,21 @@ fn values_are_read_as_they_are_shown() {
 }
 
 #[test]
-fn what_is_no_value_is_refused_with_what_is_one() {
+fn invalid_texts_are_rejected_with_the_valid_values() {
     let text = |name: &str, value: &str| {
         let (_, parameter) = parameters::find(name).unwrap();
         parse_value(parameter, value).unwrap_err().to_string()
     };
     assert_eq!(
         text("crepitus.static_torque_nm", "0,4"),
-        "crepitus.static_torque_nm is a number: `0,4` is none; it is between 0 and 1e6 N·m"
+        "invalid crepitus.static_torque_nm: expected a number between 0 and 1e6 N·m, got `0,4`"
     );
     assert_eq!(
         text("friction-compensation.share", "inf"),
-        "friction-compensation.share is a number: `inf` is none; it is between 0 and 0.9"
+        "invalid friction-compensation.share: expected a number between 0 and 0.9, got `inf`"
     );
     assert_eq!(
         text("crepitus.restart", "1"),
-        "crepitus.restart cannot be `1`: it is `elastic` or `from-kinetic`"
+        "invalid crepitus.restart: expected `elastic` or `from-kinetic`, got `1`"
     );
 }
