@@ -1,6 +1,6 @@
 //! A plant from the effects that a scene lists.
 //!
-//! Everything is decided here, once: what is not listed leaves no part behind.
+//! Everything is decided here, once: an effect that is not listed has no part.
 
 use crate::actuator::{Actuator, Commanded, Ideal};
 use crate::boundary::{Boundary, Prescribed, Released};

@@ -51,7 +51,7 @@ pub trait Boundary: Send {
     fn solve(&mut self, stretch: &Stretch, body: &Body, push: Push) -> Flow;
 
     /// Makes the step: `next` is what the chain has made of the body, `cut`
-    /// whether the step goes on after this stretch.
+    /// whether the step continues after this stretch.
     fn settle(
         &mut self,
         stretch: &Stretch,
@@ -74,7 +74,7 @@ pub trait Boundary: Send {
     /// Inertia that it adds to the right end, kg·m².
     fn inertia_kg_m2(&self) -> f64;
 
-    /// Books what it was given, stores and has lost.
+    /// Adds supplied, stored and dissipated energy to the balance.
     fn energy(&self, body: &Body, balance: &mut EnergyBalance);
 
     /// Names of the columns in a trace.

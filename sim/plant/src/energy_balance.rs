@@ -1,7 +1,7 @@
 //! Where the energy of a plant is: what each part was given, stores, and has
 //! lost.
 
-/// What a term counts.
+/// Kind of a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Account {
     /// Work done on the plant from outside.
@@ -29,9 +29,9 @@ impl Account {
 /// One term of the balance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term {
-    /// The effect that it belongs to; `motion` for what is prescribed.
+    /// The effect that it belongs to; `motion` for prescribed motion.
     pub effect: &'static str,
-    /// What it is.
+    /// Description.
     pub what: &'static str,
     /// Where it counts.
     pub account: Account,
@@ -43,7 +43,7 @@ pub struct Term {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EnergyBalance {
     terms: Vec<Term>,
-    /// What was stored where a balance begins, J.
+    /// Stored energy at the start of a balance, J.
     held_j: f64,
 }
 
@@ -74,7 +74,7 @@ impl EnergyBalance {
         &self.terms
     }
 
-    /// What the balance leaves over, J: zero but for numerical error.
+    /// Residual of the balance, J: zero except for numerical error.
     pub fn residual_j(&self) -> f64 {
         self.terms
             .iter()

@@ -27,11 +27,11 @@ pub trait Load: Send {
         None
     }
 
-    /// Books what it stores now and has lost so far, without the kinetic
+    /// Adds stored and dissipated energy to the balance, without the kinetic
     /// energy.
     fn energy(&self, body: &Body, balance: &mut EnergyBalance);
 
-    /// What was odd.
+    /// Warnings.
     fn warnings(&self, _: &mut Vec<String>) {}
 }
 

@@ -22,7 +22,7 @@ pub enum Motion {
     Single(Piece),
     /// Pieces one after the other; the first holds before, the last after.
     Sequence(Vec<Piece>),
-    /// Minimum-jerk strokes there and back with a pause after each, for ever.
+    /// Minimum-jerk strokes there and back with a pause after each, repeated.
     Strokes(Strokes),
 }
 

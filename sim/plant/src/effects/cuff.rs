@@ -98,7 +98,7 @@ struct Cuff {
 /// hundredth that adds up to a tenth of a radian before the swing has decayed.
 const MOST_RADIANS: f64 = 0.1;
 
-/// Above this bh/J what the damper decays changes its sign at every step.
+/// Above this bh/J the damper's decay changes its sign at every step.
 const MOST_DECAY: f64 = 2.0;
 
 impl Cuff {

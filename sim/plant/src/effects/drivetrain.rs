@@ -74,7 +74,7 @@ pub const EFFECT: Effect = Effect {
 
 const NAME: &str = "drivetrain";
 
-/// A speed that falls to this share of itself is none.
+/// Share of itself below which a falling speed counts as zero.
 const NEARLY: f64 = 1e-5;
 
 /// Whether the friction holds the rotor.
@@ -147,7 +147,7 @@ impl Drivetrain {
             Mode::Sliding(sense) => {
                 let (v, end) = (sense.of_signed(v), sense.of_signed(2.0 * w - v));
                 if v > 0.0 {
-                    // Nothing happens where there is no friction.
+                    // Without friction nothing changes.
                     let stops = end <= NEARLY * v && self.limit_nm(step) > 0.0;
                     Ok(stops.then(|| (v / (v - end)).min(1.0)))
                 } else if v < 0.0 {

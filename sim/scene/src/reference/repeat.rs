@@ -8,7 +8,7 @@ use super::{Follow, Reference, Slip, State};
 use crepitus_model::{Convention, Event, EventKind, Phase, Sense};
 use std::ops::ControlFlow;
 
-/// A cycle that goes on repeating.
+/// A cycle that repeats.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Repeat {
     /// When the first began, s.

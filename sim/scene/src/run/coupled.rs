@@ -23,7 +23,7 @@ pub(super) struct PlantTotals {
     pub(super) balance: EnergyBalance,
     /// Where the work of the rendered torque comes from.
     pub(super) rendering: Rendering,
-    /// What the hand felt; none if nobody holds the leg.
+    /// Torque at the hand; `None` for a released leg.
     pub(super) felt: Option<Felt>,
     /// The impacts, if a part of the plant can have any.
     pub(super) impacts: Option<Impacts>,
