@@ -67,7 +67,7 @@ fn a_study_becomes_three_files() {
         for cell in &row[4..] {
             number(cell);
         }
-        // No rung goes on with a slip after its end.
+        // No rung continues a slip after its end.
         assert_eq!(row[17..19], ["0.0", "0.0"], "{row:?}");
         assert!(number(&row[19]) > 0.0, "{row:?}");
         let per_second = number(&row[19]) * 1e-3 / number(&row[4]);
@@ -179,7 +179,7 @@ fn a_need_gets_the_cheapest_that_meets_it() {
         t <= torque && i <= interval && unmatched == 0.0,
         "{solver}: {t} {i} {unmatched}"
     );
-    // What is cheaper fails.
+    // Cheaper solvers fail.
     let cheaper = answer["cheaper"].as_array().unwrap();
     for cheaper in cheaper {
         let solver = cheaper["solver"].as_str().unwrap();

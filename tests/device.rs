@@ -73,7 +73,7 @@ fn parameters_are_listed_read_and_set() {
     done(&["params", "save"]);
 }
 
-/// What is refused says what was wrong, and what to do.
+/// A rejected request reports the cause and the remedy.
 #[test]
 fn what_is_not_allowed_is_refused_with_the_reason() {
     for (arguments, code, parts) in [
@@ -220,12 +220,12 @@ fn a_recording_is_reported() {
     let page = fs::read_to_string(folder.join("report.html")).unwrap();
     assert!(page.contains("First try") && page.contains("<svg"));
 
-    // Cut off anywhere, what is there is reported.
+    // A truncated recording is reported as far as it goes.
     let whole = fs::read(&file).unwrap();
     fs::write(&file, &whole[..whole.len() / 2]).unwrap();
     let output = run(&["report", path, "--json"]);
     assert!(output.status.success(), "{}", stderr(&output));
-    // What is no recording is not.
+    // A file that is no recording is rejected.
     fs::write(&file, "t,x\n1,2\n").unwrap();
     let output = run(&["report", path]);
     assert_eq!(output.status.code(), Some(2));

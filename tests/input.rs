@@ -1,5 +1,5 @@
-//! What a hurried or a hostile person puts in: escapes, endless words, places
-//! where nobody may write, values beyond their range.
+//! Careless and hostile input: escapes, endless words, places
+//! without write permission, values out of range.
 
 mod support;
 

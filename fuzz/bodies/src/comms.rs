@@ -1,21 +1,21 @@
 //! The comms controller, with anything from hosts and from the drive,
 //! millisecond by millisecond:
 //!
-//! - its line is on only while somebody's lease is alive, blocks come, and
-//!   there is no fault of comms; and only after somebody has asked to arm, and
-//!   nobody since to disarm or to stop. So it is with what heartbeats allow;
-//! - no heartbeat tells of a longer lease than there is;
+//! - its line is on only while a host holds the lease, blocks arrive, and
+//!   there is no fault of comms; and only after a host has requested arming, and
+//!   none since disarming or a stop. The same holds for `enable` in heartbeats;
+//! - no heartbeat carries a longer lease than there is;
 //! - every frame for a host or for the drive is in order. A request has at most
-//!   as many replies as it was sent times, and nobody else has any;
+//!   as many replies as it was sent times, and there are no others;
 //! - the revision changes only after a commit, or a refusal, to the next one. Parameters that
-//!   are told, sent or kept are those of the start or of a commit, and allowed;
-//! - every sample of a subscription is in the books;
-//! - nothing is kept and nothing starts anew that was not asked for.
+//!   are read, sent or saved are those of the boot or of a commit, and valid;
+//! - every sample of a subscription is accounted for;
+//! - nothing is saved and nothing reboots without a request.
 
 use crate::bytes::Bytes;
-use crate::drive_words::DriveSide;
-use crate::host_ear::HostEar;
-use crate::link_words;
+use crate::drive_model::DriveModel;
+use crate::host_oracle::HostOracle;
+use crate::link_inputs;
 use crepitus_device::Comms;
 use crepitus_device::comms::{Boot, Inputs, Outputs};
 use crepitus_device::usb_port::HostBytes;
@@ -34,7 +34,7 @@ const MOST_MS: u64 = 4096;
 /// Length of a lease, ms.
 const LEASE_MS: u64 = 250;
 
-/// After so long without a block the drive is silent, ms.
+/// Timeout: without a block for this long the drive is silent, ms.
 const SILENT_MS: u64 = 5;
 
 /// Checks the laws.
@@ -54,7 +54,7 @@ pub fn body(data: &[u8]) {
         start: u16::from(bytes.byte()),
         saved: (saved > 127).then(|| {
             let revision = bytes.choice(&[0, 1, 7, u32::MAX - 1]);
-            (Revision(revision), link_words::values(&mut bytes))
+            (Revision(revision), link_inputs::values(&mut bytes))
         }),
         counters: bytes.choice(&[0, u32::MAX - 2]),
     };
@@ -66,7 +66,7 @@ pub fn body(data: &[u8]) {
     bench.read(usize::MAX);
 }
 
-/// Comms, and what somebody who listens to both its wires knows.
+/// Comms, and an oracle that observes both its wires.
 #[expect(
     clippy::struct_excessive_bools,
     reason = "each is a line or a fact by itself"
@@ -75,16 +75,16 @@ struct Bench {
     comms: Comms,
     now_ms: u64,
     line_is_on: bool,
-    drive: DriveSide,
-    host: HostEar,
-    /// Hears what hosts say, and what the drive is told.
+    drive: DriveModel,
+    host: HostOracle,
+    /// Decoders of the bytes from hosts and to the drive.
     ear: Decoder,
     link_ear: Decoder,
     numbers: [u16; 5],
     /// When a block came last, and when a lease was taken or renewed last.
     block_ms: Option<u64>,
     lease_ms: Option<u64>,
-    /// Somebody has asked to arm, and nobody since not to be.
+    /// A host has requested arming, and none has disarmed since.
     wants: bool,
     /// Reasons that there were for another revision.
     numbered: u32,
@@ -102,8 +102,8 @@ impl Bench {
         Self {
             now_ms: 0,
             line_is_on: false,
-            drive: DriveSide::new(boot.start),
-            host: HostEar::default(),
+            drive: DriveModel::new(boot.start),
+            host: HostOracle::default(),
             ear: Decoder::new(),
             link_ear: Decoder::new(),
             numbers: [0, 1, 0x7ffe, 0xfffe, 9],
@@ -126,7 +126,7 @@ impl Bench {
                 let line = (how & 1 != 0).then_some(how & 2 != 0);
                 self.tick(line);
             }
-            // As it should be, for so many milliseconds.
+            // Normal operation, for this many milliseconds.
             1 => {
                 let reads = bytes.byte();
                 for _ in 0..bytes.byte() {
@@ -151,24 +151,24 @@ impl Bench {
                     operation,
                 };
                 let frame = frame::encode(Lane::Request, &request);
-                self.say(&frame.expect("every message fits"));
+                self.send(&frame.expect("every message fits"));
             }
             4 => {
                 let count = usize::from(bytes.byte());
                 let raw = bytes.take_some(count).to_vec();
-                self.say(&raw);
+                self.send(&raw);
             }
             5 => {
                 let question = ManagementRequest {
-                    action: link_words::action(bytes),
+                    action: link_inputs::action(bytes),
                     token: bytes.byte(),
                 };
                 let frame = frame::encode_bytes(Lane::Management, &question.bytes());
-                self.say(&frame.expect("a short frame"));
+                self.send(&frame.expect("a short frame"));
             }
             6 => {
                 let frame = self.drive.anything(bytes);
-                self.numbered += u32::from(self.drive.has_refused());
+                self.numbered += u32::from(self.drive.has_rejected());
                 self.drive_says(&frame);
             }
             7 => match bytes.byte() {
@@ -201,7 +201,7 @@ impl Bench {
                 } else {
                     Revision(u32::from(bytes.byte()))
                 },
-                values: link_words::values(bytes),
+                values: link_inputs::values(bytes),
             },
             7 => Operation::Save,
             8 => Operation::Zero,
@@ -213,8 +213,8 @@ impl Bench {
         }
     }
 
-    /// Bytes of a host, for comms and for whoever listens.
-    fn say(&mut self, bytes: &[u8]) {
+    /// Bytes of a host, for comms and for the oracle.
+    fn send(&mut self, bytes: &[u8]) {
         for byte in bytes {
             let (mut request, mut question) = (None, None);
             match self.ear.push(*byte) {
@@ -241,7 +241,7 @@ impl Bench {
     }
 
     fn note(&mut self, request: &Request, is_new: bool) {
-        self.host.asked(request);
+        self.host.requested(request);
         match request.operation {
             Operation::Renew if self.is_leased() => self.lease_ms = Some(self.now_ms),
             _ if !is_new => {}
@@ -259,7 +259,7 @@ impl Bench {
         }
     }
 
-    /// By what was said on the wire, at most.
+    /// Upper bound from the messages on the wire.
     fn is_leased(&self) -> bool {
         self.lease_ms
             .is_some_and(|lease_ms| self.now_ms - lease_ms < LEASE_MS)
@@ -351,7 +351,7 @@ impl Bench {
     }
 
     fn told(&mut self, message: &ToDrive) {
-        self.drive.hear(message);
+        self.drive.receive(message);
         match message {
             ToDrive::Heartbeat(heartbeat) => {
                 assert!(u64::from(heartbeat.lease_left) < LEASE_TICKS);
@@ -373,7 +373,7 @@ impl Bench {
         }
     }
 
-    /// Takes so many bytes for the host.
+    /// Takes this many bytes for the host.
     fn read(&mut self, count: usize) {
         let mut left = count;
         while left > 0 && !self.comms.to_send().is_empty() {
@@ -382,7 +382,7 @@ impl Bench {
             self.comms.sent(run.len());
             left -= run.len();
             for byte in &run {
-                self.host.hear(*byte, &self.values);
+                self.host.receive(*byte, &self.values);
             }
         }
     }

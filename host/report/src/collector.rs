@@ -1,4 +1,4 @@
-//! Takes rows and events as they come and keeps what the figures need.
+//! Collects the data of the figures from rows and events, in one pass.
 //!
 //! Memory does not grow with the run: each part has a bound of its own, and
 //! together they stay below a few megabytes.
@@ -44,7 +44,7 @@ pub struct Collector {
     pushes: Vec<(f64, f64)>,
 }
 
-/// What is left of a run when it is over: enough to draw it.
+/// Collected data of a complete run.
 #[derive(Debug)]
 pub struct Figures {
     pub(crate) levels: Option<TorqueLevels>,

@@ -1,4 +1,4 @@
-//! Torque, the lease, and who may.
+//! Arming and the lease.
 
 use crate::support::{Port, client, connected, device, ms, pump_for, refusal, turning};
 use crepitus_client::{Event, Transport};

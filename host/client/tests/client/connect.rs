@@ -1,4 +1,4 @@
-//! Who is there, and whether it can be talked to.
+//! Discovery, handshake and compatibility.
 
 use crate::support::{Port, client, device, golden, ms, options, pump_for};
 use crepitus_client::{Client, Error, Management, RequestKind};
@@ -14,7 +14,7 @@ fn a_device_says_who_it_is() {
     assert_eq!(handshake.drive.unwrap().role, Role::Drive);
     assert_eq!(handshake.mismatch(), None);
     assert_eq!(handshake.comms.schema, schema::HASH);
-    // A device that was switched on just now has to hear its drive first.
+    // Just after power-on comms has to identify the drive first.
     assert!(client.now() < ms(300), "{:?}", client.now());
     assert_eq!(client.tally().discarded_frames, 0);
 }

@@ -265,7 +265,7 @@ fn a_commit_that_the_drive_cannot_confirm_is_told() {
     );
     shared.borrow_mut().link_is_cut = false;
     pump_for(&mut client, ms(30));
-    // It has come into force since.
+    // It was applied meanwhile.
     let status = client.status().unwrap();
     assert_eq!(
         (status.revision, status.in_force),

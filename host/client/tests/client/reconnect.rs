@@ -36,7 +36,7 @@ fn a_lost_line_is_told_once_and_comes_back_with_its_subscription() {
     let back = client.reconnect(ms(300)).unwrap();
     assert!(back.was_armed && client.is_connected() && !client.is_armed());
     assert_eq!(back.unanswered, None);
-    // Without its host it has let go, and says so.
+    // Without its host it has disarmed with a fault.
     assert_eq!(back.status.state, State::Faulted);
     assert_eq!(back.status.drive_fault, Fault::LeaseExpired.code());
     let again = back.resubscribed.unwrap();
@@ -98,7 +98,7 @@ fn a_device_that_was_switched_off_begins_anew() {
         device.is_plugged = true;
     }
     client.transport_mut().wait(ms(50));
-    // Whoever does not look has not noticed.
+    // Not detected without a call.
     let back = client.reconnect(ms(300)).unwrap();
     assert_eq!(back.handshake.drive.unwrap().reset, ResetCause::Power);
     assert_eq!(back.status.revision, Revision(1));

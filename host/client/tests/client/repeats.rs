@@ -1,4 +1,4 @@
-//! What is lost on the line is asked again, and done once.
+//! Lost messages are retried, and requests executed once.
 
 use crate::support::{Device, Port, client, connected, device, ms, pump_for};
 use crepitus_client::{Error, RequestKind, Transport};
@@ -131,7 +131,7 @@ fn a_line_that_spoils_bytes_keeps_the_lease() {
     assert_eq!(shared.borrow().drive.state(), State::Armed);
 }
 
-/// Each of three evils strikes one byte in so many, both ways.
+/// Three kinds of disturbance, each at a rate per byte, in both directions.
 fn spoil(device: &mut Device, once_in: u64) {
     for line in [&mut device.to_host, &mut device.from_host] {
         (line.lose, line.flip, line.double) = (once_in, once_in, once_in);

@@ -62,7 +62,7 @@ pub fn connected() -> (Shared, Client<Port>) {
     (device, client)
 }
 
-/// Pumps for this long; gives all but the blocks.
+/// Pumps for this long; returns all events except blocks.
 pub fn pump_for(client: &mut Client<Port>, time: Duration) -> Vec<Event> {
     let end = client.now() + time;
     let mut events = Vec::new();
@@ -84,7 +84,7 @@ pub fn refusal<R: std::fmt::Debug>(result: Result<R, Error>) -> Refusal {
     }
 }
 
-/// The books balance, and say what was lost.
+/// Checks the sample accounting, with the expected losses.
 pub fn check_books(client: &Client<Port>) -> [u64; 4] {
     let books = client.accounting().unwrap();
     assert_eq!(books.violations(), 0);

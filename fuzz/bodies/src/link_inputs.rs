@@ -1,4 +1,4 @@
-//! What bytes become of messages: mostly near enough to be taken seriously.
+//! Messages made of bytes, mostly plausible.
 
 use crate::bytes::Bytes;
 use crepitus_protocol::Values;
