@@ -102,7 +102,9 @@ impl HostOracle {
         let is_another = match accounting.start {
             Some(known) => known != start || block.first_tick < accounting.next_tick,
             // It may have been reset before the first block came.
-            None => block.first_tick.wrapping_sub(accounting.first_tick) != u64::from(block.dropped),
+            None => {
+                block.first_tick.wrapping_sub(accounting.first_tick) != u64::from(block.dropped)
+            }
         };
         if is_another {
             accounting.first_tick = block.first_tick.wrapping_sub(block.dropped.into());

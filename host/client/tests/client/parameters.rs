@@ -47,7 +47,7 @@ fn a_set_works_while_armed() {
     let error = client.set(&[(lines, 500.0)]).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "encoder.lines = 500 changes only while there is no torque: disarm first; nothing was changed"
+        "encoder.lines = 500 can only change while disarmed: disarm first; nothing was changed"
     );
     client.disarm().unwrap();
     client.set(&[(lines, 500.0)]).unwrap();
@@ -85,8 +85,8 @@ fn invalid_values_are_rejected_with_the_valid_ones() {
             &[(id::KINETIC_TORQUE, 0.38), (id::STIFFNESS, 4000.0)],
             ValueError::Unguarded,
             "crepitus.kinetic_torque_nm = 0.38 is too close to crepitus.static_torque_nm = 0.4, with \
-             crepitus.stiffness_nm_per_rad = 4000 and encoder.lines = 512: a hand that turns back \
-             inside a slip would get more energy than the slip takes out of the spring. One count \
+             crepitus.stiffness_nm_per_rad = 4000 and encoder.lines = 512: a hand that reverses \
+             during a slip would get more energy than the slip takes out of the spring. One count \
              of the encoder is 35.7 µrad, and may be 0.4 µrad: lower the kinetic torque or the \
              stiffness, or raise the static torque; nothing was changed",
         ),
