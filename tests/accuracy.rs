@@ -251,7 +251,7 @@ fn a_need_that_nothing_meets_fails_with_the_nearest() {
 }
 
 #[test]
-fn a_torque_that_cannot_be_held_is_said_to_be_so_and_can_be_asked_for_at_the_tick() {
+fn a_torque_that_cannot_be_held_is_reported_and_can_be_requested_at_the_tick() {
     let home = tempfile::tempdir().unwrap();
     let scene = short_scene(home.path(), "physical");
     let ask = |need| {
@@ -283,7 +283,7 @@ fn a_torque_that_cannot_be_held_is_said_to_be_so_and_can_be_asked_for_at_the_tic
 }
 
 #[test]
-fn bad_usage_says_what_is_allowed() {
+fn bad_usage_gives_the_valid_values() {
     let home = tempfile::tempdir().unwrap();
     let frozen = short_scene(home.path(), "frozen");
     let frozen = frozen.to_str().unwrap();
@@ -471,7 +471,7 @@ fn on_the_target_its_cycles_choose() {
 }
 
 #[test]
-fn without_the_target_it_says_what_to_install() {
+fn without_the_target_it_reports_what_to_install() {
     let output = support::crepitus()
         .args(["accuracy", "--target", "--quick"])
         .env_remove("CREPITUS_IMAGES")

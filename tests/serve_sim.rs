@@ -113,7 +113,7 @@ fn it_is_found_and_talks() {
 }
 
 #[test]
-fn a_port_that_another_process_holds_says_so() {
+fn a_port_held_by_another_process_is_reported() {
     let served = Served::new();
     let file = served.home.path().join("held.csv");
     let mut holder = served
@@ -189,7 +189,7 @@ fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
 }
 
 #[test]
-fn a_full_disk_ends_a_recording_and_what_is_there_can_be_reported() {
+fn a_full_disk_ends_a_recording_that_can_still_be_reported() {
     let served = Served::new();
     let file = served.home.path().join("a.csv");
     let script = format!(

@@ -314,7 +314,7 @@ fn subnormal_numbers_are_rest() {
 }
 
 #[test]
-fn every_rung_can_be_put_down_anew() {
+fn every_rung_can_be_restarted() {
     struct PutDown;
     impl Trial for PutDown {
         fn run<F: Real, J: StickSlip<F>>(&self, name: &str, mut joint: Guarded<F, J>) {

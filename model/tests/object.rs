@@ -232,7 +232,7 @@ fn a_slip_that_began_with_a_soft_spring_ends_within_what_that_held() {
 }
 
 #[test]
-fn a_restart_is_a_stick_that_shows_what_it_is_told() {
+fn a_restart_is_a_stick_with_the_given_torque() {
     for (asked, shown) in [(0.15, 0.15), (-0.3, -0.3), (0.9, 0.4), (-0.9, -0.4)] {
         let mut joint = after(300, 0.97);
         joint.restart(asked, -0.5);

@@ -177,7 +177,7 @@ fn a_jerk_breaks_a_physical_stick_from_the_torque_that_it_showed() {
 }
 
 #[test]
-fn a_joint_that_is_put_down_goes_on_from_the_torque_that_it_shows() {
+fn a_restarted_joint_resumes_from_its_torque() {
     for convention in Convention::ALL {
         let c = if convention == Convention::Frozen {
             0.0

@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shorter_than_lane_and_tag_is_no_frame() {
+    fn a_body_shorter_than_lane_and_tag_is_invalid() {
         for length in 0..2 {
             let frame = encode_body(&body(length)).unwrap();
             assert_eq!(decode(&mut Decoder::new(), &frame), (Vec::new(), 1));
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wire_that_was_cut_starts_anew() {
+    fn a_decoder_recovers_from_a_disconnect() {
         let good = encode_body(&body(30)).unwrap();
         let mut decoder = Decoder::new();
         decode(&mut decoder, &good[..10]);
@@ -319,7 +319,7 @@ mod tests {
 
         /// One flipped bit: never another message.
         #[test]
-        fn a_flipped_bit_is_noticed(length in 2_usize..=BODY_BYTES, at: prop::sample::Index, bit in 0..8_u32) {
+        fn a_flipped_bit_is_detected(length in 2_usize..=BODY_BYTES, at: prop::sample::Index, bit in 0..8_u32) {
             let mut frame = encode_body(&body(length)).unwrap().to_vec();
             let at = at.index(frame.len());
             frame[at] ^= 1_u8 << bit;

@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_kept_is_used_if_it_is_allowed() {
+    fn saved_parameters_are_used_if_valid() {
         let mut values = Values::default();
         values.set(id::STATIC_TORQUE, 0.5);
         let parameters = Parameters::new(Some((Revision(9), values)));

@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_broken_is_not_armed() {
+    fn arming_fails_on_a_defect() {
         for (raw_a, stuck, fault) in [
             (0.11, None, Fault::CurrentOffset),
             (-0.11, None, Fault::CurrentOffset),

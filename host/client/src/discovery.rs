@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn the_system_is_asked_without_a_panic() {
+    fn listing_ports_does_not_panic() {
         usb_devices().unwrap();
     }
 

@@ -41,7 +41,7 @@ impl<T: Transport> Client<T> {
     pub fn pump(&mut self, patience: Duration) -> Result<Option<Event>, Error> {
         let until = self.now() + patience;
         loop {
-            let taken = self.take_what_is_there();
+            let taken = self.receive_pending();
             if let Some(event) = self.events.pop_front() {
                 return Ok(Some(event));
             }
@@ -57,7 +57,7 @@ impl<T: Transport> Client<T> {
     }
 
     /// Receives without waiting.
-    fn take_what_is_there(&mut self) -> Result<(), Error> {
+    fn receive_pending(&mut self) -> Result<(), Error> {
         self.connected()?;
         self.renew()?;
         self.look()?;

@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_median_forgets_and_the_worst_does_not() {
+    fn the_median_is_of_recent_times_and_the_maximum_of_all() {
         let mut trips = RoundTrips::default();
         assert_eq!(trips.of(RequestKind::Arm), None);
         let ms = Duration::from_millis;

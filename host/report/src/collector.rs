@@ -175,7 +175,7 @@ impl Collector {
         }
         if let Some(fast) = &mut self.fast {
             fast.row(sample);
-            self.take_what_is_due();
+            self.complete_due_windows();
         } else {
             self.take_row(&sample);
         }
@@ -205,7 +205,7 @@ impl Collector {
     }
 
     /// The rows and events of which the fast part is known now.
-    fn take_what_is_due(&mut self) {
+    fn complete_due_windows(&mut self) {
         while let Some(seen) = self.fast.as_mut().and_then(FastPart::next) {
             match seen {
                 Seen::Row(sample) => self.take_row(&sample),
@@ -249,7 +249,7 @@ impl Collector {
         if let Some(fast) = &mut self.fast {
             fast.end();
         }
-        self.take_what_is_due();
+        self.complete_due_windows();
         let (onset, fastest) = self.choice.finish();
         Figures {
             levels: self.levels,

@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn a_winding_that_is_not_as_believed_is_still_followed() {
+    fn a_winding_with_other_constants_is_still_controlled() {
         // Hot copper, and an inductance that is off by 30 %.
         for ohm in [1.23, 1.71] {
             for henry in [0.24e-3, 0.34e-3, 0.44e-3] {
@@ -407,7 +407,7 @@ mod tests {
     }
 
     #[test]
-    fn at_the_supply_it_says_so_and_has_nothing_to_unwind() {
+    fn voltage_saturation_is_reported_without_windup() {
         for sign in [1.0, -1.0] {
             let (mut winding, mut regulator) = (Winding::believed(0), default_loop::<f64>());
             // A second in which 24 V cannot push 1 A against 30 V.
@@ -438,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn no_more_current_is_asked_for_than_allowed() {
+    fn the_setpoint_is_clamped_to_the_current_limit() {
         for wanted in [5.0, -5.0, 1e30] {
             let (mut winding, mut regulator) = (Winding::believed(0), default_loop::<f32>());
             let currents = run(&mut winding, &mut regulator, 200, wanted, |_| 0.0);
@@ -449,7 +449,7 @@ mod tests {
     }
 
     #[test]
-    fn a_measurement_that_is_none_is_counted_and_forgotten() {
+    fn an_invalid_measurement_is_counted_and_ignored() {
         let mut regulator = default_loop::<f32>();
         regulator.tick(1.0, 0.2);
         let before = regulator;

@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_says_what_was_wrong_and_what_is_allowed() {
+    fn an_error_gives_the_cause_and_the_valid_values() {
         use std::string::ToString;
         for (error, parts) in [
             (

@@ -392,7 +392,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_ignored_and_silence_is_silence() {
+    fn nan_is_ignored_and_silence_stays_silent() {
         let s = BoneShapingSettings::default();
         let mut deaf = bone::<f32>(&s);
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
@@ -426,7 +426,7 @@ mod tests {
     }
 
     #[test]
-    fn the_books_are_the_work_with_the_worst_of_the_torques_acting() {
+    fn the_account_is_the_work_of_the_worst_of_the_acting_torques() {
         let s = BoneShapingSettings {
             refill_w: 0.0,
             ..BoneShapingSettings::default()

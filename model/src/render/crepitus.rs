@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shaft_out_of_sight_is_said_to_be_and_its_torque_held() {
+    fn missing_samples_are_reported_and_the_torque_held() {
         let mut renderer = after(10);
         let shown = renderer.render(&Sample::Lost, |_| {});
         assert_eq!((shown.limit, shown.settling), (Limit::Holding, false));

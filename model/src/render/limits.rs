@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn from_arming_on_what_may_be_asked_for_grows() {
+    fn from_arming_on_the_limit_grows() {
         let mut limits = TorqueLimits::new(1.0, 0.25);
         assert_eq!(after(&mut limits, 0.5), (0.0, Limit::NotArmed));
         limits.set_energised(true);
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_passes_and_a_reason_from_before_stays() {
+    fn nan_passes_and_an_earlier_reason_is_kept() {
         let mut limits = TorqueLimits::armed(1.0, 0.25);
         assert!(after(&mut limits, f32::NAN).0.is_nan());
         let mut held = shown(0.3);

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stick_or_another_slip_begins_anew() {
+    fn a_stick_or_another_slip_resets_the_guard() {
         let mut guard = TurnBack::new(COUNT);
         let slip = Phase::Slip(Sense::Positive);
         guard.moved(-3.0 * COUNT, slip, 1);

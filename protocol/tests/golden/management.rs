@@ -196,7 +196,7 @@ fn the_management_lane_is_as_it_always_was() {
 }
 
 #[test]
-fn every_byte_of_the_lane_has_its_meaning_for_ever() {
+fn the_bytes_of_the_management_lane_never_change() {
     // No `_`: what is new does not compile until it stands here.
     for action in [Action::Hello, Action::Stop, Action::Reboot] {
         let byte = match action {

@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_given_is_stored_or_lost() {
+    fn supplied_energy_is_stored_or_lost() {
         let balance = booked(5.0, 3.5, 2.0).since(&booked(0.0, 0.5, 0.0));
         assert_eq!(balance.residual_j(), 0.0);
         assert_eq!(balance.relative_residual(), 0.0);

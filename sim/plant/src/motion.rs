@@ -249,7 +249,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_goes_on_finds_the_same_pieces_from_anywhere() {
+    fn a_cursor_finds_the_same_pieces_from_anywhere() {
         let piece = |start_s: f64, end_s: f64| Piece {
             start_s,
             end_s,

@@ -6,7 +6,7 @@ use crepitus_protocol::management::{ResetCause, Role};
 use crepitus_protocol::{State, schema};
 
 #[test]
-fn a_device_says_who_it_is() {
+fn a_device_reports_its_identity() {
     let (_, port) = device();
     let client = client(port, 1);
     let handshake = client.handshake();
@@ -36,7 +36,7 @@ fn garbage_before_the_first_frame_does_no_harm() {
 }
 
 #[test]
-fn a_device_that_says_nothing_is_given_up() {
+fn a_silent_device_is_a_timeout() {
     let (shared, port) = device();
     shared.borrow_mut().to_host.swallow = usize::MAX;
     let error = Client::connect(port).unwrap_err();
@@ -137,7 +137,7 @@ fn a_drive_with_another_schema_is_a_fault_but_no_mismatch() {
 }
 
 #[test]
-fn reboots_start_both_controllers_anew() {
+fn a_reboot_restarts_both_controllers() {
     let (shared, port) = device();
     let mut client = client(port, 1);
     client.zero().unwrap();

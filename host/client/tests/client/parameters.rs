@@ -189,7 +189,7 @@ fn overtaken(changes: &[(u8, f64)]) -> Client<overtaking::Overtaken> {
 }
 
 #[test]
-fn a_set_that_is_overtaken_begins_anew() {
+fn a_set_is_retried_after_a_concurrent_commit() {
     let inertia = place("crepitus.inertia_kg_m2");
     let mut client = overtaken(&[(inertia, 0.02), (inertia, 0.03), (inertia, 0.04)]);
     assert_eq!(
@@ -202,7 +202,7 @@ fn a_set_that_is_overtaken_begins_anew() {
 }
 
 #[test]
-fn a_set_that_is_overtaken_for_ever_is_given_up() {
+fn a_set_fails_after_too_many_concurrent_commits() {
     let inertia = place("crepitus.inertia_kg_m2");
     let mut client = overtaken(&[0.02, 0.03, 0.04, 0.05].map(|value| (inertia, value)));
     assert!(matches!(
@@ -230,7 +230,7 @@ fn a_set_does_not_undo_what_another_host_has_just_set() {
 }
 
 #[test]
-fn what_is_saved_is_there_after_the_next_start() {
+fn saved_parameters_survive_a_reboot() {
     let (shared, mut client) = connected();
     client.set(&[(id::STATIC_TORQUE, 0.5)]).unwrap();
     client.save().unwrap();
@@ -248,7 +248,7 @@ fn what_is_saved_is_there_after_the_next_start() {
 }
 
 #[test]
-fn a_flash_that_takes_nothing_is_told() {
+fn a_flash_write_error_is_reported() {
     let (shared, mut client) = connected();
     shared.borrow_mut().flash_works = false;
     assert_eq!(refusal(client.save()), Refusal::Storage);
@@ -256,7 +256,7 @@ fn a_flash_that_takes_nothing_is_told() {
 }
 
 #[test]
-fn a_commit_that_the_drive_cannot_confirm_is_told() {
+fn an_unconfirmed_commit_is_reported() {
     let (shared, mut client) = connected();
     shared.borrow_mut().link_is_cut = true;
     assert_eq!(

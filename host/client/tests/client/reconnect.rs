@@ -6,7 +6,7 @@ use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::{Fault, Revision, State};
 
 #[test]
-fn a_lost_line_is_told_once_and_comes_back_with_its_subscription() {
+fn a_lost_connection_is_reported_once_and_resumes_its_subscription() {
     let (shared, mut client) = connected();
     client.arm().unwrap();
     client.subscribe().unwrap();
@@ -69,7 +69,7 @@ fn arming_does_not_come_back_even_if_the_lease_is_alive() {
 }
 
 #[test]
-fn what_was_being_asked_is_told() {
+fn a_pending_request_is_reported_after_a_loss() {
     let (shared, mut client) = connected();
     shared.borrow_mut().unplug();
     let error = client.zero().unwrap_err();
@@ -85,7 +85,7 @@ fn what_was_being_asked_is_told() {
 }
 
 #[test]
-fn a_device_that_was_switched_off_begins_anew() {
+fn a_power_cycle_restarts_the_device() {
     let (shared, mut client) = connected();
     client.set(&[(4, 0.5)]).unwrap();
     client.subscribe().unwrap();

@@ -11,7 +11,7 @@ use crepitus_protocol::{Revision, Session, ValueError, Values};
 use std::time::Duration;
 
 #[test]
-fn every_fault_says_what_to_do() {
+fn every_fault_has_a_remedy() {
     let mut lines: Vec<_> = FAULTS
         .iter()
         .map(|spec| fault_text(spec.fault.code()))
@@ -21,7 +21,7 @@ fn every_fault_says_what_to_do() {
 }
 
 #[test]
-fn every_refusal_says_what_to_do() {
+fn every_refusal_has_a_remedy() {
     let drive = [
         DriveRefusal::NoParameters,
         DriveRefusal::NoLease,
@@ -76,7 +76,7 @@ fn every_refusal_says_what_to_do() {
 }
 
 #[test]
-fn every_failure_of_a_port_says_what_to_do() {
+fn every_port_error_has_a_remedy() {
     let port = || "/dev/ttyACM0".to_owned();
     let detail = || "I/O error".to_owned();
     let holder = Holder {

@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_peak_is_told_and_does_not_set_the_scale() {
+    fn a_peak_is_labelled_and_does_not_set_the_scale() {
         let line = |torque: &dyn Fn(u32) -> f64| -> Vec<(f64, f64)> {
             (0..1000).map(|n| (f64::from(n), torque(n))).collect()
         };
