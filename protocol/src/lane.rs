@@ -21,7 +21,7 @@ pub enum Lane {
     FromDrive,
 }
 
-/// The tag of the management lane: its version, for ever.
+/// The tag of the management lane, its version; it never changes.
 pub const MANAGEMENT_TAG: u8 = b'1';
 
 impl Lane {

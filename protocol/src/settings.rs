@@ -282,7 +282,7 @@ mod tests {
         let near = (id::KINETIC_TORQUE, at_limit - 1e-3);
         assert_eq!(with(&[near]), Ok(()));
         assert_eq!(with(&[near, (id::RESTART, 1.0)]), refused);
-        // Ts = Tk takes nothing; without torque in slip there is no push.
+        // Ts = Tk dissipates nothing; without torque in slip there is no push.
         assert_eq!(with(&[(id::KINETIC_TORQUE, 0.4)]), refused);
         assert_eq!(
             with(&[(id::KINETIC_TORQUE, 0.0), (id::STIFFNESS, 5000.0)]),

@@ -177,7 +177,7 @@ mod tests {
             view.receive_block(&block(5_020, 0, 1), 2),
             Continuity::Next { lost: 0 }
         );
-        // Three blocks missing, one of which the drive says it dropped.
+        // Three blocks missing, one of them reported as dropped by the drive.
         assert_eq!(
             view.receive_block(&block(5_100, 20, 1), 6),
             Continuity::Next { lost: 40 }

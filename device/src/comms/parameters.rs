@@ -111,7 +111,7 @@ mod tests {
         assert_eq!((revision, sent), (Revision(2), &values));
         parameters.reject();
         assert_eq!(parameters.to_send(Some(Revision(1))), None);
-        // The number of what was refused is not given again.
+        // The revision of a rejected commit is not reused.
         assert_eq!(parameters.propose(&values, true), Ok(Revision(3)));
         parameters.accept();
         assert_eq!(

@@ -139,7 +139,7 @@ mod tests {
             assert_eq!(block.dropped, 0);
             last = Some(block.sequence);
         }
-        // Four found a place; the numbers go on through the wrap.
+        // Four were queued; sequence numbers continue through the wrap.
         assert_eq!((received, last), (80, Some(2)));
         produce(&mut batch, 1);
         let block = pop(&mut batch).unwrap();

@@ -169,7 +169,7 @@ mod tests {
         wire.whole(4, &values, 5);
         assert_eq!(wire.take(), None);
         assert!(wire.counters.get(DriveCounter::StaleCommands) > 0);
-        // What was refused stays refused, until comms restarts.
+        // A rejected revision stays rejected until comms restarts.
         let why = ValueError::NeedsDisarmed { id: 6 };
         wire.commits.done(Revision(6), Err(why), &wire.counters);
         wire.whole(6, &values, 5);

@@ -165,7 +165,7 @@ mod tests {
 
     type Places = Outgoing<FrameBuffer>;
 
-    /// What a few runs make, and how many it takes.
+    /// Runs the encoder to the end of a frame; returns it and the number of runs.
     fn run(outgoing: &mut Places, block: &Block) -> (Frame, usize) {
         for runs in 1..100 {
             let made = match outgoing.next_sample() {
