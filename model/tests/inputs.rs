@@ -1,5 +1,5 @@
-//! Inputs that are no input: whatever the sensor delivers, the joint stays
-//! valid, and its torque is held and then let go of.
+//! Invalid input: whatever the sensor delivers, the joint stays valid, and its
+//! torque is held and then released.
 
 #![allow(
     clippy::cast_possible_truncation,
@@ -146,7 +146,7 @@ fn without_a_shaft_the_torque_is_held_for_a_millisecond_and_then_released() {
             }
             assert_eq!(joint.torque_nm(), F::ZERO);
             assert_eq!(joint.counters().lost, 200);
-            // The shaft comes back far away: a new stick, from what is shown.
+            // Samples resume far away: a new stick, from the present torque.
             joint.tick(&good(), |_| {});
             assert_eq!(joint.joint().phase(), Phase::Stick, "{name}");
             assert!(joint.torque_nm().abs().to_f64() < 1e-6, "{name}");

@@ -101,7 +101,7 @@ fn after_a_gap_nothing_comes_back_of_a_torque_that_was_switched_off() {
     assert_eq!(shown.torque_nm, 0.0);
 }
 
-/// A damped object that slides for ever.
+/// A damped object that slides endlessly.
 struct Decay;
 
 impl JointVisitor<f32> for Decay {

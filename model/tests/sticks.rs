@@ -36,10 +36,10 @@ fn inertial(settings: &Settings, omega: f64, omega_dot: f64) -> f64 {
     }
 }
 
-/// What a joint was after a step: phase, torque, angle, velocity.
+/// State of a joint after a step: phase, torque, angle, velocity.
 type Row = (Phase, f64, f64, f64);
 
-/// Steps a joint, or puts it down anew first, with this torque and velocity.
+/// Steps a joint, or restarts it first, with this torque and velocity.
 struct Run<'a> {
     steps: &'a [ShaftStep<f64>],
     step_s: f64,

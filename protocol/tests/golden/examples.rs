@@ -26,7 +26,7 @@ pub(crate) struct Example {
     pub(crate) name: String,
     pub(crate) means: String,
     pub(crate) lane: Lane,
-    /// Of what is postcard.
+    /// Of postcard messages.
     pub(crate) schema: Option<&'static NamedType>,
     /// Lane, tag, message.
     pub(crate) body: Vec<u8>,
@@ -56,7 +56,7 @@ pub(crate) fn received(frame: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// An example; what was encoded comes back.
+/// An example; checks the round trip.
 fn example<T>(lane: Lane, name: &str, message: &T, means: Option<&str>) -> Example
 where
     T: Schema + Serialize + DeserializeOwned + Debug + PartialEq,
@@ -103,7 +103,7 @@ const VALUES: &str = "the value of each parameter is half its id";
 
 /// Names of requests. A new one does not compile until it is here, and fails
 /// until it has an example.
-fn ask_name(operation: &Operation) -> &'static str {
+fn operation_name(operation: &Operation) -> &'static str {
     match operation {
         Operation::Renew => "renew",
         Operation::Status => "status",
@@ -149,13 +149,13 @@ fn requests() -> Vec<Example> {
             };
             let means = (operation == commit)
                 .then(|| format!("Request {{ session: Session(305419896), number: {number}, operation: Commit {{ base: Revision(300), values }} }}; {VALUES}"));
-            let name = format!("request.{}", ask_name(&operation));
+            let name = format!("request.{}", operation_name(&operation));
             example(Lane::Request, &name, &request, means.as_deref())
         })
         .collect()
 }
 
-/// Names of answers; see [`ask_name`].
+/// Names of answers; see [`operation_name`].
 fn answer_name(answer: &Answer) -> &'static str {
     match answer {
         Answer::Done => "done",
@@ -308,7 +308,7 @@ fn blocks() -> Vec<Example> {
     ]
 }
 
-/// Names of what comms tells the drive; see [`ask_name`].
+/// Names of the messages to the drive; see [`operation_name`].
 fn to_drive_name(message: &ToDrive) -> &'static str {
     match message {
         ToDrive::Heartbeat(_) => "heartbeat",

@@ -15,7 +15,7 @@ const FOR_EVER: &str = "\n\
     version of this lane and no way to bless other bytes: undo the change. What a later version\n\
     has to say in addition goes behind the bytes that there are; receivers ignore it.\n";
 
-/// A message of the lane, with its body and its frame for ever.
+/// A message of the lane, with its body and frame, which never change.
 struct Vector {
     name: &'static str,
     message: Message,
@@ -189,7 +189,7 @@ fn the_management_lane_is_as_it_always_was() {
         let body = received(&bytes(vector.frame));
         let mut back = Message::of(example.lane, &body[2..]);
         assert_eq!(back, Some(vector.message), "{name}{FOR_EVER}");
-        // What a later version says in addition is ignored.
+        // Extra bytes of a later version are ignored.
         back = Message::of(example.lane, &[&body[2..], b"more"].concat());
         assert_eq!(back, Some(vector.message), "{name}{FOR_EVER}");
     }
@@ -197,7 +197,7 @@ fn the_management_lane_is_as_it_always_was() {
 
 #[test]
 fn the_bytes_of_the_management_lane_never_change() {
-    // No `_`: what is new does not compile until it stands here.
+    // No `_`: a new action does not compile until it is listed here.
     for action in [Action::Hello, Action::Stop, Action::Reboot] {
         let byte = match action {
             Action::Hello => b'H',

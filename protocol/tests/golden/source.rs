@@ -51,7 +51,7 @@ fn read(source: &str, meanings: &mut BTreeMap<String, String>) {
             .iter()
             .find_map(|key| text.strip_prefix(key));
         if depth == 0 && item.is_none() && !text.starts_with('}') {
-            // A function, a constant, an `impl`: nothing of it is asked for.
+            // A function, a constant, an `impl`: not in the tables.
             names.clear();
         } else if depth <= names.len() && (depth > 0 || item.is_some()) {
             let text = item.unwrap_or(text);
