@@ -18,7 +18,7 @@
 
 use crate::raw;
 use core::sync::atomic::{AtomicU8, Ordering, fence};
-use crepitus_protocol::frame::{FRAME_BYTES, Frame, EncodedFrame, FrameBuffer};
+use crepitus_protocol::frame::{EncodedFrame, FRAME_BYTES, Frame, FrameBuffer};
 use stm32f4xx_hal::gpio::{PC6, PC7, Pull};
 use stm32f4xx_hal::pac::{DMA2, USART6};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
