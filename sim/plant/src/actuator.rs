@@ -43,7 +43,7 @@ pub trait Actuator: Send {
 
 /// An actuator with a torque setpoint.
 pub trait Commanded: Actuator {
-    /// A new tick, with the torque that the device wants to show, N·m: T > 0
+    /// Starts a tick with the torque setpoint of the device, N·m: T > 0
     /// opposes growing angle.
     fn command(&mut self, torque_nm: f64);
 }

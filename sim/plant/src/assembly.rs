@@ -39,7 +39,7 @@ pub fn assemble(
 }
 
 /// The plant of `listed` with an actuator of its owner's: of the effects, those
-/// of the mechanics. What is the device's is left out.
+/// of the mechanics, without those of the device.
 pub fn assemble_with<A: Actuator>(
     listed: &[Listed],
     context: &Context,

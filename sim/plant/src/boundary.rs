@@ -84,7 +84,7 @@ pub trait Boundary: Send {
     fn write(&self, row: &mut Vec<f64>);
 }
 
-/// The right end moves as the scene says, whatever it takes.
+/// The right end has the prescribed motion, whatever torque that takes.
 #[derive(Clone, Copy, Debug)]
 pub struct Prescribed {
     motion: MotionStep,
@@ -108,7 +108,7 @@ impl Prescribed {
         }
     }
 
-    /// Gives what is rigid with the motion the motion's velocity.
+    /// Sets the motion's velocity for all parts that are rigid with it.
     fn carry(&mut self, body: &mut Body, omega_rad_s: f64, rigid_kg_m2: f64) {
         let impulse = rigid_kg_m2 * (omega_rad_s - body.omega_rad_s);
         self.felt_nms += impulse;
@@ -132,7 +132,7 @@ impl Boundary for Prescribed {
         let omega_rad_s = travel / stretch.length_s;
         let mut torque_nm = push.at(omega_rad_s);
         if let Some(limit) = push.held_by_nm {
-            // At rest the friction carries what it can, the hand the rest.
+            // At rest the friction carries as much as it can, the hand the rest.
             torque_nm -= torque_nm.clamp(-limit, limit);
         }
         Flow {

@@ -182,7 +182,7 @@ pub type Weight = Box<dyn Fn(f64) -> f64 + Send>;
 /// The chain up to one of its parts. `body` is the body at its right end; a
 /// part that separates bodies owns the one left of it.
 pub trait Chain: Send {
-    /// What this and all left of it do to what is right of it.
+    /// Action of this part and all to its left on the parts to its right.
     fn fold(&mut self, step: &Step, body: &Body) -> Push;
 
     /// Mean velocity of the motor's shaft in a solution, rad/s.

@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(open.residual_j(), 1.0);
         assert!((open.relative_residual() - 1.0 / 9.0).abs() < 1e-15);
         assert_eq!(EnergyBalance::default().relative_residual(), 0.0);
-        // What was stored from the start counts: its rounding is no large share.
+        // Includes the initially stored energy, so that rounding is a small share.
         let still = booked(0.0, 3.0 + 1e-15, 0.0).since(&booked(0.0, 3.0, 0.0));
         assert!(still.relative_residual().abs() < 1e-15);
     }

@@ -59,7 +59,7 @@ impl<L: Load + 'static> Loaded<L> {
 }
 
 impl<L: Load> Loaded<L> {
-    /// What is left of the load does this to the body.
+    /// Action of the parts to the left on the body.
     fn left_flow(&self, flow: Flow) -> Flow {
         Flow {
             torque_nm: flow.torque_nm - self.push.at(flow.omega_rad_s),

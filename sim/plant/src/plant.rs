@@ -38,7 +38,7 @@ struct Solution {
 }
 
 impl<A: Commanded> Plant<A> {
-    /// A new tick, with the torque that the device wants to show, N·m.
+    /// Starts a tick with the torque setpoint of the device, N·m.
     pub fn command(&mut self, torque_nm: f64) {
         self.actuator.command(torque_nm);
     }

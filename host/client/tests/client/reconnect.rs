@@ -1,4 +1,4 @@
-//! A line that is cut and comes back.
+//! A connection that is lost and reopened.
 
 use crate::support::{check_books, connected, ms, pump_for};
 use crepitus_client::{Error, Event, RequestKind, Transport, TransportError};

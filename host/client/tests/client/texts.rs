@@ -1,4 +1,4 @@
-//! What people read.
+//! Texts for users.
 
 use crate::support::golden;
 use crepitus_client::values::{full_name, parse_value, show_value};

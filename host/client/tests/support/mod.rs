@@ -1,5 +1,5 @@
 //! A device in this process: both controllers, a winding, a shaft that turns
-//! as it is told, and wires that can be spoiled.
+//! as prescribed, and wires with noise.
 //!
 //! ```text
 //! client ── Port ── noise ── Comms ══ link ══ Drive ── winding, shaft
@@ -27,7 +27,7 @@ pub fn ms(count: u64) -> Duration {
     Duration::from_millis(count)
 }
 
-/// A device that has been switched on a moment ago, and a line to it.
+/// A device just after power-on, and a connection to it.
 pub fn device() -> (Shared, Port) {
     let device = Rc::new(RefCell::new(Device::new()));
     let port = Port::new(&device);
@@ -76,7 +76,7 @@ pub fn pump_for(client: &mut Client<Port>, time: Duration) -> Vec<Event> {
     events
 }
 
-/// Why it was refused.
+/// The reason of a rejection.
 pub fn refusal<R: std::fmt::Debug>(result: Result<R, Error>) -> Refusal {
     match result.unwrap_err() {
         Error::Refused(refused) => refused.refusal,

@@ -119,7 +119,7 @@ impl Drivetrain {
         }
     }
 
-    /// What is left of the rotor does this to it.
+    /// Action of the parts to the left on the rotor.
     fn left_flow(&self, step: &Step, body: &Body, flow: Flow) -> Flow {
         let own =
             self.inertial_nm(step, body, flow.omega_rad_s) + self.friction_of(step, body, flow);
@@ -139,7 +139,7 @@ impl Drivetrain {
                 }
                 let friction = self.friction_of(step, body, flow);
                 if friction.abs() > self.limit_nm(step) * (1.0 + 1e-12) {
-                    // It gives way against the friction that would be needed.
+                    // It slips against the friction that holding would need.
                     return Err(Mode::Sliding(sense_of(-friction)));
                 }
                 Ok(None)

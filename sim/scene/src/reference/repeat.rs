@@ -52,7 +52,7 @@ impl Reference<'_> {
             count: 0.0,
             cycle,
         });
-        // A cycle too short for the time to tell is none.
+        // A cycle shorter than the resolution of time does not count.
         self.repeat = self
             .repeat
             .filter(|r| r.break_s() > r.origin_s && r.end_s() > r.break_s());

@@ -79,7 +79,7 @@ pub const FELT_COLUMN: &str = "hand_torque_nm";
 /// tick, which [`FELT_COLUMN`] leaves out: a plant that can have impacts has it.
 pub const STRUCK_COLUMN: &str = "hand_impact_nms";
 
-/// A stage behind the symptoms, what it adds now, and the work of that.
+/// A stage after the symptoms, its present torque, and its work.
 struct Stage {
     effect: &'static str,
     /// Its place in the model's table.

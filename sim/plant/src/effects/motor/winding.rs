@@ -47,7 +47,7 @@ struct Transient {
     mean: f64,
 }
 
-/// The current over a step: `final_a` plus what is left of `from_a`.
+/// The current over a step: `final_a` plus the decaying rest of `from_a`.
 #[derive(Clone, Copy, Debug)]
 pub struct Course {
     /// Final value, A.
