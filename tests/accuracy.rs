@@ -67,7 +67,7 @@ fn a_study_becomes_three_files() {
         for cell in &row[4..] {
             number(cell);
         }
-        // No rung goes on with a slip after its end.
+        // No rung continues a slip after its end.
         assert_eq!(row[17..19], ["0.0", "0.0"], "{row:?}");
         assert!(number(&row[19]) > 0.0, "{row:?}");
         let per_second = number(&row[19]) * 1e-3 / number(&row[4]);
@@ -179,7 +179,7 @@ fn a_need_gets_the_cheapest_that_meets_it() {
         t <= torque && i <= interval && unmatched == 0.0,
         "{solver}: {t} {i} {unmatched}"
     );
-    // What is cheaper fails.
+    // Cheaper solvers fail.
     let cheaper = answer["cheaper"].as_array().unwrap();
     for cheaper in cheaper {
         let solver = cheaper["solver"].as_str().unwrap();
@@ -251,7 +251,7 @@ fn a_need_that_nothing_meets_fails_with_the_nearest() {
 }
 
 #[test]
-fn a_torque_that_cannot_be_held_is_said_to_be_so_and_can_be_asked_for_at_the_tick() {
+fn a_torque_that_cannot_be_held_is_reported_and_can_be_requested_at_the_tick() {
     let home = tempfile::tempdir().unwrap();
     let scene = short_scene(home.path(), "physical");
     let ask = |need| {
@@ -283,7 +283,7 @@ fn a_torque_that_cannot_be_held_is_said_to_be_so_and_can_be_asked_for_at_the_tic
 }
 
 #[test]
-fn bad_usage_says_what_is_allowed() {
+fn bad_usage_gives_the_valid_values() {
     let home = tempfile::tempdir().unwrap();
     let frozen = short_scene(home.path(), "frozen");
     let frozen = frozen.to_str().unwrap();
@@ -471,7 +471,7 @@ fn on_the_target_its_cycles_choose() {
 }
 
 #[test]
-fn without_the_target_it_says_what_to_install() {
+fn without_the_target_it_reports_what_to_install() {
     let output = support::crepitus()
         .args(["accuracy", "--target", "--quick"])
         .env_remove("CREPITUS_IMAGES")

@@ -30,12 +30,12 @@ fn the_demo_records_and_reports_every_sample() {
     assert_eq!(telemetry["produced"], telemetry["received"]);
     assert!(telemetry["received"].as_u64().unwrap() >= 240_000);
     assert!(summary["breaks"].as_u64().unwrap() > 100);
-    // Both changes came into force on the way, and the recording says when.
+    // Both changes took effect during the run, at times in the recording.
     let sets = summary["parameters"].as_array().unwrap();
     assert_eq!(sets.len(), 3);
     assert_eq!(sets[1]["values"]["crepitus.kinetic_torque_nm"], 0.25);
     assert_eq!(sets[2]["values"]["crepitus.stiffness_nm_per_rad"], 900.0);
-    // It says where everything is.
+    // It prints the paths of all files.
     let text = stdout(&output);
     for part in ["report.html", "recording.csv", "revision 3", "0 dropped"] {
         assert!(text.contains(part), "{part} is missing in:\n{text}");

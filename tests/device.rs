@@ -30,7 +30,7 @@ fn json(arguments: &[&str]) -> Value {
 }
 
 #[test]
-fn info_says_who_it_is_and_how() {
+fn info_reports_identity_and_status() {
     let info = json(&["info"]);
     assert_eq!(info["status"]["state"], "disarmed");
     assert_eq!(info["comms"]["schema"], info["drive"]["schema"]);
@@ -73,9 +73,9 @@ fn parameters_are_listed_read_and_set() {
     done(&["params", "save"]);
 }
 
-/// What is refused says what was wrong, and what to do.
+/// A rejected request reports the cause and the remedy.
 #[test]
-fn what_is_not_allowed_is_refused_with_the_reason() {
+fn invalid_values_are_rejected_with_the_reason() {
     for (arguments, code, parts) in [
         (
             &["params", "set", "crepitus.static_torque_nm=0.1"][..],
@@ -168,7 +168,7 @@ fn control_does_what_it_says() {
 }
 
 #[test]
-fn samples_are_streamed_at_the_rate_that_was_asked_for() {
+fn samples_are_streamed_at_the_requested_rate() {
     let text = done(&["stream", "--for", "2s", "--rate", "100", "--arm"]);
     let lines: Vec<_> = text.lines().collect();
     assert!((200..=205).contains(&(lines.len() - 1)), "{}", lines.len());
@@ -220,12 +220,12 @@ fn a_recording_is_reported() {
     let page = fs::read_to_string(folder.join("report.html")).unwrap();
     assert!(page.contains("First try") && page.contains("<svg"));
 
-    // Cut off anywhere, what is there is reported.
+    // A truncated recording is reported as far as it goes.
     let whole = fs::read(&file).unwrap();
     fs::write(&file, &whole[..whole.len() / 2]).unwrap();
     let output = run(&["report", path, "--json"]);
     assert!(output.status.success(), "{}", stderr(&output));
-    // What is no recording is not.
+    // A file that is no recording is rejected.
     fs::write(&file, "t,x\n1,2\n").unwrap();
     let output = run(&["report", path]);
     assert_eq!(output.status.code(), Some(2));

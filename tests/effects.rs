@@ -120,7 +120,7 @@ fn a_study_is_what_single_runs_say() {
         assert!((number(&cell(row, "rms_nm")) - own.0).abs() <= 1e-12 * own.0);
         assert_eq!(number(&cell(row, "peak_nm")), own.1);
         assert!(number(&cell(row, "ns_per_step")) > 0.0);
-        // A cost is above what the timings can tell, or it is not given.
+        // A cost above the timing noise, or none.
         let added = number(&cell(row, "added_ns_per_step"));
         let resolution = number(&cell(row, "added_ns_resolution"));
         assert!(

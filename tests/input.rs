@@ -1,5 +1,5 @@
-//! What a hurried or a hostile person puts in: escapes, endless words, places
-//! where nobody may write, values beyond their range.
+//! Careless and hostile input: escapes, endless words, places
+//! without write permission, values out of range.
 
 mod support;
 
@@ -95,7 +95,7 @@ fn no_input_is_repeated_at_length() {
 }
 
 #[test]
-fn where_nobody_may_write_and_what_no_device_takes_is_bad_input() {
+fn permission_denied_and_invalid_values_are_bad_input() {
     // Not even root may make a folder there.
     #[cfg(target_os = "linux")]
     for arguments in [

@@ -16,7 +16,7 @@ fn scene(file: &str, duration_s: f64, columns: (&str, &str)) -> String {
     )
 }
 
-/// Runs a recording from a folder beside the repository; gives the summary.
+/// Runs a recording from a folder beside the repository; returns the summary.
 fn play(file: &Path, duration_s: f64, columns: (&str, &str), extra: &[&str]) -> serde_json::Value {
     let home = tempfile::tempdir().unwrap();
     let path = home.path().join("scene.toml");
@@ -55,7 +55,7 @@ fn recorded_squats_grate() {
     );
     let fastest = summary["fastest_rad_s"].as_f64().unwrap().to_degrees();
     assert!((190.0..230.0).contains(&fastest), "{fastest}");
-    // `physical` feels the sampling, and says so.
+    // `physical` is affected by the sampling, and warns.
     let summary = play(
         &file,
         8.0,

@@ -113,7 +113,7 @@ fn it_is_found_and_talks() {
 }
 
 #[test]
-fn a_port_that_another_process_holds_says_so() {
+fn a_port_held_by_another_process_is_reported() {
     let served = Served::new();
     let file = served.home.path().join("held.csv");
     let mut holder = served
@@ -173,10 +173,10 @@ fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
         info["faults"][0].as_str().unwrap().contains("lease"),
         "{info:#}"
     );
-    // It goes on without being started anew.
+    // It continues without a restart.
     assert!(served.run(&["clear-fault"]).status.success());
     assert!(served.run(&["arm", "--for", "200ms"]).status.success());
-    // What was on the disk is a recording.
+    // The file on disk is a valid recording.
     let output = served.run(&["report", file.to_str().unwrap()]);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(
@@ -189,7 +189,7 @@ fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
 }
 
 #[test]
-fn a_full_disk_ends_a_recording_and_what_is_there_can_be_reported() {
+fn a_full_disk_ends_a_recording_that_can_still_be_reported() {
     let served = Served::new();
     let file = served.home.path().join("a.csv");
     let script = format!(
@@ -216,7 +216,7 @@ fn a_full_disk_ends_a_recording_and_what_is_there_can_be_reported() {
 
 /// The page about the wires is enough to write a client.
 #[test]
-fn a_client_in_another_language_talks_to_it() {
+fn a_client_in_python_communicates_with_it() {
     let python = Command::new("python3").arg("--version").output();
     if !python.is_ok_and(|output| output.status.success()) {
         eprintln!("left out: there is no python3");

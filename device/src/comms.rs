@@ -1,5 +1,5 @@
-//! What the comms controller does: it speaks with the host, holds the lease,
-//! owns the parameters, watches the drive, and keeps an enable line of its own.
+//! The comms controller: host requests, the lease, the parameters, supervision
+//! of the drive, and an enable line of its own.
 //!
 //! ```text
 //!  host ──> Requests ──> [`Parameters`] ──┐
@@ -9,14 +9,15 @@
 //!  host <── [`Outbox`] <── [`Subscription`] <────┘ blocks, status
 //! ```
 //!
-//! [`Comms::tick`] runs every millisecond; bytes come and go between. Nothing
-//! waits: what the host does not take is dropped and counted.
+//! [`Comms::tick`] runs every millisecond; bytes are received and sent in
+//! between. Nothing blocks: bytes that the host does not read are dropped and
+//! counted.
 
 pub mod drive_view;
+pub mod enable_line;
+pub mod job;
 pub mod lease;
-pub mod line;
 mod management;
-pub mod order;
 pub mod outbox;
 pub mod parameters;
 mod requests;
@@ -32,10 +33,10 @@ use crepitus_protocol::frame::Frame;
 use crepitus_protocol::link::FromDrive;
 use crepitus_protocol::management::{Answer, Identity};
 use crepitus_protocol::telemetry::{BLOCK_TICKS, Block};
-use crepitus_protocol::{Decoder, Fault, Lane, Revision, State, Values, schema};
-use drive_view::{DriveView, News};
+use crepitus_protocol::{Decoder, Fault, Lane, Revision, State, Values};
+use drive_view::{Continuity, DriveView};
+use job::Job;
 use lease::Lease;
-use order::Job;
 use outbox::Outbox;
 use parameters::Parameters;
 use sessions::Sessions;
@@ -43,43 +44,43 @@ use subscription::Subscription;
 use supervision::Supervision;
 use to_drive::ToDriveQueue;
 
-/// How comms starts.
+/// Boot-time inputs of comms.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Boot {
-    /// Who it is.
+    /// Identity of this controller.
     pub identity: Identity,
-    /// Which start this is.
+    /// Boot counter.
     pub start: u16,
-    /// The parameters that were kept, if there are any.
+    /// The saved parameters, if there are any.
     pub saved: Option<(Revision, Values)>,
-    /// What all counters begin with: 0, but in a test of their wrap.
+    /// Initial value of all counters: 0, except in a test of their wrap.
     pub counters: u32,
 }
 
-/// What the peripherals say.
+/// Inputs from the peripherals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Inputs {
     /// The enable line of comms, as read back.
     pub enable_is_on: bool,
 }
 
-/// What the peripherals are to do.
+/// Outputs to the peripherals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outputs {
     /// The enable line of comms.
     pub enable: bool,
-    /// Keep these parameters, then call [`Comms::saved`].
+    /// Parameters to save; then call [`Comms::saved`].
     pub save: Option<(Revision, Values)>,
-    /// Start anew.
+    /// Request to reboot.
     pub reboot: bool,
 }
 
-/// A frame of the drive.
+/// A decoded frame from the drive.
 #[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
-enum Heard {
+enum DriveMessage {
     Block(Block),
     Message(FromDrive),
-    Answer(Answer),
+    Management(Answer),
 }
 
 /// The comms controller.
@@ -99,18 +100,17 @@ pub struct Comms {
     from_drive: Decoder,
     from_host: Decoder,
     sessions: Sessions,
-    /// What is being done for a host.
+    /// The request that is being carried out.
     job: Option<Job>,
     subscription: Option<Subscription>,
     outbox: Outbox,
     save: Option<(Revision, Values)>,
-    /// When it starts anew, ms.
+    /// Time of the requested reboot, ms.
     reboot_ms: Option<u64>,
 }
 
 impl Comms {
-    /// As it starts. Parameters that were kept and are not allowed (any more)
-    /// are not used.
+    /// The state after boot. Saved parameters that are invalid are ignored.
     pub fn new(boot: &Boot) -> Self {
         let mut counters = CommsCounters::default();
         counters.set_all(boot.counters);
@@ -136,10 +136,10 @@ impl Comms {
         }
     }
 
-    /// Once a millisecond.
+    /// Runs once a millisecond.
     pub fn tick(&mut self, inputs: &Inputs) -> Outputs {
         self.now_ms = self.now_ms.saturating_add(1);
-        if self.lease.has_just_ended(self.now_ms) {
+        if self.lease.take_expiry(self.now_ms) {
             self.counters.count(CommsCounter::LeasesExpired);
         }
         let drive_is_silent = !self.drive.is_present(self.now_ms);
@@ -152,8 +152,8 @@ impl Comms {
             self.counters.count(CommsCounter::Faults);
         }
         self.line_is_on = inputs.enable_is_on;
-        self.go_on();
-        self.to_drive.millisecond(self.now_ms);
+        self.poll_job();
+        self.to_drive.tick(self.now_ms);
         Outputs {
             enable,
             save: self.save.take(),
@@ -161,20 +161,22 @@ impl Comms {
         }
     }
 
-    /// The parameters that were to be kept are, or could not be.
+    /// Reports the result of saving [`Outputs::save`].
     pub fn saved(&mut self, done: bool) {
         self.finish_save(done);
     }
 
-    /// A byte from the drive.
+    /// Receives a byte from the drive.
     pub fn link_received(&mut self, byte: u8) {
         let known = match self.from_drive.push(byte) {
             None => return,
             Some(Err(_)) => return self.counters.count(CommsCounter::FromDriveDiscarded),
             Some(Ok(body)) => match body.lane() {
-                Some(Lane::Telemetry) => body.message().map(Heard::Block),
-                Some(Lane::FromDrive) => body.message().map(Heard::Message),
-                Some(Lane::ManagementAnswer) => Answer::of(body.payload).map(Heard::Answer),
+                Some(Lane::Telemetry) => body.message().map(DriveMessage::Block),
+                Some(Lane::FromDrive) => body.message().map(DriveMessage::Message),
+                Some(Lane::ManagementAnswer) => {
+                    Answer::of(body.payload).map(DriveMessage::Management)
+                }
                 _ => None,
             },
         };
@@ -183,26 +185,28 @@ impl Comms {
             None => CommsCounter::Foreign,
         });
         match known {
-            None | Some(Heard::Answer(Answer::Stop { .. } | Answer::Reboot { .. })) => {}
-            Some(Heard::Block(block)) => self.block(&block),
-            Some(Heard::Message(FromDrive::Status(status))) => {
-                self.drive.hear_status(&status);
-                // What it answers is answered before the blocks that follow.
-                self.go_on();
+            None | Some(DriveMessage::Management(Answer::Stop { .. } | Answer::Reboot { .. })) => {}
+            Some(DriveMessage::Block(block)) => self.block(&block),
+            Some(DriveMessage::Message(FromDrive::Status(status))) => {
+                self.drive.receive_status(&status);
+                // Replies that depend on it go out before the blocks that follow.
+                self.poll_job();
             }
-            Some(Heard::Answer(Answer::Hello { own, .. })) => {
-                self.drive.introduce(&own);
-                self.supervision.drive_speaks(own.schema == schema::HASH);
+            Some(DriveMessage::Management(Answer::Hello { own, .. })) => {
+                self.drive.set_identity(&own);
+                self.supervision.check_schema(own.schema);
             }
         }
     }
 
-    /// The next frame for the drive, if there is one.
+    /// Returns the next frame for the drive, if one is due.
     pub fn link_to_send(&mut self) -> Option<Frame> {
         let heartbeat = crepitus_protocol::link::Heartbeat {
             seen_tick: self.drive.seen_tick(),
-            lease_left: self.lease.left_ticks(self.drive.seen_tick(), self.now_ms),
-            enable: self.supervision.is_wanted(),
+            lease_left: self
+                .lease
+                .remaining_ticks(self.drive.seen_tick(), self.now_ms),
+            enable: self.supervision.is_enable_requested(),
             start: self.start,
         };
         let commit = self
@@ -215,43 +219,43 @@ impl Comms {
             .next_frame(heartbeat, commit, command, wants_hello)
     }
 
-    /// The state of the whole.
+    /// State of the device.
     pub fn state(&self) -> State {
         self.supervision.state(&self.drive)
     }
 
-    /// The fault of comms.
+    /// The latched fault of comms.
     pub fn fault(&self) -> Option<Fault> {
         self.supervision.fault()
     }
 
-    /// The parameters that were committed last.
+    /// Revision of the parameters committed last.
     pub fn revision(&self) -> Revision {
         self.parameters.revision()
     }
 
-    /// Their values.
+    /// Values of the parameters committed last.
     pub fn values(&self) -> &Values {
         self.parameters.values()
     }
 
-    /// What it has counted.
+    /// The counters of comms.
     pub fn counters(&self) -> &CommsCounters {
         &self.counters
     }
 
     fn block(&mut self, block: &Block) {
         let samples = BLOCK_TICKS;
-        match self.drive.hear_block(block, self.now_ms) {
-            News::Old => return,
-            News::Restarted => {
+        match self.drive.receive_block(block, self.now_ms) {
+            Continuity::Stale => return,
+            Continuity::Restarted => {
                 self.counters.count(CommsCounter::DriveRestarts);
                 self.supervision.drive_restarted();
                 if let Some(subscription) = &mut self.subscription {
                     subscription.rebase(block.first_tick);
                 }
             }
-            News::Next { lost } => self.counters.add(CommsCounter::LostSamples, lost),
+            Continuity::Next { lost } => self.counters.add(CommsCounter::LostSamples, lost),
         }
         self.counters.add(CommsCounter::ReceivedSamples, samples);
         let Some(subscription) = &mut self.subscription else {
@@ -284,6 +288,6 @@ impl HostBytes for Comms {
     fn host_lost(&mut self) {
         self.from_host.reset();
         self.subscription = None;
-        self.outbox.restart();
+        self.outbox.clear();
     }
 }

@@ -1,9 +1,9 @@
-//! Counters that every priority may count on, without a lock.
+//! Event counters; those of the drive are atomic, so any priority may use them.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 use crepitus_protocol::counters::{CommsCounter, DRIVE_COUNT, DriveCounter};
 
-/// The counters of a drive; they wrap.
+/// The counters of the drive; they wrap.
 #[derive(Debug, Default)]
 pub struct Counters([AtomicU32; DRIVE_COUNT]);
 
@@ -13,26 +13,26 @@ impl Counters {
         Self([const { AtomicU32::new(0) }; DRIVE_COUNT])
     }
 
-    /// One more.
+    /// Increments a counter.
     pub fn count(&self, counter: DriveCounter) {
         self.add(counter, 1);
     }
 
-    /// So many more.
+    /// Adds `more` to a counter.
     pub fn add(&self, counter: DriveCounter, more: u32) {
         if let Some(place) = self.0.get(counter.index()) {
             place.fetch_add(more, Ordering::Relaxed);
         }
     }
 
-    /// One of them.
+    /// Returns one counter.
     pub fn get(&self, counter: DriveCounter) -> u32 {
         self.0
             .get(counter.index())
             .map_or(0, |place| place.load(Ordering::Relaxed))
     }
 
-    /// All of them, in the order of their table.
+    /// Returns all counters, in the order of their table.
     pub fn all(&self) -> [u32; DRIVE_COUNT] {
         self.0.each_ref().map(|c| c.load(Ordering::Relaxed))
     }
@@ -43,29 +43,29 @@ impl Counters {
 pub struct CommsCounters([u32; crepitus_protocol::counters::COMMS_COUNT]);
 
 impl CommsCounters {
-    /// One more.
+    /// Increments a counter.
     pub fn count(&mut self, counter: CommsCounter) {
         self.add(counter, 1);
     }
 
-    /// So many more.
+    /// Adds `more` to a counter.
     pub fn add(&mut self, counter: CommsCounter, more: u32) {
         if let Some(place) = self.0.get_mut(counter.index()) {
             *place = place.wrapping_add(more);
         }
     }
 
-    /// All begin with this, instead of zero.
+    /// Sets all counters to `value`.
     pub fn set_all(&mut self, value: u32) {
         self.0 = [value; crepitus_protocol::counters::COMMS_COUNT];
     }
 
-    /// One of them.
+    /// Returns one counter.
     pub fn get(&self, counter: CommsCounter) -> u32 {
         self.0.get(counter.index()).copied().unwrap_or(0)
     }
 
-    /// All of them, in the order of their table.
+    /// Returns all counters, in the order of their table.
     pub fn all(&self) -> [u32; crepitus_protocol::counters::COMMS_COUNT] {
         self.0
     }

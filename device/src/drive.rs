@@ -1,4 +1,4 @@
-//! What the drive controller does.
+//! The drive controller.
 //!
 //! ```text
 //! priority   task               when                      parts
@@ -10,14 +10,15 @@
 //! idle                                                     Preparation
 //! ```
 //!
-//! The firmware gives each part to its task. [`Drive`] is all of them in one,
-//! in the order in which they run when none is late: it is what the simulator
-//! runs, and the measure of the firmware.
+//! In the firmware each task owns its part. [`Drive`] combines them, in the
+//! order in which they run when none is late: the simulator runs it, and the
+//! firmware is compared with it.
 
 pub mod arming;
 pub mod batch;
 pub mod command;
 pub mod commits;
+pub mod heartbeat_monitor;
 pub mod link;
 pub mod link_task;
 pub mod motor;
@@ -27,12 +28,11 @@ pub mod prepare;
 pub mod rendering;
 pub mod safety;
 pub mod sampler;
-pub mod vigil;
 
 use crate::counters::Counters;
 use command::{Command, Inputs, Outputs};
 use commits::Commits;
-use crepitus_protocol::frame::{FRAME_BYTES, Frame, Place};
+use crepitus_protocol::frame::{FRAME_BYTES, Frame, FrameBuffer};
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::{Fault, Revision, State, ValueError, Values};
 use link_task::{LinkTask, Shared};
@@ -40,33 +40,33 @@ use prepare::{CommandPlan, Preparation, Prepared, RenderingPlan, Start};
 use rendering::{Rendered, Rendering};
 use sampler::{Sampled, Sampler};
 
-/// How a drive starts.
+/// Boot-time inputs of the drive.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Boot {
-    /// Who it is.
+    /// Identity of this controller.
     pub identity: Identity,
-    /// What the encoder's counter says.
+    /// The encoder's counter.
     pub counter: u32,
-    /// Which start this is.
+    /// Boot counter.
     pub start: u16,
-    /// The first tick: 0, but in a test of the wrap.
+    /// The first tick: 0, except in a test of the wrap.
     pub tick: u64,
-    /// Number of the first block: 0, but in a test of the wrap.
+    /// Sequence number of the first block: 0, except in a test of the wrap.
     pub sequence: u16,
 }
 
-/// The drive controller, all of it.
+/// The whole drive controller.
 #[derive(Debug)]
 pub struct Drive {
     counters: Counters,
-    /// Of the idle loop.
+    /// Owned by the idle loop.
     preparation: Preparation,
-    /// Of the tasks.
+    /// Owned by the tasks.
     sampler: Sampler,
     rendering: Rendering,
     command: Command,
-    link: LinkTask<Place>,
-    /// Between the tasks.
+    link: LinkTask<FrameBuffer>,
+    /// Passed between the tasks.
     commits: Commits,
     prepared: Option<Prepared>,
     rendering_plan: Option<RenderingPlan>,
@@ -75,7 +75,7 @@ pub struct Drive {
     rendered: Option<Rendered>,
 }
 
-/// What the link's task shares, of a drive whose tasks never run at once.
+/// The link task's shared resources; here the tasks never run concurrently.
 struct Parts<'a> {
     command: &'a mut Command,
     sampler: &'a mut Sampler,
@@ -97,11 +97,11 @@ impl Shared for Parts<'_> {
 }
 
 impl Drive {
-    /// As it starts.
+    /// The state after boot.
     ///
     /// # Errors
-    /// [`ValueError`] if the defaults are not allowed: a mistake in their
-    /// table, which a test would have found.
+    /// [`ValueError`] if the default values are invalid: a bug in their table,
+    /// which a test excludes.
     pub fn new(boot: &Boot) -> Result<Self, ValueError> {
         let (preparation, start) = Preparation::new()?;
         let Start {
@@ -125,8 +125,8 @@ impl Drive {
         })
     }
 
-    /// `sample_encoder`, priority 3: what the counter says as the tick begins.
-    /// With a block, new parameters are handed to the other tasks.
+    /// `sample_encoder`, priority 3: reads the counter as the tick begins. At
+    /// the first tick of a block it passes new parameters to the other tasks.
     pub fn sample_encoder(&mut self, counter: u32) {
         if self.sampler.begins_block()
             && let Some(prepared) = self.prepared.take()
@@ -146,7 +146,7 @@ impl Drive {
             return;
         };
         if let Some(plan) = self.rendering_plan.take() {
-            self.rendering.take_over(&plan, sampled.omega_rad_s);
+            self.rendering.apply(&plan, sampled.omega_rad_s);
         }
         let was_armed = self.command.was_armed();
         self.rendered = Some(self.rendering.tick(sampled, was_armed));
@@ -158,13 +158,13 @@ impl Drive {
             return Outputs::default();
         };
         if let Some(plan) = self.command_plan.take() {
-            self.command.take_over(&plan, &self.counters);
+            self.command.apply(&plan, &self.counters);
         }
         self.command
             .tick(inputs, sampled, self.rendered.as_ref(), &self.counters)
     }
 
-    /// `idle`: prepares a commit, if one waits and the one before has settled.
+    /// `idle`: prepares a pending commit once the previous one has settled.
     pub fn prepare(&mut self) {
         let is_busy = self.prepared.is_some()
             || self.rendering_plan.is_some()
@@ -173,10 +173,10 @@ impl Drive {
         if is_busy {
             return;
         }
-        let Some((revision, gathered)) = self.commits.take() else {
+        let Some((revision, reassembly)) = self.commits.take() else {
             return;
         };
-        let Some(values) = Commits::verified(&gathered, &self.counters) else {
+        let Some(values) = Commits::verified(&reassembly, &self.counters) else {
             return;
         };
         let is_live = self.command.safety().is_live();
@@ -192,16 +192,17 @@ impl Drive {
         link.received(byte, &mut parts, counters);
     }
 
-    /// A run of the rest of `link`: goes on with the next frame for comms, a
-    /// piece, or begins it if it `has_place`. The frame, once it is whole.
-    pub fn link_to_send(&mut self, has_place: bool) -> Option<Frame> {
+    /// The transmit half of `link`: encodes one piece of the current frame for
+    /// comms, or starts the next one if it `has_buffer`. Returns a finished
+    /// frame.
+    pub fn link_to_send(&mut self, has_buffer: bool) -> Option<Frame> {
         let (link, mut parts, counters) = self.link();
-        let place = || has_place.then_some([0; FRAME_BYTES]);
-        let made = link.next_frame(place, &mut parts, counters)?;
+        let buffer = || has_buffer.then_some([0; FRAME_BYTES]);
+        let made = link.next_frame(buffer, &mut parts, counters)?;
         Some(made.frame())
     }
 
-    fn link(&mut self) -> (&mut LinkTask<Place>, Parts<'_>, &Counters) {
+    fn link(&mut self) -> (&mut LinkTask<FrameBuffer>, Parts<'_>, &Counters) {
         let parts = Parts {
             command: &mut self.command,
             sampler: &mut self.sampler,
@@ -210,35 +211,35 @@ impl Drive {
         (&mut self.link, parts, &self.counters)
     }
 
-    /// Whether it was asked to start anew; once. The board does it.
+    /// Returns a pending reboot request, once. The board executes it.
     pub fn take_reboot(&mut self) -> bool {
         self.link.take_reboot()
     }
 
-    /// Ticks since the start: the next one.
+    /// Number of the next tick, counted from boot.
     pub fn next_tick(&self) -> u64 {
         self.sampler.next_tick()
     }
 
-    /// Whether there may be torque.
+    /// The safety state.
     pub fn state(&self) -> State {
         self.command.safety().state()
     }
 
-    /// The fault that it is in.
+    /// The latched fault.
     pub fn fault(&self) -> Option<Fault> {
         self.command.safety().fault()
     }
 
-    /// The parameters in force.
+    /// Revision of the active parameters.
     pub fn revision(&self) -> Revision {
         self.command.revision()
     }
 
-    /// Their values; none while the next ones are prepared already.
+    /// Values of the active parameters; `None` while a commit is pending.
     pub fn values(&self) -> Option<&Values> {
-        let is_other = self.prepared.is_some() || self.command_plan.is_some();
-        (!is_other).then(|| self.preparation.values())
+        let is_pending = self.prepared.is_some() || self.command_plan.is_some();
+        (!is_pending).then(|| self.preparation.values())
     }
 
     /// Output of the last `render_torque`.
@@ -246,7 +247,7 @@ impl Drive {
         self.rendered.as_ref()
     }
 
-    /// What it has counted.
+    /// The counters of the drive.
     pub fn counters(&self) -> &Counters {
         &self.counters
     }

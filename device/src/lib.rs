@@ -1,7 +1,7 @@
-//! # What each controller of Crepitus does
+//! # The logic of both controllers
 //!
-//! Without hardware: the firmware's tasks, the simulator and the tests all run
-//! this code. Peripherals in, a tick, peripherals out.
+//! Hardware-independent: the firmware's tasks, the simulator and the tests all
+//! run this code. Inputs of the peripherals, a tick, outputs to the peripherals.
 //!
 //! ```text
 //!           USB                     link                      50 µs
@@ -15,10 +15,10 @@
 //! | to find | look in |
 //! |---|---|
 //! | the drive's tick: sample, render, command | [`drive`] |
-//! | what the host asks, who may, and what comms watches | [`comms`] |
+//! | host requests, the lease, supervision of the drive | [`comms`] |
 //! | the USB port of comms | [`usb_port`] |
 //!
-//! Nothing here allocates, panics, blocks or loops without a bound.
+//! No code here allocates, panics, blocks or loops without a bound.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(

@@ -8,20 +8,20 @@
 //! software bus; only the [`UsbBus`] differs.
 //!
 //! [`UsbPort::poll`] is called from the USB interrupt and whenever there is something to send. It
-//! handles at most one event of the bus, moves what fits and returns: it never waits, so a host
-//! that does not read costs nothing but the bytes its end has to drop (and count) itself.
+//! handles at most one event of the bus, moves what fits and returns: it never blocks. Bytes that
+//! a slow host does not read are dropped and counted by the [`HostBytes`] end.
 //!
-//! Facts of `usbd-serial` 0.2 this file relies on or works round:
+//! Properties of `usbd-serial` 0.2 that this file relies on or works around:
 //! - A transfer ends with a short packet. After a full packet that empties the transmit store the
 //!   next completion sends a zero-length packet, and every eleventh packet is a short one; so a
 //!   host sees every byte promptly without a further write, at any length.
 //! - Only a bus reset clears its stores. A host that unconfigures or suspends the device does
 //!   not, so this port does that itself.
 //! - `write` reports an endpoint's error after it has stored the bytes; see [`UsbPort::poll`].
-//! - DTR is remembered but means nothing here: what proves that a host is alive is its lease.
+//! - DTR is ignored; the lease proves that the host is alive.
 //!
-//! What the end has handed over and the host has not read when it goes away is lost: at most the
-//! transmit store and one packet. Frames carry sequence numbers, so the gap is visible.
+//! A disconnect loses the bytes in flight: at most the transmit store and one packet. Frames
+//! carry sequence numbers, so the gap is visible.
 
 pub use crepitus_protocol::usb::{PRODUCT_ID, VENDOR_ID};
 use usb_device::bus::{UsbBus, UsbBusAllocator};
@@ -42,34 +42,34 @@ const MAX_STRING_UNITS: usize = 126;
 /// A ring buffer offers its content in two contiguous runs.
 const RUNS_PER_POLL: usize = 2;
 
-/// The end of the bytes, in the comms controller.
+/// Source and sink of the port's bytes, in the comms controller.
 pub trait HostBytes {
     /// Bytes arrived from the host: one packet, at most 64 bytes.
     fn received(&mut self, bytes: &[u8]);
 
-    /// What is to be sent next, as one contiguous run; empty if there is nothing.
+    /// The next bytes to send, contiguous; empty if there are none.
     fn to_send(&self) -> &[u8];
 
     /// The first `count` bytes of [`to_send`](Self::to_send) have been taken.
     fn sent(&mut self, count: usize);
 
-    /// The host has gone (bus reset, unconfigured, suspended, unplugged): half-sent and
-    /// half-received frames are worthless. Called once for each loss of a configured host.
+    /// The host has disconnected (bus reset, unconfigured, suspended, unplugged): drop partial
+    /// frames. Called once for each loss of a configured host.
     fn host_lost(&mut self);
 }
 
-/// What the device tells a host about itself.
+/// Strings of the USB descriptors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UsbIdentity<'a> {
-    /// Who made it.
+    /// Manufacturer.
     pub manufacturer: &'a str,
-    /// What it is; contains [`PRODUCT`](crepitus_protocol::usb::PRODUCT), for which a client looks.
+    /// Product; contains [`PRODUCT`](crepitus_protocol::usb::PRODUCT), for which a client searches.
     pub product: &'a str,
-    /// Which of them it is; gives the serial port its stable name.
+    /// Serial number; gives the serial port its stable name.
     pub serial_number: &'a str,
 }
 
-/// Why there is no port.
+/// Errors of [`UsbPort::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum UsbPortError {
@@ -78,7 +78,7 @@ pub enum UsbPortError {
         /// The length of that string, UTF-16 units.
         units: usize,
     },
-    /// The device stack refused the description of the device.
+    /// The device stack rejected the descriptors.
     Description(BuilderError),
 }
 
@@ -138,9 +138,9 @@ impl<'b, B: UsbBus> UsbPort<'b, B> {
     /// Handles at most one event of the bus, then moves what fits in both directions.
     ///
     /// Bytes move only while the host has the device configured. When it no longer has, for
-    /// whatever reason, both stores are emptied and the end is told once. An unplugged device
-    /// with its own supply sees a bus that falls idle, which is a suspend; so a suspend counts as
-    /// a loss, and a host that only slept finds the end starting afresh.
+    /// whatever reason, both stores are cleared and `host_lost` is called once. An unplugged device
+    /// with its own supply sees an idle bus, which is a suspend; so a suspend counts as a
+    /// disconnect, also when the host only slept.
     ///
     /// After an unconfiguration or a suspend without a bus reset, the packet already in the IN
     /// endpoint (at most 64 bytes) still reaches the next reader: frames need a delimiter in front.
@@ -148,7 +148,7 @@ impl<'b, B: UsbBus> UsbPort<'b, B> {
         self.device.poll(&mut [&mut self.serial]);
         let configured = self.is_configured();
         if self.configured && !configured {
-            self.start_afresh(end);
+            self.disconnect(end);
         }
         self.configured = configured;
         self.receive(end);
@@ -189,7 +189,7 @@ impl<'b, B: UsbBus> UsbPort<'b, B> {
                 // The class may have stored bytes that it does not report as written. No endpoint
                 // of this device can fail so; if one did, a gap is better than repeated bytes.
                 Err(_) => {
-                    self.start_afresh(end);
+                    self.disconnect(end);
                     return;
                 }
             }
@@ -199,7 +199,7 @@ impl<'b, B: UsbBus> UsbPort<'b, B> {
         let _still_sending = self.serial.flush();
     }
 
-    fn start_afresh(&mut self, end: &mut impl HostBytes) {
+    fn disconnect(&mut self, end: &mut impl HostBytes) {
         UsbClass::<B>::reset(&mut self.serial);
         end.host_lost();
     }

@@ -1,11 +1,11 @@
-//! A scene with a device shows, bit for bit, what the drive shows on the same
-//! counts: there is one pipeline.
+//! A scene with a device renders bit-identical torque to the drive on the same
+//! counts: both use one pipeline.
 
 mod support;
 
 use crepitus_board::values::values;
 use crepitus_model::render::Limit;
-use crepitus_protocol::host::{Answer, Ask};
+use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{Fault, LimitReason, State};
 use crepitus_scene::scene::Overrides;
@@ -29,7 +29,7 @@ struct Row {
     limit: u8,
 }
 
-/// Keeps rows.
+/// Records rows.
 struct Keeper {
     places: [usize; 4],
     model: Option<usize>,
@@ -89,7 +89,7 @@ preset = "coarse"
 trace_step_s = 5e-5
 "#;
 
-/// A shipped scene as the drive would run it; or why it would not.
+/// A shipped scene as the drive would run it, or the reason why it cannot.
 fn scene(file: &Path) -> Result<Scene, String> {
     let mut overrides = Overrides {
         precision: Some("f32".to_owned()),
@@ -133,12 +133,12 @@ fn drive(scene: &Scene, rows: &[Row]) -> Bench {
     let base = bench.comms.revision();
     let values = values(scene).expect("a joint of the device");
     assert!(matches!(
-        bench.ask(Ask::Commit { base, values }),
+        bench.ask(Operation::Commit { base, values }),
         Ok(Answer::Committed { .. })
     ));
-    bench.ask(Ask::Zero).expect("zeroed");
-    bench.ask(Ask::Arm).expect("armed");
-    // Until torque may be asked for up to the limit.
+    bench.ask(Operation::Zero).expect("zeroed");
+    bench.ask(Operation::Arm).expect("armed");
+    // Until the slew limit no longer applies.
     bench.run_leased(200);
     assert_eq!(bench.drive.state(), State::Armed);
     bench.script = rows
@@ -185,7 +185,7 @@ fn a_scene_shows_what_the_drive_shows_on_the_same_counts_bit_for_bit() {
     );
 }
 
-/// Compares every tick; how many had which limit, if the drive did not let go.
+/// Compares every tick; returns the ticks with each limit, unless the drive disarmed.
 fn compare(name: &str, scene: &Scene) -> Option<[u32; 8]> {
     let rows = rows(scene);
     let bench = drive(scene, &rows);

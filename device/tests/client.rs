@@ -1,5 +1,4 @@
-//! `docs/examples/client.py`, which knows nothing but what the book says,
-//! against a device: the book is enough.
+//! `docs/examples/client.py`, written from the book alone, against a device.
 
 mod support;
 
@@ -13,7 +12,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 use support::{Bench, Boots};
 
-/// Longest time that the client may take.
+/// Timeout of the client.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 /// The most lines of it that are neither empty nor a comment.
@@ -37,7 +36,7 @@ fn the_example_client_is_short_and_knows_the_parameters() {
 }
 
 #[test]
-fn the_example_client_speaks_with_a_device() {
+fn the_example_client_communicates_with_a_device() {
     let started = Command::new("python3")
         .arg(script())
         .arg("-")
@@ -65,27 +64,27 @@ fn the_example_client_speaks_with_a_device() {
         }
     });
     let mut bench = Bench::new(&Boots::new());
-    let mut said = Vec::new();
+    let mut received_text = Vec::new();
     let started = Instant::now();
     while client.try_wait().unwrap().is_none() {
         assert!(started.elapsed() < PATIENCE, "the client does not end");
         bench.device_millisecond();
         for bytes in received.try_iter() {
             bench.comms.received(&bytes);
-            said.extend(bytes);
+            received_text.extend(bytes);
         }
         let run = bench.comms.to_send().len();
-        // A client that has ended does not read: we shall see why.
+        // A client that has ended does not read; the asserts below show why.
         let _ = to_client.write_all(bench.comms.to_send());
         bench.comms.sent(run);
         thread::sleep(Duration::from_micros(200));
     }
-    said.extend(received.iter().flatten());
+    received_text.extend(received.iter().flatten());
     let output = client.wait_with_output().unwrap();
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{errors}");
-    let said = String::from_utf8_lossy(&said);
-    assert!(said.contains("count 0, model "), "{said}");
+    let received_text = String::from_utf8_lossy(&received_text);
+    assert!(received_text.contains("count 0, model "), "{received_text}");
     assert_eq!(bench.drive.revision(), bench.comms.revision());
     assert_eq!(bench.drive.revision().0, 2, "one commit");
 }

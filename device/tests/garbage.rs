@@ -1,4 +1,4 @@
-//! What is no message changes nothing but counters, however long it is.
+//! Invalid frames of any length change nothing but counters.
 
 mod support;
 
@@ -7,16 +7,16 @@ use crepitus_device::usb_port::HostBytes;
 use crepitus_device::{Comms, Drive};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::frame::{encode_body, encode_bytes};
-use crepitus_protocol::host::{Answer, Ask, Reply};
-use crepitus_protocol::management::{self, Question, What};
+use crepitus_protocol::host::{Answer, Operation, Reply};
+use crepitus_protocol::management::{self, Action, ManagementRequest};
 use crepitus_protocol::{Decoder, Lane, State};
 use support::{Bench, Boots};
 
 /// Two packets and two bytes: every length at which USB or COBS could err.
 const LONGEST: usize = 130;
 
-/// Bodies of this length that are no message: of no lane, and of each lane
-/// with bytes that no message has.
+/// Invalid bodies of this length: of an unknown lane, and of each lane with
+/// invalid bytes.
 fn bodies(length: usize) -> Vec<Vec<u8>> {
     let mut bodies = vec![vec![0; length], vec![0xff; length]];
     for lane in Lane::ALL {
@@ -29,7 +29,7 @@ fn bodies(length: usize) -> Vec<Vec<u8>> {
     bodies
 }
 
-/// All that comms has for the host.
+/// All bytes queued for the host.
 fn sent(comms: &mut Comms) -> Vec<u8> {
     let mut all = Vec::new();
     while !comms.to_send().is_empty() {
@@ -104,10 +104,10 @@ fn bodies_of_every_length_do_nothing_to_the_drive() {
     assert!(!drive.take_reboot());
 }
 
-/// Noise, half a frame, delimiters, a frame that never ends: and a device
-/// that is then used as if nothing had been.
+/// A device works normally after noise, half a frame, delimiters, and a frame
+/// that never ends.
 #[test]
-fn garbage_before_the_first_frame_is_forgotten() {
+fn garbage_before_the_first_frame_is_discarded() {
     let half = encode_bytes(Lane::Management, b"H\x07").unwrap();
     for garbage in [
         &b"AT+CGMM\r\n"[..],
@@ -125,27 +125,30 @@ fn garbage_before_the_first_frame_is_forgotten() {
         // The delimiter that a host sends first; the link has none, and loses
         // a frame.
         bench.comms.received(&[0]);
-        assert!(matches!(bench.ask(Ask::Status), Ok(Answer::Status(_))));
+        assert!(matches!(
+            bench.ask(Operation::Status),
+            Ok(Answer::Status(_))
+        ));
         bench.settle();
-        assert_eq!(bench.ask(Ask::Arm), Ok(Answer::Done));
-        assert_eq!(bench.ask(Ask::Disarm), Ok(Answer::Done));
+        assert_eq!(bench.ask(Operation::Arm), Ok(Answer::Done));
+        assert_eq!(bench.ask(Operation::Disarm), Ok(Answer::Done));
     }
 }
 
-/// A request that was eaten by what stood before it is repeated, with its
-/// number, and carried out once.
+/// A request lost to garbage before it is retried with its sequence number and
+/// carried out once.
 #[test]
 fn a_request_that_was_lost_is_repeated() {
     let mut bench = Bench::new(&Boots::new());
     bench.comms.received(b"no delimiter follows");
     bench.number = 7;
-    bench.tell(Ask::Parameters);
+    bench.tell(Operation::Parameters);
     bench.millisecond();
     let requests = |bench: &Bench| bench.comms.counters().get(CommsCounter::Requests);
     assert_eq!(requests(&bench), 0);
     sent(&mut bench.comms);
     for _ in 0..3 {
-        bench.tell(Ask::Parameters);
+        bench.tell(Operation::Parameters);
     }
     let (mut decoder, mut replies) = (Decoder::new(), 0);
     for byte in sent(&mut bench.comms) {
@@ -158,13 +161,13 @@ fn a_request_that_was_lost_is_repeated() {
     assert_eq!((requests(&bench), replies), (1, 3));
 }
 
-/// Whatever comes behind the bytes of a question is a later version's.
+/// Extra bytes of a management request, from a later version, are ignored.
 #[test]
-fn a_longer_question_is_answered() {
+fn a_longer_management_request_is_answered() {
     let mut comms = Comms::new(&Boots::new().comms);
     sent(&mut comms);
-    let question = Question {
-        what: What::Hello,
+    let question = ManagementRequest {
+        action: Action::Hello,
         token: 200,
     };
     for extra in 0..=LONGEST {

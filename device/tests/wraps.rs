@@ -1,12 +1,11 @@
-//! Counters that began just below their wrap, in a device that works: nobody
-//! wants to be the first to run one for long enough.
+//! A device whose counters start just below their wrap.
 
 mod support;
 
 use crepitus_device::Drive;
 use crepitus_device::drive::command::Inputs;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
-use crepitus_protocol::host::{Answer, Ask};
+use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::link::{DriveStatus, FromDrive, Order, ToDrive};
 use crepitus_protocol::parameters::id;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
@@ -31,12 +30,12 @@ fn a_device_works_through_every_wrap() {
     bench.number = u16::MAX - 3;
     bench.settle();
     assert_eq!(bench.drive.revision(), Revision(u32::MAX));
-    let Ok(Answer::Subscribed { first_tick }) = bench.ask(Ask::Subscribe) else {
+    let Ok(Answer::Subscribed { first_tick }) = bench.ask(Operation::Subscribe) else {
         panic!("no subscription");
     };
     let mut values = Values::default();
     values.set(id::STATIC_TORQUE, 0.5);
-    let commit = Ask::Commit {
+    let commit = Operation::Commit {
         base: Revision(u32::MAX),
         values,
     };
@@ -44,16 +43,16 @@ fn a_device_works_through_every_wrap() {
         revision: Revision(1),
     };
     assert_eq!(bench.ask(commit), Ok(committed));
-    assert_eq!(bench.ask(Ask::Zero), Ok(Answer::Done));
-    assert_eq!(bench.ask(Ask::Arm), Ok(Answer::Done));
+    assert_eq!(bench.ask(Operation::Zero), Ok(Answer::Done));
+    assert_eq!(bench.ask(Operation::Arm), Ok(Answer::Done));
     bench.motor.hand_nm = 1.0;
     bench.run_leased(600);
     assert_eq!(bench.comms.state(), State::Armed);
-    assert_eq!(bench.ask(Ask::Disarm), Ok(Answer::Done));
+    assert_eq!(bench.ask(Operation::Disarm), Ok(Answer::Done));
     assert!(bench.number < 10, "the number of requests has wrapped");
     bench.run_leased(3);
 
-    books(&bench.blocks, first_tick);
+    check_accounting(&bench.blocks, first_tick);
     let first = bench.blocks.first().unwrap();
     let last = bench.blocks.last().unwrap();
     assert!(first.first_tick < 1 << 32 && last.first_tick > 1 << 32);
@@ -74,7 +73,7 @@ fn a_device_works_through_every_wrap() {
 }
 
 /// No sample is missing, and none jumps.
-fn books(blocks: &[Block], first_tick: u64) {
+fn check_accounting(blocks: &[Block], first_tick: u64) {
     let samples = BLOCK_SAMPLES as u64;
     let mut received = 0;
     for (block, next) in blocks.iter().zip(&blocks[1..]) {
@@ -92,13 +91,13 @@ fn books(blocks: &[Block], first_tick: u64) {
     }
 }
 
-/// A host that does not read: what is dropped is in the books, through the
-/// wrap of ticks and sequence, and of what comms has counted.
+/// With a host that does not read, dropped samples are accounted for through the
+/// wrap of ticks, sequence numbers and the counters of comms.
 #[test]
-fn dropped_samples_are_in_the_books_through_the_wrap() {
+fn dropped_samples_are_accounted_for_through_the_wrap() {
     let mut bench = Bench::new(&boots());
     bench.settle();
-    let Ok(Answer::Subscribed { first_tick }) = bench.ask(Ask::Subscribe) else {
+    let Ok(Answer::Subscribed { first_tick }) = bench.ask(Operation::Subscribe) else {
         panic!("no subscription");
     };
     for n in 0..400 {
@@ -122,9 +121,9 @@ fn dropped_samples_are_in_the_books_through_the_wrap() {
     assert_eq!((sent, dropped), (received, u64::from(last.dropped)));
 }
 
-/// The numbers of commands, for which nobody waits 65,536 times.
+/// Sequence numbers of commands wrap.
 #[test]
-fn numbers_of_commands_wrap() {
+fn command_sequence_numbers_wrap() {
     let mut drive = Drive::new(&boots().drive).unwrap();
     for number in [0xfffe, 0xffff, 0, 1] {
         for _ in 0..200 {
@@ -137,7 +136,7 @@ fn numbers_of_commands_wrap() {
             number,
             order: Order::Zero,
         };
-        // Twice: it is carried out once.
+        // Sent twice, executed once.
         for _ in 0..2 {
             for byte in frame::encode(Lane::ToDrive, &command).unwrap() {
                 drive.link_received(byte);

@@ -1,4 +1,4 @@
-//! The stick-slip joint: what people set, and what every solver computes with.
+//! The stick-slip joint: settings, and the coefficients that every solver uses.
 //!
 //! ```text
 //! parameters, presets → settings → coefficients (one step length) ─┐

@@ -10,7 +10,7 @@
 //!            J·θ̈ + c·θ̇ + kr·θ = T          T is the torque shown to the hand
 //!
 //!  stick: θ follows the shaft by position, T grows      until |T| = Ts
-//!  slip:  T = s·Tk, the object swings freely            until it is caught up with
+//!  slip:  T = s·Tk, the object swings freely            until the velocities match
 //! ```
 //!
 //! φ grows with flexion; T > 0 opposes growing φ, so the torque on the leg is
@@ -26,7 +26,7 @@
 //! | how a parameter is declared: name, unit, range, id | [`parameters`] |
 //! | the joint: its settings and presets, the numbers that a step uses, the shaft's path, the object's free motion | [`joint`] |
 //! | the solver ladder: phases stepped through, slips carried forward, events located | [`solver`] |
-//! | what a device renders, from sample to torque; every stage a file | [`render`] |
+//! | the rendering pipeline, from sample to torque; a file for every stage | [`render`] |
 //! | encoder, motor current, device limits, the observer of the hand's energy | [`control`] |
 //! | f32 and f64 | [`real`] |
 #![no_std]

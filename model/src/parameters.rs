@@ -18,7 +18,7 @@ pub struct ParameterSpec {
     pub max: f64,
     /// The paper's value.
     pub default: f64,
-    /// What it means.
+    /// Description.
     pub meaning: &'static str,
 }
 
@@ -54,7 +54,7 @@ pub struct Choice {
     pub names: &'static [&'static str],
     /// Place of the default.
     pub default: f64,
-    /// What it means.
+    /// Description.
     pub meaning: &'static str,
 }
 
@@ -63,7 +63,7 @@ pub struct Choice {
 pub enum When {
     /// Always; active values move there within the slew limit.
     Always,
-    /// Only while there is no torque.
+    /// Only while disarmed.
     Disarmed,
 }
 
@@ -84,7 +84,7 @@ impl Parameter {
         }
     }
 
-    /// What it means.
+    /// Description.
     pub const fn meaning(&self) -> &'static str {
         match self.kind {
             Kind::Number(spec) => spec.meaning,
@@ -115,7 +115,7 @@ impl ParameterSpec {
 pub struct OutOfRange {
     /// Which one, with its range.
     pub parameter: &'static ParameterSpec,
-    /// The value asked for.
+    /// The rejected value.
     pub value: f64,
 }
 

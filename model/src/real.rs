@@ -70,7 +70,7 @@ pub trait Real:
     /// The same number as f64 (exact for both precisions).
     fn to_f64(self) -> f64;
     /// The whole part of a non-negative number; negative and NaN give 0, too
-    /// large gives `u64::MAX`.
+    /// large returns `u64::MAX`.
     fn whole(self) -> u64;
     /// The nearest number to a whole one; in f32 beyond 2³² one of the nearest.
     fn from_whole(n: u64) -> Self;

@@ -1,4 +1,4 @@
-//! The rungs of the solver ladder by name, and what each is made of.
+//! The rungs of the solver ladder by name, and the parts of each.
 //!
 //! A program that knows its solver at build time names the types itself
 //! (`Frozen<f32, ExactEvents>`) and links nothing else. A program that learns
@@ -135,9 +135,9 @@ impl Solver {
     }
 }
 
-/// What to do with a joint once its type is known.
+/// Work on a joint of a concrete type.
 pub trait JointVisitor<F: Real> {
-    /// What it gives back.
+    /// Result of the visit.
     type Output;
 
     /// Called with the joint.
@@ -181,7 +181,7 @@ pub fn with_joint<F: Real, V: JointVisitor<F>>(
     })
 }
 
-/// What every joint starts from.
+/// Initial state of every joint.
 struct Start<F> {
     coefficients: StepCoefficients<F>,
     omega_rad_s: F,

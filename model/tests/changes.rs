@@ -1,6 +1,6 @@
 //! Parameters that change while the joint runs: one commit, then a ramp that
 //! never raises the energy stored in the object, never moves a torque faster
-//! than the slew limit, and never shows more than the static limit in force.
+//! than the slew limit, and never exceeds the active static limit.
 
 #![allow(
     clippy::cast_possible_truncation,
@@ -45,7 +45,7 @@ fn stored_j<F: Real>(joint: &Frozen<F, ExactEvents>) -> f64 {
     }
 }
 
-/// What a run saw at its worst.
+/// Worst values of a run.
 #[derive(Debug, Default)]
 struct Worst {
     /// Largest rise of the stored energy in one adjustment, relative.
@@ -53,7 +53,7 @@ struct Worst {
     /// Largest change of torque without an event, beyond what the shaft's
     /// travel explains, as a part of the slew limit.
     slew: f64,
-    /// Largest |T| against the static limit in force.
+    /// Largest |T| relative to the active static limit.
     limit: f64,
     /// Events seen.
     events: u32,

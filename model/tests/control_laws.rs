@@ -30,7 +30,7 @@ const TIMING: Timing = Timing {
     delay_ticks: 1,
 };
 
-/// Any number, and what is none.
+/// Any number, NaN and infinities.
 fn anything() -> impl Strategy<Value = f32> {
     prop_oneof![
         4 => -2.0..2.0_f32,
@@ -120,7 +120,7 @@ fn delays() -> impl Iterator<Item = (usize, usize)> {
     (0..=MOST_DELAY_TICKS).flat_map(|delay| (0..=delay).map(move |late| (delay, late)))
 }
 
-/// What f32 may round off the books.
+/// Rounding of the energy account in f32.
 fn slack(settings: &BoneShapingSettings) -> f64 {
     1e-3 * settings.budget_j
 }
@@ -130,7 +130,7 @@ fn a_hand_that_goes_with_the_ringing_gets_no_more_than_the_tank() {
     let s = BoneShapingSettings::default();
     for delays in delays() {
         // It sees which way it is pushed, is struck with all there is, and is
-        // as fast as the books are exact for; or slow.
+        // as fast as the account is exact for; or slow.
         for speed in [0.5, 5.0, 20.0] {
             let greedy = |n: u32, acting: f64| {
                 let jump = (TAU * 115.0 * TICK_S * f64::from(n)).cos() * 0.6;
@@ -144,7 +144,7 @@ fn a_hand_that_goes_with_the_ringing_gets_no_more_than_the_tank() {
                 double * 1e3
             );
             assert!(single <= s.budget_j + slack(&s) && double <= s.budget_j + 1e-12);
-            // And it does get what is its: the bound is not for nothing.
+            // The bound is not vacuous: the hand gets energy.
             assert!(double > 0.8 * s.budget_j);
         }
         // ±0.9 mrad at 115 Hz in every phase, struck every 31 ms.
@@ -377,7 +377,7 @@ proptest! {
         let friction = cancelled + more;
         let (mut taken, mut given, mut travel) = (0.0, 0.0, 0.0);
         for (n, omega) in speeds.iter().enumerate().skip(late) {
-            // What it knows of the speed is late, and noisy.
+            // The measured speed is late and noisy.
             let torque = compensation.torque_nm(speeds[n - late] + noise[n]);
             let delta_phi = omega * TICK_S;
             taken += friction * delta_phi.abs() + torque * delta_phi;
@@ -397,7 +397,7 @@ proptest! {
         let torque = compensation.torque_nm(omega);
         prop_assert!(torque.abs() <= (s.share * s.friction_nm) as f32);
         prop_assert_eq!(compensation.torque_nm(-omega), -torque);
-        // (A speed that is no number gives none.)
+        // (A speed of NaN gives zero.)
         prop_assert!(torque * omega <= 0.0 || torque == 0.0);
     }
 

@@ -28,7 +28,7 @@ use proptest::prelude::*;
 
 const TICK_S: f64 = 5e-5;
 
-/// What the joint knows of the shaft.
+/// The shaft as the joint measures it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Sight {
     /// The true angle.
@@ -95,7 +95,7 @@ fn books(parameters: Parameters, delay: usize, sight: Sight, angles_rad: &[f64])
     )
 }
 
-/// Minimum-jerk moves through these points, each of so many ticks.
+/// Minimum-jerk moves through these points, each of this many ticks.
 fn moves(points: &[(f64, u32)]) -> Vec<f64> {
     let mut angles = vec![0.0];
     let mut from = 0.0;

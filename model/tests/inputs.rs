@@ -1,5 +1,5 @@
-//! Inputs that are no input: whatever the sensor delivers, the joint stays
-//! valid, and its torque is held and then let go of.
+//! Invalid input: whatever the sensor delivers, the joint stays valid, and its
+//! torque is held and then released.
 
 #![allow(
     clippy::cast_possible_truncation,
@@ -126,7 +126,7 @@ fn a_bad_sample_is_counted_held_and_leaves_no_trace() {
 }
 
 #[test]
-fn without_a_shaft_the_torque_is_held_for_a_millisecond_and_then_let_go() {
+fn without_a_shaft_the_torque_is_held_for_a_millisecond_and_then_released() {
     struct Silence;
     impl Trial for Silence {
         fn run<F: Real, J: StickSlip<F>>(&self, name: &str, mut joint: Guarded<F, J>) {
@@ -146,7 +146,7 @@ fn without_a_shaft_the_torque_is_held_for_a_millisecond_and_then_let_go() {
             }
             assert_eq!(joint.torque_nm(), F::ZERO);
             assert_eq!(joint.counters().lost, 200);
-            // The shaft comes back far away: a new stick, from what is shown.
+            // Samples resume far away: a new stick, from the present torque.
             joint.tick(&good(), |_| {});
             assert_eq!(joint.joint().phase(), Phase::Stick, "{name}");
             assert!(joint.torque_nm().abs().to_f64() < 1e-6, "{name}");
@@ -176,13 +176,13 @@ impl JointVisitor<f32> for Negative {
             joint.tick(&Sample::Lost, |_| {});
         }
         assert!((joint.torque_nm() - (held + 0.05)).abs() < 1e-6);
-        joint.let_go();
+        joint.release();
         assert_eq!(joint.torque_nm(), 0.0);
     }
 }
 
 #[test]
-fn a_negative_torque_is_let_go_of_upwards() {
+fn a_negative_torque_is_released_upwards() {
     let valid = Settings::default().validate().unwrap();
     with_joint::<f32, _>(&valid, Solver::ExactEvents, TICK_S, -0.9, Negative).unwrap();
 }
@@ -314,7 +314,7 @@ fn subnormal_numbers_are_rest() {
 }
 
 #[test]
-fn every_rung_can_be_put_down_anew() {
+fn every_rung_can_be_restarted() {
     struct PutDown;
     impl Trial for PutDown {
         fn run<F: Real, J: StickSlip<F>>(&self, name: &str, mut joint: Guarded<F, J>) {

@@ -8,7 +8,7 @@ use crepitus_model::{
 
 const TICK_S: f64 = 5e-5;
 
-/// Velocities of successive stretches, each of so many ticks.
+/// Velocities of successive stretches, each of this many ticks.
 struct Stretches(&'static [(f64, u32)]);
 
 impl JointVisitor<f64> for Stretches {

@@ -53,7 +53,7 @@ fn a_ramp_never_lifts_the_kinetic_torque_above_the_static_one() {
 }
 
 #[test]
-fn after_a_gap_a_joint_goes_on_from_the_torque_that_is_shown() {
+fn after_a_gap_a_joint_resumes_from_the_present_torque() {
     let joint = Frozen::<f32, ExactEvents>::new(coefficients(Parameters::default()), 0.1);
     let mut joint = Guarded::new(joint, InputLimits::device(TICK_S), 0.1);
     let moved = Sample::Taken(ShaftStep {
@@ -101,7 +101,7 @@ fn after_a_gap_nothing_comes_back_of_a_torque_that_was_switched_off() {
     assert_eq!(shown.torque_nm, 0.0);
 }
 
-/// A damped object that slides for ever.
+/// A damped object that slides endlessly.
 struct Decay;
 
 impl JointVisitor<f32> for Decay {

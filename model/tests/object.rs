@@ -31,7 +31,7 @@ fn steady(omega: f64) -> ShaftStep<f64> {
     }
 }
 
-/// A joint that has made so many ticks at this speed.
+/// A joint after this many ticks at this speed.
 fn after(ticks: u32, omega: f64) -> Joint {
     let mut joint = Joint::new(coefficients(paper()), omega);
     for _ in 0..ticks {
@@ -232,7 +232,7 @@ fn a_slip_that_began_with_a_soft_spring_ends_within_what_that_held() {
 }
 
 #[test]
-fn a_restart_is_a_stick_that_shows_what_it_is_told() {
+fn a_restart_is_a_stick_with_the_given_torque() {
     for (asked, shown) in [(0.15, 0.15), (-0.3, -0.3), (0.9, 0.4), (-0.9, -0.4)] {
         let mut joint = after(300, 0.97);
         joint.restart(asked, -0.5);
@@ -240,7 +240,7 @@ fn a_restart_is_a_stick_that_shows_what_it_is_told() {
         assert!((joint.torque_nm() - shown).abs() < 1e-15);
         assert_eq!(joint.theta_dot_rad_s(), -0.5);
         assert!((joint.theta_rad() - shown / 400.0).abs() < 1e-18);
-        // From there it goes on like any stick.
+        // From there it continues like any stick.
         joint.step(&steady(-0.1), |_| {});
         let expected = (shown - 400.0 * 0.1 * TICK_S).max(-0.4);
         let broke = matches!(joint.phase(), Phase::Slip(Sense::Negative));

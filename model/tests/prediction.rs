@@ -37,7 +37,7 @@ const DELAYS: [usize; 3] = [0, 1, 2];
 /// How long a hand moves, s.
 const SECONDS: f64 = 0.4;
 
-/// What the joint knows of the shaft.
+/// The shaft as the joint measures it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Sight {
     /// The true angle, and the true velocity at the tick.
@@ -49,7 +49,7 @@ enum Sight {
 /// A hand: angle and velocity at a time.
 type Hand<'a> = &'a dyn Fn(f64) -> (f64, f64);
 
-/// What is shown.
+/// The output torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shown {
     Joint,
@@ -61,7 +61,7 @@ const SIGHTS: [Sight; 2] = [Sight::True, Sight::Counts];
 
 const SHOWN: [Shown; 3] = [Shown::Joint, Shown::HalfTick, Shown::NextTick];
 
-/// The mean torque of the next tick if the shaft goes on at `omega`, N·m.
+/// The mean torque of the next tick if the shaft continues at `omega`, N·m.
 fn next_tick(renderer: &Renderer<f32, ExactEvents>, omega: f32) -> f64 {
     let mut ahead = renderer.clone();
     let (mut from, mut torque_nm, mut sum) = (0.0, ahead.joint().torque_nm(), 0.0);
@@ -226,7 +226,7 @@ fn half_a_tick_ahead_is_more_passive_on_the_true_velocity_and_less_behind_an_enc
     let worst = worst("shakes", p, &shakes(p));
     for (delay, d) in DELAYS.into_iter().zip([0.0, 1.0, 2.0]) {
         for (s, _) in SIGHTS.into_iter().enumerate() {
-            // What is shown today stays within its bound.
+            // The present output stays within its bound.
             assert!(worst[0][s][delay] <= 0.5 + d + 1e-3);
         }
         let [on_true, behind_counts] = [worst[1][0][delay], worst[1][1][delay]];

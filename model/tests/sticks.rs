@@ -36,10 +36,10 @@ fn inertial(settings: &Settings, omega: f64, omega_dot: f64) -> f64 {
     }
 }
 
-/// What a joint was after a step: phase, torque, angle, velocity.
+/// State of a joint after a step: phase, torque, angle, velocity.
 type Row = (Phase, f64, f64, f64);
 
-/// Steps a joint, or puts it down anew first, with this torque and velocity.
+/// Steps a joint, or restarts it first, with this torque and velocity.
 struct Run<'a> {
     steps: &'a [ShaftStep<f64>],
     step_s: f64,
@@ -177,7 +177,7 @@ fn a_jerk_breaks_a_physical_stick_from_the_torque_that_it_showed() {
 }
 
 #[test]
-fn a_joint_that_is_put_down_goes_on_from_the_torque_that_it_shows() {
+fn a_restarted_joint_resumes_from_its_torque() {
     for convention in Convention::ALL {
         let c = if convention == Convention::Frozen {
             0.0

@@ -45,7 +45,7 @@ fn count<F: Real>(parameters: Parameters, convention: Convention, omega: f64) ->
     with_joint::<F, _>(&valid, Solver::ExactEvents, TICK_S, start, Count(omega)).unwrap()
 }
 
-/// Speeds that are worth from a twentieth to a hundred times Ts.
+/// Speeds that correspond to a twentieth up to a hundred times Ts.
 const SPEEDS_RAD_S: [f64; 9] = [0.01, 0.05, 0.2, 0.97, -1.0, 3.1, 6.0, -12.0, 20.0];
 
 #[test]

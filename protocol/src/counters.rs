@@ -1,15 +1,14 @@
-//! What is counted, by name: a counter's place in its list is its place on
-//! the wire.
+//! Tables of the event counters: the index in the table is the index on the
+//! wire.
 //!
-//! Counters wrap: the difference of two readings is right as long as less
-//! than 2³² lies between.
+//! Counters wrap: the difference of two readings is valid below 2³².
 
 /// A counter of one controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CounterSpec {
     /// Name.
     pub name: &'static str,
-    /// What it counts.
+    /// Description.
     pub meaning: &'static str,
 }
 
@@ -22,7 +21,7 @@ macro_rules! counters {
         }
 
         impl $enum {
-            /// Its place.
+            /// Index in the table and on the wire.
             pub const fn index(self) -> usize {
                 self as usize
             }
@@ -32,50 +31,50 @@ macro_rules! counters {
         pub const $list: [CounterSpec; $count] =
             [$(CounterSpec { name: $name, meaning: $meaning },)+];
 
-        #[doc = concat!("How many [`", stringify!($enum), "`]s there are.")]
+        #[doc = concat!("Number of [`", stringify!($enum), "`]s.")]
         pub const $count: usize = [$($enum::$variant),+].len();
     };
 }
 
 counters! {
-    /// What the drive counts.
+    /// Counters of the drive.
     DriveCounter, DRIVE_COUNTERS, DRIVE_COUNT:
     Produced "produced-samples" "Samples that were put into blocks.",
-    Dropped "dropped-samples" "Samples of blocks that found no place in the queue to the link.",
-    Frames "received-frames" "Frames from comms that were in order.",
+    Dropped "dropped-samples" "Samples of blocks dropped because the queue to the link was full.",
+    Frames "received-frames" "Valid frames from comms.",
     Discarded "discarded-frames" "Frames from comms that were too long, malformed, or had a wrong checksum; commits with a wrong checksum over all values.",
-    Foreign "foreign-frames" "Frames of a lane or a language that the drive does not speak.",
-    Heartbeats "heartbeats" "Heartbeats that were fresh.",
-    StaleHeartbeats "stale-heartbeats" "Heartbeats that had been on their way for too long.",
-    StaleCommands "stale-commands" "Commands that were late or out of order.",
-    Commits "commits" "Parameter commits that came into force.",
-    RefusedCommits "refused-commits" "Parameter commits that were refused.",
-    LostSamples "lost-samples" "Encoder counts that were not to be believed.",
+    Foreign "foreign-frames" "Frames of an unknown lane or with another schema tag.",
+    Heartbeats "heartbeats" "Fresh heartbeats.",
+    StaleHeartbeats "stale-heartbeats" "Stale heartbeats: delayed too long.",
+    StaleCommands "stale-commands" "Stale commands: delayed too long or out of order.",
+    Commits "commits" "Parameter commits that were applied.",
+    RefusedCommits "refused-commits" "Parameter commits that were rejected.",
+    LostSamples "lost-samples" "Implausible encoder counts.",
     LateTicks "late-ticks" "Ticks whose torque was not ready in time.",
     MissedCurrents "missed-currents" "Ticks without a measured current.",
     LimitedTicks "limited-ticks" "Armed ticks whose torque was limited.",
-    Armings "armings" "Times that it was armed.",
+    Armings "armings" "Successful armings.",
     Faults "faults" "Faults that were raised.",
 }
 
 counters! {
-    /// What comms counts.
+    /// Counters of comms.
     CommsCounter, COMMS_COUNTERS, COMMS_COUNT:
-    FromDrive "drive-frames" "Frames from the drive that were in order.",
+    FromDrive "drive-frames" "Valid frames from the drive.",
     FromDriveDiscarded "drive-discarded-frames" "Frames from the drive that were too long, malformed, or had a wrong checksum.",
-    FromHost "host-frames" "Frames from the host that were in order.",
+    FromHost "host-frames" "Valid frames from the host.",
     FromHostDiscarded "host-discarded-frames" "Frames from the host that were too long, malformed, or had a wrong checksum.",
-    Foreign "foreign-frames" "Frames of a lane or a language that comms does not speak.",
-    ReceivedSamples "received-samples" "Samples that came from the drive.",
+    Foreign "foreign-frames" "Frames of an unknown lane or with another schema tag.",
+    ReceivedSamples "received-samples" "Samples received from the drive.",
     LostSamples "lost-samples" "Samples that the drive produced and the link lost.",
-    DroppedSamples "dropped-samples" "Samples that found no place in the queue to the host.",
-    SentSamples "sent-samples" "Samples that went to the host.",
-    DroppedReplies "dropped-replies" "Replies that found no place in the queue to the host.",
-    Requests "requests" "Requests that were carried out.",
-    RepeatedRequests "repeated-requests" "Requests that had been answered already, and were answered again.",
+    DroppedSamples "dropped-samples" "Samples dropped because the queue to the host was full.",
+    SentSamples "sent-samples" "Samples sent to the host.",
+    DroppedReplies "dropped-replies" "Replies dropped because the queue to the host was full.",
+    Requests "requests" "Requests executed.",
+    RepeatedRequests "repeated-requests" "Repeated requests, answered with the stored reply.",
     Renewals "lease-renewals" "Renewals of the lease.",
-    LeasesExpired "expired-leases" "Leases that ran out.",
-    DriveRestarts "drive-restarts" "Times that the drive started again.",
+    LeasesExpired "expired-leases" "Leases that expired.",
+    DriveRestarts "drive-restarts" "Restarts of the drive.",
     Faults "faults" "Faults that were raised.",
 }
 

@@ -1,27 +1,26 @@
-//! Bytes to messages, one byte at a time.
+//! Frame decoding, one byte at a time.
 //!
-//! Whatever has come before, the first whole frame after a delimiter is
-//! received: a decoder that loses its place counts what it throws away and
-//! finds its place at the next zero byte.
+//! The first complete frame after a delimiter is always received: the decoder
+//! discards and counts invalid bytes and resynchronises at the next zero byte.
 
 use crate::frame::{BODY_BYTES, CRC_BYTES, Checksum, DELIMITER, FRAME_BYTES};
 use crate::lane::Lane;
 use crc::CRC_32_ISO_HDLC;
 use serde::Deserialize;
 
-/// Why the bytes between two delimiters are no message.
+/// Reasons for which the bytes between two delimiters are discarded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum FrameError {
     /// More bytes than any frame has.
     Overlong,
-    /// No COBS, or too short for lane, tag and checksum.
+    /// Invalid COBS, or too short for lane, tag and checksum.
     Malformed,
-    /// The checksum is another.
+    /// Wrong checksum.
     Checksum,
 }
 
-/// A frame whose checksum is right.
+/// Body of a frame with a valid checksum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Body<'a> {
     /// The lane's byte.
@@ -33,12 +32,12 @@ pub struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    /// The lane, if this side knows it and gives it the same tag.
+    /// The lane, if it is known and the tag matches.
     pub fn lane(&self) -> Option<Lane> {
         Lane::of(self.lane).filter(|lane| lane.tag() == self.tag)
     }
 
-    /// The message, if these bytes are one and nothing follows it.
+    /// The message, if the payload is valid, without extra bytes.
     pub fn message<T: Deserialize<'a>>(&self) -> Option<T> {
         match postcard::take_from_bytes(self.payload) {
             Ok((message, [])) => Some(message),
@@ -47,19 +46,19 @@ impl<'a> Body<'a> {
     }
 }
 
-/// What a decoder has thrown away so far; counters wrap.
+/// Counters of discarded frames; they wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Discarded {
     /// Frames that were too long.
     pub overlong: u32,
-    /// Frames that were none.
+    /// Malformed frames.
     pub malformed: u32,
     /// Frames with a wrong checksum.
     pub checksum: u32,
 }
 
 impl Discarded {
-    /// All of them.
+    /// Sum of the counters.
     pub fn total(&self) -> u32 {
         self.overlong
             .wrapping_add(self.malformed)
@@ -67,18 +66,18 @@ impl Discarded {
     }
 }
 
-/// Takes bytes and gives frames. Bytes are decoded, and taken into the
-/// checksum, as they come: the last one costs hardly more than the others.
+/// Incremental decoder: computes COBS and checksum as bytes arrive, so the last
+/// byte costs hardly more than the others.
 #[derive(Debug)]
 pub struct Decoder {
-    /// Bytes until the next code of COBS.
+    /// Bytes until the next COBS code.
     left: u8,
-    /// The run that goes on ends with a zero, if anything follows.
+    /// Whether the current run ends with a zero, if more bytes follow.
     is_zero_due: bool,
-    /// Body and checksum, as far as they have come.
+    /// Body and checksum received so far.
     plain: heapless::Vec<u8, { BODY_BYTES + CRC_BYTES }>,
     checksum: Checksum,
-    /// So many of them are in the checksum.
+    /// Bytes included in the checksum.
     summed: usize,
     /// Bytes since the last delimiter.
     length: usize,
@@ -91,14 +90,14 @@ impl Default for Decoder {
     }
 }
 
-/// Bytes that are taken into the checksum at a time.
+/// Bytes added to the checksum at a time.
 const CHUNK: usize = 8;
 
-/// Checksum of a body with its own checksum behind it.
+/// Checksum of a body with its own checksum appended.
 const RESIDUE: u32 = CRC_32_ISO_HDLC.residue ^ CRC_32_ISO_HDLC.xorout;
 
 impl Decoder {
-    /// One at the start of a frame.
+    /// Starts at the beginning of a frame.
     pub fn new() -> Self {
         Self {
             left: 0,
@@ -111,8 +110,8 @@ impl Decoder {
         }
     }
 
-    /// Takes the next byte; at a frame's end gives the frame, or why there is
-    /// none. Delimiters that follow each other are nothing.
+    /// Decodes the next byte; at a delimiter returns the frame or the error.
+    /// Empty frames are ignored.
     pub fn push(&mut self, byte: u8) -> Option<Result<Body<'_>, FrameError>> {
         if byte != DELIMITER {
             if self.length == 0 {
@@ -121,12 +120,12 @@ impl Decoder {
             self.length = self.length.saturating_add(1);
             if self.left > 0 {
                 self.left = self.left.wrapping_sub(1);
-                self.take(byte);
+                self.add(byte);
             } else {
                 if self.is_zero_due {
-                    self.take(0);
+                    self.add(0);
                 }
-                // 254 bytes without a zero behind them have the code 255.
+                // Code 255: 254 bytes without a zero after them.
                 self.is_zero_due = byte != u8::MAX;
                 self.left = byte.wrapping_sub(1);
             }
@@ -136,9 +135,9 @@ impl Decoder {
         if length == 0 {
             return None;
         }
-        self.sum();
+        self.update_checksum();
         let count = &mut self.discarded;
-        // The longest frame has its delimiter, too.
+        // `FRAME_BYTES` includes the delimiter.
         if length >= FRAME_BYTES {
             count.overlong = count.overlong.wrapping_add(1);
             return Some(Err(FrameError::Overlong));
@@ -162,7 +161,7 @@ impl Decoder {
         Some(opened)
     }
 
-    /// Forgets a frame that has begun: the wire was cut.
+    /// Discards a partial frame, after a disconnect.
     pub fn reset(&mut self) {
         (self.left, self.is_zero_due) = (0, false);
         self.plain.clear();
@@ -171,23 +170,24 @@ impl Decoder {
         self.length = 0;
     }
 
-    /// Takes a byte of the body. More than fit are no frame: its length tells.
+    /// Adds a byte of the body. Surplus bytes are dropped; the length shows
+    /// that the frame is overlong.
     #[inline]
-    fn take(&mut self, byte: u8) {
+    fn add(&mut self, byte: u8) {
         if self.plain.push(byte).is_ok() && self.plain.len().wrapping_sub(self.summed) >= CHUNK {
-            self.sum();
+            self.update_checksum();
         }
     }
 
-    /// Takes what has come into the checksum.
-    fn sum(&mut self) {
-        if let Some(come) = self.plain.get(self.summed..) {
-            self.checksum.update(come);
+    /// Adds the received bytes to the checksum.
+    fn update_checksum(&mut self) {
+        if let Some(new) = self.plain.get(self.summed..) {
+            self.checksum.update(new);
             self.summed = self.plain.len();
         }
     }
 
-    /// What was thrown away so far.
+    /// Counters of discarded frames.
     pub fn discarded(&self) -> Discarded {
         self.discarded
     }
@@ -200,7 +200,7 @@ mod tests {
     use proptest::prelude::*;
     use std::vec::Vec;
 
-    /// The bodies that a decoder finds, and how many errors.
+    /// Decodes bytes; returns the bodies and the number of errors.
     fn decode(decoder: &mut Decoder, bytes: &[u8]) -> (Vec<Vec<u8>>, u32) {
         let (mut bodies, mut errors) = (Vec::new(), 0);
         for byte in bytes {
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shorter_than_lane_and_tag_is_no_frame() {
+    fn a_body_shorter_than_lane_and_tag_is_invalid() {
         for length in 0..2 {
             let frame = encode_body(&body(length)).unwrap();
             assert_eq!(decode(&mut Decoder::new(), &frame), (Vec::new(), 1));
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wire_that_was_cut_starts_anew() {
+    fn a_decoder_recovers_from_a_disconnect() {
         let good = encode_body(&body(30)).unwrap();
         let mut decoder = Decoder::new();
         decode(&mut decoder, &good[..10]);
@@ -319,7 +319,7 @@ mod tests {
 
         /// One flipped bit: never another message.
         #[test]
-        fn a_flipped_bit_is_noticed(length in 2_usize..=BODY_BYTES, at: prop::sample::Index, bit in 0..8_u32) {
+        fn a_flipped_bit_is_detected(length in 2_usize..=BODY_BYTES, at: prop::sample::Index, bit in 0..8_u32) {
             let mut frame = encode_body(&body(length)).unwrap().to_vec();
             let at = at.index(frame.len());
             frame[at] ^= 1_u8 << bit;

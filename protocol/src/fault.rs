@@ -1,10 +1,9 @@
-//! Why there may be no torque: every fault with its cause, what notices it,
-//! what is done, within which time, and how to go on.
+//! The fault table: cause, detection, reaction, reaction time, remedy.
 //!
-//! Faults latch. A fault is cleared by the command `clear-fault`, once the
-//! bridge floats and what caused it is gone.
+//! Faults latch. The command `clear-fault` clears a fault once the bridge floats
+//! and the cause is gone.
 
-/// A fault; its number is its code on the wire, for ever.
+/// A fault; its number is its code on the wire and never changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 #[expect(missing_docs, reason = "the table says it")]
@@ -37,7 +36,7 @@ pub enum Fault {
     CommsPanic = 39,
 }
 
-/// Who notices.
+/// Controller that detects a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Detector {
     /// The drive controller.
@@ -56,25 +55,25 @@ impl Detector {
     }
 }
 
-/// What is known about a fault.
+/// Description of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaultSpec {
-    /// Which one.
+    /// The fault.
     pub fault: Fault,
     /// Name.
     pub name: &'static str,
-    /// What causes it.
+    /// Cause.
     pub cause: &'static str,
-    /// Who notices.
+    /// Controller that detects it.
     pub detector: Detector,
-    /// By what.
+    /// Detection criterion.
     pub detection: &'static str,
-    /// What is done.
+    /// Reaction.
     pub reaction: &'static str,
-    /// Ticks of the drive (50 µs) from the cause until the bridge floats; none
+    /// Ticks of the drive (50 µs) from the cause until the bridge floats; `None`
     /// if it floats already.
     pub within_ticks: Option<u32>,
-    /// How to go on.
+    /// Remedy.
     pub clear: &'static str,
 }
 
@@ -83,7 +82,7 @@ const STAYS: &str = "the bridge stays floating; arming is refused";
 const CLEAR: &str = "clear-fault";
 const REPAIR: &str = "repair, then clear-fault";
 
-/// Every fault, in the order of their codes.
+/// All faults, in the order of their codes.
 pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::CommsSilent,
@@ -110,7 +109,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "comms-restarted",
         cause: "comms was reset and is back within 5 ms; if it takes longer it is comms-silent",
         detector: Detector::Drive,
-        detection: "heartbeats of another start of comms while armed",
+        detection: "the boot counter in the heartbeats changes while armed",
         reaction: FLOAT,
         within_ticks: Some(101),
         clear: CLEAR,
@@ -120,7 +119,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "encoder-lost",
         cause: "a broken encoder line, or interference",
         detector: Detector::Drive,
-        detection: "20 ticks (1 ms) in a row without a count that a shaft can make",
+        detection: "20 consecutive ticks (1 ms) without a plausible count",
         reaction: FLOAT,
         within_ticks: Some(21),
         clear: REPAIR,
@@ -128,7 +127,7 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::Overspeed,
         name: "overspeed",
-        cause: "the joint turns faster than its gear may",
+        cause: "the joint turns faster than its gear permits",
         detector: Detector::Drive,
         detection: "the estimated speed is above limits.speed_rad_s for 20 ticks (1 ms) while armed; \
                     the estimate lags a speed that grows by up to 150 ticks",
@@ -139,10 +138,10 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::SpeedMismatch,
         name: "speed-mismatch",
-        cause: "an encoder that has frozen or slips, a broken motor line, or no supply while little torque is asked for",
+        cause: "an encoder that has frozen or slips, a broken motor line, or no supply while little torque is commanded",
         detector: Detector::Drive,
         detection: "speed from back-EMF and speed from the encoder differ for 400 ticks (20 ms) while armed; \
-                    an encoder that freezes is noticed only once the shaft moves faster than 0.5 rad/s (29 deg/s)",
+                    an encoder that freezes is detected only once the shaft moves faster than 0.5 rad/s (29 deg/s)",
         reaction: FLOAT,
         within_ticks: Some(1_000),
         clear: REPAIR,
@@ -170,9 +169,9 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::Overcurrent,
         name: "overcurrent",
-        cause: "a short circuit, a current loop that has gone astray, or a current sensor that is stuck",
+        cause: "a short circuit, an unstable current loop, or a current sensor that is stuck",
         detector: Detector::Drive,
-        detection: "more than 1.95 A in 2 ticks in a row, or the hardware's break input",
+        detection: "more than 1.95 A in 2 consecutive ticks, or the hardware's break input",
         reaction: FLOAT,
         within_ticks: Some(3),
         clear: REPAIR,
@@ -182,7 +181,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "current-missing",
         cause: "the converter does not run",
         detector: Detector::Drive,
-        detection: "3 ticks in a row without a measured current while armed",
+        detection: "3 consecutive ticks without a measured current while armed",
         reaction: FLOAT,
         within_ticks: Some(4),
         clear: REPAIR,
@@ -190,10 +189,10 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::CurrentMismatch,
         name: "current-mismatch",
-        cause: "a broken motor line; or, while more than 0.2 A (0.67 N·m) is asked for, the supply is off or the \
+        cause: "a broken motor line; or, while more than 0.2 A (0.67 N·m) is commanded, the supply is off or the \
                 hand-held stop is pressed",
         detector: Detector::Drive,
-        detection: "the current stays more than 0.2 A from what was asked for, without a limit that explains it, \
+        detection: "the current stays more than 0.2 A from the setpoint, without an active limit, \
                     for 100 ticks (5 ms)",
         reaction: FLOAT,
         within_ticks: Some(101),
@@ -205,7 +204,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         cause: "the drive's enable line cannot be switched off",
         detector: Detector::Drive,
         detection: "the line is read back at every arming and disarming",
-        reaction: "comms takes its own line away; arming is refused",
+        reaction: "comms switches its own line off; arming is refused",
         within_ticks: Some(10),
         clear: REPAIR,
     },
@@ -224,7 +223,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "rendering-late",
         cause: "the model's task does not finish within its tick",
         detector: Detector::Drive,
-        detection: "20 late ticks in a row",
+        detection: "20 consecutive late ticks",
         reaction: FLOAT,
         within_ticks: Some(21),
         clear: CLEAR,
@@ -232,9 +231,9 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::NotANumber,
         name: "not-a-number",
-        cause: "a defect of the program",
+        cause: "a bug in the program",
         detector: Detector::Drive,
-        detection: "the torque to show is no finite number",
+        detection: "the rendered torque is NaN or infinite",
         reaction: FLOAT,
         within_ticks: Some(1),
         clear: CLEAR,
@@ -244,7 +243,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "drive-watchdog",
         cause: "the drive hung",
         detector: Detector::Drive,
-        detection: "its watchdog reset it; noticed at the next start",
+        detection: "its watchdog reset it; reported at the next boot",
         reaction: STAYS,
         within_ticks: None,
         clear: CLEAR,
@@ -254,7 +253,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "drive-brown-out",
         cause: "the drive's supply failed",
         detector: Detector::Drive,
-        detection: "the reset's cause, at the next start",
+        detection: "the reset's cause, at the next boot",
         reaction: STAYS,
         within_ticks: None,
         clear: CLEAR,
@@ -262,9 +261,9 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::DrivePanic,
         name: "drive-panic",
-        cause: "a defect of the program",
+        cause: "a bug in the program",
         detector: Detector::Drive,
-        detection: "its panic or fault handler, at the next start",
+        detection: "its panic or fault handler, at the next boot",
         reaction: STAYS,
         within_ticks: None,
         clear: CLEAR,
@@ -275,7 +274,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         cause: "the link is cut or too noisy, or the drive hangs, is reset or has no power",
         detector: Detector::Comms,
         detection: "no block from the drive for 5 ms",
-        reaction: "comms takes its enable line away: the bridge floats",
+        reaction: "comms switches its enable line off: the bridge floats",
         within_ticks: Some(140),
         clear: CLEAR,
     },
@@ -284,8 +283,8 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "drive-restarted",
         cause: "the drive was reset while armed and is back within 5 ms; if it takes longer it is drive-silent",
         detector: Detector::Comms,
-        detection: "the drive's ticks begin anew",
-        reaction: "comms takes its enable line away: the bridge floats",
+        detection: "the drive's ticks restart",
+        reaction: "comms switches its enable line off: the bridge floats",
         within_ticks: Some(140),
         clear: CLEAR,
     },
@@ -312,7 +311,7 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::VersionMismatch,
         name: "version-mismatch",
-        cause: "drive and comms run programs that do not speak the same language",
+        cause: "drive and comms run incompatible programs",
         detector: Detector::Comms,
         detection: "the schema hash in the drive's hello",
         reaction: STAYS,
@@ -324,7 +323,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "comms-watchdog",
         cause: "comms hung",
         detector: Detector::Comms,
-        detection: "its watchdog reset it; noticed at the next start",
+        detection: "its watchdog reset it; reported at the next boot",
         reaction: STAYS,
         within_ticks: None,
         clear: CLEAR,
@@ -334,7 +333,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "comms-brown-out",
         cause: "the supply of comms failed",
         detector: Detector::Comms,
-        detection: "the reset's cause, at the next start",
+        detection: "the reset's cause, at the next boot",
         reaction: STAYS,
         within_ticks: None,
         clear: CLEAR,
@@ -342,9 +341,9 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::CommsPanic,
         name: "comms-panic",
-        cause: "a defect of the program",
+        cause: "a bug in the program",
         detector: Detector::Comms,
-        detection: "its panic or fault handler, at the next start",
+        detection: "its panic or fault handler, at the next boot",
         reaction: STAYS,
         within_ticks: None,
         clear: CLEAR,
@@ -352,12 +351,12 @@ pub const FAULTS: [FaultSpec; 26] = [
 ];
 
 impl Fault {
-    /// Its code on the wire.
+    /// Code on the wire.
     pub const fn code(self) -> u8 {
         self as u8
     }
 
-    /// What is known about a code, if anything is.
+    /// Description of a fault by its code.
     pub fn find(code: u8) -> Option<&'static FaultSpec> {
         FAULTS.iter().find(|spec| spec.fault.code() == code)
     }

@@ -1,4 +1,4 @@
-//! Messages to bytes.
+//! Frame encoding.
 //!
 //! ```text
 //! body   = lane ‖ tag ‖ postcard message
@@ -6,8 +6,7 @@
 //! ```
 //!
 //! The CRC is that of zlib and Ethernet (CRC-32/ISO-HDLC). COBS leaves no zero
-//! byte inside a frame, so a receiver that has lost its place finds it again
-//! at the next zero byte.
+//! byte inside a frame, so a receiver resynchronises at the next zero byte.
 
 use crate::lane::Lane;
 use crate::schema::LONGEST_MESSAGE;
@@ -23,16 +22,17 @@ pub const BODY_BYTES: usize = 2 + LONGEST_MESSAGE;
 /// Bytes of the checksum.
 pub const CRC_BYTES: usize = 4;
 
-/// The longest frame, with its end: COBS adds a byte for each 254 begun.
+/// The longest frame, with its delimiter: COBS adds a byte for every 254 bytes
+/// or part of them.
 pub const FRAME_BYTES: usize = BODY_BYTES + CRC_BYTES + (BODY_BYTES + CRC_BYTES) / 254 + 2;
 
-/// What ends a frame.
+/// Delimiter after each frame.
 pub const DELIMITER: u8 = 0;
 
 /// The checksum of both wires.
 pub static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 
-/// A frame, ready to be sent.
+/// An encoded frame.
 pub type Frame = heapless::Vec<u8, FRAME_BYTES>;
 
 /// A message, with its lane and tag, does not fit a frame. No message of this
@@ -40,7 +40,7 @@ pub type Frame = heapless::Vec<u8, FRAME_BYTES>;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLong;
 
-/// A checksum on its way.
+/// Incremental checksum.
 #[derive(Clone)]
 pub(crate) struct Checksum(Digest<'static, u32, Table<1>>);
 
@@ -68,57 +68,56 @@ impl Debug for Checksum {
 /// The largest code of COBS: 254 bytes without a zero.
 const FULL: usize = 255;
 
-/// Room for the longest frame.
-pub type Place = [u8; FRAME_BYTES];
+/// Buffer for the longest frame.
+pub type FrameBuffer = [u8; FRAME_BYTES];
 
-/// A frame that is where it was made.
+/// A frame in the buffer where it was encoded.
 #[derive(Clone, Copy, Debug)]
-pub struct Made<P> {
-    /// Where.
-    pub place: P,
-    /// Its bytes, from the beginning of the place.
+pub struct EncodedFrame<P> {
+    /// The buffer.
+    pub buffer: P,
+    /// Length of the frame, from the start of the buffer.
     pub length: usize,
 }
 
-/// Makes a frame as its body comes, piece by piece: checksum and COBS are done
-/// with the last byte. `P` is a [`Place`], by value or by reference.
+/// Incremental encoder: computes checksum and COBS as the body arrives. `P` is a
+/// [`FrameBuffer`], by value or by reference.
 ///
-/// COBS is written out here and in the decoder, as what the crate `cobs` does
-/// takes the drive three times as long, 6 % of its time, and may panic, as far
-/// as a compiler can tell; it is the oracle of their tests.
+/// COBS is implemented here and in the decoder because the crate `cobs` takes
+/// three times as long, 6 % of the drive's time, and has panic paths that the
+/// compiler cannot exclude. The tests use it as their reference.
 #[derive(Debug)]
 pub struct Encoder<P> {
-    place: P,
+    buffer: P,
     length: usize,
-    /// Where the code of the run that goes on will stand: how far it is to the
-    /// next.
+    /// Position of the COBS code of the current run.
     code_at: usize,
     checksum: Checksum,
 }
 
-impl<P: BorrowMut<Place>> Encoder<P> {
-    /// Begins a body without lane and tag.
-    fn begin(place: P) -> Self {
+impl<P: BorrowMut<FrameBuffer>> Encoder<P> {
+    /// Starts a body without lane and tag.
+    fn begin(buffer: P) -> Self {
         Self {
-            place,
-            // Behind the first code.
+            buffer,
+            // After the first code.
             length: 1,
             code_at: 0,
             checksum: Checksum::new(),
         }
     }
 
-    /// Begins a frame of a lane, in this place.
+    /// Starts a frame of a lane in this buffer.
     ///
     /// # Errors
-    /// [`TooLong`]; never, as a place has room for lane and tag.
-    pub fn new(place: P, lane: Lane) -> Result<Self, TooLong> {
-        let mut encoder = Self::begin(place);
+    /// [`TooLong`]; never, as a buffer has room for lane and tag.
+    pub fn new(buffer: P, lane: Lane) -> Result<Self, TooLong> {
+        let mut encoder = Self::begin(buffer);
         encoder.push(&[lane.byte(), lane.tag()])?;
         Ok(encoder)
     }
 
-    /// Goes on with these bytes of the body.
+    /// Appends bytes to the body.
     ///
     /// # Errors
     /// [`TooLong`] if there is no room for them.
@@ -127,24 +126,24 @@ impl<P: BorrowMut<Place>> Encoder<P> {
         self.put(bytes)
     }
 
-    /// Checksum and end.
+    /// Appends checksum and delimiter.
     ///
     /// # Errors
     /// [`TooLong`] if there is no room for them.
-    pub fn finish(mut self) -> Result<Made<P>, TooLong> {
+    pub fn finish(mut self) -> Result<EncodedFrame<P>, TooLong> {
         let checksum = self.checksum.value();
         self.put(&checksum.to_le_bytes())?;
-        let place = self.place.borrow_mut();
-        set(place, self.code_at, code(self.code_at, self.length))?;
-        set(place, self.length, DELIMITER)?;
-        Ok(Made {
-            place: self.place,
+        let buffer = self.buffer.borrow_mut();
+        set(buffer, self.code_at, code(self.code_at, self.length))?;
+        set(buffer, self.length, DELIMITER)?;
+        Ok(EncodedFrame {
+            buffer: self.buffer,
             length: self.length.wrapping_add(1),
         })
     }
 
-    /// Where no run can get full, each byte has its place, and a zero's place
-    /// is that of a code.
+    /// Fast path: while no run can get full, each byte keeps its position and a
+    /// zero becomes the next code.
     fn put(&mut self, bytes: &[u8]) -> Result<(), TooLong> {
         let (begin, mut code_at) = (self.length, self.code_at);
         let end = begin.saturating_add(bytes.len());
@@ -152,7 +151,7 @@ impl<P: BorrowMut<Place>> Encoder<P> {
             return bytes.iter().try_for_each(|byte| self.put_one(*byte));
         }
         let (made, free) = self
-            .place
+            .buffer
             .borrow_mut()
             .split_at_mut_checked(begin)
             .ok_or(TooLong)?;
@@ -171,15 +170,15 @@ impl<P: BorrowMut<Place>> Encoder<P> {
     }
 
     fn put_one(&mut self, byte: u8) -> Result<(), TooLong> {
-        let place = self.place.borrow_mut();
+        let buffer = self.buffer.borrow_mut();
         if self.length.wrapping_sub(self.code_at) == FULL {
-            set(place, self.code_at, u8::MAX)?;
+            set(buffer, self.code_at, u8::MAX)?;
             self.code_at = self.length;
             self.length = self.length.wrapping_add(1);
         }
-        set(place, self.length, byte)?;
+        set(buffer, self.length, byte)?;
         if byte == 0 {
-            set(place, self.code_at, code(self.code_at, self.length))?;
+            set(buffer, self.code_at, code(self.code_at, self.length))?;
             self.code_at = self.length;
         }
         self.length = self.length.wrapping_add(1);
@@ -187,33 +186,33 @@ impl<P: BorrowMut<Place>> Encoder<P> {
     }
 }
 
-/// The code at one place whose run ends before another, 255 bytes on at most.
+/// The COBS code at `at` of a run that ends before `end`, at most 255 on.
 fn code(at: usize, end: usize) -> u8 {
     let [code, ..] = end.wrapping_sub(at).to_le_bytes();
     code
 }
 
 #[inline]
-fn set(place: &mut Place, at: usize, byte: u8) -> Result<(), TooLong> {
-    *place.get_mut(at).ok_or(TooLong)? = byte;
+fn set(buffer: &mut FrameBuffer, at: usize, byte: u8) -> Result<(), TooLong> {
+    *buffer.get_mut(at).ok_or(TooLong)? = byte;
     Ok(())
 }
 
-impl<P: BorrowMut<Place>> Made<P> {
-    /// Its bytes.
+impl<P: BorrowMut<FrameBuffer>> EncodedFrame<P> {
+    /// The frame's bytes.
     pub fn bytes(&self) -> &[u8] {
-        self.place.borrow().get(..self.length).unwrap_or_default()
+        self.buffer.borrow().get(..self.length).unwrap_or_default()
     }
 
-    /// A copy of it.
+    /// Copies the frame.
     pub fn frame(&self) -> Frame {
-        // A place is as long as a frame may be.
+        // Cannot fail: a buffer is as long as the longest frame.
         Frame::from_slice(self.bytes()).unwrap_or_default()
     }
 }
 
-/// A postcard message on its way into a frame.
-struct Message<'a>(&'a mut Encoder<Place>);
+/// Serialises a postcard message into a frame.
+struct Message<'a>(&'a mut Encoder<FrameBuffer>);
 
 impl Flavor for Message<'_> {
     type Output = ();
@@ -233,38 +232,38 @@ impl Flavor for Message<'_> {
     }
 }
 
-/// The bytes of a message, at the beginning of `place`, without a frame.
+/// Serialises a message into `buffer`, without a frame.
 ///
 /// # Errors
 /// [`TooLong`] if there is no room for them.
-pub fn write<'a>(message: &impl Serialize, place: &'a mut [u8]) -> Result<&'a [u8], TooLong> {
-    match postcard::to_slice(message, place) {
+pub fn write<'a>(message: &impl Serialize, buffer: &'a mut [u8]) -> Result<&'a [u8], TooLong> {
+    match postcard::to_slice(message, buffer) {
         Ok(bytes) => Ok(bytes),
         Err(_) => Err(TooLong),
     }
 }
 
-/// A frame of a message.
+/// Encodes a message as a frame.
 ///
 /// # Errors
-/// [`TooLong`] if the message is.
+/// [`TooLong`] if the message does not fit.
 pub fn encode(lane: Lane, message: &impl Serialize) -> Result<Frame, TooLong> {
     let mut encoder = Encoder::new([0; FRAME_BYTES], lane)?;
     postcard::serialize_with_flavor(message, Message(&mut encoder)).map_err(|_| TooLong)?;
     Ok(encoder.finish()?.frame())
 }
 
-/// A frame of bytes that are no postcard message: the management lane.
+/// Encodes bytes that are no postcard message as a frame: the management lane.
 ///
 /// # Errors
-/// [`TooLong`] if they are.
+/// [`TooLong`] if they do not fit.
 pub fn encode_bytes(lane: Lane, bytes: &[u8]) -> Result<Frame, TooLong> {
     let mut encoder = Encoder::new([0; FRAME_BYTES], lane)?;
     encoder.push(bytes)?;
     Ok(encoder.finish()?.frame())
 }
 
-/// A frame of a body that has its lane and tag already.
+/// Encodes a body that includes lane and tag.
 ///
 /// # Errors
 /// [`TooLong`] beyond [`BODY_BYTES`].
@@ -304,8 +303,8 @@ mod tests {
     }
 
     proptest! {
-        /// In whatever pieces a body comes, its frame is what `cobs` makes of
-        /// the whole of it; runs of about 254 bytes among them.
+        /// However a body is split, its frame equals that of `cobs` for the
+        /// whole body, also for runs of about 254 bytes.
         #[test]
         fn pieces_make_the_frame_of_the_whole(
             mut body in prop::collection::vec(any::<u8>(), 2..=BODY_BYTES),

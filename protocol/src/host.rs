@@ -1,9 +1,8 @@
 //! Messages between the host and comms.
 //!
-//! A host asks, comms answers: every [`Request`] but a renewal has one
-//! [`Reply`] with the same session and number. A request that is repeated with
-//! its number is answered again and not carried out again, so a host that
-//! heard nothing may always repeat it.
+//! Every [`Request`] of a host but a renewal has one [`Reply`] of comms, with
+//! the same session and sequence number. A repeated number gets the stored reply
+//! and is not executed again, so a host may always retry after a timeout.
 
 use crate::counters::{COMMS_COUNT, DRIVE_COUNT};
 use crate::link::DriveRefusal;
@@ -15,168 +14,167 @@ use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// What a host asks.
+/// Request of a host.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Request {
-    /// The host.
+    /// The host's session.
     pub session: Session,
-    /// Grows by one with each request; wraps.
+    /// Sequence number; incremented for each request, wraps.
     pub number: u16,
-    /// What is asked.
-    pub ask: Ask,
+    /// The requested operation.
+    pub operation: Operation,
 }
 
-/// What can be asked.
+/// Operations of comms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 #[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
-pub enum Ask {
-    /// The lease goes on. Has no reply, and its number means nothing.
+pub enum Operation {
+    /// Renews the lease. Has no reply; its number is ignored.
     Renew,
-    /// How is it? → [`Answer::Status`]
+    /// Reads the status. → [`Answer::Status`]
     Status,
-    /// What was counted? → [`Answer::Counters`]
+    /// Reads the counters. → [`Answer::Counters`]
     Counters,
-    /// Which parameters? → [`Answer::Parameters`]
+    /// Reads the parameters. → [`Answer::Parameters`]
     Parameters,
-    /// These parameters instead, all or none. → [`Answer::Committed`]
+    /// Replaces all parameters, atomically. → [`Answer::Committed`]
     Commit {
-        /// The revision that they were made from: another one in force is a
-        /// refusal.
+        /// Revision that the values are based on; rejected if another one was
+        /// committed since.
         base: Revision,
         /// All values.
         values: Values,
     },
-    /// Keep the parameters in force for the next start. → [`Answer::Done`]
+    /// Saves the parameters to flash, for the next boot. → [`Answer::Done`]
     Save,
-    /// The angle is zero here. → [`Answer::Done`]
+    /// Sets the angle's zero here. → [`Answer::Done`]
     Zero,
-    /// Take the lease and render. → [`Answer::Done`]
+    /// Acquires the lease and turns torque on. → [`Answer::Done`]
     Arm,
-    /// No more torque; gives the lease back. → [`Answer::Done`]
+    /// Turns torque off and releases the lease. → [`Answer::Done`]
     Disarm,
-    /// Forget the faults. → [`Answer::Done`]
+    /// Clears the faults. → [`Answer::Done`]
     ClearFault,
-    /// Send every sample. → [`Answer::Subscribed`]
+    /// Starts telemetry. → [`Answer::Subscribed`]
     Subscribe,
-    /// Send no more samples. → [`Answer::Done`]
+    /// Stops telemetry. → [`Answer::Done`]
     Unsubscribe,
 }
 
-/// What comms answers.
+/// Reply of comms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Reply {
     /// The request's session.
     pub session: Session,
-    /// The request's number.
+    /// The request's sequence number.
     pub number: u16,
-    /// The answer.
+    /// The result.
     pub answer: Result<Answer, Refusal>,
 }
 
-/// Answers.
+/// Results of successful requests.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub enum Answer {
     /// Done.
     Done,
-    /// How it is.
+    /// The status.
     Status(Status),
-    /// What was counted since the start.
+    /// The counters since boot.
     Counters(Counters),
-    /// The parameters in force.
+    /// The parameters committed last.
     Parameters {
         /// Their revision.
         revision: Revision,
         /// The values.
         values: Values,
     },
-    /// The parameters are in force at the drive.
+    /// The drive has applied the parameters.
     Committed {
         /// Their revision.
         revision: Revision,
     },
-    /// Blocks follow.
+    /// Telemetry is on.
     Subscribed {
         /// The first tick of the subscription.
         first_tick: u64,
     },
 }
 
-/// How it is.
+/// Status of the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Status {
-    /// The state of the whole.
+    /// State of the device.
     pub state: State,
-    /// Code of the fault of the drive, 0 for none.
+    /// Code of the drive's fault, 0 for none.
     pub drive_fault: u8,
     /// Code of the fault of comms, 0 for none.
     pub comms_fault: u8,
-    /// Whether blocks come from the drive.
+    /// Whether telemetry of the drive arrives at comms.
     pub drive_present: bool,
     /// Tick of the drive, as of its last block.
     pub tick: u64,
-    /// Milliseconds since comms has started.
+    /// Milliseconds since comms booted.
     pub uptime_ms: u64,
-    /// The parameters that were committed last.
+    /// Revision committed last.
     pub revision: Revision,
-    /// The parameters in force at the drive.
+    /// Revision active at the drive.
     pub in_force: Revision,
-    /// The parameters that are kept for the next start; none if they are the
-    /// defaults.
+    /// Revision saved for the next boot; none: the defaults.
     pub saved: Option<Revision>,
-    /// Who has the lease.
+    /// Session that holds the lease.
     pub lease: Option<Session>,
-    /// Whether the angle's zero was said.
+    /// Whether the angle's zero was set.
     pub zeroed: bool,
-    /// Whether the push at arming has shown that encoder and motor turn the
-    /// same way; a leg that is held fast shows nothing.
+    /// Whether the push at arming has proven that encoder and motor turn the
+    /// same way; with a leg that is held it proves nothing.
     pub polarity_proven: bool,
 }
 
-/// What was counted since the start, at the places of
+/// Counters since boot, in the order of
 /// [`DRIVE_COUNTERS`](crate::counters::DRIVE_COUNTERS) and
 /// [`COMMS_COUNTERS`](crate::counters::COMMS_COUNTERS).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Counters {
-    /// By the drive, as of its last status.
+    /// Of the drive, as of its last status.
     pub drive: [u32; DRIVE_COUNT],
-    /// By comms.
+    /// Of comms.
     pub comms: [u32; COMMS_COUNT],
 }
 
-/// Why comms does not do what it is asked.
+/// Errors of requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// The values are not allowed.
+    /// Invalid values.
     Values(ValueError),
-    /// The parameters have changed since: read them again.
+    /// `base` is stale: the parameters have changed; read them again.
     Stale {
-        /// The revision that was committed last.
+        /// The revision committed last.
         revision: Revision,
     },
-    /// Another host has the lease.
+    /// Another host holds the lease.
     Leased {
-        /// The other host.
+        /// The other host's session.
         by: Session,
     },
-    /// Nothing comes from the drive.
+    /// The drive is silent.
     DriveSilent,
-    /// The drive does not confirm in time; what was committed comes into force
-    /// once it is heard again.
+    /// Timeout of the drive's confirmation; a commit is applied once the drive
+    /// responds again.
     Unconfirmed,
-    /// A fault stands in the way: its code.
+    /// A fault is latched.
     Faulted {
-        /// The code.
+        /// The fault's code.
         code: u8,
     },
-    /// It is armed: disarm first.
+    /// Not while armed: disarm first.
     Armed,
-    /// Another request is still being carried out.
+    /// Another request is pending.
     Busy,
-    /// The drive refuses.
+    /// Rejected by the drive.
     Drive(DriveRefusal),
-    /// The parameters could not be kept.
+    /// Saving the parameters failed.
     Storage,
-    /// It was given up: a stop, a disarm or a fault came first.
+    /// Aborted by a stop, a disarm or a fault.
     Aborted,
 }

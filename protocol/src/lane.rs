@@ -1,13 +1,13 @@
-//! What a frame carries: its first byte.
+//! Lanes: the kinds of frames, by their first byte.
 
 use crate::schema;
 
 /// The kinds of frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Lane {
-    /// A question or an order of the lane that never changes.
+    /// Host to comms to drive: management request.
     Management,
-    /// The answer to it.
+    /// Answer to a management request.
     ManagementAnswer,
     /// Host to comms: [`Request`](crate::host::Request).
     Request,
@@ -21,11 +21,11 @@ pub enum Lane {
     FromDrive,
 }
 
-/// The tag of the management lane: its version, for ever.
+/// The tag of the management lane, its version; it never changes.
 pub const MANAGEMENT_TAG: u8 = b'1';
 
 impl Lane {
-    /// All of them.
+    /// All lanes.
     pub const ALL: [Self; 7] = [
         Self::Management,
         Self::ManagementAnswer,
@@ -49,8 +49,7 @@ impl Lane {
         }
     }
 
-    /// The second byte: whether sender and receiver mean the same by what
-    /// follows.
+    /// The second byte: the version of the payload's format.
     pub const fn tag(self) -> u8 {
         match self {
             Self::Management | Self::ManagementAnswer => MANAGEMENT_TAG,
@@ -69,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lanes_are_told_apart_by_their_byte() {
+    fn lanes_differ_in_their_byte() {
         for lane in Lane::ALL {
             assert_eq!(Lane::of(lane.byte()), Some(lane));
         }

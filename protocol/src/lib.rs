@@ -1,7 +1,7 @@
-//! # The wires of Crepitus
+//! # The protocols of Crepitus
 //!
-//! Every message between host, comms controller and drive controller stands
-//! here, once; firmware, simulator, host and the book read it from here.
+//! All messages between host, comms controller and drive controller; firmware,
+//! simulator, host and book use these definitions.
 //!
 //! ```text
 //!        USB CDC                               UART, 4.2 Mbaud
@@ -14,23 +14,23 @@
 //!       m  answers to M                m  answers to M
 //! ```
 //!
-//! A frame is the same on both wires: a lane, a tag, a postcard message, a
-//! CRC-32, COBS-encoded and ended by a zero byte. See [`frame`].
+//! Both wires have the same frames: a lane, a version tag, a postcard message
+//! and a CRC-32, COBS-encoded with a zero byte as delimiter. See [`frame`].
 //!
 //! | to find | look in |
 //! |---|---|
-//! | bytes to frames and back | [`frame`], [`decoder`] |
-//! | what a frame carries | [`lane`] |
-//! | messages of the host's wire | [`host`] |
+//! | encoding and decoding of frames | [`frame`], [`decoder`] |
+//! | kinds of frames | [`lane`] |
+//! | messages between host and comms | [`host`] |
 //! | messages between the controllers | [`link`] |
-//! | how a commit travels on the link | [`pieces`] |
+//! | fragmentation of a commit on the link | [`pieces`] |
 //! | samples | [`telemetry`] |
-//! | the lane that never changes: who is there, stop, reboot | [`management`] |
-//! | whether two sides speak the same language | [`schema`] |
+//! | the management lane, which never changes: hello, stop, reboot | [`management`] |
+//! | schema hash: compatibility of two programs | [`schema`] |
 //! | parameters: id, name, unit, range, default, meaning | [`parameters`] |
 //! | faults: code, cause, detector, reaction, time, how to clear | [`fault`] |
 //! | counters | [`counters`] |
-//! | by what a host finds a device | [`usb`] |
+//! | USB ids, to discover a device | [`usb`] |
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(
@@ -85,8 +85,8 @@ pub const TICKS_PER_S: u32 = 20_000;
 /// Length of a tick of the drive, s.
 pub const TICK_S: f64 = 5e-5;
 
-/// After so many ticks without a fresh heartbeat the drive commands nothing.
+/// Timeout, ticks: without a fresh heartbeat for this long torque is off.
 pub const HEARTBEAT_TICKS: u64 = 101;
 
-/// After so many ticks without a renewed lease the drive commands nothing.
+/// Timeout, ticks: without a renewal of the lease for this long torque is off.
 pub const LEASE_TICKS: u64 = 5_001;

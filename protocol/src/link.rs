@@ -1,14 +1,14 @@
 //! Messages between the two controllers.
 //!
 //! **Freshness.** Every heartbeat and every command echoes the drive's own
-//! tick, as comms last saw it. What has been on its way for too long, however
-//! it came to be delayed, repeated or replayed, is older than
-//! [`STALE_TICKS`] by the drive's own clock and does not count. The lease ends
-//! at a tick of the drive, too, so a late heartbeat cannot make it longer.
+//! tick, as comms last received it. A message that was delayed, repeated or
+//! replayed is older than [`STALE_TICKS`] by the drive's clock and is ignored.
+//! The lease expires at a tick of the drive, too, so a late heartbeat cannot
+//! extend it.
 //!
-//! **Commands** have numbers. The drive carries out a number that is newer
-//! than the last one, once, and says the outcome in every [`DriveStatus`];
-//! comms repeats a command until it hears its outcome.
+//! **Commands** have sequence numbers. The drive executes a number that is newer
+//! than the last one, once, and reports the outcome in every [`DriveStatus`];
+//! comms retries a command until the outcome is confirmed.
 
 use crate::counters::DRIVE_COUNT;
 use crate::pieces::Piece;
@@ -19,63 +19,63 @@ use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// A message whose echo is older than this does not count, ticks. A block is
-/// 20 ticks, its way 17, a heartbeat every 20.
+/// Age beyond which an echoed tick is stale, ticks. A block is 20 ticks, its
+/// transmission 17, a heartbeat every 20.
 pub const STALE_TICKS: u64 = 400;
 
-/// What comms tells the drive.
+/// Message of comms to the drive.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub enum ToDrive {
-    /// Comms is alive. Sent every millisecond.
+    /// Heartbeat, sent every millisecond.
     Heartbeat(Heartbeat),
-    /// Parameters to apply with the next block, one piece of them.
+    /// One piece of a commit, to be applied at the start of a block.
     Commit {
-        /// Their revision.
+        /// Revision of the commit.
         revision: Revision,
         /// Checksum over all values of the commit.
         checksum: u32,
         /// Some of the values.
         piece: Piece,
     },
-    /// Do this, once.
+    /// Order, to be executed once.
     Command {
-        /// The drive's tick as comms last saw it.
+        /// The drive's tick as comms last received it.
         seen_tick: u64,
-        /// Grows by one with each command; wraps.
+        /// Sequence number; incremented for each command, wraps.
         number: u16,
-        /// What.
+        /// The order.
         order: Order,
     },
 }
 
-/// Comms is alive.
+/// Heartbeat of comms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Heartbeat {
-    /// The drive's tick as comms last saw it.
+    /// The drive's tick as comms last received it.
     pub seen_tick: u64,
-    /// The lease ends so many ticks after `seen_tick`.
+    /// Ticks from `seen_tick` to the end of the lease.
     pub lease_left: u16,
-    /// Whether there may be torque: without it the drive disarms.
+    /// Whether torque is permitted; if not, the drive disarms.
     pub enable: bool,
-    /// Which start of comms this is.
+    /// Boot counter of comms.
     pub start: u16,
 }
 
-/// What the drive can be told to do.
+/// Orders to the drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema)]
 pub enum Order {
-    /// Prove the enable line, then render.
+    /// Tests the enable line, then turns torque on.
     Arm,
-    /// The angle is zero here.
+    /// Sets the angle's zero here.
     Zero,
-    /// Forget the fault.
+    /// Clears the fault.
     ClearFault,
 }
 
-/// What the drive tells comms.
+/// Message of the drive to comms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub enum FromDrive {
-    /// How it is. Sent every 5 ms, and at every change.
+    /// Status, sent every 5 ms and at every change.
     Status(DriveStatus),
 }
 
@@ -86,73 +86,73 @@ impl DriveStatus {
     /// Bytes of [`Self::head`], at most.
     pub const HEAD_BYTES: usize = FromDrive::POSTCARD_MAX_SIZE - DRIVE_COUNT * COUNTER_BYTES;
 
-    /// The message [`FromDrive::Status`] as far as the counters, for a sender
-    /// that makes its frame piece by piece. Each of them follows by itself.
+    /// The message [`FromDrive::Status`] up to the counters, for an incremental
+    /// encoder, which appends them one by one.
     pub fn head(&self) -> impl Serialize + use<> {
         const STATUS: u8 = 0;
         (
-            (STATUS, self.tick, self.start, self.heard),
+            (STATUS, self.tick, self.start, self.comms_start),
             (self.state, self.fault, self.revision, self.refused),
             (self.last, self.zeroed, self.polarity_proven),
         )
     }
 }
 
-/// How the drive is.
+/// Status of the drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct DriveStatus {
-    /// Now.
+    /// Current tick.
     pub tick: u64,
-    /// Which start of the drive this is.
+    /// Boot counter of the drive.
     pub start: u16,
-    /// Which start of comms it has heard last; what it says of commits and
-    /// commands is about that one's.
-    pub heard: Option<u16>,
-    /// Its state.
+    /// Boot counter of comms in its last heartbeat; `refused` and `last` refer
+    /// to commits and commands since that boot.
+    pub comms_start: Option<u16>,
+    /// State of the drive.
     pub state: State,
-    /// Code of its fault, 0 for none.
+    /// Code of the fault, 0 for none.
     pub fault: u8,
-    /// The parameters in force.
+    /// Active revision of the parameters.
     pub revision: Revision,
-    /// The last commit that it refused, and why.
+    /// The last rejected commit, and the reason.
     pub refused: Option<(Revision, ValueError)>,
-    /// The last command that it carried out.
+    /// The last completed command.
     pub last: Option<Outcome>,
-    /// Whether the angle's zero was said.
+    /// Whether the angle's zero was set.
     pub zeroed: bool,
-    /// Whether encoder and motor have been seen to turn the same way.
+    /// Whether arming has proven that encoder and motor turn the same way.
     pub polarity_proven: bool,
-    /// What it has counted.
+    /// The drive's counters.
     pub counters: [u32; DRIVE_COUNT],
 }
 
-/// What became of a command.
+/// Outcome of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Outcome {
-    /// Its number.
+    /// Sequence number of the command.
     pub number: u16,
-    /// Done; or why not.
+    /// Success, or the error.
     pub result: Result<(), DriveRefusal>,
 }
 
-/// Why the drive does not do what it is told.
+/// Errors of orders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema)]
 #[non_exhaustive]
 pub enum DriveRefusal {
-    /// It was given no parameters yet.
+    /// No parameters were received yet.
     NoParameters,
-    /// There is no live lease.
+    /// No lease, or an expired one.
     NoLease,
-    /// A fault stands in the way: its code.
+    /// A fault is latched.
     Faulted {
-        /// The code.
+        /// The fault's code.
         code: u8,
     },
-    /// Not while there is torque.
+    /// Not while armed.
     Armed,
-    /// The encoder's counts are not to be believed.
+    /// The encoder's counts are implausible.
     NoEncoder,
-    /// Arming was given up: comms or the host took it back.
+    /// Arming was aborted by comms or the host.
     Aborted,
 }
 
@@ -166,7 +166,7 @@ mod tests {
         let status = DriveStatus {
             tick: u64::MAX,
             start: u16::MAX,
-            heard: Some(u16::MAX),
+            comms_start: Some(u16::MAX),
             state: State::Faulted,
             fault: 255,
             revision: Revision(u32::MAX),

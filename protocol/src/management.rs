@@ -1,24 +1,24 @@
-//! The lane whose bytes never change: who is there, stop, reboot.
+//! The management lane, whose bytes never change: hello, stop, reboot.
 //!
-//! Sides of any two versions understand it. It is not postcard: every byte
-//! stands here.
+//! All versions are compatible on it. It is not postcard: every byte is defined
+//! here.
 //!
 //! ```text
-//! question  'M' '1' what token                        what: 'H' hello, 'S' stop, 'B' reboot
-//! answer    'm' '1' 'H' token comms[32] drive[32]     identities; 32 zeros if the drive has not said
+//! request   'M' '1' action token                      action: 'H' hello, 'S' stop, 'B' reboot
+//! answer    'm' '1' 'H' token comms[32] drive[32]     identities; 32 zeros until the drive has reported
 //!           'm' '1' 'S' token done                    1
-//!           'm' '1' 'B' token done                    1; or 0: refused while there is torque
+//!           'm' '1' 'B' token done                    1; or 0: rejected while armed
 //!
 //! identity  role ‖ version[3] ‖ schema hash[8] ‖ serial number[12] ‖ image[4] ‖ reset ‖ 0[3]
 //! ```
 //!
-//! Numbers are little endian. The token comes back as it was sent. What is
-//! longer than this is a later version's: the rest is ignored.
+//! Numbers are little endian. The answer repeats the token. Extra bytes, from a
+//! later version, are ignored.
 
-/// Who.
+/// Role of a controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// Nobody, or nobody known.
+    /// Unknown, or no controller.
     #[default]
     Unknown,
     /// The comms controller.
@@ -27,27 +27,27 @@ pub enum Role {
     Drive,
 }
 
-/// Why a controller has started.
+/// Cause of a reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ResetCause {
-    /// Power was switched on.
+    /// Power-on.
     #[default]
     Power,
-    /// Its reset pin, or a reboot that was asked for.
-    Asked,
-    /// Its watchdog.
+    /// Reset pin, or a requested reboot.
+    Requested,
+    /// Watchdog.
     Watchdog,
-    /// Its supply fell.
+    /// Brown-out of the supply.
     BrownOut,
-    /// Its panic or fault handler.
+    /// Panic or fault handler.
     Panic,
 }
 
 impl ResetCause {
-    /// All, in the order of their numbers.
+    /// All causes, in the order of their numbers.
     pub const ALL: [Self; 5] = [
         Self::Power,
-        Self::Asked,
+        Self::Requested,
         Self::Watchdog,
         Self::BrownOut,
         Self::Panic,
@@ -57,7 +57,7 @@ impl ResetCause {
     pub fn name(self) -> &'static str {
         match self {
             Self::Power => "power",
-            Self::Asked => "reset",
+            Self::Requested => "reset",
             Self::Watchdog => "watchdog",
             Self::BrownOut => "brown-out",
             Self::Panic => "panic",
@@ -67,7 +67,7 @@ impl ResetCause {
     fn number(self) -> u8 {
         match self {
             Self::Power => 0,
-            Self::Asked => 1,
+            Self::Requested => 1,
             Self::Watchdog => 2,
             Self::BrownOut => 3,
             Self::Panic => 4,
@@ -75,20 +75,20 @@ impl ResetCause {
     }
 }
 
-/// A controller and its program.
+/// Identity of a controller and its program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Identity {
-    /// Who.
+    /// Role.
     pub role: Role,
     /// Version of the program: major, minor, patch.
     pub version: [u8; 3],
     /// [`schema::HASH`](crate::schema::HASH) of the program.
     pub schema: u64,
-    /// Number of the chip.
+    /// Serial number of the chip.
     pub serial: [u8; 12],
-    /// CRC-32 of the program's image; 0 where there is none.
+    /// CRC-32 of the program's image; 0 if there is none.
     pub image: u32,
-    /// Why it has started.
+    /// Cause of the last reset.
     pub reset: ResetCause,
 }
 
@@ -98,55 +98,55 @@ pub const IDENTITY_BYTES: usize = 32;
 /// Bytes of the longest answer.
 pub const ANSWER_BYTES: usize = 4 + 2 * IDENTITY_BYTES;
 
-/// What is asked.
+/// Management actions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum What {
-    /// Who is there?
+pub enum Action {
+    /// Identifies both controllers.
     Hello,
-    /// No more torque.
+    /// Turns torque off.
     Stop,
-    /// Start anew.
+    /// Reboots both controllers.
     Reboot,
 }
 
-/// A question, with the token that its answer will have.
+/// Request on the management lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Question {
-    /// What is asked.
-    pub what: What,
-    /// Comes back with the answer.
+pub struct ManagementRequest {
+    /// The requested action.
+    pub action: Action,
+    /// Repeated in the answer.
     pub token: u8,
 }
 
-/// An answer.
+/// Answer on the management lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// Who is there.
+    /// The identities.
     Hello {
-        /// The question's token.
+        /// The request's token.
         token: u8,
         /// The controller that answers.
         own: Identity,
-        /// The drive, where comms answers and knows it.
+        /// The drive, if comms answers and knows it.
         drive: Identity,
     },
-    /// Whether there is no more torque.
+    /// Result of a stop.
     Stop {
-        /// The question's token.
+        /// The request's token.
         token: u8,
-        /// Whether it was done.
+        /// Whether torque is off.
         done: bool,
     },
-    /// Whether it starts anew.
+    /// Result of a reboot request.
     Reboot {
-        /// The question's token.
+        /// The request's token.
         token: u8,
-        /// Whether it will be done.
+        /// Whether the controllers will reboot.
         done: bool,
     },
 }
 
-impl What {
+impl Action {
     fn byte(self) -> u8 {
         match self {
             Self::Hello => b'H',
@@ -158,27 +158,27 @@ impl What {
     fn of(byte: u8) -> Option<Self> {
         [Self::Hello, Self::Stop, Self::Reboot]
             .into_iter()
-            .find(|what| what.byte() == byte)
+            .find(|action| action.byte() == byte)
     }
 }
 
-impl Question {
-    /// Its bytes, after lane and tag.
+impl ManagementRequest {
+    /// Encodes it, without lane and tag.
     pub fn bytes(self) -> [u8; 2] {
-        [self.what.byte(), self.token]
+        [self.action.byte(), self.token]
     }
 
-    /// From bytes after lane and tag.
+    /// Decodes bytes after lane and tag.
     pub fn of(bytes: &[u8]) -> Option<Self> {
-        let [what, token, ..] = *bytes else {
+        let [action, token, ..] = *bytes else {
             return None;
         };
-        What::of(what).map(|what| Self { what, token })
+        Action::of(action).map(|action| Self { action, token })
     }
 }
 
 impl Identity {
-    /// Its bytes.
+    /// Encodes it.
     pub fn bytes(&self) -> [u8; IDENTITY_BYTES] {
         let role = match self.role {
             Role::Unknown => 0,
@@ -199,7 +199,7 @@ impl Identity {
         bytes
     }
 
-    /// From its bytes.
+    /// Decodes an identity.
     pub fn of(bytes: &[u8; IDENTITY_BYTES]) -> Self {
         let mut rest = bytes.iter().copied();
         let mut next = || rest.next().unwrap_or(0);
@@ -224,11 +224,11 @@ impl Identity {
     }
 }
 
-/// The bytes of an answer, after lane and tag.
+/// Encoded answer, without lane and tag.
 pub type AnswerBytes = heapless::Vec<u8, ANSWER_BYTES>;
 
 impl Answer {
-    /// Its bytes, after lane and tag.
+    /// Encodes it, without lane and tag.
     pub fn bytes(&self) -> AnswerBytes {
         let mut bytes = heapless::Vec::new();
         let head = match *self {
@@ -236,7 +236,7 @@ impl Answer {
             Self::Stop { token, .. } => [b'S', token],
             Self::Reboot { token, .. } => [b'B', token],
         };
-        // The capacity is that of the longest answer.
+        // Cannot fail: the capacity is that of the longest answer.
         let _ = bytes.extend_from_slice(&head);
         let _ = match self {
             Self::Hello { own, drive, .. } => bytes
@@ -249,14 +249,14 @@ impl Answer {
         bytes
     }
 
-    /// From bytes after lane and tag.
+    /// Decodes bytes after lane and tag.
     pub fn of(bytes: &[u8]) -> Option<Self> {
-        let [what, token, rest @ ..] = bytes else {
+        let [action, token, rest @ ..] = bytes else {
             return None;
         };
         let token = *token;
-        Some(match What::of(*what)? {
-            What::Hello => {
+        Some(match Action::of(*action)? {
+            Action::Hello => {
                 let (own, rest) = rest.split_first_chunk()?;
                 let drive = rest.first_chunk()?;
                 Self::Hello {
@@ -265,18 +265,18 @@ impl Answer {
                     drive: Identity::of(drive),
                 }
             }
-            What::Stop => Self::Stop {
+            Action::Stop => Self::Stop {
                 token,
                 done: *rest.first()? == 1,
             },
-            What::Reboot => Self::Reboot {
+            Action::Reboot => Self::Reboot {
                 token,
                 done: *rest.first()? == 1,
             },
         })
     }
 
-    /// The token of its question.
+    /// The request's token.
     pub fn token(&self) -> u8 {
         match *self {
             Self::Hello { token, .. } | Self::Stop { token, .. } | Self::Reboot { token, .. } => {
@@ -291,10 +291,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_asked_and_answered_comes_back() {
-        for what in [What::Hello, What::Stop, What::Reboot] {
-            let question = Question { what, token: 9 };
-            assert_eq!(Question::of(&question.bytes()), Some(question));
+    fn requests_and_answers_round_trip() {
+        for action in [Action::Hello, Action::Stop, Action::Reboot] {
+            let request = ManagementRequest { action, token: 9 };
+            assert_eq!(ManagementRequest::of(&request.bytes()), Some(request));
         }
         let own = Identity {
             role: Role::Comms,
@@ -317,7 +317,7 @@ mod tests {
                 drive,
             };
             assert_eq!(Answer::of(&answer.bytes()), Some(answer));
-            // A later version may say more.
+            // A later version may append bytes.
             let mut longer = answer.bytes().to_vec();
             longer.extend([1, 2, 3]);
             assert_eq!(Answer::of(&longer), Some(answer));
@@ -331,7 +331,7 @@ mod tests {
             assert_eq!(Answer::of(&stop.bytes()), Some(stop));
             assert_eq!(Answer::of(&reboot.bytes()), Some(reboot));
         }
-        assert_eq!(Question::of(b"X1"), None);
-        assert_eq!(Question::of(b"H"), None);
+        assert_eq!(ManagementRequest::of(b"X1"), None);
+        assert_eq!(ManagementRequest::of(b"H"), None);
     }
 }

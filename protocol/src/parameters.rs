@@ -1,9 +1,9 @@
-//! The parameters of a device: the table that wire, command line, book and
-//! validation read. Each is declared beside what it sets, in `model`, with its
-//! id, name, unit, range, default and meaning; here stands which there are.
+//! The parameters of a device: the table behind wire, command line, book and
+//! validation. Each is declared in `model`, beside its use, with id, name, unit,
+//! range, default and meaning; here they are collected.
 //!
-//! An id never changes its meaning and is never given again. What is not at the
-//! place of an id any more may leave a gap.
+//! An id never changes its meaning and is never reused. A removed parameter
+//! leaves a gap.
 
 use crate::settings::ValueError;
 use crepitus_model::Parameters;
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 pub use crepitus_model::parameters::{Choice, Kind, Parameter, When};
 
-/// The groups of device parameters: those of the parts, and of every effect in
+/// The groups of device parameters: of the components, and of every effect in
 /// the model's table.
 const DECLARED: [&[&[Parameter]]; 2] = [
     &[
@@ -56,11 +56,11 @@ const fn next(least: u8) -> &'static Parameter {
         while let [parameters, rest @ ..] = groups {
             let mut parameters: &[Parameter] = parameters;
             while let [parameter, rest @ ..] = parameters {
-                let is_nearer = match found {
+                let is_lower = match found {
                     Some(found) => parameter.id < found.id,
                     None => true,
                 };
-                if parameter.id >= least && is_nearer {
+                if parameter.id >= least && is_lower {
                     found = Some(parameter);
                 }
                 parameters = rest;
@@ -78,15 +78,15 @@ const fn next(least: u8) -> &'static Parameter {
 #[expect(clippy::indexing_slicing, reason = "at compile time")]
 const fn sorted() -> [Parameter; PARAMETER_COUNT] {
     let mut all = [*next(0); PARAMETER_COUNT];
-    let mut place = 1;
-    while place < all.len() {
-        all[place] = *next(all[place - 1].id + 1);
-        place += 1;
+    let mut index = 1;
+    while index < all.len() {
+        all[index] = *next(all[index - 1].id + 1);
+        index += 1;
     }
     all
 }
 
-// An id that stands twice would be passed over by the second.
+// With a duplicate id, one parameter would be missing.
 const _: () = {
     let mut parameters: &[_] = &PARAMETERS;
     while let [first, rest @ ..] = parameters {
@@ -97,7 +97,7 @@ const _: () = {
     }
 };
 
-/// The ids of the parameters that code asks for by name.
+/// Ids of the parameters that code uses by name.
 pub mod id {
     use super::Parameter;
     use crepitus_model::parameters::same;
@@ -133,8 +133,7 @@ pub mod id {
     }
 }
 
-/// A value for each of [`PARAMETERS`]; what people set. A choice is the place
-/// of its name.
+/// A value for each of [`PARAMETERS`]. A choice is the index of its name.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Values(pub [f64; PARAMETER_COUNT]);
 
@@ -147,13 +146,13 @@ impl Default for Values {
 impl Values {
     /// The value of a parameter, if there is one.
     pub fn get(&self, id: u8) -> Option<f64> {
-        self.0.get(place(id)?).copied()
+        self.0.get(index(id)?).copied()
     }
 
-    /// Sets a parameter; nothing if there is none.
+    /// Sets a parameter; ignores an unknown id.
     pub fn set(&mut self, id: u8, value: f64) {
-        if let Some(value_there) = place(id).and_then(|place| self.0.get_mut(place)) {
-            *value_there = value;
+        if let Some(slot) = index(id).and_then(|index| self.0.get_mut(index)) {
+            *slot = value;
         }
     }
 
@@ -162,9 +161,9 @@ impl Values {
         PARAMETERS_BY_ID.iter().zip(self.0)
     }
 
-    /// Takes over the values that there are.
+    /// Copies the values of these ids, if they exist.
     #[inline(never)]
-    fn take(&self, ids: &[Option<u8>], values: &mut [f64]) {
+    fn copy_to(&self, ids: &[Option<u8>], values: &mut [f64]) {
         for (value, id) in values.iter_mut().zip(ids) {
             if let Some(set) = id.and_then(|id| self.get(id)) {
                 *value = set;
@@ -172,7 +171,7 @@ impl Values {
         }
     }
 
-    /// With these settings, as far as a device has them.
+    /// Returns the values with these settings, as far as a device has them.
     #[must_use]
     pub fn with<const N: usize, T: Tabled<N>>(mut self, settings: &T) -> Self {
         for (value, id) in settings.values().into_iter().zip(T::IDS) {
@@ -183,10 +182,11 @@ impl Values {
         self
     }
 
-    /// Checks every value by itself.
+    /// Checks the range of every value.
     ///
     /// # Errors
-    /// [`ValueError`] for the first that is outside its range, or no choice.
+    /// [`ValueError`] for the first value that is out of range or no valid
+    /// choice.
     pub fn check(&self) -> Result<(), ValueError> {
         match self.iter().find(|(p, value)| !p.allows(*value)) {
             Some((parameter, _)) => Err(ValueError::OutOfRange { id: parameter.id }),
@@ -194,8 +194,7 @@ impl Values {
         }
     }
 
-    /// The first parameter that differs and may not change while there is
-    /// torque.
+    /// The first parameter that differs and can only change while disarmed.
     pub fn needs_disarmed(&self, now: &Self) -> Option<u8> {
         self.iter()
             .zip(now.0)
@@ -213,18 +212,18 @@ impl Source for Values {
 
     fn read<const N: usize, T: Tabled<N>>(&self) -> T {
         let mut values = T::TABLE.map(|parameter| parameter.default);
-        self.take(&T::IDS, &mut values);
+        self.copy_to(&T::IDS, &mut values);
         T::of(values)
     }
 }
 
-/// [`PARAMETERS`] at one place in memory.
+/// [`PARAMETERS`] in memory, once.
 static PARAMETERS_BY_ID: [Parameter; PARAMETER_COUNT] = PARAMETERS;
 
-/// Where a parameter stands in [`PARAMETERS`] and [`Values`]; one function for
-/// all, as each of them inside another would fill the controllers' flash.
+/// Index of a parameter in [`PARAMETERS`] and [`Values`]. Not inlined: copies
+/// would fill the controllers' flash.
 #[inline(never)]
-fn place(id: u8) -> Option<usize> {
+fn index(id: u8) -> Option<usize> {
     PARAMETERS_BY_ID.iter().position(|p| p.id == id)
 }
 
@@ -260,7 +259,7 @@ mod tests {
         assert_eq!(with_id(u8::MAX), None);
     }
 
-    /// Programs of other versions and records in flash count on them.
+    /// Programs of other versions and records in flash depend on the ids.
     #[test]
     fn ids_stay() {
         for (id, name) in [
@@ -288,7 +287,7 @@ mod tests {
         let values = Values::default().with(&encoder);
         assert_eq!(values.read::<3, EncoderSettings>(), encoder);
         assert_eq!(values.get(id::LINES), Some(1000.0));
-        // What no device has is at its default.
+        // Settings that no device has keep their defaults.
         let damped = Parameters {
             damping_nms_per_rad: 1.0,
             ..Parameters::default()

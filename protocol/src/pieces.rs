@@ -1,9 +1,9 @@
-//! Values in pieces: how a commit travels to the drive.
+//! Fragmentation of a commit for the link to the drive.
 //!
-//! A heartbeat must not wait long behind a frame, and the number of parameters
-//! grows. So a frame on the link carries at most [`PIECE_VALUES`] values, the
-//! revision, and a checksum over all values of the commit. The receiver applies
-//! a commit when it has every piece and the checksum is right, or not at all.
+//! A long frame would delay heartbeats, and the number of parameters grows. So
+//! a frame on the link carries at most [`PIECE_VALUES`] values, the revision,
+//! and a checksum over all values. The receiver applies a commit only when all
+//! pieces are there and the checksum is valid.
 
 use crate::frame::CRC;
 use crate::parameters::PARAMETER_COUNT;
@@ -11,20 +11,20 @@ use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// The most values in one frame of the link.
+/// Values in a piece.
 pub const PIECE_VALUES: usize = 16;
 
 /// Some of the values of a commit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Piece {
-    /// Place of this piece; the first value is at 16 times as much.
+    /// Index of this piece; its first value has 16 times this index.
     pub index: u8,
     /// The values; 0 beyond the last.
     pub values: [f64; PIECE_VALUES],
 }
 
 impl Piece {
-    /// The piece at a place, if the values reach so far.
+    /// The piece with this index, if there is one.
     pub fn of(values: &[f64], index: u8) -> Option<Self> {
         let some = values.chunks(PIECE_VALUES).nth(index.into())?;
         let mut piece = Self {
@@ -47,23 +47,23 @@ pub fn checksum(values: &[f64]) -> u32 {
     digest.finalize()
 }
 
-/// The pieces of one commit, as they arrive, in any order.
+/// Reassembly of a commit from pieces in any order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gathered<const N: usize = PARAMETER_COUNT> {
+pub struct Reassembly<const N: usize = PARAMETER_COUNT> {
     checksum: u32,
     values: [f64; N],
-    /// One bit a piece.
+    /// One bit for each missing piece.
     missing: u32,
 }
 
-impl<const N: usize> Gathered<N> {
+impl<const N: usize> Reassembly<N> {
     const ALL: u32 = {
         let pieces = N.div_ceil(PIECE_VALUES);
         assert!(pieces < 32, "more pieces than bits");
         (1 << pieces) - 1
     };
 
-    /// No piece yet, of values with this checksum.
+    /// Starts without pieces, for values with this checksum.
     pub fn new(checksum: u32) -> Self {
         Self {
             checksum,
@@ -72,12 +72,12 @@ impl<const N: usize> Gathered<N> {
         }
     }
 
-    /// The checksum that the whole must have.
+    /// The expected checksum of all values.
     pub fn checksum(&self) -> u32 {
         self.checksum
     }
 
-    /// Adds a piece; ignores one that lies beyond the last value.
+    /// Adds a piece; ignores an invalid index.
     pub fn add(&mut self, piece: &Piece) {
         let place = self.values.chunks_mut(PIECE_VALUES).nth(piece.index.into());
         let Some(place) = place else {
@@ -94,7 +94,7 @@ impl<const N: usize> Gathered<N> {
         self.missing == 0
     }
 
-    /// The values, if every piece has arrived and the checksum is right.
+    /// The values, if complete and with a valid checksum.
     pub fn values(&self) -> Option<&[f64; N]> {
         (self.is_complete() && checksum(&self.values) == self.checksum).then_some(&self.values)
     }
@@ -123,12 +123,12 @@ mod tests {
         };
         let pieces = pieces(&values);
         assert_eq!(pieces.len(), 7);
-        let mut gathered = Gathered::<MANY>::new(checksum(&values));
+        let mut reassembly = Reassembly::<MANY>::new(checksum(&values));
         for piece in &pieces {
-            assert_eq!(gathered.values(), None);
-            gathered.add(piece);
+            assert_eq!(reassembly.values(), None);
+            reassembly.add(piece);
         }
-        assert_eq!(gathered.values(), Some(&values));
+        assert_eq!(reassembly.values(), Some(&values));
     }
 
     #[test]
@@ -138,40 +138,40 @@ mod tests {
     }
 
     #[test]
-    fn a_piece_from_nowhere_changes_nothing() {
-        let mut gathered = Gathered::<MANY>::new(0);
+    fn a_piece_with_an_invalid_index_is_ignored() {
+        let mut reassembly = Reassembly::<MANY>::new(0);
         for index in [7, 31, 32, 255] {
-            let before = gathered;
-            gathered.add(&Piece {
+            let before = reassembly;
+            reassembly.add(&Piece {
                 index,
                 values: [1.0; PIECE_VALUES],
             });
-            assert_eq!(gathered, before, "{index}");
+            assert_eq!(reassembly, before, "{index}");
         }
     }
 
     proptest! {
-        /// In any order, with repeats: the values to the bit; with a piece of
-        /// another commit among them, nothing.
+        /// Pieces in any order, with repeats, give the exact values; a piece of
+        /// another commit among them gives none.
         #[test]
-        fn whole_or_not_at_all(
+        fn reassembly_is_complete_or_fails(
             bits in prop::array::uniform32(any::<u64>()),
             order in Just((0..2_u8).cycle().take(9).collect::<Vec<_>>()).prop_shuffle(),
             (wrong, flip) in (0..32_usize, 0..64_u32),
         ) {
             let values = bits.map(f64::from_bits);
-            let mut gathered = Gathered::<32>::new(checksum(&values));
+            let mut reassembly = Reassembly::<32>::new(checksum(&values));
             for index in order {
-                gathered.add(&Piece::of(&values, index).unwrap());
+                reassembly.add(&Piece::of(&values, index).unwrap());
             }
-            let whole = gathered.values().map(|values| values.map(f64::to_bits));
+            let whole = reassembly.values().map(|values| values.map(f64::to_bits));
             prop_assert_eq!(whole, Some(bits));
 
             let mut other = values;
             other[wrong] = f64::from_bits(bits[wrong] ^ 1 << flip);
             let index = u8::from(wrong >= PIECE_VALUES);
-            gathered.add(&Piece::of(&other, index).unwrap());
-            prop_assert!(gathered.is_complete() && gathered.values().is_none());
+            reassembly.add(&Piece::of(&other, index).unwrap());
+            prop_assert!(reassembly.is_complete() && reassembly.values().is_none());
         }
     }
 }

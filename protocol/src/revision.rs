@@ -1,22 +1,22 @@
-//! Numbers with a meaning.
+//! Typed numbers: revision and session.
 
 use core::fmt;
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// Which commit of the parameters: each one has the next number. 0 is what a
-/// drive has before it was given any.
+/// Revision of the parameters, incremented by every commit. 0 is a drive
+/// without parameters.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
 )]
 pub struct Revision(pub u32);
 
 impl Revision {
-    /// A drive that was given no parameters yet.
+    /// No parameters received yet.
     pub const NONE: Self = Self(0);
 
-    /// The next one; never [`Self::NONE`].
+    /// The next revision; never [`Self::NONE`].
     pub fn next(self) -> Self {
         Self(self.0.checked_add(1).unwrap_or(1))
     }
@@ -28,8 +28,7 @@ impl fmt::Display for Revision {
     }
 }
 
-/// Which host is speaking: a number that each one chooses at random as it
-/// connects.
+/// Session of a host: a random number chosen at each connection.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
 )]

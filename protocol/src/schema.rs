@@ -1,10 +1,10 @@
-//! Whether two sides speak the same language.
+//! Schema hash: compatibility of two programs.
 //!
 //! [`HASH`] is computed at compile time from the shape and the names of every
-//! message and from the parameters, faults and counters, in their order. Two
-//! sides with the same hash understand each other; with another, only the
-//! [management lane](crate::management) does. Its low byte is the tag of every
-//! other frame, so that nothing is taken for what it is not.
+//! message and from the parameters, faults and counters, in their order.
+//! Programs with equal hashes are compatible; others only on the
+//! [management lane](crate::management). The low byte is the tag of all other
+//! frames, so that incompatible frames are rejected.
 
 use crate::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
 use crate::fault::FAULTS;
@@ -15,10 +15,10 @@ use crate::telemetry::Block;
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::key::Key;
 
-/// The language of this crate.
+/// Schema hash of this crate.
 pub const HASH: u64 = hash();
 
-/// The tag of every frame but those of the management lane.
+/// Tag of all lanes but management.
 pub const TAG: u8 = HASH.to_le_bytes()[0];
 
 /// FNV-1a, 64 bits.
@@ -28,7 +28,7 @@ const fn update(mut hash: u64, bytes: &[u8]) -> u64 {
         hash = (hash ^ *byte as u64).wrapping_mul(0x0100_0000_01b3);
         rest = tail;
     }
-    // So that "ab", "c" is not "a", "bc".
+    // A separator: "ab", "c" differs from "a", "bc".
     (hash ^ 0xff).wrapping_mul(0x0100_0000_01b3)
 }
 

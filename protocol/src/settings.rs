@@ -1,5 +1,5 @@
-//! [`Values`], as numbers on the wire, and [`DeviceSettings`], with types and
-//! checked: what people set, before it becomes what a tick uses.
+//! Validation: [`Values`], the numbers on the wire, to [`DeviceSettings`], the
+//! typed settings.
 
 use crate::parameters::{Kind, PARAMETERS, Parameter, Values, id, with_id};
 use crepitus_model::Parameters;
@@ -14,36 +14,34 @@ use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// Why values are refused.
+/// Errors of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema)]
 #[non_exhaustive]
 pub enum ValueError {
-    /// The parameter with this id is outside its range, no number, or not one
-    /// of its names.
+    /// The parameter with this id is out of range, NaN, or no valid choice.
     OutOfRange {
         /// The parameter.
         id: u8,
     },
     /// The kinetic torque is above the static torque.
     KineticAboveStatic,
-    /// The kinetic torque is so close below the static torque that the turn-back
-    /// guard cannot keep the bound of returned energy with this stiffness and
-    /// encoder: see [`Values::guarded_rad_per_count`].
+    /// The kinetic torque is so close to the static torque that the turn-back
+    /// guard cannot bound the returned energy with this stiffness and encoder:
+    /// see [`Values::guarded_rad_per_count`].
     Unguarded,
-    /// The static torque is above the device's largest torque.
+    /// The static torque is above the device's torque limit.
     StaticAboveLimit,
-    /// The parameter with this id only changes while there is no torque.
+    /// The parameter with this id can only change while disarmed.
     NeedsDisarmed {
         /// The parameter.
         id: u8,
     },
-    /// The model refuses what the device's own rules allow: a mistake in the
-    /// program.
+    /// The model rejects values that the device's rules allow: a bug.
     Contradiction,
 }
 
 impl ValueError {
-    /// The parameters that it is about, the one to change first.
+    /// The parameters concerned, the one to change first.
     pub fn parameters(&self) -> &'static [u8] {
         match self {
             Self::KineticAboveStatic => &[id::KINETIC_TORQUE, id::STATIC_TORQUE],
@@ -64,7 +62,7 @@ impl ValueError {
     }
 }
 
-/// What the model refuses, as the wire says it.
+/// Converts an error of the model.
 impl From<SettingsError> for ValueError {
     #[cold]
     #[inline(never)]
@@ -83,29 +81,29 @@ impl From<SettingsError> for ValueError {
     }
 }
 
-/// Everything that people set of a device. An effect that is off is absent.
+/// All settings of a device. An effect that is off is `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceSettings {
     /// The joint.
     pub crepitus: Option<Validated<Settings>>,
-    /// The encoder and its place in the drivetrain.
+    /// The encoder and the gear.
     pub encoder: EncoderSettings,
-    /// The effects besides the joint.
+    /// The other effects.
     pub effects: EffectSettings,
-    /// The motor's current.
+    /// The motor's current loop.
     pub current_loop: CurrentLoopSettings,
     /// Torque of the motor for one ampere, N·m/A.
     pub torque_constant_nm_per_a: f64,
-    /// What the device never does.
+    /// Safety limits.
     pub limits: LimitSettings,
 }
 
 impl DeviceSettings {
-    /// From values.
+    /// Validates values.
     ///
     /// # Errors
-    /// [`ValueError`] for the first value, or pair of values, that is not
-    /// allowed. Values of an effect that is off are held to their rules too.
+    /// [`ValueError`] for the first invalid value or pair of values. Values of
+    /// an effect that is off are checked, too.
     pub fn of(values: &Values) -> Result<Self, ValueError> {
         values.check()?;
         let joint = values.joint().validate()?;
@@ -135,7 +133,7 @@ impl DeviceSettings {
 }
 
 impl Values {
-    /// The joint, whether it is on or not.
+    /// The joint's settings, on or off.
     fn joint(&self) -> Settings {
         Settings {
             parameters: self.read(),
@@ -153,13 +151,13 @@ impl Values {
         self.read::<3, EncoderSettings>().rad_per_count()
     }
 
-    /// The largest angle of one count with which the turn-back guard keeps the
-    /// bound of returned energy at this joint, rad.
+    /// The largest angle of one count with which the turn-back guard bounds the
+    /// returned energy of this joint, rad.
     pub fn guarded_rad_per_count(&self) -> f64 {
         most_rad_per_count(&self.joint())
     }
 
-    /// With the joint's numbers: a preset, for example.
+    /// Returns the values with these joint parameters, a preset for example.
     #[must_use]
     pub fn with_crepitus(self, parameters: &Parameters) -> Self {
         let mut values = self.with(parameters);
@@ -301,7 +299,7 @@ mod tests {
         let near = (id::KINETIC_TORQUE, at_limit - 1e-3);
         assert_eq!(with(&[near]), Ok(()));
         assert_eq!(with(&[near, (id::RESTART, 1.0)]), refused);
-        // Ts = Tk takes nothing; without torque in slip there is no push.
+        // Ts = Tk dissipates nothing; without torque in slip there is no push.
         assert_eq!(with(&[(id::KINETIC_TORQUE, 0.4)]), refused);
         assert_eq!(
             with(&[(id::KINETIC_TORQUE, 0.0), (id::STIFFNESS, 5000.0)]),

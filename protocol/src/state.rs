@@ -1,10 +1,10 @@
-//! States and reasons.
+//! Safety states and limit reasons.
 
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// Whether there may be torque.
+/// Safety state.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
 )]
@@ -12,16 +12,16 @@ pub enum State {
     /// The bridge floats.
     #[default]
     Disarmed,
-    /// The way to [`Self::Armed`]: both enable lines are being proven.
+    /// Arming is in progress: both enable lines are being tested.
     Arming,
-    /// The model's torque is rendered.
+    /// The model's torque is applied.
     Armed,
     /// The bridge floats until the fault is cleared.
     Faulted,
 }
 
 impl State {
-    /// All, in the order of their numbers.
+    /// All values, in the order of their numbers.
     pub const ALL: [Self; 4] = [Self::Disarmed, Self::Arming, Self::Armed, Self::Faulted];
 
     /// Name for people.
@@ -45,31 +45,30 @@ impl State {
     }
 }
 
-/// Why the torque is not the one that the model asks for.
+/// Reason why the torque differs from the model's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LimitReason {
-    /// It is.
+    /// It does not.
     #[default]
     None,
-    /// The joint's largest torque.
+    /// Torque limit of the joint.
     Torque,
-    /// Torque grows at most as fast as this: after arming, or of what
-    /// compensates friction.
+    /// Slew limit: after arming, or of the friction compensation.
     Slew,
-    /// The motor's largest current.
+    /// Current limit of the motor.
     Current,
-    /// The supply has no more voltage.
+    /// Supply voltage.
     Voltage,
-    /// The hand has turned back inside a slip: nothing is shown until it ends.
+    /// The hand has reversed during a slip: no torque until the slip ends.
     TurnedBack,
-    /// The shaft is out of sight: the last torque is held, then released.
+    /// No valid encoder samples: the last torque is held, then released.
     Holding,
-    /// There is no torque: the device is not armed.
+    /// Not armed.
     NotArmed,
 }
 
 impl LimitReason {
-    /// All, in the order of their numbers.
+    /// All values, in the order of their numbers.
     pub const ALL: [Self; 8] = [
         Self::None,
         Self::Torque,

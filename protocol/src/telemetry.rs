@@ -1,4 +1,4 @@
-//! Every sample of the drive, in blocks.
+//! Telemetry: the drive's samples, in blocks.
 //!
 //! A block holds 20 ticks, one millisecond. Samples are of fixed width:
 //!
@@ -13,8 +13,7 @@
 //! 2π/(4·lines·gear ratio) of the joint.
 //!
 //! **Accounting.** `dropped` counts the samples of the subscription that were
-//! lost on the way so far, wherever that was. So at any point of the chain,
-//! for every block,
+//! lost so far, at any stage. So at any point of the chain, for every block,
 //!
 //! ```text
 //! first_tick + 20 − first tick of the subscription = samples received so far + dropped
@@ -30,7 +29,7 @@ use serde::{Deserialize, Serialize};
 /// Samples of a block.
 pub const BLOCK_SAMPLES: usize = 20;
 
-/// The same number, to count with.
+/// Ticks of a block, as `u32`.
 pub const BLOCK_TICKS: u32 = 20;
 
 /// Bytes of a sample.
@@ -39,24 +38,24 @@ pub const SAMPLE_BYTES: usize = 16;
 /// One tick of the drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Sample {
-    /// The encoder, counts; wraps.
+    /// Encoder count; wraps.
     #[serde(with = "postcard::fixint::le")]
     pub count: i32,
-    /// What the model asks for, before guard, limits and compensation, N·m:
-    /// T > 0 opposes growing angle.
+    /// Torque of the model before guard, limits and compensation, N·m: T > 0
+    /// opposes growing angle.
     pub model_torque_nm: f32,
-    /// What was asked of the motor, N·m.
+    /// Torque setpoint of the motor, N·m.
     pub torque_nm: f32,
-    /// Current of the motor as measured, mA; positive drives towards growing
-    /// angle. −32768 is a measurement that was missing.
+    /// Measured current of the motor, mA; positive drives towards growing
+    /// angle. −32768: no measurement.
     #[serde(with = "postcard::fixint::le")]
     pub current_ma: i16,
-    /// What else is to be said.
+    /// Flags.
     pub flags: SampleFlags,
 }
 
 impl Sample {
-    /// As it stands in a block: what postcard makes of it.
+    /// Encodes the sample as postcard would.
     #[inline]
     pub fn bytes(&self) -> [u8; SAMPLE_BYTES] {
         let [c0, c1, c2, c3] = self.count.to_le_bytes();
@@ -70,10 +69,10 @@ impl Sample {
     }
 }
 
-/// A current that was not measured.
+/// Value of `current_ma` without a measurement.
 pub const NO_CURRENT: i16 = i16::MIN;
 
-/// What is to be said of a sample, in sixteen bits.
+/// Per-sample flags, 16 bits.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
 )]
@@ -82,24 +81,24 @@ pub struct SampleFlags(#[serde(with = "postcard::fixint::le")] pub u16);
 impl SampleFlags {
     /// Phase: 0 stick, 1 slip towards growing angle, 2 towards falling.
     pub const PHASE: u16 = 0b11;
-    /// Parameters are on their way to those of the last commit.
+    /// Parameters are ramping to those of the last commit.
     pub const SETTLING: u16 = 1 << 2;
-    /// The encoder's count was not to be believed.
+    /// The encoder's count was implausible.
     pub const LOST: u16 = 1 << 3;
     /// The bridge is driven.
     pub const ENERGISED: u16 = 1 << 4;
-    /// Where the [`LimitReason`] begins.
+    /// Lowest bit of the [`LimitReason`].
     pub const LIMIT_SHIFT: u32 = 5;
     /// A stick broke in this tick.
     pub const BREAK: u16 = 1 << 8;
     /// A slip ended in this tick.
     pub const STICK: u16 = 1 << 9;
-    /// Rendering was late: the torque is that of the tick before.
+    /// Rendering was late: the torque is that of the previous tick.
     pub const LATE: u16 = 1 << 10;
     /// Where the [`Phases`] of the device's effects begin.
     pub const PHASES_SHIFT: u32 = 11;
 
-    /// With these bits.
+    /// Returns the flags with these bits set or cleared.
     #[must_use]
     pub fn with(self, bits: u16, set: bool) -> Self {
         Self(if set { self.0 | bits } else { self.0 & !bits })
@@ -110,7 +109,7 @@ impl SampleFlags {
         self.0 & bits != 0
     }
 
-    /// With the phase's sign: 0, +1, −1.
+    /// Returns the flags with the phase of this sign: 0, +1, −1.
     #[must_use]
     pub fn with_phase(self, sign: i8) -> Self {
         let number = match sign {
@@ -130,7 +129,7 @@ impl SampleFlags {
         }
     }
 
-    /// With the phases of the effects.
+    /// Returns the flags with the phases of the effects.
     #[must_use]
     pub const fn with_phases(self, phases: Phases) -> Self {
         const { assert!(Self::PHASES_SHIFT + Phases::BITS <= u16::BITS) };
@@ -142,14 +141,14 @@ impl SampleFlags {
         Phases(self.0 >> Self::PHASES_SHIFT)
     }
 
-    /// With this reason.
+    /// Returns the flags with this reason.
     #[must_use]
     pub fn with_limit(self, reason: LimitReason) -> Self {
         let place = 0b111 << Self::LIMIT_SHIFT;
         Self(self.0 & !place | reason.number() << Self::LIMIT_SHIFT)
     }
 
-    /// Why the torque is not the model's.
+    /// Reason why the torque differs from the model's.
     pub fn limit(self) -> LimitReason {
         let number = self.0 >> Self::LIMIT_SHIFT & 0b111;
         LimitReason::ALL
@@ -159,27 +158,27 @@ impl SampleFlags {
     }
 }
 
-/// What is to be said of a block, in eight bits.
+/// Per-block flags, 8 bits.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
 )]
 pub struct BlockFlags(pub u8);
 
 impl BlockFlags {
-    /// Where the angle is zero was said.
+    /// The angle's zero was set.
     pub const ZEROED: u8 = 1 << 2;
-    /// Where the number of the drive's start begins.
+    /// Lowest bit of the drive's boot counter.
     pub const START_SHIFT: u32 = 3;
 
-    /// In this state; the lowest bits of the number of the drive's start.
+    /// Flags of this state and the lowest bits of the drive's boot counter.
     pub fn new(state: State, zeroed: bool, start: u16) -> Self {
         let [low, _] = start.to_le_bytes();
         let zeroed = if zeroed { Self::ZEROED } else { 0 };
         Self(state.number() | zeroed | low << Self::START_SHIFT)
     }
 
-    /// The lowest five bits of the number of the drive's start: with another
-    /// one, ticks begin anew.
+    /// The lowest five bits of the drive's boot counter; ticks restart when it
+    /// changes.
     pub fn start(self) -> u8 {
         self.0 >> Self::START_SHIFT
     }
@@ -192,24 +191,24 @@ impl BlockFlags {
             .unwrap_or_default()
     }
 
-    /// Whether counts are counted from where the angle is zero.
+    /// Whether counts are relative to a zero that was set.
     pub fn is_zeroed(self) -> bool {
         self.0 & Self::ZEROED != 0
     }
 }
 
-/// Twenty ticks.
+/// Block of twenty samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Block {
-    /// Counts the blocks that the drive has made; wraps.
+    /// Sequence number of the block; wraps.
     pub sequence: u16,
-    /// Tick of the first sample since the drive's start.
+    /// Tick of the first sample, counted from the drive's boot.
     pub first_tick: u64,
-    /// The parameters in force in all of the block.
+    /// Revision of the parameters active throughout the block.
     pub revision: Revision,
-    /// Samples lost on the way so far; wraps.
+    /// Samples of the subscription lost so far; wraps.
     pub dropped: u32,
-    /// State of the drive.
+    /// Flags.
     pub flags: BlockFlags,
     /// The samples.
     pub samples: [Sample; BLOCK_SAMPLES],
@@ -219,8 +218,7 @@ impl Block {
     /// Bytes of [`Self::head`], at most.
     pub const HEAD_BYTES: usize = Self::POSTCARD_MAX_SIZE - BLOCK_SAMPLES * SAMPLE_BYTES;
 
-    /// What stands before the samples, for a sender that makes a frame sample
-    /// by sample.
+    /// The fields before the samples, for an incremental encoder.
     pub fn head(&self) -> impl Serialize + Copy + use<> {
         (
             self.sequence,

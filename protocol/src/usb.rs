@@ -1,11 +1,11 @@
-//! By what a host finds a device on USB.
+//! USB ids, to discover a device.
 
-/// The vendor id: the shared one for free projects (V-USB).
+/// Vendor id: the shared one for free projects (V-USB).
 pub const VENDOR_ID: u16 = 0x16c0;
 
-/// The product id: a CDC-ACM device under [`VENDOR_ID`], told apart by its
-/// strings.
+/// Product id: a CDC-ACM device under [`VENDOR_ID`]; the strings distinguish
+/// it from others.
 pub const PRODUCT_ID: u16 = 0x27dd;
 
-/// What the product's string contains.
+/// Text that the product string contains.
 pub const PRODUCT: &str = "Crepitus";

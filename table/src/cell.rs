@@ -1,4 +1,4 @@
-//! What a cell holds.
+//! Values of cells.
 
 use crate::show::Show;
 use serde::{Serialize, Serializer};
@@ -7,7 +7,7 @@ use std::fmt::Write;
 /// The content of a cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// Nothing: there is no such thing for this row.
+    /// Empty: not applicable to this row.
     Missing,
     /// Yes or no.
     Flag(bool),

@@ -6,12 +6,12 @@ pub type Show = fn(f64) -> String;
 /// A number that is not known.
 pub const UNKNOWN: &str = "–";
 
-/// With so many decimals.
+/// With this many decimals.
 pub fn fixed<const DECIMALS: usize>(x: f64) -> String {
     scaled::<1, DECIMALS>(x)
 }
 
-/// Multiplied, for a smaller unit, with so many decimals.
+/// Multiplied, for a smaller unit, with this many decimals.
 pub fn scaled<const FACTOR: u32, const DECIMALS: usize>(x: f64) -> String {
     if x.is_nan() {
         UNKNOWN.to_owned()
@@ -20,7 +20,7 @@ pub fn scaled<const FACTOR: u32, const DECIMALS: usize>(x: f64) -> String {
     }
 }
 
-/// A torque in N·m as mN·m, with as many digits as it is worth.
+/// A torque in N·m as mN·m, with its significant digits.
 pub fn milli(nm: f64) -> String {
     match 1e3 * nm {
         x if x.is_nan() => UNKNOWN.to_owned(),

@@ -1,4 +1,4 @@
-//! What the system tests share: running the program and reading its files.
+//! Shared by the system tests: running the program and reading its files.
 
 #![allow(dead_code, reason = "each test program uses its part")]
 

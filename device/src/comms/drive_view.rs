@@ -1,4 +1,4 @@
-//! What comms knows of the drive.
+//! The state of the drive as comms last received it.
 
 use crepitus_protocol::counters::DRIVE_COUNT;
 use crepitus_protocol::link::{DriveStatus, Outcome};
@@ -6,73 +6,73 @@ use crepitus_protocol::management::Identity;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State, ValueError};
 
-/// After so long without a block the drive is silent, ms.
+/// Timeout: without a block for this long the drive counts as silent, ms.
 pub const SILENT_MS: u64 = 5;
 
-/// What a block tells.
+/// How a block continues the stream before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum News {
-    /// The next one; so many samples before it were lost on the link.
+pub enum Continuity {
+    /// A new block.
     Next {
-        /// Samples lost on the link.
+        /// Samples lost on the link before it.
         lost: u32,
     },
-    /// One that was here before.
-    Old,
-    /// The first one of another start of the drive.
+    /// A block that was received before.
+    Stale,
+    /// The first block after a restart of the drive.
     Restarted,
 }
 
-/// What comms knows of the drive.
+/// The state of the drive as comms last received it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DriveView {
     identity: Option<Identity>,
-    /// When the last block came, ms.
-    heard_ms: Option<u64>,
-    /// The lowest bits of the number of its start.
+    /// Time of the last block, ms.
+    last_block_ms: Option<u64>,
+    /// The lowest bits of the drive's boot counter.
     start: Option<u8>,
     /// The tick after its last block.
     next_tick: u64,
-    /// Samples that the drive itself had dropped by then.
+    /// Samples that the drive itself had dropped up to its last block.
     dropped: u32,
     status: Option<DriveStatus>,
 }
 
 impl DriveView {
-    /// Takes a block.
-    pub fn hear_block(&mut self, block: &Block, now_ms: u64) -> News {
+    /// Receives a block.
+    pub fn receive_block(&mut self, block: &Block, now_ms: u64) -> Continuity {
         let start = block.flags.start();
-        let news = match self.start {
+        let continuity = match self.start {
             None => {
-                // Heard for the first time: it may be another than it was.
+                // The first block: the drive may have been replaced or reprogrammed.
                 self.identity = None;
-                News::Next { lost: 0 }
+                Continuity::Next { lost: 0 }
             }
             Some(known) if known != start => {
-                // All that was known of it is of another life.
+                // The drive has restarted: everything received before is stale.
                 *self = Self::default();
-                News::Restarted
+                Continuity::Restarted
             }
-            Some(_) if block.first_tick < self.next_tick => return News::Old,
+            Some(_) if block.first_tick < self.next_tick => return Continuity::Stale,
             Some(_) => {
                 let missing = block.first_tick.saturating_sub(self.next_tick);
                 let dropped = block.dropped.wrapping_sub(self.dropped);
                 let lost = missing.saturating_sub(u64::from(dropped));
-                News::Next {
+                Continuity::Next {
                     lost: u32::try_from(lost).unwrap_or(u32::MAX),
                 }
             }
         };
         self.start = Some(start);
-        self.heard_ms = Some(now_ms);
+        self.last_block_ms = Some(now_ms);
         self.next_tick = block.end_tick();
         self.dropped = block.dropped;
-        news
+        continuity
     }
 
-    /// Takes a status. One of another start than the blocks is not believed:
-    /// the next block will say so.
-    pub fn hear_status(&mut self, status: &DriveStatus) {
+    /// Receives a status. A status from another boot than the blocks is ignored:
+    /// the next block will report the restart.
+    pub fn receive_status(&mut self, status: &DriveStatus) {
         let [low, _] = status.start.to_le_bytes();
         let is_newer = self.status.is_none_or(|old| status.tick >= old.tick);
         if self.start == Some(low & 31) && is_newer {
@@ -80,28 +80,28 @@ impl DriveView {
         }
     }
 
-    /// Who it is.
-    pub fn introduce(&mut self, identity: &Identity) {
+    /// Stores the drive's identity.
+    pub fn set_identity(&mut self, identity: &Identity) {
         self.identity = Some(*identity);
     }
 
-    /// Who it is, if it has said so.
+    /// The drive's identity, once received.
     pub fn identity(&self) -> Option<&Identity> {
         self.identity.as_ref()
     }
 
-    /// Whether it was ever heard.
+    /// Whether a block was ever received.
     pub fn is_known(&self) -> bool {
         self.start.is_some()
     }
 
-    /// Whether blocks come.
+    /// Whether blocks arrive within the timeout.
     pub fn is_present(&self, now_ms: u64) -> bool {
-        self.heard_ms
-            .is_some_and(|heard| now_ms.saturating_sub(heard) < SILENT_MS)
+        self.last_block_ms
+            .is_some_and(|last_ms| now_ms.saturating_sub(last_ms) < SILENT_MS)
     }
 
-    /// The drive's tick, as far as it is known.
+    /// The latest tick that the drive has reported.
     pub fn seen_tick(&self) -> u64 {
         self.status
             .map_or(self.next_tick, |status| status.tick.max(self.next_tick))
@@ -112,43 +112,43 @@ impl DriveView {
         self.next_tick
     }
 
-    /// Its last status.
+    /// The drive's last status.
     pub fn status(&self) -> Option<&DriveStatus> {
         self.status.as_ref()
     }
 
-    /// Its state, as of its last status.
+    /// The drive's state, as of its last status.
     pub fn state(&self) -> State {
         self.status.map_or(State::Disarmed, |status| status.state)
     }
 
-    /// The parameters in force, if it is there and has said so.
+    /// The active parameters, if the drive is present and has reported them.
     pub fn revision(&self, now_ms: u64) -> Option<Revision> {
         self.status
             .filter(|_| self.is_present(now_ms))
             .map(|status| status.revision)
     }
 
-    /// The commit that it has refused, if it has heard this start of comms.
+    /// The commit that the drive has rejected since this boot of comms.
     pub fn refused(&self, start: u16) -> Option<(Revision, ValueError)> {
-        self.heard(start).and_then(|status| status.refused)
+        self.status_since(start).and_then(|status| status.refused)
     }
 
-    /// What became of the last command, if it has heard this start of comms.
+    /// Result of the last command since this boot of comms.
     pub fn outcome(&self, start: u16) -> Option<Outcome> {
-        self.heard(start).and_then(|status| status.last)
+        self.status_since(start).and_then(|status| status.last)
     }
 
-    /// What it has counted.
+    /// The drive's counters.
     pub fn counters(&self) -> [u32; DRIVE_COUNT] {
         self.status
             .map_or([0; DRIVE_COUNT], |status| status.counters)
     }
 
-    fn heard(&self, start: u16) -> Option<&DriveStatus> {
+    fn status_since(&self, start: u16) -> Option<&DriveStatus> {
         self.status
             .as_ref()
-            .filter(|status| status.heard == Some(start))
+            .filter(|status| status.comms_start == Some(start))
     }
 }
 
@@ -167,46 +167,55 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_was_dropped_or_lost() {
+    fn missing_samples_are_dropped_or_lost() {
         let mut view = DriveView::default();
         assert_eq!(
-            view.hear_block(&block(5_000, 0, 1), 1),
-            News::Next { lost: 0 }
+            view.receive_block(&block(5_000, 0, 1), 1),
+            Continuity::Next { lost: 0 }
         );
         assert_eq!(
-            view.hear_block(&block(5_020, 0, 1), 2),
-            News::Next { lost: 0 }
+            view.receive_block(&block(5_020, 0, 1), 2),
+            Continuity::Next { lost: 0 }
         );
-        // Three blocks missing, one of which the drive says it dropped.
+        // Three blocks missing, one of them reported as dropped by the drive.
         assert_eq!(
-            view.hear_block(&block(5_100, 20, 1), 6),
-            News::Next { lost: 40 }
+            view.receive_block(&block(5_100, 20, 1), 6),
+            Continuity::Next { lost: 40 }
         );
-        assert_eq!(view.hear_block(&block(5_100, 20, 1), 6), News::Old);
-        assert_eq!(view.hear_block(&block(5_080, 20, 1), 6), News::Old);
+        assert_eq!(
+            view.receive_block(&block(5_100, 20, 1), 6),
+            Continuity::Stale
+        );
+        assert_eq!(
+            view.receive_block(&block(5_080, 20, 1), 6),
+            Continuity::Stale
+        );
         assert!(view.is_present(10) && !view.is_present(11));
         assert_eq!(view.seen_tick(), 5_120);
     }
 
     #[test]
-    fn another_start_forgets_what_was_known() {
+    fn a_restart_clears_the_view() {
         let mut view = DriveView::default();
-        view.hear_block(&block(5_000, 0, 1), 1);
-        view.introduce(&Identity::default());
+        view.receive_block(&block(5_000, 0, 1), 1);
+        view.set_identity(&Identity::default());
         let status = DriveStatus {
             tick: 5_030,
             start: 1,
             revision: Revision(3),
             ..DriveStatus::default()
         };
-        view.hear_status(&status);
+        view.receive_status(&status);
         assert_eq!(
             (view.seen_tick(), view.revision(1)),
             (5_030, Some(Revision(3)))
         );
-        assert_eq!(view.hear_block(&block(0, 0, 2), 3), News::Restarted);
+        assert_eq!(
+            view.receive_block(&block(0, 0, 2), 3),
+            Continuity::Restarted
+        );
         assert_eq!(view.identity(), None);
-        view.hear_status(&status);
+        view.receive_status(&status);
         assert_eq!(
             (view.seen_tick(), view.revision(3)),
             (20, None),

@@ -1,8 +1,8 @@
-//! Who may have torque rendered, and for how long.
+//! The lease: which host may have torque on, and until when.
 //!
-//! A host that arms takes the lease and has to renew it. The lease ends 250 ms
-//! after the last renewal, by the clock of comms and, independently of it, at a
-//! tick of the drive's own clock.
+//! A host that arms acquires the lease and has to renew it. The lease expires
+//! 250 ms after the last renewal, by the clock of comms and, independently of
+//! it, at a tick of the drive's own clock.
 
 use crepitus_protocol::{LEASE_TICKS, Session};
 
@@ -18,75 +18,75 @@ pub struct Lease {
 #[derive(Clone, Copy, Debug)]
 struct Holder {
     session: Session,
-    /// When it ends by the clock of comms, ms.
+    /// Expiry by the clock of comms, ms.
     end_ms: u64,
-    /// When it ends by the clock of the drive.
+    /// Expiry by the clock of the drive, ticks.
     end_tick: u64,
-    /// Its end was noticed.
-    ended: bool,
+    /// The expiry was reported.
+    expiry_reported: bool,
 }
 
 impl Lease {
-    /// Who has it, if it is alive.
+    /// The session that holds the lease, unless it has expired.
     pub fn holder(&self, now_ms: u64) -> Option<Session> {
         self.holder
             .filter(|holder| now_ms < holder.end_ms)
             .map(|holder| holder.session)
     }
 
-    /// Whether somebody has it.
+    /// Whether a host holds the lease.
     pub fn is_alive(&self, now_ms: u64) -> bool {
         self.holder(now_ms).is_some()
     }
 
-    /// The other host that has it.
-    pub fn other_than(&self, session: Session, now_ms: u64) -> Option<Session> {
+    /// The holder, if that is not `session`.
+    pub fn other_holder(&self, session: Session, now_ms: u64) -> Option<Session> {
         self.holder(now_ms).filter(|holder| *holder != session)
     }
 
-    /// Takes it. Somebody else's must have been asked for before.
-    pub fn take(&mut self, session: Session, now_ms: u64, seen_tick: u64) {
+    /// Gives the lease to this session. The caller checks for another holder.
+    pub fn acquire(&mut self, session: Session, now_ms: u64, seen_tick: u64) {
         self.holder = Some(Holder {
             session,
             end_ms: now_ms.saturating_add(LEASE_MS),
             end_tick: seen_tick.saturating_add(LEASE_TICKS).saturating_sub(1),
-            ended: false,
+            expiry_reported: false,
         });
     }
 
-    /// Renews it, if this host has it and it is still alive: one that has
-    /// ended does not come back.
+    /// Renews the lease if this session holds it; an expired lease cannot be
+    /// renewed.
     pub fn renew(&mut self, session: Session, now_ms: u64, seen_tick: u64) -> bool {
-        let has_it = self.holder(now_ms) == Some(session);
-        if has_it {
-            self.take(session, now_ms, seen_tick);
+        let is_holder = self.holder(now_ms) == Some(session);
+        if is_holder {
+            self.acquire(session, now_ms, seen_tick);
         }
-        has_it
+        is_holder
     }
 
-    /// Gives it back.
+    /// Releases the lease.
     pub fn release(&mut self) {
         self.holder = None;
     }
 
-    /// Whether it has ended since this was asked last.
-    pub fn has_just_ended(&mut self, now_ms: u64) -> bool {
+    /// Reports an expiry once.
+    pub fn take_expiry(&mut self, now_ms: u64) -> bool {
         match &mut self.holder {
-            Some(holder) if !holder.ended && now_ms >= holder.end_ms => {
-                holder.ended = true;
+            Some(holder) if !holder.expiry_reported && now_ms >= holder.end_ms => {
+                holder.expiry_reported = true;
                 true
             }
             _ => false,
         }
     }
 
-    /// How many ticks after `seen_tick` it ends.
-    pub fn left_ticks(&self, seen_tick: u64, now_ms: u64) -> u16 {
+    /// Ticks from `seen_tick` to the expiry.
+    pub fn remaining_ticks(&self, seen_tick: u64, now_ms: u64) -> u16 {
         let left = self
             .holder
             .filter(|holder| now_ms < holder.end_ms)
             .map_or(0, |holder| holder.end_tick.saturating_sub(seen_tick));
-        // No longer than a whole one, should the drive's ticks begin anew.
+        // At most a whole lease, in case the drive's ticks restart at 0.
         u16::try_from(left.min(LEASE_TICKS.saturating_sub(1))).unwrap_or(u16::MAX)
     }
 }
@@ -99,25 +99,29 @@ mod tests {
     const B: Session = Session(2);
 
     #[test]
-    fn it_lives_as_long_as_it_is_renewed() {
+    fn it_expires_unless_renewed() {
         let mut lease = Lease::default();
         assert!(!lease.renew(A, 0, 0), "nobody's lease is not renewed");
-        lease.take(A, 100, 2_000);
-        assert_eq!(lease.left_ticks(2_000, 100), 5_000);
-        assert_eq!(lease.left_ticks(2_400, 120), 4_600);
-        assert_eq!(lease.left_ticks(20, 120), 5_000, "a drive that was reset");
+        lease.acquire(A, 100, 2_000);
+        assert_eq!(lease.remaining_ticks(2_000, 100), 5_000);
+        assert_eq!(lease.remaining_ticks(2_400, 120), 4_600);
+        assert_eq!(
+            lease.remaining_ticks(20, 120),
+            5_000,
+            "a drive that was reset"
+        );
         assert!(lease.is_alive(349) && !lease.is_alive(350));
         assert!(!lease.renew(B, 200, 4_000));
         assert!(lease.renew(A, 300, 6_000));
         assert!(lease.is_alive(549));
-        assert_eq!(lease.other_than(B, 400), Some(A));
-        assert_eq!(lease.other_than(A, 400), None);
-        assert!(!lease.has_just_ended(549));
-        assert!(lease.has_just_ended(550));
-        assert!(!lease.has_just_ended(551));
-        assert_eq!(lease.left_ticks(6_000, 550), 0);
+        assert_eq!(lease.other_holder(B, 400), Some(A));
+        assert_eq!(lease.other_holder(A, 400), None);
+        assert!(!lease.take_expiry(549));
+        assert!(lease.take_expiry(550));
+        assert!(!lease.take_expiry(551));
+        assert_eq!(lease.remaining_ticks(6_000, 550), 0);
         assert!(!lease.renew(A, 550, 11_000), "it does not come back");
-        lease.take(B, 600, 12_000);
+        lease.acquire(B, 600, 12_000);
         assert_eq!(lease.holder(600), Some(B));
         lease.release();
         assert!(!lease.is_alive(600));

@@ -1,72 +1,72 @@
-//! The queue of bytes to the host.
+//! The transmit queue to the host.
 //!
-//! Frames go in whole or not at all. Replies keep some room for themselves, so
-//! a host that reads slowly still gets its answers.
+//! A frame is queued whole or dropped. Some room is reserved for replies, so a
+//! host that reads slowly still gets them.
 
 use crepitus_protocol::frame::{DELIMITER, FRAME_BYTES, Frame};
 
-/// Bytes that may wait for the host: 48 ms of telemetry.
+/// Capacity in bytes: 48 ms of telemetry.
 pub const OUTBOX_BYTES: usize = 16_384;
 
-/// Room that only replies may use.
+/// Bytes reserved for replies.
 const REPLY_BYTES: usize = 2 * FRAME_BYTES;
 
-/// The queue.
+/// A ring buffer of bytes.
 #[derive(Debug)]
 pub struct Outbox {
     bytes: heapless::Deque<u8, OUTBOX_BYTES>,
 }
 
 impl Default for Outbox {
-    /// A queue that begins with a delimiter: whatever the host has received
-    /// before, its decoder starts anew.
+    /// A queue that begins with a delimiter, so that the host's decoder
+    /// resynchronises.
     fn default() -> Self {
         let mut outbox = Self {
             bytes: heapless::Deque::new(),
         };
-        outbox.restart();
+        outbox.clear();
         outbox
     }
 }
 
 impl Outbox {
-    /// Throws away what waits: the host has gone.
-    pub fn restart(&mut self) {
+    /// Clears the queue: the host is gone.
+    pub fn clear(&mut self) {
         self.bytes.clear();
-        // An empty queue has room for a byte.
+        // Cannot fail: the queue is empty.
         let _ = self.bytes.push_back(DELIMITER);
     }
 
-    /// Queues a reply, if there is room.
+    /// Queues a reply; false if there is no room.
     pub fn reply(&mut self, frame: &Frame) -> bool {
         self.push(frame, 0)
     }
 
-    /// Queues telemetry, if there is room beside that for replies.
+    /// Queues telemetry; false if only the room for replies is left.
     pub fn telemetry(&mut self, frame: &Frame) -> bool {
         self.push(frame, REPLY_BYTES)
     }
 
-    fn push(&mut self, frame: &Frame, kept: usize) -> bool {
+    fn push(&mut self, frame: &Frame, reserved: usize) -> bool {
         let room = OUTBOX_BYTES
             .saturating_sub(self.bytes.len())
-            .saturating_sub(kept);
+            .saturating_sub(reserved);
         let fits = frame.len() <= room;
         if fits {
             for byte in frame {
-                // There is room; unlike `extend` this does not panic without.
+                // Checked above; unlike `extend`, `push_back` does not panic.
                 let _ = self.bytes.push_back(*byte);
             }
         }
         fits
     }
 
-    /// What is to be sent next, in one run.
+    /// The next bytes to send, contiguous.
     pub fn to_send(&self) -> &[u8] {
         self.bytes.as_slices().0
     }
 
-    /// The first `count` of them are sent.
+    /// Removes the first `count` bytes: they were sent.
     pub fn sent(&mut self, count: usize) {
         for _ in 0..count {
             self.bytes.pop_front();
@@ -101,7 +101,7 @@ mod tests {
             "whole frames only"
         );
         outbox.sent(1);
-        outbox.restart();
+        outbox.clear();
         assert_eq!(outbox.to_send(), [0]);
     }
 }

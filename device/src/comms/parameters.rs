@@ -1,21 +1,21 @@
-//! The parameters that comms owns: committed, on their way to the drive, kept.
+//! The parameters that comms owns: committed, pending at the drive, saved.
 
 use crepitus_protocol::{DeviceSettings, Revision, ValueError, Values};
 
-/// The parameters.
+/// Committed parameters, and a pending commit.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameters {
     revision: Revision,
     values: Values,
     /// A commit that the drive has not confirmed.
-    candidate: Option<(Revision, Values)>,
-    /// The newest revision that was ever given.
-    newest: Revision,
+    pending: Option<(Revision, Values)>,
+    /// The latest revision number used.
+    latest: Revision,
     saved: Option<Revision>,
 }
 
 impl Parameters {
-    /// Those that were kept, if they are allowed; otherwise the defaults.
+    /// The saved parameters if they are valid, otherwise the defaults.
     pub fn new(saved: Option<(Revision, Values)>) -> Self {
         let saved = saved.filter(|(revision, values)| {
             *revision != Revision::NONE && DeviceSettings::of(values).is_ok()
@@ -24,72 +24,72 @@ impl Parameters {
         Self {
             revision,
             values,
-            candidate: None,
-            newest: revision,
+            pending: None,
+            latest: revision,
             saved: saved.map(|(revision, _)| revision),
         }
     }
 
-    /// Of the values that were committed last.
+    /// Revision of the values committed last.
     pub fn revision(&self) -> Revision {
         self.revision
     }
 
-    /// The values that were committed last.
+    /// The values committed last.
     pub fn values(&self) -> &Values {
         &self.values
     }
 
-    /// Of the values that are kept.
+    /// Revision of the saved values.
     pub fn saved(&self) -> Option<Revision> {
         self.saved
     }
 
-    /// The values in force are kept now.
-    pub fn keep(&mut self, revision: Revision) {
+    /// Records that this revision was saved.
+    pub fn mark_saved(&mut self, revision: Revision) {
         self.saved = Some(revision);
     }
 
-    /// A commit: checked, and on its way to the drive from now on.
+    /// Checks a commit and makes it pending at the drive.
     ///
     /// # Errors
-    /// [`ValueError`] if the values are not allowed, or not while the device
-    /// `is_live`.
+    /// [`ValueError`] if the values are invalid, or need a disarmed device and
+    /// it `is_live`.
     pub fn propose(&mut self, values: &Values, is_live: bool) -> Result<Revision, ValueError> {
         DeviceSettings::of(values)?;
         if is_live && let Some(id) = values.needs_disarmed(&self.values) {
             return Err(ValueError::NeedsDisarmed { id });
         }
-        self.newest = self.newest.next();
-        self.candidate = Some((self.newest, *values));
-        Ok(self.newest)
+        self.latest = self.latest.next();
+        self.pending = Some((self.latest, *values));
+        Ok(self.latest)
     }
 
-    /// The drive has confirmed it, or may have: it is the one.
+    /// Completes the pending commit: the drive has applied it, or may have.
     pub fn accept(&mut self) {
-        if let Some((revision, values)) = self.candidate.take() {
+        if let Some((revision, values)) = self.pending.take() {
             (self.revision, self.values) = (revision, values);
         }
     }
 
-    /// The drive has refused it.
+    /// Drops the pending commit: the drive has rejected it.
     pub fn reject(&mut self) {
-        self.candidate = None;
+        self.pending = None;
     }
 
-    /// The values that were committed last, as another commit.
+    /// Gives the committed values a new revision, to send them again.
     pub fn renumber(&mut self) {
-        self.newest = self.newest.next();
-        self.revision = self.newest;
+        self.latest = self.latest.next();
+        self.revision = self.latest;
     }
 
-    /// What the drive is to be sent: the commit under way; or, if it has other
-    /// parameters than were committed, those.
-    pub fn to_send(&self, in_force: Option<Revision>) -> Option<(Revision, &Values)> {
-        let in_force = in_force?;
-        match &self.candidate {
-            Some((revision, values)) => (in_force != *revision).then_some((*revision, values)),
-            None => (in_force != self.revision).then_some((self.revision, &self.values)),
+    /// The values that the drive lacks: the pending commit, else the committed
+    /// values. `active` is the drive's revision.
+    pub fn to_send(&self, active: Option<Revision>) -> Option<(Revision, &Values)> {
+        let active = active?;
+        match &self.pending {
+            Some((revision, values)) => (active != *revision).then_some((*revision, values)),
+            None => (active != self.revision).then_some((self.revision, &self.values)),
         }
     }
 }
@@ -111,7 +111,7 @@ mod tests {
         assert_eq!((revision, sent), (Revision(2), &values));
         parameters.reject();
         assert_eq!(parameters.to_send(Some(Revision(1))), None);
-        // The number of what was refused is not given again.
+        // The revision of a rejected commit is not reused.
         assert_eq!(parameters.propose(&values, true), Ok(Revision(3)));
         parameters.accept();
         assert_eq!(
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_kept_is_used_if_it_is_allowed() {
+    fn saved_parameters_are_used_if_valid() {
         let mut values = Values::default();
         values.set(id::STATIC_TORQUE, 0.5);
         let parameters = Parameters::new(Some((Revision(9), values)));

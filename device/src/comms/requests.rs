@@ -1,41 +1,43 @@
-//! What a host asks, and what becomes of it.
+//! Requests of a host: authorisation, execution, reply.
 
 use crate::comms::Comms;
-use crate::comms::order::{Job, Work};
-use crate::comms::sessions::Verdict;
+use crate::comms::job::{Job, JobState};
+use crate::comms::sessions::RequestClass;
 use crate::comms::subscription::Subscription;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::frame::{self, Frame};
-use crepitus_protocol::host::{Answer, Ask, Counters, Refusal, Reply, Request, Status};
+use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Reply, Request, Status};
 use crepitus_protocol::link::Order;
-use crepitus_protocol::management::Question;
+use crepitus_protocol::management::ManagementRequest;
 use crepitus_protocol::{Fault, Lane, Revision, Session, State, Values};
 
-/// A frame of a host.
+/// A decoded frame from a host.
 #[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
-enum Said {
-    Management(Question),
+enum HostMessage {
+    Management(ManagementRequest),
     Request(Request),
 }
 
-/// What becomes of a request at once: an answer, or work.
-type Step = Result<Progress, Refusal>;
+/// Immediate result of a request: a reply, or a job that will send it.
+type StartResult = Result<Started, Refusal>;
 
 #[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
-enum Progress {
-    Answered(Answer),
-    Working(Work),
+enum Started {
+    Replied(Answer),
+    Pending(JobState),
 }
 
 impl Comms {
-    /// A byte of the host.
+    /// Receives a byte from the host.
     pub(super) fn host_byte(&mut self, byte: u8) {
         let known = match self.from_host.push(byte) {
             None => return,
             Some(Err(_)) => return self.counters.count(CommsCounter::FromHostDiscarded),
             Some(Ok(body)) => match body.lane() {
-                Some(Lane::Management) => Question::of(body.payload).map(Said::Management),
-                Some(Lane::Request) => body.message().map(Said::Request),
+                Some(Lane::Management) => {
+                    ManagementRequest::of(body.payload).map(HostMessage::Management)
+                }
+                Some(Lane::Request) => body.message().map(HostMessage::Request),
                 _ => None,
             },
         };
@@ -45,33 +47,33 @@ impl Comms {
         });
         match known {
             None => {}
-            Some(Said::Management(question)) => self.host_asks(question),
-            Some(Said::Request(request)) => self.request(&request),
+            Some(HostMessage::Management(question)) => self.answer_management(question),
+            Some(HostMessage::Request(request)) => self.request(&request),
         }
     }
 
     fn request(&mut self, request: &Request) {
-        if request.ask == Ask::Renew {
+        if request.operation == Operation::Renew {
             let seen_tick = self.drive.seen_tick();
             if self.lease.renew(request.session, self.now_ms, seen_tick) {
                 self.counters.count(CommsCounter::Renewals);
             }
             return;
         }
-        match self.sessions.judge(request) {
-            Verdict::Ignore => {}
-            Verdict::Again(reply) => {
+        match self.sessions.classify(request) {
+            RequestClass::Ignore => {}
+            RequestClass::Repeat(reply) => {
                 self.counters.count(CommsCounter::RepeatedRequests);
                 self.send(&reply);
             }
-            Verdict::New => {
+            RequestClass::New => {
                 self.counters.count(CommsCounter::Requests);
                 match self.begin(request) {
-                    Ok(Progress::Answered(answer)) => {
+                    Ok(Started::Replied(answer)) => {
                         self.reply(request.session, request.number, Ok(answer));
                     }
-                    Ok(Progress::Working(work)) => {
-                        self.job = Some(Job::new(request, self.now_ms, work));
+                    Ok(Started::Pending(state)) => {
+                        self.job = Some(Job::new(request, self.now_ms, state));
                     }
                     Err(refusal) => self.reply(request.session, request.number, Err(refusal)),
                 }
@@ -79,83 +81,83 @@ impl Comms {
         }
     }
 
-    fn begin(&mut self, request: &Request) -> Step {
-        let answered = |answer| Ok(Progress::Answered(answer));
-        match &request.ask {
-            Ask::Renew => answered(Answer::Done),
-            Ask::Status => answered(Answer::Status(self.status())),
-            Ask::Counters => answered(Answer::Counters(Counters {
+    fn begin(&mut self, request: &Request) -> StartResult {
+        let answered = |answer| Ok(Started::Replied(answer));
+        match &request.operation {
+            Operation::Renew => answered(Answer::Done),
+            Operation::Status => answered(Answer::Status(self.status())),
+            Operation::Counters => answered(Answer::Counters(Counters {
                 drive: self.drive.counters(),
                 comms: self.counters.all(),
             })),
-            Ask::Parameters => answered(Answer::Parameters {
+            Operation::Parameters => answered(Answer::Parameters {
                 revision: self.parameters.revision(),
                 values: *self.parameters.values(),
             }),
-            // Where the books begin is not known.
-            Ask::Subscribe if !self.drive.is_known() => Err(Refusal::DriveSilent),
-            Ask::Subscribe => {
+            // The first tick of the stream is not known yet.
+            Operation::Subscribe if !self.drive.is_known() => Err(Refusal::DriveSilent),
+            Operation::Subscribe => {
                 let first_tick = self.drive.next_tick();
                 self.subscription = Some(Subscription::new(first_tick));
                 answered(Answer::Subscribed { first_tick })
             }
-            Ask::Unsubscribe => {
+            Operation::Unsubscribe => {
                 self.subscription = None;
                 answered(Answer::Done)
             }
-            Ask::Disarm => {
-                self.let_go(Refusal::Aborted);
+            Operation::Disarm => {
+                self.release(Refusal::Aborted);
                 answered(Answer::Done)
             }
-            Ask::Commit { base, values } => self.commit(request, *base, values),
-            Ask::Save => self.save(request),
-            Ask::Zero => self.command(request, Order::Zero),
-            Ask::ClearFault => self.clear_fault(request),
-            Ask::Arm => self.arm(request),
+            Operation::Commit { base, values } => self.commit(request, *base, values),
+            Operation::Save => self.save(request),
+            Operation::Zero => self.command(request, Order::Zero),
+            Operation::ClearFault => self.clear_fault(request),
+            Operation::Arm => self.arm(request),
         }
     }
 
-    fn commit(&mut self, request: &Request, base: Revision, values: &Values) -> Step {
-        self.may_change(request.session)?;
+    fn commit(&mut self, request: &Request, base: Revision, values: &Values) -> StartResult {
+        self.authorize(request.session)?;
         let revision = self.parameters.revision();
         if base != revision {
             return Err(Refusal::Stale { revision });
         }
         match self.drive.revision(self.now_ms) {
             None => return Err(Refusal::DriveSilent),
-            // It is still being given what was committed before.
-            Some(in_force) if in_force != revision => return Err(Refusal::Busy),
+            // The previous commit is still being sent.
+            Some(active) if active != revision => return Err(Refusal::Busy),
             Some(_) => {}
         }
         let revision = self
             .parameters
-            .propose(values, self.supervision.is_wanted())
+            .propose(values, self.supervision.is_enable_requested())
             .map_err(Refusal::Values)?;
-        Ok(Progress::Working(Work::Commit { revision }))
+        Ok(Started::Pending(JobState::Commit { revision }))
     }
 
-    fn save(&mut self, request: &Request) -> Step {
-        self.may_change(request.session)?;
-        if self.supervision.is_wanted() {
+    fn save(&mut self, request: &Request) -> StartResult {
+        self.authorize(request.session)?;
+        if self.supervision.is_enable_requested() {
             return Err(Refusal::Armed);
         }
         self.save = Some((self.parameters.revision(), *self.parameters.values()));
-        Ok(Progress::Working(Work::Save))
+        Ok(Started::Pending(JobState::Save))
     }
 
-    /// Something for the drive to do.
-    fn command(&mut self, request: &Request, order: Order) -> Step {
-        self.may_change(request.session)?;
+    /// Sends an order to the drive.
+    fn command(&mut self, request: &Request, order: Order) -> StartResult {
+        self.authorize(request.session)?;
         if !self.drive.is_present(self.now_ms) {
             return Err(Refusal::DriveSilent);
         }
         let number = self.to_drive.next_number();
-        Ok(Progress::Working(Work::Command { number, order }))
+        Ok(Started::Pending(JobState::Command { number, order }))
     }
 
-    fn clear_fault(&mut self, request: &Request) -> Step {
-        self.may_change(request.session)?;
-        if self.supervision.is_wanted() {
+    fn clear_fault(&mut self, request: &Request) -> StartResult {
+        self.authorize(request.session)?;
+        if self.supervision.is_enable_requested() {
             return Err(Refusal::Armed);
         }
         if let Some(fault) = self.supervision.clear(self.line_is_on) {
@@ -164,13 +166,13 @@ impl Comms {
         if self.drive.status().is_some_and(|status| status.fault != 0) {
             self.command(request, Order::ClearFault)
         } else {
-            Ok(Progress::Answered(Answer::Done))
+            Ok(Started::Replied(Answer::Done))
         }
     }
 
-    fn arm(&mut self, request: &Request) -> Step {
-        self.may_change(request.session)?;
-        if self.supervision.is_wanted() {
+    fn arm(&mut self, request: &Request) -> StartResult {
+        self.authorize(request.session)?;
+        if self.supervision.is_enable_requested() {
             return Err(Refusal::Armed);
         }
         let drive_fault = self.drive.status().map_or(0, |status| status.fault);
@@ -181,7 +183,7 @@ impl Comms {
         if !self.drive.is_present(self.now_ms) {
             return Err(Refusal::DriveSilent);
         }
-        // It starts anew; or the drive has not let go yet, a moment ago disarmed.
+        // A reboot is pending, or the drive has not finished disarming.
         if self.reboot_ms.is_some() || matches!(self.drive.state(), State::Arming | State::Armed) {
             return Err(Refusal::Busy);
         }
@@ -189,15 +191,14 @@ impl Comms {
             return Err(Refusal::Busy);
         }
         let seen_tick = self.drive.seen_tick();
-        self.lease.take(request.session, self.now_ms, seen_tick);
-        self.supervision.want();
-        Ok(Progress::Working(Work::ProveLine))
+        self.lease.acquire(request.session, self.now_ms, seen_tick);
+        self.supervision.request_enable();
+        Ok(Started::Pending(JobState::ProveLine))
     }
 
-    /// What changes something is for the host that has the lease, one at a
-    /// time.
-    fn may_change(&self, session: Session) -> Result<(), Refusal> {
-        if let Some(by) = self.lease.other_than(session, self.now_ms) {
+    /// Rejects a change while another host holds the lease or a job is pending.
+    fn authorize(&self, session: Session) -> Result<(), Refusal> {
+        if let Some(by) = self.lease.other_holder(session, self.now_ms) {
             return Err(Refusal::Leased { by });
         }
         if self.job.is_some() {
@@ -206,32 +207,32 @@ impl Comms {
         Ok(())
     }
 
-    /// Once a millisecond: what is being done goes on.
-    pub(super) fn go_on(&mut self) {
+    /// Advances the pending job; runs once a millisecond.
+    pub(super) fn poll_job(&mut self) {
         let Some(job) = self.job else {
-            self.insist();
+            self.reissue_rejected();
             return;
         };
-        if let Some(answer) = self.progress(&job) {
+        if let Some(answer) = self.advance(&job) {
             self.finish(&job, answer);
         }
     }
 
-    /// The drive has refused, while it had torque, what was taken for
-    /// committed before that was heard: what was refused once stays refused, so
-    /// it gets another number.
-    fn insist(&mut self) {
+    /// Reissues the committed values under a new revision after the drive has
+    /// rejected them: it never accepts a rejected revision. This happens when an
+    /// unconfirmed commit turns out to be rejected because the drive was armed.
+    fn reissue_rejected(&mut self) {
         let refused = self.drive.refused(self.start);
         if refused.is_some_and(|(refused, _)| refused == self.parameters.revision()) {
             self.parameters.renumber();
         }
     }
 
-    /// What has become of a job, if it has ended.
-    fn progress(&mut self, job: &Job) -> Option<Result<Answer, Refusal>> {
+    /// Advances a job; returns its result when it has ended.
+    fn advance(&mut self, job: &Job) -> Option<Result<Answer, Refusal>> {
         let is_silent = !self.drive.is_present(self.now_ms);
-        match job.work {
-            Work::ProveLine => {
+        match job.state {
+            JobState::ProveLine => {
                 if let Some(fault) = self.supervision.fault() {
                     return Some(Err(Refusal::Faulted { code: fault.code() }));
                 }
@@ -239,17 +240,17 @@ impl Comms {
                     let number = self.to_drive.next_number();
                     let order = Order::Arm;
                     self.job = Some(Job {
-                        work: Work::Command { number, order },
+                        state: JobState::Command { number, order },
                         ..*job
                     });
                     return None;
                 }
             }
-            Work::Command { number, order } => {
+            JobState::Command { number, order } => {
                 let outcome = self.drive.outcome(self.start);
                 if let Some(outcome) = outcome.filter(|outcome| outcome.number == number) {
                     if order == Order::Arm && outcome.result.is_ok() {
-                        self.supervision.armed();
+                        self.supervision.confirm_armed();
                     }
                     return Some(match outcome.result {
                         Ok(()) => Ok(Answer::Done),
@@ -260,7 +261,7 @@ impl Comms {
                     return Some(Err(Refusal::Faulted { code: fault.code() }));
                 }
             }
-            Work::Commit { revision } => {
+            JobState::Commit { revision } => {
                 if self.drive.revision(self.now_ms) == Some(revision) {
                     self.parameters.accept();
                     return Some(Ok(Answer::Committed { revision }));
@@ -273,13 +274,13 @@ impl Comms {
                     _ => {}
                 }
                 if self.now_ms >= job.end_ms {
-                    // It may have come into force, so it has to.
+                    // The drive may have applied it already; commit it here too.
                     self.parameters.accept();
                     return Some(Err(Refusal::Unconfirmed));
                 }
                 return None;
             }
-            Work::Save => {}
+            JobState::Save => {}
         }
         if self.now_ms < job.end_ms {
             return None;
@@ -294,27 +295,27 @@ impl Comms {
     fn finish(&mut self, job: &Job, answer: Result<Answer, Refusal>) {
         self.job = None;
         let was_arming = matches!(
-            job.work,
-            Work::ProveLine
-                | Work::Command {
+            job.state,
+            JobState::ProveLine
+                | JobState::Command {
                     order: Order::Arm,
                     ..
                 }
         );
         if was_arming && answer.is_err() {
-            self.supervision.let_go();
+            self.supervision.release();
             self.lease.release();
         }
         self.reply(job.session, job.number, answer);
     }
 
-    /// Parameters were kept, or not.
+    /// Ends the job of a save.
     pub(super) fn finish_save(&mut self, done: bool) {
-        let Some(job) = self.job.filter(|job| job.work == Work::Save) else {
+        let Some(job) = self.job.filter(|job| job.state == JobState::Save) else {
             return;
         };
         if done {
-            self.parameters.keep(self.parameters.revision());
+            self.parameters.mark_saved(self.parameters.revision());
         }
         let answer = if done {
             Ok(Answer::Done)
@@ -324,14 +325,15 @@ impl Comms {
         self.finish(&job, answer);
     }
 
-    /// No more torque, whoever asks; who was arming is told.
-    pub(super) fn let_go(&mut self, refusal: Refusal) {
-        self.supervision.let_go();
+    /// Turns torque off for any host. A pending arm request fails with
+    /// `refusal`.
+    pub(super) fn release(&mut self, refusal: Refusal) {
+        self.supervision.release();
         self.lease.release();
-        // The drive hears of it before anything that follows.
+        // The heartbeat that disarms goes before all other frames.
         self.to_drive.heartbeat_now();
         if let Some(job) = self.job.filter(|job| {
-            job.work == Work::ProveLine || matches!(job.command(), Some((_, Order::Arm)))
+            job.state == JobState::ProveLine || matches!(job.command(), Some((_, Order::Arm)))
         }) {
             self.finish(&job, Err(refusal));
         }
@@ -361,7 +363,7 @@ impl Comms {
             number,
             answer,
         };
-        self.sessions.answered(&reply);
+        self.sessions.store_reply(&reply);
         self.send(&reply);
     }
 

@@ -1,24 +1,23 @@
-//! Which requests were carried out already.
+//! Detection of repeated requests.
 //!
-//! For each of the hosts that spoke last, the number of its last request and
-//! the reply: a request that is repeated is answered again, one that is older
-//! is not heard.
+//! The last sequence number and reply of each recent host are stored: a
+//! repeated request gets the stored reply, an older one is ignored.
 
 use crepitus_protocol::Session;
 use crepitus_protocol::host::{Reply, Request};
 
-/// Hosts that are remembered.
+/// Number of hosts stored.
 const HOSTS: usize = 3;
 
-/// What is to be done with a request.
+/// Classification of a request by its sequence number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
-pub enum Verdict {
-    /// It is new.
+pub enum RequestClass {
+    /// New: carry it out.
     New,
-    /// It was answered: once more.
-    Again(Reply),
-    /// It is older, or is still being carried out.
+    /// Repeated: send this reply again.
+    Repeat(Reply),
+    /// Older, or still being carried out.
     Ignore,
 }
 
@@ -30,42 +29,44 @@ struct Entry {
     reply: Option<Reply>,
 }
 
-/// The hosts that spoke last, the latest first.
+/// Recent hosts, the latest first.
 #[derive(Clone, Debug, Default)]
 pub struct Sessions {
     entries: heapless::Deque<Entry, HOSTS>,
 }
 
 impl Sessions {
-    /// Whether a request is to be carried out; from then on it is.
-    pub fn judge(&mut self, request: &Request) -> Verdict {
+    /// Classifies a request; a new one becomes the session's current request.
+    pub fn classify(&mut self, request: &Request) -> RequestClass {
         let Request {
             session, number, ..
         } = *request;
         if let Some(entry) = self.latest(session) {
             if entry.number == number {
-                return entry.reply.map_or(Verdict::Ignore, Verdict::Again);
+                return entry
+                    .reply
+                    .map_or(RequestClass::Ignore, RequestClass::Repeat);
             }
             if number.wrapping_sub(entry.number).cast_signed() < 0 {
-                return Verdict::Ignore;
+                return RequestClass::Ignore;
             }
             (entry.number, entry.reply) = (number, None);
-            return Verdict::New;
+            return RequestClass::New;
         }
         if self.entries.is_full() {
             self.entries.pop_back();
         }
-        // There is room now.
+        // Cannot fail: not full.
         let _ = self.entries.push_front(Entry {
             session,
             number,
             reply: None,
         });
-        Verdict::New
+        RequestClass::New
     }
 
-    /// A request was answered.
-    pub fn answered(&mut self, reply: &Reply) {
+    /// Stores the reply to the current request.
+    pub fn store_reply(&mut self, reply: &Reply) {
         if let Some(entry) = self.entry(reply.session)
             && entry.number == reply.number
         {
@@ -73,11 +74,11 @@ impl Sessions {
         }
     }
 
-    /// The entry of a host that speaks now, if it is remembered.
+    /// Moves a host's entry to the front and returns it.
     fn latest(&mut self, session: Session) -> Option<&mut Entry> {
         let entry = *self.entry(session)?;
         self.entries.retain(|other| other.session != session);
-        // There is room now.
+        // Cannot fail: an entry was removed.
         let _ = self.entries.push_front(entry);
         self.entries.front_mut()
     }
@@ -92,13 +93,13 @@ impl Sessions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_protocol::host::{Answer, Ask};
+    use crepitus_protocol::host::{Answer, Operation};
 
     fn request(session: u32, number: u16) -> Request {
         Request {
             session: Session(session),
             number,
-            ask: Ask::Status,
+            operation: Operation::Status,
         }
     }
 
@@ -107,32 +108,35 @@ mod tests {
         let mut sessions = Sessions::default();
         // Across the wrap of the number.
         for number in [0xfffe, 0xffff, 0, 1] {
-            assert_eq!(sessions.judge(&request(1, number)), Verdict::New);
-            assert_eq!(sessions.judge(&request(1, number)), Verdict::Ignore);
+            assert_eq!(sessions.classify(&request(1, number)), RequestClass::New);
+            assert_eq!(sessions.classify(&request(1, number)), RequestClass::Ignore);
             let reply = Reply {
                 session: Session(1),
                 number,
                 answer: Ok(Answer::Done),
             };
-            sessions.answered(&reply);
-            assert_eq!(sessions.judge(&request(1, number)), Verdict::Again(reply));
+            sessions.store_reply(&reply);
+            assert_eq!(
+                sessions.classify(&request(1, number)),
+                RequestClass::Repeat(reply)
+            );
             let older = request(1, number.wrapping_sub(1));
-            assert_eq!(sessions.judge(&older), Verdict::Ignore);
+            assert_eq!(sessions.classify(&older), RequestClass::Ignore);
         }
     }
 
     #[test]
-    fn hosts_do_not_mix_and_the_oldest_is_forgotten() {
+    fn hosts_do_not_mix_and_the_least_recent_is_evicted() {
         let mut sessions = Sessions::default();
         for session in 1..=4 {
-            assert_eq!(sessions.judge(&request(session, 7)), Verdict::New);
+            assert_eq!(sessions.classify(&request(session, 7)), RequestClass::New);
         }
-        assert_eq!(sessions.judge(&request(4, 7)), Verdict::Ignore);
-        assert_eq!(sessions.judge(&request(1, 7)), Verdict::New);
-        // The oldest is the one that has not spoken for longest.
-        assert_eq!(sessions.judge(&request(3, 8)), Verdict::New);
-        assert_eq!(sessions.judge(&request(5, 7)), Verdict::New);
-        assert_eq!(sessions.judge(&request(3, 8)), Verdict::Ignore);
-        assert_eq!(sessions.judge(&request(4, 7)), Verdict::New);
+        assert_eq!(sessions.classify(&request(4, 7)), RequestClass::Ignore);
+        assert_eq!(sessions.classify(&request(1, 7)), RequestClass::New);
+        // The least recently used entry is evicted.
+        assert_eq!(sessions.classify(&request(3, 8)), RequestClass::New);
+        assert_eq!(sessions.classify(&request(5, 7)), RequestClass::New);
+        assert_eq!(sessions.classify(&request(3, 8)), RequestClass::Ignore);
+        assert_eq!(sessions.classify(&request(4, 7)), RequestClass::New);
     }
 }

@@ -1,11 +1,11 @@
-//! Blocks for the host, with the books of what did not arrive.
+//! Telemetry for the host, with the count of dropped samples.
 
 use crate::comms::outbox::Outbox;
 use crepitus_protocol::Lane;
 use crepitus_protocol::frame;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 
-/// A host that wants every sample.
+/// A subscription to telemetry.
 #[derive(Clone, Copy, Debug)]
 pub struct Subscription {
     first_tick: u64,
@@ -14,7 +14,7 @@ pub struct Subscription {
 }
 
 impl Subscription {
-    /// From this tick on.
+    /// Starts at this tick.
     pub fn new(first_tick: u64) -> Self {
         Self {
             first_tick,
@@ -22,21 +22,21 @@ impl Subscription {
         }
     }
 
-    /// The drive has started anew, and so do the books.
+    /// Restarts the accounting after a restart of the drive.
     pub fn rebase(&mut self, first_tick: u64) {
         *self = Self::new(first_tick);
     }
 
-    /// Its first tick.
+    /// First tick of the subscription.
     pub fn first_tick(&self) -> u64 {
         self.first_tick
     }
 
-    /// Queues a block, which then says what was lost before it, wherever that
-    /// was; false if there is no room.
+    /// Queues a block with the total of samples lost before it, at any stage;
+    /// false if there is no room.
     pub fn forward(&mut self, block: &Block, outbox: &mut Outbox) -> bool {
-        let due = block.first_tick.saturating_sub(self.first_tick);
-        let dropped = due.saturating_sub(self.forwarded);
+        let elapsed = block.first_tick.saturating_sub(self.first_tick);
+        let dropped = elapsed.saturating_sub(self.forwarded);
         let [a, b, c, d, ..] = dropped.to_le_bytes();
         let block = Block {
             // The counter wraps.

@@ -1,93 +1,93 @@
-//! Whether comms lets there be torque: its own line, in series with the
-//! drive's.
+//! Supervision of the drive; controls the enable line of comms, in series with
+//! the drive's.
 
 use crate::comms::drive_view::DriveView;
-use crate::comms::line::Line;
+use crate::comms::enable_line::EnableLine;
 use crepitus_protocol::management::ResetCause;
-use crepitus_protocol::{Fault, State};
+use crepitus_protocol::{Fault, State, schema};
 
-/// Watches the drive and holds the line.
+/// Supervises the drive and controls the enable line.
 #[derive(Clone, Copy, Debug)]
 pub struct Supervision {
-    line: Line,
-    /// A host wants torque.
-    wanted: bool,
-    /// The drive has been armed since.
+    line: EnableLine,
+    /// A host has requested torque.
+    enable_requested: bool,
+    /// The drive was armed after the request.
     was_armed: bool,
     fault: Option<Fault>,
-    /// The drive speaks another language.
-    foreign: bool,
+    /// The drive's schema hash differs.
+    schema_mismatch: bool,
 }
 
 impl Supervision {
-    /// As comms starts: a reset that should not have been is a fault.
+    /// The state after boot: an unexpected reset is a fault.
     pub fn new(reset: ResetCause) -> Self {
         Self {
-            line: Line::default(),
-            wanted: false,
+            line: EnableLine::default(),
+            enable_requested: false,
             was_armed: false,
             fault: match reset {
-                ResetCause::Power | ResetCause::Asked => None,
+                ResetCause::Power | ResetCause::Requested => None,
                 ResetCause::Watchdog => Some(Fault::CommsWatchdog),
                 ResetCause::BrownOut => Some(Fault::CommsBrownOut),
                 ResetCause::Panic => Some(Fault::CommsPanic),
             },
-            foreign: false,
+            schema_mismatch: false,
         }
     }
 
-    /// Whether a host wants torque, and nothing here speaks against it.
-    pub fn is_wanted(&self) -> bool {
-        self.wanted
+    /// Whether a host has requested torque and no fault has ended the request.
+    pub fn is_enable_requested(&self) -> bool {
+        self.enable_requested
     }
 
-    /// The fault of comms.
+    /// The latched fault of comms.
     pub fn fault(&self) -> Option<Fault> {
         self.fault
     }
 
-    /// Whether the line was proven and is on.
+    /// Whether the enable line passed its test and is on.
     pub fn line_is_proven(&self) -> bool {
         self.line.is_proven()
     }
 
-    /// A host wants torque: the line is proven first.
-    pub fn want(&mut self) {
-        self.wanted = true;
+    /// Requests torque: starts the test of the enable line.
+    pub fn request_enable(&mut self) {
+        self.enable_requested = true;
         self.was_armed = false;
         self.line.prove();
     }
 
-    /// The drive has said that it was armed; it may have let go since.
-    pub fn armed(&mut self) {
+    /// Records that the drive has confirmed arming; it may have disarmed since.
+    pub fn confirm_armed(&mut self) {
         self.was_armed = true;
     }
 
-    /// No more torque.
-    pub fn let_go(&mut self) {
-        self.wanted = false;
+    /// Ends the request for torque and switches the enable line off.
+    pub fn release(&mut self) {
+        self.enable_requested = false;
         self.line.off();
     }
 
-    /// The drive has started anew.
+    /// Handles a restart of the drive: a fault while torque is requested.
     pub fn drive_restarted(&mut self) {
-        if self.wanted {
+        if self.enable_requested {
             self.fail(Fault::DriveRestarted);
         }
     }
 
-    /// The drive has said which language it speaks.
-    pub fn drive_speaks(&mut self, ours: bool) {
-        self.foreign = !ours;
-        if self.foreign {
+    /// Compares the drive's schema hash with that of comms.
+    pub fn check_schema(&mut self, hash: u64) {
+        self.schema_mismatch = hash != schema::HASH;
+        if self.schema_mismatch {
             self.fail(Fault::VersionMismatch);
         }
     }
 
-    /// Forgets the fault of comms; gives it back if its cause is still there.
+    /// Clears the fault of comms; returns it if its cause persists.
     pub fn clear(&mut self, line_is_on: bool) -> Option<Fault> {
         let persists = match self.fault {
-            Some(Fault::VersionMismatch) => self.foreign,
+            Some(Fault::VersionMismatch) => self.schema_mismatch,
             Some(Fault::CommsEnableStuckOn) => line_is_on,
             _ => false,
         };
@@ -97,7 +97,7 @@ impl Supervision {
         self.fault
     }
 
-    /// Once a millisecond: whether the line is to be on.
+    /// Runs once a millisecond; returns the level of the enable line.
     pub fn tick(
         &mut self,
         line_is_on: bool,
@@ -110,31 +110,31 @@ impl Supervision {
         {
             self.fail(fault);
         }
-        if self.wanted {
+        if self.enable_requested {
             if drive_is_silent {
                 self.fail(Fault::DriveSilent);
             }
             match drive.state() {
                 State::Armed => self.was_armed = true,
-                // It has let go by itself, and says why.
-                State::Faulted | State::Disarmed if self.was_armed => self.let_go(),
+                // The drive has disarmed by itself; its status has the cause.
+                State::Faulted | State::Disarmed if self.was_armed => self.release(),
                 _ => {}
             }
             if !is_leased {
-                // The heartbeats go on: they tell the drive that the lease has
-                // ended, and it says so.
+                // Heartbeats continue: they tell the drive that the lease has
+                // expired, and it reports the fault.
                 self.line.off();
             }
         }
         self.line.level()
     }
 
-    /// The state of the whole.
+    /// State of the device.
     pub fn state(&self, drive: &DriveView) -> State {
         if self.fault.is_some() || drive.state() == State::Faulted {
             return State::Faulted;
         }
-        match (self.wanted, drive.state()) {
+        match (self.enable_requested, drive.state()) {
             (true, State::Armed) | (false, State::Armed | State::Arming) => drive.state(),
             (true, _) => State::Arming,
             (false, _) => State::Disarmed,
@@ -142,7 +142,7 @@ impl Supervision {
     }
 
     fn fail(&mut self, fault: Fault) {
-        self.let_go();
+        self.release();
         self.fault.get_or_insert(fault);
     }
 }

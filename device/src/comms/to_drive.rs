@@ -1,30 +1,30 @@
-//! What the drive is sent, and when.
+//! Frames to the drive: priority and retry.
 
 use crepitus_protocol::frame::{self, Frame};
 use crepitus_protocol::link::{Heartbeat, Order, ToDrive};
-use crepitus_protocol::management::{Question, What};
+use crepitus_protocol::management::{Action, ManagementRequest};
 use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::{Lane, Revision, Values};
 
-/// What is not confirmed is sent again after this, ms.
-const REPEAT_MS: u64 = 10;
+/// Retry interval of unconfirmed messages, ms.
+const RETRY_MS: u64 = 10;
 
-/// Questions that are not answered are asked again after this, ms.
-const HELLO_MS: u64 = 10;
+/// Retry interval of the hello request, ms.
+const HELLO_RETRY_MS: u64 = 10;
 
-/// What is due to the drive.
+/// Pending frames to the drive.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ToDriveQueue {
     now_ms: u64,
     heartbeat_due: bool,
-    management: Option<Question>,
+    management: Option<ManagementRequest>,
     commit: CommitProgress,
     command_ms: Option<(u16, u64)>,
     hello_ms: u64,
     last_number: u16,
 }
 
-/// How far the commit under way has been sent.
+/// Progress of the commit that is being sent.
 #[derive(Clone, Copy, Debug, Default)]
 struct CommitProgress {
     revision: Option<Revision>,
@@ -33,8 +33,8 @@ struct CommitProgress {
 }
 
 impl CommitProgress {
-    /// The piece to send now: one a millisecond, so that heartbeats are not
-    /// delayed; from the first again where nothing was confirmed.
+    /// Returns the piece to send now: one a millisecond, so that heartbeats are
+    /// not delayed. Starts over when the commit is not confirmed in time.
     fn next_piece(&mut self, now_ms: u64, revision: Revision, values: &Values) -> Option<Piece> {
         let is_new = self.revision != Some(revision);
         if is_new {
@@ -43,7 +43,7 @@ impl CommitProgress {
             return None;
         }
         let piece = match Piece::of(&values.0, self.next) {
-            None if now_ms < self.sent_ms.saturating_add(REPEAT_MS) => return None,
+            None if now_ms < self.sent_ms.saturating_add(RETRY_MS) => return None,
             None => Piece::of(&values.0, 0)?,
             Some(piece) => piece,
         };
@@ -53,35 +53,35 @@ impl CommitProgress {
 }
 
 impl ToDriveQueue {
-    /// A millisecond has gone by.
-    pub(super) fn millisecond(&mut self, now_ms: u64) {
+    /// Runs once a millisecond.
+    pub(super) fn tick(&mut self, now_ms: u64) {
         self.now_ms = now_ms;
         self.heartbeat_due = true;
     }
 
-    /// There is something to say that does not wait for the millisecond.
+    /// Sends a heartbeat before the next millisecond.
     pub(super) fn heartbeat_now(&mut self) {
         self.heartbeat_due = true;
     }
 
-    /// A question of the lane that never changes.
-    pub(super) fn ask(&mut self, what: What) {
-        self.management = Some(Question { what, token: 0 });
+    /// Queues a management request.
+    pub(super) fn queue_management(&mut self, action: Action) {
+        self.management = Some(ManagementRequest { action, token: 0 });
     }
 
-    /// A number for the next command.
+    /// Sequence number for the next command.
     pub(super) fn next_number(&mut self) -> u16 {
         self.last_number = self.last_number.wrapping_add(1);
         self.last_number
     }
 
-    /// The next frame: what must be heard first.
+    /// Returns the next frame, the most urgent first.
     pub(super) fn next_frame(
         &mut self,
         heartbeat: Heartbeat,
         commit: Option<(Revision, &Values)>,
         command: Option<(u16, Order)>,
-        wants_hello: bool,
+        hello_due: bool,
     ) -> Option<Frame> {
         if core::mem::take(&mut self.heartbeat_due) {
             return message(&ToDrive::Heartbeat(heartbeat));
@@ -91,7 +91,7 @@ impl ToDriveQueue {
         }
         if let Some((number, order)) = command
             && self.command_ms.is_none_or(|(sent, sent_ms)| {
-                sent != number || self.now_ms >= sent_ms.saturating_add(REPEAT_MS)
+                sent != number || self.now_ms >= sent_ms.saturating_add(RETRY_MS)
             })
         {
             self.command_ms = Some((number, self.now_ms));
@@ -110,10 +110,10 @@ impl ToDriveQueue {
                 piece,
             });
         }
-        if wants_hello && self.now_ms >= self.hello_ms {
-            self.hello_ms = self.now_ms.saturating_add(HELLO_MS);
-            let question = Question {
-                what: What::Hello,
+        if hello_due && self.now_ms >= self.hello_ms {
+            self.hello_ms = self.now_ms.saturating_add(HELLO_RETRY_MS);
+            let question = ManagementRequest {
+                action: Action::Hello,
                 token: 0,
             };
             return frame::encode_bytes(Lane::Management, &question.bytes()).ok();

@@ -1,17 +1,17 @@
-//! The way from disarmed to armed: nothing is believed that was not seen now.
+//! The arming sequence: tests sensor offset, enable line and motor polarity.
 //!
 //! ```text
 //!            offset       line on      line off     line on       push
 //! enable  ______________╱‾‾‾‾‾‾‾‾‾‾╲____________╱‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾
 //! bridge  floats                                            + − − + − + + −
-//!         the sensor    read back   read back   read back   the shaft moves
-//!         shows none    on          off         on          the way it is pushed
+//!         measure the   read back   read back   read back   the shaft moves in
+//!         offset        on          off         on          the push's direction
 //! ```
 //!
-//! The push is a current of 1.2 A (4 N·m) for 2 ms to either side, four times:
-//! it moves a free shaft by 7 counts along, twice back, and along. What the hand
-//! does meanwhile, at whatever speed and acceleration, cancels; a leg that is
-//! held fast does not move, and nothing is proven.
+//! The push is a current of 1.2 A (4 N·m) for 2 ms in each direction, four
+//! times: it moves a free shaft by 7 counts forward, twice back, and forward.
+//! The speed and acceleration of the hand cancel. A leg that is held does not
+//! move, and the polarity stays unproven.
 
 use crepitus_protocol::Fault;
 
@@ -21,7 +21,7 @@ const OFFSET_TICKS: u32 = 64;
 /// Largest offset of the current sensor, A.
 const LARGEST_OFFSET_A: f32 = 0.1;
 
-/// Ticks within which the line follows.
+/// Ticks within which the read-back follows the output.
 const LINE_TICKS: u32 = 9;
 
 /// Ticks of each of the eight parts of the push.
@@ -30,21 +30,21 @@ const PUSH_TICKS: u32 = 40;
 /// Current of the push, A.
 const PUSH_A: f32 = 1.2;
 
-/// Counts that the shaft must have moved to prove anything.
+/// Counts that the shaft must move to prove the polarity.
 const PROOF_COUNTS: i32 = 12;
 
-/// What arming wants of a tick.
+/// Output of a tick of arming.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wish {
+pub enum ArmingOutput {
     /// The line off, the bridge floating.
     Off,
     /// The line on, the bridge floating.
     Line,
     /// The line on, this current, A.
     Push(f32),
-    /// It is armed.
+    /// Arming is complete.
     Armed,
-    /// It failed.
+    /// Arming has failed.
     Failed(Fault),
 }
 
@@ -57,14 +57,14 @@ enum Step {
     Push,
 }
 
-/// Arming under way.
+/// Arming in progress.
 #[derive(Clone, Copy, Debug)]
 pub struct Arming {
     step: Step,
     /// Ticks in this step.
     ticks: u32,
     offset_sum_a: f32,
-    /// Counts moved as pushed, minus those against.
+    /// Counts moved in the push's direction, minus those against it.
     moved_counts: i32,
     last_count: Option<i32>,
 }
@@ -82,8 +82,8 @@ impl Default for Arming {
 }
 
 impl Arming {
-    /// One tick: the raw current, the line as read back, the encoder.
-    pub fn tick(&mut self, raw_a: Option<f32>, line_is_on: bool, count: i32) -> Wish {
+    /// Runs one tick with the raw current, the line's read-back and the encoder.
+    pub fn tick(&mut self, raw_a: Option<f32>, line_is_on: bool, count: i32) -> ArmingOutput {
         self.ticks = self.ticks.saturating_add(1);
         match self.step {
             Step::Offset => self.offset(raw_a, line_is_on),
@@ -94,7 +94,7 @@ impl Arming {
         }
     }
 
-    /// The current sensor's offset, once it is known, A.
+    /// The current sensor's offset, once measured, A.
     pub fn offset_a(&self) -> Option<f32> {
         #[expect(clippy::cast_precision_loss, reason = "a small number")]
         let mean_a = self.offset_sum_a / OFFSET_TICKS as f32;
@@ -110,65 +110,69 @@ impl Arming {
         (self.step, self.ticks) = (step, 0);
     }
 
-    fn offset(&mut self, raw_a: Option<f32>, line_is_on: bool) -> Wish {
+    fn offset(&mut self, raw_a: Option<f32>, line_is_on: bool) -> ArmingOutput {
         if line_is_on {
-            return Wish::Failed(Fault::EnableStuckOn);
+            return ArmingOutput::Failed(Fault::EnableStuckOn);
         }
         let Some(raw_a) = raw_a else {
-            return Wish::Failed(Fault::CurrentMissing);
+            return ArmingOutput::Failed(Fault::CurrentMissing);
         };
         self.offset_sum_a += raw_a;
         if self.ticks < OFFSET_TICKS {
-            return Wish::Off;
+            return ArmingOutput::Off;
         }
         self.go_to(Step::FirstOn);
-        // Written so that NaN fails.
+        // `<=` so that NaN fails.
         if self
             .offset_a()
             .is_some_and(|mean_a| mean_a.abs() <= LARGEST_OFFSET_A)
         {
-            Wish::Line
+            ArmingOutput::Line
         } else {
-            Wish::Failed(Fault::CurrentOffset)
+            ArmingOutput::Failed(Fault::CurrentOffset)
         }
     }
 
-    /// Waits until the line is as it should be.
-    fn line(&mut self, is_on: bool, should_be_on: bool, next: Step) -> Wish {
+    /// Waits for the read-back of the line.
+    fn line(&mut self, is_on: bool, should_be_on: bool, next: Step) -> ArmingOutput {
         if is_on == should_be_on {
             self.go_to(next);
             return if next == Step::Off {
-                Wish::Off
+                ArmingOutput::Off
             } else {
-                Wish::Line
+                ArmingOutput::Line
             };
         }
         if self.ticks >= LINE_TICKS {
-            return Wish::Failed(if should_be_on {
+            return ArmingOutput::Failed(if should_be_on {
                 Fault::EnableStuckOff
             } else {
                 Fault::EnableStuckOn
             });
         }
-        if should_be_on { Wish::Line } else { Wish::Off }
+        if should_be_on {
+            ArmingOutput::Line
+        } else {
+            ArmingOutput::Off
+        }
     }
 
-    fn push(&mut self, count: i32) -> Wish {
+    fn push(&mut self, count: i32) -> ArmingOutput {
         let part = self.ticks.saturating_sub(1) / PUSH_TICKS;
-        // What has moved since the last tick is due to the part before it.
+        // Motion since the last tick is due to the previous part.
         let moved = self.last_count.map_or(0, |last| count.wrapping_sub(last));
         self.last_count = Some(count);
-        // The first and the last pair move it along, the others back.
+        // The first and the last pair move the shaft forward, the others back.
         self.moved_counts = if matches!(part, 0 | 1 | 6 | 7) {
             self.moved_counts.saturating_add(moved)
         } else {
             self.moved_counts.saturating_sub(moved)
         };
         match part {
-            0 | 3 | 5 | 6 => Wish::Push(PUSH_A),
-            1 | 2 | 4 | 7 => Wish::Push(-PUSH_A),
-            _ if self.moved_counts <= -PROOF_COUNTS => Wish::Failed(Fault::EncoderPolarity),
-            _ => Wish::Armed,
+            0 | 3 | 5 | 6 => ArmingOutput::Push(PUSH_A),
+            1 | 2 | 4 | 7 => ArmingOutput::Push(-PUSH_A),
+            _ if self.moved_counts <= -PROOF_COUNTS => ArmingOutput::Failed(Fault::EncoderPolarity),
+            _ => ArmingOutput::Armed,
         }
     }
 }
@@ -179,7 +183,7 @@ mod tests {
 
     /// Arms with a line that follows a tick late, and a shaft that is moved
     /// by `counts` a tick in the sense of the push, on top of a hand's motion.
-    fn arm(raw_a: f32, stuck: Option<bool>, counts: i32, hand: i32) -> (Wish, u32, bool) {
+    fn arm(raw_a: f32, stuck: Option<bool>, counts: i32, hand: i32) -> (ArmingOutput, u32, bool) {
         let mut arming = Arming::default();
         let (mut line, mut count, mut ticks) = (stuck.unwrap_or(false), i32::MAX - 20, 0);
         let mut speed = 0;
@@ -187,10 +191,12 @@ mod tests {
             let wish = arming.tick(Some(raw_a), stuck.unwrap_or(line), count);
             ticks += 1;
             match wish {
-                Wish::Off => line = false,
-                Wish::Line => line = true,
-                Wish::Push(a) => speed += if a > 0.0 { counts } else { -counts },
-                Wish::Armed | Wish::Failed(_) => return (wish, ticks, arming.is_proven()),
+                ArmingOutput::Off => line = false,
+                ArmingOutput::Line => line = true,
+                ArmingOutput::Push(a) => speed += if a > 0.0 { counts } else { -counts },
+                ArmingOutput::Armed | ArmingOutput::Failed(_) => {
+                    return (wish, ticks, arming.is_proven());
+                }
             }
             count = count.wrapping_add(hand + speed);
             assert!(ticks < 1000);
@@ -200,19 +206,19 @@ mod tests {
     #[test]
     fn all_in_order_is_armed_within_twenty_milliseconds() {
         let (wish, ticks, proven) = arm(0.05, None, 1, 0);
-        assert_eq!((wish, proven), (Wish::Armed, true));
+        assert_eq!((wish, proven), (ArmingOutput::Armed, true));
         assert!(ticks < 400, "{ticks}");
     }
 
     #[test]
     fn a_hand_that_moves_the_leg_changes_nothing() {
         for hand in [-3, 3] {
-            assert_eq!(arm(0.0, None, 0, hand).0, Wish::Armed);
+            assert_eq!(arm(0.0, None, 0, hand).0, ArmingOutput::Armed);
             assert!(!arm(0.0, None, 0, hand).2);
             assert!(arm(0.0, None, 1, hand).2);
             assert_eq!(
                 arm(0.0, None, -1, hand).0,
-                Wish::Failed(Fault::EncoderPolarity)
+                ArmingOutput::Failed(Fault::EncoderPolarity)
             );
         }
     }
@@ -222,9 +228,9 @@ mod tests {
         // Up to 100 rad/s², in counts a tick and tick; right, loose and swapped.
         for per_mille in [-7, -2, 2, 7] {
             for (counts, expected, proven) in [
-                (1, Wish::Armed, true),
-                (0, Wish::Armed, false),
-                (-1, Wish::Failed(Fault::EncoderPolarity), false),
+                (1, ArmingOutput::Armed, true),
+                (0, ArmingOutput::Armed, false),
+                (-1, ArmingOutput::Failed(Fault::EncoderPolarity), false),
             ] {
                 let mut arming = Arming::default();
                 let (mut line, mut pushed, mut speed) = (false, 0, 0);
@@ -233,9 +239,11 @@ mod tests {
                         let hand = per_mille * tick * tick / 2_000;
                         let wish = arming.tick(Some(0.0), line, hand + pushed);
                         match wish {
-                            Wish::Off => line = false,
-                            Wish::Line => line = true,
-                            Wish::Push(a) => speed += if a > 0.0 { counts } else { -counts },
+                            ArmingOutput::Off => line = false,
+                            ArmingOutput::Line => line = true,
+                            ArmingOutput::Push(a) => {
+                                speed += if a > 0.0 { counts } else { -counts }
+                            }
                             _ => return Some((wish, arming.is_proven())),
                         }
                         pushed += speed;
@@ -252,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_broken_is_not_armed() {
+    fn arming_fails_on_a_defect() {
         for (raw_a, stuck, fault) in [
             (0.11, None, Fault::CurrentOffset),
             (-0.11, None, Fault::CurrentOffset),
@@ -260,11 +268,11 @@ mod tests {
             (0.0, Some(true), Fault::EnableStuckOn),
             (0.0, Some(false), Fault::EnableStuckOff),
         ] {
-            assert_eq!(arm(raw_a, stuck, 1, 0).0, Wish::Failed(fault));
+            assert_eq!(arm(raw_a, stuck, 1, 0).0, ArmingOutput::Failed(fault));
         }
         assert_eq!(
             Arming::default().tick(None, false, 0),
-            Wish::Failed(Fault::CurrentMissing)
+            ArmingOutput::Failed(Fault::CurrentMissing)
         );
     }
 
@@ -273,7 +281,7 @@ mod tests {
         let mut arming = Arming::default();
         let wish = (0..200)
             .map(|n| arming.tick(Some(0.0), n >= 65, 0))
-            .find(|wish| matches!(wish, Wish::Failed(_)));
-        assert_eq!(wish, Some(Wish::Failed(Fault::EnableStuckOn)));
+            .find(|wish| matches!(wish, ArmingOutput::Failed(_)));
+        assert_eq!(wish, Some(ArmingOutput::Failed(Fault::EnableStuckOn)));
     }
 }

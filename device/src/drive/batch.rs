@@ -1,49 +1,49 @@
-//! Samples to blocks, blocks to the link.
+//! Ring buffer of telemetry blocks for the link.
 //!
-//! Nothing waits for the link: a block that finds no place among those that
-//! wait is dropped and its samples counted, and the blocks after it say how
-//! many. Samples stay where they were written until the link has them.
+//! Nothing blocks on the link: when the buffer is full a block is dropped and
+//! its samples counted; the blocks after it carry the count. Samples are not
+//! copied until the link sends them.
 
 use crate::counters::Counters;
 use crepitus_protocol::Revision;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, BLOCK_TICKS, Block, BlockFlags, Sample};
 
-/// Blocks that may wait for the link.
+/// Blocks that may be queued for the link.
 pub const QUEUE_BLOCKS: usize = 4;
 
-/// Those, and the one that is being filled.
-const PLACES: usize = QUEUE_BLOCKS + 1;
+/// Slots of the ring buffer: the queue and the block that is being filled.
+const SLOTS: usize = QUEUE_BLOCKS + 1;
 
-/// Fills blocks.
+/// Fills blocks and queues them.
 #[derive(Clone, Debug)]
 pub struct Batch {
-    blocks: [Block; PLACES],
-    /// Which of them is being filled; those that wait are before it.
+    blocks: [Block; SLOTS],
+    /// Slot that is being filled; the queued blocks are before it.
     filling: usize,
     filled: usize,
-    waiting: usize,
-    /// Of the block that is being filled.
+    queued: usize,
+    /// Sequence number of the block that is being filled.
     sequence: u16,
     first_tick: u64,
     dropped: u32,
 }
 
 impl Batch {
-    /// An empty one whose first sample will be that of `first_tick`.
+    /// An empty buffer whose first sample will be that of `first_tick`.
     pub fn new(first_tick: u64, sequence: u16) -> Self {
         Self {
-            blocks: [Block::default(); PLACES],
+            blocks: [Block::default(); SLOTS],
             filling: 0,
             filled: 0,
-            waiting: 0,
+            queued: 0,
             sequence,
             first_tick,
             dropped: 0,
         }
     }
 
-    /// Takes the sample of the next tick.
+    /// Adds the sample of the next tick.
     pub fn push(
         &mut self,
         sample: Sample,
@@ -63,11 +63,11 @@ impl Batch {
         }
         self.filled = 0;
         counters.add(DriveCounter::Produced, BLOCK_TICKS);
-        if self.waiting < QUEUE_BLOCKS {
+        if self.queued < QUEUE_BLOCKS {
             (block.sequence, block.first_tick) = (self.sequence, self.first_tick);
             (block.revision, block.flags) = (revision, flags);
             block.dropped = self.dropped;
-            self.waiting = self.waiting.saturating_add(1);
+            self.queued = self.queued.saturating_add(1);
             self.filling = after(self.filling, 1);
         } else {
             counters.add(DriveCounter::Dropped, BLOCK_TICKS);
@@ -77,33 +77,33 @@ impl Batch {
         self.first_tick = self.first_tick.wrapping_add(BLOCK_SAMPLES as u64);
     }
 
-    /// Blocks that wait.
-    pub fn waiting(&self) -> usize {
-        self.waiting
+    /// Number of queued blocks.
+    pub fn queued(&self) -> usize {
+        self.queued
     }
 
-    /// The block that has waited longest. It stays until [`Self::pop`].
+    /// The oldest queued block. It stays until [`Self::pop`].
     pub fn front(&self) -> Option<&Block> {
-        if self.waiting == 0 {
+        if self.queued == 0 {
             return None;
         }
-        let oldest = after(self.filling, PLACES.wrapping_sub(self.waiting));
+        let oldest = after(self.filling, SLOTS.wrapping_sub(self.queued));
         self.blocks.get(oldest)
     }
 
-    /// The link has the block that has waited longest.
+    /// Removes the oldest queued block.
     pub fn pop(&mut self) {
-        self.waiting = self.waiting.saturating_sub(1);
+        self.queued = self.queued.saturating_sub(1);
     }
 }
 
-/// The place that comes so many, at most [`PLACES`], after this one.
-fn after(place: usize, more: usize) -> usize {
-    let place = place.wrapping_add(more);
-    if place < PLACES {
-        place
+/// The slot `more` (at most [`SLOTS`]) after this one.
+fn after(slot: usize, more: usize) -> usize {
+    let slot = slot.wrapping_add(more);
+    if slot < SLOTS {
+        slot
     } else {
-        place.wrapping_sub(PLACES)
+        slot.wrapping_sub(SLOTS)
     }
 }
 
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn what_finds_no_place_is_counted_and_said() {
+    fn samples_dropped_for_want_of_space_are_counted() {
         let counters = Counters::new();
         let mut batch = Batch::new(u64::MAX - 19, u16::MAX);
         let produce = |batch: &mut Batch, blocks: usize| {
@@ -139,7 +139,7 @@ mod tests {
             assert_eq!(block.dropped, 0);
             last = Some(block.sequence);
         }
-        // Four found a place; the numbers go on through the wrap.
+        // Four were queued; sequence numbers continue through the wrap.
         assert_eq!((received, last), (80, Some(2)));
         produce(&mut batch, 1);
         let block = pop(&mut batch).unwrap();
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_that_waits_is_not_written_over() {
+    fn a_queued_block_is_not_overwritten() {
         let counters = Counters::new();
         let mut batch = Batch::new(0, 0);
         let mut next = 0;

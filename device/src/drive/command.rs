@@ -1,11 +1,11 @@
-//! `command_motor`: what the bridge does in the next tick, and the sample that
-//! tells of this one, in its block.
+//! `command_motor`: the bridge's output for the next tick, and the telemetry
+//! sample of this one.
 
 use crate::counters::Counters;
 use crate::drive::Boot;
 use crate::drive::batch::Batch;
 use crate::drive::motor::{Bridge, Motor};
-use crate::drive::plausibility::{Plausibility, Seen};
+use crate::drive::plausibility::{Observation, Plausibility};
 use crate::drive::prepare::{CommandPlan, MotorPlan};
 use crate::drive::rendering::Rendered;
 use crate::drive::safety::{Permit, Safety};
@@ -17,24 +17,24 @@ use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::telemetry::{Block, BlockFlags, NO_CURRENT, Sample, SampleFlags};
 use crepitus_protocol::{LimitReason, Revision, State};
 
-/// What the peripherals say in the middle of a tick.
+/// Inputs from the peripherals in the middle of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inputs {
-    /// The current, A, positive towards growing angle; none if the converter
-    /// has nothing.
+    /// The current, A, positive towards growing angle; `None` if the converter
+    /// has no result.
     pub current_a: Option<f32>,
     /// The drive's enable line, as read back.
     pub enable_is_on: bool,
-    /// The hardware's break input has fired.
-    pub is_broken: bool,
+    /// The hardware's break input has tripped.
+    pub has_tripped: bool,
 }
 
-/// What the peripherals are to do.
+/// Outputs to the peripherals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outputs {
     /// The drive's enable line.
     pub enable: bool,
-    /// The bridge, from the next PWM period on; if it is to float, at once.
+    /// The bridge: floating at once, or driven from the next PWM period on.
     pub bridge: Bridge,
 }
 
@@ -45,22 +45,22 @@ pub struct Command {
     motor: Motor,
     plausibility: Plausibility,
     speed_limit_rad_s: f32,
-    /// The bridge was driven in the tick before.
+    /// The bridge was driven in the previous tick.
     was_driven: bool,
     /// The state after that tick.
     last_state: State,
-    /// Of the parameters in force.
+    /// Revision of the active parameters.
     revision: Revision,
     /// The line, as read back.
     line_is_on: bool,
     batch: Batch,
     zeroed: bool,
-    /// Which start of the drive this is.
+    /// Boot counter of the drive.
     start: u16,
 }
 
 impl Command {
-    /// As a controller starts.
+    /// The state after boot.
     pub fn new(motor: &MotorPlan, plan: &CommandPlan, boot: &Boot) -> Self {
         Self {
             safety: Safety::new(boot.identity.reset),
@@ -77,8 +77,8 @@ impl Command {
         }
     }
 
-    /// From the next tick on, these numbers.
-    pub fn take_over(&mut self, plan: &CommandPlan, counters: &Counters) {
+    /// Applies new parameters from the next tick on.
+    pub fn apply(&mut self, plan: &CommandPlan, counters: &Counters) {
         if let Some(motor) = &plan.motor {
             self.motor = Motor::new(motor);
         }
@@ -87,57 +87,57 @@ impl Command {
         counters.count(DriveCounter::Commits);
     }
 
-    /// Of the parameters in force.
+    /// Revision of the active parameters.
     pub fn revision(&self) -> Revision {
         self.revision
     }
 
-    /// The enable line, as it was read back last.
+    /// The last read-back of the enable line.
     pub fn line_is_on(&self) -> bool {
         self.line_is_on
     }
 
-    /// The angle's zero was said.
+    /// Records that the angle's zero was set.
     pub fn set_zeroed(&mut self) {
         self.zeroed = true;
     }
 
-    /// Whether the angle's zero was said.
+    /// Whether the angle's zero was set.
     pub fn is_zeroed(&self) -> bool {
         self.zeroed
     }
 
-    /// The block that waits for the link, the oldest.
+    /// The oldest block queued for the link.
     pub fn block(&self) -> Option<&Block> {
         self.batch.front()
     }
 
-    /// How many wait.
-    pub fn waiting_blocks(&self) -> usize {
-        self.batch.waiting()
+    /// Number of blocks queued for the link.
+    pub fn queued_blocks(&self) -> usize {
+        self.batch.queued()
     }
 
-    /// The link has it.
+    /// Removes the oldest block: the link has sent it.
     pub fn pop_block(&mut self) {
         self.batch.pop();
     }
 
-    /// Whether it was armed in its last tick: then rendering shows torque.
+    /// Whether the drive was armed after the last tick; then torque is applied.
     pub fn was_armed(&self) -> bool {
         self.last_state == State::Armed
     }
 
-    /// Whether there may be torque.
+    /// The safety state machine.
     pub fn safety(&self) -> &Safety {
         &self.safety
     }
 
-    /// Whether there may be torque, for orders.
+    /// The safety state machine, to execute orders.
     pub fn safety_mut(&mut self) -> &mut Safety {
         &mut self.safety
     }
 
-    /// One tick.
+    /// Runs one tick.
     pub fn tick(
         &mut self,
         inputs: &Inputs,
@@ -162,14 +162,14 @@ impl Command {
         if matches!(permit, Permit::Torque | Permit::Push(_)) {
             permit = self.checked(
                 permit,
-                &Seen {
+                &Observation {
                     lost_ticks: sampled.lost_ticks,
                     omega_rad_s: sampled.omega_rad_s,
                     is_late,
-                    is_number: rendered.torque_nm.is_finite(),
+                    torque_is_finite: rendered.torque_nm.is_finite(),
                     current_a,
                     enable_is_on: inputs.enable_is_on,
-                    is_broken: inputs.is_broken,
+                    has_tripped: inputs.has_tripped,
                 },
                 counters,
             );
@@ -183,15 +183,20 @@ impl Command {
         outputs
     }
 
-    /// What drives the motor is permitted only if nothing speaks against it.
-    fn checked(&mut self, permit: Permit, seen: &Seen, counters: &Counters) -> Permit {
+    /// Withdraws the permit if a plausibility check fails.
+    fn checked(
+        &mut self,
+        permit: Permit,
+        observation: &Observation,
+        counters: &Counters,
+    ) -> Permit {
         if !self.was_driven {
             self.plausibility = Plausibility::default();
         }
-        let found = self
+        let fault = self
             .plausibility
-            .check(seen, &self.motor, self.speed_limit_rad_s);
-        match found {
+            .check(observation, &self.motor, self.speed_limit_rad_s);
+        match fault {
             None => permit,
             Some(fault) => {
                 self.safety.fail(fault, counters);
@@ -248,7 +253,7 @@ impl Command {
             (true, LimitReason::None | LimitReason::NotArmed) => by_motor,
             (true, reason) => reason,
         };
-        for (counter, is_so) in [
+        for (counter, is_active) in [
             (DriveCounter::LostSamples, sampled.lost_ticks > 0),
             (DriveCounter::LateTicks, is_late),
             (DriveCounter::MissedCurrents, current_a.is_none()),
@@ -257,7 +262,7 @@ impl Command {
                 is_armed && limit != LimitReason::None,
             ),
         ] {
-            if is_so {
+            if is_active {
                 counters.count(counter);
             }
         }
@@ -275,7 +280,7 @@ impl Command {
     }
 }
 
-/// Rounded; held within what fits, and never [`NO_CURRENT`].
+/// Rounds and clamps to the range of i16, never [`NO_CURRENT`].
 fn milliamperes(current_a: f32) -> i16 {
     let most = f32::from(i16::MAX);
     let scaled = current_a * 1e3;

@@ -1,76 +1,75 @@
-//! Commits on their way from the link to the idle loop.
+//! Assembly of commits that the link receives, for the idle loop.
 
 use crate::counters::Counters;
 use crepitus_protocol::counters::DriveCounter;
-use crepitus_protocol::pieces::{Gathered, Piece};
+use crepitus_protocol::pieces::{Piece, Reassembly};
 use crepitus_protocol::{Revision, ValueError, Values};
 
 /// Received commits and their outcomes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Commits {
-    /// The latest, until its preparation begins.
-    wanted: Option<(Revision, Gathered)>,
-    /// The newest that was heard of this start of comms.
-    newest: Option<Revision>,
-    /// The one that was prepared last; it comes into force with a block.
+    /// The latest commit, until its preparation begins.
+    pending: Option<(Revision, Reassembly)>,
+    /// The latest revision received since this boot of comms.
+    latest: Option<Revision>,
+    /// The revision prepared last; it takes effect with a block.
     prepared: Option<Revision>,
-    /// The last one that was refused, and why.
+    /// The last rejected revision, and the reason.
     refused: Option<(Revision, ValueError)>,
 }
 
 impl Commits {
-    /// Handles a piece of a commit, received while `in_force` is.
+    /// Handles a piece of a commit; `active` is the current revision.
     pub fn receive(
         &mut self,
         revision: Revision,
         checksum: u32,
         piece: &Piece,
-        in_force: Revision,
+        active: Revision,
         counters: &Counters,
     ) {
-        let is_older = |newest: Revision| revision.0.wrapping_sub(newest.0).cast_signed() < 0;
-        // Overtaken on its way by the one after it; or the number of none, which
-        // no commit has.
-        if revision == Revision::NONE || self.newest.is_some_and(is_older) {
+        let is_older = |latest: Revision| revision.0.wrapping_sub(latest.0).cast_signed() < 0;
+        // Stale: a later commit has overtaken it. NONE is no valid revision.
+        if revision == Revision::NONE || self.latest.is_some_and(is_older) {
             counters.count(DriveCounter::StaleCommands);
             return;
         }
-        self.newest = Some(revision);
-        // Comms repeats it until it has heard its outcome.
-        let is_known = in_force == revision
+        self.latest = Some(revision);
+        // Comms repeats a commit until its outcome is confirmed.
+        let is_known = active == revision
             || self.prepared == Some(revision)
             || self.refused.is_some_and(|(refused, _)| refused == revision);
         if is_known {
             return;
         }
-        let is_begun = self.wanted.as_ref().is_some_and(|(wanted, gathered)| {
-            *wanted == revision && gathered.checksum() == checksum
+        let is_begun = self.pending.as_ref().is_some_and(|(pending, reassembly)| {
+            *pending == revision && reassembly.checksum() == checksum
         });
         if !is_begun {
-            self.wanted = Some((revision, Gathered::new(checksum)));
+            self.pending = Some((revision, Reassembly::new(checksum)));
         }
-        if let Some((_, gathered)) = &mut self.wanted {
-            gathered.add(piece);
+        if let Some((_, reassembly)) = &mut self.pending {
+            reassembly.add(piece);
         }
     }
 
-    /// Takes the latest commit once all its pieces are here; see
-    /// [`Self::verified`].
-    pub fn take(&mut self) -> Option<(Revision, Gathered)> {
-        self.wanted.take_if(|(_, gathered)| gathered.is_complete())
+    /// Takes the pending commit once complete; see [`Self::verified`].
+    pub fn take(&mut self) -> Option<(Revision, Reassembly)> {
+        self.pending
+            .take_if(|(_, reassembly)| reassembly.is_complete())
     }
 
-    /// The values of a commit, if its checksum is right. Comms repeats one that
-    /// is not; the sum takes its time, so not under a lock.
-    pub fn verified(gathered: &Gathered, counters: &Counters) -> Option<Values> {
-        let values = gathered.values().copied().map(Values);
+    /// Returns the values of a commit if its checksum is valid; comms repeats an
+    /// invalid one. The checksum takes long, so call this outside a lock.
+    pub fn verified(reassembly: &Reassembly, counters: &Counters) -> Option<Values> {
+        let values = reassembly.values().copied().map(Values);
         if values.is_none() {
             counters.count(DriveCounter::Discarded);
         }
         values
     }
 
-    /// It was prepared, and will come into force; or refused.
+    /// Records that a commit was prepared, and will take effect, or rejected.
     pub fn done(
         &mut self,
         revision: Revision,
@@ -86,15 +85,15 @@ impl Commits {
         }
     }
 
-    /// The last one that was refused, and why.
+    /// The last rejected revision, and the reason.
     pub fn refused(&self) -> Option<(Revision, ValueError)> {
         self.refused
     }
 
-    /// Comms has started anew: its numbers begin anew, too. What was prepared
-    /// comes into force all the same.
-    pub fn forget(&mut self) {
-        (self.wanted, self.newest, self.refused) = (None, None, None);
+    /// Resets after a restart of comms, whose revisions restart, too. A prepared
+    /// commit still takes effect.
+    pub fn clear(&mut self) {
+        (self.pending, self.latest, self.refused) = (None, None, None);
     }
 }
 
@@ -118,7 +117,7 @@ mod tests {
             }
         }
 
-        fn piece(&mut self, revision: u32, values: &Values, index: u8, in_force: u32) -> bool {
+        fn piece(&mut self, revision: u32, values: &Values, index: u8, active: u32) -> bool {
             let piece = Piece::of(&values.0, index);
             if let Some(piece) = &piece {
                 let sum = checksum(&values.0);
@@ -126,32 +125,32 @@ mod tests {
                     Revision(revision),
                     sum,
                     piece,
-                    Revision(in_force),
+                    Revision(active),
                     &self.counters,
                 );
             }
             piece.is_some()
         }
 
-        fn whole(&mut self, revision: u32, values: &Values, in_force: u32) {
+        fn whole(&mut self, revision: u32, values: &Values, active: u32) {
             let mut index = 0;
-            while self.piece(revision, values, index, in_force) {
+            while self.piece(revision, values, index, active) {
                 index += 1;
             }
             assert!(index > 1, "several pieces");
         }
 
         fn take(&mut self) -> Option<(Revision, Values)> {
-            let (revision, gathered) = self.commits.take()?;
-            Some((revision, Commits::verified(&gathered, &self.counters)?))
+            let (revision, reassembly) = self.commits.take()?;
+            Some((revision, Commits::verified(&reassembly, &self.counters)?))
         }
     }
 
     #[test]
-    fn the_number_of_none_is_no_commit() {
+    fn revision_none_is_rejected() {
         let mut wire = Wire::new();
         wire.piece(Revision::NONE.0, &Values::default(), 0, 4);
-        assert_eq!(wire.commits.wanted, None);
+        assert_eq!(wire.commits.pending, None);
         assert_eq!(wire.counters.get(DriveCounter::StaleCommands), 1);
     }
 
@@ -170,13 +169,13 @@ mod tests {
         wire.whole(4, &values, 5);
         assert_eq!(wire.take(), None);
         assert!(wire.counters.get(DriveCounter::StaleCommands) > 0);
-        // What was refused stays refused, until comms restarts.
+        // A rejected revision stays rejected until comms restarts.
         let why = ValueError::NeedsDisarmed { id: 6 };
         wire.commits.done(Revision(6), Err(why), &wire.counters);
         wire.whole(6, &values, 5);
         assert_eq!(wire.take(), None);
         assert_eq!(wire.commits.refused(), Some((Revision(6), why)));
-        wire.commits.forget();
+        wire.commits.clear();
         wire.whole(2, &values, 5);
         assert!(wire.take().is_some());
     }
@@ -212,9 +211,9 @@ mod tests {
                 break;
             };
             let sum = checksum(&values.0) ^ 1;
-            let (revision, in_force) = (Revision(5), Revision(4));
+            let (revision, active) = (Revision(5), Revision(4));
             wire.commits
-                .receive(revision, sum, &piece, in_force, &wire.counters);
+                .receive(revision, sum, &piece, active, &wire.counters);
         }
         assert_eq!(wire.take(), None);
         assert_eq!(wire.counters.get(DriveCounter::Discarded), 1);

@@ -1,33 +1,33 @@
-//! What is known of the link: which command was carried out, what is due.
+//! State of the link: the last command, and pending messages to comms.
 
 use crate::counters::Counters;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::link::{DriveRefusal, Outcome};
-use crepitus_protocol::management::{Answer, Identity, Question, What};
+use crepitus_protocol::management::{Action, Answer, Identity, ManagementRequest};
 
-use crate::drive::vigil::is_fresh;
+use crate::drive::heartbeat_monitor::is_fresh;
 
-/// Ticks between two statuses.
+/// Interval of status messages, ticks.
 pub const STATUS_TICKS: u64 = 100;
 
-/// Which command was carried out last, and what is due to be said.
+/// The last command, and pending messages to comms.
 #[derive(Debug, Default)]
 pub struct Link {
-    /// The last command that was carried out, or is being.
+    /// The last command that was completed.
     last: Option<Outcome>,
-    in_hand: Option<u16>,
+    executing: Option<u16>,
     answer: Option<Answer>,
     status_due: bool,
     next_status_tick: u64,
 }
 
 impl Link {
-    /// Whether a command that echoes `seen_tick` is to be carried out now:
-    /// newer than the last one, and fresh.
+    /// Accepts a command once, if it is newer than the last one and fresh:
+    /// `seen_tick` is the drive's tick that it echoes.
     pub fn accepts(&mut self, now: u64, seen_tick: u64, number: u16, counters: &Counters) -> bool {
-        let last = self.in_hand.or(self.last.map(|outcome| outcome.number));
+        let last = self.executing.or(self.last.map(|outcome| outcome.number));
         if last == Some(number) {
-            // Repeated: the status says what became of it.
+            // Repeated: the status carries its outcome.
             return false;
         }
         let is_newer = last.is_none_or(|last| number.wrapping_sub(last).cast_signed() > 0);
@@ -35,48 +35,48 @@ impl Link {
             counters.count(DriveCounter::StaleCommands);
             return false;
         }
-        self.in_hand = Some(number);
+        self.executing = Some(number);
         true
     }
 
-    /// The command in hand is done, or refused.
+    /// Stores the result of the current command.
     pub fn finish(&mut self, result: Result<(), DriveRefusal>) {
-        if let Some(number) = self.in_hand.take() {
+        if let Some(number) = self.executing.take() {
             self.last = Some(Outcome { number, result });
             self.status_due = true;
         }
     }
 
-    /// Comms has started anew: its numbers begin anew, too.
-    pub fn forget(&mut self) {
-        (self.last, self.in_hand) = (None, None);
+    /// Resets after a restart of comms, whose sequence numbers restart, too.
+    pub fn clear(&mut self) {
+        (self.last, self.executing) = (None, None);
     }
 
-    /// Answers a question once there is room.
-    pub fn answer(&mut self, question: Question, own: &Identity, done: bool) {
+    /// Queues the reply to a management request.
+    pub fn answer(&mut self, question: ManagementRequest, own: &Identity, done: bool) {
         let token = question.token;
-        self.answer = Some(match question.what {
-            What::Hello => Answer::Hello {
+        self.answer = Some(match question.action {
+            Action::Hello => Answer::Hello {
                 token,
                 own: *own,
                 drive: *own,
             },
-            What::Stop => Answer::Stop { token, done },
-            What::Reboot => Answer::Reboot { token, done },
+            Action::Stop => Answer::Stop { token, done },
+            Action::Reboot => Answer::Reboot { token, done },
         });
     }
 
-    /// Something has changed: a status is due.
-    pub fn changed(&mut self) {
+    /// Schedules a status at once.
+    pub fn request_status(&mut self) {
         self.status_due = true;
     }
 
-    /// Whether a question waits for its answer.
+    /// Whether a management reply is pending.
     pub fn has_answer(&self) -> bool {
         self.answer.is_some()
     }
 
-    /// The answer that waits.
+    /// Takes the pending management reply.
     pub fn take_answer(&mut self) -> Option<Answer> {
         self.answer.take()
     }
@@ -86,13 +86,13 @@ impl Link {
         self.status_due || now >= self.next_status_tick
     }
 
-    /// A status is told now.
-    pub fn status_told(&mut self, now: u64) {
+    /// Records that a status is sent now.
+    pub fn status_sent(&mut self, now: u64) {
         self.status_due = false;
         self.next_status_tick = now.saturating_add(STATUS_TICKS);
     }
 
-    /// The last command that was carried out, or refused.
+    /// The last command that was completed, and its result.
     pub fn last(&self) -> Option<Outcome> {
         self.last
     }

@@ -1,34 +1,34 @@
-//! `link`, the task of lowest priority: what comms wants, and what it is told.
+//! `link`, the task of lowest priority: executes messages of comms, sends
+//! telemetry, status and replies.
 
 use crate::counters::Counters;
 use crate::drive::command::Command;
 use crate::drive::commits::Commits;
+use crate::drive::heartbeat_monitor::Freshness;
 use crate::drive::link::Link;
 use crate::drive::outgoing::{Outgoing, PIECE_SAMPLES};
 use crate::drive::sampler::Sampler;
-use crate::drive::vigil::Heard;
 use core::borrow::BorrowMut;
 use crepitus_protocol::counters::DriveCounter;
-use crepitus_protocol::frame::{Made, Place};
+use crepitus_protocol::frame::{EncodedFrame, FrameBuffer};
 use crepitus_protocol::link::{DriveRefusal, DriveStatus, Order, ToDrive};
-use crepitus_protocol::management::{Identity, Question, What};
+use crepitus_protocol::management::{Action, Identity, ManagementRequest};
 use crepitus_protocol::{Decoder, Fault, Lane, Revision, State};
 
-/// What the task shares with the others. The firmware locks each for as long
-/// as the work takes, so the work is short.
+/// Resources shared with the other tasks. The firmware holds a lock while
+/// `work` runs, so `work` is short.
 pub trait Shared {
-    /// `command_motor`'s: state, faults, blocks.
+    /// Owned by `command_motor`: state, faults, blocks.
     fn command<R>(&mut self, work: impl FnOnce(&mut Command) -> R) -> R;
 
-    /// `sample_encoder`'s: the clock, the angle's zero.
+    /// Owned by `sample_encoder`: the clock, the angle's zero.
     fn sampler<R>(&mut self, work: impl FnOnce(&mut Sampler) -> R) -> R;
 
-    /// The idle loop's: commits that wait.
+    /// Owned by the idle loop: pending commits.
     fn commits<R>(&mut self, work: impl FnOnce(&mut Commits) -> R) -> R;
 }
 
-/// The drive's end of the link, and what is done about what comes. Frames are
-/// made in places `P`.
+/// The drive's end of the link. Frames are encoded in buffers `P`.
 #[derive(Debug)]
 pub struct LinkTask<P> {
     identity: Identity,
@@ -36,15 +36,16 @@ pub struct LinkTask<P> {
     decoder: Decoder,
     link: Link,
     outgoing: Outgoing<P>,
-    wants_reboot: bool,
-    /// Blocks that were complete before what the next status has to tell.
-    blocks_first: usize,
-    /// What the last status has said.
-    told: (State, Option<Fault>, Revision, bool),
+    reboot_requested: bool,
+    /// Blocks to send before the next status: they precede the change that it
+    /// reports.
+    blocks_before_status: usize,
+    /// The state that was reported last.
+    reported: (State, Option<Fault>, Revision, bool),
 }
 
-impl<P: BorrowMut<Place>> LinkTask<P> {
-    /// Of a drive that has just started.
+impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
+    /// The state after boot.
     pub fn new(identity: Identity, start: u16) -> Self {
         Self {
             identity,
@@ -52,13 +53,13 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
             decoder: Decoder::new(),
             link: Link::default(),
             outgoing: Outgoing::default(),
-            wants_reboot: false,
-            blocks_first: 0,
-            told: (State::Disarmed, None, Revision::NONE, false),
+            reboot_requested: false,
+            blocks_before_status: 0,
+            reported: (State::Disarmed, None, Revision::NONE, false),
         }
     }
 
-    /// A byte from comms.
+    /// Receives a byte from comms.
     pub fn received(&mut self, byte: u8, shared: &mut impl Shared, counters: &Counters) {
         let Some(frame) = self.decoder.push(byte) else {
             return;
@@ -71,13 +72,13 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
             Some(Lane::ToDrive) => {
                 if let Some(message) = body.message() {
                     counters.count(DriveCounter::Frames);
-                    return self.hear(&message, shared, counters);
+                    return self.handle(&message, shared, counters);
                 }
             }
             Some(Lane::Management) => {
-                if let Some(question) = Question::of(body.payload) {
+                if let Some(question) = ManagementRequest::of(body.payload) {
                     counters.count(DriveCounter::Frames);
-                    return self.manage(question, shared);
+                    return self.handle_management(question, shared);
                 }
             }
             _ => {}
@@ -85,16 +86,19 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
         counters.count(DriveCounter::Foreign);
     }
 
-    /// A message; by reference, as a commit is long.
-    fn hear(&mut self, message: &ToDrive, shared: &mut impl Shared, counters: &Counters) {
+    /// Handles a message; by reference, because a commit is long.
+    fn handle(&mut self, message: &ToDrive, shared: &mut impl Shared, counters: &Counters) {
         match message {
             ToDrive::Heartbeat(heartbeat) => {
                 let now = shared.sampler(|sampler| sampler.next_tick());
-                let heard =
-                    shared.command(|command| command.safety_mut().hear(now, heartbeat, counters));
-                if heard == Heard::Restarted {
-                    self.link.forget();
-                    shared.commits(Commits::forget);
+                let freshness = shared.command(|command| {
+                    command
+                        .safety_mut()
+                        .receive_heartbeat(now, heartbeat, counters)
+                });
+                if freshness == Freshness::Restarted {
+                    self.link.clear();
+                    shared.commits(Commits::clear);
                 }
             }
             ToDrive::Commit {
@@ -102,11 +106,11 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
                 checksum,
                 piece,
             } => {
-                let in_force = shared.command(|command| command.revision());
+                let active = shared.command(|command| command.revision());
                 shared.commits(|commits| {
-                    commits.receive(*revision, *checksum, piece, in_force, counters);
+                    commits.receive(*revision, *checksum, piece, active, counters);
                 });
-                self.link.changed();
+                self.link.request_status();
             }
             ToDrive::Command {
                 seen_tick,
@@ -115,7 +119,7 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
             } => {
                 let now = shared.sampler(|sampler| sampler.next_tick());
                 if self.link.accepts(now, *seen_tick, *number, counters)
-                    && let Some(result) = obey(now, *order, shared)
+                    && let Some(result) = execute(now, *order, shared)
                 {
                     self.link.finish(result);
                 }
@@ -123,18 +127,17 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
         }
     }
 
-    /// Goes on with the frame that is being made for comms, a piece, or begins
-    /// the next in a place from `spare`; gives the frame whose last piece it
-    /// was.
+    /// Encodes one piece of the current frame for comms, or starts the next
+    /// frame in a buffer from `spare`. Returns a finished frame.
     pub fn next_frame(
         &mut self,
         spare: impl FnOnce() -> Option<P>,
         shared: &mut impl Shared,
         counters: &Counters,
-    ) -> Option<Made<P>> {
-        self.look_for_news(shared);
+    ) -> Option<EncodedFrame<P>> {
+        self.poll_changes(shared);
         if self.outgoing.is_idle() {
-            self.begin(spare, shared, counters);
+            self.start_frame(spare, shared, counters);
             return None;
         }
         let Some(next) = self.outgoing.next_sample() else {
@@ -146,57 +149,57 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
         })?;
         let frame = self.outgoing.samples(&piece)?;
         shared.command(Command::pop_block);
-        self.blocks_first = self.blocks_first.saturating_sub(1);
+        self.blocks_before_status = self.blocks_before_status.saturating_sub(1);
         Some(frame)
     }
 
-    /// What a status has to tell at once.
-    fn look_for_news(&mut self, shared: &mut impl Shared) {
+    /// Schedules a status if the state or a command's outcome has changed.
+    fn poll_changes(&mut self, shared: &mut impl Shared) {
         let is_refused = shared.commits(|commits| commits.refused().is_some());
-        let (outcome, tells, waiting) = shared.command(|command| {
+        let (outcome, current, queued) = shared.command(|command| {
             let revision = command.revision();
-            let waiting = command.waiting_blocks();
+            let queued = command.queued_blocks();
             let safety = command.safety_mut();
-            let tells = (safety.state(), safety.fault(), revision, is_refused);
-            (safety.take_outcome(), tells, waiting)
+            let current = (safety.state(), safety.fault(), revision, is_refused);
+            (safety.take_outcome(), current, queued)
         });
         if let Some(result) = outcome {
             self.link.finish(result);
         }
-        if tells != self.told {
-            self.told = tells;
-            self.link.changed();
-            self.blocks_first = waiting;
+        if current != self.reported {
+            self.reported = current;
+            self.link.request_status();
+            self.blocks_before_status = queued;
         }
     }
 
-    /// Begins the next frame, if one is due: answers first, then blocks and
-    /// statuses, in the order in which what they tell has happened, however
-    /// slow the wire: a commit shows in the blocks after its status only.
-    fn begin(
+    /// Starts the next frame, if one is due: management replies first, then
+    /// blocks and statuses in the order of their events, however slow the wire:
+    /// a new revision appears only in blocks after its status.
+    fn start_frame(
         &mut self,
         spare: impl FnOnce() -> Option<P>,
         shared: &mut impl Shared,
         counters: &Counters,
     ) -> Option<()> {
         if self.link.has_answer() {
-            let place = spare()?;
+            let buffer = spare()?;
             let answer = self.link.take_answer()?;
-            return self.outgoing.begin_answer(place, &answer).ok();
+            return self.outgoing.begin_answer(buffer, &answer).ok();
         }
         let now = shared.sampler(|sampler| sampler.next_tick());
         let is_status_due = self.link.is_status_due(now);
         let has_block = shared.command(|command| command.block().is_some());
-        if has_block && !(is_status_due && self.blocks_first == 0) {
-            let place = spare()?;
+        if has_block && !(is_status_due && self.blocks_before_status == 0) {
+            let buffer = spare()?;
             let outgoing = &mut self.outgoing;
-            return shared.command(|command| outgoing.begin_block(place, command.block()?).ok());
+            return shared.command(|command| outgoing.begin_block(buffer, command.block()?).ok());
         }
         if is_status_due {
-            let place = spare()?;
-            self.link.status_told(now);
+            let buffer = spare()?;
+            self.link.status_sent(now);
             let status = self.status(now, shared, counters);
-            return self.outgoing.begin_status(place, &status).ok();
+            return self.outgoing.begin_status(buffer, &status).ok();
         }
         None
     }
@@ -208,7 +211,7 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
             DriveStatus {
                 tick: now,
                 start: self.start,
-                heard: safety.heard_start(),
+                comms_start: safety.comms_start(),
                 state: safety.state(),
                 fault: safety.fault().map_or(0, Fault::code),
                 revision: command.revision(),
@@ -221,31 +224,31 @@ impl<P: BorrowMut<Place>> LinkTask<P> {
         })
     }
 
-    /// Whether it was asked to start anew; once. The board does it.
+    /// Returns a pending reboot request, once. The board executes it.
     pub fn take_reboot(&mut self) -> bool {
-        core::mem::take(&mut self.wants_reboot)
+        core::mem::take(&mut self.reboot_requested)
     }
 
-    fn manage(&mut self, question: Question, shared: &mut impl Shared) {
+    fn handle_management(&mut self, question: ManagementRequest, shared: &mut impl Shared) {
         let is_live = shared.command(|command| {
-            if question.what == What::Stop {
+            if question.action == Action::Stop {
                 command.safety_mut().disarm();
             }
             command.safety().is_live()
         });
-        let done = match question.what {
-            What::Hello | What::Stop => true,
-            What::Reboot => {
-                self.wants_reboot = !is_live;
-                self.wants_reboot
+        let done = match question.action {
+            Action::Hello | Action::Stop => true,
+            Action::Reboot => {
+                self.reboot_requested = !is_live;
+                self.reboot_requested
             }
         };
         self.link.answer(question, &self.identity, done);
     }
 }
 
-/// Carries out an order; none if its end is still to come.
-fn obey(now: u64, order: Order, shared: &mut impl Shared) -> Option<Result<(), DriveRefusal>> {
+/// Executes an order; `None` while its result is pending.
+fn execute(now: u64, order: Order, shared: &mut impl Shared) -> Option<Result<(), DriveRefusal>> {
     match order {
         Order::Arm => {
             let lost_ticks = shared.sampler(|sampler| sampler.lost_ticks());
@@ -253,7 +256,7 @@ fn obey(now: u64, order: Order, shared: &mut impl Shared) -> Option<Result<(), D
                 if command.revision() == Revision::NONE {
                     return Some(Err(DriveRefusal::NoParameters));
                 }
-                // How arming ends is still to come.
+                // The result of arming comes later.
                 command.safety_mut().arm(now, lost_ticks).err().map(Err)
             })
         }

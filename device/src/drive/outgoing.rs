@@ -1,41 +1,41 @@
-//! The frame that is being made for comms, a piece in every run of the link's
-//! task: no tick pays for a whole one.
+//! Incremental frame encoder for comms: one piece in every run of the link
+//! task, so that no tick encodes a whole frame.
 
 use core::borrow::BorrowMut;
 use crepitus_protocol::Lane;
 use crepitus_protocol::counters::DRIVE_COUNT;
-use crepitus_protocol::frame::{self, Encoder, Made, Place, TooLong};
+use crepitus_protocol::frame::{self, EncodedFrame, Encoder, FrameBuffer, TooLong};
 use crepitus_protocol::link::{COUNTER_BYTES, DriveStatus};
 use crepitus_protocol::management::{Answer, AnswerBytes};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, SAMPLE_BYTES, Sample};
 
-/// Samples of a piece: with its head a block takes eleven of its twenty ticks.
+/// Samples per piece: with its head a block takes eleven of its twenty ticks.
 pub const PIECE_SAMPLES: usize = 2;
 const _: () = assert!(BLOCK_SAMPLES.is_multiple_of(PIECE_SAMPLES));
 
-/// Bytes of a piece of an answer.
+/// Bytes per piece of a management reply.
 const PIECE_BYTES: usize = 32;
 
-/// Counters of a piece of a status.
+/// Counters per piece of a status.
 const PIECE_COUNTERS: usize = 5;
 
-/// What is to come of a frame.
+/// The part of a frame that is still to be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Rest {
-    /// An answer, from here on.
+    /// A management reply, from this byte on.
     Answer(usize),
-    /// A status, the head of which has so many bytes.
+    /// A status whose head has this many bytes.
     Status(usize),
-    /// Its counters, from here on.
+    /// The counters of a status, from this one on.
     Counters(usize),
-    /// The samples of a block, from here on.
+    /// The samples of a block, from this one on.
     Samples(usize),
 }
 
-/// Makes frames, one after the other, in places `P`.
+/// Encodes one frame at a time, in buffers `P`.
 #[derive(Debug)]
 pub struct Outgoing<P> {
-    making: Option<(Encoder<P>, Rest)>,
+    current: Option<(Encoder<P>, Rest)>,
     answer: AnswerBytes,
     head: [u8; DriveStatus::HEAD_BYTES],
     counters: [u32; DRIVE_COUNT],
@@ -44,7 +44,7 @@ pub struct Outgoing<P> {
 impl<P> Default for Outgoing<P> {
     fn default() -> Self {
         Self {
-            making: None,
+            current: None,
             answer: AnswerBytes::new(),
             head: [0; DriveStatus::HEAD_BYTES],
             counters: [0; DRIVE_COUNT],
@@ -52,58 +52,57 @@ impl<P> Default for Outgoing<P> {
     }
 }
 
-impl<P: BorrowMut<Place>> Outgoing<P> {
-    /// Whether no frame is being made.
+impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
+    /// Whether no frame is in progress.
     pub fn is_idle(&self) -> bool {
-        self.making.is_none()
+        self.current.is_none()
     }
 
-    /// Begins the frame of an answer.
+    /// Starts the frame of a management reply.
     ///
     /// # Errors
-    /// [`TooLong`]; never, as an answer fits.
-    pub fn begin_answer(&mut self, place: P, answer: &Answer) -> Result<(), TooLong> {
+    /// [`TooLong`]; never, as a reply fits.
+    pub fn begin_answer(&mut self, buffer: P, answer: &Answer) -> Result<(), TooLong> {
         self.answer = answer.bytes();
-        let encoder = Encoder::new(place, Lane::ManagementAnswer)?;
-        self.making = Some((encoder, Rest::Answer(0)));
+        let encoder = Encoder::new(buffer, Lane::ManagementAnswer)?;
+        self.current = Some((encoder, Rest::Answer(0)));
         Ok(())
     }
 
-    /// Begins the frame of a status.
+    /// Starts the frame of a status.
     ///
     /// # Errors
     /// [`TooLong`]; never, as a status fits.
-    pub fn begin_status(&mut self, place: P, status: &DriveStatus) -> Result<(), TooLong> {
+    pub fn begin_status(&mut self, buffer: P, status: &DriveStatus) -> Result<(), TooLong> {
         let length = frame::write(&status.head(), &mut self.head)?.len();
         self.counters = status.counters;
-        let encoder = Encoder::new(place, Lane::FromDrive)?;
-        self.making = Some((encoder, Rest::Status(length)));
+        let encoder = Encoder::new(buffer, Lane::FromDrive)?;
+        self.current = Some((encoder, Rest::Status(length)));
         Ok(())
     }
 
-    /// Begins the frame of a block; its samples come in pieces.
+    /// Starts the frame of a block; its samples follow in pieces.
     ///
     /// # Errors
     /// [`TooLong`]; never, as a block fits.
-    pub fn begin_block(&mut self, place: P, block: &Block) -> Result<(), TooLong> {
-        let mut encoder = Encoder::new(place, Lane::Telemetry)?;
+    pub fn begin_block(&mut self, buffer: P, block: &Block) -> Result<(), TooLong> {
+        let mut encoder = Encoder::new(buffer, Lane::Telemetry)?;
         encoder.push(frame::write(&block.head(), &mut [0; Block::HEAD_BYTES])?)?;
-        self.making = Some((encoder, Rest::Samples(0)));
+        self.current = Some((encoder, Rest::Samples(0)));
         Ok(())
     }
 
-    /// The first sample of the next piece, if a block is being made.
+    /// Index of the first sample of the next piece, if a block is in progress.
     pub fn next_sample(&self) -> Option<usize> {
-        match self.making {
+        match self.current {
             Some((_, Rest::Samples(next))) => Some(next),
             _ => None,
         }
     }
 
-    /// Goes on with these samples of the block; the frame, if they were its
-    /// last.
-    pub fn samples(&mut self, piece: &[Sample; PIECE_SAMPLES]) -> Option<Made<P>> {
-        let (encoder, Rest::Samples(next)) = self.making.as_mut()? else {
+    /// Encodes samples of the block; returns the finished frame after the last.
+    pub fn samples(&mut self, piece: &[Sample; PIECE_SAMPLES]) -> Option<EncodedFrame<P>> {
+        let (encoder, Rest::Samples(next)) = self.current.as_mut()? else {
             return None;
         };
         let mut bytes = [0; PIECE_SAMPLES * SAMPLE_BYTES];
@@ -118,9 +117,10 @@ impl<P: BorrowMut<Place>> Outgoing<P> {
         self.finish()
     }
 
-    /// Goes on with an answer or a status; the frame, if that was its end.
-    pub fn piece(&mut self) -> Option<Made<P>> {
-        let (encoder, rest) = self.making.as_mut()?;
+    /// Encodes the next piece of a reply or a status; returns the finished frame
+    /// after the last.
+    pub fn piece(&mut self) -> Option<EncodedFrame<P>> {
+        let (encoder, rest) = self.current.as_mut()?;
         let is_whole = match rest {
             Rest::Answer(next) => {
                 let left = self.answer.get(*next..)?;
@@ -150,8 +150,8 @@ impl<P: BorrowMut<Place>> Outgoing<P> {
         if is_whole { self.finish() } else { None }
     }
 
-    fn finish(&mut self) -> Option<Made<P>> {
-        let (encoder, _) = self.making.take()?;
+    fn finish(&mut self) -> Option<EncodedFrame<P>> {
+        let (encoder, _) = self.current.take()?;
         encoder.finish().ok()
     }
 }
@@ -163,9 +163,9 @@ mod tests {
     use crepitus_protocol::link::FromDrive;
     use crepitus_protocol::management::Identity;
 
-    type Places = Outgoing<Place>;
+    type Places = Outgoing<FrameBuffer>;
 
-    /// What a few runs make, and how many it takes.
+    /// Runs the encoder to the end of a frame; returns it and the number of runs.
     fn run(outgoing: &mut Places, block: &Block) -> (Frame, usize) {
         for runs in 1..100 {
             let made = match outgoing.next_sample() {
@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn pieces_make_the_frames_that_a_whole_message_makes() {
         let mut outgoing = Places::default();
-        let place = || [0; FRAME_BYTES];
+        let buffer = || [0; FRAME_BYTES];
         let status = DriveStatus {
             tick: 1 << 40,
             counters: core::array::from_fn(|n| u32::MAX >> n),
@@ -204,16 +204,16 @@ mod tests {
             own: Identity::default(),
             drive: Identity::default(),
         };
-        outgoing.begin_status(place(), &status).unwrap();
+        outgoing.begin_status(buffer(), &status).unwrap();
         let (frame, runs) = run(&mut outgoing, &block);
         let whole = FromDrive::Status(status);
         assert_eq!(frame, frame::encode(Lane::FromDrive, &whole).unwrap());
         assert!(runs <= 5, "{runs}");
-        outgoing.begin_block(place(), &block).unwrap();
+        outgoing.begin_block(buffer(), &block).unwrap();
         let (frame, runs) = run(&mut outgoing, &block);
         assert_eq!(frame, frame::encode(Lane::Telemetry, &block).unwrap());
         assert_eq!(runs, BLOCK_SAMPLES / PIECE_SAMPLES);
-        outgoing.begin_answer(place(), &answer).unwrap();
+        outgoing.begin_answer(buffer(), &answer).unwrap();
         let (frame, _) = run(&mut outgoing, &block);
         let whole = frame::encode_bytes(Lane::ManagementAnswer, &answer.bytes());
         assert_eq!(frame, whole.unwrap());

@@ -1,9 +1,8 @@
-//! Settings to the numbers of a tick, outside the tick.
+//! Conversion of settings to the coefficients of a tick, outside the tick.
 //!
-//! What people set is a list of values; what a tick uses are plain numbers in
-//! f32, ramps among them, whose making takes logarithms in f64. That is work
-//! for the idle loop: the tick finds a [`Prepared`] and takes it over whole,
-//! between two blocks of telemetry.
+//! Users set a list of values; a tick uses f32 coefficients and ramps, which
+//! need logarithms in f64 to compute. The idle loop does that; the tick applies
+//! a complete [`Prepared`] between two blocks of telemetry.
 
 use crepitus_model::control::current_loop::{CurrentLoop, CurrentLoopSettings};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
@@ -13,11 +12,11 @@ use crepitus_model::render::ramp::Ramp;
 use crepitus_model::{Settings, SettingsError, StepCoefficients, Validated};
 use crepitus_protocol::{DeviceSettings, Revision, TICK_S, ValueError, Values};
 
-/// The fastest shaft that is believed, rad/s: seven times what the motor can
-/// do. Beyond it a count is a disturbance.
+/// The fastest plausible shaft, rad/s: seven times what the motor can do.
+/// Faster counts are disturbances.
 const FASTEST_RAD_S: f64 = 50.0;
 
-/// Torque acts half a tick to a tick and a half late, and lags.
+/// Delay of the torque: half a tick to a tick and a half, and a lag.
 const TIMING: Timing = Timing {
     step_s: TICK_S,
     delay_ticks: MOST_DELAY_TICKS,
@@ -32,7 +31,7 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// From settings.
+    /// Creates a reader from settings.
     ///
     /// # Errors
     /// [`SettingsError`] if one is out of its range.
@@ -60,20 +59,20 @@ fn single(value: f64) -> f32 {
     value as f32
 }
 
-/// What becomes of the joint.
+/// Change of the joint with a commit.
 #[derive(Clone, Copy, Debug)]
 pub enum JointPlan {
-    /// There is none, and will be none.
+    /// No joint before or after.
     Absent,
-    /// There is one: it goes on along this ramp.
+    /// The joint follows this ramp.
     Follow(Ramp<f32>),
-    /// There will be one: it begins without torque, and goes on along the ramp.
-    Begin(StepCoefficients<f32>, Ramp<f32>),
-    /// It goes along this ramp until it has no torque, then there is none.
-    Leave(Ramp<f32>),
+    /// A new joint: starts without torque, then follows the ramp.
+    Start(StepCoefficients<f32>, Ramp<f32>),
+    /// The joint follows this ramp to zero torque and is then removed.
+    Remove(Ramp<f32>),
 }
 
-/// What a tick of the motor uses.
+/// Coefficients of the motor.
 #[derive(Clone, Copy, Debug)]
 pub struct MotorPlan {
     /// A loop at rest.
@@ -82,44 +81,44 @@ pub struct MotorPlan {
     pub joint_constant: f32,
     /// 1/`joint_constant`.
     pub amperes_per_nm: f32,
-    /// Resistance that the winding is believed to have, Ω.
+    /// Assumed resistance of the winding, Ω.
     pub resistance_ohm: f32,
-    /// Inductance over a tick, Ω: voltage for a change of 1 A in a tick.
+    /// Inductance over a tick, Ω: voltage for a change of 1 A per tick.
     pub inductance_per_tick_ohm: f32,
-    /// Largest current that is asked for, A.
+    /// Largest current setpoint, A.
     pub current_limit_a: f32,
 }
 
-/// What `render_torque` takes over.
+/// New coefficients for `render_torque`.
 #[derive(Clone, Copy, Debug)]
 pub struct RenderingPlan {
     /// Angle of one count, rad.
     pub rad_per_count: f32,
     /// The joint.
     pub joint: JointPlan,
-    /// The effects besides the joint, where they are others.
+    /// Changes of the other effects.
     pub effects: EffectChanges<f32>,
     /// Largest torque, N·m.
     pub torque_limit_nm: f32,
-    /// How much torque grows in a tick, N·m.
+    /// Largest growth of the torque in a tick, N·m.
     pub slew_nm: f32,
 }
 
-/// What `command_motor` takes over.
+/// New coefficients for `command_motor`.
 #[derive(Clone, Copy, Debug)]
 pub struct CommandPlan {
-    /// The revision that blocks have from now on.
+    /// Revision of the parameters, for the blocks.
     pub revision: Revision,
-    /// The motor, where it is another.
+    /// The motor, if it has changed.
     pub motor: Option<MotorPlan>,
-    /// Speed beyond which the device lets go, rad/s.
+    /// Overspeed threshold, rad/s.
     pub speed_limit_rad_s: f32,
 }
 
-/// Parameters, ready for the tasks to take over.
+/// Prepared parameters, for the tasks to apply.
 #[derive(Clone, Copy, Debug)]
 pub struct Prepared {
-    /// The encoder, where it is another.
+    /// The encoder, if it has changed.
     pub reader: Option<Reader>,
     /// For `render_torque`.
     pub rendering: RenderingPlan,
@@ -127,16 +126,16 @@ pub struct Prepared {
     pub command: CommandPlan,
 }
 
-/// Makes [`Prepared`] from values, knowing what is in force.
+/// Prepares values, given the active parameters.
 #[derive(Clone, Debug)]
 pub struct Preparation {
-    in_force: DeviceSettings,
+    active: DeviceSettings,
     values: Values,
-    /// Numbers of the joint in force; without torque if there is none.
+    /// Coefficients of the active joint; without torque if there is none.
     coefficients: StepCoefficients<f32>,
 }
 
-/// What everything starts from.
+/// Initial coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Start {
     /// The encoder.
@@ -148,24 +147,25 @@ pub struct Start {
 }
 
 impl Preparation {
-    /// The defaults in force, as [`Revision::NONE`], and what starts from them.
+    /// The defaults as active parameters, with [`Revision::NONE`], and the
+    /// initial coefficients.
     ///
     /// # Errors
-    /// [`ValueError`] if the defaults are not allowed: a mistake in their
-    /// table, which a test would have found.
+    /// [`ValueError`] if the default values are invalid: a bug in their table,
+    /// which a test excludes.
     pub fn new() -> Result<(Self, Start), ValueError> {
         let values = Values::default();
-        let in_force = DeviceSettings::of(&values)?;
+        let active = DeviceSettings::of(&values)?;
         let mut preparation = Self {
-            in_force: DeviceSettings {
+            active: DeviceSettings {
                 crepitus: None,
-                ..in_force
+                ..active
             },
             values,
-            coefficients: silent(&in_force.crepitus.unwrap_or(fallback()?))?,
+            coefficients: silent(&active.crepitus.unwrap_or(fallback()?))?,
         };
-        let reader = Reader::of(&in_force.encoder)?;
-        let motor = motor(&in_force)?;
+        let reader = Reader::of(&active.encoder)?;
+        let motor = motor(&active)?;
         let prepared = preparation.prepare(Revision::NONE, &values, false)?;
         Ok((
             preparation,
@@ -177,17 +177,18 @@ impl Preparation {
         ))
     }
 
-    /// What was prepared last.
+    /// The values prepared last.
     pub fn values(&self) -> &Values {
         &self.values
     }
 
-    /// Prepares a commit. Called only when the one before has been taken over
-    /// and has settled, and then taken over in any case: it becomes what is in
-    /// force.
+    /// Prepares a commit. Call it only when the previous one was applied and has
+    /// settled, and apply the result in any case: it counts as active from here
+    /// on.
     ///
     /// # Errors
-    /// [`ValueError`] if the values are not allowed, or not while `armed`.
+    /// [`ValueError`] if the values are invalid, or need a disarmed device and
+    /// it is `armed`.
     pub fn prepare(
         &mut self,
         revision: Revision,
@@ -198,16 +199,16 @@ impl Preparation {
         if armed && let Some(id) = values.needs_disarmed(&self.values) {
             return Err(ValueError::NeedsDisarmed { id });
         }
-        let now = &self.in_force;
+        let now = &self.active;
         let slew = next.limits.slew_nm_per_s;
-        let is_other_encoder = now.encoder != next.encoder;
+        let encoder_changed = now.encoder != next.encoder;
         let (joint, coefficients) = match (now.crepitus, next.crepitus) {
             (None, None) => (JointPlan::Absent, self.coefficients),
-            // The guard knows the encoder's count: a new joint for a new one.
-            (Some(_), Some(settings)) if is_other_encoder => {
+            // The guard depends on the angle of a count: a new joint.
+            (Some(_), Some(settings)) if encoder_changed => {
                 let from = silent(&settings)?;
                 let to = StepCoefficients::new(&settings, TICK_S)?;
-                (JointPlan::Begin(from, Ramp::new(from, to, slew)), to)
+                (JointPlan::Start(from, Ramp::new(from, to, slew)), to)
             }
             (Some(_), Some(settings)) => {
                 let to = StepCoefficients::new(&settings, TICK_S)?;
@@ -219,18 +220,21 @@ impl Preparation {
             (None, Some(settings)) => {
                 let from = silent(&settings)?;
                 let to = StepCoefficients::new(&settings, TICK_S)?;
-                (JointPlan::Begin(from, Ramp::new(from, to, slew)), to)
+                (JointPlan::Start(from, Ramp::new(from, to, slew)), to)
             }
             (Some(settings), None) => {
                 let to = silent(&settings)?;
-                (JointPlan::Leave(Ramp::new(self.coefficients, to, slew)), to)
+                (
+                    JointPlan::Remove(Ramp::new(self.coefficients, to, slew)),
+                    to,
+                )
             }
         };
         let reader = Reader::of(&next.encoder)?;
-        let is_other_motor = now.current_loop != next.current_loop
+        let motor_changed = now.current_loop != next.current_loop
             || now.joint_constant().to_bits() != next.joint_constant().to_bits();
         let prepared = Prepared {
-            reader: is_other_encoder.then_some(reader),
+            reader: encoder_changed.then_some(reader),
             rendering: RenderingPlan {
                 rad_per_count: reader.rad_per_count,
                 joint,
@@ -240,7 +244,7 @@ impl Preparation {
             },
             command: CommandPlan {
                 revision,
-                motor: if is_other_motor {
+                motor: if motor_changed {
                     Some(motor(&next)?)
                 } else {
                     None
@@ -248,7 +252,7 @@ impl Preparation {
                 speed_limit_rad_s: single(next.limits.speed_rad_s),
             },
         };
-        (self.in_force, self.values, self.coefficients) = (next, *values, coefficients);
+        (self.active, self.values, self.coefficients) = (next, *values, coefficients);
         Ok(prepared)
     }
 }

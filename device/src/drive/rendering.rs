@@ -1,7 +1,7 @@
-//! `render_torque`: the [pipeline](crepitus_model::render) with the stages that
-//! the firmware links, and how a commit changes them.
+//! `render_torque`: the [pipeline](crepitus_model::render) with the firmware's
+//! stages, and the application of a commit.
 //!
-//! The joint runs in every tick, torque or not.
+//! The joint runs in every tick, also while torque is off.
 
 use crate::drive::prepare::{JointPlan, RenderingPlan};
 use crate::drive::sampler::Sampled;
@@ -25,25 +25,25 @@ pub type Stages = Pipeline<f32, InputCheck<f32>, Symptoms, SwitchedEffects<f32>,
 pub struct Rendered {
     /// Ticks since the start.
     pub tick: u64,
-    /// What is asked of the motor, N·m.
+    /// Torque setpoint of the motor, N·m.
     pub torque_nm: f32,
-    /// What the model asks for, N·m.
+    /// The model's torque before limits, N·m.
     pub model_torque_nm: f32,
-    /// What else is to be said; without what the motor adds.
+    /// Sample flags, without those of the motor.
     pub flags: SampleFlags,
 }
 
-/// Renders, once a tick.
+/// Renders the torque, once a tick.
 #[derive(Clone, Debug)]
 pub struct Rendering {
     stages: Stages,
-    /// The joint goes once it has settled.
-    is_leaving: bool,
+    /// The joint is removed once it has settled.
+    is_removing: bool,
     is_settling: bool,
 }
 
 impl Rendering {
-    /// From the first numbers.
+    /// Starts with these coefficients.
     pub fn new(plan: &RenderingPlan) -> Self {
         let limits = InputLimits::device(TICK_S);
         let slew_nm = plan.slew_nm;
@@ -54,27 +54,27 @@ impl Rendering {
                 SwitchedEffects::new(slew_nm),
                 TorqueLimits::new(plan.torque_limit_nm, slew_nm),
             ),
-            is_leaving: false,
+            is_removing: false,
             is_settling: false,
         };
-        rendering.take_over(plan, 0.0);
+        rendering.apply(plan, 0.0);
         rendering
     }
 
-    /// From the next tick on, these numbers.
-    pub fn take_over(&mut self, plan: &RenderingPlan, omega_rad_s: f32) {
+    /// Applies new coefficients from the next tick on.
+    pub fn apply(&mut self, plan: &RenderingPlan, omega_rad_s: f32) {
         let stages = &mut self.stages;
-        self.is_leaving = false;
+        self.is_removing = false;
         match plan.joint {
             JointPlan::Absent => {}
-            JointPlan::Begin(silent, ramp) => {
+            JointPlan::Start(silent, ramp) => {
                 let limits = InputLimits::device(TICK_S);
                 let mut joint = Crepitus::new(silent, limits, plan.rad_per_count, omega_rad_s);
                 joint.follow(ramp);
                 stages.symptoms = Some(joint);
             }
-            JointPlan::Follow(ramp) | JointPlan::Leave(ramp) => {
-                self.is_leaving = matches!(plan.joint, JointPlan::Leave(_));
+            JointPlan::Follow(ramp) | JointPlan::Remove(ramp) => {
+                self.is_removing = matches!(plan.joint, JointPlan::Remove(_));
                 if let Some(joint) = &mut stages.symptoms {
                     joint.follow(ramp);
                 }
@@ -84,12 +84,12 @@ impl Rendering {
         stages.limits.change(plan.torque_limit_nm, plan.slew_nm);
     }
 
-    /// Whether numbers still move, after a tick: the next commit waits.
+    /// Whether a ramp is in progress: the next commit waits.
     pub fn is_settling(&self) -> bool {
         self.is_settling
     }
 
-    /// One tick.
+    /// Runs one tick.
     pub fn tick(&mut self, sampled: &Sampled, is_energised: bool) -> Rendered {
         let seen = Seen {
             sample: sampled.shaft,
@@ -106,9 +106,9 @@ impl Rendering {
                 true,
             );
         });
-        if self.is_leaving && !shown.settling {
+        if self.is_removing && !shown.settling {
             self.stages.symptoms = None;
-            self.is_leaving = false;
+            self.is_removing = false;
         }
         self.is_settling = shown.settling;
         Rendered {
@@ -120,7 +120,7 @@ impl Rendering {
     }
 }
 
-/// Phase, ramp and limit of a tick.
+/// Adds phase, ramp and limit to the flags.
 #[inline]
 fn with(flags: SampleFlags, shown: &Shown<f32>) -> SampleFlags {
     flags

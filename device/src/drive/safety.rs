@@ -1,30 +1,30 @@
-//! Whether there may be torque.
+//! The safety state machine: permits or denies torque.
 //!
 //! ```text
 //!                 Arm                    proven
 //!   Disarmed ──────────────> Arming ──────────────> Armed
 //!      ↑  ↑                    │  │                  │  │
 //!      │  └────────────────────┘  └───────┐   ┌──────┘  │
-//!      │      no longer wanted            ↓   ↓         │ no longer wanted
+//!      │      disarm                      ↓   ↓         │ disarm
 //!      │                     ClearFault  Faulted        │
 //!      └──────────────────────────────────┘─────────────┘
 //! ```
 //!
-//! It lives in the highest priority, which runs in every tick whatever else is
-//! late, so nothing that hangs below can keep the torque on.
+//! It runs at the highest priority, in every tick, so no task that hangs or is
+//! late can keep the torque on.
 
 use crate::counters::Counters;
-use crate::drive::arming::{Arming, Wish};
-use crate::drive::vigil::{Heard, Vigil};
+use crate::drive::arming::{Arming, ArmingOutput};
+use crate::drive::heartbeat_monitor::{Freshness, HeartbeatMonitor};
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::link::{DriveRefusal, Heartbeat};
 use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::{Fault, State};
 
-/// Ticks within which the enable line falls once it is let go of.
+/// Ticks within which the enable line falls after it is switched off.
 const LINE_TICKS: u32 = 9;
 
-/// What a tick may do.
+/// Permitted output of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Permit {
     /// Nothing: the line off, the bridge floating.
@@ -37,25 +37,25 @@ pub enum Permit {
     Torque,
 }
 
-/// The state of a drive.
+/// The safety state of the drive.
 #[derive(Clone, Copy, Debug)]
 pub struct Safety {
     state: State,
     fault: Option<Fault>,
-    vigil: Vigil,
+    heartbeat_monitor: HeartbeatMonitor,
     arming: Arming,
-    /// What became of the last order to arm.
+    /// Result of the last order to arm.
     outcome: Option<Result<(), DriveRefusal>>,
     polarity_proven: bool,
-    /// Ticks in a row in which the line was on, and let go of.
-    astray_ticks: u32,
+    /// Consecutive ticks in which the line read back on while switched off.
+    stuck_on_ticks: u32,
 }
 
 impl Safety {
-    /// As a controller starts: a reset that should not have been is a fault.
+    /// The state after boot: an unexpected reset is a fault.
     pub fn new(reset: ResetCause) -> Self {
         let fault = match reset {
-            ResetCause::Power | ResetCause::Asked => None,
+            ResetCause::Power | ResetCause::Requested => None,
             ResetCause::Watchdog => Some(Fault::DriveWatchdog),
             ResetCause::BrownOut => Some(Fault::DriveBrownOut),
             ResetCause::Panic => Some(Fault::DrivePanic),
@@ -67,11 +67,11 @@ impl Safety {
                 State::Disarmed
             },
             fault,
-            vigil: Vigil::default(),
+            heartbeat_monitor: HeartbeatMonitor::default(),
             arming: Arming::default(),
             outcome: None,
             polarity_proven: false,
-            astray_ticks: 0,
+            stuck_on_ticks: 0,
         }
     }
 
@@ -80,17 +80,17 @@ impl Safety {
         self.state
     }
 
-    /// The fault that it is in.
+    /// The latched fault.
     pub fn fault(&self) -> Option<Fault> {
         self.fault
     }
 
-    /// Whether the line is, or may be, on.
+    /// Whether the line may be on.
     pub fn is_live(&self) -> bool {
         matches!(self.state, State::Arming | State::Armed)
     }
 
-    /// Whether encoder and motor have been seen to turn the same way.
+    /// Whether arming has shown that encoder and motor turn the same way.
     pub fn polarity_proven(&self) -> bool {
         self.polarity_proven
     }
@@ -100,37 +100,42 @@ impl Safety {
         self.arming.offset_a()
     }
 
-    /// What became of the last order to arm; once.
+    /// Takes the result of the last order to arm.
     pub fn take_outcome(&mut self) -> Option<Result<(), DriveRefusal>> {
         self.outcome.take()
     }
 
-    /// A heartbeat was decoded in the tick `now`.
-    pub fn hear(&mut self, now: u64, heartbeat: &Heartbeat, counters: &Counters) -> Heard {
-        let heard = self.vigil.hear(now, heartbeat);
-        if heard == Heard::Stale {
+    /// Handles a heartbeat that was decoded in the tick `now`.
+    pub fn receive_heartbeat(
+        &mut self,
+        now: u64,
+        heartbeat: &Heartbeat,
+        counters: &Counters,
+    ) -> Freshness {
+        let freshness = self.heartbeat_monitor.receive(now, heartbeat);
+        if freshness == Freshness::Stale {
             counters.count(DriveCounter::StaleHeartbeats);
-            return heard;
+            return freshness;
         }
         counters.count(DriveCounter::Heartbeats);
-        if heard == Heard::Restarted && self.is_live() {
+        if freshness == Freshness::Restarted && self.is_live() {
             self.fail(Fault::CommsRestarted, counters);
         }
         if !heartbeat.enable {
             self.disarm();
         }
-        heard
+        freshness
     }
 
-    /// Which start of comms was heard last.
-    pub fn heard_start(&self) -> Option<u16> {
-        self.vigil.start()
+    /// Boot counter of comms, from its last heartbeat.
+    pub fn comms_start(&self) -> Option<u16> {
+        self.heartbeat_monitor.comms_start()
     }
 
-    /// Begins to arm; [`Self::take_outcome`] says how it ended.
+    /// Starts arming; [`Self::take_outcome`] returns its result.
     ///
     /// # Errors
-    /// [`DriveRefusal`] if it cannot even begin.
+    /// [`DriveRefusal`] if arming cannot start.
     pub fn arm(&mut self, now: u64, lost_ticks: u32) -> Result<(), DriveRefusal> {
         match (self.state, self.fault) {
             (State::Faulted, Some(fault)) => {
@@ -139,7 +144,7 @@ impl Safety {
             (State::Arming | State::Armed, _) => return Err(DriveRefusal::Armed),
             _ => {}
         }
-        if self.vigil.missing(now).is_some() {
+        if self.heartbeat_monitor.timeout(now).is_some() {
             return Err(DriveRefusal::NoLease);
         }
         if lost_ticks > 0 {
@@ -151,7 +156,7 @@ impl Safety {
         Ok(())
     }
 
-    /// No more torque; not a fault.
+    /// Disarms; not a fault.
     pub fn disarm(&mut self) {
         if self.is_live() {
             if self.state == State::Arming {
@@ -161,10 +166,10 @@ impl Safety {
         }
     }
 
-    /// Forgets the fault.
+    /// Clears the fault.
     ///
     /// # Errors
-    /// [`DriveRefusal::Faulted`] if what caused it is still there.
+    /// [`DriveRefusal::Faulted`] if its cause persists.
     pub fn clear(&mut self, line_is_on: bool) -> Result<(), DriveRefusal> {
         if self.is_live() {
             return Err(DriveRefusal::Armed);
@@ -181,7 +186,7 @@ impl Safety {
         }
     }
 
-    /// A fault: no more torque until it is cleared. The first one stays.
+    /// Latches a fault: no torque until it is cleared. The first fault is kept.
     pub fn fail(&mut self, fault: Fault, counters: &Counters) {
         if self.state == State::Arming {
             self.outcome = Some(Err(DriveRefusal::Faulted { code: fault.code() }));
@@ -193,7 +198,7 @@ impl Safety {
         self.state = State::Faulted;
     }
 
-    /// One tick, before anything is done in it.
+    /// Runs first in every tick; returns the permitted output.
     pub fn tick(
         &mut self,
         now: u64,
@@ -203,44 +208,44 @@ impl Safety {
         counters: &Counters,
     ) -> Permit {
         if self.is_live()
-            && let Some(fault) = self.vigil.missing(now)
+            && let Some(fault) = self.heartbeat_monitor.timeout(now)
         {
             self.fail(fault, counters);
         }
         let permit = match self.state {
             State::Armed => Permit::Torque,
             State::Arming => match self.arming.tick(raw_a, line_is_on, count) {
-                Wish::Off => Permit::Nothing,
-                Wish::Line => Permit::Line,
-                Wish::Push(amperes) => Permit::Push(amperes),
-                Wish::Armed => {
+                ArmingOutput::Off => Permit::Nothing,
+                ArmingOutput::Line => Permit::Line,
+                ArmingOutput::Push(amperes) => Permit::Push(amperes),
+                ArmingOutput::Armed => {
                     self.state = State::Armed;
                     self.outcome = Some(Ok(()));
                     self.polarity_proven = self.arming.is_proven();
                     counters.count(DriveCounter::Armings);
                     Permit::Torque
                 }
-                Wish::Failed(fault) => {
+                ArmingOutput::Failed(fault) => {
                     self.fail(fault, counters);
                     Permit::Nothing
                 }
             },
             State::Disarmed | State::Faulted => Permit::Nothing,
         };
-        self.watch_line(permit, line_is_on, counters);
+        self.check_line(permit, line_is_on, counters);
         permit
     }
 
-    /// A line that was let go of has to fall.
-    fn watch_line(&mut self, permit: Permit, line_is_on: bool, counters: &Counters) {
-        let is_astray = permit == Permit::Nothing && self.state != State::Arming && line_is_on;
-        self.astray_ticks = if is_astray {
-            self.astray_ticks.saturating_add(1)
+    /// Checks that the line falls after it is switched off.
+    fn check_line(&mut self, permit: Permit, line_is_on: bool, counters: &Counters) {
+        let is_stuck_on = permit == Permit::Nothing && self.state != State::Arming && line_is_on;
+        self.stuck_on_ticks = if is_stuck_on {
+            self.stuck_on_ticks.saturating_add(1)
         } else {
             0
         };
-        if self.astray_ticks > LINE_TICKS && self.fault != Some(Fault::EnableStuckOn) {
-            // Worse than any other fault: it takes their place.
+        if self.stuck_on_ticks > LINE_TICKS && self.fault != Some(Fault::EnableStuckOn) {
+            // More serious than any other fault: replaces them.
             self.fault = None;
             self.fail(Fault::EnableStuckOn, counters);
         }

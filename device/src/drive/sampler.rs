@@ -1,26 +1,26 @@
-//! `sample_encoder`: the counter to what the model needs of the shaft.
+//! `sample_encoder`: shaft motion from the encoder's counter.
 
 use crate::drive::prepare::Reader;
 use crepitus_model::Sample;
 use crepitus_model::control::encoder::EncoderReader;
 use crepitus_protocol::telemetry::BLOCK_TICKS;
 
-/// After so many ticks without a count that a shaft can make, the shaft is
-/// taken to be where the counter says: the counter itself was disturbed.
+/// After this many consecutive implausible counts the reader restarts at the
+/// counter's value: the counter itself was disturbed.
 pub const LOST_TICKS: u32 = 20;
 
-/// What is known of the shaft in a tick.
+/// Motion of the shaft in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampled {
     /// Ticks since the start.
     pub tick: u64,
-    /// Counts from where the angle is zero; wraps.
+    /// Counts from the angle's zero; wraps.
     pub count: i32,
     /// The shaft's motion since the last tick.
     pub shaft: Sample<f32>,
     /// Estimated velocity, rad/s.
     pub omega_rad_s: f32,
-    /// Ticks in a row without a count to believe, this one included.
+    /// Consecutive ticks without a plausible count, this one included.
     pub lost_ticks: u32,
 }
 
@@ -28,10 +28,10 @@ pub struct Sampled {
 #[derive(Clone, Debug)]
 pub struct Sampler {
     reader: EncoderReader<f32>,
-    /// The most counts that a shaft makes in a tick.
+    /// Most plausible counts in a tick.
     most_counts: u32,
     tick: u64,
-    /// Ticks of the block that have begun.
+    /// Ticks of the current block so far.
     in_block: u32,
     last: i32,
     zero: i32,
@@ -39,7 +39,7 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// On a shaft at rest at this count; the next tick is `tick`.
+    /// Starts on a shaft at rest at this count; the next tick is `tick`.
     pub fn new(reader: &Reader, counter: u32, tick: u64) -> Self {
         let last = counter.cast_signed();
         Self {
@@ -53,13 +53,13 @@ impl Sampler {
         }
     }
 
-    /// Whether the next tick begins a block of telemetry: the moment to take
-    /// parameters over.
+    /// Whether the next tick begins a block of telemetry: the time to apply
+    /// parameters.
     pub fn begins_block(&self) -> bool {
         self.in_block == 0
     }
 
-    /// Another encoder: the estimate begins anew.
+    /// Replaces the encoder: the estimator restarts.
     pub fn replace(&mut self, reader: &Reader) {
         self.reader = reader
             .at_zero
@@ -67,22 +67,22 @@ impl Sampler {
         self.most_counts = reader.most_counts;
     }
 
-    /// The angle is zero here.
+    /// Sets the angle's zero here.
     pub fn zero(&mut self) {
         self.zero = self.last;
     }
 
-    /// Ticks in a row without a count to believe.
+    /// Consecutive ticks without a plausible count.
     pub fn lost_ticks(&self) -> u32 {
         self.lost_ticks
     }
 
-    /// The next tick.
+    /// Number of the next tick.
     pub fn next_tick(&self) -> u64 {
         self.tick
     }
 
-    /// One tick: what the 32-bit counter of the quadrature timer says.
+    /// Runs one tick with the 32-bit counter of the quadrature timer.
     pub fn sample(&mut self, counter: u32) -> Sampled {
         let count = counter.cast_signed();
         let moved = count.wrapping_sub(self.last).unsigned_abs();
@@ -138,17 +138,17 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_that_no_shaft_makes_is_no_motion() {
+    fn an_implausible_jump_is_rejected() {
         let mut sampler = sampler(100);
         sampler.sample(101);
-        // A disturbance of one tick: what follows is as if it had not been.
+        // A disturbance of one tick does not affect those after it.
         let lost = sampler.sample(90_000);
         assert_eq!((lost.shaft, lost.count), (Sample::Lost, 1));
         assert!(matches!(
             sampler.sample(103).shaft,
             Sample::Taken(step) if step.delta_phi_rad > 0.0
         ));
-        // A counter that stays elsewhere is believed in the end, at rest.
+        // A persistent jump is accepted in the end, at rest.
         for n in 1..=LOST_TICKS + 1 {
             assert_eq!(sampler.sample(900_000).lost_ticks, n);
         }

@@ -1,5 +1,5 @@
-//! Both controllers, natively, with the wires between them and a motor that
-//! does what it is told: what the tests of the device share.
+//! Shared by the tests of the device: both controllers, the wires between them
+//! and an ideal motor.
 
 #![allow(dead_code, reason = "each test program uses its part")]
 
@@ -11,7 +11,7 @@ use crepitus_device::drive::rendering::Rendered;
 use crepitus_device::drive::{self, Drive};
 use crepitus_device::usb_port::HostBytes;
 use crepitus_protocol::frame::FRAME_BYTES;
-use crepitus_protocol::host::{Answer, Ask, Refusal, Reply, Request};
+use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request};
 use crepitus_protocol::management::{Identity, Role};
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Lane, Session, frame, schema};
@@ -24,7 +24,7 @@ pub(crate) const TICKS_PER_MS: u32 = 20;
 /// Bytes that the link carries in a tick: 4.2 Mbaud, ten bits a byte.
 const LINK_BYTES: usize = 21;
 
-/// Who a controller is.
+/// Identity of a controller.
 pub(crate) fn identity(role: Role) -> Identity {
     Identity {
         role,
@@ -33,7 +33,7 @@ pub(crate) fn identity(role: Role) -> Identity {
     }
 }
 
-/// How both start.
+/// Boot-time inputs of both.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Boots {
     pub(crate) drive: drive::Boot,
@@ -49,7 +49,7 @@ impl Boots {
     }
 }
 
-/// A device on a bench, and what a host has received of it.
+/// A device on a bench, and the bytes that a host has received.
 pub(crate) struct Bench {
     pub(crate) drive: Drive,
     pub(crate) comms: Comms,
@@ -128,7 +128,7 @@ impl Bench {
         let outputs = self.drive.command_motor(&drive::command::Inputs {
             current_a: Some(self.motor.current_a()),
             enable_is_on: self.enable[0],
-            is_broken: false,
+            has_tripped: false,
         });
         self.enable[0] = outputs.enable;
         let is_powered = self.enable == [true; 2];
@@ -168,21 +168,21 @@ impl Bench {
         }
     }
 
-    /// Tells comms something that has no reply.
-    pub(crate) fn tell(&mut self, ask: Ask) {
+    /// Sends comms a request without reply.
+    pub(crate) fn tell(&mut self, operation: Operation) {
         let request = Request {
             session: self.session,
             number: self.number,
-            ask,
+            operation,
         };
         let frame = frame::encode(Lane::Request, &request).unwrap();
         self.comms.received(&frame);
     }
 
-    /// Asks, and runs until the answer is there.
-    pub(crate) fn ask(&mut self, ask: Ask) -> Result<Answer, Refusal> {
+    /// Sends a request and runs until the reply arrives.
+    pub(crate) fn ask(&mut self, operation: Operation) -> Result<Answer, Refusal> {
         self.number = self.number.wrapping_add(1);
-        self.tell(ask);
+        self.tell(operation);
         for _ in 0..700 {
             self.millisecond();
             let (session, number) = (self.session, self.number);
@@ -191,20 +191,20 @@ impl Bench {
                 return self.replies.remove(place).answer;
             }
         }
-        panic!("no answer to {ask:?}");
+        panic!("no answer to {operation:?}");
     }
 
-    /// Runs for so many milliseconds, renewing the lease.
+    /// Runs for this many milliseconds, renewing the lease.
     pub(crate) fn run_leased(&mut self, ms: u32) {
         for n in 0..ms {
             if n % 50 == 0 {
-                self.tell(Ask::Renew);
+                self.tell(Operation::Renew);
             }
             self.millisecond();
         }
     }
 
-    /// Runs until the drive is there with the parameters of comms.
+    /// Runs until the drive has applied the parameters of comms.
     pub(crate) fn settle(&mut self) {
         for _ in 0..200 {
             self.millisecond();

@@ -20,7 +20,7 @@ pub(crate) struct Motor {
     current_a: f64,
     /// Torque of a hand, N·m.
     pub(crate) hand_nm: f64,
-    /// Somebody else turns the shaft: where the counter is, and how fast.
+    /// Prescribed motion of the shaft: counter and speed.
     pub(crate) turned: Option<(i32, f64)>,
 }
 

@@ -18,7 +18,7 @@
 
 use crate::raw;
 use core::sync::atomic::{AtomicU8, Ordering, fence};
-use crepitus_protocol::frame::{FRAME_BYTES, Frame, Made, Place};
+use crepitus_protocol::frame::{EncodedFrame, FRAME_BYTES, Frame, FrameBuffer};
 use stm32f4xx_hal::gpio::{PC6, PC7, Pull};
 use stm32f4xx_hal::pac::{DMA2, USART6};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
@@ -30,10 +30,10 @@ const RING_BYTES: usize = 2048;
 pub const BUFFERS: usize = 3;
 
 /// A buffer for a frame, in RAM that DMA reaches.
-pub type DmaBuffer = &'static mut Place;
+pub type DmaBuffer = &'static mut FrameBuffer;
 
 /// Initial value of a buffer.
-pub const EMPTY_BUFFER: Place = [0; FRAME_BYTES];
+pub const EMPTY_BUFFER: FrameBuffer = [0; FRAME_BYTES];
 
 const RECEIVE: usize = 1;
 const SEND: usize = 6;
@@ -51,7 +51,7 @@ pub struct Link {
     next: usize,
     spare: [Option<DmaBuffer>; BUFFERS],
     /// Pending frames in order; never more than there are buffers.
-    waiting: [Option<Made<DmaBuffer>>; BUFFERS],
+    waiting: [Option<EncodedFrame<DmaBuffer>>; BUFFERS],
     sending: Option<DmaBuffer>,
 }
 
@@ -137,17 +137,17 @@ impl Link {
 
     /// Sends a copy of a frame, if a buffer is free.
     pub fn send_copy(&mut self, frame: &Frame) {
-        if let Some(place) = self.spare() {
-            if let Some(bytes) = place.get_mut(..frame.len()) {
+        if let Some(buffer) = self.spare() {
+            if let Some(bytes) = buffer.get_mut(..frame.len()) {
                 bytes.copy_from_slice(frame);
             }
             let length = frame.len();
-            self.send(Made { place, length });
+            self.send(EncodedFrame { buffer, length });
         }
     }
 
     /// Sends a frame after those pending.
-    pub fn send(&mut self, frame: Made<DmaBuffer>) {
+    pub fn send(&mut self, frame: EncodedFrame<DmaBuffer>) {
         push(&mut self.waiting, frame);
         self.start_next();
     }
@@ -170,12 +170,12 @@ impl Link {
             w.ctcif6().clear().chtif6().clear().cteif6().clear();
             w.cdmeif6().clear().cfeif6().clear()
         });
-        let place = raw::dma_source(stream, frame.place);
+        let buffer = raw::dma_source(stream, frame.buffer);
         stream.ndtr().write(|w| w.ndt().set(length(frame.length)));
         // Completes all writes before the stream reads them.
         fence(Ordering::SeqCst);
         stream.cr().modify(|_, w| w.en().enabled());
-        self.sending = Some(place);
+        self.sending = Some(buffer);
     }
 }
 

@@ -41,7 +41,7 @@ pub fn reset_cause(flags: Flags, record: Option<&ResetRecord>) -> ResetCause {
         // A fault handler that did not finish ends in a watchdog reset.
         (_, Reason::Panic | Reason::Fault | Reason::Unhandled) => ResetCause::Panic,
         (Flags { watchdog: true, .. }, _) => ResetCause::Watchdog,
-        _ => ResetCause::Asked,
+        _ => ResetCause::Requested,
     }
 }
 
@@ -82,9 +82,9 @@ mod tests {
             (watchdog, none, ResetCause::Watchdog),
             (watchdog, panic, ResetCause::Panic),
             (no, panic, ResetCause::Panic),
-            (no, asked, ResetCause::Asked),
-            (no, none, ResetCause::Asked),
-            (no, None, ResetCause::Asked),
+            (no, asked, ResetCause::Requested),
+            (no, none, ResetCause::Requested),
+            (no, None, ResetCause::Requested),
         ] {
             assert_eq!(reset_cause(flags, record.as_ref()), cause);
         }

@@ -35,7 +35,7 @@ mod app {
     use core::mem::MaybeUninit;
     use crepitus_device::comms::{Boot, Comms, Inputs};
     use crepitus_device::usb_port::{HostBytes, UsbPort};
-    use crepitus_protocol::frame::Place;
+    use crepitus_protocol::frame::FrameBuffer;
     use crepitus_protocol::{Fault, Revision, Values};
     use stm32f4xx_hal::pac::Interrupt;
 
@@ -75,7 +75,7 @@ mod app {
     }
 
     #[init(local = [
-        buffers: [Place; BUFFERS] = [EMPTY_BUFFER; BUFFERS],
+        buffers: [FrameBuffer; BUFFERS] = [EMPTY_BUFFER; BUFFERS],
         // Static: large, or borrowed for ever.
         comms: MaybeUninit<Comms> = MaybeUninit::uninit(),
         bus: MaybeUninit<UsbBusAllocator<UsbBusType>> = MaybeUninit::uninit(),

@@ -51,7 +51,7 @@ mod app {
     use crepitus_device::drive::rendering::{Rendered, Rendering};
     use crepitus_device::drive::sampler::{Sampled, Sampler};
     use crepitus_protocol::Fault;
-    use crepitus_protocol::frame::Place;
+    use crepitus_protocol::frame::FrameBuffer;
     use stm32f4xx_hal::pac::Interrupt;
 
     /// Starts `render_torque`; otherwise unused.
@@ -109,7 +109,7 @@ mod app {
         watchdog: Watchdog,
     }
 
-    #[init(local = [buffers: [Place; BUFFERS] = [EMPTY_BUFFER; BUFFERS]])]
+    #[init(local = [buffers: [FrameBuffer; BUFFERS] = [EMPTY_BUFFER; BUFFERS]])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let board = DriveBoard::new(cx.device, cx.local.buffers.each_mut());
         let start = board.start;
@@ -185,7 +185,7 @@ mod app {
         let inputs = Inputs {
             current_a: part.converter.take_a(),
             enable_is_on: part.line.is_on(),
-            is_broken: part.bridge.break_has_fired(),
+            has_tripped: part.bridge.break_has_fired(),
         };
         let (counters, was_armed) = (cx.shared.counters, cx.shared.was_armed);
         let mut shared = (
@@ -200,7 +200,7 @@ mod app {
             };
             // By reference: a copy takes microseconds.
             if let Some(new) = plan {
-                command.take_over(new, counters);
+                command.apply(new, counters);
                 *plan = None;
             }
             let outputs = command.tick(&inputs, sampled, rendered.as_ref(), counters);
@@ -275,7 +275,7 @@ mod app {
             cx.shared.rendering_plan.lock(|slot| {
                 // By reference: a copy takes microseconds.
                 if let Some(plan) = slot {
-                    rendering.take_over(plan, sampled.omega_rad_s);
+                    rendering.apply(plan, sampled.omega_rad_s);
                     *slot = None;
                 }
             });

@@ -1,7 +1,7 @@
 //! Bytes read one after the other as numbers. After the last byte there are
 //! only zeros, so every input means something.
 
-/// What is left of an input.
+/// The rest of an input.
 pub(crate) struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {

@@ -1,28 +1,28 @@
 //! The comms controller, with anything from hosts and from the drive,
 //! millisecond by millisecond:
 //!
-//! - its line is on only while somebody's lease is alive, blocks come, and
-//!   there is no fault of comms; and only after somebody has asked to arm, and
-//!   nobody since to disarm or to stop. So it is with what heartbeats allow;
-//! - no heartbeat tells of a longer lease than there is;
+//! - its line is on only while a host holds the lease, blocks arrive, and
+//!   there is no fault of comms; and only after a host has requested arming, and
+//!   none since disarming or a stop. The same holds for `enable` in heartbeats;
+//! - no heartbeat carries a longer lease than there is;
 //! - every frame for a host or for the drive is in order. A request has at most
-//!   as many replies as it was sent times, and nobody else has any;
+//!   as many replies as it was sent times, and there are no others;
 //! - the revision changes only after a commit, or a refusal, to the next one. Parameters that
-//!   are told, sent or kept are those of the start or of a commit, and allowed;
-//! - every sample of a subscription is in the books;
-//! - nothing is kept and nothing starts anew that was not asked for.
+//!   are read, sent or saved are those of the boot or of a commit, and valid;
+//! - every sample of a subscription is accounted for;
+//! - nothing is saved and nothing reboots without a request.
 
 use crate::bytes::Bytes;
-use crate::drive_words::DriveSide;
-use crate::host_ear::HostEar;
-use crate::link_words;
+use crate::drive_model::DriveModel;
+use crate::host_oracle::HostOracle;
+use crate::link_inputs;
 use crepitus_device::Comms;
 use crepitus_device::comms::{Boot, Inputs, Outputs};
 use crepitus_device::usb_port::HostBytes;
 use crepitus_protocol::counters::CommsCounter;
-use crepitus_protocol::host::{Ask, Request};
+use crepitus_protocol::host::{Operation, Request};
 use crepitus_protocol::link::{Order, ToDrive};
-use crepitus_protocol::management::{Identity, Question, ResetCause, What};
+use crepitus_protocol::management::{Action, Identity, ManagementRequest, ResetCause};
 use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::{
     Decoder, DeviceSettings, LEASE_TICKS, Lane, Revision, Session, Values, frame, schema,
@@ -34,7 +34,7 @@ const MOST_MS: u64 = 4096;
 /// Length of a lease, ms.
 const LEASE_MS: u64 = 250;
 
-/// After so long without a block the drive is silent, ms.
+/// Timeout: without a block for this long the drive is silent, ms.
 const SILENT_MS: u64 = 5;
 
 /// Checks the laws.
@@ -54,7 +54,7 @@ pub fn body(data: &[u8]) {
         start: u16::from(bytes.byte()),
         saved: (saved > 127).then(|| {
             let revision = bytes.choice(&[0, 1, 7, u32::MAX - 1]);
-            (Revision(revision), link_words::values(&mut bytes))
+            (Revision(revision), link_inputs::values(&mut bytes))
         }),
         counters: bytes.choice(&[0, u32::MAX - 2]),
     };
@@ -66,7 +66,7 @@ pub fn body(data: &[u8]) {
     bench.read(usize::MAX);
 }
 
-/// Comms, and what somebody who listens to both its wires knows.
+/// Comms, and an oracle that observes both its wires.
 #[expect(
     clippy::struct_excessive_bools,
     reason = "each is a line or a fact by itself"
@@ -75,16 +75,16 @@ struct Bench {
     comms: Comms,
     now_ms: u64,
     line_is_on: bool,
-    drive: DriveSide,
-    host: HostEar,
-    /// Hears what hosts say, and what the drive is told.
+    drive: DriveModel,
+    host: HostOracle,
+    /// Decoders of the bytes from hosts and to the drive.
     ear: Decoder,
     link_ear: Decoder,
     numbers: [u16; 5],
     /// When a block came last, and when a lease was taken or renewed last.
     block_ms: Option<u64>,
     lease_ms: Option<u64>,
-    /// Somebody has asked to arm, and nobody since not to be.
+    /// A host has requested arming, and none has disarmed since.
     wants: bool,
     /// Reasons that there were for another revision.
     numbered: u32,
@@ -102,8 +102,8 @@ impl Bench {
         Self {
             now_ms: 0,
             line_is_on: false,
-            drive: DriveSide::new(boot.start),
-            host: HostEar::default(),
+            drive: DriveModel::new(boot.start),
+            host: HostOracle::default(),
             ear: Decoder::new(),
             link_ear: Decoder::new(),
             numbers: [0, 1, 0x7ffe, 0xfffe, 9],
@@ -126,7 +126,7 @@ impl Bench {
                 let line = (how & 1 != 0).then_some(how & 2 != 0);
                 self.tick(line);
             }
-            // As it should be, for so many milliseconds.
+            // Normal operation, for this many milliseconds.
             1 => {
                 let reads = bytes.byte();
                 for _ in 0..bytes.byte() {
@@ -136,39 +136,39 @@ impl Bench {
             }
             2 | 3 => {
                 let place = usize::from(bytes.byte()) % self.numbers.len();
-                let ask = self.ask(bytes);
+                let operation = self.ask(bytes);
                 let number = &mut self.numbers[place];
                 match bytes.byte() {
                     // Repeated; but of a subscription nobody could tell which
                     // one it is that begins.
-                    0..=47 if ask != Ask::Subscribe => {}
+                    0..=47 if operation != Operation::Subscribe => {}
                     48..=63 => *number = number.wrapping_add(bytes.u16()),
                     _ => *number = number.wrapping_add(1),
                 }
                 let request = Request {
                     session: Session(u32::try_from(place).unwrap_or(0) * 0x1001),
                     number: *number,
-                    ask,
+                    operation,
                 };
                 let frame = frame::encode(Lane::Request, &request);
-                self.say(&frame.expect("every message fits"));
+                self.send(&frame.expect("every message fits"));
             }
             4 => {
                 let count = usize::from(bytes.byte());
                 let raw = bytes.take_some(count).to_vec();
-                self.say(&raw);
+                self.send(&raw);
             }
             5 => {
-                let question = Question {
-                    what: link_words::what(bytes),
+                let question = ManagementRequest {
+                    action: link_inputs::action(bytes),
                     token: bytes.byte(),
                 };
                 let frame = frame::encode_bytes(Lane::Management, &question.bytes());
-                self.say(&frame.expect("a short frame"));
+                self.send(&frame.expect("a short frame"));
             }
             6 => {
                 let frame = self.drive.anything(bytes);
-                self.numbered += u32::from(self.drive.has_refused());
+                self.numbered += u32::from(self.drive.has_rejected());
                 self.drive_says(&frame);
             }
             7 => match bytes.byte() {
@@ -189,32 +189,32 @@ impl Bench {
         }
     }
 
-    fn ask(&mut self, bytes: &mut Bytes<'_>) -> Ask {
+    fn ask(&mut self, bytes: &mut Bytes<'_>) -> Operation {
         match bytes.byte() % 16 {
-            0 | 1 => Ask::Renew,
-            2 => Ask::Status,
-            3 => Ask::Counters,
-            4 => Ask::Parameters,
-            5 | 6 => Ask::Commit {
+            0 | 1 => Operation::Renew,
+            2 => Operation::Status,
+            3 => Operation::Counters,
+            4 => Operation::Parameters,
+            5 | 6 => Operation::Commit {
                 base: if bytes.byte() < 224 {
                     self.comms.revision()
                 } else {
                     Revision(u32::from(bytes.byte()))
                 },
-                values: link_words::values(bytes),
+                values: link_inputs::values(bytes),
             },
-            7 => Ask::Save,
-            8 => Ask::Zero,
-            9..=11 => Ask::Arm,
-            12 => Ask::Disarm,
-            13 => Ask::ClearFault,
-            14 => Ask::Subscribe,
-            _ => Ask::Unsubscribe,
+            7 => Operation::Save,
+            8 => Operation::Zero,
+            9..=11 => Operation::Arm,
+            12 => Operation::Disarm,
+            13 => Operation::ClearFault,
+            14 => Operation::Subscribe,
+            _ => Operation::Unsubscribe,
         }
     }
 
-    /// Bytes of a host, for comms and for whoever listens.
-    fn say(&mut self, bytes: &[u8]) {
+    /// Bytes of a host, for comms and for the oracle.
+    fn send(&mut self, bytes: &[u8]) {
         for byte in bytes {
             let (mut request, mut question) = (None, None);
             match self.ear.push(*byte) {
@@ -222,7 +222,7 @@ impl Bench {
                     request = body.message::<Request>();
                 }
                 Some(Ok(body)) if body.lane() == Some(Lane::Management) => {
-                    question = Question::of(body.payload);
+                    question = ManagementRequest::of(body.payload);
                 }
                 _ => {}
             }
@@ -232,34 +232,34 @@ impl Bench {
             if let Some(request) = request {
                 self.note(&request, is_new);
             }
-            match question.map(|question| question.what) {
-                Some(What::Stop) => (self.wants, self.lease_ms) = (false, None),
-                Some(What::Reboot) => self.may_reboot = true,
+            match question.map(|question| question.action) {
+                Some(Action::Stop) => (self.wants, self.lease_ms) = (false, None),
+                Some(Action::Reboot) => self.may_reboot = true,
                 _ => {}
             }
         }
     }
 
     fn note(&mut self, request: &Request, is_new: bool) {
-        self.host.asked(request);
-        match request.ask {
-            Ask::Renew if self.is_leased() => self.lease_ms = Some(self.now_ms),
+        self.host.requested(request);
+        match request.operation {
+            Operation::Renew if self.is_leased() => self.lease_ms = Some(self.now_ms),
             _ if !is_new => {}
             // Whether or not it is refused.
-            Ask::Arm => (self.wants, self.lease_ms) = (true, Some(self.now_ms)),
-            Ask::Disarm => (self.wants, self.lease_ms) = (false, None),
-            Ask::Commit { values, .. } => {
+            Operation::Arm => (self.wants, self.lease_ms) = (true, Some(self.now_ms)),
+            Operation::Disarm => (self.wants, self.lease_ms) = (false, None),
+            Operation::Commit { values, .. } => {
                 self.numbered += 1;
                 if DeviceSettings::of(&values).is_ok() {
                     self.values.push(values);
                 }
             }
-            Ask::Save => self.may_save = true,
+            Operation::Save => self.may_save = true,
             _ => {}
         }
     }
 
-    /// By what was said on the wire, at most.
+    /// Upper bound from the messages on the wire.
     fn is_leased(&self) -> bool {
         self.lease_ms
             .is_some_and(|lease_ms| self.now_ms - lease_ms < LEASE_MS)
@@ -342,7 +342,7 @@ impl Bench {
                     let message = body.message().expect("a message");
                     self.told(&message);
                 }
-                Some(Lane::Management) => assert!(Question::of(body.payload).is_some()),
+                Some(Lane::Management) => assert!(ManagementRequest::of(body.payload).is_some()),
                 other => panic!("{other:?} for the drive"),
             }
         }
@@ -351,7 +351,7 @@ impl Bench {
     }
 
     fn told(&mut self, message: &ToDrive) {
-        self.drive.hear(message);
+        self.drive.receive(message);
         match message {
             ToDrive::Heartbeat(heartbeat) => {
                 assert!(u64::from(heartbeat.lease_left) < LEASE_TICKS);
@@ -373,7 +373,7 @@ impl Bench {
         }
     }
 
-    /// Takes so many bytes for the host.
+    /// Takes this many bytes for the host.
     fn read(&mut self, count: usize) {
         let mut left = count;
         while left > 0 && !self.comms.to_send().is_empty() {
@@ -382,7 +382,7 @@ impl Bench {
             self.comms.sent(run.len());
             left -= run.len();
             for byte in &run {
-                self.host.hear(*byte, &self.values);
+                self.host.receive(*byte, &self.values);
             }
         }
     }

@@ -2,17 +2,17 @@
 //! tick:
 //!
 //! - the bridge is driven only while armed or arming, with the line on, with a
-//!   finite voltage, and not in a tick in which the hardware has let go;
+//!   finite voltage, and not in a tick in which the hardware has tripped;
 //! - at most 100 ticks after the last fresh heartbeat, and before the end of
-//!   the lease that it told;
+//!   the lease that it carried;
 //! - at most 10 ticks in a row without the line read back on;
 //! - a fault stays until a command clears it; nothing else arms but a command;
-//! - parameters in force were sent whole, and are allowed;
+//! - active parameters were sent completely, and are valid;
 //! - torque is a number within the largest limit, and zero unless armed;
-//! - every frame that it sends is in order, and every sample is in the books.
+//! - every frame that it sends is valid, and every sample is accounted for.
 
 use crate::bytes::Bytes;
-use crate::link_words;
+use crate::link_inputs;
 use crate::winding::Winding;
 use crepitus_device::Drive;
 use crepitus_device::drive::Boot;
@@ -20,7 +20,7 @@ use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::link::{FromDrive, Heartbeat, Order, STALE_TICKS, ToDrive};
-use crepitus_protocol::management::{Answer, Identity, Question, ResetCause};
+use crepitus_protocol::management::{Answer, Identity, ManagementRequest, ResetCause};
 use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, SampleFlags};
 use crepitus_protocol::{
@@ -69,10 +69,10 @@ pub fn body(data: &[u8]) {
 struct Readings {
     turn: i8,
     has_current: bool,
-    /// Instead of what the winding does.
+    /// Replaces the current of the winding.
     current_a: Option<f32>,
     line: Option<bool>,
-    is_broken: bool,
+    has_tripped: bool,
     is_late: bool,
     is_idle: bool,
 }
@@ -85,7 +85,7 @@ impl Readings {
             has_current: true,
             current_a: None,
             line: None,
-            is_broken: false,
+            has_tripped: false,
             is_late: false,
             is_idle: true,
         }
@@ -98,29 +98,29 @@ impl Readings {
             has_current: how & 1 == 0,
             current_a: (how & 2 != 0).then(|| bytes.f32()),
             line: (how & 4 != 0).then_some(how & 8 != 0),
-            is_broken: how & 0x30 == 0x30,
+            has_tripped: how & 0x30 == 0x30,
             is_late: how & 0x40 != 0,
             is_idle: how & 0x80 == 0,
         }
     }
 }
 
-/// A drive, and what somebody who listens to its link knows.
+/// A drive, and an oracle that observes its link.
 struct Bench {
     drive: Drive,
     winding: Winding,
     counter: u32,
     line_is_on: bool,
     ticks: u64,
-    /// Hears what the drive hears.
+    /// Decoder of the bytes to the drive.
     ear: Decoder,
-    heard: Option<u64>,
+    comms_start: Option<u64>,
     lease_end: u64,
     sent: Vec<(Revision, Values)>,
     number: u16,
     /// Ticks in a row with a driven bridge and the line read back off.
     astray: u32,
-    /// Hears what the drive says.
+    /// Decoder of the bytes from the drive.
     host: Decoder,
     /// How it was in the last runs of the link's task.
     states: VecDeque<(u64, State, Revision)>,
@@ -138,7 +138,7 @@ impl Bench {
             line_is_on: false,
             ticks: 0,
             ear: Decoder::new(),
-            heard: None,
+            comms_start: None,
             lease_end: 0,
             sent: Vec::new(),
             number: 0,
@@ -160,14 +160,14 @@ impl Bench {
             }
             1 => {
                 let heartbeat = Heartbeat {
-                    seen_tick: link_words::near(bytes, now),
+                    seen_tick: link_inputs::near(bytes, now),
                     lease_left: bytes.u16(),
                     enable: !bytes.byte().is_multiple_of(8),
                     start: u16::from(bytes.byte() / 64),
                 };
-                self.say(&ToDrive::Heartbeat(heartbeat));
+                self.send(&ToDrive::Heartbeat(heartbeat));
             }
-            // As it should be: for so many milliseconds, and with a shaft that
+            // Normal operation: for this many milliseconds, and with a shaft that
             // turns.
             2 => {
                 let readings = Readings {
@@ -182,7 +182,7 @@ impl Bench {
             }
             3 => {
                 let revision = Revision(u32::from(bytes.byte()));
-                let values = link_words::values(bytes);
+                let values = link_inputs::values(bytes);
                 self.commit(revision, &values);
             }
             4 => {
@@ -193,8 +193,8 @@ impl Bench {
                 } else {
                     u16::from(number) << 8
                 };
-                self.say(&ToDrive::Command {
-                    seen_tick: link_words::near(bytes, now),
+                self.send(&ToDrive::Command {
+                    seen_tick: link_inputs::near(bytes, now),
                     number: self.number,
                     order,
                 });
@@ -202,15 +202,15 @@ impl Bench {
             5 => {
                 let count = usize::from(bytes.byte());
                 let raw = bytes.take_some(count).to_vec();
-                self.hear(&raw);
+                self.receive(&raw);
             }
             6 => {
-                let question = Question {
-                    what: link_words::what(bytes),
+                let question = ManagementRequest {
+                    action: link_inputs::action(bytes),
                     token: bytes.byte(),
                 };
                 let frame = frame::encode_bytes(Lane::Management, &question.bytes());
-                self.hear(&frame.expect("a short frame"));
+                self.receive(&frame.expect("a short frame"));
             }
             7 => self.read(usize::from(bytes.byte() % 8)),
             // All that arming needs.
@@ -220,7 +220,7 @@ impl Bench {
                 self.run(20, &Readings::good());
                 self.heartbeat();
                 self.number = self.number.wrapping_add(1);
-                self.say(&ToDrive::Command {
+                self.send(&ToDrive::Command {
                     seen_tick: self.drive.next_tick(),
                     number: self.number,
                     order: Order::Arm,
@@ -233,7 +233,7 @@ impl Bench {
                 for _ in 0..20 {
                     let now = self.drive.next_tick();
                     let left = end.saturating_sub(now);
-                    self.say(&ToDrive::Heartbeat(Heartbeat {
+                    self.send(&ToDrive::Heartbeat(Heartbeat {
                         seen_tick: now,
                         lease_left: u16::try_from(left).unwrap_or(u16::MAX),
                         enable: true,
@@ -246,7 +246,7 @@ impl Bench {
     }
 
     fn heartbeat(&mut self) {
-        self.say(&ToDrive::Heartbeat(Heartbeat {
+        self.send(&ToDrive::Heartbeat(Heartbeat {
             seen_tick: self.drive.next_tick(),
             lease_left: 5_000,
             enable: true,
@@ -257,7 +257,7 @@ impl Bench {
     fn commit(&mut self, revision: Revision, values: &Values) {
         self.sent.push((revision, *values));
         for piece in (0..).map_while(|index| Piece::of(&values.0, index)) {
-            self.say(&ToDrive::Commit {
+            self.send(&ToDrive::Commit {
                 revision,
                 checksum: pieces::checksum(&values.0),
                 piece,
@@ -265,13 +265,13 @@ impl Bench {
         }
     }
 
-    fn say(&mut self, message: &ToDrive) {
+    fn send(&mut self, message: &ToDrive) {
         let frame = frame::encode(Lane::ToDrive, message).expect("every message fits");
-        self.hear(&frame);
+        self.receive(&frame);
     }
 
-    /// Bytes for the drive, and for whoever listens.
-    fn hear(&mut self, bytes: &[u8]) {
+    /// Bytes for the drive, and for the oracle.
+    fn receive(&mut self, bytes: &[u8]) {
         for byte in bytes {
             let message = match self.ear.push(*byte) {
                 Some(Ok(body)) if body.lane() == Some(Lane::ToDrive) => body.message(),
@@ -305,7 +305,7 @@ impl Bench {
     fn note(&mut self, now: u64, heartbeat: &Heartbeat) {
         let seen = heartbeat.seen_tick;
         if seen <= now && now - seen <= STALE_TICKS {
-            self.heard = Some(now);
+            self.comms_start = Some(now);
             self.lease_end = seen.saturating_add(u64::from(heartbeat.lease_left));
             if !heartbeat.enable {
                 let state = self.drive.state();
@@ -333,7 +333,7 @@ impl Bench {
         let inputs = Inputs {
             current_a: readings.has_current.then_some(current_a),
             enable_is_on: readings.line.unwrap_or(self.line_is_on),
-            is_broken: readings.is_broken,
+            has_tripped: readings.has_tripped,
         };
         let outputs = self.drive.command_motor(&inputs);
         if readings.is_idle {
@@ -366,8 +366,8 @@ impl Bench {
             return;
         };
         assert!(volts.is_finite() && outputs.enable && live);
-        assert!(!inputs.is_broken && inputs.current_a.is_some());
-        let heard = self.heard.expect("a heartbeat");
+        assert!(!inputs.has_tripped && inputs.current_a.is_some());
+        let heard = self.comms_start.expect("a heartbeat");
         assert!(tick - heard < HEARTBEAT_TICKS, "{} ticks", tick - heard);
         assert!(tick < self.lease_end, "the lease has ended");
         self.astray = if inputs.enable_is_on {
@@ -435,7 +435,7 @@ impl Bench {
                     let block = body.message().expect("a block");
                     self.received += BLOCK_SAMPLES as u64;
                     let end = self.received + u64::from(block_dropped(&block));
-                    assert_eq!(block.end_tick() - self.first_tick, end, "the books");
+                    assert_eq!(block.end_tick() - self.first_tick, end, "sample accounting");
                     let blocks = (block.first_tick - self.first_tick) / BLOCK_SAMPLES as u64;
                     let [low, high, ..] = blocks.to_le_bytes();
                     let expected = self.sequence.wrapping_add(u16::from_le_bytes([low, high]));

@@ -3,8 +3,8 @@
 //! - each run of bytes between two delimiters is a frame or is counted as
 //!   none, and no frame is given whose checksum is another;
 //! - a body that is found comes back from a frame of its own;
-//! - a message that is understood is, written anew, the same message;
-//! - behind a delimiter, whatever came before, a good frame is received. The
+//! - a decoded message, encoded again, is the same message;
+//! - after a delimiter, whatever came before, a valid frame is received. The
 //!   good ones are the golden ones.
 
 use crate::bytes::Bytes;
@@ -12,7 +12,7 @@ use crepitus_protocol::decoder::Body;
 use crepitus_protocol::frame::{self, BODY_BYTES, CRC, Frame};
 use crepitus_protocol::host::{Reply, Request};
 use crepitus_protocol::link::{FromDrive, ToDrive};
-use crepitus_protocol::management::{Answer, Question};
+use crepitus_protocol::management::{Answer, ManagementRequest};
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Lane};
 use serde::Serialize;
@@ -103,7 +103,7 @@ fn understood(body: &Body<'_>) {
     match body.lane() {
         None => {}
         Some(Lane::Management) => {
-            if let Some(question) = Question::of(body.payload) {
+            if let Some(question) = ManagementRequest::of(body.payload) {
                 assert_eq!(question.bytes(), body.payload[..2]);
             }
         }
@@ -120,8 +120,8 @@ fn understood(body: &Body<'_>) {
     }
 }
 
-/// A message, written anew, is the same; compared as bytes, since it may hold
-/// what is no number.
+/// A message, encoded again, is the same; compared as bytes, since it may hold
+/// NaN.
 fn rewritten<T: DeserializeOwned + Serialize>(lane: Lane, body: &Body<'_>) {
     let Some(message) = body.message::<T>() else {
         return;

@@ -3,7 +3,7 @@
 //! every tick:
 //!
 //! - a finite state, |T| ≤ Ts, and no more events than the catching-up allows;
-//! - while the shaft is out of sight the torque never grows or changes sign,
+//! - while samples are missing the torque never grows or changes sign,
 //!   and the joint stays as it is;
 //! - every sample is taken, refused or lost, and counted as that.
 
@@ -56,7 +56,7 @@ pub(crate) fn next_samples(
     }
 }
 
-/// As the joint is told of it.
+/// As the joint's input.
 pub(crate) fn sample<F: Real>(step: Option<&ShaftStep<f64>>) -> Sample<F> {
     step.map_or(Sample::Lost, |s| {
         Sample::Taken(ShaftStep {

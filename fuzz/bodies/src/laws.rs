@@ -1,4 +1,4 @@
-//! The laws of a joint's events and state, for whoever drives one.
+//! The laws of a joint's events and state.
 
 use crepitus_model::{Event, Phase, Real, StickSlip};
 

@@ -1,11 +1,11 @@
-//! # What no bytes may break
+//! # Fuzz targets and their laws
 //!
 //! One file a fuzz target. Each has a `body` that turns any bytes into inputs
 //! and panics when a law is broken; the law stands at the head of its file.
 //! `cargo fuzz` searches with them on the nightly toolchain, and
 //! `tests/bounded.rs` replays the corpus and its near neighbours on stable.
 //!
-//! | target | what the bytes become |
+//! | target | input made of the bytes |
 //! |---|---|
 //! | [`step`] | settings, a solver, and steps of the shaft, raw or smooth |
 //! | [`guarded`] | the same with samples that are lost or no numbers at all |
@@ -14,19 +14,19 @@
 //! | [`scene`] | the text of a scene file |
 //! | [`recording`] | the text of a recording |
 //! | [`frames`] | bytes on a wire |
-//! | [`drive`] | what the drive controller hears and reads |
-//! | [`comms`] | what the comms controller hears, of hosts and of the drive |
+//! | [`drive`] | messages and sensor values for the drive controller |
+//! | [`comms`] | messages of hosts and of the drive for the comms controller |
 
 mod bytes;
 pub mod comms;
 pub mod drive;
-mod drive_words;
+mod drive_model;
 pub mod encoder;
 pub mod frames;
 pub mod guarded;
-mod host_ear;
+mod host_oracle;
 mod laws;
-mod link_words;
+mod link_inputs;
 pub mod recording;
 pub mod renderer;
 mod rung;

@@ -1,9 +1,9 @@
 //! The joint as the device renders it, with any samples and with other valid
 //! settings committed at any tick. After every tick:
 //!
-//! - what is shown is finite and at most the Ts then in force, and so are the
+//! - the output is finite and at most the active Ts, and so are the
 //!   joint's own torque and its events; its state is finite;
-//! - where the hand has turned back inside a slip, nothing is shown;
+//! - where the hand has reversed inside a slip, the output is zero;
 //! - a change of parameters alone, seen in ticks without a shaft, never raises
 //!   the energy stored in the object, moves no torque faster than the slew
 //!   limit, and raises no stick's but with the Ts that limits it.

@@ -1,4 +1,4 @@
-//! Bytes to what a joint is made of: valid settings, a solver, a step.
+//! Valid settings, a solver and a step, made of bytes.
 
 use crate::bytes::Bytes;
 use crepitus_model::joint::LONGEST_STEP_S;
@@ -6,7 +6,7 @@ use crepitus_model::parameters::Tabled;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters, Restart, Settings, Validated};
 
-/// What a joint is made of.
+/// Inputs of a joint.
 pub(crate) struct Rung {
     pub(crate) settings: Validated<Settings>,
     pub(crate) solver: Solver,

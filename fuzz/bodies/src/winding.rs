@@ -20,7 +20,7 @@ impl Winding {
         self.current_a
     }
 
-    /// One tick, with a shaft that turns by so many counts.
+    /// Runs one tick, with a shaft that turns by this many counts.
     pub(crate) fn tick(&mut self, bridge: Bridge, turn: i8) {
         match bridge {
             Bridge::Float => self.current_a = 0.0,

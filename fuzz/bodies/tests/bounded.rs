@@ -134,12 +134,12 @@ fn every_target_has_its_folder_and_its_fuzz_target() {
 }
 
 #[test]
-fn nothing_that_comms_hears_breaks_its_laws() {
+fn no_input_breaks_the_laws_of_comms() {
     hold("comms");
 }
 
 #[test]
-fn nothing_that_the_drive_hears_or_reads_breaks_its_laws() {
+fn no_input_breaks_the_laws_of_the_drive() {
     hold("drive");
 }
 

@@ -1,62 +1,59 @@
-//! The books of the telemetry: what was produced, what arrived, what was lost
-//! and where.
+//! Accounting of telemetry samples: produced, received, dropped, lost.
 //!
 //! ```text
-//! drive ──> comms ──> line ──> this client
+//! drive ──> comms ──> connection ──> this client
 //!   produced   └ dropped by the device     └ received
-//!                        └ lost on the line
+//!                        └ lost on the connection
 //!
-//! produced = received + dropped by the device + lost on the line
+//! produced = received + dropped by the device + lost on the connection
 //! ```
 //!
-//! Each block says how many samples of the subscription the device has dropped
-//! so far, so what else is missing was lost between the device and here. Books
-//! are exact up to the last block that arrived; what is lost after it shows
-//! with the next one.
+//! Each block carries the number of samples that the device has dropped so far,
+//! so all others that are missing were lost between the device and here. The
+//! sums are exact up to the last block received.
 //!
-//! Where the drive starts anew, ticks begin anew, and so does a *segment* of
-//! the books; the sums go on. Blocks of the new start that are lost before its
-//! first one arrives cannot be seen from here and are in no book.
+//! When the drive restarts, its ticks restart, and a new *segment* begins; the
+//! sums continue. Blocks lost after a restart and before the first received one
+//! cannot be detected here and are not counted.
 
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 use std::collections::VecDeque;
 
-/// Gaps that are remembered.
+/// Number of gaps stored.
 const GAPS: usize = 1_000;
 
 const SAMPLES: u64 = BLOCK_SAMPLES as u64;
 
-/// Samples in a row that did not arrive.
+/// Consecutive missing samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gap {
-    /// Tick of the first of them.
+    /// Tick of the first one.
     pub first_tick: u64,
-    /// How many.
+    /// Number of samples.
     pub samples: u64,
 }
 
-/// What a block is.
+/// How a block continues the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
-    /// The next one; so many samples are missing before it.
+    /// A new block.
     Next {
-        /// Missing samples.
+        /// Samples missing before it.
         missing: u64,
     },
-    /// The first one of another start of the drive; so many samples of that
-    /// start are known to be missing before it.
+    /// The first block after a restart of the drive.
     Restarted {
-        /// Missing samples.
+        /// Samples missing before it.
         missing: u64,
     },
-    /// One that was here already, or one older than the last.
+    /// A repeated block, or one older than the last.
     Old,
 }
 
-/// The books of a subscription.
+/// Sample accounting of a subscription.
 #[derive(Clone, Debug)]
 pub struct Accounting {
-    /// Sums of the segments before.
+    /// Sums of the previous segments.
     produced: u64,
     received: u64,
     dropped: u64,
@@ -68,13 +65,13 @@ pub struct Accounting {
     violations: u64,
 }
 
-/// The books since the subscription began, or the drive did.
+/// Sums since the subscription started, or the drive restarted.
 #[derive(Clone, Copy, Debug)]
 struct Segment {
     first_tick: u64,
     next_tick: u64,
     received: u64,
-    /// Dropped by the device; what a block says wraps, this does not.
+    /// Dropped by the device; unlike the counter in a block this does not wrap.
     dropped: u64,
     said: u32,
     start: Option<u8>,
@@ -98,7 +95,7 @@ impl Segment {
 }
 
 impl Accounting {
-    /// Of a subscription that begins with this tick.
+    /// Starts with this tick.
     pub fn new(first_tick: u64) -> Self {
         Self {
             produced: 0,
@@ -113,12 +110,12 @@ impl Accounting {
         }
     }
 
-    /// Takes the next block.
+    /// Accounts for the next block.
     pub fn take(&mut self, block: &Block) -> Taken {
         let start = block.flags.start();
         let is_restart = self.segment.start.is_some_and(|known| known != start);
         if is_restart {
-            // The device has begun its books anew, too.
+            // The device restarts its accounting, too.
             let first_tick = block.first_tick.saturating_sub(u64::from(block.dropped));
             self.resume(first_tick);
             self.restarts += 1;
@@ -137,7 +134,7 @@ impl Accounting {
         segment.received += SAMPLES;
         segment.dropped += u64::from(block.dropped.wrapping_sub(segment.said));
         segment.said = block.dropped;
-        // The device says that it has dropped what has arrived here.
+        // The device reports as dropped what has arrived here.
         if segment.received + segment.dropped > segment.produced() {
             self.violations += 1;
         }
@@ -155,8 +152,8 @@ impl Accounting {
         }
     }
 
-    /// Another subscription after a line that was lost: it begins with this
-    /// tick. What was produced in between belongs to none.
+    /// Resumes at this tick after a lost connection. Samples produced in
+    /// between are not counted.
     pub(crate) fn resume(&mut self, first_tick: u64) {
         self.produced += self.segment.produced();
         self.received += self.segment.received;
@@ -164,40 +161,38 @@ impl Accounting {
         self.segment = Segment::new(first_tick, None);
     }
 
-    /// Samples that the drive has produced for the subscription.
+    /// Samples produced for the subscription.
     pub fn produced(&self) -> u64 {
         self.produced + self.segment.produced()
     }
 
-    /// Samples that have arrived.
+    /// Samples received.
     pub fn received(&self) -> u64 {
         self.received + self.segment.received
     }
 
-    /// Samples that have not arrived, wherever they were lost.
+    /// Samples missing, lost at any stage.
     pub fn dropped(&self) -> u64 {
         self.produced().saturating_sub(self.received())
     }
 
-    /// Of those, the ones that the device had no room for, or has lost on its
-    /// own link.
+    /// Missing samples that the device dropped or lost on its own link.
     pub fn dropped_by_device(&self) -> u64 {
         self.dropped + self.segment.dropped
     }
 
-    /// Of those, the ones that were lost between the device and here.
+    /// Missing samples that were lost between the device and here.
     pub fn lost_on_line(&self) -> u64 {
         self.dropped().saturating_sub(self.dropped_by_device())
     }
 
-    /// The tick after the last sample that has arrived; before any has, the
-    /// first tick of the subscription.
+    /// The tick after the last sample received; initially the first tick of the
+    /// subscription.
     pub fn next_tick(&self) -> u64 {
         self.segment.next_tick
     }
 
-    /// The first tick of the subscription, or since the drive has started
-    /// anew.
+    /// The first tick of the subscription, or since the drive's restart.
     pub fn first_tick(&self) -> u64 {
         self.segment.first_tick
     }
@@ -207,23 +202,23 @@ impl Accounting {
         self.gaps.iter()
     }
 
-    /// How many gaps there were.
+    /// Number of gaps.
     pub fn gap_count(&self) -> u64 {
         self.gap_count
     }
 
-    /// Times that the drive has started anew.
+    /// Restarts of the drive.
     pub fn restarts(&self) -> u64 {
         self.restarts
     }
 
-    /// Blocks that came twice, or too late.
+    /// Repeated or late blocks.
     pub fn old_blocks(&self) -> u64 {
         self.old
     }
 
-    /// Blocks after which the books did not balance: the device says that it
-    /// has dropped more than is missing. A defect of its program.
+    /// Blocks with an inconsistent count: the device reports more dropped
+    /// samples than are missing. A bug in its firmware.
     pub fn violations(&self) -> u64 {
         self.violations
     }

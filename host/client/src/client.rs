@@ -1,11 +1,11 @@
-//! A device that speaks this side's language.
+//! Client of a device with the same schema hash.
 //!
 //! | part | look in |
 //! |---|---|
-//! | asking, repeating, the lease | `asking.rs` |
-//! | what can be asked | `requests.rs` |
-//! | what comes unasked | `pump.rs` |
-//! | a line that was lost | `reconnect.rs` |
+//! | request and reply, retries, the lease | `exchange.rs` |
+//! | requests | `requests.rs` |
+//! | events | `pump.rs` |
+//! | reconnecting | `reconnect.rs` |
 
 use crate::accounting::Accounting;
 use crate::errors::Error;
@@ -25,14 +25,14 @@ use crepitus_protocol::{Session, State};
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Talks to a device. Nothing happens between calls: [`Self::pump`] has to be
-/// called regularly, every 50 ms or more often while the device is armed.
+/// Client of a device. It works only during calls: call [`Self::pump`]
+/// regularly, every 50 ms or more often while the device is armed.
 #[derive(Debug)]
 pub struct Client<T> {
     pub(crate) wire: Wire<T>,
     pub(crate) session: Session,
-    /// Of the last request, and of the last question of the lane that never
-    /// changes.
+    /// Sequence number of the last request, and token of the last management
+    /// request.
     pub(crate) number: u16,
     pub(crate) token: u8,
     handshake: Handshake,
@@ -41,9 +41,9 @@ pub struct Client<T> {
     pub(crate) watch: Watch,
     pub(crate) telemetry: Telemetry,
     pub(crate) events: VecDeque<Event>,
-    /// What is being asked.
-    pub(crate) asking: Option<RequestKind>,
-    /// The line was lost, with this.
+    /// The request that waits for its reply.
+    pub(crate) pending_request: Option<RequestKind>,
+    /// The error that ended the connection.
     pub(crate) loss: Option<Loss>,
     pub(crate) round_trips: RoundTrips,
     pub(crate) counts: Counts,
@@ -54,20 +54,19 @@ pub struct Client<T> {
 pub(crate) enum Lease {
     #[default]
     None,
-    /// Arming was asked for.
+    /// Arming was requested.
     Taking,
-    /// The device is armed, as far as is known.
+    /// The device is armed, as of the last status.
     Held,
 }
 
-/// Looks after the state: a status is asked for from within a pump, and not
-/// waited for.
+/// Polls the status from within a pump, without waiting.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Watch {
-    /// Number of the request that is not answered yet.
+    /// Sequence number of the pending request.
     pub(crate) asked: Option<u16>,
     pub(crate) asked_at: Duration,
-    /// When it is to be asked, apart from regularly.
+    /// Time of an additional request.
     pub(crate) due_at: Option<Duration>,
     pub(crate) known: Option<Status>,
 }
@@ -77,11 +76,11 @@ pub(crate) struct Watch {
 pub(crate) struct Telemetry {
     pub(crate) is_subscribed: bool,
     pub(crate) books: Option<Accounting>,
-    /// Blocks that come while the beginning of the subscription is not known.
+    /// Blocks received before the first tick of the subscription is known.
     pub(crate) early: Option<Vec<Block>>,
     pub(crate) state: Option<State>,
     pub(crate) heard_at: Duration,
-    /// The silence was told of.
+    /// The silence was reported.
     pub(crate) is_silent: bool,
 }
 
@@ -95,41 +94,42 @@ pub(crate) struct Counts {
     pub(crate) unread_blocks: u64,
 }
 
-/// What a client has counted.
+/// Counters of a client.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// Frames that were in order.
+    /// Valid frames.
     pub frames: u64,
     /// Frames that were too long, malformed, or had a wrong checksum.
     pub discarded_frames: u64,
-    /// Frames of a lane or a language that this side does not speak.
+    /// Frames of an unknown lane or with another schema tag.
     pub foreign_frames: u64,
-    /// Answers that nobody waited for: late, twice, or another host's.
+    /// Unexpected replies: late, repeated, or another host's.
     pub stray_answers: u64,
-    /// Requests that were sent again because no answer came in time.
+    /// Retries after a timeout.
     pub repeats: u64,
-    /// Renewals of the lease that were sent.
+    /// Lease renewals sent.
     pub renewals: u64,
-    /// Frames that were not sent because nothing took them.
+    /// Frames that were not sent because the port stalled.
     pub stalls: u64,
-    /// Blocks that nobody has subscribed to: of an earlier program.
+    /// Blocks without a subscription, from an earlier program.
     pub unasked_blocks: u64,
-    /// Blocks that were thrown away because nobody pumps; the books of the
-    /// subscription show them as lost on the line.
+    /// Blocks dropped because the event queue was full; the accounting shows
+    /// them as lost on the connection.
     pub unread_blocks: u64,
 }
 
 impl<T: Transport> Client<T> {
-    /// Finds out who is there, on a line that is open.
+    /// Handshake with a device on an open transport.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] if comms speaks another language: [`Management`]
-    /// talks to such a device. [`Error::NoAnswer`], [`Error::Transport`].
+    /// [`Error::Mismatch`] if comms has another schema hash: use
+    /// [`Management`] for such a device. [`Error::NoAnswer`],
+    /// [`Error::Transport`].
     pub fn connect(transport: T) -> Result<Self, Error> {
         Self::connect_with(transport, Options::default())
     }
 
-    /// The same, with a session of one's own.
+    /// [`Self::connect`] with a given session.
     ///
     /// # Errors
     /// As [`Self::connect`].
@@ -139,7 +139,7 @@ impl<T: Transport> Client<T> {
         management.into_client(handshake)
     }
 
-    /// One that has not found out who is there.
+    /// A client before the handshake.
     pub(crate) fn unchecked(transport: T, options: Options) -> Self {
         Self {
             wire: Wire::new(transport),
@@ -155,17 +155,17 @@ impl<T: Transport> Client<T> {
             watch: Watch::default(),
             telemetry: Telemetry::default(),
             events: VecDeque::new(),
-            asking: None,
+            pending_request: None,
             loss: None,
             round_trips: RoundTrips::default(),
             counts: Counts::default(),
         }
     }
 
-    /// The same, if that handshake is one of a device that it can talk to.
+    /// Completes the handshake if the schema hashes match.
     pub(crate) fn checked(mut self, handshake: Handshake) -> Result<Self, Error> {
         self.accept(handshake)?;
-        // From here on, changes can be told.
+        // Changes are reported relative to this status.
         self.status()?;
         Ok(self)
     }
@@ -180,12 +180,12 @@ impl<T: Transport> Client<T> {
         }
     }
 
-    /// Who is there.
+    /// The handshake.
     pub fn handshake(&self) -> &Handshake {
         &self.handshake
     }
 
-    /// The number by which the device knows this client.
+    /// Session of this client.
     pub fn session(&self) -> Session {
         self.session
     }
@@ -200,28 +200,28 @@ impl<T: Transport> Client<T> {
         self.wire.now()
     }
 
-    /// Whether this client has armed the device and, as far as is known, it
+    /// Whether this client has armed the device and, as of the last status, it
     /// still is.
     pub fn is_armed(&self) -> bool {
         self.lease == Lease::Held
     }
 
-    /// Whether the line is open.
+    /// Whether the connection is open.
     pub fn is_connected(&self) -> bool {
         self.loss.is_none()
     }
 
-    /// The books of the last subscription.
+    /// Accounting of the last subscription.
     pub fn accounting(&self) -> Option<&Accounting> {
         self.telemetry.books.as_ref()
     }
 
-    /// How long answers take.
+    /// Round-trip times.
     pub fn round_trips(&self) -> &RoundTrips {
         &self.round_trips
     }
 
-    /// What was counted.
+    /// The counters of this client.
     pub fn tally(&self) -> Tally {
         let (frames, discarded_frames, foreign_frames) = self.wire.counts();
         let Counts {
@@ -245,21 +245,21 @@ impl<T: Transport> Client<T> {
         }
     }
 
-    /// The transport, for what only it can do.
+    /// The transport.
     pub fn transport_mut(&mut self) -> &mut T {
         self.wire.transport_mut()
     }
 
-    /// Gives the transport back, and nothing else: an armed device faults as
-    /// its lease ends. See [`Self::close`].
+    /// Returns the transport and does nothing else: an armed device faults when
+    /// its lease expires. See [`Self::close`].
     pub fn into_transport(self) -> T {
         self.wire.into_transport()
     }
 
-    /// Ends what this client has begun: disarms, unsubscribes.
+    /// Disarms and unsubscribes.
     ///
     /// # Errors
-    /// As the requests'.
+    /// As for the requests.
     pub fn close(mut self) -> Result<T, Error> {
         if self.is_armed() {
             self.disarm()?;

@@ -1,11 +1,10 @@
-//! Which devices there are: on USB, and simulated ones.
+//! Discovery of devices, on USB and simulated.
 //!
 //! A device on USB is a serial port with the project's vendor and product id
 //! *and* its name: the ids are shared with other free projects.
 //!
-//! A simulated device is a pty. Who offers one puts a link to it into
-//! [`simulated_folder`]; the link's name is the device's. A link whose pty has
-//! gone is no device.
+//! A simulated device is a pty with a symbolic link in [`simulated_folder`]; the
+//! link's name is the device's. Dangling links are ignored.
 
 use crepitus_protocol::usb::{PRODUCT, PRODUCT_ID, VENDOR_ID};
 use serialport::{SerialPortType, UsbPortInfo};
@@ -17,38 +16,38 @@ use std::path::{Path, PathBuf};
 pub struct Device {
     /// The port.
     pub port: String,
-    /// What it is.
+    /// Kind of device.
     pub kind: DeviceKind,
 }
 
-/// What a device is.
+/// Kind of a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DeviceKind {
     /// On USB.
     Usb {
-        /// Its number, if the system says it.
+        /// Serial number, if the system reports it.
         serial_number: Option<String>,
     },
     /// Simulated, by another program.
     Simulated {
-        /// The name that it was given.
+        /// Name.
         name: String,
     },
 }
 
-/// The system does not say which ports it has.
+/// The system cannot list its serial ports.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the system does not say which serial ports it has: {detail}")]
+#[error("cannot list the serial ports of this system: {detail}")]
 pub struct DiscoveryError {
-    /// What it says instead.
+    /// Error of the system.
     pub detail: String,
 }
 
 /// All devices, those on USB first, in the order of their ports.
 ///
 /// # Errors
-/// [`DiscoveryError`] if the system does not list its ports.
+/// [`DiscoveryError`] if the system cannot list its ports.
 pub fn devices() -> Result<Vec<Device>, DiscoveryError> {
     let mut devices = usb_devices()?;
     devices.extend(simulated_devices(&simulated_folder()));
@@ -58,7 +57,7 @@ pub fn devices() -> Result<Vec<Device>, DiscoveryError> {
 /// The devices on USB.
 ///
 /// # Errors
-/// [`DiscoveryError`] if the system does not list its ports.
+/// [`DiscoveryError`] if the system cannot list its ports.
 pub fn usb_devices() -> Result<Vec<Device>, DiscoveryError> {
     // The library panics on a Linux without this folder: a container.
     if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").is_dir() {
@@ -69,7 +68,7 @@ pub fn usb_devices() -> Result<Vec<Device>, DiscoveryError> {
     })?;
     let mut devices: Vec<_> = ports
         .into_iter()
-        // A port of macOS has two names; this one waits for a modem.
+        // A port of macOS has two names; opening this one waits for a modem.
         .filter(|port| !port.port_name.starts_with("/dev/tty."))
         .filter_map(|port| match port.port_type {
             SerialPortType::UsbPort(usb) if is_ours(&usb) => Some(Device {
@@ -86,13 +85,13 @@ pub fn usb_devices() -> Result<Vec<Device>, DiscoveryError> {
 }
 
 fn is_ours(usb: &UsbPortInfo) -> bool {
-    // The system may write the name with other spaces or cases than we do.
+    // Systems differ in spaces and case of the name.
     let is_named = |name: &str| name.to_lowercase().contains(&PRODUCT.to_lowercase());
     (usb.vid, usb.pid) == (VENDOR_ID, PRODUCT_ID) && usb.product.as_deref().is_some_and(is_named)
 }
 
-/// Where simulated devices are offered: `crepitus` in the folder of this
-/// user's session, or else in the one for temporary files.
+/// Folder of simulated devices: `crepitus` in the user's runtime folder, or
+/// else in the temporary folder.
 pub fn simulated_folder() -> PathBuf {
     std::env::var_os("XDG_RUNTIME_DIR")
         .filter(|folder| !folder.is_empty())
@@ -100,8 +99,7 @@ pub fn simulated_folder() -> PathBuf {
         .join("crepitus")
 }
 
-/// The simulated devices that are offered in a folder, by name. A folder that
-/// is not there offers none.
+/// The simulated devices of a folder, by name; none if it does not exist.
 pub fn simulated_devices(folder: &Path) -> Vec<Device> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();
@@ -109,7 +107,7 @@ pub fn simulated_devices(folder: &Path) -> Vec<Device> {
     let mut devices: Vec<_> = entries
         .flatten()
         .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_symlink()))
-        // Follows the link: where the pty has gone, there is nothing.
+        // `exists` follows the link: false if the pty is gone.
         .filter(|entry| entry.path().exists())
         .filter_map(|entry| {
             Some(Device {
@@ -145,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn the_system_is_asked_without_a_panic() {
+    fn listing_ports_does_not_panic() {
         usb_devices().unwrap();
     }
 

@@ -1,4 +1,4 @@
-//! What may go wrong between a program and a device.
+//! Errors of a client.
 
 use crate::handshake::Mismatch;
 use crate::refusals::{Refused, name_of};
@@ -7,50 +7,50 @@ use crate::transport::TransportError;
 use crepitus_protocol::Revision;
 use std::time::Duration;
 
-/// What has gone wrong. Its text says what, where, and what to do.
+/// Error of a client. Its text gives cause, place and remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The line.
+    /// Error of the transport.
     #[error(transparent)]
     Transport(#[from] TransportError),
-    /// The line was lost before; [`Client::reconnect`](crate::Client::reconnect)
-    /// opens it again.
-    #[error("the line to {port} was lost and is not open again")]
+    /// The connection was lost before;
+    /// [`Client::reconnect`](crate::Client::reconnect) reopens it.
+    #[error("the connection to {port} was lost and is not open")]
     NotConnected {
         /// The port.
         port: String,
     },
-    /// The device says nothing.
+    /// Timeout without a reply.
     #[error(
-        "no answer from {port} to `{what}`, asked {tries} times within {} ms: \
-         is it a Crepitus device, and is it switched on?",
+        "timeout: no reply from {port} to `{request}` after {tries} tries in {} ms; \
+        check that it is a Crepitus device and that it has power",
         .waited.as_millis()
     )]
     NoAnswer {
-        /// What was asked.
-        what: RequestKind,
-        /// How often.
+        /// The request.
+        request: RequestKind,
+        /// Number of tries.
         tries: u32,
-        /// How long it was waited for.
+        /// Time waited.
         waited: Duration,
         /// The port.
         port: String,
     },
-    /// The device does not do it, and says why.
+    /// The device rejected the request.
     #[error(transparent)]
     Refused(Box<Refused>),
-    /// Both sides speak different languages.
+    /// The schema hashes differ.
     #[error(transparent)]
     Mismatch(Box<Mismatch>),
-    /// Somebody else has changed the very parameters that were to be set.
+    /// Another host has changed the same parameters.
     #[error(transparent)]
     Conflict(Box<Conflict>),
-    /// The device will not start anew while there is torque.
-    #[error("`{what}` is refused while there is torque: `crepitus stop` ends it")]
+    /// The device does not reboot while armed.
+    #[error("`{request}` is rejected while the device is armed: run `crepitus stop` first")]
     NotDone {
-        /// What was asked.
-        what: RequestKind,
+        /// The request.
+        request: RequestKind,
     },
     /// There is no parameter with this id.
     #[error("there is no parameter with the id {id}")]
@@ -58,11 +58,11 @@ pub enum Error {
         /// The id.
         id: u8,
     },
-    /// The answer is one to another question: a defect of the device.
-    #[error("the device gives an answer to `{what}` that is none: this is a defect of its program")]
+    /// The reply does not fit the request: a bug in the firmware.
+    #[error("invalid reply of the device to `{request}`: this is a bug in its firmware")]
     Unexpected {
-        /// What was asked.
-        what: RequestKind,
+        /// The request.
+        request: RequestKind,
     },
 }
 
@@ -78,11 +78,11 @@ impl From<Mismatch> for Error {
     }
 }
 
-/// A parameter that was to be set has been changed by somebody else meanwhile.
+/// Another host has changed a parameter that was to be set.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "{} was to become {wanted}, and another host has just changed it from {before} to {now} \
-     (revision {revision}): nothing was set; look whether that is what you want, and set it again",
+    "cannot set {} to {requested}: another host has just changed it from {before} to {now} \
+    (revision {revision}); nothing was set; check its new value and set it again",
     name_of(*.id)
 )]
 pub struct Conflict {
@@ -92,8 +92,8 @@ pub struct Conflict {
     pub before: f64,
     /// Its value now.
     pub now: f64,
-    /// What it was to become.
-    pub wanted: f64,
+    /// The requested value.
+    pub requested: f64,
     /// The revision of the parameters now.
     pub revision: Revision,
 }

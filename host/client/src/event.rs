@@ -1,49 +1,48 @@
-//! What has happened, as [`Client::pump`](crate::Client::pump) hands it out.
+//! Events that [`Client::pump`](crate::Client::pump) returns.
 
 use crate::transport::TransportError;
 use crepitus_protocol::host::Status;
 use crepitus_protocol::telemetry::Block;
 use std::time::Duration;
 
-/// What has happened.
+/// Event of a device or its connection.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Event {
     /// Twenty samples of the subscription.
     Block(Arrival),
-    /// The drive has started anew: ticks begin anew with the next block.
+    /// The drive has restarted: ticks restart with the next block.
     DriveRestarted,
-    /// State, fault, presence of the drive or holder of the lease are others.
+    /// State, fault, presence of the drive or holder of the lease have changed.
     State(Box<StateChange>),
-    /// No block of the subscription has come for this long, though the line is
-    /// open. Said once for each silence.
+    /// No block has arrived for this long, though the connection is open.
+    /// Reported once for each silence.
     Silent(Duration),
-    /// The line is gone; said once. There is nothing more until
+    /// The connection is lost; reported once. No more events until
     /// [`Client::reconnect`](crate::Client::reconnect).
     Lost(TransportError),
 }
 
-/// A block, and what is missing before it.
+/// A block, and the samples missing before it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arrival {
     /// The block.
     pub block: Box<Block>,
-    /// Samples that are missing between it and the one before.
+    /// Samples missing between it and the previous one.
     pub missing: u64,
 }
 
-/// How it was and how it is.
+/// Change of the status.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StateChange {
-    /// As it was known before.
+    /// Previous status.
     pub before: Status,
-    /// As it is.
+    /// Current status.
     pub now: Status,
 }
 
 impl StateChange {
-    /// The change, if it is one that somebody may want to know of: time and
-    /// revisions go on all the time.
+    /// The change, if it is relevant: changes of time and revisions are not.
     pub(crate) fn between(before: &Status, now: &Status) -> Option<Self> {
         let key = |s: &Status| {
             (

@@ -1,13 +1,13 @@
-//! Faults, said so that a person can mend them.
+//! Faults as text.
 
 use crepitus_protocol::Fault;
 use crepitus_protocol::fault::Detector;
 
-/// A fault's name, who has noticed it, its cause, and how to go on.
+/// A fault's name, detector, cause and remedy.
 pub fn fault_text(code: u8) -> String {
     let Some(spec) = Fault::find(code) else {
         return format!(
-            "fault {code}, which this tool does not know: install the tool of the device's version"
+            "fault {code}, unknown to this tool: install the tool of the device's version"
         );
     };
     let detector = match spec.detector {
@@ -15,7 +15,7 @@ pub fn fault_text(code: u8) -> String {
         Detector::Comms => "comms",
     };
     format!(
-        "{} (fault {code}, noticed by {detector}): {}. To go on: {}",
+        "{} (fault {code}, detected by {detector}): {}. Remedy: {}",
         spec.name, spec.cause, spec.clear
     )
 }

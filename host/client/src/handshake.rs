@@ -1,4 +1,4 @@
-//! Who is there, and whether both sides speak the same language.
+//! Handshake: identities and compatibility.
 
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::schema;
@@ -33,19 +33,18 @@ const fn number(text: &str) -> u8 {
     number
 }
 
-/// Who is there.
+/// Identities of both controllers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Handshake {
     /// The comms controller.
     pub comms: Identity,
-    /// The drive controller, if comms has heard who it is.
+    /// The drive controller, if comms knows its identity.
     pub drive: Option<Identity>,
 }
 
 impl Handshake {
-    /// What does not speak this side's language. If it is comms, only the lane
-    /// that never changes works; if it is the drive alone, the device answers
-    /// and refuses to arm.
+    /// Checks the schema hashes. If comms differs, only the management lane
+    /// works; if only the drive differs, the device replies but rejects arming.
     pub fn mismatch(&self) -> Option<Mismatch> {
         let drive_differs = self.drive.is_some_and(|drive| drive.schema != schema::HASH);
         (self.comms_differs() || drive_differs).then_some(Mismatch(*self))
@@ -56,19 +55,19 @@ impl Handshake {
     }
 }
 
-/// This side and the device speak different languages.
+/// The schema hashes of host and device differ.
 ///
-/// Its text says which side has what, and which one is to be replaced.
+/// Its text gives both versions and the one to replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mismatch(pub Handshake);
 
 impl Mismatch {
-    /// This side's version and language.
+    /// Version and schema hash of this side.
     pub fn tool(&self) -> (Version, u64) {
         (TOOL_VERSION, schema::HASH)
     }
 
-    /// The version of a tool that speaks the language of comms.
+    /// Version of a tool that is compatible with comms.
     pub fn tool_needed(&self) -> Version {
         Version(self.0.comms.version)
     }
@@ -79,7 +78,7 @@ impl fmt::Display for Mismatch {
         let Handshake { comms, drive } = &self.0;
         writeln!(
             f,
-            "this tool and the device do not speak the same language:"
+            "this tool and the device are incompatible, their schema hashes differ:"
         )?;
         side(f, "tool", TOOL_VERSION, schema::HASH)?;
         side(f, "comms", Version(comms.version), comms.schema)?;
@@ -97,26 +96,23 @@ impl fmt::Display for Mismatch {
             is_first = false;
             remedy(f, name, Version(identity.version))?;
         }
-        write!(
-            f,
-            "\n`crepitus info` and `crepitus stop` work all the same."
-        )
+        write!(f, "\n`crepitus info` and `crepitus stop` still work.")
     }
 }
 
 fn side(f: &mut fmt::Formatter<'_>, name: &str, version: Version, hash: u64) -> fmt::Result {
-    writeln!(f, "  {name:<5}  version {version}, language {hash:016x}")
+    writeln!(f, "  {name:<5}  version {version}, schema {hash:016x}")
 }
 
 fn remedy(f: &mut fmt::Formatter<'_>, name: &str, version: Version) -> fmt::Result {
     match version.cmp(&TOOL_VERSION) {
         Ordering::Less => write!(
             f,
-            "The program of {name} is older: flash `firmware/{name}` of version {TOOL_VERSION}."
+            "The firmware of {name} is older: flash `firmware/{name}` of version {TOOL_VERSION}."
         ),
         Ordering::Greater => write!(
             f,
-            "The program of {name} is newer: install the tool of version {version}."
+            "The firmware of {name} is newer: install the tool of version {version}."
         ),
         Ordering::Equal => write!(
             f,

@@ -1,27 +1,26 @@
-//! # Talks to a device
+//! # Client library for a device
 //!
 //! ```text
 //!  tool, recorder, tests
-//!        │ requests          ↑ events: blocks, states, a lost line
+//!        │ requests          ↑ events: blocks, states, lost connection
 //!  ┌─────┴───────────────────┴─────────────────────────────────────┐
-//!  │ [`Client`]   set · arm · subscribe · pump · reconnect         │ a device of the same language
+//!  │ [`Client`]   set · arm · subscribe · pump · reconnect         │ a device with the same schema
 //!  │ [`Management`]   identify · stop · reboot                     │ a device of any version
 //!  ├───────────────────────────────────────────────────────────────┤
-//!  │ frames, numbers, repeats, the lease, the books of telemetry   │
+//!  │ frames, sequence numbers, retries, lease, sample accounting   │
 //!  └─────┬───────────────────↑─────────────────────────────────────┘
 //!        │ bytes             │ bytes, and the clock
 //!    [`Transport`]: [`Serial`], or a simulated device in this process
 //! ```
 //!
-//! One thread, and nothing happens between calls: whoever has a [`Client`]
-//! calls [`Client::pump`] again and again; that receives, renews the lease of
-//! an armed device, and hands out what has happened. Time is that of the
-//! transport, so a simulated device may run faster than the wall, and a test
-//! that is repeated does the same again.
+//! Single-threaded, without background work: the owner of a [`Client`] calls
+//! [`Client::pump`] in a loop; it receives, renews the lease of an armed device,
+//! and returns events. The transport is the clock, so a simulated device may run
+//! faster than real time, and tests are deterministic.
 //!
-//! **Every request may be repeated.** A request that has no reply in time is
-//! sent again with its number; the device answers again and does not carry it
-//! out again.
+//! **Requests are idempotent.** After a timeout a request is sent again with the
+//! same sequence number; the device repeats its reply and does not execute it
+//! again.
 //!
 //! ```no_run
 //! use crepitus_client::{Client, Error, Event, Serial};
@@ -42,21 +41,21 @@
 //!
 //! | to find | look in |
 //! |---|---|
-//! | which devices there are | [`discovery`] |
-//! | a port: who has it, why it does not open | [`Serial`], [`TransportError`] |
-//! | what may go wrong, said so that a person can mend it | [`Error`], [`Refused`], [`Mismatch`], [`fault_text`] |
-//! | what of the telemetry arrived | [`Accounting`] |
+//! | discovery of devices | [`discovery`] |
+//! | a port: its holder, errors of opening | [`Serial`], [`TransportError`] |
+//! | errors, with remedies | [`Error`], [`Refused`], [`Mismatch`], [`fault_text`] |
+//! | accounting of received and lost samples | [`Accounting`] |
 //! | parameters as text | [`values`] |
 #![forbid(unsafe_code)]
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod accounting;
-mod asking;
 mod client;
 pub mod discovery;
 mod errors;
 mod event;
+mod exchange;
 mod faults;
 mod handshake;
 mod management;

@@ -1,4 +1,4 @@
-//! A device of any version: who is there, stop, reboot.
+//! Client of a device of any version: identify, stop, reboot.
 
 use crate::client::Client;
 use crate::errors::Error;
@@ -6,24 +6,22 @@ use crate::handshake::Handshake;
 use crate::session::Options;
 use crate::transport::Transport;
 
-/// Speaks the lane that never changes, and nothing else: it works with a
-/// device of any version.
+/// Client that uses only the management lane, which all versions share.
 #[derive(Debug)]
 pub struct Management<T>(Client<T>);
 
 impl<T: Transport> Management<T> {
-    /// On a line that is open. Nothing is asked yet.
+    /// Creates a client on an open transport, without sending anything.
     pub fn new(transport: T) -> Self {
         Self::with(transport, Options::default())
     }
 
-    /// The same, with a session of one's own.
+    /// [`Self::new`] with a given session.
     pub fn with(transport: T, options: Options) -> Self {
         Self(Client::unchecked(transport, options))
     }
 
-    /// Who is there. A device that has just started is given some time to
-    /// hear its drive.
+    /// Reads the identities; waits a little for the drive's after a boot.
     ///
     /// # Errors
     /// [`Error::NoAnswer`], [`Error::Transport`].
@@ -31,34 +29,34 @@ impl<T: Transport> Management<T> {
         self.0.identify()
     }
 
-    /// No more torque, at once and whoever is speaking with the device.
+    /// Turns torque off at once, whichever host has armed the device.
     ///
     /// # Errors
-    /// [`Error::NoAnswer`], [`Error::Transport`]: whether it was heard is not
-    /// known. The lease ends all torque within 250 ms of its holder's silence.
+    /// [`Error::NoAnswer`], [`Error::Transport`]: the result is unknown. Torque
+    /// ends anyway 250 ms after the holder of the lease is silent.
     pub fn stop(&mut self) -> Result<(), Error> {
         self.0.stop()
     }
 
-    /// Starts the device anew.
+    /// Reboots the device.
     ///
     /// # Errors
-    /// [`Error::NotDone`] while there is torque; [`Error::NoAnswer`],
+    /// [`Error::NotDone`] while armed; [`Error::NoAnswer`],
     /// [`Error::Transport`].
     pub fn reboot(&mut self) -> Result<(), Error> {
         self.0.reboot()
     }
 
-    /// All that a device of this side's language can.
+    /// Upgrades to a full client, if the schema hashes match.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] if comms speaks another one; [`Error::NoAnswer`],
+    /// [`Error::Mismatch`] if they differ; [`Error::NoAnswer`],
     /// [`Error::Transport`].
     pub fn into_client(self, handshake: Handshake) -> Result<Client<T>, Error> {
         self.0.checked(handshake)
     }
 
-    /// Gives the transport back.
+    /// Returns the transport.
     pub fn into_transport(self) -> T {
         self.0.into_transport()
     }

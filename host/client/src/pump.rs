@@ -1,71 +1,71 @@
-//! What comes unasked: blocks, changes of the state, the end of the line.
+//! Events: blocks, changes of the status, loss of the connection.
 
 use crate::accounting::Taken;
 use crate::client::{Client, Lease};
 use crate::errors::Error;
 use crate::event::{Arrival, Event, StateChange};
 use crate::transport::Transport;
-use crate::wire::Heard;
+use crate::wire::Incoming;
 use crepitus_protocol::State;
-use crepitus_protocol::host::{Answer, Ask, Reply, Request, Status};
+use crepitus_protocol::host::{Answer, Operation, Reply, Request, Status};
 use crepitus_protocol::telemetry::Block;
 use std::time::Duration;
 
-/// Events that may wait to be taken: ten seconds of blocks.
+/// Capacity of the event queue: ten seconds of blocks.
 pub(crate) const WAITING_EVENTS: usize = 10_000;
 
-/// Messages that are taken in at once before an event is handed out.
+/// Messages received at most before an event is returned.
 const AT_ONCE: usize = 64;
 
-/// While armed or subscribed, the state is asked for this often. It is asked
-/// again, too, if there was no answer for so long.
+/// Polling interval of the status while armed or subscribed, and its retry
+/// timeout.
 const WATCH_EVERY: Duration = Duration::from_millis(100);
 
-/// After a change of the state it is asked again: each controller learns of
-/// the other's reasons a few milliseconds late.
+/// Delay of another status request after a change: each controller receives the
+/// other's cause a few milliseconds late.
 const SETTLES_IN: Duration = Duration::from_millis(20);
 
-/// So long without a block is a silence.
+/// Timeout without a block that is reported as silence.
 const SILENCE: Duration = Duration::from_millis(500);
 
 impl<T: Transport> Client<T> {
-    /// Renews the lease of a device that this client has armed, receives, and
-    /// gives the next of what has happened, waited for at most this long. With
-    /// no patience it gives what has happened already.
+    /// Renews the lease if this client has armed the device, receives, and
+    /// returns the next event within `patience`. With zero it returns only
+    /// pending events.
     ///
-    /// It is to be called again and again, every 50 ms or more often while the
-    /// device is armed: the lease ends after 250 ms.
+    /// Call it in a loop, every 50 ms or more often while the device is armed:
+    /// the lease expires after 250 ms.
     ///
     /// # Errors
-    /// [`Error::NotConnected`], after [`Event::Lost`] was given.
+    /// [`Error::NotConnected`], after [`Event::Lost`] was returned.
     pub fn pump(&mut self, patience: Duration) -> Result<Option<Event>, Error> {
         let until = self.now() + patience;
         loop {
-            let taken = self.take_what_is_there();
+            let taken = self.receive_pending();
             if let Some(event) = self.events.pop_front() {
                 return Ok(Some(event));
             }
-            // A line that has failed in this call was an event.
+            // A connection lost during this call is an event.
             taken?;
             if self.now() >= until {
                 return Ok(None);
             }
-            if let Ok(Some(_)) = self.turn(self.next_look(until)) {
+            if let Ok(Some(_)) = self.receive(self.next_look(until)) {
                 self.counts.strays += 1;
             }
         }
     }
 
-    /// Without waiting.
-    fn take_what_is_there(&mut self) -> Result<(), Error> {
+    /// Receives without waiting.
+    fn receive_pending(&mut self) -> Result<(), Error> {
         self.connected()?;
         self.renew()?;
         self.look()?;
         for _ in 0..AT_ONCE {
             match self.wire.next(Duration::ZERO) {
                 Ok(None) => break,
-                Ok(Some(heard)) => {
-                    if self.take_in(heard).is_some() {
+                Ok(Some(incoming)) => {
+                    if self.take_in(incoming).is_some() {
                         self.counts.strays += 1;
                     }
                 }
@@ -76,7 +76,7 @@ impl<T: Transport> Client<T> {
         Ok(())
     }
 
-    /// When there is something to do, if nothing comes.
+    /// Next deadline if nothing arrives.
     fn next_look(&self, until: Duration) -> Duration {
         let mut next = until;
         if self.watch.asked.is_some() || self.is_watching() {
@@ -97,12 +97,12 @@ impl<T: Transport> Client<T> {
         self.lease == Lease::Held || self.telemetry.is_subscribed
     }
 
-    /// Asks for the state, if that is due.
+    /// Requests the status if due.
     fn look(&mut self) -> Result<(), Error> {
         let now = self.now();
         let is_old = now.saturating_sub(self.watch.asked_at) >= WATCH_EVERY;
         let is_wanted = if self.watch.asked.is_some() {
-            // It was lost on its way, or its answer was.
+            // The request or its reply was lost.
             is_old
         } else {
             let is_due = self.watch.due_at.is_some_and(|due_at| due_at <= now);
@@ -117,7 +117,7 @@ impl<T: Transport> Client<T> {
         let sent = self.wire.request(&Request {
             session: self.session,
             number,
-            ask: Ask::Status,
+            operation: Operation::Status,
         });
         self.sent(sent)
     }
@@ -134,18 +134,18 @@ impl<T: Transport> Client<T> {
         }
     }
 
-    /// Takes what comes unasked, and gives the rest.
-    pub(crate) fn take_in(&mut self, heard: Heard) -> Option<Heard> {
-        match heard {
-            Heard::Block(block) => {
+    /// Handles events and returns other messages.
+    pub(crate) fn take_in(&mut self, incoming: Incoming) -> Option<Incoming> {
+        match incoming {
+            Incoming::Block(block) => {
                 self.take_block(block);
                 None
             }
-            Heard::Reply(reply) if reply.session != self.session => {
+            Incoming::Reply(reply) if reply.session != self.session => {
                 self.counts.strays += 1;
                 None
             }
-            Heard::Reply(reply) if self.watch.asked == Some(reply.number) => {
+            Incoming::Reply(reply) if self.watch.asked == Some(reply.number) => {
                 self.watch.asked = None;
                 if let Reply {
                     answer: Ok(Answer::Status(status)),
@@ -195,7 +195,7 @@ impl<T: Transport> Client<T> {
             .push_back(Event::Block(Arrival { block, missing }));
     }
 
-    /// Learns how it is.
+    /// Updates the status.
     pub(crate) fn observe(&mut self, status: &Status) {
         let has_lease = status.lease == Some(self.session);
         let may_have_torque = matches!(status.state, State::Arming | State::Armed);

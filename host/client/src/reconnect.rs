@@ -1,4 +1,4 @@
-//! A line that was lost, and what of it comes back.
+//! Reconnecting after a lost connection.
 
 use crate::accounting::Accounting;
 use crate::client::{Client, Lease};
@@ -7,59 +7,59 @@ use crate::event::Event;
 use crate::handshake::Handshake;
 use crate::request_kind::RequestKind;
 use crate::transport::Transport;
-use crepitus_protocol::host::{Answer, Ask, Status};
+use crepitus_protocol::host::{Answer, Operation, Status};
 use std::time::Duration;
 
-/// A line that does not open is tried again this often.
+/// Retry interval of opening the port.
 const TRY_EVERY: Duration = Duration::from_millis(50);
 
-/// What was under way as the line was lost.
+/// State at the loss of the connection.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Loss {
     pub(crate) was_armed: bool,
     pub(crate) unanswered: Option<RequestKind>,
 }
 
-/// The line is open again, and what was lost.
+/// Result of a reconnect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reconnected {
-    /// Who is there now.
+    /// The new handshake.
     pub handshake: Handshake,
-    /// How it is now.
+    /// Current status.
     pub status: Status,
-    /// This client had armed the device. Its lease ends, and with it all
-    /// torque; it is not armed again by itself.
+    /// This client had armed the device. Its lease expires, and torque ends; the
+    /// client does not rearm.
     pub was_armed: bool,
-    /// What was asked as the line was lost; whether it was done is not known.
+    /// The request that was pending at the loss; its result is unknown.
     pub unanswered: Option<RequestKind>,
-    /// The subscription goes on.
+    /// The resumed subscription.
     pub resubscribed: Option<Resubscribed>,
 }
 
-/// A subscription that goes on.
+/// A resumed subscription.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Resubscribed {
-    /// The tick after the last sample that had arrived.
+    /// The tick after the last sample received before.
     pub until_tick: u64,
-    /// The tick from which on samples come again.
+    /// The first tick of the resumed stream.
     pub from_tick: u64,
 }
 
 impl Resubscribed {
-    /// Samples in between, which are in no books; not known if the drive has
-    /// started anew.
+    /// Samples in between, which are not accounted for; unknown if the drive
+    /// has restarted.
     pub fn unseen(&self) -> Option<u64> {
         self.from_tick.checked_sub(self.until_tick)
     }
 }
 
 impl<T: Transport> Client<T> {
-    /// Opens the line again, which may take this long, finds out who is there,
-    /// and subscribes again if there was a subscription. It never arms.
+    /// Reopens the connection within `patience`, repeats the handshake, and
+    /// resumes a subscription. It never arms.
     ///
     /// # Errors
-    /// Why the last try failed; [`Error::Mismatch`] if the device speaks
-    /// another language now. It may be tried again.
+    /// The error of the last try; [`Error::Mismatch`] if the device now has
+    /// another schema hash. It may be called again.
     pub fn reconnect(&mut self, patience: Duration) -> Result<Reconnected, Error> {
         let until = self.now() + patience;
         let loss = self.loss.unwrap_or(Loss {
@@ -70,7 +70,7 @@ impl<T: Transport> Client<T> {
             self.lease = Lease::None;
             self.watch.asked = None;
             let result = self.try_again(loss);
-            // Who asks for a new line knows that the old one was lost.
+            // The caller knows already that the connection was lost.
             self.events.retain(|event| !matches!(event, Event::Lost(_)));
             let error = match result {
                 Ok(reconnected) => return Ok(reconnected),
@@ -116,24 +116,24 @@ impl<T: Transport> Client<T> {
         })
     }
 
-    /// Subscribes; then the books begin as they are told to.
+    /// Subscribes and starts the accounting.
     pub(crate) fn begin_subscription(
         &mut self,
         begin: impl FnOnce(&mut Option<Accounting>, u64),
     ) -> Result<u64, Error> {
         self.telemetry.early = Some(Vec::new());
-        let answer = self.ask(Ask::Subscribe);
+        let answer = self.request(Operation::Subscribe);
         let early = self.telemetry.early.take().unwrap_or_default();
         let Answer::Subscribed { first_tick } = answer? else {
             return Err(Error::Unexpected {
-                what: RequestKind::Subscribe,
+                request: RequestKind::Subscribe,
             });
         };
         begin(&mut self.telemetry.books, first_tick);
         self.telemetry.is_subscribed = true;
         self.telemetry.heard_at = self.now();
         self.telemetry.is_silent = false;
-        // What came before is of an earlier subscription.
+        // Earlier blocks are of a previous subscription.
         for block in early {
             if block.first_tick >= first_tick {
                 self.take_block(Box::new(block));

@@ -1,4 +1,4 @@
-//! What a device does not do, and why, said so that a person can mend it.
+//! Rejected requests as text, with cause and remedy.
 
 use crate::faults::fault_text;
 use crate::request_kind::RequestKind;
@@ -9,12 +9,12 @@ use crepitus_protocol::parameters::{id, with_id};
 use crepitus_protocol::{ValueError, Values};
 use std::fmt;
 
-/// A request that the device has refused.
+/// A rejected request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refused {
-    /// What was asked.
-    pub what: RequestKind,
-    /// Why it was not done.
+    /// The request.
+    pub request: RequestKind,
+    /// The reason.
     pub refusal: Refusal,
     /// The values of a commit.
     pub values: Option<Values>,
@@ -24,58 +24,55 @@ impl std::error::Error for Refused {}
 
 impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let what = self.what;
+        let request = self.request;
         match self.refusal {
             Refusal::Values(error) => self.values_text(f, error),
             Refusal::Stale { revision } => write!(
                 f,
-                "`{what}` is refused: the parameters have changed since they were read \
-                 (they are at revision {revision} now); read them again"
+                "`{request}` is rejected: the parameters have changed since they were read \
+                 (now revision {revision}); read them again"
             ),
             Refusal::Leased { by } => write!(
                 f,
-                "`{what}` is refused: another host (session {by}) has armed the device; \
-                 end that program, or `crepitus stop`"
+                "`{request}` is rejected: another host (session {by}) holds the lease; \
+                 end that program, or run `crepitus stop`"
             ),
             Refusal::DriveSilent => write!(
                 f,
-                "`{what}` is refused: nothing comes from the drive; \
-                 look at its power and at the cable between the controllers"
+                "`{request}` is rejected: the drive is silent; \
+                 check its power and the cable between the controllers"
             ),
-            Refusal::Unconfirmed if what == RequestKind::Commit => f.write_str(
-                "the drive has not confirmed the parameters in time: it cannot be heard, or still \
-                 goes over to those before; they come into force afterwards: ask for the status",
+            Refusal::Unconfirmed if request == RequestKind::Commit => f.write_str(
+                "timeout: the drive has not confirmed the parameters; it is silent, or still \
+                 ramps to the previous ones, and will apply them later; check the status",
             ),
             Refusal::Unconfirmed => write!(
                 f,
-                "the drive has not confirmed `{what}` in time, and may have done it: \
-                 ask for the status"
+                "timeout: the drive has not confirmed `{request}` and may have executed it; \
+                 check the status"
             ),
             Refusal::Faulted { code } => write!(
                 f,
-                "`{what}` is refused, a fault stands in the way: {}",
+                "`{request}` is rejected because of a fault: {}",
                 fault_text(code)
             ),
-            Refusal::Armed => needs_disarmed(f, what),
+            Refusal::Armed => needs_disarmed(f, request),
             Refusal::Busy => write!(
                 f,
-                "`{what}` is refused: the device still works on another request, or still goes \
-                 over to other parameters; try again"
+                "`{request}` is rejected: the device is busy with another request, or still ramps \
+                 to other parameters; try again"
             ),
-            Refusal::Drive(refusal) => drive_text(f, what, refusal),
+            Refusal::Drive(refusal) => drive_text(f, request, refusal),
             Refusal::Storage => f.write_str(
-                "the parameters could not be kept: the flash memory of comms does not take them; \
-                 they are in force until the next start",
+                "the parameters could not be saved: writing the flash memory of comms failed; \
+                 they stay active until the next boot",
             ),
             Refusal::Aborted => {
-                write!(
-                    f,
-                    "`{what}` was given up: a stop, a disarm or a fault came first"
-                )
+                write!(f, "`{request}` was aborted by a stop, a disarm or a fault")
             }
             _ => write!(
                 f,
-                "`{what}` is refused for a reason that this tool does not know: \
+                "`{request}` is rejected for a reason unknown to this tool: \
                  install the tool of the device's version"
             ),
         }
@@ -86,9 +83,9 @@ impl Refused {
     fn values_text(&self, f: &mut fmt::Formatter<'_>, error: ValueError) -> fmt::Result {
         match error {
             ValueError::OutOfRange { id } => {
-                write!(f, "{} is not allowed", self.setting(id))?;
+                write!(f, "invalid value {}", self.setting(id))?;
                 if let Some(parameter) = with_id(id) {
-                    write!(f, ": it is {}", allowed_text(parameter))?;
+                    write!(f, ": must be {}", allowed_text(parameter))?;
                 }
             }
             ValueError::KineticAboveStatic => write!(
@@ -100,7 +97,7 @@ impl Refused {
             ValueError::Unguarded => {
                 write!(
                     f,
-                    "{} is too close to {}, with {} and {}: a hand that turns back inside a slip would get \
+                    "{} is too close to {}, with {} and {}: a hand that reverses during a slip would get \
                      more energy than the slip takes out of the spring",
                     self.setting(id::KINETIC_TORQUE),
                     self.setting(id::STATIC_TORQUE),
@@ -118,7 +115,7 @@ impl Refused {
                 f.write_str(": lower the kinetic torque or the stiffness, or raise the static torque")?;
             }
             ValueError::Contradiction => f.write_str(
-                "the device's own rules contradict each other, a defect of its program: please report these values",
+                "the device's rules contradict each other, a bug in its firmware: please report these values",
             )?,
             ValueError::StaticAboveLimit => {
                 write!(
@@ -133,11 +130,11 @@ impl Refused {
             }
             ValueError::NeedsDisarmed { id } => write!(
                 f,
-                "{} changes only while there is no torque: disarm first",
+                "{} can only change while disarmed: disarm first",
                 self.setting(id)
             )?,
             _ => f.write_str(
-                "the values are refused for a reason that this tool does not know: \
+                "the values are rejected for a reason unknown to this tool: \
                  install the tool of the device's version",
             )?,
         }
@@ -159,43 +156,47 @@ pub(crate) fn name_of(id: u8) -> String {
     with_id(id).map_or_else(|| format!("parameter {id}"), full_name)
 }
 
-fn needs_disarmed(f: &mut fmt::Formatter<'_>, what: RequestKind) -> fmt::Result {
-    if what == RequestKind::Arm {
-        f.write_str("`arm` is refused: the device is armed already")
+fn needs_disarmed(f: &mut fmt::Formatter<'_>, request: RequestKind) -> fmt::Result {
+    if request == RequestKind::Arm {
+        f.write_str("`arm` is rejected: the device is armed already")
     } else {
-        write!(f, "`{what}` is refused while there is torque: disarm first")
+        write!(f, "`{request}` is rejected while armed: disarm first")
     }
 }
 
-fn drive_text(f: &mut fmt::Formatter<'_>, what: RequestKind, refusal: DriveRefusal) -> fmt::Result {
+fn drive_text(
+    f: &mut fmt::Formatter<'_>,
+    request: RequestKind,
+    refusal: DriveRefusal,
+) -> fmt::Result {
     match refusal {
         DriveRefusal::NoParameters => write!(
             f,
-            "the drive refuses `{what}`: it was given no parameters yet; try again in a second"
+            "the drive rejects `{request}`: it has no parameters yet; try again in a second"
         ),
         DriveRefusal::NoLease => write!(
             f,
-            "the drive refuses `{what}`: the lease was not renewed in time; \
-             this host is too busy, or the line too slow"
+            "the drive rejects `{request}`: the lease has expired; \
+             this host is too busy, or the connection too slow"
         ),
         DriveRefusal::Faulted { code } => write!(
             f,
-            "the drive refuses `{what}`, a fault stands in the way: {}",
+            "the drive rejects `{request}` because of a fault: {}",
             fault_text(code)
         ),
-        DriveRefusal::Armed => needs_disarmed(f, what),
+        DriveRefusal::Armed => needs_disarmed(f, request),
         DriveRefusal::NoEncoder => write!(
             f,
-            "the drive refuses `{what}`: the encoder counts more than a shaft can turn; \
-             look at its lines and plug"
+            "the drive rejects `{request}`: the encoder's counts are implausible; \
+             check its wires and plug"
         ),
         DriveRefusal::Aborted => write!(
             f,
-            "the drive has given up `{what}`: a stop, a disarm or a fault came first"
+            "the drive has aborted `{request}` because of a stop, a disarm or a fault"
         ),
         _ => write!(
             f,
-            "the drive refuses `{what}` for a reason that this tool does not know: \
+            "the drive rejects `{request}` for a reason unknown to this tool: \
              install the tool of the device's version"
         ),
     }

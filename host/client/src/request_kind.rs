@@ -1,11 +1,11 @@
-//! What can be asked of a device, and how long an answer may take.
+//! Kinds of requests, and their timeouts.
 
-use crepitus_protocol::host::Ask;
-use crepitus_protocol::management::What;
+use crepitus_protocol::host::Operation;
+use crepitus_protocol::management::Action;
 use std::fmt;
 use std::time::Duration;
 
-/// What is asked.
+/// Kind of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[expect(
     missing_docs,
@@ -28,17 +28,17 @@ pub enum RequestKind {
     Unsubscribe,
 }
 
-/// How long an answer may take, in the transport's time.
+/// Timeouts of a request, in the transport's time.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Patience {
-    /// Without an answer for so long, it is asked again.
-    pub(crate) again: Duration,
-    /// Without an answer for so long, it is given up.
+pub(crate) struct Timing {
+    /// Retry interval.
+    pub(crate) retry: Duration,
+    /// Timeout.
     pub(crate) limit: Duration,
 }
 
 impl RequestKind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 14] = [
         Self::Hello,
         Self::Stop,
@@ -76,38 +76,38 @@ impl RequestKind {
         }
     }
 
-    /// Its place in [`Self::ALL`].
+    /// Index in [`Self::ALL`].
     pub(crate) fn index(self) -> usize {
         self as usize
     }
 
-    pub(crate) fn of(ask: &Ask) -> Self {
-        match ask {
-            // A renewal has no reply and is never waited for.
-            Ask::Renew | Ask::Status => Self::Status,
-            Ask::Counters => Self::Counters,
-            Ask::Parameters => Self::Parameters,
-            Ask::Commit { .. } => Self::Commit,
-            Ask::Save => Self::Save,
-            Ask::Zero => Self::Zero,
-            Ask::Arm => Self::Arm,
-            Ask::Disarm => Self::Disarm,
-            Ask::ClearFault => Self::ClearFault,
-            Ask::Subscribe => Self::Subscribe,
-            Ask::Unsubscribe => Self::Unsubscribe,
+    pub(crate) fn of(operation: &Operation) -> Self {
+        match operation {
+            // A renewal has no reply.
+            Operation::Renew | Operation::Status => Self::Status,
+            Operation::Counters => Self::Counters,
+            Operation::Parameters => Self::Parameters,
+            Operation::Commit { .. } => Self::Commit,
+            Operation::Save => Self::Save,
+            Operation::Zero => Self::Zero,
+            Operation::Arm => Self::Arm,
+            Operation::Disarm => Self::Disarm,
+            Operation::ClearFault => Self::ClearFault,
+            Operation::Subscribe => Self::Subscribe,
+            Operation::Unsubscribe => Self::Unsubscribe,
         }
     }
 
-    pub(crate) fn of_question(what: What) -> Self {
-        match what {
-            What::Hello => Self::Hello,
-            What::Stop => Self::Stop,
-            What::Reboot => Self::Reboot,
+    pub(crate) fn of_management(action: Action) -> Self {
+        match action {
+            Action::Hello => Self::Hello,
+            Action::Stop => Self::Stop,
+            Action::Reboot => Self::Reboot,
         }
     }
 
-    /// Whether the device works on it, for half a second at most, and only on
-    /// one at a time.
+    /// Whether the device executes it as a job: one at a time, for half a second
+    /// at most.
     pub(crate) fn is_job(self) -> bool {
         matches!(
             self,
@@ -115,21 +115,21 @@ impl RequestKind {
         )
     }
 
-    pub(crate) fn patience(self) -> Patience {
+    pub(crate) fn timing(self) -> Timing {
         if self.is_job() {
-            // The device gives up after 500 ms and says so.
-            Patience {
-                again: Duration::from_millis(200),
+            // The device replies with a timeout after 500 ms.
+            Timing {
+                retry: Duration::from_millis(200),
                 limit: Duration::from_millis(1_500),
             }
         } else if self == Self::Stop {
-            Patience {
-                again: Duration::from_millis(20),
+            Timing {
+                retry: Duration::from_millis(20),
                 limit: Duration::from_secs(1),
             }
         } else {
-            Patience {
-                again: Duration::from_millis(100),
+            Timing {
+                retry: Duration::from_millis(100),
                 limit: Duration::from_secs(1),
             }
         }

@@ -1,4 +1,4 @@
-//! What can be asked of a device.
+//! The requests.
 
 use crate::accounting::Accounting;
 use crate::client::{Client, Lease};
@@ -8,34 +8,34 @@ use crate::handshake::Handshake;
 use crate::refusals::Refused;
 use crate::request_kind::RequestKind;
 use crate::transport::Transport;
-use crepitus_protocol::host::{Answer, Ask, Counters, Refusal, Status};
-use crepitus_protocol::management::{self, Role, What};
+use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Status};
+use crepitus_protocol::management::{self, Action, Role};
 use crepitus_protocol::{Revision, Values};
 use std::time::Duration;
 
-/// A device that has just started hears of its drive within 200 ms.
-const INTRODUCTION: Duration = Duration::from_millis(300);
-const INTRODUCTION_PAUSE: Duration = Duration::from_millis(50);
+/// Time that comms needs after boot to identify the drive.
+const HANDSHAKE_TIMEOUT: Duration = Duration::from_millis(300);
+const HANDSHAKE_RETRY: Duration = Duration::from_millis(50);
 
-/// A set begins anew this often if somebody else commits meanwhile.
+/// Tries of a set if another host commits at the same time.
 const SET_TRIES: usize = 4;
 
-/// Asks, and takes the one answer that there can be.
+/// Sends a request and matches the one valid answer.
 macro_rules! answer {
-    ($client:expr, $ask:expr, $pattern:pat => $value:expr) => {{
-        let what = RequestKind::of(&$ask);
-        $client.ask($ask).and_then(|answer| match answer {
+    ($client:expr, $operation:expr, $pattern:pat => $value:expr) => {{
+        let kind = RequestKind::of(&$operation);
+        $client.request($operation).and_then(|answer| match answer {
             $pattern => Ok($value),
-            _ => Err(Error::Unexpected { what }),
+            _ => Err(Error::Unexpected { request: kind }),
         })
     }};
 }
 
-/// All of them may fail with [`Error::NoAnswer`], [`Error::Transport`],
-/// [`Error::NotConnected`] and [`Error::Refused`]. What was not answered may
-/// have been done all the same.
+/// All requests may fail with [`Error::NoAnswer`], [`Error::Transport`],
+/// [`Error::NotConnected`] and [`Error::Refused`]. After a timeout the request
+/// may have been executed.
 impl<T: Transport> Client<T> {
-    /// Who is there, asked anew.
+    /// Repeats the handshake.
     ///
     /// # Errors
     /// See above.
@@ -43,94 +43,94 @@ impl<T: Transport> Client<T> {
         self.connected()?;
         let sent = self.wire.delimit();
         self.sent(sent)?;
-        let end = self.now() + INTRODUCTION;
+        let end = self.now() + HANDSHAKE_TIMEOUT;
         loop {
-            let answer = self.ask_management(What::Hello)?;
+            let answer = self.request_management(Action::Hello)?;
             let management::Answer::Hello { own, drive, .. } = answer else {
                 return Err(Error::Unexpected {
-                    what: RequestKind::Hello,
+                    request: RequestKind::Hello,
                 });
             };
             let drive = (drive.role != Role::Unknown).then_some(drive);
             if drive.is_some() || self.now() >= end {
                 return Ok(Handshake { comms: own, drive });
             }
-            self.idle(INTRODUCTION_PAUSE)?;
+            self.idle(HANDSHAKE_RETRY)?;
         }
     }
 
-    /// No more torque, at once and whoever has armed the device.
+    /// Turns torque off at once, whichever host has armed the device.
     ///
     /// # Errors
-    /// See above. The lease ends all torque within 250 ms of its holder's
-    /// silence.
+    /// See above. Torque ends anyway 250 ms after the holder of the lease is
+    /// silent.
     pub fn stop(&mut self) -> Result<(), Error> {
         self.lease = Lease::None;
-        self.done(What::Stop)
+        self.done(Action::Stop)
     }
 
-    /// Starts the device anew; the line may be lost.
+    /// Reboots the device; the connection may be lost.
     ///
     /// # Errors
-    /// [`Error::NotDone`] while there is torque.
+    /// [`Error::NotDone`] while armed.
     pub fn reboot(&mut self) -> Result<(), Error> {
-        self.done(What::Reboot)
+        self.done(Action::Reboot)
     }
 
-    fn done(&mut self, what: What) -> Result<(), Error> {
-        match self.ask_management(what)? {
+    fn done(&mut self, action: Action) -> Result<(), Error> {
+        match self.request_management(action)? {
             management::Answer::Stop { done: true, .. }
             | management::Answer::Reboot { done: true, .. } => Ok(()),
             _ => Err(Error::NotDone {
-                what: RequestKind::of_question(what),
+                request: RequestKind::of_management(action),
             }),
         }
     }
 
-    /// How it is.
+    /// Reads the status.
     ///
     /// # Errors
     /// See above.
     pub fn status(&mut self) -> Result<Status, Error> {
-        let status = answer!(self, Ask::Status, Answer::Status(status) => status)?;
+        let status = answer!(self, Operation::Status, Answer::Status(status) => status)?;
         self.observe(&status);
         Ok(status)
     }
 
-    /// What the device has counted since its start.
+    /// Reads the counters since boot.
     ///
     /// # Errors
     /// See above.
     pub fn counters(&mut self) -> Result<Counters, Error> {
-        answer!(self, Ask::Counters, Answer::Counters(counters) => counters)
+        answer!(self, Operation::Counters, Answer::Counters(counters) => counters)
     }
 
-    /// The parameters that were committed last, and their revision.
+    /// Reads the parameters committed last, and their revision.
     ///
     /// # Errors
     /// See above.
     pub fn parameters(&mut self) -> Result<(Revision, Values), Error> {
-        answer!(self, Ask::Parameters, Answer::Parameters { revision, values } => (revision, values))
+        answer!(self, Operation::Parameters, Answer::Parameters { revision, values } => (revision, values))
     }
 
-    /// Puts all of these values in force, or none; they were made from those
-    /// of revision `base`. Gives the new revision.
+    /// Commits all values, atomically; they are based on revision `base`.
+    /// Returns the new revision.
     ///
     /// # Errors
-    /// [`Refusal::Stale`] if others are in force by now, [`Refusal::Values`] if
-    /// they are not allowed.
+    /// [`Refusal::Stale`] if `base` is stale, [`Refusal::Values`] if the values
+    /// are invalid.
     pub fn commit(&mut self, base: Revision, values: &Values) -> Result<Revision, Error> {
         let values = *values;
-        let ask = Ask::Commit { base, values };
-        answer!(self, ask, Answer::Committed { revision } => revision)
+        let operation = Operation::Commit { base, values };
+        answer!(self, operation, Answer::Committed { revision } => revision)
     }
 
-    /// Sets some parameters, by their ids, all or none, and leaves the others
-    /// as they are. Gives the new revision.
+    /// Sets some parameters by id, atomically, and keeps the others. Returns the
+    /// new revision.
     ///
-    /// If another host commits meanwhile, the values are read again and the
-    /// change is made anew, up to three times; unless the other host has
-    /// changed one of these very parameters: then nothing is set.
+    /// Retries up to three times if another host commits at the same time,
+    /// unless that host has changed one of the same parameters: then nothing is
+    /// set.
     ///
     /// # Errors
     /// [`Error::Conflict`] in that case; [`Error::UnknownParameter`];
@@ -149,7 +149,7 @@ impl<T: Transport> Client<T> {
                         id,
                         before,
                         now,
-                        wanted: value,
+                        requested: value,
                         revision: base,
                     })));
                 }
@@ -165,40 +165,40 @@ impl<T: Transport> Client<T> {
         }
     }
 
-    /// Keeps the parameters in force for the next start.
+    /// Saves the parameters for the next boot.
     ///
     /// # Errors
     /// See above.
     pub fn save(&mut self) -> Result<(), Error> {
-        answer!(self, Ask::Save, Answer::Done => ())
+        answer!(self, Operation::Save, Answer::Done => ())
     }
 
-    /// The angle is zero here.
+    /// Sets the angle's zero here.
     ///
     /// # Errors
     /// See above.
     pub fn zero(&mut self) -> Result<(), Error> {
-        answer!(self, Ask::Zero, Answer::Done => ())
+        answer!(self, Operation::Zero, Answer::Done => ())
     }
 
-    /// Arms: the device proves that it can let go, then renders. From now on
-    /// [`Self::pump`] has to be called every 50 ms or more often.
+    /// Arms: the device tests its enable lines, then turns torque on. From now
+    /// on call [`Self::pump`] every 50 ms or more often.
     ///
     /// # Errors
-    /// [`Refusal`] says what stands in the way.
+    /// [`Refusal`] gives the reason.
     pub fn arm(&mut self) -> Result<(), Error> {
         let before = self.lease;
-        // Arming may take longer than a lease lives.
+        // Arming may take longer than the lease lasts.
         self.lease = Lease::Taking;
         self.renewed_at = self.now();
-        match answer!(self, Ask::Arm, Answer::Done => ()) {
+        match answer!(self, Operation::Arm, Answer::Done => ()) {
             Ok(()) => {
                 self.lease = Lease::Held;
                 self.watch.due_at = Some(self.now());
                 Ok(())
             }
             Err(error) => {
-                // Who is armed already, and asks again, stays so.
+                // Arming again keeps the device armed.
                 if self.loss.is_none() {
                     self.lease = before;
                 }
@@ -207,27 +207,26 @@ impl<T: Transport> Client<T> {
         }
     }
 
-    /// No more torque; gives the lease back. Works for whoever asks.
+    /// Turns torque off and releases the lease; any host may.
     ///
     /// # Errors
-    /// See above; the lease is not renewed any more in any case.
+    /// See above; in any case the lease is no longer renewed.
     pub fn disarm(&mut self) -> Result<(), Error> {
         self.lease = Lease::None;
         self.watch.due_at = Some(self.now());
-        answer!(self, Ask::Disarm, Answer::Done => ())
+        answer!(self, Operation::Disarm, Answer::Done => ())
     }
 
-    /// Forgets the faults whose causes are gone.
+    /// Clears the faults.
     ///
     /// # Errors
-    /// [`Refusal::Faulted`] with the one whose cause is still there.
+    /// [`Refusal::Faulted`] with a fault whose cause persists.
     pub fn clear_fault(&mut self) -> Result<(), Error> {
-        answer!(self, Ask::ClearFault, Answer::Done => ())
+        answer!(self, Operation::ClearFault, Answer::Done => ())
     }
 
-    /// Asks for every sample from now on; gives the first tick. New books
-    /// begin, and what of an earlier subscription has not been taken yet is
-    /// thrown away.
+    /// Starts telemetry; returns the first tick. Restarts the accounting and
+    /// drops pending blocks of an earlier subscription.
     ///
     /// # Errors
     /// See above.
@@ -239,13 +238,12 @@ impl<T: Transport> Client<T> {
         self.begin_subscription(|books, first_tick| *books = Some(Accounting::new(first_tick)))
     }
 
-    /// Asks for no more samples. What has come before can still be taken, and
-    /// the books stay.
+    /// Stops telemetry. Pending blocks and the accounting are kept.
     ///
     /// # Errors
     /// See above.
     pub fn unsubscribe(&mut self) -> Result<(), Error> {
-        answer!(self, Ask::Unsubscribe, Answer::Done => ())?;
+        answer!(self, Operation::Unsubscribe, Answer::Done => ())?;
         self.telemetry.is_subscribed = false;
         Ok(())
     }

@@ -1,24 +1,23 @@
-//! How long answers take, in the transport's time.
+//! Round-trip times, by the transport's clock.
 
 use crate::request_kind::RequestKind;
 use std::time::Duration;
 
-/// Round trips of one kind that are remembered for the median.
+/// Round trips stored for the median, per kind of request.
 const REMEMBERED: usize = 256;
 
-/// How long the answers to one kind of request have taken.
+/// Round-trip times of one kind of request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RoundTrip {
-    /// How many answers there were.
+    /// Number of replies.
     pub count: u64,
-    /// Half of the last 256 took at most this long.
+    /// Median of the last 256.
     pub median: Duration,
-    /// The slowest of all.
+    /// Maximum.
     pub worst: Duration,
 }
 
-/// How long answers have taken: from the first time that something was asked
-/// to its answer, repeats included.
+/// Round-trip times: from the first request to its reply, retries included.
 #[derive(Clone, Debug, Default)]
 pub struct RoundTrips {
     kinds: [Times; RequestKind::ALL.len()],
@@ -28,7 +27,7 @@ pub struct RoundTrips {
 struct Times {
     count: u64,
     worst: Duration,
-    /// The last ones; the oldest is overwritten.
+    /// Ring buffer of the last times.
     last: Vec<Duration>,
     next: usize,
 }
@@ -47,7 +46,7 @@ impl RoundTrips {
         times.next = (times.next + 1) % REMEMBERED;
     }
 
-    /// How long the answers to this have taken; nothing if there were none.
+    /// Times of one kind of request; `None` without replies.
     pub fn of(&self, kind: RequestKind) -> Option<RoundTrip> {
         let times = self.kinds.get(kind.index())?;
         let mut sorted = times.last.clone();
@@ -59,7 +58,7 @@ impl RoundTrips {
         })
     }
 
-    /// All kinds that were answered.
+    /// All kinds that had replies.
     pub fn all(&self) -> impl Iterator<Item = (RequestKind, RoundTrip)> {
         RequestKind::ALL
             .into_iter()
@@ -72,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_median_forgets_and_the_worst_does_not() {
+    fn the_median_is_of_recent_times_and_the_maximum_of_all() {
         let mut trips = RoundTrips::default();
         assert_eq!(trips.of(RequestKind::Arm), None);
         let ms = Duration::from_millis;

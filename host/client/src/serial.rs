@@ -12,10 +12,10 @@ use std::time::{Duration, Instant};
 /// USB has no baud rate, and a pty neither; a number has to be given.
 const BAUD_RATE: u32 = 115_200;
 
-/// A port that takes no bytes for so long is stalled.
+/// Timeout after which a port without progress is stalled.
 const SEND_PATIENCE: Duration = Duration::from_millis(250);
 
-/// A serial port that nobody else can open meanwhile. Its time is the wall's.
+/// A serial port, opened exclusively. Its clock is real time.
 ///
 /// A USB port that takes bytes at all takes a whole frame, so sending waits
 /// 250 ms at most; on a pty it may wait for the simulator at its other end.
@@ -23,7 +23,7 @@ pub struct Serial {
     path: String,
     port: Option<Box<dyn SerialPort>>,
     began: Instant,
-    /// The last frame was sent in part only.
+    /// The last frame was sent only in part.
     is_torn: bool,
 }
 
@@ -37,11 +37,11 @@ impl fmt::Debug for Serial {
 }
 
 impl Serial {
-    /// Opens a port, for this program alone.
+    /// Opens a port exclusively.
     ///
     /// # Errors
-    /// Why it does not open: no such port, somebody else has it, this user may
-    /// not.
+    /// [`TransportError`]: no such port, held by another program, permission
+    /// denied.
     pub fn open(path: &str) -> Result<Self, TransportError> {
         Ok(Self {
             path: path.to_owned(),
@@ -51,8 +51,8 @@ impl Serial {
         })
     }
 
-    /// The line is gone: the port is closed, so that the system can give its
-    /// name to the device that comes back.
+    /// Closes a lost port, so that the system can reuse its name for the device
+    /// when it reappears.
     fn lost(&mut self, error: &io::Error) -> TransportError {
         self.port = None;
         TransportError::Lost {
@@ -147,7 +147,7 @@ fn open(path: &str) -> Result<Box<dyn SerialPort>, TransportError> {
         .map_err(|error| why(path, &error))
 }
 
-/// Why a port does not open.
+/// Converts an error of opening a port.
 fn why(path: &str, error: &serialport::Error) -> TransportError {
     let port = path.to_owned();
     match error.kind() {
@@ -155,7 +155,7 @@ fn why(path: &str, error: &serialport::Error) -> TransportError {
             port,
             group: holder::group_of(path).unwrap_or_else(|| "dialout".to_owned()),
         },
-        // What the library calls this is on Unix a port that is locked.
+        // On Unix the library reports a locked port like this.
         ErrorKind::NoDevice if cfg!(unix) => TransportError::Busy {
             port,
             holder: holder::holder_of(path),

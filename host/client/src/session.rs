@@ -1,21 +1,20 @@
-//! Who is speaking: a number for each connection.
+//! Session of a client: a number for each connection.
 
 use crepitus_protocol::Session;
 use std::hash::{BuildHasher, RandomState};
 use std::time::SystemTime;
 
-/// How a client speaks. The default is right for everything but tests.
+/// Session settings. The default is right except in tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// The number by which the device knows this client.
+    /// Session number.
     pub session: Session,
-    /// Number of the first request; they wrap.
+    /// Sequence number of the first request; it wraps.
     pub first_number: u16,
 }
 
 impl Default for Options {
-    /// A session at random: two clients have the same one once in four
-    /// thousand million times.
+    /// A random session: two clients collide with a probability of 2⁻³².
     fn default() -> Self {
         let seed = (std::process::id(), SystemTime::now());
         let [a, b, c, d, ..] = RandomState::new().hash_one(seed).to_le_bytes();

@@ -1,36 +1,36 @@
-//! Where bytes go, and whose time it is.
+//! The transport: bytes and clock.
 
 use std::fmt;
 use std::time::Duration;
 
-/// Where bytes go: a serial port, or a simulated device in this process. Its
-/// clock is the device's time: a simulated one may run faster than the wall.
+/// A serial port, or a simulated device in this process. Its clock is the
+/// device's time: a simulated device may run faster than real time.
 pub trait Transport {
-    /// Hands all of the bytes over.
+    /// Sends all bytes.
     ///
     /// # Errors
-    /// [`TransportError::Stalled`] if nothing takes them: what was sent may be
-    /// torn, and the transport itself puts a delimiter before what it sends
-    /// next. [`TransportError::Lost`] if the line is gone.
+    /// [`TransportError::Stalled`] on a timeout: the frame may be truncated,
+    /// and the transport sends a delimiter before the next one.
+    /// [`TransportError::Lost`] if the connection is lost.
     fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError>;
 
-    /// Waits at most `patience` for bytes; 0 bytes: nothing came in time. With
-    /// no patience, gives what is there.
+    /// Waits at most `patience` for bytes; returns 0 on a timeout. With zero it
+    /// does not wait.
     ///
     /// # Errors
-    /// [`TransportError::Lost`] if the line is gone.
+    /// [`TransportError::Lost`] if the connection is lost.
     fn receive(&mut self, buffer: &mut [u8], patience: Duration) -> Result<usize, TransportError>;
 
-    /// The time, from any beginning; never goes back.
+    /// Monotonic time since any origin.
     fn now(&self) -> Duration;
 
-    /// Lets time go by, line or no line.
+    /// Waits, connected or not.
     fn wait(&mut self, time: Duration);
 
-    /// After the line was lost: tries, once, to open it again.
+    /// Tries once to reopen a lost connection.
     ///
     /// # Errors
-    /// Why it does not open.
+    /// [`TransportError`] if it does not open.
     fn reopen(&mut self) -> Result<(), TransportError>;
 
     /// Name for people.
@@ -40,9 +40,9 @@ pub trait Transport {
 /// A process that has a port open.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Holder {
-    /// Number of the process.
+    /// Process id.
     pub pid: u32,
-    /// Name of its program.
+    /// Program name.
     pub program: String,
 }
 
@@ -52,7 +52,7 @@ impl fmt::Display for Holder {
     }
 }
 
-/// Why bytes do not go to the device or come from it.
+/// Errors of a transport.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TransportError {
@@ -64,56 +64,58 @@ pub enum TransportError {
         /// The port.
         port: String,
     },
-    /// Another process has the port.
+    /// Another process holds the port.
     #[error("cannot open {port}: {} has it open; end that program first", holder_text(.holder.as_ref()))]
     Busy {
         /// The port.
         port: String,
-        /// Who, if that can be seen.
+        /// The process, if it can be determined.
         holder: Option<Holder>,
     },
-    /// This user may not open the port.
+    /// Permission denied.
     #[error(
-        "cannot open {port}: this user may not; \
+        "cannot open {port}: permission denied; \
          run `sudo usermod -aG {group} $USER`, then log in again"
     )]
     Denied {
         /// The port.
         port: String,
-        /// The group whose members may.
+        /// The group whose members have permission.
         group: String,
     },
-    /// It is no serial port.
+    /// Not a serial port.
     #[error("cannot open {port}: it is no serial port; `crepitus devices` lists those of devices")]
     NotSerial {
         /// The port.
         port: String,
     },
-    /// It does not open, for another reason.
+    /// Another error of the system.
     #[error("cannot open {port}: {detail}")]
     Open {
         /// The port.
         port: String,
-        /// What the system says.
+        /// Error of the system.
         detail: String,
     },
-    /// Nothing takes the bytes.
+    /// Timeout of sending.
     #[error(
-        "{port} takes no bytes for {} ms: the device hangs; unplug it and plug it in again",
+        "timeout: {port} accepts no bytes for {} ms, the device hangs; unplug it and plug it in again",
         .patience.as_millis()
     )]
     Stalled {
         /// The port.
         port: String,
-        /// How long it was waited for.
+        /// Time waited.
         patience: Duration,
     },
-    /// The line was there and is gone.
-    #[error("{port} is gone ({detail}): the device was unplugged, switched off or started again")]
+    /// The connection is lost.
+    #[error(
+        "connection to {port} lost ({detail}): the device was unplugged, switched off or rebooted"
+    )]
     Lost {
         /// The port.
         port: String,
-        /// What the system says.
+        /// Error of the system.
         detail: String,
     },
 }

@@ -2,38 +2,37 @@
 
 use crepitus_protocol::parameters::{Kind, Parameter};
 
-/// Why a text is no value of a parameter.
+/// Errors of parsing a value.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ParseError {
-    /// The parameter is a number, and this is none.
-    #[error("{name} is a number: `{text}` is none; it is {allowed}")]
+    /// Not a number.
+    #[error("invalid {name}: expected a number {allowed}, got `{text}`")]
     NotANumber {
         /// The parameter.
         name: String,
         /// The text.
         text: String,
-        /// What is allowed.
+        /// The valid values.
         allowed: String,
     },
-    /// The parameter is one of some names, and this is none of them.
-    #[error("{name} cannot be `{text}`: it is {allowed}")]
+    /// Not a valid choice.
+    #[error("invalid {name}: expected {allowed}, got `{text}`")]
     NotAChoice {
         /// The parameter.
         name: String,
         /// The text.
         text: String,
-        /// What is allowed.
+        /// The valid values.
         allowed: String,
     },
 }
 
-/// A value from what a person writes: a plain number in the unit that the
-/// parameter's name ends with, or one of a choice's names. Whether a number is
-/// in its range is for the device to say.
+/// Parses a value: a plain number in the unit at the end of the parameter's
+/// name, or the name of a choice. The device checks the range.
 ///
 /// # Errors
-/// [`ParseError`] with what is allowed.
+/// [`ParseError`] with the valid values.
 pub fn parse_value(parameter: &Parameter, text: &str) -> Result<f64, ParseError> {
     let text = text.trim();
     let (name, allowed) = (full_name(parameter), allowed_text(parameter));
@@ -59,7 +58,7 @@ pub fn parse_value(parameter: &Parameter, text: &str) -> Result<f64, ParseError>
     }
 }
 
-/// A value as [`parse_value`] reads it: the same bits come back.
+/// Formats a value; [`parse_value`] returns the same bits.
 pub fn show_value(parameter: &Parameter, value: f64) -> String {
     let name = match parameter.kind {
         Kind::Number(_) => None,
@@ -85,7 +84,7 @@ pub fn full_name(parameter: &Parameter) -> String {
     format!("{}.{}", parameter.group, parameter.key())
 }
 
-/// What is allowed: "between 0 and 6.5 N·m", "`off` or `on`".
+/// The valid values: "between 0 and 6.5 N·m", "`off` or `on`".
 pub fn allowed_text(parameter: &Parameter) -> String {
     match parameter.kind {
         Kind::Number(spec) => {

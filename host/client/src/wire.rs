@@ -1,28 +1,28 @@
-//! Bytes to messages and back, over a transport.
+//! Messages over a transport.
 
 use crate::transport::{Transport, TransportError};
 use crepitus_protocol::frame::{self, DELIMITER};
 use crepitus_protocol::host::{Reply, Request};
-use crepitus_protocol::management::{Answer, Question};
+use crepitus_protocol::management::{Answer, ManagementRequest};
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Lane};
 use std::time::Duration;
 
-/// What the device has said.
+/// A received message.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Heard {
+pub(crate) enum Incoming {
     Block(Box<Block>),
     Reply(Box<Reply>),
     Answer(Answer),
 }
 
-/// A transport that speaks in messages.
+/// Sends and receives messages over a transport.
 #[derive(Debug)]
 pub(crate) struct Wire<T> {
     transport: T,
     decoder: Decoder,
     inbox: Vec<u8>,
-    /// The next byte of the inbox to look at, and where they end.
+    /// Read position in the inbox, and its end.
     at: usize,
     end: usize,
     frames: u64,
@@ -62,21 +62,21 @@ impl<T: Transport> Wire<T> {
         self.transport
     }
 
-    /// Frames that were in order; frames that were not; frames of a lane or a
-    /// language that this side does not speak.
+    /// Counters: valid frames; discarded frames; frames of an unknown lane or
+    /// with another schema tag.
     pub(crate) fn counts(&self) -> (u64, u64, u64) {
         let discarded = u64::from(self.decoder.discarded().total());
         (self.frames, discarded, self.foreign)
     }
 
-    /// Opens the line again, and forgets what was half received.
+    /// Reopens the connection and clears partial frames.
     pub(crate) fn reopen(&mut self) -> Result<(), TransportError> {
         (self.at, self.end) = (0, 0);
         self.decoder.reset();
         self.transport.reopen()
     }
 
-    /// Ends whatever the device may have half received.
+    /// Sends a delimiter, to end a partial frame at the device.
     pub(crate) fn delimit(&mut self) -> Result<(), TransportError> {
         self.transport.send(&[DELIMITER])
     }
@@ -84,21 +84,23 @@ impl<T: Transport> Wire<T> {
     pub(crate) fn request(&mut self, request: &Request) -> Result<(), TransportError> {
         match frame::encode(Lane::Request, request) {
             Ok(frame) => self.transport.send(&frame),
-            // The protocol checks at compile time that every message fits.
+            // Cannot fail: the protocol checks at compile time that every message fits.
             Err(frame::TooLong) => Ok(()),
         }
     }
 
-    pub(crate) fn question(&mut self, question: Question) -> Result<(), TransportError> {
-        match frame::encode_bytes(Lane::Management, &question.bytes()) {
+    pub(crate) fn management(
+        &mut self,
+        management: ManagementRequest,
+    ) -> Result<(), TransportError> {
+        match frame::encode_bytes(Lane::Management, &management.bytes()) {
             Ok(frame) => self.transport.send(&frame),
             Err(frame::TooLong) => Ok(()),
         }
     }
 
-    /// The next message, waited for until then at most. If that has passed
-    /// already, one that is there.
-    pub(crate) fn next(&mut self, until: Duration) -> Result<Option<Heard>, TransportError> {
+    /// Returns the next message until the deadline; a pending one even after it.
+    pub(crate) fn next(&mut self, until: Duration) -> Result<Option<Incoming>, TransportError> {
         let mut is_first = true;
         loop {
             if let Some(heard) = self.decode() {
@@ -117,8 +119,8 @@ impl<T: Transport> Wire<T> {
         }
     }
 
-    /// The next message of the inbox.
-    fn decode(&mut self) -> Option<Heard> {
+    /// Returns the next message of the inbox.
+    fn decode(&mut self) -> Option<Incoming> {
         while let Some(byte) = self.inbox.get(self.at..self.end)?.first() {
             self.at += 1;
             let Some(Ok(body)) = self.decoder.push(*byte) else {
@@ -126,9 +128,11 @@ impl<T: Transport> Wire<T> {
             };
             self.frames += 1;
             let heard = match body.lane() {
-                Some(Lane::Telemetry) => body.message().map(|block| Heard::Block(Box::new(block))),
-                Some(Lane::Reply) => body.message().map(|reply| Heard::Reply(Box::new(reply))),
-                Some(Lane::ManagementAnswer) => Answer::of(body.payload).map(Heard::Answer),
+                Some(Lane::Telemetry) => {
+                    body.message().map(|block| Incoming::Block(Box::new(block)))
+                }
+                Some(Lane::Reply) => body.message().map(|reply| Incoming::Reply(Box::new(reply))),
+                Some(Lane::ManagementAnswer) => Answer::of(body.payload).map(Incoming::Answer),
                 _ => None,
             };
             if heard.is_some() {

@@ -116,7 +116,7 @@ impl Axis {
         self.high
     }
 
-    /// Where a value stands: 0 at the low end, 1 at the high end. What is
+    /// Position of a value: 0 at the low end, 1 at the high end. What is
     /// outside stands at the edge.
     pub fn place(&self, value: f64) -> f64 {
         let share = if self.logarithmic {

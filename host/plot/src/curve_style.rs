@@ -1,5 +1,5 @@
 //! How a curve is drawn: by colour, dashes and signs together, so that it is
-//! told apart by the colour-blind and in grey print.
+//! distinguishable for the colour-blind and in grey print.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -22,7 +22,7 @@ pub struct CurveStyle {
 }
 
 impl CurveStyle {
-    /// Of no curve: for what is said of all.
+    /// Style of no curve: for entries that apply to all.
     pub const NEUTRAL: Self = Self {
         ink: TEXT,
         dashes: "",

@@ -45,11 +45,11 @@ impl Chart {
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     pub(crate) sign: Sign,
-    /// What it means.
+    /// Meaning.
     pub text: &'static str,
 }
 
-/// How a legend shows what it explains.
+/// Sign of a legend's entry.
 #[derive(Clone, Copy, Debug)]
 pub enum Sign {
     /// A line.
@@ -75,7 +75,7 @@ impl Sign {
 }
 
 impl Key {
-    /// A sign and what it means.
+    /// A sign and its meaning.
     pub const fn new(sign: Sign, text: &'static str) -> Self {
         Self { sign, text }
     }

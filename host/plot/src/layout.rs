@@ -24,7 +24,7 @@ const LEFT: f64 = 74.0;
 const TOP: f64 = 10.0;
 const FOOT: f64 = 48.0;
 const FOOT_WITHOUT_NUMBERS: f64 = 6.0;
-/// Between a label and what is beside it.
+/// Gap beside a label.
 pub(crate) const GAP: f64 = 8.0;
 const EDGE: f64 = 3.0;
 

@@ -88,7 +88,7 @@ fn superscript(c: char) -> char {
 
 /// A time, s, in the unit that suits it: 50 µs.
 pub fn duration(seconds: f64) -> String {
-    // What is a hair under one of a unit is one of it.
+    // A value just below one of a unit counts as one.
     let size = seconds.abs() * (1.0 + 1e-9);
     let (scale, unit) = match size {
         s if s >= 1.0 => (1.0, "s"),

@@ -15,7 +15,7 @@ const LAYOUT: &str = include_str!("page.css");
 pub struct Section {
     /// The heading of the table.
     pub title: String,
-    /// What is reported, and its value with its unit.
+    /// Name of a fact, and its value with its unit.
     pub rows: Vec<(String, String)>,
 }
 
@@ -54,7 +54,7 @@ pub fn footer(footer: &str) -> Markup {
     }
 }
 
-/// What the reader must know before believing the rest, in a box; nothing if
+/// Box of warnings for the reader; nothing if
 /// there is nothing.
 pub fn warnings(title: &str, warnings: &[String]) -> Markup {
     html! {
@@ -79,7 +79,7 @@ pub fn notes(notes: &[String]) -> Markup {
     }
 }
 
-/// A box in which what is wide scrolls; it takes the focus for that.
+/// A scrolling box for wide content; focusable for the keyboard.
 pub fn scrolling(label: &str, content: &Markup) -> Markup {
     html! { div.box tabindex="0" role="group" aria-label=(label) { (content) } }
 }

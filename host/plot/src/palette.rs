@@ -2,7 +2,7 @@
 //! that any program shows it; a style sheet made here replaces that by the
 //! colour of the role in dark.
 //!
-//! Data colours are those of Okabe and Ito, told apart by the colour-blind;
+//! Data colours are those of Okabe and Ito, distinguishable for the colour-blind;
 //! the three phases also differ in lightness, for grey prints.
 
 use std::fmt::Write as _;
@@ -53,7 +53,7 @@ pub const LEVEL: Ink = Ink::new("level", "#454d54", "#b4bcc4");
 pub const SHAFT: Ink = Ink::new("shaft", "#c95000", "#f2933f");
 /// The imaginary object; the angle in the overview.
 pub const OBJECT: Ink = Ink::new("object", "#0072b2", "#56b4e9");
-/// What the encoder says.
+/// Encoder data.
 pub const ENCODER: Ink = Ink::new("encoder", "#c07ba0", "#d79dbd");
 /// Stick.
 pub const STICK: Ink = Ink::new("stick", "#bcc3d3", "#636d80");

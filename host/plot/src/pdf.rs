@@ -2,7 +2,7 @@
 
 use crate::picture::Picture;
 
-/// Why a picture is no PDF.
+/// Errors of the conversion to PDF.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PdfError {

@@ -9,7 +9,7 @@ use crate::simplify::simplify;
 use crate::text::LINE;
 use crate::thinned::Point;
 
-/// What nobody sees, CSS pixels.
+/// Invisible distance, CSS pixels.
 const TOLERANCE: f64 = 0.15;
 
 /// See the module.
@@ -18,7 +18,7 @@ pub struct Plot {
     x: Axis,
     y: Axis,
     frame: Frame,
-    /// What is drawn, in CSS pixels of the whole chart.
+    /// Drawing area, in CSS pixels of the whole chart.
     pub over: Drawing,
 }
 
@@ -51,7 +51,7 @@ impl Plot {
         self.frame
     }
 
-    /// Where a point stands, CSS pixels of the whole chart; what is outside
+    /// Position of a point, CSS pixels of the whole chart; what is outside
     /// stands at the edge.
     pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let Frame {

@@ -62,7 +62,7 @@ pub struct Thinned {
 }
 
 impl Thinned {
-    /// A line of so many bins.
+    /// A line with this many bins.
     pub fn new(capacity: usize) -> Self {
         Self {
             bins: Vec::new(),

@@ -1,13 +1,13 @@
 //! The energy balance of a plant, as its author hands it over.
 
-/// What a term counts.
+/// Kind of a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Account {
     /// Work done on the plant from outside.
     Given,
-    /// What a part holds more than at the start.
+    /// Increase of stored energy.
     Stored,
-    /// What has become heat.
+    /// Dissipated energy.
     Lost,
     /// Work that the rendered torque has taken out of the mechanics.
     Rendered,
@@ -32,7 +32,7 @@ impl Account {
 pub struct Term {
     /// The effect that it belongs to.
     pub effect: String,
-    /// What it is.
+    /// Description.
     pub what: String,
     /// Where it counts.
     pub account: Account,
@@ -41,7 +41,7 @@ pub struct Term {
 }
 
 impl Term {
-    /// What the term has put into the balance, J; negative what it took out.
+    /// Energy supplied to the balance, J; negative: taken from it.
     pub(crate) fn inflow_j(&self) -> f64 {
         match self.account {
             Account::Given => self.joule,
@@ -54,12 +54,12 @@ impl Term {
     }
 }
 
-/// The terms of a run: what was given is stored, lost or rendered.
+/// The terms of a run: supplied = stored + lost + rendered.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Balance {
     /// From the hand to the motor and back.
     pub terms: Vec<Term>,
-    /// What they leave over, J.
+    /// Residual, J.
     pub residual_j: f64,
     /// That, as a share of all that moved.
     pub residual_relative: f64,

@@ -7,7 +7,7 @@ use maud::{Markup, html};
 use crate::balance::{Account, Balance};
 use crepitus_plot::number::{fixed, scientific};
 
-/// What the table needs of a style sheet.
+/// Style sheet of the table.
 pub(crate) const STYLE: &str = include_str!("balance_table.css");
 
 /// The table; none if nothing moved.

@@ -1,13 +1,13 @@
 //! Which columns of the trace the report reads, and one row of them.
 //!
-//! Columns are found by name, once. What a trace does not have stays NaN in
+//! Columns are looked up by name, once. A missing column is NaN in
 //! every [`Sample`], and NaN is not drawn.
 
 use crepitus_model::Phase;
 use crepitus_scene::run::FELT_COLUMN;
 use crepitus_scene::trace::Column;
 
-/// What the report must know before the first row.
+/// Inputs of the report before the first row.
 #[derive(Clone, Copy, Debug)]
 pub struct Setup<'a> {
     /// The columns of every row that will come.

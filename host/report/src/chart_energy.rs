@@ -126,7 +126,7 @@ fn bars(balance: &Balance, direction: f64) -> Vec<Bar> {
     bars
 }
 
-/// Draws a heading and its bars, and says where the next heading goes.
+/// Draws a heading and its bars; returns the position of the next heading.
 fn group(drawing: &mut Drawing, top: f64, heading: &str, bars: &[Bar], longest: f64) -> f64 {
     drawing.text((4.0, top + HEAD / 2.0 + 2.0), Anchor::Start, TEXT, heading);
     let mut y = top + HEAD;

@@ -1,4 +1,4 @@
-//! What the hand feels over the whole run: the torque that a force sensor on
+//! Torque at the hand over the whole run: the torque that a force sensor on
 //! the leg shows, and its fast part.
 
 use crepitus_plot::number::rounded;

@@ -65,7 +65,7 @@ pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
     })
 }
 
-/// Legend and caption for what was drawn.
+/// Legend and caption of the drawing.
 fn words(phases: &[Phase], ranges: Option<&[Vec<Range>; 2]>) -> (Vec<Key>, String) {
     let mut legend = Vec::new();
     let mut parts = Vec::new();
@@ -106,7 +106,7 @@ fn chart(heading: String, half: bool, points: &[Point], draw: impl FnOnce(&mut P
     }
 }
 
-/// From rad to what the axes show: degrees and mrad.
+/// From rad to the units of the axes: degrees and mrad.
 fn shown(angle: f64, theta: f64) -> Point {
     Point::new(angle.to_degrees(), 1e3 * theta)
 }

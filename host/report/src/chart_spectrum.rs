@@ -200,7 +200,7 @@ fn caption(curves: &[Curve], method: &str, (model, names): (bool, bool)) -> Stri
     )
 }
 
-/// The curves; with the root mean square of each band above it, if wanted.
+/// The curves; optionally with the RMS of each band above it.
 fn chart(curves: &[Curve], with_numbers: bool) -> Svg {
     let points = || curves.iter().flat_map(|curve| &curve.points);
     let (low, high) = extent(points().map(|p| p.y));

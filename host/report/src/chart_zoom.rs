@@ -150,7 +150,7 @@ pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
     })
 }
 
-/// Whether it is known what the hand feels of the cycles.
+/// Whether the torque at the hand is known for the cycles.
 fn feels(window: &Window) -> bool {
     !window.hand_fast.is_empty()
 }

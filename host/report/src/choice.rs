@@ -1,4 +1,4 @@
-//! Which windows of a run are worth a zoom, chosen while it streams by.
+//! Selection of the windows for zoom charts, in one pass.
 //!
 //! Two: the onset, from the first break on, and the fastest stretch. For the
 //! second, one candidate after the other is recorded, each of whole cycles,

@@ -1,4 +1,4 @@
-//! Takes rows and events as they come and keeps what the figures need.
+//! Collects the data of the figures from rows and events, in one pass.
 //!
 //! Memory does not grow with the run: each part has a bound of its own, and
 //! together they stay below a few megabytes.
@@ -44,7 +44,7 @@ pub struct Collector {
     pushes: Vec<(f64, f64)>,
 }
 
-/// What is left of a run when it is over: enough to draw it.
+/// Collected data of a complete run.
 #[derive(Debug)]
 pub struct Figures {
     pub(crate) levels: Option<TorqueLevels>,
@@ -175,7 +175,7 @@ impl Collector {
         }
         if let Some(fast) = &mut self.fast {
             fast.row(sample);
-            self.take_what_is_due();
+            self.complete_due_windows();
         } else {
             self.take_row(&sample);
         }
@@ -205,7 +205,7 @@ impl Collector {
     }
 
     /// The rows and events of which the fast part is known now.
-    fn take_what_is_due(&mut self) {
+    fn complete_due_windows(&mut self) {
         while let Some(seen) = self.fast.as_mut().and_then(FastPart::next) {
             match seen {
                 Seen::Row(sample) => self.take_row(&sample),
@@ -249,7 +249,7 @@ impl Collector {
         if let Some(fast) = &mut self.fast {
             fast.end();
         }
-        self.take_what_is_due();
+        self.complete_due_windows();
         let (onset, fastest) = self.choice.finish();
         Figures {
             levels: self.levels,

@@ -161,7 +161,7 @@ mod tests {
         let hit = course(|i| if i % 1000 == 500 { 700.0 } else { wave(i) }).shown();
         assert_eq!(hit.beyond, Some(700.0));
         assert!(hit.high < 1.1, "{hit:?}");
-        // A rise that stays is no peak.
+        // A lasting rise is no peak.
         let step = course(|i| if i < 5000 { 0.0 } else { 700.0 + wave(i) });
         assert_eq!(step.shown().beyond, None);
     }

@@ -110,7 +110,7 @@ impl Envelope {
 
     pub(crate) fn row(&mut self, time: f64, torque: f64, phase: Option<Phase>) {
         self.advance(time);
-        // Where there are events they alone say when a phase ends.
+        // With events, only they end a phase.
         if !self.events_seen || self.phase.is_none() {
             self.phase = phase;
         }

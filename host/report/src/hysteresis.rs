@@ -67,7 +67,7 @@ impl Hysteresis {
             self.travel += moved.abs();
         }
         self.last_angle = angle;
-        // At rest the last direction goes on.
+        // At rest the last direction continues.
         if omega > 0.0 {
             self.last_was_flexing = true;
         } else if omega < 0.0 {

@@ -1,4 +1,4 @@
-//! What a plant adds to the figures: the leg, the hand, and the columns of
+//! Figures of a plant: the leg, the hand, and the columns of
 //! its effects. A scene without a plant has none of this.
 
 use crepitus_model::render::effects::{EffectSpec, SPECS};
@@ -18,7 +18,7 @@ pub(crate) const LEG: Ink = CURVES[2];
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shown {
     column: &'static str,
-    /// What it is.
+    /// Description.
     pub(crate) title: &'static str,
     /// Its axis, with the unit.
     pub(crate) axis: &'static str,
@@ -88,7 +88,7 @@ const SHOWN: [Shown; 7] = [
     ),
 ];
 
-/// What is collected while the run streams by.
+/// Data collected during the run.
 #[derive(Debug)]
 pub(crate) struct PlantCollector {
     hand_welch: Option<Welch>,
@@ -98,7 +98,7 @@ pub(crate) struct PlantCollector {
     columns: Vec<(usize, Shown)>,
 }
 
-/// What is left of it when the run is over.
+/// Collected data of a complete run.
 #[derive(Debug)]
 pub(crate) struct Plant {
     pub(crate) leg: Follower,
@@ -146,7 +146,7 @@ impl Follower {
 }
 
 impl PlantCollector {
-    /// Ready for the first row; none if there are no columns of a plant.
+    /// Ready for the first row; `None` without columns of a plant.
     pub(crate) fn new(channels: &Channels, setup: &Setup, mean_s: f64) -> Option<Self> {
         let columns = columns(setup.columns);
         if columns.is_empty() && !channels.has_hand() && !channels.has_leg() {

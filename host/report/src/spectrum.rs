@@ -12,7 +12,7 @@ use crepitus_spectrum as spectrum;
 
 use crepitus_plot::Point;
 
-/// What is known of a spectrum at the end of a run.
+/// Spectrum at the end of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Spectrum {
     /// Frequency, Hz, and amplitude, in the unit of the samples.
@@ -32,7 +32,7 @@ impl Spectrum {
     }
 }
 
-/// What the samples went through before.
+/// Filter applied to the samples before.
 #[derive(Clone, Copy, Debug)]
 enum Gain {
     /// Nothing.
@@ -117,7 +117,7 @@ impl Welch {
             .map(|(i, amplitude)| {
                 let hz = i as f64 * whole.resolution_hz;
                 let gain = self.gain.at(hz);
-                // Of a mean, second differences say nothing.
+                // Second differences have no information about a mean.
                 let amplitude = if gain > 0.0 { amplitude / gain } else { 0.0 };
                 Point::new(hz, amplitude)
             })

@@ -8,9 +8,9 @@ use crepitus_plot::page::Section;
 pub struct Text {
     /// The title of the page: that of the scene.
     pub title: String,
-    /// What the scene is about; line breaks are kept.
+    /// Description of the scene; line breaks are kept.
     pub description: Option<String>,
-    /// What the reader must know before believing the figures: in a box at
+    /// Warnings for the reader of the figures: in a box at
     /// the top.
     pub warnings: Vec<String>,
     /// The tables, in order.

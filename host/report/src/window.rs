@@ -37,7 +37,7 @@ pub(crate) struct Window {
 impl Window {
     /// Bins of each line: about twice the pixels across a chart.
     const LINE: usize = 1600;
-    /// More events than this cannot be told apart in one chart.
+    /// More events than this cannot be distinguished in one chart.
     pub(crate) const EVENTS: usize = 120;
 
     pub(crate) fn new() -> Self {
@@ -70,7 +70,7 @@ impl Window {
         self.motor.push(sample.time, sample.motor_torque);
         self.hand_fast.push(sample.time, sample.hand_fast);
         self.orbit.row(sample);
-        // Where there are events they alone say when a phase ends.
+        // With events, only they end a phase.
         if self.events.is_empty()
             && let Some(phase) = sample.phase
         {

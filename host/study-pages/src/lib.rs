@@ -29,9 +29,9 @@ pub use crepitus_plot::page::Section;
 pub struct StudyText {
     /// The title of the page.
     pub title: String,
-    /// What was studied and how, and what was found; line breaks are kept.
+    /// Subject, method and result; line breaks are kept.
     pub intro: String,
-    /// What a reader should know, one paragraph each, at the end.
+    /// Notes for the reader, one paragraph each, at the end.
     pub notes: Vec<String>,
     /// The tables, in order, below the charts.
     pub tables: Vec<Section>,

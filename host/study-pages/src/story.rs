@@ -49,7 +49,7 @@ pub fn figures(stories: &Stories) -> Vec<Figure> {
 pub(crate) struct Story {
     /// Name of its file: `implicit-euler`.
     pub(crate) name: &'static str,
-    /// What it says, in a line.
+    /// Statement, in a line.
     pub(crate) title: &'static str,
     /// What one sees, with the numbers.
     pub(crate) caption: String,
@@ -57,10 +57,10 @@ pub(crate) struct Story {
     pub(crate) panels: Vec<Told>,
 }
 
-/// One pair of axes, and what it shows.
+/// One pair of axes with its curves.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Told {
-    /// What it shows.
+    /// Curves.
     pub(crate) heading: String,
     /// The axis to the right.
     pub(crate) x: Scale,
@@ -99,7 +99,7 @@ pub(crate) struct Series {
 }
 
 impl Scale {
-    /// A linear axis over what is there.
+    /// A linear axis over the data.
     pub(crate) fn linear(label: &'static str) -> Self {
         Self {
             label,
@@ -107,7 +107,7 @@ impl Scale {
         }
     }
 
-    /// A logarithmic axis over what is there.
+    /// A logarithmic axis over the data.
     pub(crate) fn logarithmic(label: &'static str) -> Self {
         Self {
             logarithmic: true,

@@ -1,7 +1,7 @@
 //! The motor's current: a PI loop, once a tick.
 //!
 //! ```text
-//! wanted ── limit ──(+)── e ── K ──(+)── limit ──┬── v ── winding ──┬── i
+//! setpoint ─ limit ─(+)── e ── K ──(+)── limit ──┬── v ── winding ──┬── i
 //!                    │−             │+           │   a, 1/R         │
 //!                    │              x <── lag a ─┘                  │
 //!                    └──────────────────────────────────────────────┘
@@ -12,7 +12,7 @@
 //!
 //! Unlimited, this is the PI law with the gain K and (1 − a)·K a tick. Its
 //! zero is a, exactly the pole of the winding under a voltage that is held for
-//! a tick, so i ← i + g·(wanted − i): first order, without overshoot. At
+//! a tick, so i ← i + g·(setpoint − i): first order, without overshoot. At
 //! 20 kHz, 1 kHz and the default winding K = 2.00 V/A and 6632 V/(A·s), where
 //! the gains of continuous time, 2π·f·L = 2.14 V/A and 2π·f·R = 7728 V/(A·s),
 //! put the zero at 0.819 instead of 0.835. Steps of the current, with the
@@ -65,7 +65,7 @@ settings! {
             unit: "Ω",
             range: 0.01..=100.0,
             default: 1.23,
-            meaning: "resistance that the device believes the winding to have; copper gains 39 % per 100 K",
+            meaning: "resistance of the winding that the device assumes; copper gains 39 % per 100 K",
         },
         inductance_h {
             id: 22 disarmed,
@@ -73,7 +73,7 @@ settings! {
             unit: "H",
             range: 1e-6..=1.0,
             default: 0.34e-3,
-            meaning: "inductance that the device believes the winding to have",
+            meaning: "inductance of the winding that the device assumes",
         },
         supply_v {
             id: 23 disarmed,
@@ -81,7 +81,7 @@ settings! {
             unit: "V",
             range: 1.0..=60.0,
             default: 24.0,
-            meaning: "voltage that the bridge can give either way",
+            meaning: "supply voltage of the bridge, in either direction",
         },
         // The hardware trips at the largest.
         current_limit_a {
@@ -90,13 +90,13 @@ settings! {
             unit: "A",
             range: 0.01..=1.95,
             default: 1.37,
-            meaning: "largest current that is asked for: 6.5 N·m at the joint of a hand that back-drives the gear",
+            meaning: "largest current setpoint: 6.5 N·m at the joint of a hand that back-drives the gear",
         },
     }
 }
 
 impl CurrentLoopSettings {
-    /// How far the current stays behind what is asked for, in ticks of `step_s`
+    /// Lag of the current behind its setpoint, in ticks of `step_s`
     /// between a tick's request and its measurement: 1/g = 1/(1 − e^(−2π·f·h)),
     /// 3.71 ticks by default, whether the voltage comes at once or a tick late.
     ///
@@ -108,10 +108,10 @@ impl CurrentLoopSettings {
     }
 }
 
-/// What keeps the current from being what was wanted.
+/// Limits of the current loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Limit {
-    /// More current was wanted than is allowed.
+    /// The setpoint exceeds the current limit.
     Current,
     /// The supply has no more voltage; the current may have been limited too.
     Voltage,
@@ -158,7 +158,7 @@ impl<F: Real> CurrentLoop<F> {
         })
     }
 
-    /// One tick: the voltage to give, V, for the current wanted and the one
+    /// Runs one tick; returns the voltage, V, for the current setpoint and the one
     /// just measured, A.
     ///
     /// Without a finite number for both it is 0 V, the integrator stays, and
@@ -167,17 +167,17 @@ impl<F: Real> CurrentLoop<F> {
     /// rad/s of the joint. So where a measurement stays away, let the bridge
     /// float instead.
     #[inline]
-    pub fn tick(&mut self, wanted_a: F, measured_a: F) -> F {
-        if !(wanted_a.is_finite() && measured_a.is_finite()) {
+    pub fn tick(&mut self, setpoint_a: F, measured_a: F) -> F {
+        if !(setpoint_a.is_finite() && measured_a.is_finite()) {
             self.missed = self.missed.saturating_add(1);
             return F::ZERO;
         }
-        let allowed_a = wanted_a.within(self.current_limit_a);
+        let allowed_a = setpoint_a.within(self.current_limit_a);
         let unlimited_v = self.explained_v + self.gain * (allowed_a - measured_a);
         let volts = unlimited_v.within(self.supply_v);
         self.limited_by = if volts != unlimited_v {
             Some(Limit::Voltage)
-        } else if allowed_a != wanted_a {
+        } else if allowed_a != setpoint_a {
             Some(Limit::Current)
         } else {
             None
@@ -193,7 +193,7 @@ impl<F: Real> CurrentLoop<F> {
         self.explained_v = volts.within(self.supply_v);
     }
 
-    /// As at the start, for disarming. What was counted stays.
+    /// Resets the loop, for disarming. The counters are kept.
     pub fn reset(&mut self) {
         self.explained_v = F::ZERO;
         self.limited_by = None;
@@ -257,13 +257,13 @@ mod tests {
         winding: &mut Winding,
         regulator: &mut CurrentLoop<F>,
         ticks: u32,
-        wanted_a: f64,
+        setpoint_a: f64,
         emf_v: impl Fn(u32) -> f64,
     ) -> Vec<f64> {
         (0..ticks)
             .map(|n| {
                 let measured = winding.current_a;
-                let volts = regulator.tick(F::from_f64(wanted_a), F::from_f64(measured));
+                let volts = regulator.tick(F::from_f64(setpoint_a), F::from_f64(measured));
                 winding.tick(volts.to_f64(), emf_v(n));
                 measured
             })
@@ -282,9 +282,9 @@ mod tests {
                 let mut regulator = CurrentLoop::<f64>::new(&settings, TICK_S).unwrap();
                 let mut behind = 0.0;
                 for n in 0..1000_u32 {
-                    let wanted_a = 1e-3 * f64::from(n);
-                    behind = (wanted_a - winding.current_a) / 1e-3;
-                    let volts = regulator.tick(wanted_a, winding.current_a);
+                    let setpoint_a = 1e-3 * f64::from(n);
+                    behind = (setpoint_a - winding.current_a) / 1e-3;
+                    let volts = regulator.tick(setpoint_a, winding.current_a);
                     winding.tick(volts, 0.0);
                 }
                 let stated = settings.lag_ticks(TICK_S);
@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn a_winding_that_is_not_as_believed_is_still_followed() {
+    fn a_winding_with_other_constants_is_still_controlled() {
         // Hot copper, and an inductance that is off by 30 %.
         for ohm in [1.23, 1.71] {
             for henry in [0.24e-3, 0.34e-3, 0.44e-3] {
@@ -407,7 +407,7 @@ mod tests {
     }
 
     #[test]
-    fn at_the_supply_it_says_so_and_has_nothing_to_unwind() {
+    fn voltage_saturation_is_reported_without_windup() {
         for sign in [1.0, -1.0] {
             let (mut winding, mut regulator) = (Winding::believed(0), default_loop::<f64>());
             // A second in which 24 V cannot push 1 A against 30 V.
@@ -438,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn no_more_current_is_asked_for_than_allowed() {
+    fn the_setpoint_is_clamped_to_the_current_limit() {
         for wanted in [5.0, -5.0, 1e30] {
             let (mut winding, mut regulator) = (Winding::believed(0), default_loop::<f32>());
             let currents = run(&mut winding, &mut regulator, 200, wanted, |_| 0.0);
@@ -449,7 +449,7 @@ mod tests {
     }
 
     #[test]
-    fn a_measurement_that_is_none_is_counted_and_forgotten() {
+    fn an_invalid_measurement_is_counted_and_ignored() {
         let mut regulator = default_loop::<f32>();
         regulator.tick(1.0, 0.2);
         let before = regulator;

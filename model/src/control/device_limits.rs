@@ -1,5 +1,4 @@
-//! What a device never does, whatever it is asked for, and what its motor is
-//! worth at the joint.
+//! Safety limits of a device, and the torque constant of its motor.
 //!
 //! Sources: gear torque 4.5 N·m continuous and 6.5 N·m short, input speed
 //! 6000 rpm, which is 420 deg/s at the joint (GP 32 A data sheet); slew is an
@@ -16,7 +15,7 @@ settings! {
             unit: "N·m",
             range: 0.0..=6.5,
             default: 4.5,
-            meaning: "largest torque at the joint: 4.5 for ever, 6.5 for a short time",
+            meaning: "largest torque at the joint: 4.5 continuous, 6.5 for a short time",
         },
         slew_nm_per_s {
             id: 27 always,
@@ -32,7 +31,7 @@ settings! {
             unit: "rad/s",
             range: 0.1..=7.33,
             default: 7.33,
-            meaning: "speed of the joint beyond which the device lets go: 7.33 is the gear's 420 deg/s",
+            meaning: "speed of the joint beyond which the device disarms: 7.33 is the gear's 420 deg/s",
         },
     }
 }

@@ -1,5 +1,5 @@
-//! Counts of the motor's quadrature encoder to what the model needs of the
-//! shaft: the angle's change and a velocity estimate.
+//! Shaft motion from the counts of the motor's quadrature encoder: the angle's
+//! change and a velocity estimate.
 //!
 //! Counts wrap; their differences do not, so the angle never drifts however
 //! many turns are made. The velocity comes from a tracking observer of the

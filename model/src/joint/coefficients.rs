@@ -1,4 +1,4 @@
-//! What a step uses: plain numbers, made from [`Settings`] outside the tick.
+//! Coefficients of a step, computed from [`Settings`] outside the tick.
 
 use crate::joint::LONGEST_STEP_S;
 use crate::joint::oscillator::Oscillator;
@@ -6,7 +6,7 @@ use crate::joint::ticks::Ticks;
 use crate::joint::{Restart, Settings, SettingsError, Validated};
 use crate::real::Real;
 
-/// Settings turned into the numbers of one step length.
+/// Coefficients of settings for one step length.
 ///
 /// Everything is computed in f64 and rounded once, so an f32 joint starts
 /// from the nearest values and its period does not drift.
@@ -180,7 +180,7 @@ impl<F: Real> StepCoefficients<F> {
         self.drop_nm <= F::LIMIT_SLACK * self.static_nm
     }
 
-    /// What a torque may be beyond the limit and still count as at it, N·m.
+    /// Tolerance beyond the limit within which a torque counts as at it, N·m.
     ///
     /// Velocities are rounded by a share ε of Ω. They meet with the relative
     /// acceleration (Ts − Tk)/J, so the match is known to ε·Ω·J/(Ts − Tk), in
@@ -194,9 +194,9 @@ impl<F: Real> StepCoefficients<F> {
         self.touch_slack_nm(omega_rad_s).at_most(slack_nm)
     }
 
-    /// What a torque may miss the limit by where velocities touch, N·m: a
+    /// Tolerance of the limit where velocities touch, N·m: a
     /// touch is known to the root of the rounding of the velocities only, and
-    /// √(J·kr)·Ω is what a velocity is worth.
+    /// √(J·kr)·Ω is the torque that corresponds to a velocity.
     #[inline]
     pub fn touch_slack_nm(&self, omega_rad_s: F) -> F {
         F::TOUCH_SLACK * (self.static_nm + self.impedance * omega_rad_s.abs())

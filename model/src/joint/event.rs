@@ -1,4 +1,4 @@
-//! What a step reports.
+//! Events that a step reports.
 
 use crate::joint::{EventKind, Phase};
 use crate::real::Real;
@@ -43,6 +43,6 @@ impl<F: Real> Event<F> {
     }
 }
 
-/// The most events that one step reports. A step that would have more goes on
-/// in the phase it is in and takes the rest up in the next step.
+/// The most events that one step reports. A step with more stays in its current
+/// phase and continues with the rest in the next step.
 pub const EVENTS_PER_STEP: usize = 8;

@@ -16,7 +16,7 @@
 //! The motion depends on time alone, not on the shaft: for a fixed step C and
 //! S are constants, and an exact step costs four multiplications. What is kept
 //! is the *change* over the step, C − 1: for small steps C itself would round
-//! away most of what it says, and an f32 swing would gain or lose energy.
+//! away most of its digits, and an f32 swing would gain or lose energy.
 
 use crate::joint::Parameters;
 use crate::real::Real;

@@ -67,7 +67,7 @@ impl Parameters {
         libm::sqrt(self.stiffness_nm_per_rad / self.inertia_kg_m2)
     }
 
-    /// √(J·kr), N·m·s/rad: the torque that one rad/s of speed is worth.
+    /// √(J·kr), N·m·s/rad: the torque that corresponds to one rad/s.
     pub fn impedance_nms_per_rad(&self) -> f64 {
         libm::sqrt(self.inertia_kg_m2 * self.stiffness_nm_per_rad)
     }

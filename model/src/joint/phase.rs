@@ -44,7 +44,7 @@ impl Sense {
     }
 }
 
-/// What the imaginary object does.
+/// Phase of the imaginary object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// It moves with the shaft.
@@ -83,7 +83,7 @@ impl Phase {
     }
 }
 
-/// What can happen to the imaginary object.
+/// Events of the imaginary object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EventKind {
     /// Stick ends: the torque reached the static limit, or the shaft jumped.

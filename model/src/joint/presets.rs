@@ -2,7 +2,7 @@
 
 use crate::joint::Parameters;
 
-/// Where the numbers of a preset come from.
+/// Origin of a preset's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evidence {
     /// Taken from the cited publication.
@@ -16,7 +16,7 @@ pub enum Evidence {
 pub struct Preset {
     /// Name in scene files and on the command line.
     pub name: &'static str,
-    /// What a hand feels.
+    /// How it feels to a hand.
     pub feels_like: &'static str,
     /// How well founded the numbers are.
     pub evidence: Evidence,

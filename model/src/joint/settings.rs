@@ -1,4 +1,4 @@
-//! What people set, and the check that nothing else gets past.
+//! Settings of the joint, and their validation.
 
 use crate::joint::Parameters;
 use crate::parameters::{OutOfRange, ParameterSpec, Tabled};
@@ -61,7 +61,7 @@ impl Restart {
     }
 }
 
-/// Everything that people set of the stick-slip object.
+/// Settings of the stick-slip object.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings {
     /// The numbers.
@@ -72,7 +72,7 @@ pub struct Settings {
     pub restart: Restart,
 }
 
-/// A value that has passed its checks; only this crate can make one.
+/// A validated value; only this crate can construct one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Validated<T>(T);
 
@@ -84,7 +84,7 @@ impl<T> core::ops::Deref for Validated<T> {
     }
 }
 
-/// Why settings are refused.
+/// Errors of settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SettingsError {
@@ -92,7 +92,7 @@ pub enum SettingsError {
     OutOfRange {
         /// Which one, with its range.
         parameter: &'static ParameterSpec,
-        /// What was asked for.
+        /// The rejected value.
         value: f64,
     },
     /// Tk > Ts: a stick would break below the torque that slip shows.
@@ -109,7 +109,7 @@ pub enum SettingsError {
     },
     /// `FromKinetic` needs `Frozen`: the others continue the spring's angle.
     RestartNeedsFrozen {
-        /// The convention asked for.
+        /// The requested convention.
         convention: Convention,
     },
     /// The rung of the ladder has no meaning under the convention.
@@ -121,7 +121,7 @@ pub enum SettingsError {
     },
     /// The step is not a positive, finite time.
     Step {
-        /// What was asked for, s.
+        /// The requested step, s.
         step_s: f64,
     },
 }
@@ -176,7 +176,7 @@ impl From<OutOfRange> for SettingsError {
 }
 
 impl Settings {
-    /// Checks ranges and what the numbers mean together.
+    /// Validates ranges and combinations.
     ///
     /// # Errors
     /// The first rule that is broken, as [`SettingsError`].
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_says_what_was_wrong_and_what_is_allowed() {
+    fn an_error_gives_the_cause_and_the_valid_values() {
         use std::string::ToString;
         for (error, parts) in [
             (

@@ -1,11 +1,11 @@
-//! The stick-slip object as everything else sees it.
+//! The interface of the stick-slip object.
 
 use crate::joint::{Event, Phase, ShaftStep, StepCoefficients};
 use crate::real::Real;
 
 /// An imaginary object on its spring, dragged by the shaft.
 ///
-/// A joint starts in stick with θ = 0. Between steps it answers what it shows;
+/// A joint starts in stick with θ = 0. Its state can be read between steps;
 /// a step moves it and reports its events in the order of time.
 pub trait StickSlip<F: Real>: 'static {
     /// Moves the object through one step. `on_event` is called at most
@@ -13,14 +13,14 @@ pub trait StickSlip<F: Real>: 'static {
     fn step(&mut self, shaft: &ShaftStep<F>, on_event: impl FnMut(Event<F>));
 
     /// Puts the object in stick where the shaft is, showing `torque_nm` (at
-    /// most ±Ts) while the shaft moves with `omega_rad_s`: how to go on when
-    /// the shaft has been out of sight.
+    /// most ±Ts) while the shaft moves with `omega_rad_s`: to resume after
+    /// missing samples.
     fn restart(&mut self, torque_nm: F, omega_rad_s: F);
 
     /// The numbers that its steps use.
     fn coefficients(&self) -> &StepCoefficients<F>;
 
-    /// What the object does now.
+    /// Current phase.
     fn phase(&self) -> Phase;
 
     /// The torque shown to the hand, N·m: T > 0 opposes growing angle,

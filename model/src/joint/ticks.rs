@@ -21,7 +21,7 @@ impl<F: Real> Ticks<F> {
         let whole = ticks.whole();
         Self {
             whole,
-            // Zero first: it is what a NaN becomes.
+            // Zero first, so that NaN becomes zero.
             fraction: F::ZERO.at_least(ticks - F::from_whole(whole)),
         }
     }

@@ -54,7 +54,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Crepitus<F, L> {
     }
 
     /// As [`Self::commit`], along a ramp that was made elsewhere: it must
-    /// begin with the numbers in force, so none may be under way.
+    /// start with the active coefficients, so none may be in progress.
     pub fn follow(&mut self, ramp: Ramp<F>) {
         self.ramp = ramp;
     }
@@ -64,7 +64,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Crepitus<F, L> {
         self.ramp.is_settling()
     }
 
-    /// Whether the shaft is out of sight.
+    /// Whether samples are missing and the torque is held.
     pub fn is_holding(&self) -> bool {
         self.held.is_holding()
     }
@@ -74,7 +74,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Crepitus<F, L> {
         self.held.joint()
     }
 
-    /// What has happened so far.
+    /// The counters.
     pub fn counters(&self) -> JointCounters {
         self.held.counters()
     }
@@ -108,8 +108,8 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Symptom<F> for Crepitus<F, L> {
         let shown_nm = if self.turn_back.is_turned() {
             shown.limit = Limit::TurnedBack;
             if is_missing {
-                // What is held is what was shown.
-                self.held.let_go();
+                // Hold the torque that was output.
+                self.held.release();
             }
             F::ZERO
         } else if is_missing {
@@ -142,7 +142,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Renderer<F, L> {
     /// One tick.
     #[inline]
     pub fn render(&mut self, sample: &Sample<F>, on_event: impl FnMut(Event<F>)) -> Shown<F> {
-        // Nothing behind the symptom asks for the velocity.
+        // No later stage uses the velocity.
         let seen = Seen {
             sample: *sample,
             omega_rad_s: F::ZERO,
@@ -160,7 +160,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Renderer<F, L> {
         self.symptoms.joint()
     }
 
-    /// What has happened so far.
+    /// The counters.
     pub fn counters(&self) -> Counters {
         Counters::new(self.check.counters(), self.symptoms.counters())
     }
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shaft_out_of_sight_is_said_to_be_and_its_torque_held() {
+    fn missing_samples_are_reported_and_the_torque_held() {
         let mut renderer = after(10);
         let shown = renderer.render(&Sample::Lost, |_| {});
         assert_eq!((shown.limit, shown.settling), (Limit::Holding, false));
@@ -228,7 +228,7 @@ mod tests {
         assert_eq!(shown.limit, Limit::TurnedBack);
         assert!(!renderer.symptoms.is_holding());
         assert_eq!((shown.torque_nm, shown.model_torque_nm), (0.0, 0.2));
-        // Out of sight then, what was shown is held: nothing.
+        // With missing samples the output is held: zero.
         let shown = renderer.render(&Sample::Lost, |_| {});
         assert_eq!(shown.limit, Limit::TurnedBack);
         assert!(renderer.symptoms.is_holding());

@@ -1,6 +1,5 @@
-//! A joint of any kind that no input can poison: the
-//! [check](super::input_check) of its samples, and how it goes
-//! [on without](super::held) them.
+//! A joint protected from invalid input: the [check](super::input_check) of its
+//! samples, and the [hold](super::held) while they are missing.
 
 use super::Check;
 use super::held::{Held, JointCounters};
@@ -8,7 +7,7 @@ use super::input_check::{InputCheck, InputCounters, InputLimits, Sample};
 use crate::joint::{Event, StickSlip};
 use crate::real::Real;
 
-/// What has happened to a guarded joint; counters stop at their largest value.
+/// Counters of a guarded joint; they saturate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Samples that were not taken.
@@ -65,18 +64,18 @@ impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
         self.held.torque_nm()
     }
 
-    /// Whether the shaft is out of sight.
+    /// Whether samples are missing and the torque is held.
     #[inline]
     pub fn is_holding(&self) -> bool {
         self.held.is_holding()
     }
 
     /// Lets go of a torque that is held.
-    pub fn let_go(&mut self) {
-        self.held.let_go();
+    pub fn release(&mut self) {
+        self.held.release();
     }
 
-    /// What has happened so far.
+    /// The counters.
     pub fn counters(&self) -> Counters {
         Counters::new(self.check.counters(), self.held.counters())
     }
@@ -106,7 +105,7 @@ mod tests {
 
     const TICK_S: f64 = 5e-5;
 
-    /// A joint that does nothing but remember its steps.
+    /// A joint that only records its steps.
     struct Remembers {
         coefficients: StepCoefficients<f32>,
         steps: Vec<ShaftStep<f32>>,
@@ -235,7 +234,7 @@ mod tests {
                 (0.3, -1.875e-4, 0.225),
                 (0.3, -7.5e-4, 0.0),
                 (0.3, -2e-3, 0.0),
-                // Forward: what was shown goes on.
+                // Forward: the held torque continues.
                 (0.3, 2e-3, 0.3),
                 (0.3, 0.0, 0.3),
                 (0.0, -1e-3, 0.0),
@@ -246,7 +245,7 @@ mod tests {
                 assert_eq!(mirrored, -found);
             }
         }
-        // Some of it was let go of before.
+        // Part of it was released before.
         let found = after_a_gap(0.3, 40, -1.25e-4);
         assert!((found - (0.3 - 0.1 - 0.05)).abs() < 1e-6, "{found}");
     }

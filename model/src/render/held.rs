@@ -1,14 +1,14 @@
-//! A joint that goes on without a shaft, and after it.
+//! Hold and release of the torque while samples are missing, and the resume.
 //!
-//! While the shaft is out of sight the last torque is held for a bounded number
-//! of ticks and then let go of at a bounded rate. A few missing ticks are made
-//! up for when the shaft is seen again; after more, the joint goes on in a new
-//! stick that begins with the torque then shown.
+//! While samples are missing the last torque is held for a bounded number of
+//! ticks and then released at a bounded rate. A few missing ticks are caught up
+//! with the next valid sample; after more, the joint resumes in a new stick that
+//! begins with the present torque.
 //!
 //! ```text
-//! torque ──────held──────╲ released          ╱ a new stick, from what is shown
+//! torque ──────held──────╲ released          ╱ a new stick, from the present torque
 //!                          ╲____ 0 __________╱
-//!        └ hold_ticks ┘   slew            shaft seen again
+//!        └ hold_ticks ┘   slew            valid samples again
 //! ```
 //!
 //! A held torque T pushes a hand that retreats by x meanwhile, and returns T·x.
@@ -29,7 +29,7 @@ use super::input_check::{Checked, Gap, InputLimits};
 use crate::joint::{EVENTS_PER_STEP, Event, ShaftStep, StickSlip};
 use crate::real::Real;
 
-/// What has happened to a joint; counters stop at their largest value.
+/// Counters of a joint; they saturate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct JointCounters {
     /// Gaps after which the joint went on in a new stick.
@@ -53,7 +53,7 @@ pub struct Held<F, J> {
 }
 
 impl<F: Real, J: StickSlip<F>> Held<F, J> {
-    /// With these limits for how to go on without a shaft.
+    /// Creates it with these limits for missing samples.
     pub fn new(joint: J, limits: &InputLimits<F>) -> Self {
         Self {
             kept_nm: joint.torque_nm(),
@@ -92,18 +92,18 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
         }
     }
 
-    /// Whether the shaft is out of sight.
+    /// Whether samples are missing.
     #[inline]
     pub fn is_holding(&self) -> bool {
         self.is_holding
     }
 
     /// Lets go of a torque that is held.
-    pub fn let_go(&mut self) {
+    pub fn release(&mut self) {
         self.kept_nm = F::ZERO;
     }
 
-    /// What has happened so far.
+    /// The counters.
     pub fn counters(&self) -> JointCounters {
         self.counters
     }
@@ -171,7 +171,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
         }
     }
 
-    /// The first good sample after more missing ones than are made up for.
+    /// Resumes at the first valid sample after a gap too long to catch up.
     #[cold]
     fn resume(&mut self, shaft: &ShaftStep<F>) {
         count(&mut self.counters.restarts);
@@ -194,7 +194,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
     }
 }
 
-/// Counts what is rare.
+/// Increments a saturating counter.
 #[cold]
 fn count(counter: &mut u32) {
     *counter = counter.saturating_add(1);

@@ -1,18 +1,17 @@
-//! What is believed of a sample.
+//! Plausibility check of samples.
 //!
-//! A sample that is no number, or that no shaft can make, never reaches a
-//! symptom; neither does one that was not taken at all. A few missing ticks are
-//! made up for when the shaft is seen again; after more, symptoms are told
-//! where it is now, and not how it came there.
+//! A sample that is NaN, implausible or missing never reaches a symptom. A few
+//! missing ticks are caught up with the next valid sample; after a longer gap
+//! symptoms get the present position, but not the path to it.
 
 use super::Check;
 use crate::joint::ShaftStep;
 use crate::real::Real;
 
-/// The most missing ticks that are made up for, step by step.
+/// The most missing ticks that are caught up, step by step.
 pub const CATCH_UP_TICKS: u32 = 3;
 
-/// What a tick brings from the sensor.
+/// Sample of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sample<F> {
     /// The shaft's motion since the last sample that was taken.
@@ -21,17 +20,17 @@ pub enum Sample<F> {
     Lost,
 }
 
-/// What symptoms are given of it.
+/// Checked sample, for the symptoms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Checked<F> {
     /// One step of the shaft.
     Step(ShaftStep<F>),
     /// The shaft is seen again after a few missing ticks.
     CatchUp(Gap<F>),
-    /// The shaft is seen again after more than can be made up for; the step
-    /// says how far it has moved since, and how fast it is now.
+    /// The first valid sample after a gap too long to catch up; the step has
+    /// the travel since, and the present velocity.
     Resume(ShaftStep<F>),
-    /// The shaft is out of sight, for so many ticks by now.
+    /// No valid sample, for this many ticks so far.
     Missing(u32),
 }
 
@@ -94,10 +93,10 @@ impl<F: Real> Gap<F> {
     }
 }
 
-/// What is believed of a shaft, and how to go on without one.
+/// Limits of plausible samples, and of holding without them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputLimits<F> {
-    /// The fastest shaft that is believed, rad/s.
+    /// The fastest plausible shaft, rad/s.
     pub speed_rad_s: F,
     /// The largest change of its velocity in one tick, rad/s.
     pub jump_rad_s: F,
@@ -121,7 +120,7 @@ impl<F: Real> InputLimits<F> {
     }
 }
 
-/// What samples were not used; counters stop at their largest value.
+/// Counters of rejected samples; they saturate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InputCounters {
     /// Samples that were not taken.
@@ -135,7 +134,7 @@ pub struct InputCounters {
 pub struct InputCheck<F> {
     speed_rad_s: F,
     jump_rad_s: F,
-    /// Travel of a tick that is believed, rad.
+    /// Largest plausible travel of a tick, rad.
     reach_rad: F,
     counters: InputCounters,
     /// Ticks since the last good sample.
@@ -158,14 +157,14 @@ impl<F: Real> InputCheck<F> {
         }
     }
 
-    /// What was not used so far.
+    /// The counters.
     pub fn counters(&self) -> InputCounters {
         self.counters
     }
 
     /// Whether a shaft can have made this step. A NaN passes no comparison.
     #[inline]
-    fn believes(&self, shaft: &ShaftStep<F>) -> bool {
+    fn is_plausible(&self, shaft: &ShaftStep<F>) -> bool {
         let mut reach = self.reach_rad;
         if self.missed > 0 {
             reach = reach * F::from_whole(u64::from(self.missed).saturating_add(1));
@@ -188,7 +187,7 @@ impl<F: Real> Check<F> for InputCheck<F> {
     #[inline]
     fn check(&mut self, sample: &Sample<F>) -> Checked<F> {
         match sample {
-            Sample::Taken(shaft) if self.believes(shaft) => {
+            Sample::Taken(shaft) if self.is_plausible(shaft) => {
                 let missed = core::mem::take(&mut self.missed);
                 let omega_rad_s = core::mem::replace(&mut self.omega_rad_s, shaft.omega_end_rad_s);
                 if missed == 0 {
@@ -294,7 +293,7 @@ mod tests {
                 Checked::Resume(_) => assert!(missing > CATCH_UP_TICKS),
                 Checked::Missing(_) => panic!("it was seen"),
             }
-            // Afterwards it goes on from there.
+            // Afterwards it continues from there.
             assert!(matches!(
                 check.check(&moved(1e-4, 2.0, 2.0)),
                 Checked::Step(_)

@@ -1,8 +1,8 @@
-//! What a device may ask of its motor.
+//! Torque and slew limits.
 //!
-//! While the bridge floats nothing is asked; from arming on, what may be asked
-//! for grows with the slew limit up to the joint's largest torque, so a stick
-//! that is full of torque does not jolt.
+//! While the bridge floats the limit is zero; from arming on it grows with the
+//! slew limit up to the joint's largest torque, so a stick under full torque
+//! does not jolt.
 
 use super::{Limit, Limits, Shown};
 use crate::real::Real;
@@ -11,9 +11,9 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TorqueLimits<F> {
     most_nm: F,
-    /// How much may be asked for more in a tick, N·m.
+    /// Growth of the limit in a tick, N·m.
     slew_nm: F,
-    /// What may be asked for as yet, N·m.
+    /// Present limit, N·m.
     allowance_nm: F,
     is_energised: bool,
 }
@@ -67,7 +67,7 @@ impl<F: Real> Limits<F> for TorqueLimits<F> {
             (self.allowance_nm + self.slew_nm).at_most(self.most_nm)
         };
         self.allowance_nm = most_nm;
-        // A torque that is no number is above nothing: it passes, and is noticed
+        // NaN compares false with every limit: it passes, and is detected
         // by what follows.
         if shown.torque_nm.abs() > most_nm {
             self.cut(shown);
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn from_arming_on_what_may_be_asked_for_grows() {
+    fn from_arming_on_the_limit_grows() {
         let mut limits = TorqueLimits::new(1.0, 0.25);
         assert_eq!(after(&mut limits, 0.5), (0.0, Limit::NotArmed));
         limits.set_energised(true);
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_passes_and_a_reason_from_before_stays() {
+    fn nan_passes_and_an_earlier_reason_is_kept() {
         let mut limits = TorqueLimits::armed(1.0, 0.25);
         assert!(after(&mut limits, f32::NAN).0.is_nan());
         let mut held = shown(0.3);

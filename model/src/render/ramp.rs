@@ -19,7 +19,7 @@
 use crate::joint::StepCoefficients;
 use crate::real::Real;
 
-/// The way from one set of numbers to another.
+/// Ramp from one set of coefficients to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ramp<F> {
     from: StepCoefficients<F>,
@@ -52,7 +52,7 @@ impl<F: Real> Ramp<F> {
         }
     }
 
-    /// From the numbers in force to `to`, with no torque faster than
+    /// From the active coefficients to `to`, with no torque faster than
     /// `slew_nm_per_s` > 0. Computed in f64, so called outside the tick.
     pub fn new(from: StepCoefficients<F>, to: StepCoefficients<F>, slew_nm_per_s: f64) -> Self {
         let ratio = |a: F, b: F| b.to_f64() / a.to_f64();

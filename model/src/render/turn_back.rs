@@ -1,6 +1,6 @@
-//! No push from a slip whose hand has turned back.
+//! Turn-back guard: no push from a slip after the hand has reversed.
 //!
-//! A frozen slip shows s·Tk until its time is over, whatever the hand does. If
+//! A frozen slip outputs s·Tk until its time is over, whatever the hand does. If
 //! the hand turns back meanwhile, that torque no longer resists it but pushes
 //! it along, and would return energy that nobody has put in. So where the
 //! shaft has retreated inside a slip by more than two encoder counts, the
@@ -46,7 +46,7 @@ use crate::joint::{Phase, Restart, Settings};
 use crate::real::Real;
 
 /// The counts that a hand may go back in a slip before its torque is gone: two
-/// are allowed, the third is noticed, and in the time of a fourth the torque
+/// are allowed, the third is detected, and in the time of a fourth the torque
 /// goes.
 const UNGUARDED_COUNTS: f64 = 4.0;
 
@@ -69,7 +69,7 @@ pub fn most_rad_per_count(settings: &Settings) -> f64 {
     drop_nm * left_nm / (2.0 * UNGUARDED_COUNTS * p.stiffness_nm_per_rad * kinetic_nm)
 }
 
-/// Watches the shaft inside slips.
+/// Detects reversals of the shaft inside slips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnBack<F> {
     allowance_rad: F,
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stick_or_another_slip_begins_anew() {
+    fn a_stick_or_another_slip_resets_the_guard() {
         let mut guard = TurnBack::new(COUNT);
         let slip = Phase::Slip(Sense::Positive);
         guard.moved(-3.0 * COUNT, slip, 1);

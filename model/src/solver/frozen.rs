@@ -6,7 +6,7 @@
 //! a slip is one comparison and one decrement; the time itself is computed in
 //! the step after the break, where nothing else is to be done, so that no step
 //! pays for both. The object's own motion during
-//! a slip is a closed form too, computed only when it is asked for.
+//! a slip is a closed form too, computed only on demand.
 
 use core::marker::PhantomData;
 
@@ -40,7 +40,7 @@ enum State<F> {
     Slip(Slip<F>),
 }
 
-/// A slip on its way.
+/// A slip in progress.
 #[derive(Clone, Copy, Debug)]
 struct Slip<F> {
     sense: Sense,
@@ -73,8 +73,8 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Frozen<F, L> {
         }
     }
 
-    /// How many slips have begun, modulo 2³². A slip that goes on because it
-    /// would break at once (Ts = Tk) counts anew.
+    /// Number of slips begun, modulo 2³². A slip that continues because it
+    /// would break at once (Ts = Tk) counts again.
     #[inline]
     pub fn slip_number(&self) -> u32 {
         self.slip_number
@@ -226,7 +226,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Frozen<F, L> {
         at.events += 1;
         let omega = at.path.omega(at.from_s);
         let theta = sense.of_signed(a.restart_angle_rad.at_most(limit).at_least(-limit));
-        // Ts = Tk: the stick would break where it begins. The slip goes on, and
+        // Ts = Tk: the stick would break where it begins. The slip continues, and
         // nothing is felt or reported.
         if a.touches() && sense.of_signed(at.path.rate(at.from_s)) > F::ZERO {
             return self.begin_slip(sense, fraction, theta, omega);

@@ -1,7 +1,7 @@
 //! How the end of a phase is found: one file a rung of the ladder.
 //!
 //! A stick ends where its torque reaches the static limit; a slip ends where
-//! the shaft's velocity meets the object's. A locator is asked for the time of
+//! the shaft's velocity meets the object's. A locator finds the time of
 //! either within the part of a step that is left.
 
 mod end_of_step;
@@ -22,7 +22,7 @@ use crate::joint::shaft::{Linear, VelocityShape};
 use crate::real::Real;
 use crate::solver::propagate::Propagate;
 
-/// The torque of a stick over what is left of a step: the parabola
+/// The torque of a stick over the rest of a step: the parabola
 /// T(u) = torque + rate·u + curvature·u²/2, or with a quadratic Ω the cubic
 /// that has kr·Ω̈·u³/6 in addition.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,7 +63,7 @@ impl<F: Real, V: VelocityShape<F>> StickPath<F, V> {
     }
 }
 
-/// A slip over what is left of a step.
+/// A slip over the rest of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct SlipPath<'a, F, P, V = Linear> {
     /// Moves the object.

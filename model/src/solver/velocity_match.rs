@@ -15,7 +15,7 @@ use crate::real::Real;
 use crate::solver::locate::{Locate, SlipPath, StickPath, earlier, first_break};
 use crate::solver::propagate::Propagate;
 
-/// What the torque of a stick contains beside the spring's.
+/// Terms of a stick's torque besides the spring's.
 pub trait StickTorque<F: Real>: 'static {
     /// The part that comes from the object's own motion, N·m.
     fn inertial(coefficients: &StepCoefficients<F>, omega: F, omega_dot: F) -> F;
@@ -166,7 +166,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
             >= self.coefficients.kinetic_nm * (F::ONE - F::LIMIT_SLACK)
     }
 
-    /// The first break in what is left of the step.
+    /// The first break in the rest of the step.
     fn find_break(
         &self,
         path: &ShaftPath<F, L::Shape>,
@@ -276,7 +276,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
             && sense.of_signed(stick.torque_nm) >= limit - a.touch_slack_nm(here.omega)
             && sense.of_signed(stick.rate) >= F::ZERO;
         if slips.is_some() || breaks_at_once {
-            // A touch: the velocities meet and part again. The slip goes on,
+            // A touch: the velocities meet and part again. The slip continues,
             // and nothing is felt or reported.
             self.state = State::Slip {
                 sense,

@@ -1,4 +1,4 @@
-//! What the property tests share.
+//! Shared by the property tests.
 
 use proptest::test_runner::{Config, RngSeed};
 

@@ -99,7 +99,7 @@ fn lanes() -> String {
     let mut text = "| byte | letter | tag | way | message |\n|---|---|---|---|---|\n".to_owned();
     for lane in Lane::ALL {
         let (way, message) = match lane {
-            Lane::Management => ("host → comms → drive", "a question for ever"),
+            Lane::Management => ("host → comms → drive", "a management request"),
             Lane::ManagementAnswer => ("drive → comms → host", "its answer"),
             Lane::Request => ("host → comms", "`Request`"),
             Lane::Reply => ("comms → host", "`Reply`"),

@@ -4,7 +4,7 @@
 use crate::hex::hex;
 use crate::management;
 use crepitus_protocol::counters::{COMMS_COUNT, DRIVE_COUNT};
-use crepitus_protocol::host::{Answer, Ask, Counters, Refusal, Reply, Request, Status};
+use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Reply, Request, Status};
 use crepitus_protocol::link::{
     DriveRefusal, DriveStatus, FromDrive, Heartbeat, Order, Outcome, ToDrive,
 };
@@ -26,7 +26,7 @@ pub(crate) struct Example {
     pub(crate) name: String,
     pub(crate) means: String,
     pub(crate) lane: Lane,
-    /// Of what is postcard.
+    /// Of postcard messages.
     pub(crate) schema: Option<&'static NamedType>,
     /// Lane, tag, message.
     pub(crate) body: Vec<u8>,
@@ -56,7 +56,7 @@ pub(crate) fn received(frame: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// An example; what was encoded comes back.
+/// An example; checks the round trip.
 fn example<T>(lane: Lane, name: &str, message: &T, means: Option<&str>) -> Example
 where
     T: Schema + Serialize + DeserializeOwned + Debug + PartialEq,
@@ -101,61 +101,61 @@ fn values() -> Values {
 
 const VALUES: &str = "the value of each parameter is half its id";
 
-/// Names of questions. A new one does not compile until it is here, and fails
+/// Names of requests. A new one does not compile until it is here, and fails
 /// until it has an example.
-fn ask_name(ask: &Ask) -> &'static str {
-    match ask {
-        Ask::Renew => "renew",
-        Ask::Status => "status",
-        Ask::Counters => "counters",
-        Ask::Parameters => "parameters",
-        Ask::Commit { .. } => "commit",
-        Ask::Save => "save",
-        Ask::Zero => "zero",
-        Ask::Arm => "arm",
-        Ask::Disarm => "disarm",
-        Ask::ClearFault => "clear-fault",
-        Ask::Subscribe => "subscribe",
-        Ask::Unsubscribe => "unsubscribe",
+fn operation_name(operation: &Operation) -> &'static str {
+    match operation {
+        Operation::Renew => "renew",
+        Operation::Status => "status",
+        Operation::Counters => "counters",
+        Operation::Parameters => "parameters",
+        Operation::Commit { .. } => "commit",
+        Operation::Save => "save",
+        Operation::Zero => "zero",
+        Operation::Arm => "arm",
+        Operation::Disarm => "disarm",
+        Operation::ClearFault => "clear-fault",
+        Operation::Subscribe => "subscribe",
+        Operation::Unsubscribe => "unsubscribe",
     }
 }
 
 fn requests() -> Vec<Example> {
-    let commit = Ask::Commit {
+    let commit = Operation::Commit {
         base: Revision(300),
         values: values(),
     };
     let asks = [
-        Ask::Renew,
-        Ask::Status,
-        Ask::Counters,
-        Ask::Parameters,
+        Operation::Renew,
+        Operation::Status,
+        Operation::Counters,
+        Operation::Parameters,
         commit,
-        Ask::Save,
-        Ask::Zero,
-        Ask::Arm,
-        Ask::Disarm,
-        Ask::ClearFault,
-        Ask::Subscribe,
-        Ask::Unsubscribe,
+        Operation::Save,
+        Operation::Zero,
+        Operation::Arm,
+        Operation::Disarm,
+        Operation::ClearFault,
+        Operation::Subscribe,
+        Operation::Unsubscribe,
     ];
     (0x1fe..)
         .zip(asks)
-        .map(|(number, ask)| {
+        .map(|(number, operation)| {
             let request = Request {
                 session: HOST,
                 number,
-                ask,
+                operation,
             };
-            let means = (ask == commit)
-                .then(|| format!("Request {{ session: Session(305419896), number: {number}, ask: Commit {{ base: Revision(300), values }} }}; {VALUES}"));
-            let name = format!("request.{}", ask_name(&ask));
+            let means = (operation == commit)
+                .then(|| format!("Request {{ session: Session(305419896), number: {number}, operation: Commit {{ base: Revision(300), values }} }}; {VALUES}"));
+            let name = format!("request.{}", operation_name(&operation));
             example(Lane::Request, &name, &request, means.as_deref())
         })
         .collect()
 }
 
-/// Names of answers; see [`ask_name`].
+/// Names of answers; see [`operation_name`].
 fn answer_name(answer: &Answer) -> &'static str {
     match answer {
         Answer::Done => "done",
@@ -308,7 +308,7 @@ fn blocks() -> Vec<Example> {
     ]
 }
 
-/// Names of what comms tells the drive; see [`ask_name`].
+/// Names of the messages to the drive; see [`operation_name`].
 fn to_drive_name(message: &ToDrive) -> &'static str {
     match message {
         ToDrive::Heartbeat(_) => "heartbeat",
@@ -358,7 +358,7 @@ fn from_drive() -> Vec<Example> {
     let full = DriveStatus {
         tick: 20_000_000_040,
         start: 7,
-        heard: Some(9),
+        comms_start: Some(9),
         state: State::Armed,
         fault: 0,
         revision: Revision(300),

@@ -18,7 +18,7 @@ fn every_fault_is_on_its_page() {
 
 /// Each has a section of its own, with a word on what to look at.
 #[test]
-fn every_fault_says_what_to_look_at() {
+fn every_fault_has_troubleshooting_steps() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/faults.md");
     let text = fs::read_to_string(page).expect("the page");
     for spec in &FAULTS {

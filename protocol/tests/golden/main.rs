@@ -1,7 +1,7 @@
 //! The bytes of every message, as `protocol/golden/vectors.txt` has them, and
 //! the pages of the book that are made of the same tables.
 //!
-//! Where they are meant to change, `CREPITUS_BLESS=1` writes them anew:
+//! Where they are meant to change, `CREPITUS_BLESS=1` rewrites them:
 //!
 //! ```sh
 //! CREPITUS_BLESS=1 cargo test -p crepitus-protocol --test golden
@@ -27,7 +27,7 @@ use postcard_schema::Schema;
 use postcard_schema::schema::NamedType;
 use std::collections::BTreeSet;
 
-/// What is postcard on the two wires.
+/// The postcard messages of both wires.
 const ROOTS: [&NamedType; 5] = [
     Request::SCHEMA,
     Reply::SCHEMA,
@@ -36,7 +36,7 @@ const ROOTS: [&NamedType; 5] = [
     FromDrive::SCHEMA,
 ];
 
-/// Whether files are to be written anew.
+/// Whether files are to be rewritten.
 fn is_blessed() -> bool {
     std::env::var_os("CREPITUS_BLESS").is_some_and(|value| value != "0")
 }

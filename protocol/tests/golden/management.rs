@@ -4,7 +4,9 @@
 
 use crate::examples::{Example, received};
 use crate::hex::{bytes, hex};
-use crepitus_protocol::management::{Answer, Identity, Question, ResetCause, Role, What};
+use crepitus_protocol::management::{
+    Action, Answer, Identity, ManagementRequest, ResetCause, Role,
+};
 use crepitus_protocol::{Lane, frame};
 
 const FOR_EVER: &str = "\n\
@@ -13,7 +15,7 @@ const FOR_EVER: &str = "\n\
     version of this lane and no way to bless other bytes: undo the change. What a later version\n\
     has to say in addition goes behind the bytes that there are; receivers ignore it.\n";
 
-/// A message of the lane, with its body and its frame for ever.
+/// A message of the lane, with its body and frame, which never change.
 struct Vector {
     name: &'static str,
     message: Message,
@@ -23,35 +25,35 @@ struct Vector {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Message {
-    Question(Question),
+    ManagementRequest(ManagementRequest),
     Answer(Answer),
 }
 
 impl Message {
     fn lane(&self) -> Lane {
         match self {
-            Self::Question(_) => Lane::Management,
+            Self::ManagementRequest(_) => Lane::Management,
             Self::Answer(_) => Lane::ManagementAnswer,
         }
     }
 
     fn bytes(&self) -> Vec<u8> {
         match self {
-            Self::Question(question) => question.bytes().to_vec(),
+            Self::ManagementRequest(request) => request.bytes().to_vec(),
             Self::Answer(answer) => answer.bytes().to_vec(),
         }
     }
 
     fn of(lane: Lane, bytes: &[u8]) -> Option<Self> {
         match lane {
-            Lane::Management => Question::of(bytes).map(Self::Question),
+            Lane::Management => ManagementRequest::of(bytes).map(Self::ManagementRequest),
             _ => Answer::of(bytes).map(Self::Answer),
         }
     }
 }
 
-fn question(what: What, token: u8) -> Message {
-    Message::Question(Question { what, token })
+fn request(action: Action, token: u8) -> Message {
+    Message::ManagementRequest(ManagementRequest { action, token })
 }
 
 fn comms() -> Identity {
@@ -61,7 +63,7 @@ fn comms() -> Identity {
         schema: 0x0123_4567_89ab_cdef,
         serial: *b"COMMS-SERIAL",
         image: 0xdead_beef,
-        reset: ResetCause::Asked,
+        reset: ResetCause::Requested,
     }
 }
 
@@ -79,19 +81,19 @@ fn vectors() -> Vec<Vector> {
     vec![
         Vector {
             name: "management.hello",
-            message: question(What::Hello, 0xa5),
+            message: request(Action::Hello, 0xa5),
             body: "4d 31 48 a5",
             frame: "09 4d 31 48 a5 31 42 8f f3 00",
         },
         Vector {
             name: "management.stop",
-            message: question(What::Stop, 1),
+            message: request(Action::Stop, 1),
             body: "4d 31 53 01",
             frame: "09 4d 31 53 01 5a ee 02 8b 00",
         },
         Vector {
             name: "management.reboot",
-            message: question(What::Reboot, 0),
+            message: request(Action::Reboot, 0),
             body: "4d 31 42 00",
             frame: "04 4d 31 42 05 dc fd dc af 00",
         },
@@ -166,7 +168,7 @@ pub(crate) fn examples() -> Vec<Example> {
             Example {
                 name: vector.name.to_owned(),
                 means: match vector.message {
-                    Message::Question(question) => format!("{question:?}"),
+                    Message::ManagementRequest(request) => format!("{request:?}"),
                     Message::Answer(answer) => format!("{answer:?}"),
                 },
                 lane,
@@ -187,27 +189,31 @@ fn the_management_lane_is_as_it_always_was() {
         let body = received(&bytes(vector.frame));
         let mut back = Message::of(example.lane, &body[2..]);
         assert_eq!(back, Some(vector.message), "{name}{FOR_EVER}");
-        // What a later version says in addition is ignored.
+        // Extra bytes of a later version are ignored.
         back = Message::of(example.lane, &[&body[2..], b"more"].concat());
         assert_eq!(back, Some(vector.message), "{name}{FOR_EVER}");
     }
 }
 
 #[test]
-fn every_byte_of_the_lane_has_its_meaning_for_ever() {
-    // No `_`: what is new does not compile until it stands here.
-    for what in [What::Hello, What::Stop, What::Reboot] {
-        let byte = match what {
-            What::Hello => b'H',
-            What::Stop => b'S',
-            What::Reboot => b'B',
+fn the_bytes_of_the_management_lane_never_change() {
+    // No `_`: a new action does not compile until it is listed here.
+    for action in [Action::Hello, Action::Stop, Action::Reboot] {
+        let byte = match action {
+            Action::Hello => b'H',
+            Action::Stop => b'S',
+            Action::Reboot => b'B',
         };
-        assert_eq!(Question { what, token: 5 }.bytes(), [byte, 5], "{FOR_EVER}");
+        assert_eq!(
+            ManagementRequest { action, token: 5 }.bytes(),
+            [byte, 5],
+            "{FOR_EVER}"
+        );
     }
     for reset in ResetCause::ALL {
         let number = match reset {
             ResetCause::Power => 0,
-            ResetCause::Asked => 1,
+            ResetCause::Requested => 1,
             ResetCause::Watchdog => 2,
             ResetCause::BrownOut => 3,
             ResetCause::Panic => 4,

@@ -8,7 +8,7 @@ use std::path::Path;
 
 const END: &str = "<!-- end -->";
 
-/// Compares the parts of a page with what the code says, or writes them anew.
+/// Compares the parts of a page with the code, or rewrites them.
 pub(crate) fn hold(page: &str, parts: &[(String, String)]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../docs")

@@ -1,5 +1,4 @@
-//! What the source says of its items: the comments that precede them. So the
-//! book and the code cannot say different things.
+//! Doc comments of the source, by item, so that book and code agree.
 
 use std::collections::BTreeMap;
 
@@ -52,7 +51,7 @@ fn read(source: &str, meanings: &mut BTreeMap<String, String>) {
             .iter()
             .find_map(|key| text.strip_prefix(key));
         if depth == 0 && item.is_none() && !text.starts_with('}') {
-            // A function, a constant, an `impl`: nothing of it is asked for.
+            // A function, a constant, an `impl`: not in the tables.
             names.clear();
         } else if depth <= names.len() && (depth > 0 || item.is_some()) {
             let text = item.unwrap_or(text);
@@ -71,7 +70,7 @@ fn read(source: &str, meanings: &mut BTreeMap<String, String>) {
     }
 }
 
-/// Without the links between items, which lead nowhere in the book.
+/// Removes intra-doc links, which do not work in the book.
 fn plain(comment: &str) -> String {
     let mut text = String::new();
     let mut rest = comment;
@@ -96,11 +95,11 @@ fn plain(comment: &str) -> String {
 fn comments_are_found() {
     let meanings = meanings();
     for (name, meaning) in [
-        ("Status.zeroed", "Whether the angle's zero was said."),
-        ("Ask.Commit.values", "All values."),
-        ("DriveRefusal.NoLease", "There is no live lease."),
-        ("Sample.torque_nm", "What was asked of the motor, N·m."),
-        ("Ask.Status", "How is it? → `Answer::Status`"),
+        ("Status.zeroed", "Whether the angle's zero was set."),
+        ("Operation.Commit.values", "All values."),
+        ("DriveRefusal.NoLease", "No lease, or an expired one."),
+        ("Sample.torque_nm", "Torque setpoint of the motor, N·m."),
+        ("Operation.Status", "Reads the status. → `Answer::Status`"),
     ] {
         assert_eq!(
             meanings.get(name).map(String::as_str),

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::PathBuf;
 
-/// What writes the files anew.
+/// Command that rewrites the files.
 pub(crate) const BLESS: &str = "CREPITUS_BLESS=1 cargo test -p crepitus-protocol --test golden";
 
 const HEAD: &str = "\
@@ -48,7 +48,7 @@ fn write(examples: &[Example]) -> String {
     text
 }
 
-/// What a file says.
+/// Content of a file.
 #[derive(Default)]
 struct File {
     schema: String,
@@ -114,7 +114,7 @@ fn differences(file: &File, examples: &[Example]) -> (Vec<String>, bool) {
     (found, is_other)
 }
 
-/// What is to be done about a change, for whoever made it.
+/// Instructions after a change.
 fn advice(was: &str) -> String {
     format!(
         "\nThis is a change of the wire: programs from before it and after it do not understand each\n\

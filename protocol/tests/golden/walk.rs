@@ -14,7 +14,7 @@ pub(crate) fn is_fixed(name: &str) -> bool {
     FIXED.contains(&name)
 }
 
-/// Some bytes of a message, and what they say.
+/// Some bytes of a message, and their meaning.
 pub(crate) struct Piece {
     pub(crate) path: String,
     pub(crate) bytes: Vec<u8>,

@@ -196,7 +196,7 @@ impl Board {
             let outputs = self.drive.command_motor(&Inputs {
                 current_a: self.converts.then(|| single(self.leg.current_a())),
                 enable_is_on: self.drive_line.read,
-                is_broken: self.comparator_tripped,
+                has_tripped: self.comparator_tripped,
             });
             self.execute(outputs);
         }
@@ -211,7 +211,7 @@ impl Board {
         if drive_runs {
             self.drive.prepare();
             if self.drive.take_reboot() {
-                self.reset(Controller::Drive, ResetCause::Asked);
+                self.reset(Controller::Drive, ResetCause::Requested);
             }
         }
         self.tick += 1;
@@ -258,8 +258,8 @@ impl Board {
         let comms_runs = self.comms_health == Health::Runs;
         down.tick(
             self.tick,
-            |has_place| {
-                (comms_runs && has_place)
+            |has_buffer| {
+                (comms_runs && has_buffer)
                     .then(|| comms.link_to_send())
                     .flatten()
             },
@@ -271,7 +271,7 @@ impl Board {
         );
         up.tick(
             self.tick,
-            |has_place| drive_runs.then(|| drive.link_to_send(has_place)).flatten(),
+            |has_buffer| drive_runs.then(|| drive.link_to_send(has_buffer)).flatten(),
             |byte| {
                 if comms_runs {
                     comms.link_received(byte);
@@ -293,7 +293,7 @@ impl Board {
             self.comms.saved(self.keeps);
         }
         if outputs.reboot {
-            self.reset(Controller::Comms, ResetCause::Asked);
+            self.reset(Controller::Comms, ResetCause::Requested);
         }
         // When comms disables its line, that is immediate.
         if !self.comms_line.is_on() {

@@ -6,7 +6,7 @@ mod support;
 use crepitus_board::board::Controller;
 use crepitus_board::leg::EncoderWiring;
 use crepitus_board::{Board, Start};
-use crepitus_protocol::host::{Answer, Ask, Refusal};
+use crepitus_protocol::host::{Answer, Operation, Refusal};
 use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::{Fault, State};
 use support::{Host, examination, scene};
@@ -122,7 +122,7 @@ preset = "coarse"
         host.device.board_mut().leg_mut().set_encoder_wiring(wiring);
         for round in 0..60 {
             host.run(137);
-            let answer = host.ask(Ask::Arm);
+            let answer = host.ask(Operation::Arm);
             let is_proven = host.status().polarity_proven;
             if wiring == EncoderWiring::Right {
                 assert_eq!(answer, Ok(Answer::Done), "round {round}");
@@ -137,9 +137,9 @@ preset = "coarse"
                 assert!(is_refused || !is_proven, "round {round}: {answer:?}");
                 noticed += u32::from(is_refused);
             }
-            assert_eq!(host.ask(Ask::Disarm), Ok(Answer::Done));
+            assert_eq!(host.ask(Operation::Disarm), Ok(Answer::Done));
             host.run(60);
-            assert_eq!(host.ask(Ask::ClearFault), Ok(Answer::Done));
+            assert_eq!(host.ask(Operation::ClearFault), Ok(Answer::Done));
         }
     }
     println!("{proven} of 60 proven, {noticed} of 60 swapped encoders noticed");

@@ -8,7 +8,7 @@ use crepitus_model::render::ramp::Ramp;
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{Frozen, Settings, StepCoefficients, StickSlip};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
-use crepitus_protocol::host::{Answer, Ask};
+use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, SAMPLE_BYTES, SampleFlags};
 use crepitus_protocol::{Revision, State, TICK_S, TICKS_PER_S};
@@ -26,7 +26,7 @@ fn it_is_found_armed_moved_and_disarmed() {
     );
     assert!(status.drive_present);
     assert_eq!(status.in_force, status.revision);
-    assert_eq!(host.ask(Ask::Zero), Ok(Answer::Done));
+    assert_eq!(host.ask(Operation::Zero), Ok(Answer::Done));
     host.subscribe();
     host.samples = Some(Vec::new());
     host.arm();
@@ -50,7 +50,7 @@ fn it_is_found_armed_moved_and_disarmed() {
         .map(|s| s.torque_nm.abs())
         .fold(0.0, f32::max);
     assert!((0.35..=0.4).contains(&torque), "{torque}");
-    assert_eq!(host.ask(Ask::Disarm), Ok(Answer::Done));
+    assert_eq!(host.ask(Operation::Disarm), Ok(Answer::Done));
     host.run(100);
     assert_eq!(host.status().state, State::Disarmed);
     assert!(!host.device.board().is_driven());

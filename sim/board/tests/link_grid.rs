@@ -10,7 +10,7 @@ mod support;
 
 use crepitus_board::{Faults, Start};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
-use crepitus_protocol::host::{Answer, Ask, Refusal};
+use crepitus_protocol::host::{Answer, Operation, Refusal};
 use crepitus_protocol::{DeviceSettings, State, Values};
 use fastrand::Rng;
 use std::time::Instant;
@@ -187,16 +187,16 @@ impl Cell {
         while self.host.device.board().now() < end {
             if self.host.device.board().drive().state() != State::Armed {
                 self.host.renew_every = Some(1_000);
-                self.host.try_ask(Ask::ClearFault, 1);
-                self.host.try_ask(Ask::Arm, 1);
+                self.host.try_ask(Operation::ClearFault, 1);
+                self.host.try_ask(Operation::Arm, 1);
             }
             match self.rng.u8(0..16) {
                 0..9 => self.commit_something(),
                 9 => {
-                    self.host.try_ask(Ask::Status, 1);
+                    self.host.try_ask(Operation::Status, 1);
                 }
                 10 => {
-                    self.host.try_ask(Ask::Disarm, 1);
+                    self.host.try_ask(Operation::Disarm, 1);
                 }
                 // It forgets to renew.
                 11 => self.host.renew_every = None,
@@ -213,7 +213,7 @@ impl Cell {
         if self.rng.u8(0..6) == 0 {
             let values = random_values::forbidden(&mut self.rng, &values);
             assert!(DeviceSettings::of(&values).is_err());
-            let answer = self.host.try_ask(Ask::Commit { base, values }, 1);
+            let answer = self.host.try_ask(Operation::Commit { base, values }, 1);
             assert!(!matches!(answer, Some(Ok(_))), "{answer:?}");
             self.refused += 1;
             return;
@@ -221,13 +221,13 @@ impl Cell {
         let values = random_values::allowed(&mut self.rng, &values);
         if self.rng.u8(0..6) == 0 {
             base.0 += 7;
-            let answer = self.host.try_ask(Ask::Commit { base, values }, 1);
+            let answer = self.host.try_ask(Operation::Commit { base, values }, 1);
             assert!(!matches!(answer, Some(Ok(_))), "{answer:?}");
             self.refused += 1;
             return;
         }
         self.propose(&values);
-        let answer = self.host.try_ask(Ask::Commit { base, values }, 1);
+        let answer = self.host.try_ask(Operation::Commit { base, values }, 1);
         let oracle = self.host.oracle.as_mut().expect("an oracle");
         match answer {
             Some(Ok(Answer::Committed { revision })) => oracle.committed(revision, &values),
@@ -257,14 +257,14 @@ impl Cell {
                 self.faults
             );
             self.host
-                .ask(Ask::Disarm)
+                .ask(Operation::Disarm)
                 .expect("disarming is never refused");
-            if self.host.ask(Ask::ClearFault).is_err() {
+            if self.host.ask(Operation::ClearFault).is_err() {
                 self.host.run(200);
                 continue;
             }
             self.host.run(100);
-            let answer = self.host.ask(Ask::Arm);
+            let answer = self.host.ask(Operation::Arm);
             if answer.is_ok() {
                 break;
             }
@@ -285,7 +285,7 @@ impl Cell {
         );
         let next = random_values::allowed(&mut self.rng, &values);
         self.propose(&next);
-        let answer = self.host.ask(Ask::Commit {
+        let answer = self.host.ask(Operation::Commit {
             base: revision,
             values: next,
         });

@@ -4,7 +4,7 @@ mod support;
 
 use crepitus_board::{Faults, Start};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
-use crepitus_protocol::host::{Answer, Ask, Refusal, Request};
+use crepitus_protocol::host::{Answer, Operation, Refusal, Request};
 use crepitus_protocol::{DeviceSettings, Fault, State, ValueError};
 use support::{Host, examination, set};
 
@@ -17,12 +17,12 @@ fn connected() -> Host {
     host
 }
 
-fn request(host: &mut Host, ask: Ask) -> Request {
+fn request(host: &mut Host, operation: Operation) -> Request {
     host.number += 1;
     Request {
         session: host.session,
         number: host.number,
-        ask,
+        operation,
     }
 }
 
@@ -38,7 +38,7 @@ fn cut(is_cut: bool) -> Faults {
 fn armed_and_faulted_in_one_word() {
     let mut host = connected();
     host.renew_every = Some(1_000);
-    let arm = request(&mut host, Ask::Arm);
+    let arm = request(&mut host, Operation::Arm);
     host.say(&arm);
     while host.device.board().drive().state() != State::Armed {
         host.device.board_mut().up().injector.faults =
@@ -65,7 +65,7 @@ fn armed_and_faulted_in_one_word() {
         (State::Faulted, Fault::CurrentMissing.code(), 0)
     );
     // Nobody wants torque any more, so it can be cleared and armed again.
-    assert_eq!(host.ask(Ask::ClearFault), Ok(Answer::Done));
+    assert_eq!(host.ask(Operation::ClearFault), Ok(Answer::Done));
     host.run(100);
     assert_eq!(host.status().state, State::Disarmed);
     host.arm();
@@ -80,8 +80,8 @@ fn what_needs_no_torque_may_follow_a_disarm_at_once() {
         host.run(phase);
         let (base, mut values) = host.parameters();
         set(&mut values, "encoder.velocity_bandwidth_hz", 60.0);
-        let disarm = request(&mut host, Ask::Disarm);
-        let commit = request(&mut host, Ask::Commit { base, values });
+        let disarm = request(&mut host, Operation::Disarm);
+        let commit = request(&mut host, Operation::Commit { base, values });
         host.say(&disarm);
         host.say(&commit);
         let answer = host.answer_to(&commit);
@@ -103,8 +103,8 @@ fn a_refusal_that_is_never_heard() {
         assert!(DeviceSettings::of(&values).is_ok());
         // Until the commit comes, the drive does not hear that it is disarmed.
         host.device.board_mut().down().injector.faults = cut(true);
-        let disarm = request(&mut host, Ask::Disarm);
-        let commit = request(&mut host, Ask::Commit { base, values });
+        let disarm = request(&mut host, Operation::Disarm);
+        let commit = request(&mut host, Operation::Commit { base, values });
         let carried_out = host.comms_count(CommsCounter::Requests);
         host.say(&disarm);
         while host.comms_count(CommsCounter::Requests) == carried_out {
@@ -144,7 +144,7 @@ fn a_refusal_that_is_never_heard() {
             assert_eq!(now, values, "phase {phase}: it had to come into force");
         }
         host.set("crepitus.static_torque_nm", 0.5);
-        let _ = host.ask(Ask::ClearFault);
+        let _ = host.ask(Operation::ClearFault);
         host.run(100);
         host.arm();
     }

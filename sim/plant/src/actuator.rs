@@ -6,7 +6,7 @@ use crate::energy_balance::{Account, EnergyBalance};
 
 /// Drives the shaft.
 pub trait Actuator: Send {
-    /// What it does to the shaft over a step of `length_s`.
+    /// Action on the shaft over a step of `length_s`.
     fn fold(&mut self, length_s: f64) -> Push;
 
     /// Looks at a solution in which the shaft turns with this mean velocity,
@@ -41,9 +41,9 @@ pub trait Actuator: Send {
     fn write(&self, row: &mut Vec<f64>);
 }
 
-/// An actuator that is told a torque.
+/// An actuator with a torque setpoint.
 pub trait Commanded: Actuator {
-    /// A new tick, with the torque that the device wants to show, N·m: T > 0
+    /// Starts a tick with the torque setpoint of the device, N·m: T > 0
     /// opposes growing angle.
     fn command(&mut self, torque_nm: f64);
 }
@@ -88,7 +88,7 @@ impl Commanded for Box<dyn Commanded> {
     }
 }
 
-/// An actuator that does what it is told, at once.
+/// An ideal actuator: no lag, no limit.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Ideal {
     torque_nm: f64,

@@ -1,6 +1,6 @@
 //! A plant from the effects that a scene lists.
 //!
-//! Everything is decided here, once: what is not listed leaves no part behind.
+//! Everything is decided here, once: an effect that is not listed has no part.
 
 use crate::actuator::{Actuator, Commanded, Ideal};
 use crate::boundary::{Boundary, Prescribed, Released};
@@ -39,7 +39,7 @@ pub fn assemble(
 }
 
 /// The plant of `listed` with an actuator of its owner's: of the effects, those
-/// of the mechanics. What is the device's is left out.
+/// of the mechanics, without those of the device.
 pub fn assemble_with<A: Actuator>(
     listed: &[Listed],
     context: &Context,

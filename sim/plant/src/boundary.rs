@@ -51,7 +51,7 @@ pub trait Boundary: Send {
     fn solve(&mut self, stretch: &Stretch, body: &Body, push: Push) -> Flow;
 
     /// Makes the step: `next` is what the chain has made of the body, `cut`
-    /// whether the step goes on after this stretch.
+    /// whether the step continues after this stretch.
     fn settle(
         &mut self,
         stretch: &Stretch,
@@ -74,7 +74,7 @@ pub trait Boundary: Send {
     /// Inertia that it adds to the right end, kg·m².
     fn inertia_kg_m2(&self) -> f64;
 
-    /// Books what it was given, stores and has lost.
+    /// Adds supplied, stored and dissipated energy to the balance.
     fn energy(&self, body: &Body, balance: &mut EnergyBalance);
 
     /// Names of the columns in a trace.
@@ -84,7 +84,7 @@ pub trait Boundary: Send {
     fn write(&self, row: &mut Vec<f64>);
 }
 
-/// The right end moves as the scene says, whatever it takes.
+/// The right end has the prescribed motion, whatever torque that takes.
 #[derive(Clone, Copy, Debug)]
 pub struct Prescribed {
     motion: MotionStep,
@@ -108,7 +108,7 @@ impl Prescribed {
         }
     }
 
-    /// Gives what is rigid with the motion the motion's velocity.
+    /// Sets the motion's velocity for all parts that are rigid with it.
     fn carry(&mut self, body: &mut Body, omega_rad_s: f64, rigid_kg_m2: f64) {
         let impulse = rigid_kg_m2 * (omega_rad_s - body.omega_rad_s);
         self.felt_nms += impulse;
@@ -132,7 +132,7 @@ impl Boundary for Prescribed {
         let omega_rad_s = travel / stretch.length_s;
         let mut torque_nm = push.at(omega_rad_s);
         if let Some(limit) = push.held_by_nm {
-            // At rest the friction carries what it can, the hand the rest.
+            // At rest the friction carries as much as it can, the hand the rest.
             torque_nm -= torque_nm.clamp(-limit, limit);
         }
         Flow {

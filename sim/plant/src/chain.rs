@@ -89,11 +89,11 @@ impl Push {
 pub struct Step {
     /// Length, s.
     pub length_s: f64,
-    /// What the actuator does to the shaft.
+    /// Action of the actuator on the shaft.
     pub drive: Push,
     /// Torque that goes through the gear, N·m.
     pub load_nm: f64,
-    /// It goes on from an end of a mode.
+    /// It continues from an end of a mode.
     pub cut: bool,
 }
 
@@ -110,11 +110,11 @@ impl Step {
 pub struct Flow {
     /// Mean velocity of the body, rad/s.
     pub omega_rad_s: f64,
-    /// Mean torque of what is left of the point on what is right of it, N·m.
+    /// Mean torque of the left side on the right side of the point, N·m.
     pub torque_nm: f64,
 }
 
-/// What a part says of a solution.
+/// A part's verdict on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// It holds.
@@ -138,7 +138,7 @@ impl Verdict {
     }
 }
 
-/// What a settled step leaves for the parts further right.
+/// Result of a settled step for the parts further right.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Settled {
     /// Mean velocity of the motor's shaft, rad/s.
@@ -182,7 +182,7 @@ pub type Weight = Box<dyn Fn(f64) -> f64 + Send>;
 /// The chain up to one of its parts. `body` is the body at its right end; a
 /// part that separates bodies owns the one left of it.
 pub trait Chain: Send {
-    /// What this and all left of it do to what is right of it.
+    /// Action of this part and all to its left on the parts to its right.
     fn fold(&mut self, step: &Step, body: &Body) -> Push;
 
     /// Mean velocity of the motor's shaft in a solution, rad/s.
@@ -220,7 +220,7 @@ pub trait Chain: Send {
     fn jerk(&mut self, body: &Body, change_rad_s: f64);
 
     /// The torque that the chain's own weight and the like exert on its right
-    /// end at rest, as a function of the angle; none if there is no such part.
+    /// end at rest, as a function of the angle; `None` without such a part.
     fn weight(&self) -> Option<Weight>;
 
     /// Books what each part stores now and has lost so far.
@@ -235,7 +235,7 @@ pub trait Chain: Send {
     /// The impacts so far, if a part of the chain can have any.
     fn impacts(&self) -> Option<Impacts>;
 
-    /// What was odd.
+    /// Warnings.
     fn warnings(&self, warnings: &mut Vec<String>);
 }
 

@@ -14,7 +14,7 @@ pub use crepitus_model::render::effects::Need;
 pub struct Effect {
     /// Name in scene files: the table `[effects.NAME]`.
     pub name: &'static str,
-    /// What it adds.
+    /// Description.
     pub adds: &'static str,
     /// Its state variables.
     pub states: &'static [&'static str],
@@ -50,11 +50,11 @@ pub struct ChoiceSpec {
     pub key: &'static str,
     /// What can be chosen; the first is the default.
     pub names: &'static [&'static str],
-    /// What it means.
+    /// Description.
     pub meaning: &'static str,
 }
 
-/// What a scene gives for an effect.
+/// Parameters of an effect from a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Given {
     /// A number for each of its parameters.
@@ -73,7 +73,7 @@ impl Given {
     }
 }
 
-/// What all parts are told when they are built.
+/// Common inputs of all parts when they are built.
 #[derive(Clone, Copy, Debug)]
 pub struct Context {
     /// Tick of the device, s.
@@ -96,7 +96,7 @@ pub type MakeBoundary = fn(&Given, &Context, &dyn Chain) -> Box<dyn Boundary>;
 pub enum Part {
     /// The stick-slip object, which the scene's solver renders.
     Joint,
-    /// What the device knows of the shaft.
+    /// The shaft as the device measures it.
     Sensor,
     /// A stage of the device after the joint, which its
     /// [pipeline](crepitus_model::render) renders.

@@ -1,7 +1,7 @@
 //! Where the energy of a plant is: what each part was given, stores, and has
 //! lost.
 
-/// What a term counts.
+/// Kind of a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Account {
     /// Work done on the plant from outside.
@@ -29,9 +29,9 @@ impl Account {
 /// One term of the balance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term {
-    /// The effect that it belongs to; `motion` for what is prescribed.
+    /// The effect that it belongs to; `motion` for prescribed motion.
     pub effect: &'static str,
-    /// What it is.
+    /// Description.
     pub what: &'static str,
     /// Where it counts.
     pub account: Account,
@@ -43,7 +43,7 @@ pub struct Term {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EnergyBalance {
     terms: Vec<Term>,
-    /// What was stored where a balance begins, J.
+    /// Stored energy at the start of a balance, J.
     held_j: f64,
 }
 
@@ -74,7 +74,7 @@ impl EnergyBalance {
         &self.terms
     }
 
-    /// What the balance leaves over, J: zero but for numerical error.
+    /// Residual of the balance, J: zero except for numerical error.
     pub fn residual_j(&self) -> f64 {
         self.terms
             .iter()
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_given_is_stored_or_lost() {
+    fn supplied_energy_is_stored_or_lost() {
         let balance = booked(5.0, 3.5, 2.0).since(&booked(0.0, 0.5, 0.0));
         assert_eq!(balance.residual_j(), 0.0);
         assert_eq!(balance.relative_residual(), 0.0);
@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(open.residual_j(), 1.0);
         assert!((open.relative_residual() - 1.0 / 9.0).abs() < 1e-15);
         assert_eq!(EnergyBalance::default().relative_residual(), 0.0);
-        // What was stored from the start counts: its rounding is no large share.
+        // Includes the initially stored energy, so that rounding is a small share.
         let still = booked(0.0, 3.0 + 1e-15, 0.0).since(&booked(0.0, 3.0, 0.0));
         assert!(still.relative_residual().abs() < 1e-15);
     }

@@ -1,4 +1,4 @@
-//! # What the joint is attached to
+//! # The mechanics around the joint: motor, gear, cuff, leg, hand
 //!
 //! The motion, the sensors that see the shaft, and what stands between the
 //! motor and the hand: effects that a scene lists one by one.

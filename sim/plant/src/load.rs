@@ -27,11 +27,11 @@ pub trait Load: Send {
         None
     }
 
-    /// Books what it stores now and has lost so far, without the kinetic
+    /// Adds stored and dissipated energy to the balance, without the kinetic
     /// energy.
     fn energy(&self, body: &Body, balance: &mut EnergyBalance);
 
-    /// What was odd.
+    /// Warnings.
     fn warnings(&self, _: &mut Vec<String>) {}
 }
 
@@ -59,7 +59,7 @@ impl<L: Load + 'static> Loaded<L> {
 }
 
 impl<L: Load> Loaded<L> {
-    /// What is left of the load does this to the body.
+    /// Action of the parts to the left on the body.
     fn left_flow(&self, flow: Flow) -> Flow {
         Flow {
             torque_nm: flow.torque_nm - self.push.at(flow.omega_rad_s),

@@ -22,7 +22,7 @@ pub enum Motion {
     Single(Piece),
     /// Pieces one after the other; the first holds before, the last after.
     Sequence(Vec<Piece>),
-    /// Minimum-jerk strokes there and back with a pause after each, for ever.
+    /// Minimum-jerk strokes there and back with a pause after each, repeated.
     Strokes(Strokes),
 }
 
@@ -249,7 +249,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_goes_on_finds_the_same_pieces_from_anywhere() {
+    fn a_cursor_finds_the_same_pieces_from_anywhere() {
         let piece = |start_s: f64, end_s: f64| Piece {
             start_s,
             end_s,

@@ -6,7 +6,7 @@ use crate::chain::{Body, Chain, Flow, Impacts, Step, Verdict};
 use crate::energy_balance::EnergyBalance;
 
 /// Ends of modes that are located within one step. What would follow is
-/// carried to the step's end in the mode then in force.
+/// carried to the step's end in the mode then active.
 const ENDS_PER_STEP: u32 = 8;
 
 /// How often a step is folded again because a mode did not hold. A chain has
@@ -38,7 +38,7 @@ struct Solution {
 }
 
 impl<A: Commanded> Plant<A> {
-    /// A new tick, with the torque that the device wants to show, N·m.
+    /// Starts a tick with the torque setpoint of the device, N·m.
     pub fn command(&mut self, torque_nm: f64) {
         self.actuator.command(torque_nm);
     }
@@ -69,7 +69,7 @@ impl<A: Actuator> Plant<A> {
         &self.actuator
     }
 
-    /// Its actuator, to be told something between two steps.
+    /// Its actuator, for commands between two steps.
     pub fn actuator_mut(&mut self) -> &mut A {
         &mut self.actuator
     }
@@ -104,7 +104,7 @@ impl<A: Actuator> Plant<A> {
         }
     }
 
-    /// What is left of a step up to the first end of a mode, if there is one.
+    /// The rest of a step up to the first end of a mode, if there is one.
     ///
     /// Found on a stretch that goes beyond it, an end is a little elsewhere on
     /// the stretch up to it, and so may be the modes: it is looked for again.
@@ -259,7 +259,7 @@ impl<A: Actuator> Plant<A> {
         self.boundary.write(row);
     }
 
-    /// What was odd.
+    /// Warnings.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         self.chain.warnings(&mut warnings);

@@ -1,4 +1,4 @@
-//! Why a scene cannot be read, said so that a person can mend it.
+//! Errors of scene files, with cause and remedy.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ pub struct SceneError {
     /// The key with its path, such as `solver.step_s`; empty for the whole
     /// file.
     pub key: String,
-    /// What is wrong and what is allowed.
+    /// What is wrong, and the valid values.
     pub message: String,
 }
 

@@ -1,6 +1,6 @@
 //! # Scenes
 //!
-//! A scene file says what is simulated; this crate reads and checks it, runs
+//! A scene file describes a simulation; this crate reads and validates it, runs
 //! it, and sums the run up.
 //!
 //! ```text

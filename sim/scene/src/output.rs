@@ -11,7 +11,7 @@ pub use trace_csv::TraceCsv;
 
 use crepitus_model::Phase;
 
-/// Appends `x` so that reading it back gives the same bits.
+/// Appends `x` with enough digits to read back the same bits.
 fn push_number(line: &mut String, x: f64) {
     if x.is_finite() {
         line.push_str(ryu::Buffer::new().format_finite(x));

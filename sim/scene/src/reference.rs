@@ -61,7 +61,7 @@ pub struct Reference<'a> {
     /// The shaft just before the present piece began.
     before_piece: ShaftState,
     state: State,
-    /// What the search knows of the end of this phase.
+    /// State of the search for the end of this phase.
     ahead: Ahead,
     /// Turns of the loop over pieces and events so far.
     turns: u32,
@@ -137,7 +137,7 @@ impl<'a> Reference<'a> {
     /// it ends at is no whole event then.
     ///
     /// # Errors
-    /// What the follower breaks with.
+    /// Error of the follower.
     pub fn follow<F: Follow>(&mut self, to_s: f64, follower: &mut F) -> ControlFlow<F::Stop> {
         loop {
             self.turns = self.turns.wrapping_add(1);
@@ -170,7 +170,7 @@ impl<'a> Reference<'a> {
         self.now
     }
 
-    /// What the object does now.
+    /// Current phase.
     pub fn phase(&self) -> Phase {
         match self.state {
             State::Stick { .. } => Phase::Stick,

@@ -37,10 +37,10 @@ use watch::{Ended, Watch, watched};
 
 /// Sees a run go by.
 pub trait Observer {
-    /// Why it cannot go on.
+    /// Error of the observer.
     type Error;
 
-    /// Whether rows of the trace are wanted at all.
+    /// Whether rows of the trace are needed.
     const WANTS_ROWS: bool = true;
 
     /// A row of the trace, in the order of [`columns`].
@@ -78,7 +78,7 @@ impl Observer for Blind {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError<E> {
-    /// The observer could not go on.
+    /// The observer failed.
     #[error(transparent)]
     Observer(E),
     /// Settings that do not go together.
@@ -89,7 +89,7 @@ pub enum RunError<E> {
     Diverged(#[from] Diverged),
 }
 
-/// The object's state is no number any more: the solver is not stable with
+/// The object's state is NaN or infinite: the solver is unstable with
 /// this step.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
@@ -99,7 +99,7 @@ pub enum RunError<E> {
 pub struct Diverged {
     /// Which one.
     pub solver: &'static str,
-    /// When it was noticed, s.
+    /// Time of detection, s.
     pub by_s: f64,
     /// ωn·h, what decides on its stability.
     pub radians_per_step: f64,
@@ -172,7 +172,7 @@ pub fn rows(scene: &Scene) -> u64 {
 /// see [`measure_costs`].
 ///
 /// # Errors
-/// What the observer returns, or settings that cannot work together.
+/// The observer's error, or incompatible settings.
 pub fn run<O: Observer>(scene: &Scene, observer: &mut O) -> Result<Summary, RunError<O::Error>> {
     let begun = Instant::now();
     let totals = watched(observer, |watch| simulate(scene, watch))?;

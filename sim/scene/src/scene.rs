@@ -25,14 +25,14 @@ use std::path::{Path, PathBuf};
 /// The only version of scene files so far.
 pub const SCENE_VERSION: u32 = 1;
 
-/// What is to be simulated.
+/// A validated scene.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The file that it was read from.
     pub file: PathBuf,
-    /// What it shows, in one line.
+    /// Title, one line.
     pub title: String,
-    /// What it shows, at length.
+    /// Description.
     pub description: Option<String>,
     /// Length of the run, s.
     pub duration_s: f64,
@@ -56,7 +56,7 @@ pub struct Scene {
     pub substeps: u32,
     /// Time between rows of the trace, s.
     pub trace_step_s: f64,
-    /// What was odd but not wrong.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
@@ -65,11 +65,11 @@ pub struct Scene {
 pub struct Crepitus {
     /// The preset it started from, if any.
     pub preset: Option<&'static str>,
-    /// The settings in force.
+    /// The active settings.
     pub settings: Validated<Settings>,
 }
 
-/// What the command line changes in a scene.
+/// Overrides of a scene by the command line.
 #[derive(Clone, Debug, Default)]
 pub struct Overrides {
     /// Another solver.
@@ -88,7 +88,7 @@ impl Scene {
     /// Reads and checks a scene file.
     ///
     /// # Errors
-    /// [`SceneError`] says where, which key, what is wrong, what is allowed.
+    /// [`SceneError`] with position, key, cause and valid values.
     pub fn read(file: &Path, overrides: &Overrides) -> Result<Self, SceneError> {
         let whole = |message: String| SceneError {
             file: file.to_owned(),
@@ -206,7 +206,7 @@ impl Scene {
         assemble(&self.listed, &self.context(tick_s), !self.is_held())
     }
 
-    /// The plant with an actuator of the caller's, who has a device of his own
+    /// The plant with an actuator of the caller, which has its own device
     /// with this tick: of the effects, those of the mechanics.
     pub fn assemble_with<A: Actuator>(&self, tick_s: f64, actuator: A) -> Plant<A> {
         let context = self.context(tick_s);
@@ -238,7 +238,7 @@ impl Scene {
         self.motion.clone().resting_after(self.duration_s)
     }
 
-    /// What it gives for an effect of the plant, or the effect's defaults.
+    /// Parameters of an effect of the plant, or its defaults.
     pub fn given(&self, effect: &Effect) -> Given {
         self.listed
             .iter()
@@ -264,7 +264,7 @@ fn tables(effects: &[&str]) -> String {
     tables.join(", ")
 }
 
-/// Refuses a rung for what it cannot do in this scene.
+/// Rejects a rung that does not support this scene.
 fn check_rung(
     section: &Section<'_>,
     solver: SolverChoice,
@@ -304,7 +304,7 @@ fn check_rung(
     Ok(())
 }
 
-/// A leg that nobody holds has to be there, and not to be held.
+/// Validates a released leg: it needs a limb and excludes a hand.
 fn check_released(
     root: &Section<'_>,
     kind: MotionKind,

@@ -1,4 +1,4 @@
-//! What a run reports while it goes: rows of the trace, and events.
+//! Output of a run: rows of the trace, and events.
 //!
 //! The columns of a trace are decided once, from the effects of the scene. An
 //! effect that is absent has no column. A row is a slice of numbers in the

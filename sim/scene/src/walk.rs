@@ -85,7 +85,7 @@ impl<M: Borrow<Motion>> Walk<M> {
     }
 }
 
-/// What is held at `time_s` of `piece`.
+/// Value held at `time_s` of `piece`.
 #[inline]
 pub(crate) fn body(piece: &Piece, time_s: f64) -> Body {
     let (angle_rad, omega_rad_s) = piece.angle_and_velocity(time_s);

@@ -3,7 +3,7 @@
 //! up to that of the scene.
 //!
 //! Counts are those of this build's profile; only their ratios mean something.
-//! Without valgrind nothing is counted and the test says so, unless
+//! Without valgrind nothing is counted and the test reports it, unless
 //! `CREPITUS_NEEDS_VALGRIND` is set.
 
 use crepitus_plant::effect::Effect;
@@ -36,7 +36,7 @@ fn scene_text(effects: &[&Effect], steps: u32) -> String {
     text
 }
 
-/// The process that is counted: does nothing unless it is told a scene.
+/// The measured process: does nothing unless it is given a scene.
 #[test]
 fn counted_process() {
     let Some(file) = std::env::var_os(SCENE_VARIABLE) else {
@@ -49,7 +49,7 @@ fn counted_process() {
 /// Instructions by function.
 type Profile = BTreeMap<String, u64>;
 
-/// Counts a run of so many steps.
+/// Counts a run of this many steps.
 fn count(folder: &Path, effects: &[&Effect], steps: u32) -> Profile {
     let scene = folder.join("scene.toml");
     let out = folder.join("callgrind.out");

@@ -295,7 +295,7 @@ fn in_a_slip_the_shaft_is_never_behind() {
     assert!(slips > 100_000, "{slips}");
 }
 
-/// A run of an hour without rows still asks, now and then, whether to go on.
+/// A run of an hour without rows still checks now and then for cancellation.
 #[test]
 fn a_run_can_be_ended_where_nothing_is_written() {
     struct Patience(u32);

@@ -310,7 +310,7 @@ fn a_joint_that_the_device_refuses_is_warned_of() {
 }
 
 #[test]
-fn a_duration_that_is_no_whole_number_of_steps_is_said() {
+fn a_duration_of_no_whole_number_of_steps_is_a_warning() {
     let (keep, summary) = simulate(&scene(
         0.00012,
         ONE_RAD_S,
@@ -326,7 +326,7 @@ fn a_duration_that_is_no_whole_number_of_steps_is_said() {
 }
 
 /// Friction never pushes the shaft along where a slip ends at a velocity match;
-/// a frozen slip does when the hand slows, and both kinds of run say so alike.
+/// a frozen slip does when the hand slows, and both kinds of run report the same.
 #[test]
 fn a_slip_that_outlasts_its_match_is_reported() {
     for convention in ["paper", "physical"] {

@@ -1,4 +1,4 @@
-//! Every mistake in a scene is named: file, line, key, what is allowed.
+//! Every error in a scene is reported: file, line, key, valid values.
 
 use crepitus_scene::{Overrides, Scene};
 use std::path::Path;

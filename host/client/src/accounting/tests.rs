@@ -1,4 +1,4 @@
-//! Books with losses on purpose.
+//! Accounting with deliberate losses.
 
 use super::*;
 use crepitus_protocol::State;
@@ -50,10 +50,10 @@ fn what_is_missing_was_dropped_or_lost() {
 }
 
 #[test]
-fn a_drive_that_starts_anew_begins_a_segment() {
+fn a_restart_of_the_drive_begins_a_segment() {
     let mut books = Accounting::new(1_000);
     books.take(&block(1_000, 0, 31));
-    // The device has dropped the first two blocks of the new start.
+    // The device has dropped the first two blocks after the restart.
     let taken = books.take(&block(60, 40, 0));
     assert_eq!(taken, Taken::Restarted { missing: 40 });
     assert_eq!(books.take(&block(80, 40, 0)), Taken::Next { missing: 0 });
@@ -62,7 +62,7 @@ fn a_drive_that_starts_anew_begins_a_segment() {
 }
 
 #[test]
-fn what_the_device_says_may_wrap() {
+fn the_dropped_counter_may_wrap() {
     let mut books = Accounting::new(0);
     books.take(&block(0xffff_fff0, 0xffff_fff0, 1));
     books.take(&block(0x1_0000_0018, 4, 1));
@@ -70,7 +70,7 @@ fn what_the_device_says_may_wrap() {
 }
 
 #[test]
-fn books_that_cannot_be_are_noticed() {
+fn an_inconsistent_count_is_detected() {
     let mut books = Accounting::new(0);
     books.take(&block(0, 0, 1));
     books.take(&block(20, 20, 1));
@@ -78,8 +78,8 @@ fn books_that_cannot_be_are_noticed() {
 }
 
 proptest! {
-    /// Whatever the device drops and the line loses or repeats, the books
-    /// balance and say where it was lost.
+    /// With random drops, losses and repeats the sums balance and show where
+    /// samples were lost.
     #[test]
     fn the_law_holds(fates in prop::collection::vec(0..4_u8, 1..200), start_tick in 0..u64::MAX / 2) {
         let mut books = Accounting::new(start_tick);

@@ -1,11 +1,11 @@
-//! Who has a port open, and who may: what Linux shows of it in its files.
+//! Process that holds a port, and its group, from Linux's /proc and /etc.
 
 use crate::transport::Holder;
 use std::fs;
 use std::path::Path;
 
-/// A process that has this port open, if one can be seen: those of other users
-/// cannot.
+/// The process that has this port open, if visible: those of other users are
+/// not.
 pub(super) fn holder_of(port: &str) -> Option<Holder> {
     let port = fs::canonicalize(port).ok()?;
     fs::read_dir("/proc").ok()?.flatten().find_map(|entry| {
@@ -26,7 +26,7 @@ fn program(process: &Path) -> String {
         .map_or_else(|_| "?".to_owned(), |name| name.trim_end().to_owned())
 }
 
-/// Whether this is a device like those that terminals are.
+/// Whether this is a character device.
 pub(super) fn is_terminal(port: &str) -> bool {
     #[cfg(unix)]
     {
@@ -40,7 +40,7 @@ pub(super) fn is_terminal(port: &str) -> bool {
     }
 }
 
-/// The group whose members may open this port.
+/// The group with permission for this port.
 #[cfg(unix)]
 pub(super) fn group_of(port: &str) -> Option<String> {
     use std::os::unix::fs::MetadataExt;
@@ -54,7 +54,7 @@ pub(super) fn group_of(port: &str) -> Option<String> {
     })
 }
 
-/// The group whose members may open this port.
+/// The group with permission for this port.
 #[cfg(not(unix))]
 pub(super) fn group_of(_port: &str) -> Option<String> {
     None

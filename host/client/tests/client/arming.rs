@@ -1,4 +1,4 @@
-//! Torque, the lease, and who may.
+//! Arming and the lease.
 
 use crate::support::{Port, client, connected, device, ms, pump_for, refusal, turning};
 use crepitus_client::{Event, Transport};
@@ -50,7 +50,7 @@ fn arm_is_armed_and_stays_so_while_it_is_pumped() {
 }
 
 #[test]
-fn who_does_not_pump_loses_the_lease() {
+fn without_pump_the_lease_expires() {
     let (shared, mut client) = connected();
     client.arm().unwrap();
     client.transport_mut().wait(ms(300));
@@ -87,7 +87,7 @@ fn a_lease_is_alive_for_a_quarter_of_a_second() {
 }
 
 #[test]
-fn stop_ends_all_torque_whoever_says_it() {
+fn any_host_can_stop() {
     let (shared, port) = device();
     let mut owner = client(port, 1);
     owner.arm().unwrap();
@@ -118,8 +118,8 @@ fn one_host_has_the_lease_and_the_others_are_refused() {
     let error = second.arm().unwrap_err();
     assert_eq!(
         error.to_string(),
-        "`arm` is refused: another host (session 00000001) has armed the device; \
-         end that program, or `crepitus stop`"
+        "`arm` is rejected: another host (session 00000001) holds the lease; \
+         end that program, or run `crepitus stop`"
     );
     for refused in [
         refusal(second.zero()),
@@ -141,7 +141,7 @@ fn one_host_has_the_lease_and_the_others_are_refused() {
 }
 
 #[test]
-fn who_is_armed_and_asks_again_stays_armed() {
+fn arming_twice_keeps_the_device_armed() {
     let (_, mut client) = connected();
     client.arm().unwrap();
     assert_eq!(refusal(client.arm()), Refusal::Armed);
@@ -156,7 +156,7 @@ fn who_is_armed_and_asks_again_stays_armed() {
 }
 
 #[test]
-fn a_drive_that_cannot_be_heard_ends_torque_with_its_fault() {
+fn a_silent_drive_ends_torque_with_a_fault() {
     let (shared, mut client) = connected();
     client.arm().unwrap();
     pump_for(&mut client, ms(100));

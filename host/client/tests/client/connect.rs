@@ -1,4 +1,4 @@
-//! Who is there, and whether it can be talked to.
+//! Discovery, handshake and compatibility.
 
 use crate::support::{Port, client, device, golden, ms, options, pump_for};
 use crepitus_client::{Client, Error, Management, RequestKind};
@@ -6,7 +6,7 @@ use crepitus_protocol::management::{ResetCause, Role};
 use crepitus_protocol::{State, schema};
 
 #[test]
-fn a_device_says_who_it_is() {
+fn a_device_reports_its_identity() {
     let (_, port) = device();
     let client = client(port, 1);
     let handshake = client.handshake();
@@ -14,7 +14,7 @@ fn a_device_says_who_it_is() {
     assert_eq!(handshake.drive.unwrap().role, Role::Drive);
     assert_eq!(handshake.mismatch(), None);
     assert_eq!(handshake.comms.schema, schema::HASH);
-    // A device that was switched on just now has to hear its drive first.
+    // Just after power-on comms has to identify the drive first.
     assert!(client.now() < ms(300), "{:?}", client.now());
     assert_eq!(client.tally().discarded_frames, 0);
 }
@@ -36,18 +36,18 @@ fn garbage_before_the_first_frame_does_no_harm() {
 }
 
 #[test]
-fn a_device_that_says_nothing_is_given_up() {
+fn a_silent_device_is_a_timeout() {
     let (shared, port) = device();
     shared.borrow_mut().to_host.swallow = usize::MAX;
     let error = Client::connect(port).unwrap_err();
-    let Error::NoAnswer { what, tries, .. } = &error else {
+    let Error::NoAnswer { request, tries, .. } = &error else {
         panic!("{error}");
     };
-    assert_eq!((*what, *tries), (RequestKind::Hello, 10));
+    assert_eq!((*request, *tries), (RequestKind::Hello, 10));
     assert_eq!(
         error.to_string(),
-        "no answer from bench to `hello`, asked 10 times within 1000 ms: \
-         is it a Crepitus device, and is it switched on?"
+        "timeout: no reply from bench to `hello` after 10 tries in 1000 ms; \
+         check that it is a Crepitus device and that it has power"
     );
 }
 
@@ -61,7 +61,7 @@ fn a_device_whose_drive_is_silent_is_connected_all_the_same() {
 }
 
 #[test]
-fn another_language_is_said_with_what_to_do() {
+fn a_schema_mismatch_is_reported_with_its_remedy() {
     for (name, comms, drive) in [
         ("older-comms", ([0, 0, 9], 0x0123_4567_89ab_cdef), None),
         ("newer-comms", ([0, 2, 0], 0xfedc_ba98_7654_3210), None),
@@ -89,13 +89,13 @@ fn another_language_is_said_with_what_to_do() {
         let error = Client::connect(port).unwrap_err();
         assert!(matches!(error, Error::Mismatch(_)), "{error}");
         let ours = format!("{:016x}", schema::HASH);
-        let text = error.to_string().replace(&ours, "(this language)");
+        let text = error.to_string().replace(&ours, "(this schema)");
         golden(name, &text);
     }
 }
 
 #[test]
-fn a_device_of_another_language_can_be_stopped() {
+fn a_device_with_another_schema_can_be_stopped() {
     let (shared, port) = device();
     let mut owner = client(port, 1);
     owner.arm().unwrap();
@@ -109,7 +109,7 @@ fn a_device_of_another_language_can_be_stopped() {
     assert_eq!(
         refused,
         Error::NotDone {
-            what: RequestKind::Reboot
+            request: RequestKind::Reboot
         }
     );
     stranger.stop().unwrap();
@@ -122,7 +122,7 @@ fn a_device_of_another_language_can_be_stopped() {
 }
 
 #[test]
-fn a_drive_of_another_language_alone_is_a_fault_and_no_end() {
+fn a_drive_with_another_schema_is_a_fault_but_no_mismatch() {
     let (shared, port) = device();
     {
         let mut device = shared.borrow_mut();
@@ -137,7 +137,7 @@ fn a_drive_of_another_language_alone_is_a_fault_and_no_end() {
 }
 
 #[test]
-fn reboots_start_both_controllers_anew() {
+fn a_reboot_restarts_both_controllers() {
     let (shared, port) = device();
     let mut client = client(port, 1);
     client.zero().unwrap();
@@ -147,7 +147,7 @@ fn reboots_start_both_controllers_anew() {
     assert!(status.uptime_ms < 100 && !status.zeroed, "{status:?}");
     assert_eq!(
         client.identify().unwrap().drive.unwrap().reset,
-        ResetCause::Asked
+        ResetCause::Requested
     );
-    assert_eq!(shared.borrow().comms_identity.reset, ResetCause::Asked);
+    assert_eq!(shared.borrow().comms_identity.reset, ResetCause::Requested);
 }

@@ -1,4 +1,4 @@
-//! Parameters: read, set, refused, kept.
+//! Parameters: read, set, rejected, saved.
 
 use crate::support::{Port, client, connected, device, ms, pump_for, refusal};
 use crepitus_client::{Client, Error};
@@ -47,32 +47,32 @@ fn a_set_works_while_armed() {
     let error = client.set(&[(lines, 500.0)]).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "encoder.lines = 500 changes only while there is no torque: disarm first; nothing was changed"
+        "encoder.lines = 500 can only change while disarmed: disarm first; nothing was changed"
     );
     client.disarm().unwrap();
     client.set(&[(lines, 500.0)]).unwrap();
 }
 
 #[test]
-fn what_is_not_allowed_is_refused_with_what_is() {
+fn invalid_values_are_rejected_with_the_valid_ones() {
     let (_, mut client) = connected();
     let restart = place("crepitus.restart");
     for (changes, error, text) in [
         (
             &[(id::TORQUE_LIMIT, 9.0)][..],
             ValueError::OutOfRange { id: 26 },
-            "limits.torque_nm = 9 is not allowed: it is between 0 and 6.5 N·m; nothing was changed",
+            "invalid value limits.torque_nm = 9: must be between 0 and 6.5 N·m; nothing was changed",
         ),
         (
             &[(id::STATIC_TORQUE, f64::NAN)],
             ValueError::OutOfRange { id: 4 },
-            "crepitus.static_torque_nm = NaN is not allowed: it is between 0 and 1e6 N·m; \
+            "invalid value crepitus.static_torque_nm = NaN: must be between 0 and 1e6 N·m; \
              nothing was changed",
         ),
         (
             &[(restart, 2.0)],
             ValueError::OutOfRange { id: 5 },
-            "crepitus.restart = 2 is not allowed: it is `elastic` or `from-kinetic`; \
+            "invalid value crepitus.restart = 2: must be `elastic` or `from-kinetic`; \
              nothing was changed",
         ),
         (
@@ -85,8 +85,8 @@ fn what_is_not_allowed_is_refused_with_what_is() {
             &[(id::KINETIC_TORQUE, 0.38), (id::STIFFNESS, 4000.0)],
             ValueError::Unguarded,
             "crepitus.kinetic_torque_nm = 0.38 is too close to crepitus.static_torque_nm = 0.4, with \
-             crepitus.stiffness_nm_per_rad = 4000 and encoder.lines = 512: a hand that turns back \
-             inside a slip would get more energy than the slip takes out of the spring. One count \
+             crepitus.stiffness_nm_per_rad = 4000 and encoder.lines = 512: a hand that reverses \
+             during a slip would get more energy than the slip takes out of the spring. One count \
              of the encoder is 35.7 µrad, and may be 0.4 µrad: lower the kinetic torque or the \
              stiffness, or raise the static torque; nothing was changed",
         ),
@@ -119,8 +119,8 @@ fn a_commit_from_old_values_is_stale() {
     let error = client.commit(base, &values).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "`commit` is refused: the parameters have changed since they were read \
-         (they are at revision 2 now); read them again"
+        "`commit` is rejected: the parameters have changed since they were read \
+         (now revision 2); read them again"
     );
     let revision = Revision(2);
     assert_eq!(refusal::<()>(Err(error)), Refusal::Stale { revision });
@@ -189,7 +189,7 @@ fn overtaken(changes: &[(u8, f64)]) -> Client<overtaking::Overtaken> {
 }
 
 #[test]
-fn a_set_that_is_overtaken_begins_anew() {
+fn a_set_is_retried_after_a_concurrent_commit() {
     let inertia = place("crepitus.inertia_kg_m2");
     let mut client = overtaken(&[(inertia, 0.02), (inertia, 0.03), (inertia, 0.04)]);
     assert_eq!(
@@ -202,7 +202,7 @@ fn a_set_that_is_overtaken_begins_anew() {
 }
 
 #[test]
-fn a_set_that_is_overtaken_for_ever_is_given_up() {
+fn a_set_fails_after_too_many_concurrent_commits() {
     let inertia = place("crepitus.inertia_kg_m2");
     let mut client = overtaken(&[0.02, 0.03, 0.04, 0.05].map(|value| (inertia, value)));
     assert!(matches!(
@@ -219,9 +219,8 @@ fn a_set_does_not_undo_what_another_host_has_just_set() {
     let error = client.set(&[(id::STATIC_TORQUE, 0.5)]).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "crepitus.static_torque_nm was to become 0.5, and another host has just changed it \
-         from 0.4 to 0.9 (revision 2): nothing was set; look whether that is what you want, \
-         and set it again"
+        "cannot set crepitus.static_torque_nm to 0.5: another host has just changed it \
+         from 0.4 to 0.9 (revision 2); nothing was set; check its new value and set it again"
     );
     let mut client = overtaken(&[(id::STATIC_TORQUE, 0.5)]);
     assert_eq!(
@@ -231,7 +230,7 @@ fn a_set_does_not_undo_what_another_host_has_just_set() {
 }
 
 #[test]
-fn what_is_saved_is_there_after_the_next_start() {
+fn saved_parameters_survive_a_reboot() {
     let (shared, mut client) = connected();
     client.set(&[(id::STATIC_TORQUE, 0.5)]).unwrap();
     client.save().unwrap();
@@ -249,7 +248,7 @@ fn what_is_saved_is_there_after_the_next_start() {
 }
 
 #[test]
-fn a_flash_that_takes_nothing_is_told() {
+fn a_flash_write_error_is_reported() {
     let (shared, mut client) = connected();
     shared.borrow_mut().flash_works = false;
     assert_eq!(refusal(client.save()), Refusal::Storage);
@@ -257,7 +256,7 @@ fn a_flash_that_takes_nothing_is_told() {
 }
 
 #[test]
-fn a_commit_that_the_drive_cannot_confirm_is_told() {
+fn an_unconfirmed_commit_is_reported() {
     let (shared, mut client) = connected();
     shared.borrow_mut().link_is_cut = true;
     assert_eq!(
@@ -266,7 +265,7 @@ fn a_commit_that_the_drive_cannot_confirm_is_told() {
     );
     shared.borrow_mut().link_is_cut = false;
     pump_for(&mut client, ms(30));
-    // It has come into force since.
+    // It was applied meanwhile.
     let status = client.status().unwrap();
     assert_eq!(
         (status.revision, status.in_force),

@@ -1,4 +1,4 @@
-//! A line that is cut and comes back.
+//! A connection that is lost and reopened.
 
 use crate::support::{check_books, connected, ms, pump_for};
 use crepitus_client::{Error, Event, RequestKind, Transport, TransportError};
@@ -6,7 +6,7 @@ use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::{Fault, Revision, State};
 
 #[test]
-fn a_lost_line_is_told_once_and_comes_back_with_its_subscription() {
+fn a_lost_connection_is_reported_once_and_resumes_its_subscription() {
     let (shared, mut client) = connected();
     client.arm().unwrap();
     client.subscribe().unwrap();
@@ -36,7 +36,7 @@ fn a_lost_line_is_told_once_and_comes_back_with_its_subscription() {
     let back = client.reconnect(ms(300)).unwrap();
     assert!(back.was_armed && client.is_connected() && !client.is_armed());
     assert_eq!(back.unanswered, None);
-    // Without its host it has let go, and says so.
+    // Without its host it has disarmed with a fault.
     assert_eq!(back.status.state, State::Faulted);
     assert_eq!(back.status.drive_fault, Fault::LeaseExpired.code());
     let again = back.resubscribed.unwrap();
@@ -69,13 +69,13 @@ fn arming_does_not_come_back_even_if_the_lease_is_alive() {
 }
 
 #[test]
-fn what_was_being_asked_is_told() {
+fn a_pending_request_is_reported_after_a_loss() {
     let (shared, mut client) = connected();
     shared.borrow_mut().unplug();
     let error = client.zero().unwrap_err();
     assert_eq!(
         error.to_string(),
-        "bench is gone (no such device): the device was unplugged, switched off or started again"
+        "connection to bench lost (no such device): the device was unplugged, switched off or rebooted"
     );
     shared.borrow_mut().is_plugged = true;
     let back = client.reconnect(ms(100)).unwrap();
@@ -85,7 +85,7 @@ fn what_was_being_asked_is_told() {
 }
 
 #[test]
-fn a_device_that_was_switched_off_begins_anew() {
+fn a_power_cycle_restarts_the_device() {
     let (shared, mut client) = connected();
     client.set(&[(4, 0.5)]).unwrap();
     client.subscribe().unwrap();
@@ -98,7 +98,7 @@ fn a_device_that_was_switched_off_begins_anew() {
         device.is_plugged = true;
     }
     client.transport_mut().wait(ms(50));
-    // Whoever does not look has not noticed.
+    // Not detected without a call.
     let back = client.reconnect(ms(300)).unwrap();
     assert_eq!(back.handshake.drive.unwrap().reset, ResetCause::Power);
     assert_eq!(back.status.revision, Revision(1));
@@ -114,13 +114,13 @@ fn a_device_that_was_switched_off_begins_anew() {
 }
 
 #[test]
-fn another_language_is_found_out_at_once() {
+fn another_schema_is_detected_at_once() {
     let (shared, mut client) = connected();
     {
         let mut device = shared.borrow_mut();
         device.unplug();
         device.comms_identity.schema ^= 1;
-        device.start_comms(ResetCause::Asked);
+        device.start_comms(ResetCause::Requested);
         device.is_plugged = true;
     }
     let error = client.reconnect(ms(10_000)).unwrap_err();

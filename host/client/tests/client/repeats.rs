@@ -1,15 +1,15 @@
-//! What is lost on the line is asked again, and done once.
+//! Lost messages are retried, and requests executed once.
 
 use crate::support::{Device, Port, client, connected, device, ms, pump_for};
 use crepitus_client::{Error, RequestKind, Transport};
 use crepitus_protocol::counters::CommsCounter::{self, RepeatedRequests, Requests};
 use crepitus_protocol::frame;
-use crepitus_protocol::host::{Answer, Ask, Reply, Request};
+use crepitus_protocol::host::{Answer, Operation, Reply, Request};
 use crepitus_protocol::parameters::id;
 use crepitus_protocol::{Lane, Revision, Session, State};
 
 #[test]
-fn a_lost_reply_is_asked_for_again_and_nothing_is_done_twice() {
+fn a_lost_reply_is_retried_and_nothing_is_executed_twice() {
     let (shared, mut client) = connected();
     let before = client.counters().unwrap();
     let (base, mut values) = client.parameters().unwrap();
@@ -30,7 +30,7 @@ fn a_lost_reply_is_asked_for_again_and_nothing_is_done_twice() {
 }
 
 #[test]
-fn a_lost_request_is_asked_again() {
+fn a_lost_request_is_retried() {
     let (shared, mut client) = connected();
     shared.borrow_mut().from_host.swallow = 5;
     client.zero().unwrap();
@@ -42,7 +42,7 @@ fn a_lost_request_is_asked_again() {
 }
 
 #[test]
-fn numbers_wrap_and_nobody_notices() {
+fn sequence_numbers_wrap() {
     let (_, mut client) = connected();
     for _ in 0..12 {
         client.status().unwrap();
@@ -78,7 +78,7 @@ fn answers_to_others_and_old_ones_are_counted_and_ignored() {
 }
 
 #[test]
-fn a_busy_device_is_asked_until_it_has_time() {
+fn requests_are_retried_while_the_device_is_busy() {
     let (shared, port) = device();
     let mut client = client(port, 1);
     let mut other = Port::new(&shared);
@@ -88,7 +88,7 @@ fn a_busy_device_is_asked_until_it_has_time() {
     let request = Request {
         session: Session(2),
         number: 1,
-        ask: Ask::Zero,
+        operation: Operation::Zero,
     };
     other
         .send(&frame::encode(Lane::Request, &request).unwrap())
@@ -131,7 +131,7 @@ fn a_line_that_spoils_bytes_keeps_the_lease() {
     assert_eq!(shared.borrow().drive.state(), State::Armed);
 }
 
-/// Each of three evils strikes one byte in so many, both ways.
+/// Three kinds of disturbance, each at a rate per byte, in both directions.
 fn spoil(device: &mut Device, once_in: u64) {
     for line in [&mut device.to_host, &mut device.from_host] {
         (line.lose, line.flip, line.double) = (once_in, once_in, once_in);

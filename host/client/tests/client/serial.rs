@@ -113,7 +113,7 @@ fn a_pty_is_a_port_like_any_other() {
 }
 
 #[test]
-fn what_does_not_open_says_why() {
+fn errors_of_opening_give_the_cause() {
     assert!(matches!(
         Serial::open("/dev/no-such-port"),
         Err(TransportError::NotFound { .. })
@@ -127,7 +127,7 @@ fn what_does_not_open_says_why() {
 }
 
 #[test]
-fn waiting_takes_the_time_that_it_is_told() {
+fn receiving_honours_its_timeout() {
     let pty = Pty::new();
     let mut serial = Serial::open(&pty.path).unwrap();
     let (began, mut buffer) = (serial.now(), [0; 16]);

@@ -98,7 +98,7 @@ fn frames_that_come_twice_are_taken_once() {
 }
 
 #[test]
-fn a_host_that_reads_too_slowly_is_told_what_it_missed() {
+fn a_slow_host_gets_the_count_of_lost_samples() {
     let (shared, mut client) = connected();
     client.subscribe().unwrap();
     shared.borrow_mut().room = 4_096;
@@ -131,7 +131,7 @@ fn the_link_between_the_controllers_may_lose_some_too() {
 }
 
 #[test]
-fn a_drive_that_starts_anew_is_told_and_the_books_go_on() {
+fn a_restart_of_the_drive_is_reported_and_the_sums_continue() {
     let (shared, mut client) = connected();
     client.arm().unwrap();
     client.subscribe().unwrap();
@@ -157,7 +157,7 @@ fn a_drive_that_starts_anew_is_told_and_the_books_go_on() {
 }
 
 #[test]
-fn silence_is_told_once() {
+fn silence_is_reported_once() {
     let (shared, mut client) = connected();
     client.subscribe().unwrap();
     pump_for(&mut client, ms(50));
@@ -177,7 +177,7 @@ fn silence_is_told_once() {
 }
 
 #[test]
-fn a_new_subscription_begins_new_books() {
+fn a_new_subscription_restarts_the_accounting() {
     let (_, mut client) = connected();
     let first = client.subscribe().unwrap();
     pump_for(&mut client, ms(50));
@@ -207,7 +207,7 @@ fn a_subscription_whose_reply_is_lost_misses_nothing() {
 }
 
 #[test]
-fn blocks_that_nobody_takes_are_thrown_away_in_the_end() {
+fn blocks_are_dropped_when_the_event_queue_is_full() {
     let (_, mut client) = connected();
     client.subscribe().unwrap();
     for _ in 0..110 {

@@ -1,4 +1,4 @@
-//! What people read.
+//! Texts for users.
 
 use crate::support::golden;
 use crepitus_client::values::{full_name, parse_value, show_value};
@@ -11,7 +11,7 @@ use crepitus_protocol::{Revision, Session, ValueError, Values};
 use std::time::Duration;
 
 #[test]
-fn every_fault_says_what_to_do() {
+fn every_fault_has_a_remedy() {
     let mut lines: Vec<_> = FAULTS
         .iter()
         .map(|spec| fault_text(spec.fault.code()))
@@ -21,7 +21,7 @@ fn every_fault_says_what_to_do() {
 }
 
 #[test]
-fn every_refusal_says_what_to_do() {
+fn every_refusal_has_a_remedy() {
     let drive = [
         DriveRefusal::NoParameters,
         DriveRefusal::NoLease,
@@ -53,9 +53,9 @@ fn every_refusal_says_what_to_do() {
         Refusal::Storage,
         Refusal::Aborted,
     ];
-    let text = |what, refusal, values| {
+    let text = |request, refusal, values| {
         Refused {
-            what,
+            request,
             refusal,
             values,
         }
@@ -68,15 +68,15 @@ fn every_refusal_says_what_to_do() {
     }
     lines.push(text(RequestKind::Commit, Refusal::Unconfirmed, None));
     for refusal in others.into_iter().chain(drive.map(Refusal::Drive)) {
-        for what in [RequestKind::Arm, RequestKind::Zero] {
-            lines.push(text(what, refusal, None));
+        for request in [RequestKind::Arm, RequestKind::Zero] {
+            lines.push(text(request, refusal, None));
         }
     }
     golden("refusals", &lines.join("\n"));
 }
 
 #[test]
-fn every_failure_of_a_port_says_what_to_do() {
+fn every_port_error_has_a_remedy() {
     let port = || "/dev/ttyACM0".to_owned();
     let detail = || "I/O error".to_owned();
     let holder = Holder {
@@ -143,21 +143,21 @@ fn values_are_read_as_they_are_shown() {
 }
 
 #[test]
-fn what_is_no_value_is_refused_with_what_is_one() {
+fn invalid_texts_are_rejected_with_the_valid_values() {
     let text = |name: &str, value: &str| {
         let (_, parameter) = parameters::find(name).unwrap();
         parse_value(parameter, value).unwrap_err().to_string()
     };
     assert_eq!(
         text("crepitus.static_torque_nm", "0,4"),
-        "crepitus.static_torque_nm is a number: `0,4` is none; it is between 0 and 1e6 N·m"
+        "invalid crepitus.static_torque_nm: expected a number between 0 and 1e6 N·m, got `0,4`"
     );
     assert_eq!(
         text("friction-compensation.share", "inf"),
-        "friction-compensation.share is a number: `inf` is none; it is between 0 and 0.9"
+        "invalid friction-compensation.share: expected a number between 0 and 0.9, got `inf`"
     );
     assert_eq!(
         text("crepitus.restart", "1"),
-        "crepitus.restart cannot be `1`: it is `elastic` or `from-kinetic`"
+        "invalid crepitus.restart: expected `elastic` or `from-kinetic`, got `1`"
     );
 }

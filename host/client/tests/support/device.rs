@@ -20,7 +20,7 @@ const CONSTANT: f64 = 0.0389 * 86.0;
 pub struct Device {
     pub comms: Comms,
     pub drive: Drive,
-    /// What the line to the host does to bytes.
+    /// Disturbance of the bytes to and from the host.
     pub to_host: Noise,
     pub from_host: Noise,
     /// Bytes that wait for a host at most.
@@ -84,7 +84,7 @@ impl Device {
         device
     }
 
-    /// Comms starts anew. Its line falls; the host's line stays, as that of a
+    /// Comms restarts. Its enable line falls; the host's line stays, as that of a
     /// bridge between USB and UART would.
     pub fn start_comms(&mut self, reset: ResetCause) {
         self.starts.0 = self.starts.0.wrapping_add(1);
@@ -98,7 +98,7 @@ impl Device {
         });
     }
 
-    /// The drive starts anew.
+    /// The drive restarts.
     pub fn start_drive(&mut self, reset: ResetCause) {
         self.starts.1 = self.starts.1.wrapping_add(1);
         self.drive_identity.reset = reset;
@@ -120,7 +120,7 @@ impl Device {
         self.hosts.iter_mut().for_each(VecDeque::clear);
     }
 
-    /// One more host on the line; gives its place.
+    /// Adds a host; returns its index.
     pub fn add_host(&mut self) -> usize {
         self.hosts.push(VecDeque::new());
         self.hosts.len() - 1
@@ -166,10 +166,10 @@ impl Device {
         }
         self.send_to_hosts();
         if outputs.reboot {
-            self.start_comms(ResetCause::Asked);
+            self.start_comms(ResetCause::Requested);
         }
         if self.drive.take_reboot() {
-            self.start_drive(ResetCause::Asked);
+            self.start_drive(ResetCause::Requested);
         }
     }
 
@@ -194,7 +194,7 @@ impl Device {
         let outputs = self.drive.command_motor(&drive::command::Inputs {
             current_a: Some(current_a),
             enable_is_on: self.drive_line,
-            is_broken: false,
+            has_tripped: false,
         });
         self.drive.prepare();
         self.drive_line = outputs.enable;

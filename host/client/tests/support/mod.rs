@@ -1,5 +1,5 @@
 //! A device in this process: both controllers, a winding, a shaft that turns
-//! as it is told, and wires that can be spoiled.
+//! as prescribed, and wires with noise.
 //!
 //! ```text
 //! client ── Port ── noise ── Comms ══ link ══ Drive ── winding, shaft
@@ -27,7 +27,7 @@ pub fn ms(count: u64) -> Duration {
     Duration::from_millis(count)
 }
 
-/// A device that has been switched on a moment ago, and a line to it.
+/// A device just after power-on, and a connection to it.
 pub fn device() -> (Shared, Port) {
     let device = Rc::new(RefCell::new(Device::new()));
     let port = Port::new(&device);
@@ -62,7 +62,7 @@ pub fn connected() -> (Shared, Client<Port>) {
     (device, client)
 }
 
-/// Pumps for this long; gives all but the blocks.
+/// Pumps for this long; returns all events except blocks.
 pub fn pump_for(client: &mut Client<Port>, time: Duration) -> Vec<Event> {
     let end = client.now() + time;
     let mut events = Vec::new();
@@ -76,7 +76,7 @@ pub fn pump_for(client: &mut Client<Port>, time: Duration) -> Vec<Event> {
     events
 }
 
-/// Why it was refused.
+/// The reason of a rejection.
 pub fn refusal<R: std::fmt::Debug>(result: Result<R, Error>) -> Refusal {
     match result.unwrap_err() {
         Error::Refused(refused) => refused.refusal,
@@ -84,7 +84,7 @@ pub fn refusal<R: std::fmt::Debug>(result: Result<R, Error>) -> Refusal {
     }
 }
 
-/// The books balance, and say what was lost.
+/// Checks the sample accounting, with the expected losses.
 pub fn check_books(client: &Client<Port>) -> [u64; 4] {
     let books = client.accounting().unwrap();
     assert_eq!(books.violations(), 0);

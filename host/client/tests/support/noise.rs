@@ -1,6 +1,6 @@
-//! A wire that spoils bytes, the same ones in each run.
+//! A wire that corrupts bytes, the same ones in each run.
 
-/// What is done to bytes, each once in so many on average; 0 is never.
+/// Disturbances of bytes, each once in this many on average; 0: never.
 #[derive(Clone, Debug, Default)]
 pub struct Noise {
     /// Lost.

@@ -1,4 +1,4 @@
-//! A host's end of the line.
+//! A host's end of the connection.
 
 use super::{Shared, ms};
 use crepitus_client::{Transport, TransportError};

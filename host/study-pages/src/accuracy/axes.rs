@@ -8,7 +8,7 @@ use super::curve::FLOOR;
 use super::measure::Measure;
 use crepitus_plot::{Plot, extent};
 
-/// Above this there is nothing to compare.
+/// Errors above this are not compared.
 const HIGHEST: f64 = 1e100;
 
 /// See the module.

@@ -14,7 +14,7 @@ pub(crate) const FLOOR: f64 = 1e-17;
 pub(crate) enum Unfit {
     /// Events without a partner: errors of the others mean nothing.
     WrongEvents,
-    /// An error, or the cost, that is no number.
+    /// An error or a cost that is NaN or infinite.
     NoNumber,
 }
 

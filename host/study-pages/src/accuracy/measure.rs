@@ -11,7 +11,7 @@ pub(crate) enum Measure {
     Frequency,
 }
 
-/// A line of FACTS: from here on an error is worth having, or cannot be felt.
+/// A line of FACTS: an error below it is good enough, or cannot be felt.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PerceptualLine {
     pub(crate) value: f64,

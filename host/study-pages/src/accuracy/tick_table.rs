@@ -1,4 +1,4 @@
-//! What every rung costs and gives at the device's tick, 50 µs.
+//! Cost and error of every rung at the device's tick, 50 µs.
 
 use crepitus_plot::page::scrolling;
 use crepitus_study::accuracy::Point;
@@ -120,7 +120,7 @@ fn line(row: &Row) -> Markup {
     }
 }
 
-/// With one decimal while that says something.
+/// With one decimal where it is significant.
 fn nanoseconds(value: f64) -> String {
     if value.is_finite() && value.abs() < 100.0 {
         fixed(value, 1)

@@ -50,7 +50,7 @@ mod tests {
     use crepitus_study::coupled::Setting;
 
     #[test]
-    fn a_margin_is_told_in_words() {
+    fn a_margin_is_described_in_words() {
         let margin = |onset, verdict| Margin {
             setting: Setting::shipped(),
             verdict,

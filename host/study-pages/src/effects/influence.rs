@@ -15,14 +15,14 @@ use crepitus_plot::{Anchor, Axis, Chart, Figure, Panel, Plot, extent, stack};
 const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 520.0;
 
-/// A smaller influence than this is none, N·m.
+/// An influence below this counts as zero, N·m.
 const NOTHING_NM: f64 = 1e-7;
 
-/// Where stands what the axes cannot show.
+/// Positions of values outside the axes.
 struct Floor {
-    /// A cost that is below what the timings can tell, ns.
+    /// A cost below the timing noise, ns.
     ns: f64,
-    /// An influence that is none, N·m.
+    /// An influence of zero, N·m.
     nm: f64,
 }
 

@@ -20,7 +20,7 @@ pub(super) fn of(change: Change) -> CurveStyle {
     }
 }
 
-/// What the signs of these rows mean.
+/// Legend of the signs of these rows.
 pub(super) fn legend<'a>(rows: impl Iterator<Item = &'a Row>) -> Vec<Key> {
     let changes: Vec<Change> = rows.map(|row| row.change).collect();
     [

@@ -132,7 +132,7 @@ fn signed(n: i64) -> String {
     }
 }
 
-/// With as many digits as a difference of torques is worth.
+/// With the significant digits of a difference of torques.
 pub(super) fn torque(nm: f64) -> String {
     if nm == 0.0 {
         "0 N·m".to_owned()

@@ -1,4 +1,4 @@
-//! What a verdict looks like: its colour, a sign that says the same without
+//! Style of a verdict: its colour, a sign that means the same without
 //! colour, a short number, and all of it in words.
 
 use crepitus_study::stability::{Cell, Failure, Verdict};
@@ -7,9 +7,9 @@ use super::scale::{self, Tone};
 
 /// Before the number of a cell that degrades.
 pub(super) const DEGRADES: &str = "↓";
-/// Before what is told of a cell that fails.
+/// Prefix of the details of a failing cell.
 pub(super) const FAILS: &str = "✗";
-/// After what the run warns of by itself.
+/// Suffix of warnings of the run itself.
 pub(super) const FLAG: &str = "⚑";
 
 /// See the module.

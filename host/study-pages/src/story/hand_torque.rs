@@ -1,4 +1,4 @@
-//! What the hand feels of a scene and of the variants that differ most. A peak
+//! Torque at the hand in a scene and in the variants that differ most. A peak
 //! that lasts a tick must not flatten the rest.
 
 use super::{Scale, Series, Story, Told};
@@ -6,7 +6,7 @@ use crepitus_study::accuracy::timing::quantile;
 use crepitus_study::effects::variant::Change;
 use crepitus_study::effects::{HandTorque, VariantTorque};
 
-/// Values outside the middle of so many of all are peaks.
+/// Values outside this central share of all are peaks.
 const MIDDLE: f64 = 0.99;
 
 /// A line that goes this many times beyond the middle is cut off.
@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_peak_is_told_and_does_not_set_the_scale() {
+    fn a_peak_is_labelled_and_does_not_set_the_scale() {
         let line = |torque: &dyn Fn(u32) -> f64| -> Vec<(f64, f64)> {
             (0..1000).map(|n| (f64::from(n), torque(n))).collect()
         };

@@ -1,4 +1,4 @@
-//! What a change of stiffness does to a wound spring.
+//! Effect of a change of stiffness on a wound spring.
 
 use super::{Scale, Series, Story, Told, mark};
 use crepitus_study::stability::story::ParameterChange;

@@ -30,7 +30,7 @@
 //!
 //! **Energy.** What is added is no passive spring: a hand that moves with the
 //! ringing gets work from it. So it is paid from a tank. Every tick takes the
-//! hand's work with the added torque into the books (of the torques that may
+//! hand's work with the added torque into account (of the torques that may
 //! have been acting, the one that gave the most), the tank refills at a fixed
 //! power up to its capacity, and below half of it the output fades in
 //! proportion. Hence, over any time t and for any motion,
@@ -108,7 +108,7 @@ settings! {
             default: 0.6,
             meaning: "largest torque that is added",
         },
-        // The least keeps the books exact up to 10 rad/s at 20 kHz.
+        // The least keeps the energy account exact up to 10 rad/s at 20 kHz.
         budget_j {
             id: 18 always,
             symbol: "E",
@@ -123,7 +123,7 @@ settings! {
             unit: "W",
             range: 0.0..=0.2,
             default: 0.1,
-            meaning: "power that the ringing may return for ever",
+            meaning: "continuous power that the ringing may return",
         },
     }
 }
@@ -146,7 +146,7 @@ pub struct BoneShaping<F> {
     /// ż, N·m/s.
     rate_nm_per_s: F,
     level_j: F,
-    /// What was returned last, the latest first.
+    /// The last output torques, the latest first.
     given_nm: [F; MOST_DELAY_TICKS + 1],
     delay_ticks: usize,
 }
@@ -232,14 +232,14 @@ impl<F: Real> BoneShaping<F> {
     /// One tick, in which the shaft has moved by `delta_phi_rad`: the torque to
     /// add from its end on, N·m.
     ///
-    /// A travel that is no finite number counts as none, and refills nothing.
+    /// A travel that is NaN or infinite counts as zero and refills nothing.
     #[inline]
     pub fn tick(&mut self, delta_phi_rad: F) -> F {
         if delta_phi_rad.is_finite() {
             let work_j = self.least_work_j(delta_phi_rad);
             self.level_j = (self.level_j + work_j + self.refill_j)
                 .at_most(self.capacity_j)
-                // Only a shaft faster than any overdraws; not for ever.
+                // Only an implausibly fast shaft overdraws; bounded.
                 .at_least(-self.capacity_j);
         }
         let (z, rate) = self.swing.apply(self.ringing_nm, self.rate_nm_per_s);
@@ -260,7 +260,7 @@ impl<F: Real> BoneShaping<F> {
         self.given_nm = [F::ZERO; MOST_DELAY_TICKS + 1];
     }
 
-    /// What is in the tank, J.
+    /// Energy in the tank, J.
     pub fn level_j(&self) -> F {
         self.level_j
     }
@@ -394,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_ignored_and_silence_is_silence() {
+    fn nan_is_ignored_and_silence_stays_silent() {
         let s = BoneShapingSettings::default();
         let mut deaf = bone::<f32>(&s);
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
@@ -428,7 +428,7 @@ mod tests {
     }
 
     #[test]
-    fn the_books_are_the_work_with_the_worst_of_the_torques_acting() {
+    fn the_account_is_the_work_of_the_worst_of_the_acting_torques() {
         let s = BoneShapingSettings {
             refill_w: 0.0,
             ..BoneShapingSettings::default()
@@ -438,7 +438,7 @@ mod tests {
             bone.ring(0.5);
             let torques: Vec<f64> = (0..10).map(|_| bone.tick(0.0)).collect();
             assert_eq!(bone.level_j(), 0.01);
-            // The torque still rises: the latest gives the most.
+            // The torque still rises: the latest returns the most.
             bone.tick(-2e-3);
             assert!((0.01 - bone.level_j() - torques[9] * 2e-3).abs() < 1e-16);
             // Against the hand it is the earliest that takes the least.

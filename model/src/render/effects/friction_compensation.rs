@@ -41,8 +41,8 @@
 //!
 //! It is wrong where the gear has less friction than share·friction: a warm
 //! gear, another motor, a motion inside the backlash. Then the joint pushes a
-//! moving leg with the difference, up to share·friction. Believe the least
-//! friction that is ever measured.
+//! moving leg with the difference, up to share·friction. Set the least friction
+//! that is ever measured.
 //!
 //! Sources: friction 0.5 N·m at the joint is the paper's; the share and the
 //! fade are engineering estimates (the fade is 4.5 counts of the encoder at the
@@ -71,7 +71,7 @@ settings! {
             unit: "N·m",
             range: 0.0..=2.0,
             default: 0.5,
-            meaning: "dry friction that the device believes the gear to have, at the joint",
+            meaning: "dry friction of the gear that the device assumes, at the joint",
         },
         share {
             id: 11 always,

@@ -34,7 +34,7 @@ impl<F: Real> Locate<F> for Interpolated {
         if start > F::ZERO {
             crossing(start, slip.overtaking(length_s, v_end), length_s).or(Some(length_s))
         } else {
-            // A slip that begins and ends in this step: no chord tells where.
+            // A slip that begins and ends in this step: a chord cannot locate it.
             Some(length_s)
         }
     }

@@ -8,7 +8,7 @@ use crate::rendering;
 use crate::support::{Heard, random_values};
 use crate::support::{Host, set};
 use crepitus_model::control::encoder::EncoderSettings;
-use crepitus_protocol::host::{Answer, Ask};
+use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::parameters::{self, id};
 use crepitus_protocol::telemetry::{Block, Sample, SampleFlags};
 use crepitus_protocol::{LimitReason, Revision, TICK_S, Values};
@@ -189,7 +189,7 @@ fn watch(seed: u64, changes: usize, mut next: impl FnMut(&mut Rng, &Values) -> V
     for _ in 0..changes {
         let (base, values) = host.parameters();
         let values = next(&mut rng, &values);
-        match host.ask(Ask::Commit { base, values }) {
+        match host.ask(Operation::Commit { base, values }) {
             Ok(Answer::Committed { revision }) => watch.values.insert(revision.0, values),
             other => panic!("{other:?}"),
         };

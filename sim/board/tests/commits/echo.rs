@@ -4,7 +4,7 @@ use crate::connected;
 use crate::support::random_values;
 use crate::support::{Heard, Host};
 use crepitus_board::Controller;
-use crepitus_protocol::host::{Answer, Ask, Request};
+use crepitus_protocol::host::{Answer, Operation, Request};
 use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::parameters::id;
 use crepitus_protocol::telemetry::{Block, SampleFlags};
@@ -18,7 +18,7 @@ fn commit(host: &mut Host, base: Revision, values: Values) -> (Revision, u64, Ve
     let request = Request {
         session: host.session,
         number: host.number,
-        ask: Ask::Commit { base, values },
+        operation: Operation::Commit { base, values },
     };
     host.stream = Some(Vec::new());
     host.say(&request);
@@ -57,7 +57,7 @@ fn blocks_before_the_reply_have_the_old_revision_and_blocks_after_it_the_new_one
     for phase in 0..20 {
         let mut host = connected();
         let board = host.device.board_mut();
-        board.reset_for(Controller::Drive, ResetCause::Asked, 200 + phase);
+        board.reset_for(Controller::Drive, ResetCause::Requested, 200 + phase);
         host.run(1_000);
         host.arm();
         host.subscribe();

@@ -3,7 +3,7 @@
 use crate::support::{Host, set};
 use crate::{connected, rendering};
 use crepitus_protocol::counters::DriveCounter;
-use crepitus_protocol::host::{Ask, Refusal};
+use crepitus_protocol::host::{Operation, Refusal};
 use crepitus_protocol::parameters::{self, Kind, PARAMETERS, When};
 use crepitus_protocol::{Revision, State, ValueError, Values};
 
@@ -91,7 +91,7 @@ fn what_was_made_from_other_parameters_is_refused() {
     host.set("crepitus.static_torque_nm", 0.5);
     let (revision, now) = host.parameters();
     for base in [base, Revision::NONE, Revision(77), Revision(u32::MAX)] {
-        let answer = host.ask(Ask::Commit { base, values });
+        let answer = host.ask(Operation::Commit { base, values });
         assert_eq!(answer, Err(Refusal::Stale { revision }));
         assert_eq!(host.parameters(), (revision, now));
     }
@@ -122,7 +122,8 @@ fn some_parameters_only_change_without_torque() {
         );
     }
     assert_eq!(host.status().state, State::Armed);
-    host.ask(Ask::Disarm).expect("disarming is never refused");
+    host.ask(Operation::Disarm)
+        .expect("disarming is never refused");
     for name in [
         "encoder.lines",
         "motor.resistance_ohm",

@@ -3,7 +3,7 @@
 use crate::rendering;
 use crate::support::random_values;
 use crate::support::set;
-use crepitus_protocol::host::{Answer, Ask, Request};
+use crepitus_protocol::host::{Answer, Operation, Request};
 use crepitus_protocol::{TICKS_PER_S, Values};
 use fastrand::Rng;
 
@@ -22,7 +22,7 @@ fn measure(name: &str, mut change: impl FnMut(&mut Rng, &Values) -> Values) -> [
         let request = Request {
             session: host.session,
             number: host.number,
-            ask: Ask::Commit { base, values },
+            operation: Operation::Commit { base, values },
         };
         let begun = host.device.board().now();
         host.say(&request);

@@ -114,9 +114,9 @@ pub(crate) fn hang_and_bite(host: &mut Host, since: u64, controller: Controller)
 }
 
 pub(crate) fn restart_comms(host: &mut Host) {
-    board(host).reset(Comms, ResetCause::Asked);
+    board(host).reset(Comms, ResetCause::Requested);
 }
 
 pub(crate) fn restart_drive(host: &mut Host) {
-    board(host).reset(Drive, ResetCause::Asked);
+    board(host).reset(Drive, ResetCause::Requested);
 }

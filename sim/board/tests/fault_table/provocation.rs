@@ -14,7 +14,7 @@ use crate::support::Host;
 use crepitus_board::Faults;
 use crepitus_board::board::Controller::{Comms, Drive};
 use crepitus_board::leg::CurrentSensor::{Offset, StuckAt};
-use crepitus_protocol::management::ResetCause::{Asked, BrownOut, Panic, Power, Watchdog};
+use crepitus_protocol::management::ResetCause::{BrownOut, Panic, Power, Requested, Watchdog};
 use crepitus_protocol::{Fault, schema};
 
 /// How a fault comes about.
@@ -32,7 +32,7 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
         Fault::LeaseExpired => lease_expired(),
         Fault::CommsRestarted => vec![case(
             "comms is reset, and back at once",
-            |host, since| once(since, host, |b| b.reset_for(Comms, Asked, 10)),
+            |host, since| once(since, host, |b| b.reset_for(Comms, Requested, 10)),
             nothing,
         )],
         Fault::EncoderLost => encoder_lost(),
@@ -186,7 +186,7 @@ fn comms_silent() -> Vec<Case> {
         )
         .settled(heartbeat),
         reset("comms is reset", |host, since| {
-            once(since, host, |b| b.reset(Comms, Asked));
+            once(since, host, |b| b.reset(Comms, Requested));
         }),
     ]
 }

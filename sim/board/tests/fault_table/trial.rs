@@ -4,7 +4,7 @@ use crate::case::{Case, Moment};
 use crate::support::{Host, examination};
 use crepitus_board::Start;
 use crepitus_protocol::fault::{Detector, FaultSpec};
-use crepitus_protocol::host::{Answer, Ask, Refusal, Request};
+use crepitus_protocol::host::{Answer, Operation, Refusal, Request};
 use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::{Fault, State};
 
@@ -167,7 +167,7 @@ impl Trial<'_> {
         let request = Request {
             session: self.host.session,
             number: self.host.number,
-            ask: Ask::Arm,
+            operation: Operation::Arm,
         };
         self.host.say(&request);
         let (mut driven, mut since) = (None, 0);
@@ -214,7 +214,7 @@ impl Trial<'_> {
     }
 
     fn arming_is_refused(&mut self) {
-        let answer = self.host.ask_patiently(Ask::Arm);
+        let answer = self.host.ask_patiently(Operation::Arm);
         let board = self.host.device.board();
         let codes = [board.drive().fault(), board.comms().fault()]
             .map(|fault| fault.map_or(0, Fault::code));
@@ -244,7 +244,7 @@ impl Trial<'_> {
         );
         self.arming_is_refused();
         assert_eq!(
-            self.host.ask_patiently(Ask::ClearFault),
+            self.host.ask_patiently(Operation::ClearFault),
             Ok(Answer::Done),
             "{}",
             self.context
@@ -262,7 +262,7 @@ impl Trial<'_> {
         assert_eq!(self.host.status().state, State::Armed, "{}", self.context);
         assert!(self.host.device.board().is_driven(), "{}", self.context);
         assert_eq!(
-            self.host.ask(Ask::Disarm),
+            self.host.ask(Operation::Disarm),
             Ok(Answer::Done),
             "{}",
             self.context

@@ -3,7 +3,7 @@
 use crate::support::Host;
 use crate::{connected, streaming};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
-use crepitus_protocol::host::{Answer, Ask};
+use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::{Fault, LEASE_TICKS, Session, State};
 
 /// Everything arrives, and the device does as it is asked.
@@ -11,7 +11,7 @@ fn all_is_well(host: &mut Host) {
     host.subscribe();
     let status = host.status();
     if status.state == State::Faulted {
-        assert_eq!(host.ask(Ask::ClearFault), Ok(Answer::Done));
+        assert_eq!(host.ask(Operation::ClearFault), Ok(Answer::Done));
     }
     host.arm();
     let before = host.books.expect("books").received;
@@ -20,7 +20,7 @@ fn all_is_well(host: &mut Host) {
     assert!(books.received - before >= 3_800, "telemetry flows");
     assert_eq!(books.dropped, 0);
     assert_eq!(host.status().state, State::Armed);
-    assert_eq!(host.ask(Ask::Disarm), Ok(Answer::Done));
+    assert_eq!(host.ask(Operation::Disarm), Ok(Answer::Done));
 }
 
 /// Ticks until the bridge floats; the device goes on meanwhile.

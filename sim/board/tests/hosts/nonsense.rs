@@ -4,8 +4,8 @@ use crate::support::Host;
 use crate::{connected, streaming};
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::frame::{self, DELIMITER};
-use crepitus_protocol::host::{Ask, Request};
-use crepitus_protocol::management::{Answer, Role, What};
+use crepitus_protocol::host::{Operation, Request};
+use crepitus_protocol::management::{Action, Answer, Role};
 use crepitus_protocol::{Lane, State, schema};
 use fastrand::Rng;
 
@@ -18,9 +18,9 @@ fn garbage_before_the_first_frame_costs_at_most_that_frame() {
         host.send(&garbage);
         host.run(2_000);
         // The first one ends the garbage, if it does not end by itself.
-        host.try_ask(Ask::Status, 1);
+        host.try_ask(Operation::Status, 1);
         assert!(
-            host.try_ask(Ask::Status, 1).is_some(),
+            host.try_ask(Operation::Status, 1).is_some(),
             "after {length} bytes"
         );
         assert!(host.comms_count(CommsCounter::FromHostDiscarded) > 0);
@@ -105,7 +105,7 @@ fn a_host_of_another_version_can_say_hello_and_stop() {
     let request = Request {
         session: host.session,
         number: 5_000,
-        ask: Ask::Disarm,
+        operation: Operation::Disarm,
     };
     let mut body = vec![Lane::Request.byte(), schema::TAG ^ 0x55];
     body.extend(postcard(&request));
@@ -119,12 +119,12 @@ fn a_host_of_another_version_can_say_hello_and_stop() {
     assert!(host.take_replies().is_empty());
     assert_eq!(host.device.board().drive().state(), State::Armed);
 
-    let Some(Answer::Hello { own, drive, .. }) = host.manage(What::Hello, 1) else {
+    let Some(Answer::Hello { own, drive, .. }) = host.manage(Action::Hello, 1) else {
         panic!("no hello");
     };
     assert_eq!((own.role, drive.role), (Role::Comms, Role::Drive));
     assert_eq!((own.schema, drive.schema), (schema::HASH, schema::HASH));
-    let stopped = host.manage(What::Stop, 2);
+    let stopped = host.manage(Action::Stop, 2);
     assert_eq!(
         stopped,
         Some(Answer::Stop {

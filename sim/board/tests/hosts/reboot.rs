@@ -3,14 +3,14 @@
 use crate::support::Host;
 use crate::{connected, streaming};
 use crepitus_board::board::Controller;
-use crepitus_protocol::host::{Answer, Ask, Refusal};
-use crepitus_protocol::management::{self, ResetCause, What};
+use crepitus_protocol::host::{Answer, Operation, Refusal};
+use crepitus_protocol::management::{self, Action, ResetCause};
 use crepitus_protocol::{Revision, State};
 
 #[test]
 fn it_is_refused_while_there_is_torque() {
     let mut host = streaming();
-    let answer = host.manage(What::Reboot, 9);
+    let answer = host.manage(Action::Reboot, 9);
     assert_eq!(
         answer,
         Some(management::Answer::Reboot {
@@ -25,7 +25,7 @@ fn it_is_refused_while_there_is_torque() {
 
 /// Reboots; whether the host was told that it will be done.
 fn reboot(host: &mut Host) -> bool {
-    let answer = host.manage(What::Reboot, 9);
+    let answer = host.manage(Action::Reboot, 9);
     host.run(400);
     host.reconnect();
     host.run(400);
@@ -45,12 +45,13 @@ fn both_controllers_start_anew_and_the_port_comes_back() {
             reboot(&mut host),
             "phase {phase}: the host is answered first"
         );
-        let Some(management::Answer::Hello { own, drive, .. }) = host.manage(What::Hello, 1) else {
+        let Some(management::Answer::Hello { own, drive, .. }) = host.manage(Action::Hello, 1)
+        else {
             panic!("no hello");
         };
         assert_eq!(
             (own.reset, drive.reset),
-            (ResetCause::Asked, ResetCause::Asked),
+            (ResetCause::Requested, ResetCause::Requested),
             "phase {phase}"
         );
         let status = host.status();
@@ -76,7 +77,7 @@ fn what_was_saved_is_there_afterwards_and_what_was_not_is_gone() {
     assert_eq!(host.status().saved, Some(first));
 
     host.set("crepitus.static_torque_nm", 0.7);
-    assert_eq!(host.ask(Ask::Save), Ok(Answer::Done));
+    assert_eq!(host.ask(Operation::Save), Ok(Answer::Done));
     let (revision, values) = host.parameters();
     assert_eq!(host.status().saved, Some(revision));
     host.set("crepitus.static_torque_nm", 0.8);
@@ -96,12 +97,12 @@ fn what_cannot_be_saved_is_said_and_changes_nothing() {
     host.device.board_mut().set_storage(false);
     host.set("crepitus.static_torque_nm", 0.6);
     let (revision, values) = host.parameters();
-    assert_eq!(host.ask(Ask::Save), Err(Refusal::Storage));
+    assert_eq!(host.ask(Operation::Save), Err(Refusal::Storage));
     assert_eq!(host.status().saved, Some(first));
     assert_eq!(host.parameters(), (revision, values), "still in force");
     host.arm();
-    assert_eq!(host.ask(Ask::Save), Err(Refusal::Armed));
-    assert_eq!(host.ask(Ask::Disarm), Ok(Answer::Done));
+    assert_eq!(host.ask(Operation::Save), Err(Refusal::Armed));
+    assert_eq!(host.ask(Operation::Disarm), Ok(Answer::Done));
     reboot(&mut host);
     assert_eq!(host.parameters(), (first, kept));
 }
@@ -125,7 +126,7 @@ fn the_drive_follows_a_comms_that_has_forgotten() {
             (drive.revision(), drive.values()),
             (revision, Some(&values))
         );
-        assert_eq!(host.ask(Ask::ClearFault), Ok(Answer::Done));
+        assert_eq!(host.ask(Operation::ClearFault), Ok(Answer::Done));
         host.set("crepitus.static_torque_nm", 0.9);
         let (revision, values) = host.parameters();
         assert_eq!(revision, Revision(2));

@@ -5,7 +5,7 @@ use crate::connected;
 use crate::support::{Host, set};
 use crepitus_protocol::Session;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
-use crepitus_protocol::host::{Ask, Request};
+use crepitus_protocol::host::{Operation, Request};
 
 fn commit(host: &mut Host, number: u16, static_nm: f64) -> Request {
     let (base, mut values) = host.parameters();
@@ -13,7 +13,7 @@ fn commit(host: &mut Host, number: u16, static_nm: f64) -> Request {
     Request {
         session: host.session,
         number,
-        ask: Ask::Commit { base, values },
+        operation: Operation::Commit { base, values },
     }
 }
 
@@ -62,7 +62,7 @@ fn what_comes_late_is_not_heard() {
     old.session = Session(77);
     // Numbers go on through their wrap.
     for number in [65_535, 0, 1] {
-        let answer = host.ask_as(old.session, number, Ask::Status);
+        let answer = host.ask_as(old.session, number, Operation::Status);
         assert!(matches!(answer, Some(Ok(_))), "{number}");
     }
     host.say(&old);
@@ -76,13 +76,16 @@ fn the_hosts_that_spoke_last_are_remembered() {
     let mut request = commit(&mut host, 2, 0.5);
     request.session = Session(1);
     for session in [1, 2, 3] {
-        assert!(host.ask_as(Session(session), 1, Ask::Status).is_some());
+        assert!(
+            host.ask_as(Session(session), 1, Operation::Status)
+                .is_some()
+        );
     }
     // The first of them speaks again, and then a fourth.
     host.say(&request);
     let answer = host.answer_to(&request);
     assert!(matches!(answer, Some(Ok(_))), "{answer:?}");
-    assert!(host.ask_as(Session(4), 1, Ask::Status).is_some());
+    assert!(host.ask_as(Session(4), 1, Operation::Status).is_some());
     host.say(&request);
     assert_eq!(
         host.answer_to(&request),

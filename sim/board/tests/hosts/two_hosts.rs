@@ -3,21 +3,21 @@
 use crate::support::{Host, set};
 use crate::{connected, streaming};
 use crepitus_protocol::counters::CommsCounter;
-use crepitus_protocol::host::{Answer, Ask, Refusal};
-use crepitus_protocol::management::{self, What};
+use crepitus_protocol::host::{Answer, Operation, Refusal};
+use crepitus_protocol::management::{self, Action};
 use crepitus_protocol::{Session, State};
 
 const OTHER: Session = Session(0xbeef);
 
-fn changes(host: &mut Host) -> [Ask; 5] {
+fn changes(host: &mut Host) -> [Operation; 5] {
     let (base, mut values) = host.parameters();
     set(&mut values, "crepitus.static_torque_nm", 0.7);
     [
-        Ask::Commit { base, values },
-        Ask::Save,
-        Ask::Zero,
-        Ask::Arm,
-        Ask::ClearFault,
+        Operation::Commit { base, values },
+        Operation::Save,
+        Operation::Zero,
+        Operation::Arm,
+        Operation::ClearFault,
     ]
 }
 
@@ -26,17 +26,25 @@ fn what_changes_something_is_for_the_one_with_the_lease() {
     let mut host = streaming();
     let first = host.session;
     let mut number = 0;
-    for ask in changes(&mut host) {
+    for operation in changes(&mut host) {
         number += 1;
-        let answer = host.ask_as(OTHER, number, ask);
-        assert_eq!(answer, Some(Err(Refusal::Leased { by: first })), "{ask:?}");
+        let answer = host.ask_as(OTHER, number, operation);
+        assert_eq!(
+            answer,
+            Some(Err(Refusal::Leased { by: first })),
+            "{operation:?}"
+        );
     }
     // Looking is free.
-    for ask in [Ask::Status, Ask::Parameters, Ask::Counters] {
+    for operation in [
+        Operation::Status,
+        Operation::Parameters,
+        Operation::Counters,
+    ] {
         number += 1;
         assert!(
-            matches!(host.ask_as(OTHER, number, ask), Some(Ok(_))),
-            "{ask:?}"
+            matches!(host.ask_as(OTHER, number, operation), Some(Ok(_))),
+            "{operation:?}"
         );
     }
     // A renewal of the other one is none.
@@ -46,7 +54,7 @@ fn what_changes_something_is_for_the_one_with_the_lease() {
         host.say(&crepitus_protocol::host::Request {
             session: OTHER,
             number: 0,
-            ask: Ask::Renew,
+            operation: Operation::Renew,
         });
         host.run(200);
     }
@@ -58,19 +66,25 @@ fn what_changes_something_is_for_the_one_with_the_lease() {
 fn disarming_is_for_everybody_and_then_the_other_one_may_arm() {
     let mut host = streaming();
     let first = host.session;
-    assert_eq!(host.ask_as(OTHER, 1, Ask::Disarm), Some(Ok(Answer::Done)));
+    assert_eq!(
+        host.ask_as(OTHER, 1, Operation::Disarm),
+        Some(Ok(Answer::Done))
+    );
     host.run(21);
     assert!(!host.device.board().is_driven());
     assert_eq!(host.status().lease, None);
-    assert_eq!(host.ask_as(OTHER, 2, Ask::Arm), Some(Ok(Answer::Done)));
+    assert_eq!(
+        host.ask_as(OTHER, 2, Operation::Arm),
+        Some(Ok(Answer::Done))
+    );
     // The first one goes on renewing, which is nothing now.
     assert_eq!(host.status().lease, Some(OTHER));
-    assert_eq!(host.ask(Ask::Arm), Err(Refusal::Leased { by: OTHER }));
+    assert_eq!(host.ask(Operation::Arm), Err(Refusal::Leased { by: OTHER }));
     for _ in 0..20 {
         host.say(&crepitus_protocol::host::Request {
             session: OTHER,
             number: 0,
-            ask: Ask::Renew,
+            operation: Operation::Renew,
         });
         host.run(1_000);
     }
@@ -86,7 +100,7 @@ fn disarming_works_in_the_middle_of_the_others_arming() {
         let request = crepitus_protocol::host::Request {
             session: first,
             number: host.number + 1,
-            ask: Ask::Arm,
+            operation: Operation::Arm,
         };
         host.renew_every = Some(1_000);
         host.number += 1;
@@ -95,7 +109,7 @@ fn disarming_works_in_the_middle_of_the_others_arming() {
         host.say(&crepitus_protocol::host::Request {
             session: OTHER,
             number: 1,
-            ask: Ask::Disarm,
+            operation: Operation::Disarm,
         });
         host.run(600);
         let replies = host.take_replies();
@@ -126,7 +140,7 @@ fn disarming_works_in_the_middle_of_the_others_arming() {
 fn stopping_is_for_everybody_and_needs_no_session() {
     let mut host = streaming();
     assert!(host.device.board().is_driven());
-    let answer = host.manage(What::Stop, 7);
+    let answer = host.manage(Action::Stop, 7);
     assert_eq!(
         answer,
         Some(management::Answer::Stop {
@@ -148,18 +162,22 @@ fn stopping_is_for_everybody_and_needs_no_session() {
 fn two_hosts_that_ask_in_turn_both_get_their_answers() {
     let mut host = streaming();
     for number in 0..200_u16 {
-        let asks = [Ask::Status, Ask::Parameters, Ask::Counters];
-        let ask = asks[usize::from(number) % 3];
+        let asks = [
+            Operation::Status,
+            Operation::Parameters,
+            Operation::Counters,
+        ];
+        let operation = asks[usize::from(number) % 3];
         let first = crepitus_protocol::host::Request {
             session: host.session,
             number: host.number + 1,
-            ask,
+            operation,
         };
         host.number += 1;
         let second = crepitus_protocol::host::Request {
             session: OTHER,
             number: 1 + number,
-            ask,
+            operation,
         };
         host.say(&first);
         host.say(&second);

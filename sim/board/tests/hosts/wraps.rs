@@ -6,7 +6,7 @@ use crate::support::{Host, examination};
 use crepitus_board::Start;
 use crepitus_protocol::State;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
-use crepitus_protocol::host::{Answer, Ask};
+use crepitus_protocol::host::{Answer, Operation};
 use fastrand::Rng;
 
 #[test]
@@ -35,7 +35,7 @@ fn counters_wrap_under_torque_and_between_commits() {
             let (base, values) = host.parameters();
             let values = random_values::allowed(&mut rng, &values);
             host.oracle.as_mut().expect("an oracle").propose(&values);
-            let answer = host.ask(Ask::Commit { base, values });
+            let answer = host.ask(Operation::Commit { base, values });
             assert!(matches!(answer, Ok(Answer::Committed { .. })), "{answer:?}");
             host.run(SECOND / 10);
         }

@@ -8,8 +8,8 @@ pub(crate) mod random_values;
 use crepitus_board::{Start, VirtualDevice};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::frame;
-use crepitus_protocol::host::{Answer, Ask, Refusal, Reply, Request, Status};
-use crepitus_protocol::management::{self, Question, What};
+use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request, Status};
+use crepitus_protocol::management::{self, Action, ManagementRequest};
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, Sample};
 use crepitus_protocol::{Decoder, Lane, Revision, Session, Values};
@@ -132,7 +132,7 @@ impl Host {
             self.say(&Request {
                 session: self.session,
                 number: 0,
-                ask: Ask::Renew,
+                operation: Operation::Renew,
             });
         }
         self.device.tick();
@@ -192,12 +192,16 @@ impl Host {
     }
 
     /// Asks until there is an answer, at most so many times.
-    pub(crate) fn try_ask(&mut self, ask: Ask, times: u32) -> Option<Result<Answer, Refusal>> {
+    pub(crate) fn try_ask(
+        &mut self,
+        operation: Operation,
+        times: u32,
+    ) -> Option<Result<Answer, Refusal>> {
         self.number = self.number.wrapping_add(1);
         let request = Request {
             session: self.session,
             number: self.number,
-            ask,
+            operation,
         };
         (0..times).find_map(|_| {
             self.say(&request);
@@ -210,20 +214,20 @@ impl Host {
         &mut self,
         session: Session,
         number: u16,
-        ask: Ask,
+        operation: Operation,
     ) -> Option<Result<Answer, Refusal>> {
         let request = Request {
             session,
             number,
-            ask,
+            operation,
         };
         self.say(&request);
         self.answer_to(&request)
     }
 
     /// A question of the lane that never changes, and its answer.
-    pub(crate) fn manage(&mut self, what: What, token: u8) -> Option<management::Answer> {
-        let question = Question { what, token };
+    pub(crate) fn manage(&mut self, action: Action, token: u8) -> Option<management::Answer> {
+        let question = ManagementRequest { action, token };
         let frame = frame::encode_bytes(Lane::Management, &question.bytes()).expect("a frame");
         self.send(&frame);
         self.managed(token)
@@ -257,19 +261,20 @@ impl Host {
         None
     }
 
-    pub(crate) fn ask(&mut self, ask: Ask) -> Result<Answer, Refusal> {
-        self.try_ask(ask, 40).expect("an answer within two seconds")
+    pub(crate) fn ask(&mut self, operation: Operation) -> Result<Answer, Refusal> {
+        self.try_ask(operation, 40)
+            .expect("an answer within two seconds")
     }
 
     pub(crate) fn status(&mut self) -> Status {
-        match self.ask(Ask::Status) {
+        match self.ask(Operation::Status) {
             Ok(Answer::Status(status)) => status,
             other => panic!("no status but {other:?}"),
         }
     }
 
     pub(crate) fn parameters(&mut self) -> (Revision, Values) {
-        match self.ask(Ask::Parameters) {
+        match self.ask(Operation::Parameters) {
             Ok(Answer::Parameters { revision, values }) => (revision, values),
             other => panic!("no parameters but {other:?}"),
         }
@@ -278,7 +283,7 @@ impl Host {
     pub(crate) fn commit(&mut self, change: impl FnOnce(&mut Values)) -> Result<Revision, Refusal> {
         let (base, mut values) = self.parameters();
         change(&mut values);
-        self.ask(Ask::Commit { base, values })
+        self.ask(Operation::Commit { base, values })
             .map(|answer| match answer {
                 Answer::Committed { revision } => revision,
                 other => panic!("no commit but {other:?}"),
@@ -288,7 +293,7 @@ impl Host {
     pub(crate) fn subscribe(&mut self) {
         // Blocks that were on their way belong to nobody's books.
         self.books = None;
-        match self.ask(Ask::Subscribe) {
+        match self.ask(Operation::Subscribe) {
             Ok(Answer::Subscribed { first_tick }) => {
                 self.books = Some(Books {
                     first_tick,
@@ -317,9 +322,9 @@ impl Host {
     }
 
     /// Asks until nothing else is being done for a host any more.
-    pub(crate) fn ask_patiently(&mut self, ask: Ask) -> Result<Answer, Refusal> {
+    pub(crate) fn ask_patiently(&mut self, operation: Operation) -> Result<Answer, Refusal> {
         for _ in 0..20 {
-            let answer = self.ask(ask);
+            let answer = self.ask(operation);
             if answer != Err(Refusal::Busy) {
                 return answer;
             }
@@ -334,7 +339,7 @@ impl Host {
         self.say(&Request {
             session: self.session,
             number: self.number,
-            ask: Ask::Disarm,
+            operation: Operation::Disarm,
         });
     }
 
@@ -358,7 +363,7 @@ impl Host {
     pub(crate) fn arm(&mut self) {
         self.renew_every = Some(1_000);
         let armed = (0..20).any(|_| {
-            let answer = self.ask(Ask::Arm);
+            let answer = self.ask(Operation::Arm);
             if answer != Ok(Answer::Done) {
                 assert_eq!(answer, Err(Refusal::Busy), "arming");
                 self.run(200);

@@ -20,7 +20,7 @@ pub(crate) struct Oracle {
     pub(crate) in_force: BTreeMap<u32, Values>,
     revision: Revision,
     heartbeats: u32,
-    heard: Option<u64>,
+    comms_start: Option<u64>,
     renewals: u32,
     was_arming: bool,
     renewed: Option<u64>,
@@ -37,7 +37,7 @@ impl Oracle {
             in_force: BTreeMap::from([(0, Values::default())]),
             revision: Revision::NONE,
             heartbeats: board.drive().counters().get(DriveCounter::Heartbeats),
-            heard: None,
+            comms_start: None,
             renewals: board.comms().counters().get(CommsCounter::Renewals),
             was_arming: false,
             renewed: None,
@@ -73,7 +73,7 @@ impl Oracle {
         let now = board.now();
         let heartbeats = board.drive().counters().get(DriveCounter::Heartbeats);
         if heartbeats != self.heartbeats {
-            (self.heartbeats, self.heard) = (heartbeats, Some(now));
+            (self.heartbeats, self.comms_start) = (heartbeats, Some(now));
         }
         let renewals = board.comms().counters().get(CommsCounter::Renewals);
         let is_arming = board.comms().state() == State::Arming;
@@ -84,7 +84,7 @@ impl Oracle {
         if board.is_driven() {
             self.driven_ticks += 1;
             let limits = [HEARTBEAT_TICKS, LEASE_TICKS];
-            for (i, last) in [self.heard, self.renewed].into_iter().enumerate() {
+            for (i, last) in [self.comms_start, self.renewed].into_iter().enumerate() {
                 let silence = now - last.expect("torque before the first word");
                 assert!(
                     silence < limits[i],

@@ -6,7 +6,7 @@ use crepitus_board::leg::EncoderWiring;
 use crepitus_emulator::mcu::{Step, Watch};
 use crepitus_emulator::{Mcu, Reset, Time};
 use crepitus_protocol::fault::{FAULTS, Fault};
-use crepitus_protocol::host::{Answer, Ask};
+use crepitus_protocol::host::{Answer, Operation};
 
 /// The encoder's counter.
 const TIM5_CNT: u32 = 0x4000_0c24;
@@ -30,7 +30,7 @@ fn under_torque() -> Option<Host> {
 
 /// What the drive says it is.
 fn drive_fault(host: &mut Host) -> u8 {
-    match host.ask(Ask::Status) {
+    match host.ask(Operation::Status) {
         Ok(Answer::Status(status)) => status.drive_fault,
         other => panic!("no status but {other:?}"),
     }

@@ -5,7 +5,7 @@ use crepitus_device::usb_port::HostBytes;
 use crepitus_emulator::firmware::{Program, image_for_test};
 use crepitus_emulator::{DriveBoard, Image, Mcu};
 use crepitus_protocol::frame;
-use crepitus_protocol::host::{Answer, Ask, Refusal, Reply, Request};
+use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request};
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Lane, Revision, Session};
 use crepitus_scene::{Overrides, Scene};
@@ -81,7 +81,7 @@ impl Host {
     pub(crate) fn run(&mut self, ticks: u64) {
         for _ in 0..ticks {
             if self.holds_lease && self.ticks.is_multiple_of(RENEWAL_TICKS) {
-                self.say(0, Ask::Renew);
+                self.say(0, Operation::Renew);
             }
             self.board.run(1);
             self.ticks += 1;
@@ -89,11 +89,11 @@ impl Host {
         }
     }
 
-    fn say(&mut self, number: u16, ask: Ask) {
+    fn say(&mut self, number: u16, operation: Operation) {
         let request = Request {
             session: Session(0x1234),
             number,
-            ask,
+            operation,
         };
         let frame = frame::encode(Lane::Request, &request).expect("a frame");
         self.board.comms_mut().received(&frame);
@@ -122,11 +122,11 @@ impl Host {
     }
 
     /// Asks, and waits for the answer.
-    pub(crate) fn ask(&mut self, ask: Ask) -> Result<Answer, Refusal> {
+    pub(crate) fn ask(&mut self, operation: Operation) -> Result<Answer, Refusal> {
         self.number += 1;
         let number = self.number;
         for _ in 0..40 {
-            self.say(number, ask);
+            self.say(number, operation);
             for _ in 0..100 {
                 self.run(1);
                 let found = self.replies.drain(..).find(|reply| reply.number == number);
@@ -135,15 +135,15 @@ impl Host {
                 }
             }
         }
-        panic!("no answer to {ask:?}");
+        panic!("no answer to {operation:?}");
     }
 
     /// Takes the lease and arms, as soon as the drive has its parameters.
     pub(crate) fn arm(&mut self) {
         self.holds_lease = true;
-        self.say(0, Ask::Renew);
+        self.say(0, Operation::Renew);
         for _ in 0..100 {
-            match self.ask(Ask::Arm) {
+            match self.ask(Operation::Arm) {
                 Ok(Answer::Done) => return,
                 Err(Refusal::Busy | Refusal::DriveSilent) => self.run(200),
                 other => panic!("arming: {other:?}"),

@@ -75,7 +75,7 @@ impl Replay<'_> {
             // PB1.
             LINE => self.inputs.enable_is_on = access.value >> 1 & 1 == 1,
             BREAK_FLAGS => {
-                self.inputs.is_broken = access.value >> 7 & 1 == 1;
+                self.inputs.has_tripped = access.value >> 7 & 1 == 1;
                 self.drive.command_motor(&self.inputs);
                 self.pushed += u64::from(self.drive.next_tick() > 0);
             }

@@ -2,7 +2,7 @@
 
 use crate::host::{Host, examination, image};
 use crepitus_protocol::State;
-use crepitus_protocol::host::{Answer, Ask};
+use crepitus_protocol::host::{Answer, Operation};
 
 #[test]
 fn it_arms_the_hand_feels_the_joint_and_it_stops() {
@@ -25,7 +25,7 @@ fn it_arms_the_hand_feels_the_joint_and_it_stops() {
     let driven: f32 = samples.iter().map(|s| f32::from(s.current_ma)).sum();
     let joint_nm_per_a = -1e3 * asked / driven;
     assert!((3.0..3.7).contains(&joint_nm_per_a), "{joint_nm_per_a}");
-    assert_eq!(host.ask(Ask::Disarm), Ok(Answer::Done));
+    assert_eq!(host.ask(Operation::Disarm), Ok(Answer::Done));
     // The next heartbeat says so.
     host.run(25);
     assert!(!host.board.drive_is_on());

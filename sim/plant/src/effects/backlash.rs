@@ -7,7 +7,7 @@
 //! ```
 //!
 //! In contact they are one body as long as they press; in between the rotor is
-//! on its own. When the gap closes the two go on together: a plastic impact,
+//! on its own. When the gap closes the two move on together: a plastic impact,
 //! whose energy ½·J₁J₂/(J₁+J₂)·ġ² is lost. The moment is located inside the
 //! step. (Gear teeth ring at kilohertz, which neither the cuff nor a hand lets
 //! through.)
@@ -82,7 +82,7 @@ struct Backlash {
     rotor_rad_s: f64,
     rotor_mean_rad_s: f64,
     /// The gap closed in this step; what would open it at once waits for the
-    /// next, or a torque that passes zero would open and close it for ever.
+    /// next, or a torque that passes zero would open and close it endlessly.
     closed: bool,
     found: Option<f64>,
     lost_j: f64,
@@ -136,7 +136,7 @@ impl Backlash {
         })
     }
 
-    /// The gap is closed: rotor and joint go on with one velocity. Returns
+    /// Closes the gap: rotor and joint continue with one velocity. Returns
     /// the impulse on a joint that does not give way.
     fn impact(&mut self, sense: Sense, rotor_rad_s: f64, joint: &mut Body) -> f64 {
         let rotor_kg_m2 = self.left.inertia_kg_m2();

@@ -98,7 +98,7 @@ struct Cuff {
 /// hundredth that adds up to a tenth of a radian before the swing has decayed.
 const MOST_RADIANS: f64 = 0.1;
 
-/// Above this bh/J what the damper decays changes its sign at every step.
+/// Above this bh/J the damper's decay changes its sign at every step.
 const MOST_DECAY: f64 = 2.0;
 
 impl Cuff {
@@ -131,7 +131,7 @@ impl Cuff {
         }
     }
 
-    /// What is left of the brace does this to it.
+    /// Action of the parts to the left on the brace.
     fn left_flow(&self, step: &Step, leg: &Body, flow: Flow) -> Flow {
         let mean = self.brace_mean(step, leg, flow.omega_rad_s);
         let own = step.inertial_slope(self.inertia_kg_m2) * (self.brace.omega_rad_s - mean);
@@ -195,7 +195,7 @@ impl Chain for Cuff {
             .settle(step, &self.brace, &mut next, left, ends_at);
         self.brace = next;
         Settled {
-            // The cuff gives way: the leg does not move at once.
+            // The cuff is compliant: the leg does not move at once.
             struck_rad_s: 0.0,
             ..settled
         }

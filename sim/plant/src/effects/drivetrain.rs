@@ -74,7 +74,7 @@ pub const EFFECT: Effect = Effect {
 
 const NAME: &str = "drivetrain";
 
-/// A speed that falls to this share of itself is none.
+/// Share of itself below which a falling speed counts as zero.
 const NEARLY: f64 = 1e-5;
 
 /// Whether the friction holds the rotor.
@@ -119,7 +119,7 @@ impl Drivetrain {
         }
     }
 
-    /// What is left of the rotor does this to it.
+    /// Action of the parts to the left on the rotor.
     fn left_flow(&self, step: &Step, body: &Body, flow: Flow) -> Flow {
         let own =
             self.inertial_nm(step, body, flow.omega_rad_s) + self.friction_of(step, body, flow);
@@ -139,7 +139,7 @@ impl Drivetrain {
                 }
                 let friction = self.friction_of(step, body, flow);
                 if friction.abs() > self.limit_nm(step) * (1.0 + 1e-12) {
-                    // It gives way against the friction that would be needed.
+                    // It slips against the friction that holding would need.
                     return Err(Mode::Sliding(sense_of(-friction)));
                 }
                 Ok(None)
@@ -147,7 +147,7 @@ impl Drivetrain {
             Mode::Sliding(sense) => {
                 let (v, end) = (sense.of_signed(v), sense.of_signed(2.0 * w - v));
                 if v > 0.0 {
-                    // Nothing happens where there is no friction.
+                    // Without friction nothing changes.
                     let stops = end <= NEARLY * v && self.limit_nm(step) > 0.0;
                     Ok(stops.then(|| (v / (v - end)).min(1.0)))
                 } else if v < 0.0 {

@@ -1,4 +1,4 @@
-//! `encoder`: what the device knows of the shaft. Counts come from
+//! `encoder`: the shaft as the device measures it. Counts come from
 //! [`crate::encoder`], the estimate from `crepitus_model::control::encoder`.
 
 use crate::effect::{Effect, Part};

@@ -112,7 +112,7 @@ struct Arm {
     lost_j: f64,
 }
 
-/// What a hand does about the leg's weight.
+/// How a hand compensates the leg's weight.
 trait Lift: Send {
     /// Torque that holds the leg at an angle, N·m.
     fn torque_nm(&self, angle_rad: f64) -> f64;
@@ -122,7 +122,7 @@ trait Lift: Send {
     fn energy(&self, balance: &mut EnergyBalance);
 }
 
-/// There is no leg.
+/// Without a leg.
 impl Lift for () {
     fn torque_nm(&self, _: f64) -> f64 {
         0.0

@@ -28,7 +28,7 @@
 //!     − 4.820 + e^(2.220 − 0.150·K)
 //! ```
 //!
-//! Beyond −20° to 160° it goes on as a straight line. Damping is 0.2 N·m·s/rad
+//! Beyond −20° to 160° it continues as a straight line. Damping is 0.2 N·m·s/rad
 //! (0.19 to 0.22, fitted to recorded pendulum tests of healthy people).
 //!
 //! A step uses the torque's mean over its way by the first three terms about
@@ -192,7 +192,7 @@ struct Limb<T> {
     damping: f64,
     torque: T,
     lost_j: f64,
-    /// The knee has been where nothing is known of it.
+    /// The knee has left the range of the published data.
     outside: bool,
 }
 

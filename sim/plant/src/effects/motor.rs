@@ -49,7 +49,7 @@ pub const EFFECT: Effect = Effect {
 
 pub(crate) const NAME: &str = "motor";
 
-/// What a trace shows of a motor.
+/// Trace columns of a motor.
 pub(crate) const COLUMNS: [&str; 3] = ["motor_current_a", "motor_voltage_v", "motor_torque_nm"];
 
 const LOOP: &[ParameterSpec; 5] = CurrentLoopSettings::TABLE;
@@ -87,12 +87,12 @@ const TABLE: [ParameterSpec; 7] = [
 pub struct MotorNumbers {
     /// Its winding, seen from the joint.
     pub winding: WindingSettings,
-    /// What the bridge can give either way, V.
+    /// Supply voltage of the bridge, in either direction, V.
     pub supply_v: f64,
 }
 
 impl MotorNumbers {
-    /// From what a scene gives for the effect.
+    /// From the effect's parameters in a scene.
     pub fn of(given: &Given) -> Self {
         let [_, ohm, henry, supply_v, _, nm_per_a, gear] = numbers(given);
         Self {

@@ -1,4 +1,4 @@
-//! What can be wrong with a recording: each with its place, what was found, and what to do.
+//! Errors of recordings, with position, cause and remedy.
 
 use super::{AngleUnit, MAX_BYTES, MAX_ROWS, MIN_SAMPLES, Source};
 use std::fmt;

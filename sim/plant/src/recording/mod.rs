@@ -5,8 +5,8 @@
 //!                ├─ read ─> Samples ─ smooth ─> one cubic per interval: φ, Ω, Ω̇ continuous
 //! .mot, .sto ────┘          s, rad
 //! ```
-//! [`read`] takes two columns of a table and checks them: what a motion cannot be is an error that
-//! names the file, line and column; what is only odd is a [`Warning`]. [`smooth`] is a zero-phase
+//! [`read`] takes two columns of a table and validates them: an impossible motion is an error that
+//! names the file, line and column; an unusual one is a [`Warning`]. [`smooth`] is a zero-phase
 //! low-pass and an interpolation in one. Both are needed: a recording carries noise that
 //! differentiating amplifies, and a jump of Ω̇ is a jump of torque under the `physical` convention.
 
@@ -67,7 +67,7 @@ pub enum AngleUnit {
 }
 
 impl AngleUnit {
-    /// The largest angle that is believed, in this unit: 2000°, far beyond any joint.
+    /// The largest plausible angle, in this unit: 2000°, far beyond any joint.
     pub const fn limit(self) -> f64 {
         match self {
             Self::Deg => 2000.0,
@@ -99,7 +99,7 @@ pub struct Samples {
     pub time_s: Vec<f64>,
     /// The angle at each time, in rad.
     pub angle_rad: Vec<f64>,
-    /// What is odd about the recording, for a person to read.
+    /// Warnings about the recording.
     pub warnings: Vec<Warning>,
 }
 

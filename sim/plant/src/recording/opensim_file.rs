@@ -79,7 +79,7 @@ pub(super) fn read(source: &Source<'_>, file: File) -> Result<Samples, Recording
     table.finish(header.names_unit)
 }
 
-/// What the header declares, with the line that says so.
+/// Declarations of the header, with their lines.
 #[derive(Default)]
 struct Header {
     rows: Option<(u64, u64)>,

@@ -14,7 +14,7 @@
 
 /// The spline's values where the samples are; times grow, weights are above zero.
 pub(super) fn smoothed(time: &[f64], value: &[f64], weight: &[f64]) -> Vec<f64> {
-    // Rows of Qᵀ: what a second difference takes of three samples.
+    // Rows of Qᵀ: weights of a second difference of three samples.
     let rows: Vec<Row> = time
         .array_windows()
         .zip(value.array_windows())

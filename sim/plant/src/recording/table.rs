@@ -2,7 +2,7 @@
 
 use super::{AngleUnit, MAX_ROWS, MIN_SAMPLES, Place, RecordingError, Samples, Source, Warning};
 
-/// The largest time that is believed, in s: a clock that counts from 1970 stays below it, one in
+/// The largest plausible time, in s: a clock that counts from 1970 stays below it, one in
 /// milliseconds does not.
 const TIME_LIMIT_S: f64 = 1e10;
 

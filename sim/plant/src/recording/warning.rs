@@ -3,7 +3,7 @@
 use super::{AngleUnit, Place};
 use std::fmt;
 
-/// What is odd about a recording that can still be used.
+/// Warnings about a usable recording.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the text of each is in Display below")]

@@ -102,7 +102,7 @@ fn the_first_harmonic_is_that_of_a_play() {
     }
 }
 
-/// A joint that stops lets the rotor go on through the gap, unless it was
+/// When the joint stops the rotor continues through the gap, unless it was
 /// pressing.
 #[test]
 fn a_rotor_goes_on_where_the_joint_stops() {

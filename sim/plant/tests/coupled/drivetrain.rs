@@ -80,7 +80,7 @@ fn it_comes_to_rest_in_time_and_stays_there() {
             "from {omega} rad/s: speed off {worst:.1e} rad/s, rests off {:.1e} rad",
             at.angle_rad - travel
         );
-        // Where it rests says when it stopped: the stop is inside a tick.
+        // The rest position gives the time of the stop, inside a tick.
         assert!(worst < 1e-12 * omega.abs());
         assert!((at.angle_rad / travel - 1.0).abs() < 1e-11);
         assert_eq!(at.omega_rad_s, 0.0);
@@ -111,7 +111,7 @@ fn a_spring_against_dry_friction_decays_in_a_straight_line() {
     let mut rig = without_load_loss()
         .with("cuff", &[("damping_nms_per_rad", 0.0)])
         .at_rest();
-    // Pushed aside slowly enough to rest there, then let go.
+    // Pushed aside slowly enough to rest there, then released.
     for n in 0..20_000_u32 {
         rig.tick(-8.0 * f64::from(n.min(16_000)) / 16_000.0);
     }

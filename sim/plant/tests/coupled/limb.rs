@@ -1,4 +1,4 @@
-//! The leg, let go.
+//! The released leg.
 
 use crate::support::{Build, Rig, root};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -14,7 +14,7 @@ fn leg(damping: f64) -> Build {
         .released()
 }
 
-/// Hanging is at 90° when sitting; so far beside it the leg is let go.
+/// Hanging is at 90° when sitting; the leg is released this far beside it.
 fn swing(damping: f64, beside_rad: f64) -> Rig {
     leg(damping).starting(FRAC_PI_2 + beside_rad, 0.0).at_rest()
 }
@@ -109,7 +109,7 @@ fn without_damping_energy_stays() {
 
 /// Weight and passive moment in balance, by another way to write them.
 #[test]
-fn a_leg_let_go_comes_to_rest_where_its_torques_cancel() {
+fn a_released_leg_comes_to_rest_where_its_torques_cancel() {
     let moment = |hip: f64, knee_rad: f64| {
         let knee = knee_rad * 180.0 / PI;
         (1.8 - 0.0352 * knee + 0.0217 * hip).exp()

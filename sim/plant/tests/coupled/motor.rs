@@ -57,7 +57,7 @@ impl Theory {
     }
 }
 
-/// A tick that asks for a current.
+/// A tick with a current setpoint.
 fn ask(rig: &mut Rig, ampere: f64) {
     rig.tick(-ampere * CONSTANT);
 }
@@ -119,7 +119,7 @@ fn the_bandwidth_is_that_of_the_sampled_loop() {
 
 #[test]
 fn a_held_voltage_fills_the_winding_exponentially() {
-    // More is asked for than 1 V can drive: from the second tick on it is on.
+    // The setpoint exceeds what 1 V can drive: from the second tick on it is on.
     let mut rig = Build::of(&[("motor", &[("supply_v", 1.0)])])
         .substeps(2)
         .at_rest();

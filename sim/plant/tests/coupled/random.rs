@@ -7,7 +7,7 @@ use crepitus_plant::motion::Strokes;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
-/// A plant, what moves it, and what its device asks for.
+/// A plant, its motion, and the torque of its device.
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
     pub(crate) build: Build,

@@ -12,7 +12,7 @@ const FASTEST_RAD_S: f64 = 3.0;
 /// and the supply has to follow.
 const FASTEST_JUMPING_RAD_S: f64 = 1.5;
 
-/// What a hand does.
+/// Behaviour of a hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Hand {
     /// Sines from 2 Hz to 400 Hz.

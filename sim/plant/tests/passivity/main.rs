@@ -7,7 +7,7 @@
 //! ```
 //!
 //! with n the ticks between two samples and d those by which the torque lags:
-//! 3.71 of the current loop. `-- --nocapture` prints what was found.
+//! 3.71 of the current loop. `-- --nocapture` prints the results.
 //!
 //! Why: a torque that acts through a linear lag is a mean of torques that act
 //! late, W = Σ w(k)·W(k) with Σ w(k) = 1; a bound that is linear in the delay

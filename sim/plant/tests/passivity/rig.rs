@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 
 pub(crate) const TICK_S: f64 = 5e-5;
 
-/// What the joint knows of the shaft.
+/// The shaft as the joint measures it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Sight {
     /// The true angle.

@@ -258,7 +258,7 @@ impl<'a> Section<'a> {
             .collect()
     }
 
-    /// Refuses keys that nobody asked for.
+    /// Rejects unknown keys.
     pub(crate) fn finish(&self) -> Result<(), SceneError> {
         let asked = self.asked.borrow();
         match self.table.keys().find(|key| !asked.contains(key)) {

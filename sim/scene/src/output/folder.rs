@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 /// Files on their way into a folder. They are written beside it and moved in
-/// by [`commit`](Self::commit); dropped before that, nothing is left.
+/// by [`commit`](Self::commit); dropped before that, no files remain.
 #[derive(Debug)]
 pub struct Folder {
     target: PathBuf,

@@ -1,4 +1,4 @@
-//! The search for the end of the present phase, ahead of the time asked for.
+//! The search for the end of the present phase, ahead of the requested time.
 //!
 //! A phase is searched in windows that begin where it begins, or where a piece
 //! of the motion does, and are laid without regard to where the run is asked
@@ -20,7 +20,7 @@ pub(super) struct PhaseEnd {
     pub(super) sense: Sense,
 }
 
-/// What is known of the end of the present phase within the present piece.
+/// State of the search for the end of the present phase in the present piece.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ahead {
     /// From when on it has not been searched, s.

@@ -68,7 +68,7 @@ impl Reference<'_> {
                 let (torque, rate) = self.torque_and_rate(anchor, true, &shaft);
                 (shaft.phi_rad, torque, rate)
             } else {
-                // The spring asks for no acceleration.
+                // The spring needs no acceleration.
                 let (phi_rad, omega_rad_s) = self.piece.angle_and_velocity(time_s);
                 let (theta, phi) = anchor;
                 (phi_rad, kr * (theta + (phi_rad - phi)), kr * omega_rad_s)

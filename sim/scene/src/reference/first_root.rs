@@ -47,7 +47,7 @@ impl Sample {
                 // 0/0: at zero, and it may bend down at once.
                 0.0
             } else {
-                // At rest for ever, so never below.
+                // At rest from now on, so never below.
                 f64::INFINITY
             }
         }

@@ -1,6 +1,6 @@
 //! When a torque that is a parabola in time reaches a limit.
 
-/// What is left to a limit: left − rate·u − curvature·u²/2.
+/// Distance to a limit: left − rate·u − curvature·u²/2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parabola {
     pub(super) left: f64,

@@ -8,7 +8,7 @@ use super::{Follow, Reference, Slip, State};
 use crepitus_model::{Convention, Event, EventKind, Phase, Sense};
 use std::ops::ControlFlow;
 
-/// A cycle that goes on repeating.
+/// A cycle that repeats.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Repeat {
     /// When the first began, s.
@@ -52,7 +52,7 @@ impl Reference<'_> {
             count: 0.0,
             cycle,
         });
-        // A cycle too short for the time to tell is none.
+        // A cycle shorter than the resolution of time does not count.
         self.repeat = self
             .repeat
             .filter(|r| r.break_s() > r.origin_s && r.end_s() > r.break_s());

@@ -126,7 +126,7 @@ impl Reference<'_> {
             && self.touches()
             && sense.of_signed(shaft.omega_rad_s) > 0.0
         {
-            // The stick would break where it begins, so the slip goes on, and
+            // The stick would break where it begins, so the slip continues, and
             // nothing is felt or reported.
             let slip = self.slip(sense, theta, shaft.omega_rad_s);
             self.change(State::Slip(slip));

@@ -1,7 +1,7 @@
 //! The free motion of the object, for as long as a slip lasts.
 //!
 //! The model keeps the change over a step, C − 1, which is what a short step
-//! needs. Over a long one a damped object forgets where it began: there C
+//! needs. Over a long one a damped object loses its initial state: there C
 //! itself, with its common factor e^(−a·u), keeps the digits of what is left.
 
 use crepitus_model::Parameters;

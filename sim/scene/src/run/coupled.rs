@@ -23,7 +23,7 @@ pub(super) struct PlantTotals {
     pub(super) balance: EnergyBalance,
     /// Where the work of the rendered torque comes from.
     pub(super) rendering: Rendering,
-    /// What the hand felt; none if nobody holds the leg.
+    /// Torque at the hand; `None` for a released leg.
     pub(super) felt: Option<Felt>,
     /// The impacts, if a part of the plant can have any.
     pub(super) impacts: Option<Impacts>,
@@ -79,7 +79,7 @@ pub const FELT_COLUMN: &str = "hand_torque_nm";
 /// tick, which [`FELT_COLUMN`] leaves out: a plant that can have impacts has it.
 pub const STRUCK_COLUMN: &str = "hand_impact_nms";
 
-/// An effect of the device, what it adds now, and the work of that.
+/// An effect of the device, its present torque, and its work.
 struct Stage {
     spec: &'static EffectSpec,
     /// Its place in the model's table.

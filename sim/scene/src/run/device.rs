@@ -16,7 +16,7 @@ use crepitus_model::solver::locate::{EndOfStep, ExactBreak, ExactEvents, Interpo
 use crepitus_model::{Real, Settings, SettingsError, StickSlip, Validated};
 use crepitus_plant::chain::Body;
 
-/// What a scene with a device shows of it: the torque that it commands, and the
+/// Output of a scene's device: the commanded torque, and the
 /// number of the [limit](crepitus_model::render::Limit) that held it back.
 pub(super) const COLUMNS: [Column; 2] = [
     Column {
@@ -29,9 +29,9 @@ pub(super) const COLUMNS: [Column; 2] = [
     },
 ];
 
-/// What a device renders on the shaft that it sees.
+/// The device's renderer, on the shaft as measured.
 pub(super) trait Device {
-    /// What it shows from now to the end of the next tick.
+    /// Output from now to the end of the next tick.
     fn shown(&self) -> Shown<f64>;
 
     /// One tick, which began at `start_s` and in which the shaft moved so.
@@ -49,7 +49,7 @@ pub(super) trait Device {
     /// Whether its state is still numbers.
     fn is_finite(&self) -> bool;
 
-    /// Closes the books of the object, if there is one, and tells in how many
+    /// Completes the energy balance of the object, if there is one, and returns in how many
     /// steps it had as many events as a step may have.
     fn finish(self: Box<Self>, time_s: f64) -> Option<(Tally, u64)>;
 }
@@ -64,7 +64,7 @@ pub(super) fn device<F: Precise>(
     let Some(encoder) = &scene.encoder else {
         return with_sensor::<F, _>(scene, solver, step_s, shaft, Ideal);
     };
-    // A drive begins on a shaft at rest, whatever that does.
+    // A drive starts as on a shaft at rest, whatever its motion.
     let moving = !scene.is_device;
     let seen = Body {
         omega_rad_s: if moving { shaft.omega_rad_s } else { 0.0 },

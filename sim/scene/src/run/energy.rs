@@ -3,7 +3,7 @@
 use crepitus_model::Parameters;
 use crepitus_model::joint::oscillator::Oscillator;
 
-/// Terms of the balance, J. See `tally` for what they mean.
+/// Terms of the balance, J. See `tally` for their definitions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Energy {
     inertia_kg_m2: f64,
@@ -48,7 +48,7 @@ impl Energy {
             0.5 * self.inertia_kg_m2 * theta_dot * theta_dot - self.kinetic_start_j;
     }
 
-    /// What the terms leave over, J.
+    /// Residual, J.
     pub(super) fn residual_j(&self) -> f64 {
         self.work_in_j + self.convention_j
             - self.spring_change_j

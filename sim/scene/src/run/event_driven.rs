@@ -188,7 +188,7 @@ impl<'a> Books<'a> {
     }
 }
 
-/// Books what happens and tells whoever watches, who may end the run.
+/// Records events and notifies the observer, which may end the run.
 struct Booked<'b, 'a> {
     books: &'b mut Books<'a>,
     watch: &'b mut dyn Watch,

@@ -2,7 +2,7 @@
 //!
 //! Friction opposes the sliding, so in a slip of sense s the shaft has to be
 //! the faster one in that sense. What the energy balance cannot see is a slip
-//! that goes on after the velocities have met: torque and motion still agree
+//! that continues after the velocities have met: torque and motion still agree
 //! with each other, and the friction term is booked with the wrong sign. Under
 //! `paper` and `physical` that is a missed event. A `frozen` slip lasts as long
 //! as it lasts and may do so by design, when the hand slows down meanwhile.

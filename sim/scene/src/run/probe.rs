@@ -1,4 +1,4 @@
-//! What a step of a scene costs: its first steps, timed a few times in CPU
+//! CPU time of a scene's step: its first steps, timed a few times in CPU
 //! time. What is compared takes turns, so that a drift of the machine's speed
 //! hits all alike.
 
@@ -36,7 +36,7 @@ pub struct StepTime {
 }
 
 impl StepTime {
-    /// The time of a step that nobody knows.
+    /// An unknown time of a step.
     pub const UNKNOWN: Self = Self {
         ns: f64::NAN,
         spread: f64::NAN,

@@ -1,4 +1,4 @@
-//! What the joint is told of the shaft: the truth, or what an encoder sees.
+//! The joint's input: the exact motion of the shaft, or that of an encoder.
 
 use crate::trace::{Column, ColumnKind};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};

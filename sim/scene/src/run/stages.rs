@@ -22,7 +22,7 @@ const BARE_DELAY_TICKS: usize = 1;
 /// What stands behind the symptoms of a bare solver.
 pub(super) type BareStages<F, S> = Pipeline<F, (), S, Effects<F>>;
 
-/// What the drive has; its symptoms are always those of the firmware.
+/// Stages of the drive; its symptoms are always those of the firmware.
 pub(super) type DriveStages<F, S> =
     Pipeline<F, InputCheck<F>, S, SwitchedEffects<F>, TorqueLimits<F>>;
 

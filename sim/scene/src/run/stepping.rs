@@ -189,7 +189,7 @@ pub(super) struct Books {
     /// The last point of the step that is booked, as a fraction of it.
     booked: f64,
     stick: StickEnd,
-    /// Events of the step that goes on.
+    /// Events of the present step.
     in_step: usize,
     /// Steps with as many events as a step may have: more may have followed.
     pub(super) crowded_steps: u64,

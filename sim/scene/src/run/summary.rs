@@ -59,7 +59,7 @@ pub struct Summary {
     pub energy: Option<EnergySummary>,
     /// Slips in which the shaft fell behind the object.
     pub lead: Option<LeadSummary>,
-    /// What the hand feels, if there is a plant and a hand.
+    /// Torque at the hand, if there is a plant and a hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hand_torque: Option<TorqueSummary>,
     /// The impacts of the plant, if a part of it can have any.
@@ -72,7 +72,7 @@ pub struct Summary {
     pub wall_s: f64,
     /// Simulated time over that.
     pub real_time_factor: f64,
-    /// What was odd.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
@@ -83,7 +83,7 @@ pub struct EffectSummary {
     pub name: &'static str,
     /// Its state variables.
     pub states: &'static [&'static str],
-    /// What it costs, once measured; never for `reference`.
+    /// Cost, once measured; never for `reference`.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub added: Option<AddedTime>,
     /// Its parameters.
@@ -93,16 +93,16 @@ pub struct EffectSummary {
     pub choices: Vec<ChoiceValue>,
 }
 
-/// A choice in force.
+/// An active choice.
 #[derive(Clone, Debug, Serialize)]
 pub struct ChoiceValue {
     /// Name, as in scene files.
     pub key: &'static str,
-    /// What was chosen.
+    /// Name of the chosen value.
     pub value: &'static str,
 }
 
-/// A parameter in force.
+/// An active parameter.
 #[derive(Clone, Debug, Serialize)]
 pub struct ParameterValue {
     /// Name with unit, as in scene files.
@@ -168,9 +168,9 @@ pub struct ImpactSummary {
 /// work_in + convention = spring_change + kinetic_change + friction + viscous + residual.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct EnergySummary {
-    /// ∫T dφ: what the hand puts in.
+    /// ∫T dφ: work of the hand.
     pub work_in_j: f64,
-    /// What the convention gives the object without showing a torque for it.
+    /// Energy that the convention adds to the object without a torque.
     pub convention_j: f64,
     /// Change of the spring's energy.
     pub spring_change_j: f64,
@@ -180,7 +180,7 @@ pub struct EnergySummary {
     pub friction_j: f64,
     /// Dissipated by the object's damping.
     pub viscous_j: f64,
-    /// What the terms leave over.
+    /// Residual.
     pub residual_j: f64,
     /// That, as a share of the energy that went through.
     pub residual_relative: f64,
@@ -207,7 +207,7 @@ pub struct LeadSummary {
 pub struct PlantEnergySummary {
     /// Its terms, from the hand to the motor.
     pub terms: Vec<EnergyTerm>,
-    /// What the terms leave over.
+    /// Residual.
     pub residual_j: f64,
     /// That, as a share of the sum of all terms' magnitudes.
     pub residual_relative: f64,
@@ -456,7 +456,7 @@ fn in_force(scene: &Scene, effect: &Effect) -> (Vec<f64>, Vec<ChoiceValue>) {
     }
 }
 
-/// What is odd about how the scene ran.
+/// Warnings about the run.
 fn run_warnings(scene: &Scene, totals: &Totals) -> Vec<String> {
     let mut warnings = totals
         .plant

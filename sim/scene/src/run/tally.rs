@@ -1,4 +1,4 @@
-//! What a run adds up: events, cycles, torque, energy.
+//! Totals of a run: events, cycles, torque, energy.
 //!
 //! Energy is booked by phase, from its two ends and closed forms, so a slip
 //! costs nothing per step. The terms of one run satisfy
@@ -60,7 +60,7 @@ pub(super) struct Tally {
     pub(super) lead: Lead,
 }
 
-/// The beginning of the phase that goes on.
+/// The beginning of the present phase.
 #[derive(Clone, Copy, Debug)]
 struct PhaseStart {
     phase: Phase,
@@ -176,13 +176,13 @@ impl Tally {
         };
     }
 
-    /// Closes the books at the end of the run.
+    /// Completes the totals at the end of the run.
     pub(super) fn finish(&mut self, time_s: f64, phi_rad: f64, theta: f64, theta_dot: f64) {
         self.end_phase(time_s, phi_rad, theta, theta_dot);
         self.energy.finish(theta, theta_dot);
     }
 
-    /// State of the object `after_s` into the slip that goes on.
+    /// State of the object `after_s` into the present slip.
     fn swing(&self, sense: Sense, after_s: f64) -> (f64, f64) {
         let centre = sense.of_signed(
             self.settings.parameters.kinetic_torque_nm

@@ -1,4 +1,4 @@
-//! What the drive would not render, in a scene that asks for a device.
+//! Rejects settings that the drive cannot render, in a scene with a device.
 
 use super::effects::Effects;
 use super::{Crepitus, SolverChoice};

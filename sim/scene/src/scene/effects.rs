@@ -1,4 +1,4 @@
-//! The `[effects]` table. What it does not list is not built, not stepped, and
+//! The `[effects]` table. An effect that is not listed is not built, not stepped, and
 //! absent from the outputs.
 
 use super::Crepitus;

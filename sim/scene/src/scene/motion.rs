@@ -27,7 +27,7 @@ pub enum MotionKind {
     Strokes,
     /// A recording.
     Recording,
-    /// A leg that is let go of.
+    /// A released leg.
     Released,
 }
 
@@ -112,7 +112,7 @@ fn seed(section: &Section<'_>) -> Result<Option<u64>, SceneError> {
     }
 }
 
-/// How long a stroke may take, s: neither a jump nor for ever.
+/// Range of a stroke's duration, s.
 const STROKE_S: std::ops::RangeInclusive<f64> = 1e-3..=1e7;
 
 /// The shortest time between two knots, s: within less an acceleration is no

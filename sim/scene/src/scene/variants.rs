@@ -1,4 +1,4 @@
-//! What a scene calls for, and the same scene with less or more of it.
+//! Variants of a scene, with fewer or more effects.
 
 use super::{Crepitus, MotionKind, Scene, SolverChoice};
 use crepitus_model::Settings;

@@ -1,7 +1,7 @@
-//! A winding on a bridge that somebody else switches: the board, whose device
+//! A winding on a bridge that the caller switches: the board, whose device
 //! code closes the current loop itself.
 //!
-//! Driven, the terminals have the voltage that the bridge is told, within the
+//! Driven, the terminals have the commanded voltage, within the
 //! supply's. Open, all its switches are off, and what current there is flows
 //! on through their diodes, against the supply:
 //!
@@ -26,10 +26,10 @@ use crepitus_model::Sense;
 /// Voltage over a diode that conducts, V.
 pub const DIODE_V: f64 = 0.8;
 
-/// A current that falls to this share of itself is none.
+/// Share of itself below which a falling current counts as zero.
 const NEARLY: f64 = 1e-5;
 
-/// What the bridge does with the motor's terminals.
+/// State of the bridge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Terminals {
     /// It holds this voltage, V; positive drives towards growing angle.
@@ -56,7 +56,7 @@ pub struct Bridge {
     supply_v: f64,
     mode: Mode,
     /// In this step the diodes were found not to begin to conduct: at the edge
-    /// they would, and would not, for ever.
+    /// they would switch endlessly.
     refused: bool,
     charge_c: f64,
     supply_j: f64,
@@ -106,7 +106,7 @@ impl Bridge {
         self.supply_v
     }
 
-    /// What the diodes hold against a current, V.
+    /// Voltage of the diodes against a current, V.
     fn against_v(&self) -> f64 {
         self.supply_v + 2.0 * DIODE_V
     }

@@ -13,7 +13,7 @@
 use crate::chain::Push;
 use crate::energy_balance::{Account, EnergyBalance};
 
-/// What a winding is.
+/// Constants of a winding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindingSettings {
     /// Resistance R, Ω.
@@ -47,10 +47,10 @@ struct Transient {
     mean: f64,
 }
 
-/// The current over a step: `final_a` plus what is left of `from_a`.
+/// The current over a step: `final_a` plus the decaying rest of `from_a`.
 #[derive(Clone, Copy, Debug)]
 pub struct Course {
-    /// What it tends to, A.
+    /// Final value, A.
     pub final_a: f64,
     /// How far from that it begins, A.
     pub from_a: f64,
@@ -85,7 +85,7 @@ impl Winding {
         winding
     }
 
-    /// What it is.
+    /// Constants.
     pub fn settings(&self) -> &WindingSettings {
         &self.settings
     }
@@ -214,7 +214,7 @@ impl Winding {
         0.5 * self.settings.inductance_h * self.current_a * self.current_a
     }
 
-    /// Books what is inside it.
+    /// Adds its stored and dissipated energy to the balance.
     pub fn energy(&self, effect: &'static str, balance: &mut EnergyBalance) {
         balance.add(effect, "copper", Account::Lost, self.copper_j);
         balance.add(effect, "field", Account::Stored, self.field_j());

@@ -1,52 +1,52 @@
-//! A drive's side of the link, as far as comms can tell: one that does what it
-//! is told, and whatever else bytes can make it say.
+//! Model of a drive as comms sees it: it executes orders, and sends any other
+//! message that the input bytes make.
 
 use crate::bytes::Bytes;
-use crate::link_words;
+use crate::link_inputs;
 use crepitus_protocol::frame::{self, Frame};
 use crepitus_protocol::link::{
     DriveRefusal, DriveStatus, FromDrive, Heartbeat, Order, Outcome, ToDrive,
 };
 use crepitus_protocol::management::{Answer, Identity, Role};
-use crepitus_protocol::pieces::Gathered;
+use crepitus_protocol::pieces::Reassembly;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, BlockFlags};
 use crepitus_protocol::{Lane, Revision, State, ValueError, schema};
 
-/// Ticks stay within two months: what a drive can say.
+/// Ticks stay within two months, the range of a drive.
 const MOST_TICK: u64 = 1 << 37;
 
 /// The drive.
-pub(crate) struct DriveSide {
+pub(crate) struct DriveModel {
     status: DriveStatus,
     sequence: u16,
     comms_start: u16,
-    has_said_hello: bool,
-    has_refused: bool,
-    gathered: (Revision, Gathered),
+    has_sent_hello: bool,
+    has_rejected: bool,
+    reassembly: (Revision, Reassembly),
 }
 
-impl DriveSide {
+impl DriveModel {
     pub(crate) fn new(comms_start: u16) -> Self {
         Self {
             status: DriveStatus {
-                heard: Some(comms_start),
+                comms_start: Some(comms_start),
                 ..DriveStatus::default()
             },
             sequence: 0,
             comms_start,
-            has_said_hello: false,
-            has_refused: false,
-            gathered: (Revision::NONE, Gathered::new(0)),
+            has_sent_hello: false,
+            has_rejected: false,
+            reassembly: (Revision::NONE, Reassembly::new(0)),
         }
     }
 
-    /// Whether it has refused a commit since this was asked last.
-    pub(crate) fn has_refused(&mut self) -> bool {
-        std::mem::take(&mut self.has_refused)
+    /// Whether it has rejected a commit since the last call.
+    pub(crate) fn has_rejected(&mut self) -> bool {
+        std::mem::take(&mut self.has_rejected)
     }
 
-    /// Does what it is told.
-    pub(crate) fn hear(&mut self, message: &ToDrive) {
+    /// Executes a message of comms.
+    pub(crate) fn receive(&mut self, message: &ToDrive) {
         match *message {
             ToDrive::Heartbeat(Heartbeat {
                 lease_left, enable, ..
@@ -65,11 +65,11 @@ impl DriveSide {
                 checksum,
                 piece,
             } => {
-                if self.gathered.0 != revision || self.gathered.1.checksum() != checksum {
-                    self.gathered = (revision, Gathered::new(checksum));
+                if self.reassembly.0 != revision || self.reassembly.1.checksum() != checksum {
+                    self.reassembly = (revision, Reassembly::new(checksum));
                 }
-                self.gathered.1.add(&piece);
-                if self.gathered.1.values().is_some() {
+                self.reassembly.1.add(&piece);
+                if self.reassembly.1.values().is_some() {
                     self.status.revision = revision;
                 }
             }
@@ -89,10 +89,10 @@ impl DriveSide {
         }
     }
 
-    /// What a good one says in a millisecond.
+    /// Messages of a normal drive in a millisecond.
     pub(crate) fn millisecond(&mut self) -> Vec<Frame> {
         let mut frames = vec![self.block(0), self.status()];
-        if !std::mem::replace(&mut self.has_said_hello, true) {
+        if !std::mem::replace(&mut self.has_sent_hello, true) {
             frames.push(hello(schema::HASH));
         }
         frames
@@ -127,14 +127,14 @@ impl DriveSide {
                 let dropped = u32::from(bytes.byte()) * 20;
                 self.block(dropped)
             }
-            // It has started anew.
+            // It has restarted.
             1 => {
                 self.status = DriveStatus {
                     start: u16::from(bytes.byte()),
                     tick: u64::from(bytes.byte()) * 20,
                     ..DriveStatus::default()
                 };
-                self.has_said_hello = false;
+                self.has_sent_hello = false;
                 self.block(0)
             }
             2 => {
@@ -147,7 +147,7 @@ impl DriveSide {
                 self.status()
             }
             3 => {
-                self.has_refused = true;
+                self.has_rejected = true;
                 self.status.refused = Some((
                     Revision(u32::from(bytes.byte())),
                     ValueError::NeedsDisarmed { id: bytes.byte() },
@@ -168,11 +168,11 @@ impl DriveSide {
             }
             5 => {
                 self.status.revision = Revision(u32::from(bytes.byte()));
-                self.status.heard = bytes.choice(&[None, Some(self.comms_start), Some(99)]);
+                self.status.comms_start = bytes.choice(&[None, Some(self.comms_start), Some(99)]);
                 self.status()
             }
             6 => {
-                let tick = link_words::near(bytes, self.status.tick).min(MOST_TICK);
+                let tick = link_inputs::near(bytes, self.status.tick).min(MOST_TICK);
                 self.status.tick = tick.max(self.status.tick);
                 self.status()
             }

@@ -1,36 +1,36 @@
-//! The enable line of comms: proven at every arming, watched at all times.
+//! The enable line of comms: tested at every arming, read back at all times.
 
 use crepitus_protocol::Fault;
 
-/// Milliseconds within which the line follows.
-const FOLLOWS_MS: u32 = 2;
+/// Milliseconds within which the read-back follows the output.
+const SETTLE_MS: u32 = 2;
 
-/// What the line is at.
+/// State of the test.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Step {
     /// Off.
     #[default]
     Off,
-    /// On for the first time: does it rise?
+    /// On for the first time: waits for the read-back to rise.
     FirstOn,
-    /// Off again: does it fall?
+    /// Off again: waits for the read-back to fall.
     OffAgain,
-    /// On, and stays.
+    /// On, the test passed.
     On,
 }
 
-/// The line.
+/// The enable line.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Line {
+pub struct EnableLine {
     step: Step,
-    /// It was seen on in [`Step::On`].
+    /// The read-back was on in [`Step::On`].
     proven: bool,
-    /// Milliseconds in which it has not been as it should.
-    astray_ms: u32,
+    /// Consecutive milliseconds in which the read-back differs from the output.
+    mismatch_ms: u32,
 }
 
-impl Line {
-    /// Begins to prove it.
+impl EnableLine {
+    /// Starts the test: on, off, on.
     pub fn prove(&mut self) {
         if self.step == Step::Off {
             *self = Self {
@@ -40,27 +40,27 @@ impl Line {
         }
     }
 
-    /// Lets go of it.
+    /// Switches the line off.
     pub fn off(&mut self) {
         if self.step != Step::Off {
             *self = Self::default();
         }
     }
 
-    /// Whether it was proven and is on.
+    /// Whether the line passed its test and is on.
     pub fn is_proven(&self) -> bool {
         self.proven
     }
 
-    /// Whether it is to be on.
+    /// The output level: true for on.
     pub fn level(&self) -> bool {
         matches!(self.step, Step::FirstOn | Step::On)
     }
 
-    /// Once a millisecond, as it is read back: what is wrong with it.
+    /// Runs once a millisecond with the read-back; returns a stuck-line fault.
     pub fn tick(&mut self, is_on: bool) -> Option<Fault> {
         if is_on == self.level() {
-            self.astray_ms = 0;
+            self.mismatch_ms = 0;
             match self.step {
                 Step::Off => {}
                 Step::FirstOn => self.step = Step::OffAgain,
@@ -69,8 +69,8 @@ impl Line {
             }
             return None;
         }
-        self.astray_ms = self.astray_ms.saturating_add(1);
-        if self.astray_ms <= FOLLOWS_MS {
+        self.mismatch_ms = self.mismatch_ms.saturating_add(1);
+        if self.mismatch_ms <= SETTLE_MS {
             return None;
         }
         Some(if is_on {
@@ -87,7 +87,7 @@ mod tests {
 
     /// What comes of a line that follows a millisecond late, or is stuck.
     fn prove(stuck: Option<bool>) -> (Option<Fault>, bool, u32) {
-        let mut line = Line::default();
+        let mut line = EnableLine::default();
         let mut is_on = stuck.unwrap_or(false);
         line.prove();
         for ms in 1..20 {
@@ -115,12 +115,12 @@ mod tests {
 
     #[test]
     fn it_is_watched_at_rest_and_while_on() {
-        let mut line = Line::default();
+        let mut line = EnableLine::default();
         assert_eq!(
             (0..3).find_map(|_| line.tick(true)),
             Some(Fault::CommsEnableStuckOn)
         );
-        let mut line = Line::default();
+        let mut line = EnableLine::default();
         line.prove();
         for _ in 0..6 {
             assert_eq!(line.tick(line.level()), None);

@@ -1,55 +1,55 @@
-//! What a host hears of comms, and may expect to hear.
+//! Oracle of a host: the replies and blocks that comms may send.
 
-use crepitus_protocol::host::{Answer, Ask, Reply, Request};
+use crepitus_protocol::host::{Answer, Operation, Reply, Request};
 use crepitus_protocol::management;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 use crepitus_protocol::{Decoder, Lane, Session, Values};
 use std::collections::BTreeMap;
 
-/// The books of a subscription.
+/// Accounting of a subscription.
 #[derive(Clone, Copy)]
-struct Books {
+struct SampleAccounting {
     first_tick: u64,
     received: u64,
     start: Option<u8>,
     next_tick: u64,
 }
 
-/// A host that hears all replies.
+/// A host that receives all replies.
 #[derive(Default)]
-pub(crate) struct HostEar {
+pub(crate) struct HostOracle {
     decoder: Decoder,
     /// How many replies may still come to each request.
     expected: BTreeMap<(u32, u16), u32>,
     /// Which requests were subscriptions; the last one counts.
     subscription: Option<(Session, u16)>,
-    books: Option<Books>,
+    accounting: Option<SampleAccounting>,
 }
 
-impl HostEar {
+impl HostOracle {
     /// A request was sent.
-    pub(crate) fn asked(&mut self, request: &Request) {
+    pub(crate) fn requested(&mut self, request: &Request) {
         let key = (request.session.0, request.number);
-        match request.ask {
-            Ask::Renew => return,
-            Ask::Subscribe => {
+        match request.operation {
+            Operation::Renew => return,
+            Operation::Subscribe => {
                 self.subscription = Some((request.session, request.number));
-                self.books = None;
+                self.accounting = None;
             }
             _ => {}
         }
         *self.expected.entry(key).or_default() += 1;
     }
 
-    /// The connection was lost, and what was on its way.
+    /// The connection was lost, with the bytes in flight.
     pub(crate) fn cut(&mut self) {
         self.decoder.reset();
         self.subscription = None;
-        self.books = None;
+        self.accounting = None;
     }
 
     /// A byte from comms; `values` are those that there may be.
-    pub(crate) fn hear(&mut self, byte: u8, values: &[Values]) {
+    pub(crate) fn receive(&mut self, byte: u8, values: &[Values]) {
         let Some(body) = self.decoder.push(byte) else {
             return;
         };
@@ -80,7 +80,7 @@ impl HostEar {
                 if self.subscription == Some((reply.session, reply.number)) =>
             {
                 self.subscription = None;
-                self.books = Some(Books {
+                self.accounting = Some(SampleAccounting {
                     first_tick,
                     received: 0,
                     start: None,
@@ -95,23 +95,25 @@ impl HostEar {
     }
 
     fn block(&mut self, block: &Block) {
-        let Some(books) = &mut self.books else {
+        let Some(accounting) = &mut self.accounting else {
             return;
         };
         let start = block.flags.start();
-        let is_another = match books.start {
-            Some(known) => known != start || block.first_tick < books.next_tick,
+        let is_another = match accounting.start {
+            Some(known) => known != start || block.first_tick < accounting.next_tick,
             // It may have been reset before the first block came.
-            None => block.first_tick.wrapping_sub(books.first_tick) != u64::from(block.dropped),
+            None => {
+                block.first_tick.wrapping_sub(accounting.first_tick) != u64::from(block.dropped)
+            }
         };
         if is_another {
-            books.first_tick = block.first_tick.wrapping_sub(block.dropped.into());
-            books.received = 0;
+            accounting.first_tick = block.first_tick.wrapping_sub(block.dropped.into());
+            accounting.received = 0;
         }
-        (books.start, books.next_tick) = (Some(start), block.end_tick());
-        books.received += BLOCK_SAMPLES as u64;
-        let produced = block.end_tick() - books.first_tick;
-        let lost = produced - books.received;
+        (accounting.start, accounting.next_tick) = (Some(start), block.end_tick());
+        accounting.received += BLOCK_SAMPLES as u64;
+        let produced = block.end_tick() - accounting.first_tick;
+        let lost = produced - accounting.received;
         assert_eq!(lost & u64::from(u32::MAX), u64::from(block.dropped));
     }
 }

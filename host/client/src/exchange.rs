@@ -1,4 +1,4 @@
-//! Asking until there is an answer, and the lease meanwhile.
+//! Request and reply with retries and timeout; renews the lease meanwhile.
 
 use crate::client::{Client, Lease};
 use crate::errors::Error;
@@ -7,50 +7,50 @@ use crate::reconnect::Loss;
 use crate::refusals::Refused;
 use crate::request_kind::RequestKind;
 use crate::transport::{Transport, TransportError};
-use crate::wire::{Heard, Wire};
-use crepitus_protocol::host::{Answer, Ask, Refusal, Reply, Request};
-use crepitus_protocol::management::{self, Question, What};
+use crate::wire::{Incoming, Wire};
+use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request};
+use crepitus_protocol::management::{self, Action, ManagementRequest};
 use std::time::Duration;
 
-/// The lease of 250 ms is renewed this often: four renewals may be lost.
+/// Interval of lease renewals: the lease of 250 ms survives four lost ones.
 const RENEW_EVERY: Duration = Duration::from_millis(50);
 
-/// A device that is busy is asked again for so long, this often.
-const BUSY_PATIENCE: Duration = Duration::from_millis(500);
-const BUSY_PAUSE: Duration = Duration::from_millis(20);
+/// Timeout and interval of retries while the device is busy.
+const BUSY_TIMEOUT: Duration = Duration::from_millis(500);
+const BUSY_RETRY: Duration = Duration::from_millis(20);
 
 impl<T: Transport> Client<T> {
-    /// Asks, and waits for the answer. What is refused because the device is
-    /// still busy with something else is asked anew for half a second.
-    pub(crate) fn ask(&mut self, ask: Ask) -> Result<Answer, Error> {
-        let what = RequestKind::of(&ask);
-        let end = self.now() + BUSY_PATIENCE;
+    /// Sends a request and waits for the reply. Retries for half a second while
+    /// the device is busy.
+    pub(crate) fn request(&mut self, operation: Operation) -> Result<Answer, Error> {
+        let kind = RequestKind::of(&operation);
+        let end = self.now() + BUSY_TIMEOUT;
         loop {
             let (session, number) = (self.session, self.next_number());
             let request = Request {
                 session,
                 number,
-                ask,
+                operation,
             };
             let reply = self.exchange(
-                what,
+                kind,
                 |wire| wire.request(&request),
-                |heard| match heard {
-                    Heard::Reply(reply) if reply.number == number => Some(**reply),
+                |incoming| match incoming {
+                    Incoming::Reply(reply) if reply.number == number => Some(**reply),
                     _ => None,
                 },
             )?;
             let Reply { answer, .. } = reply;
             match answer {
                 Ok(answer) => return Ok(answer),
-                Err(Refusal::Busy) if what.is_job() && self.now() < end => self.idle(BUSY_PAUSE)?,
+                Err(Refusal::Busy) if kind.is_job() && self.now() < end => self.idle(BUSY_RETRY)?,
                 Err(refusal) => {
-                    let values = match ask {
-                        Ask::Commit { values, .. } => Some(values),
+                    let values = match operation {
+                        Operation::Commit { values, .. } => Some(values),
                         _ => None,
                     };
                     return Err(Error::from(Refused {
-                        what,
+                        request: kind,
                         refusal,
                         values,
                     }));
@@ -59,19 +59,22 @@ impl<T: Transport> Client<T> {
         }
     }
 
-    /// Asks on the lane that never changes.
-    pub(crate) fn ask_management(&mut self, what: What) -> Result<management::Answer, Error> {
+    /// Sends a management request and waits for the answer.
+    pub(crate) fn request_management(
+        &mut self,
+        action: Action,
+    ) -> Result<management::Answer, Error> {
         self.token = self.token.wrapping_add(1);
-        let question = Question {
-            what,
+        let request = ManagementRequest {
+            action,
             token: self.token,
         };
         self.exchange(
-            RequestKind::of_question(what),
-            |wire| wire.question(question),
-            |heard| match heard {
-                Heard::Answer(answer)
-                    if answer.token() == question.token && kind_of(answer) == what =>
+            RequestKind::of_management(action),
+            |wire| wire.management(request),
+            |incoming| match incoming {
+                Incoming::Answer(answer)
+                    if answer.token() == request.token && action_of(answer) == action =>
                 {
                     Some(*answer)
                 }
@@ -80,28 +83,28 @@ impl<T: Transport> Client<T> {
         )
     }
 
-    /// Sends until there is an answer that is meant.
+    /// Sends with retries until the matching reply arrives.
     fn exchange<R>(
         &mut self,
-        what: RequestKind,
+        kind: RequestKind,
         send: impl Fn(&mut Wire<T>) -> Result<(), TransportError>,
-        find: impl Fn(&Heard) -> Option<R>,
+        find: impl Fn(&Incoming) -> Option<R>,
     ) -> Result<R, Error> {
-        self.asking = Some(what);
-        let result = self.repeat(what, send, find);
-        self.asking = None;
+        self.pending_request = Some(kind);
+        let result = self.repeat(kind, send, find);
+        self.pending_request = None;
         result
     }
 
     fn repeat<R>(
         &mut self,
-        what: RequestKind,
+        kind: RequestKind,
         send: impl Fn(&mut Wire<T>) -> Result<(), TransportError>,
-        find: impl Fn(&Heard) -> Option<R>,
+        find: impl Fn(&Incoming) -> Option<R>,
     ) -> Result<R, Error> {
-        let patience = what.patience();
-        let began = self.now();
-        let end = began + patience.limit;
+        let timing = kind.timing();
+        let started = self.now();
+        let end = started + timing.limit;
         let mut tries = 0;
         while self.now() < end {
             self.connected()?;
@@ -109,42 +112,41 @@ impl<T: Transport> Client<T> {
             self.sent(sent)?;
             self.counts.repeats += u64::from(tries > 0);
             tries += 1;
-            let again = end.min(self.now() + patience.again);
-            while self.now() < again {
-                let Some(heard) = self.turn(again)? else {
+            let retry_at = end.min(self.now() + timing.retry);
+            while self.now() < retry_at {
+                let Some(incoming) = self.receive(retry_at)? else {
                     continue;
                 };
-                if let Some(answer) = find(&heard) {
+                if let Some(answer) = find(&incoming) {
                     self.round_trips
-                        .took(what, self.now().saturating_sub(began));
+                        .took(kind, self.now().saturating_sub(started));
                     return Ok(answer);
                 }
                 self.counts.strays += 1;
             }
         }
         Err(Error::NoAnswer {
-            what,
+            request: kind,
             tries,
-            waited: self.now().saturating_sub(began),
+            waited: self.now().saturating_sub(started),
             port: self.port(),
         })
     }
 
-    /// Lets time go by, in which the lease is renewed and nothing is missed.
+    /// Waits, renewing the lease and receiving messages.
     pub(crate) fn idle(&mut self, time: Duration) -> Result<(), Error> {
         let until = self.now() + time;
         while self.now() < until {
-            if self.turn(until)?.is_some() {
+            if self.receive(until)?.is_some() {
                 self.counts.strays += 1;
             }
         }
         Ok(())
     }
 
-    /// Renews the lease if that is due, then takes the next message, waited
-    /// for until then at most. Gives it if it is an answer that may be meant;
-    /// nothing is not yet the end of the time.
-    pub(crate) fn turn(&mut self, until: Duration) -> Result<Option<Heard>, Error> {
+    /// Renews the lease if due, then receives a message until the deadline.
+    /// Returns it if it is a reply; `None` may come before the deadline.
+    pub(crate) fn receive(&mut self, until: Duration) -> Result<Option<Incoming>, Error> {
         self.connected()?;
         self.renew()?;
         let until = match self.lease {
@@ -152,12 +154,12 @@ impl<T: Transport> Client<T> {
             Lease::Taking | Lease::Held => until.min(self.renewed_at + RENEW_EVERY),
         };
         match self.wire.next(until) {
-            Ok(heard) => Ok(heard.and_then(|heard| self.take_in(heard))),
+            Ok(incoming) => Ok(incoming.and_then(|incoming| self.take_in(incoming))),
             Err(error) => Err(self.failed(error)),
         }
     }
 
-    /// Renews the lease, if that is due.
+    /// Renews the lease if due.
     pub(crate) fn renew(&mut self) -> Result<(), Error> {
         let now = self.now();
         if self.lease == Lease::None || now.saturating_sub(self.renewed_at) < RENEW_EVERY {
@@ -167,7 +169,7 @@ impl<T: Transport> Client<T> {
         let sent = self.wire.request(&Request {
             session: self.session,
             number: self.number,
-            ask: Ask::Renew,
+            operation: Operation::Renew,
         });
         self.counts.renewals += 1;
         self.sent(sent)
@@ -178,7 +180,7 @@ impl<T: Transport> Client<T> {
         self.number
     }
 
-    /// What was not taken is as good as lost on the way: it will be repeated.
+    /// Handles a send error: a stalled frame counts as lost and is retried.
     pub(crate) fn sent(&mut self, result: Result<(), TransportError>) -> Result<(), Error> {
         match result {
             Ok(()) => Ok(()),
@@ -197,11 +199,11 @@ impl<T: Transport> Client<T> {
         Err(Error::NotConnected { port: self.port() })
     }
 
-    /// The line has failed: whatever it is, it has to be opened again.
+    /// Handles a failed connection: it has to be reopened.
     pub(crate) fn failed(&mut self, error: TransportError) -> Error {
         self.loss = Some(Loss {
             was_armed: self.lease == Lease::Held,
-            unanswered: self.asking,
+            unanswered: self.pending_request,
         });
         self.lease = Lease::None;
         self.watch.asked = None;
@@ -210,10 +212,10 @@ impl<T: Transport> Client<T> {
     }
 }
 
-fn kind_of(answer: &management::Answer) -> What {
+fn action_of(answer: &management::Answer) -> Action {
     match answer {
-        management::Answer::Hello { .. } => What::Hello,
-        management::Answer::Stop { .. } => What::Stop,
-        management::Answer::Reboot { .. } => What::Reboot,
+        management::Answer::Hello { .. } => Action::Hello,
+        management::Answer::Stop { .. } => Action::Stop,
+        management::Answer::Reboot { .. } => Action::Reboot,
     }
 }

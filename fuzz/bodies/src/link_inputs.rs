@@ -1,8 +1,8 @@
-//! What bytes become of messages: mostly near enough to be taken seriously.
+//! Messages made of bytes, mostly plausible.
 
 use crate::bytes::Bytes;
 use crepitus_protocol::Values;
-use crepitus_protocol::management::What;
+use crepitus_protocol::management::Action;
 use crepitus_protocol::parameters::{Kind, PARAMETERS};
 
 /// A tick that is about now: mostly now, or a little earlier.
@@ -35,6 +35,6 @@ pub(crate) fn values(bytes: &mut Bytes<'_>) -> Values {
 }
 
 /// A question of the lane that never changes.
-pub(crate) fn what(bytes: &mut Bytes<'_>) -> What {
-    bytes.choice(&[What::Hello, What::Stop, What::Reboot])
+pub(crate) fn action(bytes: &mut Bytes<'_>) -> Action {
+    bytes.choice(&[Action::Hello, Action::Stop, Action::Reboot])
 }

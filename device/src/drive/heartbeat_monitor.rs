@@ -1,0 +1,149 @@
+//! Timeout supervision of heartbeats and of the host's lease.
+//!
+//! Both deadlines are ticks of the drive's own clock, which comms echoes: a
+//! delayed, repeated or replayed heartbeat extends neither.
+
+use crepitus_protocol::link::{Heartbeat, STALE_TICKS};
+use crepitus_protocol::{Fault, HEARTBEAT_TICKS};
+
+/// Freshness of a heartbeat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Freshness {
+    /// Fresh: it resets the timeout.
+    Fresh,
+    /// Stale: it was delayed too long and is ignored.
+    Stale,
+    /// Fresh, and the first one after a restart of comms.
+    Restarted,
+}
+
+/// Monitors heartbeats and lease.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct HeartbeatMonitor {
+    /// Tick of the last fresh heartbeat.
+    last_tick: Option<u64>,
+    /// Tick at which the lease expires.
+    lease_end: u64,
+    /// Boot counter of comms.
+    comms_start: Option<u16>,
+}
+
+/// Whether a message that echoes `seen_tick` is fresh at `now`.
+pub fn is_fresh(now: u64, seen_tick: u64) -> bool {
+    // A tick in the future is from before a restart of the drive.
+    now.checked_sub(seen_tick)
+        .is_some_and(|age| age <= STALE_TICKS)
+}
+
+impl HeartbeatMonitor {
+    /// Handles a heartbeat that was decoded in the tick `now`.
+    pub fn receive(&mut self, now: u64, heartbeat: &Heartbeat) -> Freshness {
+        if !is_fresh(now, heartbeat.seen_tick) {
+            return Freshness::Stale;
+        }
+        let restarted = self
+            .comms_start
+            .is_some_and(|start| start != heartbeat.start);
+        self.comms_start = Some(heartbeat.start);
+        self.last_tick = Some(now);
+        self.lease_end = heartbeat
+            .seen_tick
+            .saturating_add(u64::from(heartbeat.lease_left));
+        if restarted {
+            Freshness::Restarted
+        } else {
+            Freshness::Fresh
+        }
+    }
+
+    /// Boot counter of comms, from the last heartbeat.
+    pub fn comms_start(&self) -> Option<u16> {
+        self.comms_start
+    }
+
+    /// Whether the lease has not expired.
+    pub fn is_leased(&self, now: u64) -> bool {
+        self.last_tick.is_some() && now < self.lease_end
+    }
+
+    /// The fault of an expired timeout in the tick `now`.
+    pub fn timeout(&self, now: u64) -> Option<Fault> {
+        let silent = self
+            .last_tick
+            // The output of this tick acts during the next: one tick less.
+            .is_none_or(|last_tick| now.saturating_sub(last_tick) >= HEARTBEAT_TICKS - 1);
+        if silent {
+            Some(Fault::CommsSilent)
+        } else if self.is_leased(now) {
+            None
+        } else {
+            Some(Fault::LeaseExpired)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn heartbeat(seen_tick: u64, lease_left: u16) -> Heartbeat {
+        Heartbeat {
+            seen_tick,
+            lease_left,
+            enable: true,
+            start: 1,
+        }
+    }
+
+    #[test]
+    fn a_heartbeat_timeout_is_detected_in_time() {
+        for start in [1_000, u64::MAX - 10_000] {
+            let mut monitor = HeartbeatMonitor::default();
+            assert_eq!(monitor.timeout(start), Some(Fault::CommsSilent));
+            assert_eq!(
+                monitor.receive(start, &heartbeat(start - 60, 5_000)),
+                Freshness::Fresh
+            );
+            assert_eq!(monitor.timeout(start + 99), None);
+            assert_eq!(monitor.timeout(start + 100), Some(Fault::CommsSilent));
+        }
+    }
+
+    #[test]
+    fn a_lease_ends_at_its_tick_whatever_the_latency() {
+        let mut monitor = HeartbeatMonitor::default();
+        for (now, late) in [(10_000, 0), (10_000, 300), (10_000, 400)] {
+            monitor.receive(now, &heartbeat(now - late, 500));
+            assert!(monitor.is_leased(now - late + 499));
+            assert!(!monitor.is_leased(now - late + 500));
+        }
+        monitor.receive(20_000, &heartbeat(20_000, 0));
+        assert_eq!(monitor.timeout(20_000), Some(Fault::LeaseExpired));
+    }
+
+    #[test]
+    fn stale_and_future_heartbeats_are_ignored() {
+        let mut monitor = HeartbeatMonitor::default();
+        assert_eq!(
+            monitor.receive(10_000, &heartbeat(9_599, 5_000)),
+            Freshness::Stale
+        );
+        assert_eq!(
+            monitor.receive(10_000, &heartbeat(10_001, 5_000)),
+            Freshness::Stale
+        );
+        assert!(!monitor.is_leased(10_000));
+    }
+
+    #[test]
+    fn a_restart_of_comms_is_reported_once() {
+        let mut monitor = HeartbeatMonitor::default();
+        monitor.receive(100, &heartbeat(100, 5_000));
+        let other = Heartbeat {
+            start: 2,
+            ..heartbeat(110, 5_000)
+        };
+        assert_eq!(monitor.receive(110, &other), Freshness::Restarted);
+        assert_eq!(monitor.receive(120, &other), Freshness::Fresh);
+    }
+}
