@@ -117,14 +117,14 @@ fn what_has_no_meaning_is_listed_with_its_reason() {
         out.to_str().unwrap(),
     ]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let told = json(&output);
-    let refused = told["summary"]["refused"].as_array().unwrap();
+    let printed = json(&output);
+    let refused = printed["summary"]["refused"].as_array().unwrap();
     assert!(refused.iter().any(|r| r["solver"] == "rk4"));
     for refused in refused {
         assert_eq!(refused["convention"], "frozen");
         assert!(refused["reason"].as_str().unwrap().len() > 20);
     }
-    let skipped = &told["summary"]["skipped"][0];
+    let skipped = &printed["summary"]["skipped"][0];
     assert_eq!(skipped["step_s"], 1.0);
     let (_, rows) = csv(&out.join("points.csv"));
     assert!(!rows.is_empty() && rows.iter().all(|r| r[2] != "rk4"));
@@ -169,8 +169,8 @@ fn a_need_gets_the_cheapest_that_meets_it() {
     ];
     let output = accuracy(&[&["--json"], &arguments[..]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let told = json(&output);
-    let answer = &told["answer"];
+    let printed = json(&output);
+    let answer = &printed["answer"];
     let chosen = &answer["chosen"];
     let solver = chosen["solver"].as_str().unwrap();
     assert_eq!(chosen["step_s"], 5e-5);
@@ -204,7 +204,7 @@ fn a_need_gets_the_cheapest_that_meets_it() {
 }
 
 #[test]
-fn without_a_rate_the_longest_steps_are_told() {
+fn without_a_rate_the_longest_steps_are_printed() {
     let home = tempfile::tempdir().unwrap();
     let scene = short_scene(home.path(), "physical");
     let output = accuracy(&[
@@ -360,9 +360,9 @@ fn a_scene_without_events_is_studied_too() {
 /// Whether the image for the target could not be built here; a line about it,
 /// or a failure where it must be.
 fn has_no_target(output: &Output) -> bool {
-    let told = stderr(output);
-    let has_none = told.contains("rustup target add thumbv7em-none-eabihf")
-        || told.contains("built without the emulator");
+    let printed = stderr(output);
+    let has_none = printed.contains("rustup target add thumbv7em-none-eabihf")
+        || printed.contains("built without the emulator");
     if has_none {
         assert!(std::env::var_os("CREPITUS_NEEDS_TARGET").is_none());
         println!("left out: there is no image for the target");
@@ -439,9 +439,9 @@ fn on_the_target_its_cycles_choose() {
         return;
     }
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let told = json(&output);
-    assert_eq!(told["chosen_by"], "target cycles");
-    let answer = &told["answer"];
+    let printed = json(&output);
+    assert_eq!(printed["chosen_by"], "target cycles");
+    let answer = &printed["answer"];
     // As accurate as `exact-break`, and cheaper on the target whatever the
     // host says.
     let (chosen, runner_up) = (&answer["chosen"], &answer["runner_up"]);
@@ -479,9 +479,9 @@ fn without_the_target_it_reports_what_to_install() {
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(1));
-    let told = stderr(&output);
+    let printed = stderr(&output);
     assert!(
-        told.contains("rustup target add thumbv7em-none-eabihf"),
-        "{told}"
+        printed.contains("rustup target add thumbv7em-none-eabihf"),
+        "{printed}"
     );
 }

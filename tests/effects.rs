@@ -112,8 +112,8 @@ fn a_study_is_what_single_runs_say() {
         };
         let (torque, found) = felt(&scene(home.path(), "variant", &list));
         let (rms, peak) = apart(&torque, &whole);
-        let told = number(&cell(row, "added_rms_nm"));
-        assert!((told - rms).abs() <= 1e-12 * rms, "{row:?} {rms}");
+        let printed = number(&cell(row, "added_rms_nm"));
+        assert!((printed - rms).abs() <= 1e-12 * rms, "{row:?} {rms}");
         assert_eq!(number(&cell(row, "added_peak_nm")), peak, "{row:?}");
         assert_eq!(cell(row, "events"), found.to_string());
         let own = apart(&torque, &vec![0.0; torque.len()]);
@@ -155,9 +155,9 @@ fn a_tolerance_names_the_smallest_set() {
     ];
     let output = effects(&[&["--json"], &arguments[..]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let told = json(&output);
-    assert_eq!(told["out"], out.to_str().unwrap());
-    let answer = &told["summary"]["answer"];
+    let printed = json(&output);
+    assert_eq!(printed["out"], out.to_str().unwrap());
+    let answer = &printed["summary"]["answer"];
     let chosen: Vec<&str> = answer["chosen"]["effects"]
         .as_array()
         .unwrap()
@@ -226,29 +226,29 @@ fn pictures_need_a_scene() {
 }
 
 #[test]
-fn without_a_scene_the_table_of_effects_is_told() {
+fn without_a_scene_the_table_of_effects_is_printed() {
     let output = effects(&[]);
     assert_eq!(output.status.code(), Some(0));
     let text = stdout(&output);
     let list = json(&effects(&["--json"]));
     let list = list.as_array().unwrap();
     assert_eq!(list.len(), EFFECTS.len());
-    for (effect, told) in EFFECTS.iter().zip(list) {
-        assert_eq!(told["name"], effect.name);
+    for (effect, printed) in EFFECTS.iter().zip(list) {
+        assert_eq!(printed["name"], effect.name);
         assert!(text.contains(&format!("{}: {}", effect.name, effect.adds)));
         assert_eq!(
-            told["states"].as_array().unwrap().len(),
+            printed["states"].as_array().unwrap().len(),
             effect.states.len()
         );
-        for (parameter, told) in effect
+        for (parameter, printed) in effect
             .parameters
             .iter()
-            .zip(told["parameters"].as_array().unwrap())
+            .zip(printed["parameters"].as_array().unwrap())
         {
-            assert_eq!(told["key"], parameter.key);
-            assert_eq!(told["default"], parameter.default);
+            assert_eq!(printed["key"], parameter.key);
+            assert_eq!(printed["default"], parameter.default);
             assert_eq!(
-                (&told["min"], &told["max"]),
+                (&printed["min"], &printed["max"]),
                 (&parameter.min.into(), &parameter.max.into())
             );
             assert!(text.contains(parameter.key) && text.contains(parameter.meaning));

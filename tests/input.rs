@@ -10,13 +10,13 @@ const ESCAPE: char = '\u{1b}';
 
 fn refused(output: &Output) -> String {
     assert_eq!(output.status.code(), Some(2), "{}", stderr(output));
-    let told = stderr(output);
-    assert!(!told.contains(ESCAPE), "{told:?}");
-    told
+    let printed = stderr(output);
+    assert!(!printed.contains(ESCAPE), "{printed:?}");
+    printed
 }
 
 #[test]
-fn what_a_terminal_would_obey_is_shown() {
+fn terminal_escapes_are_shown_and_not_executed() {
     let home = tempfile::tempdir().unwrap();
     let scene = home.path().join("scene.toml");
     let text = "version = 1\ntitle = \"red \\u001b[31m title\"\nduration_s = 0.1\n\
@@ -27,10 +27,10 @@ fn what_a_terminal_would_obey_is_shown() {
     let (scene, out) = (scene.to_str().unwrap(), out.to_str().unwrap());
     let ran = run(&["run", scene, "--out", out]);
     assert_eq!(ran.status.code(), Some(0), "{}", stderr(&ran));
-    let told = stdout(&ran);
+    let printed = stdout(&ran);
     assert!(
-        told.contains("red \\u{1b}[31m title") && !told.contains(ESCAPE),
-        "{told:?}"
+        printed.contains("red \\u{1b}[31m title") && !printed.contains(ESCAPE),
+        "{printed:?}"
     );
 
     let bad = "\u{1b}[2J";
@@ -50,10 +50,10 @@ fn what_a_terminal_would_obey_is_shown() {
         &[bad],
         &["--json", "run", scene, bad],
     ] {
-        let told = refused(&run(arguments));
+        let printed = refused(&run(arguments));
         assert!(
-            told.contains("u{1b}") || told.contains("u001b"),
-            "{arguments:?}: {told}"
+            printed.contains("u{1b}") || printed.contains("u001b"),
+            "{arguments:?}: {printed}"
         );
     }
 }
@@ -78,16 +78,16 @@ fn no_input_is_repeated_at_length() {
             &["info", "--device", input],
             &[input],
         ] {
-            let told = refused(&run(arguments));
+            let printed = refused(&run(arguments));
             let verb = arguments
                 .first()
                 .map_or("", |verb| verb.get(..9.min(verb.len())).unwrap_or(""));
             assert!(
-                told.chars().count() < 1_500,
-                "{verb}: {} characters\n{told}",
-                told.len()
+                printed.chars().count() < 1_500,
+                "{verb}: {} characters\n{printed}",
+                printed.len()
             );
-            for line in told.lines() {
+            for line in printed.lines() {
                 assert!(!line.contains(&"x".repeat(201)), "{verb}: {line}");
             }
         }
@@ -116,8 +116,8 @@ fn permission_denied_and_invalid_values_are_bad_input() {
             "/sys/kernel/crepitus",
         ],
     ] {
-        let told = refused(&run(arguments));
-        assert!(told.contains("/sys/kernel/crepitus"), "{told}");
+        let printed = refused(&run(arguments));
+        assert!(printed.contains("/sys/kernel/crepitus"), "{printed}");
     }
     for (name, value) in [
         ("crepitus.static_torque_nm", "9"),
@@ -127,13 +127,13 @@ fn permission_denied_and_invalid_values_are_bad_input() {
         ("crepitus.nothing", "1"),
         ("crepitus.restart", "sideways"),
     ] {
-        let told = refused(&run(&[
+        let printed = refused(&run(&[
             "params",
             "set",
             &format!("{name}={value}"),
             "--device",
             "sim",
         ]));
-        assert!(told.contains(name), "{told}");
+        assert!(printed.contains(name), "{printed}");
     }
 }

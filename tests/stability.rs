@@ -38,7 +38,7 @@ fn cells(folder: &Path) -> (Vec<String>, Vec<Vec<String>>) {
 }
 
 #[test]
-fn one_case_is_told_in_full_and_becomes_three_files() {
+fn one_case_is_printed_in_full_and_becomes_three_files() {
     let home = tempfile::tempdir().unwrap();
     let out = home.path().join("one");
     let output = stability(&out, &["--case", "reversal-in-stick"]);
@@ -64,12 +64,12 @@ fn one_case_is_told_in_full_and_becomes_three_files() {
         "case,name,convention,solver,precision,must_hold,verdict,flagged,measured,limit,unit,at_s,\
          detail"
     );
-    let told = text.lines().filter(|line| {
+    let printed = text.lines().filter(|line| {
         [" holds (", " degrades", " fails"]
             .iter()
             .any(|verdict| line.contains(verdict))
     });
-    assert_eq!(told.count(), rows.len());
+    assert_eq!(printed.count(), rows.len());
     for row in &rows {
         assert_eq!(row.len(), header.len(), "{row:?}");
         assert_eq!(row[..2], ["H05", "reversal-in-stick"]);
@@ -128,11 +128,11 @@ fn parts_of_the_matrix_can_be_asked_for() {
         ],
     );
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let told: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
-    let cases = told["summary"]["cases"].as_array().unwrap();
+    let printed: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    let cases = printed["summary"]["cases"].as_array().unwrap();
     let ids: Vec<_> = cases.iter().map(|c| c["case"].as_str().unwrap()).collect();
     assert_eq!(ids, ["H02", "H05"]);
-    assert_eq!(told["summary"]["subjects"], 2);
+    assert_eq!(printed["summary"]["subjects"], 2);
     let (_, rows) = cells(home.path());
     assert!(!rows.is_empty());
     for row in &rows {
@@ -185,8 +185,8 @@ fn what_cannot_be_is_refused_and_touches_nothing() {
     }
     let output = stability(home.path(), &["--json", "--case", "nothing-like-it"]);
     assert_eq!(output.status.code(), Some(2));
-    let told: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
-    assert_eq!(told["error"]["exit_code"], 2);
+    let printed: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    assert_eq!(printed["error"]["exit_code"], 2);
     assert_eq!(names(home.path()), ["report.html"]);
     let kept = fs::read_to_string(home.path().join("report.html")).unwrap();
     assert_eq!(kept, "mine");

@@ -60,7 +60,7 @@ fn bone<F: Real>(settings: &BoneShapingSettings, delay_ticks: usize) -> BoneShap
 
 /// A hand and the torque that is added: what it gets back over the worst
 /// stretch beyond what the tank refills, J.
-struct Books {
+struct Accounting {
     on_the_way_nm: Vec<f64>,
     refill_j: f64,
     level_j: f64,
@@ -68,7 +68,7 @@ struct Books {
     worst_j: f64,
 }
 
-impl Books {
+impl Accounting {
     /// With a torque that acts this many ticks late.
     fn new(late: usize, refill_w: f64) -> Self {
         Self {
@@ -103,16 +103,16 @@ fn returned<F: Real>(
     mut hand: impl FnMut(u32, f64) -> (f64, f64),
 ) -> f64 {
     let mut bone = bone::<F>(settings, delay);
-    let mut books = Books::new(late, settings.refill_w);
+    let mut accounting = Accounting::new(late, settings.refill_w);
     for n in 0..ticks {
-        let (jump, delta_phi) = hand(n, books.acting_nm());
+        let (jump, delta_phi) = hand(n, accounting.acting_nm());
         let delta_phi = F::from_f64(delta_phi);
         bone.ring(F::from_f64(jump));
         let torque = bone.tick(delta_phi).to_f64();
         assert!(torque.abs() <= settings.limit_nm + 1e-7);
-        books.tick(delta_phi.to_f64(), torque);
+        accounting.tick(delta_phi.to_f64(), torque);
     }
-    books.worst_j
+    accounting.worst_j
 }
 
 /// Every delay that is asked for, with every real one up to it.

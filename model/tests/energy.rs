@@ -40,12 +40,17 @@ enum Sight {
 /// The largest energy returned over any stretch, as a part of the bound's
 /// first term, for a hand at these angles tick by tick.
 fn returned(parameters: Parameters, delay: usize, sight: Sight, angles_rad: &[f64]) -> f64 {
-    let (guarded, _) = books(parameters, delay, sight, angles_rad);
+    let (guarded, _) = accounting(parameters, delay, sight, angles_rad);
     guarded
 }
 
 /// The same with the torque that is shown, and with the joint's own.
-fn books(parameters: Parameters, delay: usize, sight: Sight, angles_rad: &[f64]) -> (f64, f64) {
+fn accounting(
+    parameters: Parameters,
+    delay: usize,
+    sight: Sight,
+    angles_rad: &[f64],
+) -> (f64, f64) {
     let encoder = EncoderSettings::default();
     let settings = Settings {
         parameters,
@@ -157,7 +162,7 @@ fn a_hand_that_shakes_gets_no_more_back_than_the_bound() {
 fn without_the_guard_a_hand_that_turns_back_in_slips_gets_many_times_the_bound() {
     let p = PRESETS[0].parameters;
     let angles = sine(5.0 * p.static_torque_nm / p.stiffness_nm_per_rad, 20.0, 2.0);
-    let (guarded, unguarded) = books(p, 0, Sight::True, &angles);
+    let (guarded, unguarded) = accounting(p, 0, Sight::True, &angles);
     println!("with the guard {guarded:.2}, without {unguarded:.1} times what the spring holds");
     assert!(guarded <= 1.0 && unguarded > 5.0);
 }

@@ -75,7 +75,7 @@ pub(crate) struct Watch {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Telemetry {
     pub(crate) is_subscribed: bool,
-    pub(crate) books: Option<Accounting>,
+    pub(crate) accounting: Option<Accounting>,
     /// Blocks received before the first tick of the subscription is known.
     pub(crate) early: Option<Vec<Block>>,
     pub(crate) state: Option<State>,
@@ -213,7 +213,7 @@ impl<T: Transport> Client<T> {
 
     /// Accounting of the last subscription.
     pub fn accounting(&self) -> Option<&Accounting> {
-        self.telemetry.books.as_ref()
+        self.telemetry.accounting.as_ref()
     }
 
     /// Round-trip times.

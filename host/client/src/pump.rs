@@ -167,7 +167,8 @@ impl<T: Transport> Client<T> {
             }
             return;
         }
-        let Some(books) = (self.telemetry.books.as_mut()).filter(|_| self.telemetry.is_subscribed)
+        let Some(accounting) =
+            (self.telemetry.accounting.as_mut()).filter(|_| self.telemetry.is_subscribed)
         else {
             self.counts.unasked_blocks += 1;
             return;
@@ -178,7 +179,7 @@ impl<T: Transport> Client<T> {
             self.counts.unread_blocks += 1;
             return;
         }
-        let missing = match books.take(&block) {
+        let missing = match accounting.take(&block) {
             Taken::Old => return,
             Taken::Next { missing } => missing,
             Taken::Restarted { missing } => {

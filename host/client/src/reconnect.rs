@@ -106,9 +106,9 @@ impl<T: Transport> Client<T> {
 
     fn resubscribe(&mut self) -> Result<Resubscribed, Error> {
         let until_tick = self.accounting().map_or(0, Accounting::next_tick);
-        let from_tick = self.begin_subscription(|books, first_tick| match books {
-            Some(books) => books.resume(first_tick),
-            None => *books = Some(Accounting::new(first_tick)),
+        let from_tick = self.begin_subscription(|accounting, first_tick| match accounting {
+            Some(accounting) => accounting.resume(first_tick),
+            None => *accounting = Some(Accounting::new(first_tick)),
         })?;
         Ok(Resubscribed {
             until_tick,
@@ -129,7 +129,7 @@ impl<T: Transport> Client<T> {
                 request: RequestKind::Subscribe,
             });
         };
-        begin(&mut self.telemetry.books, first_tick);
+        begin(&mut self.telemetry.accounting, first_tick);
         self.telemetry.is_subscribed = true;
         self.telemetry.heard_at = self.now();
         self.telemetry.is_silent = false;

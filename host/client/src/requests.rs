@@ -235,7 +235,9 @@ impl<T: Transport> Client<T> {
             .retain(|event| !matches!(event, Event::Block(_) | Event::DriveRestarted));
         self.telemetry.is_subscribed = false;
         self.telemetry.state = None;
-        self.begin_subscription(|books, first_tick| *books = Some(Accounting::new(first_tick)))
+        self.begin_subscription(|accounting, first_tick| {
+            *accounting = Some(Accounting::new(first_tick));
+        })
     }
 
     /// Stops telemetry. Pending blocks and the accounting are kept.

@@ -54,12 +54,12 @@ pub(crate) struct Story {
     /// What one sees, with the numbers.
     pub(crate) caption: String,
     /// From top to bottom.
-    pub(crate) panels: Vec<Told>,
+    pub(crate) panels: Vec<PanelData>,
 }
 
 /// One pair of axes with its curves.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Told {
+pub(crate) struct PanelData {
     /// Curves.
     pub(crate) heading: String,
     /// The axis to the right.
@@ -161,28 +161,28 @@ pub(crate) fn figure(story: &Story) -> Figure {
 
 fn chart(story: &Story, names: &[&str]) -> Svg {
     let next = story.panels.iter().skip(1).map(Some).chain([None]);
-    let panels = story.panels.iter().zip(next).map(|(told, next)| {
+    let panels = story.panels.iter().zip(next).map(|(data, next)| {
         // No numbers above a panel with the same axis.
-        let numbered = !next.is_some_and(|next| next.x == told.x && told.x.range.is_some());
-        panel(told, numbered, names)
+        let numbered = !next.is_some_and(|next| next.x == data.x && data.x.range.is_some());
+        panel(data, numbered, names)
     });
     stack(WIDTH, story.title, panels.collect())
 }
 
-fn panel<'a>(told: &'a Told, numbered: bool, names: &'a [&str]) -> Panel<'a> {
+fn panel<'a>(data: &'a PanelData, numbered: bool, names: &'a [&str]) -> Panel<'a> {
     let values = |pick: fn(&(f64, f64)) -> f64| {
-        let points = told.series.iter().flat_map(|series| &series.points);
+        let points = data.series.iter().flat_map(|series| &series.points);
         points.map(pick)
     };
     let at = |marks: &[Mark]| marks.iter().map(|mark| mark.at).collect::<Vec<_>>();
-    let x = axis(&told.x, values(|p| p.0).chain(at(&told.bounds)), true);
-    let y = axis(&told.y, values(|p| p.1).chain(at(&told.levels)), false);
+    let x = axis(&data.x, values(|p| p.0).chain(at(&data.bounds)), true);
+    let y = axis(&data.y, values(|p| p.1).chain(at(&data.levels)), false);
     let height = PANEL + if numbered { FOOT } else { 0.0 };
-    Panel::new(height, x, (told.y.label, y), |plot| draw(plot, told, names))
-        .head(HEAD, Some(&told.heading))
-        .x_title(numbered.then_some(told.x.label))
+    Panel::new(height, x, (data.y.label, y), |plot| draw(plot, data, names))
+        .head(HEAD, Some(&data.heading))
+        .x_title(numbered.then_some(data.x.label))
         .names(
-            told.levels
+            data.levels
                 .iter()
                 .map(|level| (level.at, level.name.clone()))
                 .collect(),
@@ -190,15 +190,15 @@ fn panel<'a>(told: &'a Told, numbered: bool, names: &'a [&str]) -> Panel<'a> {
         .right(NAMES)
 }
 
-fn draw(plot: &mut Plot, told: &Told, names: &[&str]) {
+fn draw(plot: &mut Plot, data: &PanelData, names: &[&str]) {
     plot.grid();
-    for level in &told.levels {
+    for level in &data.levels {
         plot.across(level.at);
     }
-    bounds(plot, &told.bounds);
-    for (i, series) in told.series.iter().enumerate() {
+    bounds(plot, &data.bounds);
+    for (i, series) in data.series.iter().enumerate() {
         // A line behind others is wider, so that it is seen where they agree.
-        let width = if i == 0 && told.series.len() > 1 {
+        let width = if i == 0 && data.series.len() > 1 {
             2.5
         } else {
             1.25

@@ -67,7 +67,7 @@ fn a_moment_under_torque_is_no_fault() {
         host.run(100);
     }
     assert_eq!(host.status().state, State::Armed);
-    assert_eq!(host.books.expect("books").dropped, 0);
+    assert_eq!(host.accounting.expect("a subscription").dropped, 0);
 }
 
 #[test]

@@ -73,7 +73,7 @@ fn a_minute_of_telemetry_arrives_complete_and_faster_than_it_happens() {
     let wall_s = begun.elapsed().as_secs_f64();
 
     assert_eq!(host.status().state, State::Armed);
-    let books = host.books.unwrap();
+    let accounting = host.accounting.unwrap();
     let board = host.device.board();
     let drive = board.drive().counters();
     let comms = board.comms().counters();
@@ -81,21 +81,21 @@ fn a_minute_of_telemetry_arrives_complete_and_faster_than_it_happens() {
     assert_eq!(drive.get(DriveCounter::Dropped), 0);
     assert_eq!(comms.get(CommsCounter::LostSamples), 0);
     assert_eq!(comms.get(CommsCounter::DroppedSamples), 0);
-    assert_eq!(books.dropped, 0);
+    assert_eq!(accounting.dropped, 0);
     let on_the_way = drive.get(DriveCounter::Produced) - comms.get(CommsCounter::ReceivedSamples);
     assert!(
         on_the_way <= 40,
         "{on_the_way} samples between drive and comms"
     );
-    let on_the_way = u64::from(comms.get(CommsCounter::SentSamples)) - books.received;
+    let on_the_way = u64::from(comms.get(CommsCounter::SentSamples)) - accounting.received;
     assert!(
         on_the_way <= 120,
         "{on_the_way} samples between comms and host"
     );
     let produced = SECONDS * u64::from(TICKS_PER_S);
-    assert!(books.received >= produced);
+    assert!(accounting.received >= produced);
 
-    let payload = books.received * SAMPLE_BYTES as u64;
+    let payload = accounting.received * SAMPLE_BYTES as u64;
     let (usb_end, link_end) = (
         host.device.traffic(),
         host.device.board_mut().up().traffic(),
@@ -107,8 +107,8 @@ fn a_minute_of_telemetry_arrives_complete_and_faster_than_it_happens() {
     println!(
         "{} samples received, {} dropped; envelope {overhead:.2} %; USB {usb_rate:.3} MB/s of 1.0; \
          link {link_rate:.2} Mbaud of 4.2; {:.1} times real time",
-        books.received,
-        books.dropped,
+        accounting.received,
+        accounting.dropped,
         ratio(SECONDS, 1) / wall_s
     );
     assert!(overhead <= 7.0, "{overhead} %");

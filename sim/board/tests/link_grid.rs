@@ -290,9 +290,9 @@ impl Cell {
             values: next,
         });
         assert!(matches!(answer, Ok(Answer::Committed { .. })), "{answer:?}");
-        let received = self.host.books.expect("books").received;
+        let received = self.host.accounting.expect("a subscription").received;
         self.host.run(2_000);
-        let more = self.host.books.expect("books").received - received;
+        let more = self.host.accounting.expect("a subscription").received - received;
         assert!(more >= 1_900, "{more} samples in 2,000 ticks");
         back
     }
@@ -302,7 +302,7 @@ impl Cell {
         let host = &self.host;
         let drive = |counter| u64::from(host.drive_count(counter));
         let comms = |counter| u64::from(host.comms_count(counter));
-        let books = host.books.expect("books");
+        let accounting = host.accounting.expect("a subscription");
         let handed_over = drive(DriveCounter::Produced) - drive(DriveCounter::Dropped);
         let accounted = comms(CommsCounter::ReceivedSamples) + comms(CommsCounter::LostSamples);
         // A block in the drive's queue, and one on the wire.
@@ -315,10 +315,10 @@ impl Cell {
         // The wires were good until the subscription: nothing was lost before.
         assert_eq!(
             comms(CommsCounter::SentSamples) + comms(CommsCounter::DroppedSamples),
-            comms(CommsCounter::ReceivedSamples) - books.first_tick,
+            comms(CommsCounter::ReceivedSamples) - accounting.first_tick,
             "sent and dropped is what was received"
         );
-        let on_the_way = comms(CommsCounter::SentSamples) - books.received;
+        let on_the_way = comms(CommsCounter::SentSamples) - accounting.received;
         assert!(
             on_the_way <= 120,
             "{on_the_way} samples between comms and host"

@@ -31,7 +31,7 @@ pub trait Actuator: Send {
     /// Work that its torque has taken out of the mechanics so far, J.
     fn absorbed_j(&self) -> f64;
 
-    /// Books where that work is.
+    /// Accounting where that work is.
     fn energy(&self, balance: &mut EnergyBalance);
 
     /// Names of the columns in a trace.

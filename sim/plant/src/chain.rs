@@ -223,7 +223,7 @@ pub trait Chain: Send {
     /// end at rest, as a function of the angle; `None` without such a part.
     fn weight(&self) -> Option<Weight>;
 
-    /// Books what each part stores now and has lost so far.
+    /// Accounting what each part stores now and has lost so far.
     fn energy(&self, body: &Body, balance: &mut EnergyBalance);
 
     /// Names of the columns in a trace.

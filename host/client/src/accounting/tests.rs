@@ -14,67 +14,79 @@ fn block(first_tick: u64, dropped: u32, start: u16) -> Block {
     }
 }
 
-fn sums(books: &Accounting) -> [u64; 4] {
-    assert_eq!(books.violations(), 0);
-    assert_eq!(books.produced(), books.received() + books.dropped());
+fn sums(accounting: &Accounting) -> [u64; 4] {
+    assert_eq!(accounting.violations(), 0);
     assert_eq!(
-        books.dropped(),
-        books.dropped_by_device() + books.lost_on_line()
+        accounting.produced(),
+        accounting.received() + accounting.dropped()
+    );
+    assert_eq!(
+        accounting.dropped(),
+        accounting.dropped_by_device() + accounting.lost_on_line()
     );
     [
-        books.produced(),
-        books.received(),
-        books.dropped_by_device(),
-        books.lost_on_line(),
+        accounting.produced(),
+        accounting.received(),
+        accounting.dropped_by_device(),
+        accounting.lost_on_line(),
     ]
 }
 
 #[test]
 fn what_is_missing_was_dropped_or_lost() {
-    let mut books = Accounting::new(1_000);
-    assert_eq!(books.take(&block(1_000, 0, 1)), Taken::Next { missing: 0 });
+    let mut accounting = Accounting::new(1_000);
+    assert_eq!(
+        accounting.take(&block(1_000, 0, 1)),
+        Taken::Next { missing: 0 }
+    );
     // Three blocks missing; the device has dropped one of them.
     assert_eq!(
-        books.take(&block(1_080, 20, 1)),
+        accounting.take(&block(1_080, 20, 1)),
         Taken::Next { missing: 60 }
     );
-    assert_eq!(books.take(&block(1_080, 20, 1)), Taken::Old);
-    assert_eq!(books.take(&block(1_020, 0, 1)), Taken::Old);
-    assert_eq!(sums(&books), [100, 40, 20, 40]);
+    assert_eq!(accounting.take(&block(1_080, 20, 1)), Taken::Old);
+    assert_eq!(accounting.take(&block(1_020, 0, 1)), Taken::Old);
+    assert_eq!(sums(&accounting), [100, 40, 20, 40]);
     let gap = Gap {
         first_tick: 1_020,
         samples: 60,
     };
-    assert!(books.gaps().eq([&gap]));
-    assert_eq!((books.old_blocks(), books.next_tick()), (2, 1_100));
+    assert!(accounting.gaps().eq([&gap]));
+    assert_eq!(
+        (accounting.old_blocks(), accounting.next_tick()),
+        (2, 1_100)
+    );
 }
 
 #[test]
 fn a_restart_of_the_drive_begins_a_segment() {
-    let mut books = Accounting::new(1_000);
-    books.take(&block(1_000, 0, 31));
+    let mut accounting = Accounting::new(1_000);
+    accounting.take(&block(1_000, 0, 31));
     // The device has dropped the first two blocks after the restart.
-    let taken = books.take(&block(60, 40, 0));
+    let taken = accounting.take(&block(60, 40, 0));
     assert_eq!(taken, Taken::Restarted { missing: 40 });
-    assert_eq!(books.take(&block(80, 40, 0)), Taken::Next { missing: 0 });
-    assert_eq!(sums(&books), [20 + 80, 20 + 40, 40, 0]);
-    assert_eq!((books.restarts(), books.first_tick()), (1, 20));
+    assert_eq!(
+        accounting.take(&block(80, 40, 0)),
+        Taken::Next { missing: 0 }
+    );
+    assert_eq!(sums(&accounting), [20 + 80, 20 + 40, 40, 0]);
+    assert_eq!((accounting.restarts(), accounting.first_tick()), (1, 20));
 }
 
 #[test]
 fn the_dropped_counter_may_wrap() {
-    let mut books = Accounting::new(0);
-    books.take(&block(0xffff_fff0, 0xffff_fff0, 1));
-    books.take(&block(0x1_0000_0018, 4, 1));
-    assert_eq!(sums(&books), [0x1_0000_002c, 40, 0x1_0000_0004, 0]);
+    let mut accounting = Accounting::new(0);
+    accounting.take(&block(0xffff_fff0, 0xffff_fff0, 1));
+    accounting.take(&block(0x1_0000_0018, 4, 1));
+    assert_eq!(sums(&accounting), [0x1_0000_002c, 40, 0x1_0000_0004, 0]);
 }
 
 #[test]
 fn an_inconsistent_count_is_detected() {
-    let mut books = Accounting::new(0);
-    books.take(&block(0, 0, 1));
-    books.take(&block(20, 20, 1));
-    assert_eq!(books.violations(), 1);
+    let mut accounting = Accounting::new(0);
+    accounting.take(&block(0, 0, 1));
+    accounting.take(&block(20, 20, 1));
+    assert_eq!(accounting.violations(), 1);
 }
 
 proptest! {
@@ -82,7 +94,7 @@ proptest! {
     /// samples were lost.
     #[test]
     fn the_law_holds(fates in prop::collection::vec(0..4_u8, 1..200), start_tick in 0..u64::MAX / 2) {
-        let mut books = Accounting::new(start_tick);
+        let mut accounting = Accounting::new(start_tick);
         let (mut dropped, mut lost, mut received, mut tick) = (0_u32, 0, 0, start_tick);
         let (mut dropped_seen, mut lost_seen) = (0, 0);
         for fate in fates {
@@ -93,14 +105,14 @@ proptest! {
                     received += 20;
                     (dropped_seen, lost_seen) = (dropped, lost);
                     for _ in 2..=fate {
-                        books.take(&block(tick, dropped, 3));
+                        accounting.take(&block(tick, dropped, 3));
                     }
                 }
             }
             tick += 20;
         }
-        let [_, here, by_device, on_line] = sums(&books);
+        let [_, here, by_device, on_line] = sums(&accounting);
         prop_assert_eq!([here, by_device, on_line], [received, u64::from(dropped_seen), lost_seen]);
-        prop_assert_eq!(books.gaps().map(|gap| gap.samples).sum::<u64>(), books.dropped());
+        prop_assert_eq!(accounting.gaps().map(|gap| gap.samples).sum::<u64>(), accounting.dropped());
     }
 }

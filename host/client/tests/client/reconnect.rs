@@ -45,7 +45,7 @@ fn a_lost_connection_is_reported_once_and_resumes_its_subscription() {
 
     pump_for(&mut client, ms(100));
     let after = check_books(&client);
-    assert_eq!(after[0], after[1], "what was not seen is in no books");
+    assert_eq!(after[0], after[1], "what was not seen is in no accounting");
     assert!(after[1] >= before[1] + 1_900);
     assert_eq!(shared.borrow().drive.state(), State::Faulted);
 }

@@ -79,8 +79,8 @@ fn a_pty_is_a_port_like_any_other() {
     }
     client.unsubscribe().unwrap();
     assert!(blocks > 50, "{blocks}");
-    let books = client.accounting().unwrap();
-    assert_eq!((books.violations(), books.dropped()), (0, 0));
+    let accounting = client.accounting().unwrap();
+    assert_eq!((accounting.violations(), accounting.dropped()), (0, 0));
     assert_eq!(client.status().unwrap().state, State::Disarmed);
 
     // One program at a time.

@@ -91,9 +91,9 @@ fn frames_that_come_twice_are_taken_once() {
     let waiting: Vec<u8> = shared.borrow_mut().waiting(0).iter().copied().collect();
     shared.borrow_mut().waiting(0).extend(waiting);
     pump_for(&mut client, ms(5));
-    let books = client.accounting().unwrap();
-    assert!(books.old_blocks() >= 4);
-    assert_eq!(books.dropped(), 0);
+    let accounting = client.accounting().unwrap();
+    assert!(accounting.old_blocks() >= 4);
+    assert_eq!(accounting.dropped(), 0);
     check_books(&client);
 }
 
@@ -109,8 +109,8 @@ fn a_slow_host_gets_the_count_of_lost_samples() {
     // It was away for 500 ms, of which about 60 found room on the way.
     assert!((8_000..10_000).contains(&dropped), "{dropped}");
     assert_eq!(lost, 0);
-    let books = client.accounting().unwrap();
-    assert_eq!(books.gap_count(), 1);
+    let accounting = client.accounting().unwrap();
+    assert_eq!(accounting.gap_count(), 1);
 }
 
 #[test]

@@ -86,22 +86,25 @@ pub fn refusal<R: std::fmt::Debug>(result: Result<R, Error>) -> Refusal {
 
 /// Checks the sample accounting, with the expected losses.
 pub fn check_books(client: &Client<Port>) -> [u64; 4] {
-    let books = client.accounting().unwrap();
-    assert_eq!(books.violations(), 0);
-    assert_eq!(books.produced(), books.received() + books.dropped());
+    let accounting = client.accounting().unwrap();
+    assert_eq!(accounting.violations(), 0);
     assert_eq!(
-        books.dropped(),
-        books.dropped_by_device() + books.lost_on_line()
+        accounting.produced(),
+        accounting.received() + accounting.dropped()
     );
-    if books.gap_count() <= 1_000 {
-        let missing: u64 = books.gaps().map(|gap| gap.samples).sum();
-        assert_eq!(missing, books.dropped());
+    assert_eq!(
+        accounting.dropped(),
+        accounting.dropped_by_device() + accounting.lost_on_line()
+    );
+    if accounting.gap_count() <= 1_000 {
+        let missing: u64 = accounting.gaps().map(|gap| gap.samples).sum();
+        assert_eq!(missing, accounting.dropped());
     }
     [
-        books.produced(),
-        books.received(),
-        books.dropped_by_device(),
-        books.lost_on_line(),
+        accounting.produced(),
+        accounting.received(),
+        accounting.dropped_by_device(),
+        accounting.lost_on_line(),
     ]
 }
 

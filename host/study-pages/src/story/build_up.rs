@@ -1,6 +1,6 @@
 //! The effects of a scene one after the other.
 
-use super::{Scale, Series, Story, Told};
+use super::{PanelData, Scale, Series, Story};
 use crepitus_study::effects::build_up::RungTorques;
 
 /// None without a rung.
@@ -15,12 +15,12 @@ pub(crate) fn story(rungs: &[RungTorques]) -> Option<Story> {
     })
 }
 
-fn panel(rung: &RungTorques) -> Told {
+fn panel(rung: &RungTorques) -> PanelData {
     let (from, to) = match rung.model_nm.as_slice() {
         [first, .., last] => (first.0, last.0),
         _ => (0.0, 1.0),
     };
-    Told {
+    PanelData {
         heading: match rung.added {
             "" => "the joint alone".to_owned(),
             added => format!("and {added}"),
@@ -31,6 +31,6 @@ fn panel(rung: &RungTorques) -> Told {
             Series::line("torque of the model", rung.model_nm.clone()),
             Series::line("torque at the hand", rung.hand_nm.clone()),
         ],
-        ..Told::default()
+        ..PanelData::default()
     }
 }

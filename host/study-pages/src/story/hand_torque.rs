@@ -1,7 +1,7 @@
 //! Torque at the hand in a scene and in the variants that differ most. A peak
 //! that lasts a tick must not flatten the rest.
 
-use super::{Scale, Series, Story, Told};
+use super::{PanelData, Scale, Series, Story};
 use crepitus_study::accuracy::timing::quantile;
 use crepitus_study::effects::variant::Change;
 use crepitus_study::effects::{HandTorque, VariantTorque};
@@ -41,14 +41,14 @@ pub(crate) fn story(data: &HandTorque) -> Story {
 }
 
 /// The scene and a variant.
-fn panel(data: &HandTorque, variant: &VariantTorque) -> Told {
+fn panel(data: &HandTorque, variant: &VariantTorque) -> PanelData {
     let y = Scale::linear(if data.less_trend {
         "N·m, less trend"
     } else {
         "Torque (N·m)"
     });
     let (beyond, y) = scale(y, &[&data.scene_nm, &variant.torque_nm]);
-    Told {
+    PanelData {
         heading: format!("{}{beyond}", variant.name),
         x: Scale::linear("Time (s)").within(data.from_s, data.to_s),
         y,
@@ -62,7 +62,7 @@ fn panel(data: &HandTorque, variant: &VariantTorque) -> Told {
                 variant.torque_nm.clone(),
             ),
         ],
-        ..Told::default()
+        ..PanelData::default()
     }
 }
 

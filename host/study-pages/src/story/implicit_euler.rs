@@ -1,6 +1,6 @@
 //! Why implicit Euler, stable at every step, loses the effect.
 
-use super::{Scale, Series, Story, Told, mark};
+use super::{PanelData, Scale, Series, Story, mark};
 use crepitus_study::stability::story::{ImplicitEuler, Line, Method};
 
 const NAMES: [&str; 2] = ["exact-events", "implicit-euler, set-valued"];
@@ -44,7 +44,7 @@ pub(super) fn story(data: &ImplicitEuler) -> Story {
             bound_us,
         ),
         panels: vec![
-            Told {
+            PanelData {
                 heading: "Torque with a step of 50 µs".to_owned(),
                 x: Scale::linear("Time (s)").within(0.0, data.shown_s),
                 y: Scale::linear("Torque (N·m)"),
@@ -53,17 +53,17 @@ pub(super) fn story(data: &ImplicitEuler) -> Story {
                     mark(p.static_torque_nm, "Ts"),
                     mark(p.kinetic_torque_nm, "Tk"),
                 ],
-                ..Told::default()
+                ..PanelData::default()
             },
-            Told {
+            PanelData {
                 heading: "Velocity of the object where it should meet the shaft".to_owned(),
                 x: Scale::linear("Time (s)").within(data.near_s.0, data.near_s.1),
                 y: Scale::linear("θ̇ (rad/s)"),
                 series: lines(|method| method.theta_dot_rad_s.clone()),
                 levels: vec![mark(data.omega_rad_s, "shaft, Ω")],
-                ..Told::default()
+                ..PanelData::default()
             },
-            Told {
+            PanelData {
                 heading: "Cycle frequency found, against the step".to_owned(),
                 x: Scale::logarithmic("Step (µs)").within(0.9, 1100.0),
                 y: Scale::linear("Frequency (Hz)").within(-1.5, 38.0),
@@ -72,7 +72,7 @@ pub(super) fn story(data: &ImplicitEuler) -> Story {
                     bound_us,
                     &format!("ωn·h/2 = λ²/4π at {bound_us:.1} µs"),
                 )],
-                ..Told::default()
+                ..PanelData::default()
             },
         ],
     }

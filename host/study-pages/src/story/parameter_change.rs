@@ -1,6 +1,6 @@
 //! Effect of a change of stiffness on a wound spring.
 
-use super::{Scale, Series, Story, Told, mark};
+use super::{PanelData, Scale, Series, Story, mark};
 use crepitus_study::stability::story::ParameterChange;
 
 const COMMITTED: &str = "committed and ramped";
@@ -39,7 +39,7 @@ pub(super) fn story(data: &ParameterChange) -> Story {
             data.slew_nm_per_s,
         ),
         panels: vec![
-            Told {
+            PanelData {
                 heading: "Torque (without a limit, to show what would be asked for)".to_owned(),
                 x: time(),
                 y: Scale::linear("Torque (N·m)").within(-1.0, 17.0),
@@ -48,9 +48,9 @@ pub(super) fn story(data: &ParameterChange) -> Story {
                     Series::line(COMMITTED, committed.torque_nm.clone()),
                 ],
                 bounds: marks(["kr 10 → 400", "kr 400 → 10"]),
-                ..Told::default()
+                ..PanelData::default()
             },
-            Told {
+            PanelData {
                 heading: "The same, near Ts and Tk".to_owned(),
                 x: time(),
                 y: Scale::linear("Torque (N·m)").within(-0.05, 0.45),
@@ -58,7 +58,7 @@ pub(super) fn story(data: &ParameterChange) -> Story {
                 levels: vec![mark(data.levels_nm.0, "Ts"), mark(data.levels_nm.1, "Tk")],
                 bounds: marks(["", ""]),
             },
-            Told {
+            PanelData {
                 heading: "Energy of spring and object".to_owned(),
                 x: time(),
                 y: Scale::logarithmic("Energy (J)").within(LEAST_J, 1.0),
@@ -67,7 +67,7 @@ pub(super) fn story(data: &ParameterChange) -> Story {
                     Series::line(COMMITTED, committed.stored_j.clone()),
                 ],
                 bounds: marks(["", ""]),
-                ..Told::default()
+                ..PanelData::default()
             },
         ],
     }

@@ -1,6 +1,6 @@
 //! The paper's two rules for the end of a slip, on one movement of a knee.
 
-use super::{Scale, Series, Story, Told, mark};
+use super::{PanelData, Scale, Series, Story, mark};
 use crepitus_study::stability::story::{Line, RestickRules};
 
 pub(super) fn story(data: &RestickRules) -> Story {
@@ -9,9 +9,9 @@ pub(super) fn story(data: &RestickRules) -> Story {
         return Story::default();
     };
     let totals = [frozen, physical].map(|rule| rule.breaks_s.len());
-    let mut panels: Vec<Told> = [frozen, physical]
+    let mut panels: Vec<PanelData> = [frozen, physical]
         .into_iter()
-        .map(|rule| Told {
+        .map(|rule| PanelData {
             heading: format!(
                 "Torque under {}: {} cycles",
                 rule.convention.name(),
@@ -24,7 +24,7 @@ pub(super) fn story(data: &RestickRules) -> Story {
                 mark(data.static_torque_nm, "Ts"),
                 mark(-data.static_torque_nm, "−Ts"),
             ],
-            ..Told::default()
+            ..PanelData::default()
         })
         .collect();
     let counts = [frozen, physical].map(|rule| {
@@ -33,19 +33,19 @@ pub(super) fn story(data: &RestickRules) -> Story {
             counted(&rule.breaks_s, data.duration_s),
         )
     });
-    panels.push(Told {
+    panels.push(PanelData {
         heading: format!("Cycles so far: {} and {} at the end", totals[0], totals[1]),
         x: time(),
         y: Scale::linear("Breaks"),
         series: counts.into(),
-        ..Told::default()
+        ..PanelData::default()
     });
-    panels.push(Told {
+    panels.push(PanelData {
         heading: "Speed of the shaft".to_owned(),
         x: time(),
         y: Scale::linear("Ω (rad/s)"),
         series: vec![Series::line("shaft", data.omega_rad_s.clone())],
-        ..Told::default()
+        ..PanelData::default()
     });
     Story {
         name: "restick-rules",

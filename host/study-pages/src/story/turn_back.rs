@@ -1,7 +1,7 @@
 //! What a hand gets back that turns round inside a slip, with the turn-back
 //! guard and without it, and how close the worst comes to the bound.
 
-use super::{Scale, Series, Story, Told, mark};
+use super::{PanelData, Scale, Series, Story, mark};
 use crepitus_study::stability::story::TurnBack;
 
 const UNGUARDED: &str = "without the guard";
@@ -43,7 +43,7 @@ pub(super) fn story(data: &TurnBack) -> Story {
             worst(&data.unguarded),
         ),
         panels: vec![
-            Told {
+            PanelData {
                 heading: "Torque".to_owned(),
                 x: time(),
                 y: Scale::linear("Torque (N·m)"),
@@ -51,9 +51,9 @@ pub(super) fn story(data: &TurnBack) -> Story {
                     Series::line(UNGUARDED, shaking.unguarded_nm.clone()),
                     Series::line(GUARDED[0], shaking.guarded_nm.clone()),
                 ],
-                ..Told::default()
+                ..PanelData::default()
             },
-            Told {
+            PanelData {
                 heading: "Work that the hand has put in".to_owned(),
                 x: time(),
                 y: Scale::linear("Work (mJ)"),
@@ -61,15 +61,15 @@ pub(super) fn story(data: &TurnBack) -> Story {
                     Series::line(UNGUARDED, milli(&shaking.unguarded_j)),
                     Series::line(GUARDED[0], milli(&shaking.guarded_j)),
                 ],
-                ..Told::default()
+                ..PanelData::default()
             },
-            Told {
+            PanelData {
                 heading: "Most energy returned, against the amplitude".to_owned(),
                 x: Scale::logarithmic("Amplitude (strokes of a stick, Ts/kr)").within(0.3, 3.0),
                 y: Scale::logarithmic("Share of Ts²/2kr").within(0.05, 100.0),
                 series: swept,
                 levels: vec![mark(1.0, "bound")],
-                ..Told::default()
+                ..PanelData::default()
             },
         ],
     }

@@ -192,9 +192,9 @@ fn telemetry(
             }
         }
     }
-    let (received, dropped) = client
-        .accounting()
-        .map_or((0, 0), |books| (books.received(), books.dropped()));
+    let (received, dropped) = client.accounting().map_or((0, 0), |accounting| {
+        (accounting.received(), accounting.dropped())
+    });
     client.unsubscribe()?;
     let text = format!("{received} samples in a second, {dropped} dropped");
     let enough = received + dropped > u64::from(TICKS_PER_S) * 9 / 10;

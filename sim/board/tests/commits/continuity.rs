@@ -197,7 +197,7 @@ fn watch(seed: u64, changes: usize, mut next: impl FnMut(&mut Rng, &Values) -> V
         host.run(rng.u64(600..3_000));
     }
     watch.look(&blocks(&mut host));
-    assert_eq!(host.books.expect("books").dropped, 0);
+    assert_eq!(host.accounting.expect("a subscription").dropped, 0);
     watch.worst
 }
 

@@ -14,11 +14,11 @@ fn all_is_well(host: &mut Host) {
         assert_eq!(host.ask(Operation::ClearFault), Ok(Answer::Done));
     }
     host.arm();
-    let before = host.books.expect("books").received;
+    let before = host.accounting.expect("a subscription").received;
     host.run(4_000);
-    let books = host.books.expect("books");
-    assert!(books.received - before >= 3_800, "telemetry flows");
-    assert_eq!(books.dropped, 0);
+    let accounting = host.accounting.expect("a subscription");
+    assert!(accounting.received - before >= 3_800, "telemetry flows");
+    assert_eq!(accounting.dropped, 0);
     assert_eq!(host.status().state, State::Armed);
     assert_eq!(host.ask(Operation::Disarm), Ok(Answer::Done));
 }
@@ -44,7 +44,7 @@ fn the_plug_is_pulled_and_pushed_in_again_while_it_streams() {
     for round in 0..20 {
         host.subscribe();
         host.run(500 + 7 * round);
-        assert_eq!(host.books.expect("books").dropped, 0);
+        assert_eq!(host.accounting.expect("a subscription").dropped, 0);
         host.device.unplug();
         host.run(37 * round);
         host.reconnect();
@@ -77,10 +77,13 @@ fn a_host_that_is_back_before_its_lease_ends_keeps_it() {
     host.run(10_000);
     let status = host.status();
     assert_eq!((status.state, status.lease), (State::Armed, Some(session)));
-    assert!(host.books.is_none(), "a subscription ends with its host");
+    assert!(
+        host.accounting.is_none(),
+        "a subscription ends with its host"
+    );
     host.subscribe();
     host.run(2_000);
-    assert!(host.books.expect("books").received >= 1_900);
+    assert!(host.accounting.expect("a subscription").received >= 1_900);
 }
 
 #[test]
@@ -94,7 +97,7 @@ fn a_host_that_is_killed_loses_its_torque_and_another_gets_everything() {
     // Another program opens the port. What waited for the first one comes
     // first.
     host.device.host().expect("a port").set_open(true);
-    host.books = None;
+    host.accounting = None;
     host.session = Session(99);
     host.number = 500;
     host.run(2_000);
@@ -119,13 +122,13 @@ fn a_port_that_is_never_read_stops_nothing() {
     );
     assert_eq!(host.comms_count(CommsCounter::LostSamples), 0);
     assert_eq!(host.device.board().drive().state(), State::Armed);
-    // It reads again: the books say to the sample what it has missed.
+    // It reads again: the accounting says to the sample what it has missed.
     host.device.host().expect("a port").set_open(true);
     host.run(4_000);
-    let books = host.books.expect("books");
+    let accounting = host.accounting.expect("a subscription");
     assert!(
-        u64::from(books.dropped) > (SECONDS - 1) * 20_000,
-        "{books:?}"
+        u64::from(accounting.dropped) > (SECONDS - 1) * 20_000,
+        "{accounting:?}"
     );
     assert_eq!(host.status().state, State::Armed);
     let (sent, dropped, received) = (
@@ -135,6 +138,6 @@ fn a_port_that_is_never_read_stops_nothing() {
     );
     assert_eq!(
         u64::from(sent + dropped),
-        u64::from(received) - books.first_tick
+        u64::from(received) - accounting.first_tick
     );
 }

@@ -61,7 +61,7 @@ fn frames_of_every_length_are_received_or_counted() {
         }
     }
     assert_eq!(host.status().state, State::Armed);
-    assert_eq!(host.books.expect("books").dropped, 0);
+    assert_eq!(host.accounting.expect("a subscription").dropped, 0);
 }
 
 #[test]

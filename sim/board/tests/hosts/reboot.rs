@@ -63,7 +63,7 @@ fn both_controllers_start_anew_and_the_port_comes_back() {
         host.subscribe();
         host.arm();
         host.run(2_000);
-        assert!(host.books.expect("books").received >= 1_900);
+        assert!(host.accounting.expect("a subscription").received >= 1_900);
     }
 }
 

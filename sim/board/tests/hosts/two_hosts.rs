@@ -193,5 +193,5 @@ fn two_hosts_that_ask_in_turn_both_get_their_answers() {
         }
     }
     assert_eq!(host.status().state, State::Armed);
-    assert_eq!(host.books.expect("books").dropped, 0);
+    assert_eq!(host.accounting.expect("a subscription").dropped, 0);
 }

@@ -1,4 +1,4 @@
-//! A host that speaks with a virtual device, byte by byte, and keeps books.
+//! A host that speaks with a virtual device, byte by byte, and accounts for its samples.
 
 #![allow(dead_code, reason = "each test uses its part")]
 
@@ -55,15 +55,15 @@ preset = "coarse"
     )
 }
 
-/// The books of a subscription.
+/// The accounting of a subscription.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Books {
+pub(crate) struct Accounting {
     pub(crate) first_tick: u64,
     pub(crate) received: u64,
     /// What the last block said.
     pub(crate) dropped: u32,
     pub(crate) end_tick: u64,
-    /// The number of the drive's start: with another one, books begin anew.
+    /// The number of the drive's start: with another one, accounting begins anew.
     pub(crate) start: Option<u8>,
 }
 
@@ -81,7 +81,7 @@ pub(crate) struct Host {
     decoder: Decoder,
     replies: Vec<Reply>,
     answers: Vec<management::Answer>,
-    pub(crate) books: Option<Books>,
+    pub(crate) accounting: Option<Accounting>,
     /// Every sample, if they are wanted.
     pub(crate) samples: Option<Vec<Sample>>,
     pub(crate) last_block: Option<Block>,
@@ -107,7 +107,7 @@ impl Host {
             decoder: Decoder::new(),
             replies: Vec::new(),
             answers: Vec::new(),
-            books: None,
+            accounting: None,
             samples: None,
             last_block: None,
             stream: None,
@@ -160,8 +160,8 @@ impl Host {
                     }
                     Some(Lane::Telemetry) => {
                         let block: Block = body.message().expect("a block");
-                        if let Some(books) = &mut self.books {
-                            books.book(&block);
+                        if let Some(accounting) = &mut self.accounting {
+                            accounting.block(&block);
                         }
                         if let Some(stream) = &mut self.stream {
                             stream.push(Heard::Block(Box::new(block)));
@@ -291,14 +291,14 @@ impl Host {
     }
 
     pub(crate) fn subscribe(&mut self) {
-        // Blocks that were on their way belong to nobody's books.
-        self.books = None;
+        // Blocks that were on their way are in no accounting.
+        self.accounting = None;
         match self.ask(Operation::Subscribe) {
             Ok(Answer::Subscribed { first_tick }) => {
-                self.books = Some(Books {
+                self.accounting = Some(Accounting {
                     first_tick,
                     end_tick: first_tick,
-                    ..Books::default()
+                    ..Accounting::default()
                 });
             }
             other => panic!("no subscription but {other:?}"),
@@ -316,7 +316,7 @@ impl Host {
         self.decoder = Decoder::new();
         self.replies.clear();
         self.answers.clear();
-        (self.books, self.last_block) = (None, None);
+        (self.accounting, self.last_block) = (None, None);
         self.session = Session(self.session.0.wrapping_add(1));
         self.number = 0;
     }
@@ -380,8 +380,8 @@ pub(crate) fn set(values: &mut Values, name: &str, value: f64) {
     values.set(id, value);
 }
 
-impl Books {
-    fn book(&mut self, block: &Block) {
+impl Accounting {
+    fn block(&mut self, block: &Block) {
         let start = block.flags.start();
         if self.start.is_some_and(|known| known != start) {
             *self = Self {
@@ -399,7 +399,7 @@ impl Books {
         assert_eq!(
             due,
             self.received + u64::from(block.dropped),
-            "the law of the books"
+            "the law of the accounting"
         );
         self.received += BLOCK_SAMPLES as u64;
         self.dropped = block.dropped;

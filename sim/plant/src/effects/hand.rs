@@ -118,7 +118,7 @@ trait Lift: Send {
     fn torque_nm(&self, angle_rad: f64) -> f64;
     /// Notes work done.
     fn did(&mut self, joule: f64);
-    /// Books it.
+    /// Accounting it.
     fn energy(&self, balance: &mut EnergyBalance);
 }
 

@@ -132,8 +132,8 @@ mod tests {
         to_s: f64,
         sample: impl FnMut(f64) -> Sample,
     ) -> Option<f64> {
-        let mut go_on = || ControlFlow::<()>::Continue(());
-        match first_root(from_s, to_s, touch, &mut go_on, sample) {
+        let mut proceed = || ControlFlow::<()>::Continue(());
+        match first_root(from_s, to_s, touch, &mut proceed, sample) {
             ControlFlow::Continue(found) => found,
             ControlFlow::Break(()) => None,
         }
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_search_asks_whether_it_may_go_on() {
+    fn a_long_search_asks_whether_it_may_continue() {
         // Bounds a million times too large make it crawl.
         let crawl = |t: f64| Sample {
             value: 1.0 + t,

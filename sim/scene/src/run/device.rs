@@ -3,7 +3,7 @@
 
 use super::sensor::{Encoded, Ideal, Sensor};
 use super::stages::{self, HasJoint, Rendering};
-use super::stepping::Books;
+use super::stepping::StepAccounting;
 use super::tally::Tally;
 use crate::any_joint::{AnyJoint, Precise};
 use crate::scene::Scene;
@@ -158,14 +158,15 @@ impl<S: 'static> Maker<'_, S> {
     where
         S: Sensor<F>,
     {
-        let mut books = Books::new::<F>(*self.settings, self.step_s, self.omega_rad_s);
+        let mut accounting =
+            StepAccounting::new::<F>(*self.settings, self.step_s, self.omega_rad_s);
         let torque_nm = stages.joint().torque_nm();
-        books.tally.shown(torque_nm.to_f64());
+        accounting.tally.shown(torque_nm.to_f64());
         let shown = first::<F>(self.scene, &mut stages, torque_nm, self.omega_rad_s);
         Box::new(Joined {
             stages,
             sensor: self.sensor,
-            books,
+            accounting,
             shown,
         })
     }
@@ -198,7 +199,7 @@ fn first<F: Real>(
 struct Joined<F, P, S> {
     stages: P,
     sensor: S,
-    books: Books,
+    accounting: StepAccounting,
     shown: Shown<F>,
 }
 
@@ -215,11 +216,11 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
         on_event: &mut dyn FnMut(&EventRecord),
     ) {
         let seen = self.sensor.see(from, to);
-        let books = &mut self.books;
+        let accounting = &mut self.accounting;
         self.shown = self.stages.tick(&Seen::taken(&seen), &mut |event| {
-            on_event(&books.event(start_s, &seen, &event));
+            on_event(&accounting.event(start_s, &seen, &event));
         });
-        self.books.end_step(&seen, self.stages.joint());
+        self.accounting.end_step(&seen, self.stages.joint());
     }
 
     fn write(&self, row: &mut Vec<f64>) {
@@ -241,12 +242,12 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
     fn finish(mut self: Box<Self>, time_s: f64) -> Option<(Tally, u64)> {
         let joint = self.stages.joint();
         let (theta, theta_dot) = (joint.theta_rad(), joint.theta_dot_rad_s());
-        let phi_rad = self.books.phi_rad;
-        self.books
+        let phi_rad = self.accounting.phi_rad;
+        self.accounting
             .tally
             .finish(time_s, phi_rad, theta.to_f64(), theta_dot.to_f64());
-        let crowded = self.books.crowded_steps;
-        Some((self.books.tally, crowded))
+        let crowded = self.accounting.crowded_steps;
+        Some((self.accounting.tally, crowded))
     }
 }
 

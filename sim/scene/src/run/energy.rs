@@ -34,7 +34,7 @@ impl Energy {
         }
     }
 
-    /// Books the jump of the object's state at the end of a frozen slip.
+    /// Accounting the jump of the object's state at the end of a frozen slip.
     pub(super) fn reset(&mut self, theta: f64, theta_dot: f64, new_theta: f64, new_theta_dot: f64) {
         self.convention_j += 0.5
             * (self.stiffness_nm_per_rad * (new_theta - theta) * (new_theta + theta)

@@ -33,7 +33,7 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
     let mut joint = scene.crepitus.map(|crepitus| {
         (
             Reference::new(&crepitus.settings, &scene.motion),
-            Books::new(*crepitus.settings, &scene.motion, &first),
+            EventAccounting::new(*crepitus.settings, &scene.motion, &first),
         )
     });
     let mut row = Vec::new();
@@ -41,9 +41,9 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
     for n in 0..=rows {
         let time_s = clock.time_s(n);
         row.clear();
-        if let Some((reference, books)) = &mut joint {
-            books.follow(time_s, reference, watch)?;
-            books.end_row(time_s, reference);
+        if let Some((reference, accounting)) = &mut joint {
+            accounting.follow(time_s, reference, watch)?;
+            accounting.end_row(time_s, reference);
             let shaft = reference.shaft();
             fastest_rad_s = fastest_rad_s.max(shaft.omega_rad_s.abs());
             if wants_rows {
@@ -73,19 +73,19 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
     }
     // What is left after the last row has events, too.
     let end_s = scene.duration_s.max(clock.time_s(rows));
-    if let Some((reference, books)) = &mut joint {
-        books.follow(end_s, reference, watch)?;
-        books.end_row(end_s, reference);
+    if let Some((reference, accounting)) = &mut joint {
+        accounting.follow(end_s, reference, watch)?;
+        accounting.end_row(end_s, reference);
     }
-    let tally = joint.map(|(reference, mut books)| {
-        let phi = reference.shaft().phi_rad - books.phi_start_rad;
-        books.tally.finish(
+    let tally = joint.map(|(reference, mut accounting)| {
+        let phi = reference.shaft().phi_rad - accounting.phi_start_rad;
+        accounting.tally.finish(
             end_s,
             phi,
             reference.theta_rad(),
             reference.theta_dot_rad_s(),
         );
-        books.tally
+        accounting.tally
     });
     Ok(Totals {
         steps: rows,
@@ -98,19 +98,19 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
 }
 
 /// Keeps the tally of an event-driven run.
-struct Books<'a> {
+struct EventAccounting<'a> {
     tally: Tally,
     motion: &'a Motion,
     phi_start_rad: f64,
-    /// The last point that is booked: its time, angle and stick.
-    booked: (f64, f64, StickEnd),
+    /// The last point that is accounted: its time, angle and stick.
+    accounted: (f64, f64, StickEnd),
     /// Until when the run has been looked at, s, and how far to go to the next
     /// look.
     looked_s: f64,
     look_s: f64,
 }
 
-impl<'a> Books<'a> {
+impl<'a> EventAccounting<'a> {
     fn new(settings: Settings, motion: &'a Motion, first: &ShaftState) -> Self {
         let look_s = TAU / settings.parameters.natural_rad_s() / LOOKS_PER_SWING;
         let lead = Lead::new(&settings, look_s, false);
@@ -120,7 +120,7 @@ impl<'a> Books<'a> {
             tally: Tally::new(settings, first.omega_rad_s, lead),
             motion,
             phi_start_rad: first.phi_rad,
-            booked: (0.0, first.phi_rad, stick_end(0.0, first)),
+            accounted: (0.0, first.phi_rad, stick_end(0.0, first)),
         }
     }
 
@@ -140,8 +140,11 @@ impl<'a> Books<'a> {
             } else {
                 to_s
             };
-            let mut booked = Booked { books: self, watch };
-            if let ControlFlow::Break(stopped) = reference.follow(time_s, &mut booked) {
+            let mut accounted = Accounted {
+                accounting: self,
+                watch,
+            };
+            if let ControlFlow::Break(stopped) = reference.follow(time_s, &mut accounted) {
                 return Err(stopped.into());
             }
             if let Phase::Slip(_) = reference.phase() {
@@ -158,7 +161,7 @@ impl<'a> Books<'a> {
         Ok(())
     }
 
-    /// Books an event, whose `fraction` is its time.
+    /// Accounts for an event, whose `fraction` is its time.
     fn book(&mut self, event: &Event<f64>) {
         let time_s = event.fraction;
         let shaft = self.motion.at(time_s);
@@ -167,10 +170,10 @@ impl<'a> Books<'a> {
         }
         self.tally
             .event(time_s, shaft.phi_rad - self.phi_start_rad, event);
-        self.booked = (time_s, shaft.phi_rad, stick_end(event.theta_rad, &shaft));
+        self.accounted = (time_s, shaft.phi_rad, stick_end(event.theta_rad, &shaft));
     }
 
-    /// Books the time up to a row, or to the end.
+    /// Accounts for the time up to a row, or to the end.
     fn end_row(&mut self, time_s: f64, reference: &Reference<'_>) {
         self.tally.shown(reference.torque_nm());
         if reference.phase() == Phase::Stick {
@@ -178,27 +181,27 @@ impl<'a> Books<'a> {
         }
     }
 
-    /// Books the stick from the last booked point to `time_s`.
+    /// Accounts for the stick from the last point accounted for to `time_s`.
     fn book_stick(&mut self, time_s: f64, theta: f64, shaft: &ShaftState) {
-        let (from_s, from_rad, start) = self.booked;
+        let (from_s, from_rad, start) = self.accounted;
         let end = stick_end(theta, shaft);
         self.tally
             .stick(time_s - from_s, shaft.phi_rad - from_rad, start, end);
-        self.booked = (time_s, shaft.phi_rad, end);
+        self.accounted = (time_s, shaft.phi_rad, end);
     }
 }
 
 /// Records events and notifies the observer, which may end the run.
-struct Booked<'b, 'a> {
-    books: &'b mut Books<'a>,
+struct Accounted<'b, 'a> {
+    accounting: &'b mut EventAccounting<'a>,
     watch: &'b mut dyn Watch,
 }
 
-impl Follow for Booked<'_, '_> {
+impl Follow for Accounted<'_, '_> {
     type Stop = Stopped;
 
     fn event(&mut self, event: Event<f64>) -> ControlFlow<Stopped> {
-        self.books.book(&event);
+        self.accounting.book(&event);
         flow(self.watch.event(&EventRecord::new(event.fraction, &event)))
     }
 

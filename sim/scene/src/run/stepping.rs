@@ -113,10 +113,10 @@ impl<F: Real, S: Sensor<F>> JointVisitor<F> for Run<'_, S> {
         let wants_rows = watch.wants_rows();
         let step_s = scene.step_s();
         let mut walk = Walk::new(&scene.motion, step_s);
-        let mut books = Books::new::<F>(settings, step_s, walk.now().omega_rad_s);
+        let mut accounting = StepAccounting::new::<F>(settings, step_s, walk.now().omega_rad_s);
         let mut row = Vec::new();
         let mut fastest_rad_s = walk.now().omega_rad_s.abs();
-        books.tally.shown(joint.torque_nm().to_f64());
+        accounting.tally.shown(joint.torque_nm().to_f64());
         loop {
             if wants_rows && walk.steps().is_multiple_of(every) {
                 row.clear();
@@ -153,27 +153,27 @@ impl<F: Real, S: Sensor<F>> JointVisitor<F> for Run<'_, S> {
             let seen = sensor.see(&from, &to);
             let mut result = Ok(());
             joint.step(&seen, |event| {
-                let record = books.event(start_s, &seen, &event);
+                let record = accounting.event(start_s, &seen, &event);
                 if result.is_ok() {
                     result = watch.event(&record);
                 }
             });
             result?;
-            books.end_step(&seen, &joint);
+            accounting.end_step(&seen, &joint);
         }
         let (theta, theta_dot) = (joint.theta_rad(), joint.theta_dot_rad_s());
-        books.tally.finish(
+        accounting.tally.finish(
             walk.time_s(),
-            books.phi_rad,
+            accounting.phi_rad,
             theta.to_f64(),
             theta_dot.to_f64(),
         );
         Ok(Totals {
             steps,
             end_s: walk.time_s(),
-            tally: Some(books.tally),
+            tally: Some(accounting.tally),
             fastest_rad_s,
-            crowded_steps: books.crowded_steps,
+            crowded_steps: accounting.crowded_steps,
             plant: None,
         })
     }
@@ -181,7 +181,7 @@ impl<F: Real, S: Sensor<F>> JointVisitor<F> for Run<'_, S> {
 
 /// Keeps the tally of a stepping run: where in the step it is, and what the
 /// joint has seen of the shaft.
-pub(super) struct Books {
+pub(super) struct StepAccounting {
     pub(super) tally: Tally,
     step_s: f64,
     /// Angle of the shaft as the joint has seen it, at the start of the step.
@@ -195,7 +195,7 @@ pub(super) struct Books {
     pub(super) crowded_steps: u64,
 }
 
-impl Books {
+impl StepAccounting {
     /// Of a joint in precision `F`.
     pub(super) fn new<F: Real>(settings: Settings, step_s: f64, omega_rad_s: f64) -> Self {
         let lead = Lead::new(&settings, step_s, F::IS_SINGLE);
@@ -214,7 +214,7 @@ impl Books {
         }
     }
 
-    /// Books the events of a step in the order of time.
+    /// Accounts for the events of a step in the order of time.
     pub(super) fn event<F: Real>(
         &mut self,
         start_s: f64,
@@ -234,7 +234,7 @@ impl Books {
         EventRecord::new(time_s, &event)
     }
 
-    /// Books the rest of a step.
+    /// Accounts for the rest of a step.
     #[inline]
     pub(super) fn end_step<F: Real, J: StickSlip<F>>(&mut self, seen: &ShaftStep<F>, joint: &J) {
         match joint.phase() {
@@ -256,7 +256,7 @@ impl Books {
         self.phi_rad += seen.delta_phi_rad.to_f64();
     }
 
-    /// Books the stick from the last booked point to `fraction`.
+    /// Accounts for the stick from the last booked point to `fraction`.
     fn book_stick<F: Real>(&mut self, seen: &ShaftStep<F>, fraction: f64, theta_rad: f64) {
         let end = self.stick_end(seen, fraction, theta_rad);
         let delta_phi =

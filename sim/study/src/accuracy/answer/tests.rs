@@ -98,7 +98,7 @@ fn at_equal_cost_the_more_exact_wins() {
 }
 
 #[test]
-fn without_a_step_the_longest_of_each_rung_is_told() {
+fn without_a_step_the_longest_of_each_rung_is_reported() {
     let points = [
         rung("a", 1e-3, 2.0, 9e-3, 1e-5),
         rung("a", 1e-4, 2.0, 4e-3, 1e-5),
@@ -110,12 +110,15 @@ fn without_a_step_the_longest_of_each_rung_is_told() {
     let a = ask(&points, "torque=5e-3", None);
     // 8 ns a millisecond are less than 2 ns a tenth of it.
     assert_eq!(name(a.chosen.as_ref()), Some(("b", 1e-3)));
-    let told: Vec<_> = a
+    let reported: Vec<_> = a
         .longest
         .iter()
         .map(|l| (l.solver, name(l.candidate.as_ref()).map(|n| n.1)))
         .collect();
-    assert_eq!(told, [("a", Some(1e-4)), ("b", Some(1e-3)), ("c", None)]);
+    assert_eq!(
+        reported,
+        [("a", Some(1e-4)), ("b", Some(1e-3)), ("c", None)]
+    );
     assert_eq!(a.longest[0].fails_below_s, [1e-5]);
     // Of each rung the dearest that is still cheaper.
     let cheaper: Vec<_> = a.cheaper.iter().map(|c| (c.solver, c.step_s)).collect();
@@ -123,7 +126,7 @@ fn without_a_step_the_longest_of_each_rung_is_told() {
 }
 
 #[test]
-fn where_nothing_is_enough_the_nearest_is_told() {
+fn where_nothing_is_enough_the_nearest_is_reported() {
     let mut points = [
         rung("a", 5e-5, 2.0, 9e-3, 1e-5),
         rung("b", 5e-5, 3.0, 7e-3, 1e-5),
