@@ -35,7 +35,7 @@ pub(crate) fn store_record_words(words: [u32; WORDS]) {
     unsafe {
         (&raw mut RECORD)
             .cast::<[u32; WORDS]>()
-            .write_volatile(words)
+            .write_volatile(words);
     }
 }
 
