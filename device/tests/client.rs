@@ -3,7 +3,7 @@
 mod support;
 
 use crepitus_device::usb_port::HostBytes;
-use crepitus_protocol::parameters::{self, PARAMETER_COUNT};
+use crepitus_protocol::parameters;
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -32,7 +32,6 @@ fn the_example_client_is_short_and_knows_the_parameters() {
     assert!(lines.count() <= MOST_LINES);
     let (id, _) = parameters::find("crepitus.static_torque_nm").unwrap();
     assert!(text.contains(&format!("values[{id}] = 0.45")));
-    assert!(text.contains(&format!("\"<{PARAMETER_COUNT}d\"")));
 }
 
 #[test]

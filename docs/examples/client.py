@@ -64,9 +64,9 @@ while not present or revision != in_force:
 
 # All parameters at once, on top of the revision that they were made from.
 parameters = request(b"\x03")
-base, values = unvarint(parameters), list(struct.unpack("<29d", bytes(parameters)))
+base, values = unvarint(parameters), [value for value, in struct.iter_unpack("<d", bytes(parameters))]
 values[4] = 0.45
-request(b"\x04" + varint(base) + struct.pack("<29d", *values))
+request(b"\x04" + varint(base) + struct.pack(f"<{len(values)}d", *values))
 
 first_tick = unvarint(request(b"\x0a"))
 for number in range(1, 201):

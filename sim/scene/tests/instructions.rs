@@ -141,18 +141,16 @@ fn folder(name: &str) -> (tempfile::TempDir, PathBuf) {
 fn is_of(effect: &Effect, function: &str) -> bool {
     let file = effect.name.replace('-', "_");
     let model = match effect.name {
-        "crepitus" => "crepitus_model::solver::frozen",
-        "encoder" => "crepitus_model::control::encoder",
-        "motor" => "crepitus_model::control::current_loop",
-        "friction-compensation" => "crepitus_model::render::effects::friction_compensation",
-        "bone-shaping" => "crepitus_model::render::effects::bone_shaping",
-        _ => "no such function",
+        "crepitus" => "crepitus_model::solver::frozen".to_owned(),
+        "encoder" => "crepitus_model::control::encoder".to_owned(),
+        "motor" => "crepitus_model::control::current_loop".to_owned(),
+        _ => format!("crepitus_model::render::effects::{file}::"),
     };
     let winding =
         effect.name == "motor" && function.contains("crepitus_plant::effects::motor::winding");
     winding
         || function.contains(&format!("crepitus_plant::effects::{file}::"))
-        || function.contains(model)
+        || function.contains(&model)
 }
 
 #[test]
