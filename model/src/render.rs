@@ -315,18 +315,24 @@ mod tests {
         );
         let mut pipeline = Pipeline::new((), joint(), (), ());
         let mut alone = joint().0;
-        let (mut ours, mut theirs) = (0, 0);
+        let (mut ours, mut theirs, mut jumps) = (0, 0, 0);
         for _ in 0..2_000 {
             let shown = pipeline.tick(&steady(), |_| ours += 1);
             let Sample::Taken(step) = steady().sample else {
                 unreachable!()
             };
-            alone.step(&step, |_| theirs += 1);
+            let mut jump_nm = 0.0;
+            alone.step(&step, |event| {
+                theirs += 1;
+                jump_nm += event.torque_after_nm - event.torque_before_nm;
+            });
+            assert_eq!(shown.jump_nm, jump_nm);
+            jumps += u32::from(jump_nm != 0.0);
             assert_eq!(shown.torque_nm.to_bits(), alone.torque_nm().to_bits());
             assert_eq!(shown.model_torque_nm, shown.torque_nm);
             assert_eq!((shown.phase, shown.limit), (alone.phase(), Limit::None));
         }
-        assert!(ours > 4 && ours == theirs);
+        assert!(ours > 4 && ours == theirs && jumps > 2);
     }
 
     #[test]
