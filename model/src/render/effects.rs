@@ -137,6 +137,7 @@ pub trait LawVisitor<F: Real> {
 
 #[cfg(test)]
 pub(crate) mod tests {
+    use super::friction_compensation::{FrictionCompensation, FrictionCompensationSettings};
     use super::*;
     use crate::ShaftStep;
 
@@ -168,12 +169,60 @@ pub(crate) mod tests {
         (added_nm, shown)
     }
 
+    /// A symptom of 0.5 N·m that is always in its third phase.
+    struct Constant;
+
+    impl DeviceEffect<f32> for Constant {
+        type Settings = FrictionCompensationSettings;
+        type Switched = Faded<f32, Self>;
+
+        const SPEC: EffectSpec = EffectSpec {
+            name: "constant",
+            phases: Some(PhaseSpec {
+                column: "constant_phase",
+                names: &["rest", "contact", "cap"],
+            }),
+            ..SPECS[0]
+        };
+        const IS_SYMPTOM: bool = true;
+
+        fn new(_: &Self::Settings, _: &Timing) -> Result<Self, SettingsError> {
+            Ok(Self)
+        }
+
+        fn added_nm(&mut self, _: &Seen<f32>, _: &Checked<f32>, _: &Shown<f32>) -> f32 {
+            0.5
+        }
+
+        fn phase(&self) -> u16 {
+            2
+        }
+    }
+
+    #[test]
+    fn a_symptom_is_in_the_models_torque_and_its_phase_is_shown() {
+        let mut stage = Faded::<f32, Constant>::new(0.1);
+        assert!(stage.law().is_none());
+        stage.change(Some(Some(Constant)), 0.1);
+        let (added_nm, mut shown) = after(&mut stage, 0.0, 0.0);
+        assert_eq!((shown.torque_nm, shown.model_torque_nm), (1.5, 0.0));
+        note(stage.law(), added_nm, &mut shown);
+        assert_eq!(shown.model_torque_nm, 0.5);
+        let place = Constant::SPEC.place();
+        assert_eq!(shown.phases, Phases::default().with(place, 2));
+        assert_ne!(shown.phases, Phases::default());
+        // One that is off has no phase, and what is no symptom is not the model's.
+        let mut shown = Shown::nothing();
+        note::<f32, Constant>(None, 0.0, &mut shown);
+        assert_eq!(shown, Shown::nothing());
+        let law = FrictionCompensation::new(&FrictionCompensationSettings::defaults(), &TIMING);
+        note(law.as_ref().ok(), 0.3, &mut shown);
+        assert_eq!(shown, Shown::nothing());
+    }
+
     #[test]
     fn a_line_of_the_table_is_in_everything_that_follows_from_it() {
-        let numbers: std::vec::Vec<f64> =
-            friction_compensation::FrictionCompensationSettings::defaults()
-                .values()
-                .into();
+        let numbers: std::vec::Vec<f64> = FrictionCompensationSettings::defaults().values().into();
         let settings = EffectSettings::given(|name| {
             (name == "friction-compensation").then_some(numbers.as_slice())
         });
