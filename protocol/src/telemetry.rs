@@ -242,6 +242,19 @@ mod tests {
     use crate::lane::Lane;
 
     #[test]
+    fn phases_of_effects_leave_the_other_flags() {
+        let others = SampleFlags::default()
+            .with_phase(-1)
+            .with_limit(LimitReason::NotArmed)
+            .with(SampleFlags::LATE | SampleFlags::STICK, true);
+        for bits in 0..1 << (u16::BITS - SampleFlags::PHASES_SHIFT) {
+            let flags = others.with_phases(Phases(bits));
+            assert_eq!(flags.phases(), Phases(bits));
+            assert_eq!(flags.0 & !(u16::MAX << SampleFlags::PHASES_SHIFT), others.0);
+        }
+    }
+
+    #[test]
     fn samples_are_of_fixed_width() {
         let mut bytes = [0; 32];
         for (count, current_ma) in [(0, 0), (i32::MIN, i16::MIN), (i32::MAX, i16::MAX)] {

@@ -329,6 +329,21 @@ mod tests {
     }
 
     #[test]
+    fn a_phase_of_an_effect_that_there_is_not_is_refused() {
+        let mut line = String::new();
+        rows()[0].append_to(&mut line);
+        for notes in [
+            "no-effect:contact",
+            "bone-shaping:contact",
+            "bone-shaping:",
+            ":",
+        ] {
+            let wrong = Row::parse(&format!("{}{notes}", line.trim_end())).unwrap_err();
+            assert_eq!((wrong.column, wrong.text.as_str()), ("notes", notes));
+        }
+    }
+
+    #[test]
     fn a_wrong_cell_is_named() {
         let mut line = String::new();
         rows()[0].append_to(&mut line);
