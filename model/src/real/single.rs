@@ -22,6 +22,7 @@ const LN_2_LO: f32 = -2.121_944_4e-4;
 
 /// (sin x, cos x) within 2e-7 for |x| ≤ 6,000 rad; beyond, the sine and cosine of
 /// an angle that has lost its phase. NaN for a number that is not finite.
+#[inline]
 pub fn sin_cos(x: f32) -> (f32, f32) {
     // Beyond, the phase is lost, but a sine stays one.
     let x = if Real::abs(x) > 6000.0 {
@@ -58,6 +59,7 @@ pub fn sin_cos(x: f32) -> (f32, f32) {
 }
 
 /// eˣ within 2e-7 relative; 0 below −87, infinite above 88.
+#[inline]
 pub fn exp(x: f32) -> f32 {
     if x < -87.0 {
         return 0.0;
@@ -88,6 +90,7 @@ pub fn exp(x: f32) -> f32 {
 }
 
 /// The angle of the point (x, y) in (−π, π], within 3e-7.
+#[inline]
 pub fn atan2(y: f32, x: f32) -> f32 {
     let (ax, ay) = (Real::abs(x), Real::abs(y));
     let steep = ay > ax;
@@ -105,6 +108,7 @@ pub fn atan2(y: f32, x: f32) -> f32 {
 }
 
 /// atan t for 0 ≤ t ≤ 1: by the half angle above tan(π/8), then a series.
+#[inline]
 fn atan_unit(t: f32) -> f32 {
     const TAN_PI_8: f32 = 0.414_213_57;
     let (offset, r) = if t > TAN_PI_8 {

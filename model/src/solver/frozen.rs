@@ -88,6 +88,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Frozen<F, L> {
     /// a slip θ̇ ← θ̇·min(1, √(J/J′)) does the same for J·θ̇²/2; the slip keeps
     /// its end. In stick the object's speed is the hand's, and nothing of it
     /// ever comes back: the torque of a frozen stick has no inertia in it.
+    #[inline]
     pub fn adjust(&mut self, next: StepCoefficients<F>) {
         let scale = (self.coefficients.stiffness / next.stiffness).at_most(F::ONE);
         match &mut self.state {
@@ -123,6 +124,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Frozen<F, L> {
     }
 
     /// The time since the anchor of a slip.
+    #[inline]
     fn since_anchor(&self, mut slip: Slip<F>) -> Ticks<F> {
         let whole = if slip.is_open {
             slip.close(&self.coefficients).saturating_sub(1)
@@ -136,6 +138,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Frozen<F, L> {
     }
 
     /// A step that has an event, or is in stick.
+    #[inline]
     fn step_with_events(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
         let mut at = Place::start_of(shaft, &self.coefficients);
         let is_stick = matches!(self.state, State::Stick { .. });
@@ -316,6 +319,7 @@ fn find_break<F: Real, L: Locate<F, Shape = Linear>>(
 impl<F: Real> Slip<F> {
     /// Finds its end, with the numbers that it began with: how many whole ticks
     /// are left before the one in which it ends, as its first step begins.
+    #[inline]
     fn close(&mut self, coefficients: &StepCoefficients<F>) -> u64 {
         self.is_open = false;
         self.duration = coefficients.slip_time(self.sense.of_signed(self.v));
@@ -325,6 +329,7 @@ impl<F: Real> Slip<F> {
     }
 
     /// (x, v) of the object `after` the slip began.
+    #[inline]
     fn motion(&self, coefficients: &StepCoefficients<F>, after: Ticks<F>) -> (F, F) {
         coefficients
             .oscillator

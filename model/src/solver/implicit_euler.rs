@@ -50,6 +50,7 @@ impl<F: Real> ImplicitEuler<F> {
     }
 
     /// The phase at the end of a step for which stick would need `torque_nm`.
+    #[inline]
     fn phase_for(&self, torque_nm: F) -> Phase {
         if let Phase::Slip(sense) = self.phase
             && sense.of_signed(torque_nm) > self.coefficients.kinetic_nm
@@ -119,10 +120,12 @@ impl<F: Real> StickSlip<F> for ImplicitEuler<F> {
         &self.coefficients
     }
 
+    #[inline]
     fn phase(&self) -> Phase {
         self.phase
     }
 
+    #[inline]
     fn torque_nm(&self) -> F {
         self.coefficients.limited(self.torque_nm)
     }

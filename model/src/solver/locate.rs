@@ -51,6 +51,7 @@ impl<F: Real, V: VelocityShape<F>> StickPath<F, V> {
 
     /// The same path, begun `time_s` later.
     #[must_use]
+    #[inline]
     pub fn from(&self, time_s: F) -> Self {
         Self {
             torque_nm: self.at(time_s),

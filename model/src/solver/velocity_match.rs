@@ -94,6 +94,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
     }
 
     /// Begins a slip and reports how.
+    #[inline]
     fn begin_slip(
         &mut self,
         sense: Sense,
@@ -133,6 +134,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
     }
 
     /// The stick's torque from `here` on.
+    #[inline]
     fn stick_path(
         &self,
         path: &ShaftPath<F, L::Shape>,
@@ -159,6 +161,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
     /// follows from reaching Ts ≥ Tk. The paper's torque leaves the inertia
     /// out, so while the hand brakes harder than (Ts − Tk)/J it would break
     /// and re-stick without end; there the stick is held, shown at its limit.
+    #[inline]
     fn slips(&self, sense: Sense, torque_nm: F, omega: F, omega_dot: F) -> bool {
         let hidden = Physical::inertial(&self.coefficients, omega, omega_dot)
             - C::inertial(&self.coefficients, omega, omega_dot);
@@ -167,6 +170,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
     }
 
     /// The first break in the rest of the step.
+    #[inline]
     fn find_break(
         &self,
         path: &ShaftPath<F, L::Shape>,
@@ -190,6 +194,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
     /// The first break in `sense` of a stick that may have to be held: at its
     /// limit it waits for the true torque to reach Tk, unless the spring comes
     /// back below the limit first.
+    #[inline]
     fn held_break(
         &self,
         sense: Sense,
@@ -226,6 +231,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
 
     /// A velocity jump of the shaft at the start of a step: what sticks is
     /// torn loose, what slips may have to slip the other way.
+    #[inline]
     fn jump(&mut self, omega: F, on_event: &mut impl FnMut(Event<F>)) {
         let (state, v) = match self.state {
             State::Stick { theta, .. } => ((theta.value(), self.omega_rad_s), self.omega_rad_s),
@@ -247,6 +253,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
     }
 
     /// The velocity match of a slip at `here`, object at x.
+    #[inline]
     fn meet(
         &mut self,
         path: &ShaftPath<F, L::Shape>,
@@ -308,6 +315,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
 
     /// The place `time_s` into the step, which rounding may have put beyond its
     /// end.
+    #[inline]
     fn at(&self, path: &ShaftPath<F, L::Shape>, time_s: F) -> Here<F> {
         let time_s = time_s.at_most(self.coefficients.step_s);
         Here {
@@ -318,6 +326,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
     }
 
     /// A stick at `theta` on a shaft of this velocity and acceleration.
+    #[inline]
     fn stick(&self, theta: Compensated<F>, omega: F, omega_dot: F) -> State<F> {
         State::Stick {
             theta,
@@ -329,6 +338,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
 impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
     for VelocityMatch<F, C, P, L>
 {
+    #[inline]
     fn step(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
         let step_s = self.coefficients.step_s;
         let path = ShaftPath::<F, L::Shape>::new(shaft, &self.coefficients);
@@ -421,6 +431,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
         &self.coefficients
     }
 
+    #[inline]
     fn phase(&self) -> Phase {
         match self.state {
             State::Stick { .. } => Phase::Stick,
@@ -428,6 +439,7 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
         }
     }
 
+    #[inline]
     fn torque_nm(&self) -> F {
         let a = &self.coefficients;
         match self.state {

@@ -61,6 +61,7 @@ impl<F: Real> Locate<F> for ExactEvents {
         (time_s <= length_s).then_some(time_s)
     }
 
+    #[inline]
     fn match_time<P: Propagate<F>>(slip: &SlipPath<'_, F, P>, length_s: F, v_end: F) -> Option<F> {
         first_match(slip, length_s, v_end)
     }

@@ -26,6 +26,7 @@ pub struct ExactHermite;
 impl<F: Real> Locate<F> for ExactHermite {
     type Shape = Quadratic<F>;
 
+    #[inline]
     fn break_time(
         path: &StickPath<F, Quadratic<F>>,
         sense: Sense,
