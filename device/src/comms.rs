@@ -6,7 +6,7 @@
 //!             │   └────> [`Lease`] ───────┤
 //!             │                           ├──> link ──> drive
 //!             └────────> [`Supervision`] ─┘      │
-//!  host <── [`Outbox`] <── [`Subscription`] <────┘ blocks, status
+//!  host <── [`Outbox`] <── [`Stream`] <──────────┘ blocks, status
 //! ```
 //!
 //! [`Comms::tick`] runs every millisecond; bytes are received and sent in
@@ -22,7 +22,7 @@ pub mod outbox;
 pub mod parameters;
 mod requests;
 pub mod sessions;
-pub mod subscription;
+pub mod stream;
 pub mod supervision;
 mod to_drive;
 
@@ -40,7 +40,7 @@ use lease::Lease;
 use outbox::Outbox;
 use parameters::Parameters;
 use sessions::Sessions;
-use subscription::Subscription;
+use stream::Stream;
 use supervision::Supervision;
 use to_drive::ToDriveQueue;
 
@@ -51,6 +51,8 @@ pub struct Boot {
     pub identity: Identity,
     /// Boot counter.
     pub start: u16,
+    /// Random bits, or at least another number at each start.
+    pub entropy: u64,
     /// The saved parameters, if there are any.
     pub saved: Option<(Revision, Values)>,
     /// Initial value of all counters: 0, except in a test of their wrap.
@@ -102,7 +104,7 @@ pub struct Comms {
     sessions: Sessions,
     /// The request that is being carried out.
     job: Option<Job>,
-    subscription: Option<Subscription>,
+    stream: Stream,
     outbox: Outbox,
     save: Option<(Revision, Values)>,
     /// Time of the requested reboot, ms.
@@ -127,9 +129,9 @@ impl Comms {
             to_drive: ToDriveQueue::default(),
             from_drive: Decoder::new(),
             from_host: Decoder::new(),
-            sessions: Sessions::default(),
+            sessions: Sessions::new(boot.entropy),
             job: None,
-            subscription: None,
+            stream: Stream::default(),
             outbox: Outbox::default(),
             save: None,
             reboot_ms: None,
@@ -251,17 +253,15 @@ impl Comms {
             Continuity::Restarted => {
                 self.counters.count(CommsCounter::DriveRestarts);
                 self.supervision.drive_restarted();
-                if let Some(subscription) = &mut self.subscription {
-                    subscription.rebase(block.first_tick);
-                }
+                self.stream = Stream::new(block.first_tick);
             }
             Continuity::Next { lost } => self.counters.add(CommsCounter::LostSamples, lost),
         }
         self.counters.add(CommsCounter::ReceivedSamples, samples);
-        let Some(subscription) = &mut self.subscription else {
+        if !self.sessions.has_subscriber() {
             return;
-        };
-        let counter = if subscription.forward(block, &mut self.outbox) {
+        }
+        let counter = if self.stream.forward(block, &mut self.outbox) {
             CommsCounter::SentSamples
         } else {
             CommsCounter::DroppedSamples
@@ -287,7 +287,7 @@ impl HostBytes for Comms {
 
     fn host_lost(&mut self) {
         self.from_host.reset();
-        self.subscription = None;
+        self.sessions.unsubscribe_all();
         self.outbox.clear();
     }
 }

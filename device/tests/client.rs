@@ -3,7 +3,8 @@
 mod support;
 
 use crepitus_device::usb_port::HostBytes;
-use crepitus_protocol::parameters;
+use crepitus_protocol::counters::{CommsCounter, DriveCounter};
+use crepitus_protocol::{State, parameters};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -36,9 +37,27 @@ fn the_example_client_is_short_and_knows_the_parameters() {
 
 #[test]
 fn the_example_client_communicates_with_a_device() {
+    let Some(bench) = run(&[]) else { return };
+    assert_eq!(bench.drive.counters().get(DriveCounter::Armings), 0);
+}
+
+/// With the nonce of its session, renewing its lease, disarming at the end.
+#[test]
+fn the_example_client_arms_a_device() {
+    let Some(bench) = run(&["--arm"]) else { return };
+    assert_eq!(bench.drive.counters().get(DriveCounter::Armings), 1);
+    let comms = bench.comms.counters();
+    assert!(comms.get(CommsCounter::Renewals) >= 3);
+    assert_eq!(comms.get(CommsCounter::LeasesExpired), 0);
+    assert_eq!(bench.comms.state(), State::Disarmed);
+}
+
+/// Runs the client with a device until it ends; none without Python.
+fn run(arguments: &[&str]) -> Option<Bench> {
     let started = Command::new("python3")
         .arg(script())
         .arg("-")
+        .args(arguments)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -47,7 +66,7 @@ fn the_example_client_communicates_with_a_device() {
         Ok(client) => client,
         Err(error) if error.kind() == ErrorKind::NotFound => {
             eprintln!("left out: there is no python3");
-            return;
+            return None;
         }
         Err(error) => panic!("{error}"),
     };
@@ -86,4 +105,5 @@ fn the_example_client_communicates_with_a_device() {
     assert!(received_text.contains("count 0, model "), "{received_text}");
     assert_eq!(bench.drive.revision(), bench.comms.revision());
     assert_eq!(bench.drive.revision().0, 2, "one commit");
+    Some(bench)
 }

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # The smallest client of Crepitus. All that it knows stands in docs/protocol.md.
 #
-#     python3 docs/examples/client.py /dev/ttyACM0        (or - for stdin and stdout)
+#     python3 docs/examples/client.py /dev/ttyACM0 [--arm]        (or - for stdin and stdout)
 #
-# It says hello, sets crepitus.static_torque_nm to 0.45, receives 200 blocks of
-# samples, and checks that each sample was received or is reported as dropped.
-# It never arms.
+# It says hello, opens a session, sets crepitus.static_torque_nm to 0.45, receives
+# 200 blocks of samples, and checks that each sample was received or is reported as
+# dropped. With --arm the device is armed meanwhile.
 import itertools, os, select, struct, sys, tty, zlib
 
 # --- Framing ---
 
 def cobs(data):
-    runs = [part[i : i + 254] for part in data.split(b"\0") for i in range(0, len(part) + 1, 254)]
+    runs = (part[i : i + 254] for part in data.split(b"\0") for i in range(0, len(part) + 1, 254))
     return b"".join(bytes([len(run) + 1]) + run for run in runs)
 
 def uncobs(coded):
@@ -39,21 +39,22 @@ def unvarint(message):
     return byte if (byte := next(message)) < 128 else byte - 128 + (unvarint(message) << 7)
 
 def request(what):
-    key = tag + session + varint(next(numbers))
-    send(b"Q" + key + what)
-    reply = wait_for(b"R" + key)
+    number = varint(next(numbers))
+    send(b"Q" + tag + session + nonce + number + what)
+    reply = wait_for(b"R" + tag + session + number)
     refused, answer = next(reply), next(reply)
     return reply if not refused else sys.exit(f"refused: {answer} {bytes(reply).hex()}")
 
 source, sink = (0, 1) if sys.argv[1] == "-" else (os.open(sys.argv[1], os.O_RDWR | os.O_NOCTTY),) * 2
 os.isatty(source) and tty.setraw(source)
-bodies, numbers, session = receive(), itertools.count(1), varint(int.from_bytes(os.urandom(4), "little"))
+bodies, numbers, session, nonce = receive(), itertools.count(1), varint(int.from_bytes(os.urandom(4), "little")), b"\0"
 
-# Hello. A client that does more compares the hash with the one it was made for.
+# Hello. A client that does more compares the hash, bytes 4 to 11, with the one it was made for.
 send(b"M1H\x2a")
-schema = bytes(wait_for(b"m1H\x2a"))[4:12]
-assert len(schema) == 8, "the answer is too short"
-tag = schema[:1]
+tag = bytes(wait_for(b"m1H\x2a"))[4:5] or sys.exit("the answer is too short")
+
+# The session's nonce is in each further request.
+nonce = bytes(request(b"\x0c"))
 
 # Ask for the status until the drive is there and has its parameters.
 present, revision, in_force = 0, 0, None
@@ -68,10 +69,12 @@ base, values = unvarint(parameters), [value for value, in struct.iter_unpack("<d
 values[4] = 0.45
 request(b"\x04" + varint(base) + struct.pack(f"<{len(values)}d", *values))
 
-first_tick = unvarint(request(b"\x0a"))
+arms = "--arm" in sys.argv and request(b"\x07") is not None
+first_tick, dropped_before = (unvarint(answer) for answer in [request(b"\x0a")] * 2)
 for number in range(1, 201):
+    arms and number % 50 == 1 and send(b"Q" + tag + session + nonce + b"\0\0")  # Renews the lease.
     block = wait_for(b"T" + tag)
     sequence, tick, revision, dropped = (unvarint(block) for _ in range(4))
-    flags, samples = next(block), bytes(block)
-    assert tick + 20 - first_tick == 20 * number + dropped, "samples are missing from the books"
-print("count %d, model %g N·m, torque %g N·m, %d mA, flags %#06x" % struct.unpack("<iffhH", samples[-16:]))
+    assert tick + 20 - first_tick == 20 * number + dropped - dropped_before, "samples are missing from the books"
+print("count %d, model %g N·m, torque %g N·m, %d mA, flags %#06x" % struct.unpack("<iffhH", bytes(block)[-16:]))
+arms and request(b"\x08")

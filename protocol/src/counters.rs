@@ -76,6 +76,7 @@ counters! {
     LeasesExpired "expired-leases" "Leases that expired.",
     DriveRestarts "drive-restarts" "Restarts of the drive.",
     Faults "faults" "Faults that were raised.",
+    NotOpen "unopened-requests" "Requests of sessions that are not open, or with an old nonce; not executed.",
 }
 
 #[cfg(test)]

@@ -1,5 +1,8 @@
 //! Messages between the host and comms.
 //!
+//! A host opens a session with [`Operation::Open`], and gets the [`Nonce`] that
+//! all its further requests repeat.
+//!
 //! Every [`Request`] of a host but a renewal has one [`Reply`] of comms, with
 //! the same session and sequence number. A repeated number gets the stored reply
 //! and is not executed again, so a host may always retry after a timeout.
@@ -7,7 +10,7 @@
 use crate::counters::{COMMS_COUNT, DRIVE_COUNT};
 use crate::link::DriveRefusal;
 use crate::parameters::Values;
-use crate::revision::{Revision, Session};
+use crate::revision::{Nonce, Revision, Session};
 use crate::settings::ValueError;
 use crate::state::State;
 use postcard::experimental::max_size::MaxSize;
@@ -19,6 +22,8 @@ use serde::{Deserialize, Serialize};
 pub struct Request {
     /// The host's session.
     pub session: Session,
+    /// The nonce of the open session; ignored by [`Operation::Open`].
+    pub nonce: Nonce,
     /// Sequence number; incremented for each request, wraps.
     pub number: u16,
     /// The requested operation.
@@ -51,14 +56,17 @@ pub enum Operation {
     Zero,
     /// Acquires the lease and turns torque on. → [`Answer::Done`]
     Arm,
-    /// Turns torque off and releases the lease. → [`Answer::Done`]
+    /// Turns torque off and releases the lease; rejected while another session
+    /// holds it: use [stop](crate::management). → [`Answer::Done`]
     Disarm,
     /// Clears the faults. → [`Answer::Done`]
     ClearFault,
-    /// Starts telemetry. → [`Answer::Subscribed`]
+    /// Starts this session's telemetry. → [`Answer::Subscribed`]
     Subscribe,
-    /// Stops telemetry. → [`Answer::Done`]
+    /// Stops this session's telemetry. → [`Answer::Done`]
     Unsubscribe,
+    /// Opens the session, or gives it another nonce. → [`Answer::Opened`]
+    Open,
 }
 
 /// Reply of comms.
@@ -97,6 +105,15 @@ pub enum Answer {
     Subscribed {
         /// The first tick of the subscription.
         first_tick: u64,
+        /// The blocks' `dropped` before it.
+        dropped: u32,
+        /// The start of the drive that counts them, as in the blocks' flags.
+        start: u8,
+    },
+    /// The session is open.
+    Opened {
+        /// To be repeated in each request.
+        nonce: Nonce,
     },
 }
 
@@ -177,4 +194,7 @@ pub enum Refusal {
     Storage,
     /// Aborted by a stop, a disarm or a fault.
     Aborted,
+    /// The session is not open, or the nonce is an old one: open it. Nothing was
+    /// executed, and telemetry of the session has ended.
+    NotOpen,
 }

@@ -75,7 +75,7 @@ pub use fault::Fault;
 pub use frame::Frame;
 pub use lane::Lane;
 pub use parameters::Values;
-pub use revision::{Revision, Session};
+pub use revision::{Nonce, Revision, Session};
 pub use settings::{DeviceSettings, ValueError};
 pub use state::{LimitReason, State};
 

@@ -1,4 +1,4 @@
-//! Typed numbers: revision and session.
+//! Typed numbers: revision, session and nonce.
 
 use core::fmt;
 use postcard::experimental::max_size::MaxSize;
@@ -38,6 +38,18 @@ impl fmt::Display for Session {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:08x}", self.0)
     }
+}
+
+/// Number that the device draws when a host opens its session. Each request
+/// repeats it, so that nothing sent before is obeyed after a restart.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
+)]
+pub struct Nonce(pub u32);
+
+impl Nonce {
+    /// Of a session that is not open; never drawn.
+    pub const NONE: Self = Self(0);
 }
 
 #[cfg(test)]

@@ -12,11 +12,14 @@
 //! Angles and speeds follow from the counts: an encoder's count is
 //! 2π/(4·lines·gear ratio) of the joint.
 //!
-//! **Accounting.** `dropped` counts the samples of the subscription that were
-//! lost so far, at any stage. So at any point of the chain, for every block,
+//! **Accounting.** `dropped` counts the samples that were not sent so far, at
+//! any stage and for any reason, also because nobody had subscribed; it begins at
+//! 0 with the drive's first block after a restart. A subscription's answer has its
+//! value at the subscription's first tick. So at any point of the chain, for every
+//! block of a subscription,
 //!
 //! ```text
-//! first_tick + 20 − first tick of the subscription = samples received so far + dropped
+//! first_tick + 20 − first tick of the subscription = samples received so far + (dropped − dropped before it)
 //! ```
 
 use crate::revision::Revision;
@@ -206,7 +209,7 @@ pub struct Block {
     pub first_tick: u64,
     /// Revision of the parameters active throughout the block.
     pub revision: Revision,
-    /// Samples of the subscription lost so far; wraps.
+    /// Samples that were not sent so far; wraps.
     pub dropped: u32,
     /// Flags.
     pub flags: BlockFlags,

@@ -90,9 +90,10 @@ impl DriveView {
         self.identity.as_ref()
     }
 
-    /// Whether a block was ever received.
-    pub fn is_known(&self) -> bool {
-        self.start.is_some()
+    /// The lowest bits of its start, as in the flags of its blocks, if one was
+    /// ever received.
+    pub fn start(&self) -> Option<u8> {
+        self.start
     }
 
     /// Whether blocks arrive within the timeout.

@@ -3,7 +3,6 @@
 use crate::comms::Comms;
 use crate::comms::job::{Job, JobState};
 use crate::comms::sessions::RequestClass;
-use crate::comms::subscription::Subscription;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::frame::{self, Frame};
 use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Reply, Request, Status};
@@ -54,14 +53,27 @@ impl Comms {
 
     fn request(&mut self, request: &Request) {
         if request.operation == Operation::Renew {
-            let seen_tick = self.drive.seen_tick();
-            if self.lease.renew(request.session, self.now_ms, seen_tick) {
-                self.counters.count(CommsCounter::Renewals);
-            }
-            return;
+            return self.renew(request);
         }
         match self.sessions.classify(request) {
             RequestClass::Ignore => {}
+            RequestClass::NotOpen => {
+                self.counters.count(CommsCounter::NotOpen);
+                self.send(&Reply {
+                    session: request.session,
+                    number: request.number,
+                    answer: Err(Refusal::NotOpen),
+                });
+            }
+            RequestClass::Open => {
+                self.counters.count(CommsCounter::Requests);
+                let needed = [
+                    self.lease.holder(self.now_ms),
+                    self.job.map(|job| job.session),
+                ];
+                let reply = self.sessions.open(request, needed);
+                self.send(&reply);
+            }
             RequestClass::Repeat(reply) => {
                 self.counters.count(CommsCounter::RepeatedRequests);
                 self.send(&reply);
@@ -81,10 +93,22 @@ impl Comms {
         }
     }
 
+    /// Renews the lease, without a reply.
+    fn renew(&mut self, request: &Request) {
+        let Request { session, nonce, .. } = *request;
+        let seen_tick = self.drive.seen_tick();
+        if !self.sessions.is_open(session, nonce) {
+            self.counters.count(CommsCounter::NotOpen);
+        } else if self.lease.renew(session, self.now_ms, seen_tick) {
+            self.counters.count(CommsCounter::Renewals);
+        }
+    }
+
     fn begin(&mut self, request: &Request) -> StartResult {
         let answered = |answer| Ok(Started::Replied(answer));
         match &request.operation {
-            Operation::Renew => answered(Answer::Done),
+            // Handled before.
+            Operation::Renew | Operation::Open => answered(Answer::Done),
             Operation::Status => answered(Answer::Status(self.status())),
             Operation::Counters => answered(Answer::Counters(Counters {
                 drive: self.drive.counters(),
@@ -94,22 +118,27 @@ impl Comms {
                 revision: self.parameters.revision(),
                 values: *self.parameters.values(),
             }),
-            // The first tick of the stream is not known yet.
-            Operation::Subscribe if !self.drive.is_known() => Err(Refusal::DriveSilent),
             Operation::Subscribe => {
+                // Before, the first tick of the stream is not known.
+                let start = self.drive.start().ok_or(Refusal::DriveSilent)?;
                 let first_tick = self.drive.next_tick();
-                self.subscription = Some(Subscription::new(first_tick));
-                answered(Answer::Subscribed { first_tick })
+                self.sessions.subscribe(request.session, true);
+                answered(Answer::Subscribed {
+                    first_tick,
+                    dropped: self.stream.dropped_before(first_tick),
+                    start,
+                })
             }
             Operation::Unsubscribe => {
-                self.subscription = None;
+                self.sessions.subscribe(request.session, false);
                 answered(Answer::Done)
             }
             Operation::Disarm => {
+                self.check_lease(request.session)?;
                 self.release(Refusal::Aborted);
                 answered(Answer::Done)
             }
-            Operation::Commit { base, values } => self.commit(request, *base, values),
+            Operation::Commit { base, values } => self.commit(*base, values),
             Operation::Save => self.save(request),
             Operation::Zero => self.command(request, Order::Zero),
             Operation::ClearFault => self.clear_fault(request),
@@ -117,8 +146,12 @@ impl Comms {
         }
     }
 
-    fn commit(&mut self, request: &Request, base: Revision, values: &Values) -> StartResult {
-        self.authorize(request.session)?;
+    /// Commits also while another session holds the lease: a teacher changes the
+    /// knee that somebody else examines.
+    fn commit(&mut self, base: Revision, values: &Values) -> StartResult {
+        if self.job.is_some() {
+            return Err(Refusal::Busy);
+        }
         let revision = self.parameters.revision();
         if base != revision {
             return Err(Refusal::Stale { revision });
@@ -198,13 +231,19 @@ impl Comms {
 
     /// Rejects a change while another host holds the lease or a job is pending.
     fn authorize(&self, session: Session) -> Result<(), Refusal> {
-        if let Some(by) = self.lease.other_holder(session, self.now_ms) {
-            return Err(Refusal::Leased { by });
-        }
+        self.check_lease(session)?;
         if self.job.is_some() {
             return Err(Refusal::Busy);
         }
         Ok(())
+    }
+
+    /// Rejects a request while another host holds the lease.
+    fn check_lease(&self, session: Session) -> Result<(), Refusal> {
+        match self.lease.other_holder(session, self.now_ms) {
+            Some(by) => Err(Refusal::Leased { by }),
+            None => Ok(()),
+        }
     }
 
     /// Advances the pending job; runs once a millisecond.

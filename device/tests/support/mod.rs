@@ -14,7 +14,7 @@ use crepitus_protocol::frame::FRAME_BYTES;
 use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request};
 use crepitus_protocol::management::{Identity, Role};
 use crepitus_protocol::telemetry::Block;
-use crepitus_protocol::{Decoder, Lane, Session, frame, schema};
+use crepitus_protocol::{Decoder, Lane, Nonce, Session, frame, schema};
 use motor::Motor;
 use std::collections::VecDeque;
 
@@ -60,6 +60,7 @@ pub(crate) struct Bench {
     from_comms: Decoder,
     pub(crate) session: Session,
     pub(crate) number: u16,
+    nonce: Nonce,
     replies: Vec<Reply>,
     pub(crate) blocks: Vec<Block>,
     /// Prescribed encoder counts and velocities of the next ticks.
@@ -81,6 +82,7 @@ impl Bench {
             from_comms: Decoder::new(),
             session: Session(0x1234),
             number: 0,
+            nonce: Nonce::NONE,
             replies: Vec::new(),
             blocks: Vec::new(),
             script: VecDeque::new(),
@@ -172,6 +174,7 @@ impl Bench {
     pub(crate) fn tell(&mut self, operation: Operation) {
         let request = Request {
             session: self.session,
+            nonce: self.nonce,
             number: self.number,
             operation,
         };
@@ -180,7 +183,11 @@ impl Bench {
     }
 
     /// Sends a request and runs until the reply arrives.
+    /// Opens the session first where it is not open.
     pub(crate) fn ask(&mut self, operation: Operation) -> Result<Answer, Refusal> {
+        if self.nonce == Nonce::NONE && operation != Operation::Open {
+            self.open();
+        }
         self.number = self.number.wrapping_add(1);
         self.tell(operation);
         for _ in 0..700 {
@@ -192,6 +199,14 @@ impl Bench {
             }
         }
         panic!("no answer to {operation:?}");
+    }
+
+    /// Opens the session.
+    pub(crate) fn open(&mut self) {
+        match self.ask(Operation::Open) {
+            Ok(Answer::Opened { nonce }) => self.nonce = nonce,
+            other => panic!("not opened: {other:?}"),
+        }
     }
 
     /// Runs for this many milliseconds, renewing the lease.

@@ -19,6 +19,8 @@ pub struct Start {
     /// Start counter, by which the other controller detects a restart. Random
     /// after power was off, so that two such starts differ.
     pub number: u16,
+    /// Random, and another number at each start even if the generator fails.
+    pub entropy: u64,
     /// The record that the last program stored.
     pub before: ResetRecord,
 }
@@ -34,9 +36,11 @@ pub fn start(rcc: &mut Rcc, generator: &RNG) -> Start {
     };
     rcc.csr().modify(|_, w| w.rmvf().clear());
     let record = ResetRecord::of(raw::record_words());
+    let [high, low] = random(rcc, generator);
     let number = match record {
         Some(record) => record.start.wrapping_add(1),
-        None => random(rcc, generator),
+        // Both halves, in case the generator has stuck bits.
+        None => u16::try_from((low ^ (low >> 16)) & 0xffff).unwrap_or_default(),
     };
     let words = ResetRecord {
         start: number,
@@ -48,22 +52,23 @@ pub fn start(rcc: &mut Rcc, generator: &RNG) -> Start {
     Start {
         cause: reset_cause(flags, record.as_ref()),
         number,
+        entropy: (u64::from(high) << 32 | u64::from(low)) ^ u64::from(number),
         before: record.unwrap_or_default(),
     }
 }
 
-fn random(rcc: &mut RCC, generator: &RNG) -> u16 {
+/// Two numbers of the generator; 0 where it fails.
+fn random(rcc: &mut RCC, generator: &RNG) -> [u32; 2] {
     RNG::enable(rcc);
     generator.cr().write(|w| w.rngen().set_bit());
-    let mut number = 0;
-    for _ in 0..MOST_POLLS {
-        if generator.sr().read().drdy().bit() {
-            // Both halves, in case the generator has stuck bits.
-            let word = generator.dr().read().bits();
-            number = (word ^ (word >> 16)) & 0xffff;
-            break;
+    let numbers = [(); 2].map(|()| {
+        for _ in 0..MOST_POLLS {
+            if generator.sr().read().drdy().bit() {
+                return generator.dr().read().bits();
+            }
         }
-    }
+        0
+    });
     generator.cr().reset();
-    u16::try_from(number).unwrap_or_default()
+    numbers
 }

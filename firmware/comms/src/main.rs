@@ -95,6 +95,7 @@ mod app {
         let comms = cx.local.comms.write(Comms::new(&Boot {
             identity: board.identity,
             start: start.number,
+            entropy: start.entropy,
             saved: board.log.newest(),
             counters: 0,
         }));

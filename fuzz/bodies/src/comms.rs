@@ -52,6 +52,7 @@ pub fn body(data: &[u8]) {
             ..Identity::default()
         },
         start: u16::from(bytes.byte()),
+        entropy: 1,
         saved: (saved > 127).then(|| {
             let revision = bytes.choice(&[0, 1, 7, u32::MAX - 1]);
             (Revision(revision), link_inputs::values(&mut bytes))
@@ -145,8 +146,10 @@ impl Bench {
                     48..=63 => *number = number.wrapping_add(bytes.u16()),
                     _ => *number = number.wrapping_add(1),
                 }
+                let session = Session(u32::try_from(place).unwrap_or(0) * 0x1001);
                 let request = Request {
-                    session: Session(u32::try_from(place).unwrap_or(0) * 0x1001),
+                    session,
+                    nonce: self.host.nonce(session),
                     number: *number,
                     operation,
                 };
@@ -192,7 +195,8 @@ impl Bench {
     fn ask(&mut self, bytes: &mut Bytes<'_>) -> Operation {
         match bytes.byte() % 16 {
             0 | 1 => Operation::Renew,
-            2 => Operation::Status,
+            2 => Operation::Open,
+            3 if bytes.byte() < 128 => Operation::Status,
             3 => Operation::Counters,
             4 => Operation::Parameters,
             5 | 6 => Operation::Commit {

@@ -3,15 +3,16 @@
 use crepitus_protocol::host::{Answer, Operation, Reply, Request};
 use crepitus_protocol::management;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
-use crepitus_protocol::{Decoder, Lane, Session, Values};
+use crepitus_protocol::{Decoder, Lane, Nonce, Session, Values};
 use std::collections::BTreeMap;
 
 /// Accounting of a subscription.
 #[derive(Clone, Copy)]
 struct SampleAccounting {
     first_tick: u64,
+    dropped_before: u32,
     received: u64,
-    start: Option<u8>,
+    start: u8,
     next_tick: u64,
 }
 
@@ -21,9 +22,13 @@ pub(crate) struct HostOracle {
     decoder: Decoder,
     /// How many replies may still come to each request.
     expected: BTreeMap<(u32, u16), u32>,
-    /// Which requests were subscriptions; the last one counts.
-    subscription: Option<(Session, u16)>,
-    accounting: Option<SampleAccounting>,
+    /// Nonces of the sessions.
+    nonces: BTreeMap<u32, Nonce>,
+    /// Which request of each session was a subscription; the last one counts.
+    subscriptions: BTreeMap<u32, u16>,
+    /// Of each session, also of one that has unsubscribed: the count is one for
+    /// all.
+    accountings: BTreeMap<u32, SampleAccounting>,
 }
 
 impl HostOracle {
@@ -33,8 +38,8 @@ impl HostOracle {
         match request.operation {
             Operation::Renew => return,
             Operation::Subscribe => {
-                self.subscription = Some((request.session, request.number));
-                self.accounting = None;
+                self.subscriptions.insert(key.0, request.number);
+                self.accountings.remove(&key.0);
             }
             _ => {}
         }
@@ -44,8 +49,13 @@ impl HostOracle {
     /// The connection was lost, with the bytes in flight.
     pub(crate) fn cut(&mut self) {
         self.decoder.reset();
-        self.subscription = None;
-        self.accounting = None;
+        self.subscriptions.clear();
+        self.accountings.clear();
+    }
+
+    /// The nonce of a session.
+    pub(crate) fn nonce(&self, session: Session) -> Nonce {
+        self.nonces.get(&session.0).copied().unwrap_or_default()
     }
 
     /// A byte from comms; `values` are those that there may be.
@@ -76,16 +86,24 @@ impl HostOracle {
         assert!(*expected > 0, "a reply too many: {reply:?}");
         *expected -= 1;
         match reply.answer {
-            Ok(Answer::Subscribed { first_tick })
-                if self.subscription == Some((reply.session, reply.number)) =>
-            {
-                self.subscription = None;
-                self.accounting = Some(SampleAccounting {
+            Ok(Answer::Subscribed {
+                first_tick,
+                dropped,
+                start,
+            }) if self.subscriptions.get(&reply.session.0) == Some(&reply.number) => {
+                self.subscriptions.remove(&reply.session.0);
+                let accounting = SampleAccounting {
                     first_tick,
+                    dropped_before: dropped,
                     received: 0,
-                    start: None,
+                    start,
                     next_tick: 0,
-                });
+                };
+                self.accountings.insert(reply.session.0, accounting);
+            }
+            Ok(Answer::Opened { nonce }) => {
+                assert_ne!(nonce, Nonce::NONE);
+                self.nonces.insert(reply.session.0, nonce);
             }
             Ok(Answer::Parameters { values: told, .. }) => {
                 assert!(values.contains(&told), "nobody's values");
@@ -95,25 +113,24 @@ impl HostOracle {
     }
 
     fn block(&mut self, block: &Block) {
-        let Some(accounting) = &mut self.accounting else {
-            return;
-        };
-        let start = block.flags.start();
-        let is_another = match accounting.start {
-            Some(known) => known != start || block.first_tick < accounting.next_tick,
-            // It may have been reset before the first block came.
-            None => {
-                block.first_tick.wrapping_sub(accounting.first_tick) != u64::from(block.dropped)
-            }
-        };
-        if is_another {
-            accounting.first_tick = block.first_tick.wrapping_sub(block.dropped.into());
-            accounting.received = 0;
+        for accounting in self.accountings.values_mut() {
+            accounting.block(block);
         }
-        (accounting.start, accounting.next_tick) = (Some(start), block.end_tick());
-        accounting.received += BLOCK_SAMPLES as u64;
-        let produced = block.end_tick() - accounting.first_tick;
-        let lost = produced - accounting.received;
-        assert_eq!(lost & u64::from(u32::MAX), u64::from(block.dropped));
+    }
+}
+
+impl SampleAccounting {
+    fn block(&mut self, block: &Block) {
+        let start = block.flags.start();
+        if self.start != start || block.first_tick < self.next_tick {
+            self.first_tick = block.first_tick.wrapping_sub(block.dropped.into());
+            (self.dropped_before, self.received) = (0, 0);
+        }
+        (self.start, self.next_tick) = (start, block.end_tick());
+        self.received += BLOCK_SAMPLES as u64;
+        let produced = block.end_tick() - self.first_tick;
+        let lost = produced - self.received;
+        let dropped = block.dropped.wrapping_sub(self.dropped_before);
+        assert_eq!(lost & u64::from(u32::MAX), u64::from(dropped));
     }
 }

@@ -8,8 +8,8 @@
 //! produced = received + dropped by the device + lost on the connection
 //! ```
 //!
-//! Each block carries the number of samples that the device has dropped so far,
-//! so all others that are missing were lost between the device and here. The
+//! Each block carries the number of samples that the device has not sent so far,
+//! and the answer to the subscription those before it; so all others that are missing were lost between the device and here. The
 //! sums are exact up to the last block received.
 //!
 //! When the drive restarts, its ticks restart, and a new *segment* begins; the
@@ -65,6 +65,17 @@ pub struct Accounting {
     violations: u64,
 }
 
+/// Where a stream of blocks begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Begin {
+    /// The first tick.
+    pub first_tick: u64,
+    /// Samples before it that the device has not sent.
+    pub dropped: u32,
+    /// The drive's start that counts them, as in the flags of its blocks.
+    pub start: u8,
+}
+
 /// Sums since the subscription started, or the drive restarted.
 #[derive(Clone, Copy, Debug)]
 struct Segment {
@@ -74,18 +85,18 @@ struct Segment {
     /// Dropped by the device; unlike the counter in a block this does not wrap.
     dropped: u64,
     said: u32,
-    start: Option<u8>,
+    start: u8,
 }
 
 impl Segment {
-    fn new(first_tick: u64, start: Option<u8>) -> Self {
+    fn new(begin: Begin) -> Self {
         Self {
-            first_tick,
-            next_tick: first_tick,
+            first_tick: begin.first_tick,
+            next_tick: begin.first_tick,
             received: 0,
             dropped: 0,
-            said: 0,
-            start,
+            said: begin.dropped,
+            start: begin.start,
         }
     }
 
@@ -95,13 +106,13 @@ impl Segment {
 }
 
 impl Accounting {
-    /// Starts with this tick.
-    pub fn new(first_tick: u64) -> Self {
+    /// Starts here.
+    pub fn new(begin: Begin) -> Self {
         Self {
             produced: 0,
             received: 0,
             dropped: 0,
-            segment: Segment::new(first_tick, None),
+            segment: Segment::new(begin),
             gaps: VecDeque::new(),
             gap_count: 0,
             restarts: 0,
@@ -113,18 +124,20 @@ impl Accounting {
     /// Accounts for the next block.
     pub fn take(&mut self, block: &Block) -> Taken {
         let start = block.flags.start();
-        let is_restart = self.segment.start.is_some_and(|known| known != start);
+        let is_restart = self.segment.start != start;
         if is_restart {
             // The device restarts its accounting, too.
-            let first_tick = block.first_tick.saturating_sub(u64::from(block.dropped));
-            self.resume(first_tick);
+            self.resume(Begin {
+                first_tick: block.first_tick.saturating_sub(u64::from(block.dropped)),
+                dropped: 0,
+                start,
+            });
             self.restarts += 1;
         } else if block.first_tick < self.segment.next_tick {
             self.old += 1;
             return Taken::Old;
         }
         let segment = &mut self.segment;
-        segment.start = Some(start);
         let missing = block.first_tick.saturating_sub(segment.next_tick);
         let gap = Gap {
             first_tick: segment.next_tick,
@@ -152,13 +165,13 @@ impl Accounting {
         }
     }
 
-    /// Resumes at this tick after a lost connection. Samples produced in
+    /// Resumes here after a lost connection. Samples produced in
     /// between are not counted.
-    pub(crate) fn resume(&mut self, first_tick: u64) {
+    pub(crate) fn resume(&mut self, begin: Begin) {
         self.produced += self.segment.produced();
         self.received += self.segment.received;
         self.dropped += self.segment.dropped;
-        self.segment = Segment::new(first_tick, None);
+        self.segment = Segment::new(begin);
     }
 
     /// Samples produced for the subscription.

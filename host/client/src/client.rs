@@ -21,7 +21,7 @@ use crate::wire::Wire;
 use crepitus_protocol::host::Status;
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::telemetry::Block;
-use crepitus_protocol::{Session, State};
+use crepitus_protocol::{Nonce, Session, State};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -31,6 +31,8 @@ use std::time::Duration;
 pub struct Client<T> {
     pub(crate) wire: Wire<T>,
     pub(crate) session: Session,
+    /// Drawn by the device when the session was opened.
+    pub(crate) nonce: Nonce,
     /// Sequence number of the last request, and token of the last management
     /// request.
     pub(crate) number: u16,
@@ -144,6 +146,7 @@ impl<T: Transport> Client<T> {
         Self {
             wire: Wire::new(transport),
             session: options.session,
+            nonce: Nonce::NONE,
             number: options.first_number.wrapping_sub(1),
             token: 0,
             handshake: Handshake {
@@ -165,6 +168,7 @@ impl<T: Transport> Client<T> {
     /// Completes the handshake if the schema hashes match.
     pub(crate) fn checked(mut self, handshake: Handshake) -> Result<Self, Error> {
         self.accept(handshake)?;
+        self.open()?;
         // Changes are reported relative to this status.
         self.status()?;
         Ok(self)

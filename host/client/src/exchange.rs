@@ -26,12 +26,8 @@ impl<T: Transport> Client<T> {
         let kind = RequestKind::of(&operation);
         let end = self.now() + BUSY_TIMEOUT;
         loop {
-            let (session, number) = (self.session, self.next_number());
-            let request = Request {
-                session,
-                number,
-                operation,
-            };
+            let number = self.next_number();
+            let request = self.numbered(number, operation);
             let reply = self.exchange(
                 kind,
                 |wire| wire.request(&request),
@@ -43,6 +39,7 @@ impl<T: Transport> Client<T> {
             let Reply { answer, .. } = reply;
             match answer {
                 Ok(answer) => return Ok(answer),
+                Err(Refusal::NotOpen) => return Err(self.forgotten()),
                 Err(Refusal::Busy) if kind.is_job() && self.now() < end => self.idle(BUSY_RETRY)?,
                 Err(refusal) => {
                     let values = match operation {
@@ -57,6 +54,36 @@ impl<T: Transport> Client<T> {
                 }
             }
         }
+    }
+
+    /// A request of this session.
+    pub(crate) fn numbered(&self, number: u16, operation: Operation) -> Request {
+        Request {
+            session: self.session,
+            nonce: self.nonce,
+            number,
+            operation,
+        }
+    }
+
+    /// Opens the session.
+    pub(crate) fn open(&mut self) -> Result<(), Error> {
+        match self.request(Operation::Open)? {
+            Answer::Opened { nonce } => {
+                self.nonce = nonce;
+                Ok(())
+            }
+            _ => Err(Error::Unexpected {
+                request: RequestKind::Open,
+            }),
+        }
+    }
+
+    /// Handles a session that is open no longer: the device has restarted, or
+    /// has evicted it. Reconnecting opens it again.
+    pub(crate) fn forgotten(&mut self) -> Error {
+        let port = self.port();
+        self.failed(TransportError::Forgotten { port })
     }
 
     /// Sends a management request and waits for the answer.
@@ -166,11 +193,8 @@ impl<T: Transport> Client<T> {
             return Ok(());
         }
         self.renewed_at = now;
-        let sent = self.wire.request(&Request {
-            session: self.session,
-            number: self.number,
-            operation: Operation::Renew,
-        });
+        let renewal = self.numbered(self.number, Operation::Renew);
+        let sent = self.wire.request(&renewal);
         self.counts.renewals += 1;
         self.sent(sent)
     }

@@ -71,7 +71,7 @@ mod transport;
 pub mod values;
 mod wire;
 
-pub use accounting::{Accounting, Gap, Taken};
+pub use accounting::{Accounting, Begin, Gap, Taken};
 pub use client::{Client, Tally};
 pub use errors::{Conflict, Error};
 pub use event::{Arrival, Event, StateChange};

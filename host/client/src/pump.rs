@@ -7,7 +7,7 @@ use crate::event::{Arrival, Event, StateChange};
 use crate::transport::Transport;
 use crate::wire::Incoming;
 use crepitus_protocol::State;
-use crepitus_protocol::host::{Answer, Operation, Reply, Request, Status};
+use crepitus_protocol::host::{Answer, Operation, Refusal, Status};
 use crepitus_protocol::telemetry::Block;
 use std::time::Duration;
 
@@ -114,11 +114,8 @@ impl<T: Transport> Client<T> {
         let number = self.next_number();
         (self.watch.asked, self.watch.asked_at) = (Some(number), now);
         self.watch.due_at = None;
-        let sent = self.wire.request(&Request {
-            session: self.session,
-            number,
-            operation: Operation::Status,
-        });
+        let request = self.numbered(number, Operation::Status);
+        let sent = self.wire.request(&request);
         self.sent(sent)
     }
 
@@ -147,12 +144,12 @@ impl<T: Transport> Client<T> {
             }
             Incoming::Reply(reply) if self.watch.asked == Some(reply.number) => {
                 self.watch.asked = None;
-                if let Reply {
-                    answer: Ok(Answer::Status(status)),
-                    ..
-                } = *reply
-                {
-                    self.observe(&status);
+                match reply.answer {
+                    Ok(Answer::Status(status)) => self.observe(&status),
+                    Err(Refusal::NotOpen) => {
+                        self.forgotten();
+                    }
+                    _ => {}
                 }
                 None
             }

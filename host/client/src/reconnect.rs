@@ -1,6 +1,6 @@
 //! Reconnecting after a lost connection.
 
-use crate::accounting::Accounting;
+use crate::accounting::{Accounting, Begin};
 use crate::client::{Client, Lease};
 use crate::errors::Error;
 use crate::event::Event;
@@ -90,6 +90,7 @@ impl<T: Transport> Client<T> {
         self.loss = None;
         let handshake = self.identify()?;
         self.accept(handshake)?;
+        self.open()?;
         let resubscribed = if self.telemetry.is_subscribed {
             Some(self.resubscribe()?)
         } else {
@@ -106,9 +107,9 @@ impl<T: Transport> Client<T> {
 
     fn resubscribe(&mut self) -> Result<Resubscribed, Error> {
         let until_tick = self.accounting().map_or(0, Accounting::next_tick);
-        let from_tick = self.begin_subscription(|accounting, first_tick| match accounting {
-            Some(accounting) => accounting.resume(first_tick),
-            None => *accounting = Some(Accounting::new(first_tick)),
+        let from_tick = self.begin_subscription(|accounting, begin| match accounting {
+            Some(accounting) => accounting.resume(begin),
+            None => *accounting = Some(Accounting::new(begin)),
         })?;
         Ok(Resubscribed {
             until_tick,
@@ -119,17 +120,27 @@ impl<T: Transport> Client<T> {
     /// Subscribes and starts the accounting.
     pub(crate) fn begin_subscription(
         &mut self,
-        begin: impl FnOnce(&mut Option<Accounting>, u64),
+        begin: impl FnOnce(&mut Option<Accounting>, Begin),
     ) -> Result<u64, Error> {
         self.telemetry.early = Some(Vec::new());
         let answer = self.request(Operation::Subscribe);
         let early = self.telemetry.early.take().unwrap_or_default();
-        let Answer::Subscribed { first_tick } = answer? else {
+        let Answer::Subscribed {
+            first_tick,
+            dropped,
+            start,
+        } = answer?
+        else {
             return Err(Error::Unexpected {
                 request: RequestKind::Subscribe,
             });
         };
-        begin(&mut self.telemetry.accounting, first_tick);
+        let first = Begin {
+            first_tick,
+            dropped,
+            start,
+        };
+        begin(&mut self.telemetry.accounting, first);
         self.telemetry.is_subscribed = true;
         self.telemetry.heard_at = self.now();
         self.telemetry.is_silent = false;

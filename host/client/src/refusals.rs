@@ -34,7 +34,7 @@ impl fmt::Display for Refused {
             ),
             Refusal::Leased { by } => write!(
                 f,
-                "`{request}` is rejected: another host (session {by}) holds the lease; \
+                "`{request}` is rejected: another program (session {by}) has armed the device; \
                  end that program, or run `crepitus stop`"
             ),
             Refusal::DriveSilent => write!(
@@ -66,6 +66,10 @@ impl fmt::Display for Refused {
             Refusal::Storage => f.write_str(
                 "the parameters could not be saved: writing the flash memory of comms failed; \
                  they stay active until the next boot",
+            ),
+            Refusal::NotOpen => write!(
+                f,
+                "`{request}` is rejected: the device does not know this session; connect again"
             ),
             Refusal::Aborted => {
                 write!(f, "`{request}` was aborted by a stop, a disarm or a fault")

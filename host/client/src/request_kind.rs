@@ -15,6 +15,7 @@ pub enum RequestKind {
     Hello,
     Stop,
     Reboot,
+    Open,
     Status,
     Counters,
     Parameters,
@@ -39,10 +40,11 @@ pub(crate) struct Timing {
 
 impl RequestKind {
     /// All kinds.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Hello,
         Self::Stop,
         Self::Reboot,
+        Self::Open,
         Self::Status,
         Self::Counters,
         Self::Parameters,
@@ -62,6 +64,7 @@ impl RequestKind {
             Self::Hello => "hello",
             Self::Stop => "stop",
             Self::Reboot => "reboot",
+            Self::Open => "open",
             Self::Status => "status",
             Self::Counters => "counters",
             Self::Parameters => "parameters",
@@ -85,6 +88,7 @@ impl RequestKind {
         match operation {
             // A renewal has no reply.
             Operation::Renew | Operation::Status => Self::Status,
+            Operation::Open => Self::Open,
             Operation::Counters => Self::Counters,
             Operation::Parameters => Self::Parameters,
             Operation::Commit { .. } => Self::Commit,

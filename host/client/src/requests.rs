@@ -207,10 +207,11 @@ impl<T: Transport> Client<T> {
         }
     }
 
-    /// Turns torque off and releases the lease; any host may.
+    /// Turns torque off and releases the lease.
     ///
     /// # Errors
-    /// See above; in any case the lease is no longer renewed.
+    /// [`Refusal::Leased`] while another host holds the lease: only [`Self::stop`]
+    /// ends another's torque. In any case the lease is no longer renewed.
     pub fn disarm(&mut self) -> Result<(), Error> {
         self.lease = Lease::None;
         self.watch.due_at = Some(self.now());
@@ -235,8 +236,8 @@ impl<T: Transport> Client<T> {
             .retain(|event| !matches!(event, Event::Block(_) | Event::DriveRestarted));
         self.telemetry.is_subscribed = false;
         self.telemetry.state = None;
-        self.begin_subscription(|accounting, first_tick| {
-            *accounting = Some(Accounting::new(first_tick));
+        self.begin_subscription(|accounting, begin| {
+            *accounting = Some(Accounting::new(begin));
         })
     }
 

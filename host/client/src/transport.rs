@@ -108,6 +108,13 @@ pub enum TransportError {
         /// Time waited.
         patience: Duration,
     },
+    /// The device has restarted, or more programs are connected than it can
+    /// remember.
+    #[error("{port}: the device does not know this session any more: it has restarted")]
+    Forgotten {
+        /// The port.
+        port: String,
+    },
     /// The connection is lost.
     #[error(
         "connection to {port} lost ({detail}): the device was unplugged, switched off or rebooted"

@@ -13,7 +13,7 @@ use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 use crepitus_protocol::telemetry::{BlockFlags, NO_CURRENT, Sample, SampleFlags};
 use crepitus_protocol::{
-    Decoder, Frame, Lane, LimitReason, Revision, Session, State, ValueError, Values, frame,
+    Decoder, Frame, Lane, LimitReason, Nonce, Revision, Session, State, ValueError, Values, frame,
 };
 use postcard_schema::Schema;
 use postcard_schema::schema::NamedType;
@@ -88,6 +88,7 @@ pub(crate) fn all() -> Vec<Example> {
 }
 
 const HOST: Session = Session(0x1234_5678);
+const NONCE: Nonce = Nonce(0x9abc_def0);
 const OTHER: Session = Session(0xcafe);
 
 /// Half its id for each parameter: no device would take them.
@@ -117,6 +118,7 @@ fn operation_name(operation: &Operation) -> &'static str {
         Operation::ClearFault => "clear-fault",
         Operation::Subscribe => "subscribe",
         Operation::Unsubscribe => "unsubscribe",
+        Operation::Open => "open",
     }
 }
 
@@ -138,17 +140,23 @@ fn requests() -> Vec<Example> {
         Operation::ClearFault,
         Operation::Subscribe,
         Operation::Unsubscribe,
+        Operation::Open,
     ];
     (0x1fe..)
         .zip(asks)
         .map(|(number, operation)| {
             let request = Request {
                 session: HOST,
+                nonce: if operation == Operation::Open {
+                    Nonce::NONE
+                } else {
+                    NONCE
+                },
                 number,
                 operation,
             };
             let means = (operation == commit)
-                .then(|| format!("Request {{ session: Session(305419896), number: {number}, operation: Commit {{ base: Revision(300), values }} }}; {VALUES}"));
+                .then(|| format!("Request {{ session: Session(305419896), nonce: {NONCE:?}, number: {number}, operation: Commit {{ base: Revision(300), values }} }}; {VALUES}"));
             let name = format!("request.{}", operation_name(&operation));
             example(Lane::Request, &name, &request, means.as_deref())
         })
@@ -165,6 +173,7 @@ fn answer_name(answer: &Answer) -> &'static str {
         Answer::Parameters { .. } => "parameters",
         Answer::Committed { .. } => "committed",
         Answer::Subscribed { .. } => "subscribed",
+        Answer::Opened { .. } => "opened",
     }
 }
 
@@ -205,7 +214,10 @@ fn replies() -> Vec<Example> {
         },
         Answer::Subscribed {
             first_tick: 20_000_000_000,
+            dropped: 4_000_000,
+            start: 5,
         },
+        Answer::Opened { nonce: NONCE },
     ];
     let mut examples: Vec<_> = answers
         .iter()
@@ -239,6 +251,7 @@ fn refusals() -> Vec<(String, Refusal)> {
         ("busy", Refusal::Busy),
         ("storage", Refusal::Storage),
         ("aborted", Refusal::Aborted),
+        ("not-open", Refusal::NotOpen),
     ]
     .map(|(name, refusal)| (name.to_owned(), refusal))
     .into();

@@ -153,6 +153,7 @@ impl Board {
         let comms = Comms::new(&comms::Boot {
             identity: identity(Role::Comms, ResetCause::Power),
             start: 1,
+            entropy: start.seed,
             saved: start.saved,
             counters: start.counters,
         });
@@ -327,6 +328,7 @@ impl Board {
             self.comms = Comms::new(&comms::Boot {
                 identity: identity(Role::Comms, cause),
                 start: self.starts[1],
+                entropy: u64::from(self.starts[1]),
                 saved: self.kept,
                 counters: 0,
             });

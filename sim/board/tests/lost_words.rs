@@ -18,12 +18,7 @@ fn connected() -> Host {
 }
 
 fn request(host: &mut Host, operation: Operation) -> Request {
-    host.number += 1;
-    Request {
-        session: host.session,
-        number: host.number,
-        operation,
-    }
+    host.request(operation)
 }
 
 fn cut(is_cut: bool) -> Faults {

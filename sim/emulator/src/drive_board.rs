@@ -109,6 +109,7 @@ impl DriveBoard {
         let comms = Comms::new(&Boot {
             identity: identity(),
             start: 1,
+            entropy: 1,
             saved,
             counters: 0,
         });

@@ -14,6 +14,14 @@ fn block(first_tick: u64, dropped: u32, start: u16) -> Block {
     }
 }
 
+fn from(first_tick: u64) -> Begin {
+    Begin {
+        first_tick,
+        dropped: 0,
+        start: 1,
+    }
+}
+
 fn sums(accounting: &Accounting) -> [u64; 4] {
     assert_eq!(accounting.violations(), 0);
     assert_eq!(
@@ -34,7 +42,7 @@ fn sums(accounting: &Accounting) -> [u64; 4] {
 
 #[test]
 fn what_is_missing_was_dropped_or_lost() {
-    let mut accounting = Accounting::new(1_000);
+    let mut accounting = Accounting::new(from(1_000));
     assert_eq!(
         accounting.take(&block(1_000, 0, 1)),
         Taken::Next { missing: 0 }
@@ -60,22 +68,31 @@ fn what_is_missing_was_dropped_or_lost() {
 
 #[test]
 fn a_restart_of_the_drive_begins_a_segment() {
-    let mut accounting = Accounting::new(1_000);
-    accounting.take(&block(1_000, 0, 31));
+    let mut accounting = Accounting::new(from(1_000));
+    accounting.take(&block(1_000, 0, 1));
     // The device has dropped the first two blocks after the restart.
-    let taken = accounting.take(&block(60, 40, 0));
+    let taken = accounting.take(&block(60, 40, 2));
     assert_eq!(taken, Taken::Restarted { missing: 40 });
     assert_eq!(
-        accounting.take(&block(80, 40, 0)),
+        accounting.take(&block(80, 40, 2)),
         Taken::Next { missing: 0 }
     );
     assert_eq!(sums(&accounting), [20 + 80, 20 + 40, 40, 0]);
     assert_eq!((accounting.restarts(), accounting.first_tick()), (1, 20));
 }
 
+/// The drive restarts between the subscription and its first block.
+#[test]
+fn a_restart_before_the_first_block_is_one() {
+    let mut accounting = Accounting::new(from(1_000));
+    let taken = accounting.take(&block(20, 0, 2));
+    assert_eq!(taken, Taken::Restarted { missing: 0 });
+    assert_eq!(sums(&accounting), [20, 20, 0, 0]);
+}
+
 #[test]
 fn the_dropped_counter_may_wrap() {
-    let mut accounting = Accounting::new(0);
+    let mut accounting = Accounting::new(from(0));
     accounting.take(&block(0xffff_fff0, 0xffff_fff0, 1));
     accounting.take(&block(0x1_0000_0018, 4, 1));
     assert_eq!(sums(&accounting), [0x1_0000_002c, 40, 0x1_0000_0004, 0]);
@@ -83,7 +100,7 @@ fn the_dropped_counter_may_wrap() {
 
 #[test]
 fn an_inconsistent_count_is_detected() {
-    let mut accounting = Accounting::new(0);
+    let mut accounting = Accounting::new(from(0));
     accounting.take(&block(0, 0, 1));
     accounting.take(&block(20, 20, 1));
     assert_eq!(accounting.violations(), 1);
@@ -93,8 +110,8 @@ proptest! {
     /// With random drops, losses and repeats the sums balance and show where
     /// samples were lost.
     #[test]
-    fn the_law_holds(fates in prop::collection::vec(0..4_u8, 1..200), start_tick in 0..u64::MAX / 2) {
-        let mut accounting = Accounting::new(start_tick);
+    fn the_law_holds(fates in prop::collection::vec(0..4_u8, 1..200), start_tick in 0..u64::MAX / 2, before: u32) {
+        let mut accounting = Accounting::new(Begin { dropped: before, ..from(start_tick) });
         let (mut dropped, mut lost, mut received, mut tick) = (0_u32, 0, 0, start_tick);
         let (mut dropped_seen, mut lost_seen) = (0, 0);
         for fate in fates {
@@ -105,7 +122,7 @@ proptest! {
                     received += 20;
                     (dropped_seen, lost_seen) = (dropped, lost);
                     for _ in 2..=fate {
-                        accounting.take(&block(tick, dropped, 3));
+                        accounting.take(&block(tick, before.wrapping_add(dropped), 1));
                     }
                 }
             }

@@ -118,20 +118,21 @@ fn one_host_has_the_lease_and_the_others_are_refused() {
     let error = second.arm().unwrap_err();
     assert_eq!(
         error.to_string(),
-        "`arm` is rejected: another host (session 00000001) holds the lease; \
+        "`arm` is rejected: another program (session 00000001) has armed the device; \
          end that program, or run `crepitus stop`"
     );
     for refused in [
         refusal(second.zero()),
         refusal(second.save()),
         refusal(second.clear_fault()),
-        refusal(second.set(&[(4, 0.5)])),
+        refusal(second.disarm()),
     ] {
         assert_eq!(refused, Refusal::Leased { by: Session(1) });
     }
     assert!(!second.is_armed());
     assert_eq!(second.tally().renewals, 0);
-    // Looking is free.
+    // Looking is free, and so is changing parameters.
+    second.set(&[(4, 0.5)]).unwrap();
     assert_eq!(second.status().unwrap().lease, Some(Session(1)));
     pump_for(&mut first, ms(100));
     assert!(first.is_armed());

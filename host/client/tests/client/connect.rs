@@ -143,7 +143,9 @@ fn a_reboot_restarts_both_controllers() {
     client.zero().unwrap();
     client.reboot().unwrap();
     pump_for(&mut client, ms(50));
-    let status = client.status().unwrap();
+    let error = client.status().unwrap_err();
+    assert!(error.to_string().contains("it has restarted"), "{error}");
+    let status = client.reconnect(ms(500)).unwrap().status;
     assert!(status.uptime_ms < 100 && !status.zeroed, "{status:?}");
     assert_eq!(
         client.identify().unwrap().drive.unwrap().reset,

@@ -238,6 +238,8 @@ fn saved_parameters_survive_a_reboot() {
     client.set(&[(id::STATIC_TORQUE, 0.6)]).unwrap();
     shared.borrow_mut().start_comms(ResetCause::Power);
     pump_for(&mut client, ms(20));
+    client.parameters().unwrap_err();
+    client.reconnect(ms(500)).unwrap();
     let (revision, values) = client.parameters().unwrap();
     assert_eq!(
         (revision, values.get(id::STATIC_TORQUE)),

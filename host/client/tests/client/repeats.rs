@@ -6,7 +6,7 @@ use crepitus_protocol::counters::CommsCounter::{self, RepeatedRequests, Requests
 use crepitus_protocol::frame;
 use crepitus_protocol::host::{Answer, Operation, Reply, Request};
 use crepitus_protocol::parameters::id;
-use crepitus_protocol::{Lane, Revision, Session, State};
+use crepitus_protocol::{Decoder, Lane, Nonce, Revision, Session, State};
 
 #[test]
 fn a_lost_reply_is_retried_and_nothing_is_executed_twice() {
@@ -77,16 +77,48 @@ fn answers_to_others_and_old_ones_are_counted_and_ignored() {
     pump_for(&mut client, ms(5));
 }
 
+/// Opens a session without a client.
+fn open(port: &mut Port, session: Session) -> Nonce {
+    let request = Request {
+        session,
+        nonce: Nonce::NONE,
+        number: 0,
+        operation: Operation::Open,
+    };
+    port.send(&frame::encode(Lane::Request, &request).unwrap())
+        .unwrap();
+    let (mut decoder, mut buffer) = (Decoder::new(), [0; 256]);
+    for _ in 0..20 {
+        let count = port.receive(&mut buffer, ms(1)).unwrap();
+        for byte in &buffer[..count] {
+            let Some(Ok(body)) = decoder.push(*byte) else {
+                continue;
+            };
+            match body.message() {
+                Some(Reply {
+                    answer: Ok(Answer::Opened { nonce }),
+                    session: of,
+                    ..
+                }) if of == session => return nonce,
+                _ => {}
+            }
+        }
+    }
+    panic!("not opened");
+}
+
 #[test]
 fn requests_are_retried_while_the_device_is_busy() {
     let (shared, port) = device();
     let mut client = client(port, 1);
     let mut other = Port::new(&shared);
+    let nonce = open(&mut other, Session(2));
     // Another host's work takes half a second: a command that the drive never
     // hears.
     shared.borrow_mut().link_is_cut = true;
     let request = Request {
         session: Session(2),
+        nonce,
         number: 1,
         operation: Operation::Zero,
     };

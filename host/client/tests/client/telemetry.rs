@@ -1,7 +1,7 @@
 //! Every sample, or the number of those that are missing.
 
 use crate::support::{Port, check_books, client, connected, device, ms, pump_for, turning};
-use crepitus_client::{Client, Event, Transport};
+use crepitus_client::{Client, Event, Transport, TransportError};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::telemetry::{Block, SampleFlags};
@@ -161,19 +161,42 @@ fn silence_is_reported_once() {
     let (shared, mut client) = connected();
     client.subscribe().unwrap();
     pump_for(&mut client, ms(50));
-    // Comms has forgotten the subscription.
-    shared.borrow_mut().start_comms(ResetCause::Power);
+    shared.borrow_mut().link_is_cut = true;
     let events = pump_for(&mut client, ms(2_000));
     let silences = events
         .iter()
         .filter(|event| matches!(event, Event::Silent(time) if *time >= ms(500)))
         .count();
     assert_eq!(silences, 1, "{events:?}");
+    shared.borrow_mut().link_is_cut = false;
+    pump_for(&mut client, ms(50));
+    let [produced, received, by_device, _] = check_books(&client);
+    assert_eq!(produced, received + by_device);
+    assert!(by_device >= 39_000, "{by_device}");
+}
+
+#[test]
+fn a_restart_of_comms_is_noticed_and_the_subscription_resumed() {
+    let (shared, mut client) = connected();
     client.subscribe().unwrap();
+    pump_for(&mut client, ms(50));
+    shared.borrow_mut().start_comms(ResetCause::Power);
+    let mut lost = None;
+    while lost.is_none() {
+        match client.pump(ms(200)).unwrap() {
+            Some(Event::Lost(error)) => lost = Some(error),
+            Some(_) => {}
+            None => panic!("not noticed"),
+        }
+    }
+    let port = client.port();
+    assert_eq!(lost, Some(TransportError::Forgotten { port }));
+    let back = client.reconnect(ms(500)).unwrap();
+    assert!(back.resubscribed.unwrap().unseen().unwrap() < 4_000);
     pump_for(&mut client, ms(50));
     let [produced, received, _, _] = check_books(&client);
     assert_eq!(produced, received);
-    assert!(received >= 900);
+    assert!(received >= 1_900, "{received}");
 }
 
 #[test]

@@ -93,6 +93,7 @@ impl Device {
         self.comms = Comms::new(&comms::Boot {
             identity: self.comms_identity,
             start: self.starts.0,
+            entropy: u64::from(self.starts.0),
             saved: self.saved,
             counters: 0,
         });

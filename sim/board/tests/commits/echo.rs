@@ -4,7 +4,7 @@ use crate::connected;
 use crate::support::random_values;
 use crate::support::{Heard, Host};
 use crepitus_board::Controller;
-use crepitus_protocol::host::{Answer, Operation, Request};
+use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::parameters::id;
 use crepitus_protocol::telemetry::{Block, SampleFlags};
@@ -14,12 +14,7 @@ use fastrand::Rng;
 /// Commits, and what was heard until some blocks later; the tick in which the
 /// drive took the values over.
 fn commit(host: &mut Host, base: Revision, values: Values) -> (Revision, u64, Vec<Heard>) {
-    host.number += 1;
-    let request = Request {
-        session: host.session,
-        number: host.number,
-        operation: Operation::Commit { base, values },
-    };
+    let request = host.request(Operation::Commit { base, values });
     host.stream = Some(Vec::new());
     host.say(&request);
     let mut taken = None;

@@ -3,7 +3,7 @@
 use crate::rendering;
 use crate::support::random_values;
 use crate::support::set;
-use crepitus_protocol::host::{Answer, Operation, Request};
+use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::{TICKS_PER_S, Values};
 use fastrand::Rng;
 
@@ -18,12 +18,7 @@ fn measure(name: &str, mut change: impl FnMut(&mut Rng, &Values) -> Values) -> [
         let (base, values) = host.parameters();
         let values = change(&mut rng, &values);
         host.run(rng.u64(0..400));
-        host.number += 1;
-        let request = Request {
-            session: host.session,
-            number: host.number,
-            operation: Operation::Commit { base, values },
-        };
+        let request = host.request(Operation::Commit { base, values });
         let begun = host.device.board().now();
         host.say(&request);
         // A long ramp of the change before takes longer than a host waits until

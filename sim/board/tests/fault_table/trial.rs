@@ -4,7 +4,7 @@ use crate::case::{Case, Moment};
 use crate::support::{Host, examination};
 use crepitus_board::Start;
 use crepitus_protocol::fault::{Detector, FaultSpec};
-use crepitus_protocol::host::{Answer, Operation, Refusal, Request};
+use crepitus_protocol::host::{Answer, Operation, Refusal};
 use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::{Fault, State};
 
@@ -163,12 +163,7 @@ impl Trial<'_> {
     /// The cause is there before, and arming finds it.
     fn provoke_arming(&mut self) -> Times {
         self.host.renew_every = Some(1_000);
-        self.host.number += 1;
-        let request = Request {
-            session: self.host.session,
-            number: self.host.number,
-            operation: Operation::Arm,
-        };
+        let request = self.host.request(Operation::Arm);
         self.host.say(&request);
         let (mut driven, mut since) = (None, 0);
         let mut floats = 0;

@@ -102,11 +102,7 @@ fn random_frames_change_nothing() {
 #[test]
 fn a_host_of_another_version_can_say_hello_and_stop() {
     let mut host = streaming();
-    let request = Request {
-        session: host.session,
-        number: 5_000,
-        operation: Operation::Disarm,
-    };
+    let request = host.request_of(host.session, 5_000, Operation::Disarm);
     let mut body = vec![Lane::Request.byte(), schema::TAG ^ 0x55];
     body.extend(postcard(&request));
     let frame = frame::encode_body(&body).expect("a frame");

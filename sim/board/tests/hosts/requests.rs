@@ -5,16 +5,12 @@ use crate::connected;
 use crate::support::{Host, set};
 use crepitus_protocol::Session;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
-use crepitus_protocol::host::{Operation, Request};
+use crepitus_protocol::host::{Operation, Refusal, Request};
 
 fn commit(host: &mut Host, number: u16, static_nm: f64) -> Request {
     let (base, mut values) = host.parameters();
     set(&mut values, "crepitus.static_torque_nm", static_nm);
-    Request {
-        session: host.session,
-        number,
-        operation: Operation::Commit { base, values },
-    }
+    host.request_of(host.session, number, Operation::Commit { base, values })
 }
 
 #[test]
@@ -58,13 +54,14 @@ fn a_request_that_is_repeated_while_it_is_carried_out_has_one_answer() {
 #[test]
 fn what_comes_late_is_not_heard() {
     let mut host = connected();
-    let mut old = commit(&mut host, 65_534, 0.5);
-    old.session = Session(77);
+    let session = Session(77);
     // Numbers go on through their wrap.
     for number in [65_535, 0, 1] {
-        let answer = host.ask_as(old.session, number, Operation::Status);
+        let answer = host.ask_as(session, number, Operation::Status);
         assert!(matches!(answer, Some(Ok(_))), "{number}");
     }
+    let operation = commit(&mut host, 0, 0.5).operation;
+    let old = host.request_of(session, 65_535, operation);
     host.say(&old);
     assert_eq!(host.answer_to(&old), None, "overtaken by three others");
     assert_eq!(host.drive_count(DriveCounter::Commits), 1);
@@ -73,19 +70,20 @@ fn what_comes_late_is_not_heard() {
 #[test]
 fn the_hosts_that_spoke_last_are_remembered() {
     let mut host = connected();
-    let mut request = commit(&mut host, 2, 0.5);
-    request.session = Session(1);
-    for session in [1, 2, 3] {
-        assert!(
-            host.ask_as(Session(session), 1, Operation::Status)
-                .is_some()
-        );
+    for session in 1..=31 {
+        let answer = host.ask_as(Session(session), 1, Operation::Status);
+        assert!(matches!(answer, Some(Ok(_))), "{answer:?}");
     }
-    // The first of them speaks again, and then a fourth.
+    // The first of them speaks again, and then two more.
+    let operation = commit(&mut host, 0, 0.5).operation;
+    let request = host.request_of(Session(1), 2, operation);
     host.say(&request);
     let answer = host.answer_to(&request);
     assert!(matches!(answer, Some(Ok(_))), "{answer:?}");
-    assert!(host.ask_as(Session(4), 1, Operation::Status).is_some());
+    for session in [40, 41] {
+        let answer = host.ask_as(Session(session), 1, Operation::Status);
+        assert!(matches!(answer, Some(Ok(_))), "{answer:?}");
+    }
     host.say(&request);
     assert_eq!(
         host.answer_to(&request),
@@ -93,4 +91,7 @@ fn the_hosts_that_spoke_last_are_remembered() {
         "answered, not carried out again"
     );
     assert_eq!(host.comms_count(CommsCounter::RepeatedRequests), 1);
+    // The second one was evicted.
+    let evicted = host.ask_as(Session(2), 2, Operation::Status);
+    assert_eq!(evicted, Some(Err(Refusal::NotOpen)));
 }

@@ -1,32 +1,28 @@
-//! Two hosts at one port: one has the lease, the other may look, and stop.
+//! Two hosts at one port: one has the lease, the other may look, change
+//! parameters, and stop.
 
 use crate::support::{Host, set};
 use crate::{connected, streaming};
 use crepitus_protocol::counters::CommsCounter;
+use crepitus_protocol::frame::encode_bytes;
 use crepitus_protocol::host::{Answer, Operation, Refusal};
-use crepitus_protocol::management::{self, Action};
-use crepitus_protocol::{Session, State};
+use crepitus_protocol::management::{self, Action, ManagementRequest};
+use crepitus_protocol::{Lane, Session, State};
 
 const OTHER: Session = Session(0xbeef);
 
-fn changes(host: &mut Host) -> [Operation; 5] {
-    let (base, mut values) = host.parameters();
-    set(&mut values, "crepitus.static_torque_nm", 0.7);
-    [
-        Operation::Commit { base, values },
-        Operation::Save,
-        Operation::Zero,
-        Operation::Arm,
-        Operation::ClearFault,
-    ]
-}
-
 #[test]
-fn what_changes_something_is_for_the_one_with_the_lease() {
+fn what_concerns_the_torque_is_for_the_one_with_the_lease() {
     let mut host = streaming();
     let first = host.session;
     let mut number = 0;
-    for operation in changes(&mut host) {
+    for operation in [
+        Operation::Save,
+        Operation::Zero,
+        Operation::Arm,
+        Operation::Disarm,
+        Operation::ClearFault,
+    ] {
         number += 1;
         let answer = host.ask_as(OTHER, number, operation);
         assert_eq!(
@@ -51,11 +47,8 @@ fn what_changes_something_is_for_the_one_with_the_lease() {
     let renewals = host.comms_count(CommsCounter::Renewals);
     host.renew_every = None;
     for _ in 0..40 {
-        host.say(&crepitus_protocol::host::Request {
-            session: OTHER,
-            number: 0,
-            operation: Operation::Renew,
-        });
+        let renewal = host.request_of(OTHER, 0, Operation::Renew);
+        host.say(&renewal);
         host.run(200);
     }
     assert_eq!(host.comms_count(CommsCounter::Renewals), renewals);
@@ -63,13 +56,62 @@ fn what_changes_something_is_for_the_one_with_the_lease() {
 }
 
 #[test]
-fn disarming_is_for_everybody_and_then_the_other_one_may_arm() {
+fn another_host_changes_parameters_of_an_armed_device() {
     let mut host = streaming();
-    let first = host.session;
+    let (base, mut values) = host.parameters();
+    set(&mut values, "crepitus.static_torque_nm", 0.7);
+    let answer = host.ask_as(OTHER, 1, Operation::Commit { base, values });
+    assert!(
+        matches!(answer, Some(Ok(Answer::Committed { .. }))),
+        "{answer:?}"
+    );
+    assert_eq!(host.parameters().1, values);
+    assert_eq!(host.status().state, State::Armed);
+    // The first one knows the parameters before, and is told.
+    let stale = host.ask(Operation::Commit { base, values });
+    assert!(matches!(stale, Err(Refusal::Stale { .. })), "{stale:?}");
+}
+
+#[test]
+fn telemetry_belongs_to_a_session() {
+    let mut host = streaming();
+    host.run(2_000);
+    let books = |host: &Host| {
+        let accounting = host.accounting.as_ref().expect("a subscription");
+        (accounting.received, accounting.dropped)
+    };
+    let (received, _) = books(&host);
+    let subscribed = host.ask_as(OTHER, 1, Operation::Subscribe);
+    let Some(Ok(Answer::Subscribed { first_tick, .. })) = subscribed else {
+        panic!("{subscribed:?}");
+    };
+    assert!(first_tick > received, "another one's begins where it is");
+    host.run(2_000);
     assert_eq!(
-        host.ask_as(OTHER, 1, Operation::Disarm),
+        host.ask_as(OTHER, 2, Operation::Unsubscribe),
         Some(Ok(Answer::Done))
     );
+    host.run(2_000);
+    let (now_received, dropped) = books(&host);
+    assert!(now_received >= received + 3_900);
+    assert_eq!(dropped, 0);
+    // Nothing is sent once the last one has left.
+    assert_eq!(host.ask(Operation::Unsubscribe), Ok(Answer::Done));
+    let sent = host.comms_count(CommsCounter::SentSamples);
+    host.run(2_000);
+    assert_eq!(host.comms_count(CommsCounter::SentSamples), sent);
+    // What was not sent to anybody is not missed by who comes later.
+    host.subscribe();
+    host.run(2_000);
+    let (received, dropped) = books(&host);
+    assert!(received >= 1_900 && dropped == 0, "{received} {dropped}");
+}
+
+#[test]
+fn stopping_is_for_everybody_and_then_the_other_one_may_arm() {
+    let mut host = streaming();
+    let first = host.session;
+    assert!(host.manage(Action::Stop, 7).is_some());
     host.run(21);
     assert!(!host.device.board().is_driven());
     assert_eq!(host.status().lease, None);
@@ -81,11 +123,8 @@ fn disarming_is_for_everybody_and_then_the_other_one_may_arm() {
     assert_eq!(host.status().lease, Some(OTHER));
     assert_eq!(host.ask(Operation::Arm), Err(Refusal::Leased { by: OTHER }));
     for _ in 0..20 {
-        host.say(&crepitus_protocol::host::Request {
-            session: OTHER,
-            number: 0,
-            operation: Operation::Renew,
-        });
+        let renewal = host.request_of(OTHER, 0, Operation::Renew);
+        host.say(&renewal);
         host.run(1_000);
     }
     assert_eq!(host.status().state, State::Armed);
@@ -93,24 +132,20 @@ fn disarming_is_for_everybody_and_then_the_other_one_may_arm() {
 }
 
 #[test]
-fn disarming_works_in_the_middle_of_the_others_arming() {
+fn stopping_works_in_the_middle_of_the_others_arming() {
     for phase in 0..40 {
         let mut host = connected();
         let first = host.session;
-        let request = crepitus_protocol::host::Request {
-            session: first,
-            number: host.number + 1,
-            operation: Operation::Arm,
-        };
+        let request = host.request(Operation::Arm);
         host.renew_every = Some(1_000);
-        host.number += 1;
         host.say(&request);
         host.run(13 * phase);
-        host.say(&crepitus_protocol::host::Request {
-            session: OTHER,
-            number: 1,
-            operation: Operation::Disarm,
-        });
+        let stop = ManagementRequest {
+            action: Action::Stop,
+            token: 1,
+        };
+        let frame = encode_bytes(Lane::Management, &stop.bytes()).expect("a frame");
+        host.send(&frame);
         host.run(600);
         let replies = host.take_replies();
         let of = |session| {
@@ -122,7 +157,6 @@ fn disarming_works_in_the_middle_of_the_others_arming() {
             assert_eq!(answers.len(), 1, "phase {phase}: {replies:?}");
             answers[0]
         };
-        assert_eq!(of(OTHER), Ok(Answer::Done));
         // It had been armed, or was given up.
         assert!(
             [Ok(Answer::Done), Err(Refusal::Aborted)].contains(&of(first)),
@@ -161,6 +195,7 @@ fn stopping_is_for_everybody_and_needs_no_session() {
 #[test]
 fn two_hosts_that_ask_in_turn_both_get_their_answers() {
     let mut host = streaming();
+    assert!(host.ask_as(OTHER, 0, Operation::Status).is_some());
     for number in 0..200_u16 {
         let asks = [
             Operation::Status,
@@ -168,17 +203,8 @@ fn two_hosts_that_ask_in_turn_both_get_their_answers() {
             Operation::Counters,
         ];
         let operation = asks[usize::from(number) % 3];
-        let first = crepitus_protocol::host::Request {
-            session: host.session,
-            number: host.number + 1,
-            operation,
-        };
-        host.number += 1;
-        let second = crepitus_protocol::host::Request {
-            session: OTHER,
-            number: 1 + number,
-            operation,
-        };
+        let first = host.request(operation);
+        let second = host.request_of(OTHER, 1 + number, operation);
         host.say(&first);
         host.say(&second);
         host.run(u64::from(number) % 50);

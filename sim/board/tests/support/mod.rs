@@ -12,10 +12,11 @@ use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request, Status
 use crepitus_protocol::management::{self, Action, ManagementRequest};
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, Sample};
-use crepitus_protocol::{Decoder, Lane, Revision, Session, Values};
+use crepitus_protocol::{Decoder, Lane, Nonce, Revision, Session, Values};
 use crepitus_scene::{Overrides, Scene};
 use oracle::Oracle;
 use std::cell::Cell;
+use std::collections::HashMap;
 use std::path::Path;
 
 /// Ticks after which a request is repeated: 50 ms.
@@ -60,8 +61,10 @@ preset = "coarse"
 pub(crate) struct Accounting {
     pub(crate) first_tick: u64,
     pub(crate) received: u64,
-    /// What the last block said.
+    /// Samples that were not sent, as of the last block.
     pub(crate) dropped: u32,
+    /// The same before the subscription, which is not of its accounting.
+    pub(crate) dropped_before: u32,
     pub(crate) end_tick: u64,
     /// The number of the drive's start: with another one, accounting begins anew.
     pub(crate) start: Option<u8>,
@@ -78,6 +81,8 @@ pub(crate) struct Host {
     pub(crate) device: VirtualDevice,
     pub(crate) session: Session,
     pub(crate) number: u16,
+    /// Nonces of the sessions that are open.
+    nonces: HashMap<Session, Nonce>,
     decoder: Decoder,
     replies: Vec<Reply>,
     answers: Vec<management::Answer>,
@@ -104,6 +109,7 @@ impl Host {
             device,
             session: Session(0x1234),
             number: 0,
+            nonces: HashMap::new(),
             decoder: Decoder::new(),
             replies: Vec::new(),
             answers: Vec::new(),
@@ -129,11 +135,8 @@ impl Host {
         if let Some(every) = self.renew_every
             && self.device.board().now().is_multiple_of(every)
         {
-            self.say(&Request {
-                session: self.session,
-                number: 0,
-                operation: Operation::Renew,
-            });
+            let renewal = self.request_of(self.session, 0, Operation::Renew);
+            self.say(&renewal);
         }
         self.device.tick();
         if let Some(oracle) = &mut self.oracle {
@@ -191,21 +194,70 @@ impl Host {
         }
     }
 
-    /// Asks until there is an answer, at most so many times.
+    /// A request of a session, with its nonce.
+    pub(crate) fn request_of(
+        &self,
+        session: Session,
+        number: u16,
+        operation: Operation,
+    ) -> Request {
+        Request {
+            session,
+            nonce: self.nonces.get(&session).copied().unwrap_or_default(),
+            number,
+            operation,
+        }
+    }
+
+    /// The next request of this host, whose session it opens where needed.
+    pub(crate) fn request(&mut self, operation: Operation) -> Request {
+        if !self.nonces.contains_key(&self.session) {
+            self.open();
+        }
+        self.number = self.number.wrapping_add(1);
+        self.request_of(self.session, self.number, operation)
+    }
+
+    /// Asks until there is an answer, at most so many times. Opens the session
+    /// first where that is needed.
     pub(crate) fn try_ask(
         &mut self,
         operation: Operation,
         times: u32,
     ) -> Option<Result<Answer, Refusal>> {
-        self.number = self.number.wrapping_add(1);
-        let request = Request {
-            session: self.session,
-            number: self.number,
-            operation,
-        };
-        (0..times).find_map(|_| {
+        if !self.nonces.contains_key(&self.session) {
+            self.number = self.number.wrapping_add(1);
+            self.try_open(self.session, self.number, times)?;
+        }
+        let request = self.request(operation);
+        let answer = (0..times).find_map(|_| {
             self.say(&request);
             self.answer_to(&request)
+        });
+        if answer == Some(Err(Refusal::NotOpen)) {
+            self.nonces.remove(&self.session);
+            return self.try_ask(operation, times);
+        }
+        answer
+    }
+
+    /// Opens this host's session.
+    fn open(&mut self) {
+        self.number = self.number.wrapping_add(1);
+        self.try_open(self.session, self.number, 40)
+            .expect("an open session");
+    }
+
+    fn try_open(&mut self, session: Session, number: u16, times: u32) -> Option<()> {
+        let request = self.request_of(session, number, Operation::Open);
+        (0..times).find_map(|_| {
+            self.say(&request);
+            let answer = self.answer_to(&request)?;
+            let Ok(Answer::Opened { nonce }) = answer else {
+                panic!("not opened: {answer:?}");
+            };
+            self.nonces.insert(session, nonce);
+            Some(())
         })
     }
 
@@ -216,11 +268,10 @@ impl Host {
         number: u16,
         operation: Operation,
     ) -> Option<Result<Answer, Refusal>> {
-        let request = Request {
-            session,
-            number,
-            operation,
-        };
+        if !self.nonces.contains_key(&session) {
+            self.try_open(session, number.wrapping_sub(1), 40);
+        }
+        let request = self.request_of(session, number, operation);
         self.say(&request);
         self.answer_to(&request)
     }
@@ -294,10 +345,16 @@ impl Host {
         // Blocks that were on their way are in no accounting.
         self.accounting = None;
         match self.ask(Operation::Subscribe) {
-            Ok(Answer::Subscribed { first_tick }) => {
+            Ok(Answer::Subscribed {
+                first_tick,
+                dropped,
+                start,
+            }) => {
                 self.accounting = Some(Accounting {
                     first_tick,
                     end_tick: first_tick,
+                    dropped_before: dropped,
+                    start: Some(start),
                     ..Accounting::default()
                 });
             }
@@ -335,12 +392,8 @@ impl Host {
 
     /// Asks for no more torque, and does not wait for the answer.
     pub(crate) fn disarm(&mut self) {
-        self.number = self.number.wrapping_add(1);
-        self.say(&Request {
-            session: self.session,
-            number: self.number,
-            operation: Operation::Disarm,
-        });
+        let disarm = self.request(Operation::Disarm);
+        self.say(&disarm);
     }
 
     /// Sets the parameter of this name.
@@ -396,13 +449,14 @@ impl Accounting {
         }
         assert!(block.first_tick >= self.end_tick, "a block came twice");
         let due = block.first_tick - self.first_tick;
+        let dropped = block.dropped.wrapping_sub(self.dropped_before);
         assert_eq!(
             due,
-            self.received + u64::from(block.dropped),
+            self.received + u64::from(dropped),
             "the law of the accounting"
         );
         self.received += BLOCK_SAMPLES as u64;
-        self.dropped = block.dropped;
+        self.dropped = dropped;
         self.end_tick = block.end_tick();
     }
 }

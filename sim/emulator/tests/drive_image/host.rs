@@ -7,7 +7,7 @@ use crepitus_emulator::{DriveBoard, Image, Mcu};
 use crepitus_protocol::frame;
 use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request};
 use crepitus_protocol::telemetry::Block;
-use crepitus_protocol::{Decoder, Lane, Revision, Session};
+use crepitus_protocol::{Decoder, Lane, Nonce, Revision, Session};
 use crepitus_scene::{Overrides, Scene};
 use std::path::Path;
 
@@ -20,6 +20,7 @@ const BOOT_TICKS: u64 = 1_000;
 pub(crate) struct Host {
     pub(crate) board: DriveBoard,
     number: u16,
+    nonce: Nonce,
     holds_lease: bool,
     ticks: u64,
     from_comms: Decoder,
@@ -61,6 +62,7 @@ impl Host {
         let mut host = Self {
             board,
             number: 0,
+            nonce: Nonce::NONE,
             holds_lease: false,
             ticks: 0,
             from_comms: Decoder::new(),
@@ -92,6 +94,7 @@ impl Host {
     fn say(&mut self, number: u16, operation: Operation) {
         let request = Request {
             session: Session(0x1234),
+            nonce: self.nonce,
             number,
             operation,
         };
@@ -123,6 +126,12 @@ impl Host {
 
     /// Asks, and waits for the answer.
     pub(crate) fn ask(&mut self, operation: Operation) -> Result<Answer, Refusal> {
+        if self.nonce == Nonce::NONE && operation != Operation::Open {
+            match self.ask(Operation::Open) {
+                Ok(Answer::Opened { nonce }) => self.nonce = nonce,
+                other => panic!("not opened: {other:?}"),
+            }
+        }
         self.number += 1;
         let number = self.number;
         for _ in 0..40 {
