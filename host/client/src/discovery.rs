@@ -6,7 +6,10 @@
 //! A simulated device is a pty with a symbolic link in [`simulated_folder`]; the
 //! link's name is the device's. Dangling links are ignored.
 
+mod folder;
+
 use crepitus_protocol::usb::{PRODUCT, PRODUCT_ID, VENDOR_ID};
+pub use folder::{make_user_folder, user_folder};
 use serialport::{SerialPortType, UsbPortInfo};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -90,13 +93,9 @@ fn is_ours(usb: &UsbPortInfo) -> bool {
     (usb.vid, usb.pid) == (VENDOR_ID, PRODUCT_ID) && usb.product.as_deref().is_some_and(is_named)
 }
 
-/// Folder of simulated devices: `crepitus` in the user's runtime folder, or
-/// else in the temporary folder.
+/// Folder of simulated devices, of this user alone: see [`user_folder`].
 pub fn simulated_folder() -> PathBuf {
-    std::env::var_os("XDG_RUNTIME_DIR")
-        .filter(|folder| !folder.is_empty())
-        .map_or_else(std::env::temp_dir, PathBuf::from)
-        .join("crepitus")
+    user_folder()
 }
 
 /// The simulated devices of a folder, by name; none if it does not exist.

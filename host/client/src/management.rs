@@ -56,6 +56,11 @@ impl<T: Transport> Management<T> {
         self.0.checked(handshake)
     }
 
+    /// The transport.
+    pub fn transport_mut(&mut self) -> &mut T {
+        self.0.transport_mut()
+    }
+
     /// Returns the transport.
     pub fn into_transport(self) -> T {
         self.0.into_transport()

@@ -51,6 +51,25 @@ impl Serial {
         })
     }
 
+    /// Two ends of the same port, for a thread that receives and one that sends.
+    ///
+    /// # Errors
+    /// [`TransportError::Lost`] if the port is gone.
+    pub fn split(mut self) -> Result<(Self, Self), TransportError> {
+        let port = self.port.as_ref().map(|port| port.try_clone());
+        let sender = match port {
+            Some(Ok(port)) => Self {
+                path: self.path.clone(),
+                port: Some(port),
+                began: self.began,
+                is_torn: self.is_torn,
+            },
+            Some(Err(error)) => return Err(self.lost(&error.into())),
+            None => return Err(self.lost(&closed())),
+        };
+        Ok((self, sender))
+    }
+
     /// Closes a lost port, so that the system can reuse its name for the device
     /// when it reappears.
     fn lost(&mut self, error: &io::Error) -> TransportError {

@@ -2,7 +2,7 @@
 
 use crate::cli::DeviceArguments;
 use crate::failure::{Failure, print, print_json};
-use crate::line::{Line, connect, failure};
+use crate::line::{Line, connect, failure_with};
 use crepitus_client::{Client, Error};
 use serde_json::json;
 
@@ -13,7 +13,8 @@ pub(crate) fn execute(
     as_json: bool,
     request: impl FnOnce(&mut Client<Line>) -> Result<(), Error>,
 ) -> Result<(), Failure> {
-    request(&mut connect(device)?).map_err(failure)?;
+    let mut client = connect(device)?;
+    request(&mut client).map_err(|error| failure_with(&mut client, error))?;
     print_done(done, as_json)
 }
 

@@ -1,16 +1,17 @@
 //! The loop of verbs that keep a connection open: telemetry blocks, state
 //! changes, reconnection, and disarming at the end.
 //!
-//! Ctrl-C disarms first. A lost connection is opened again, but the device is
+//! Ctrl-C, SIGTERM, SIGHUP and a panic disarm first. A lost connection is opened again, but the device is
 //! not armed again.
 
 use crate::device_text;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::line::{Line, failure};
+use crate::line::{Line, failure, failure_with};
 use crepitus_client::{Client, Event, StateChange};
 use crepitus_protocol::State;
 use crepitus_protocol::telemetry::Block;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::Duration;
 
 /// Timeout of a poll for events; Ctrl-C is checked between polls.
@@ -47,14 +48,18 @@ pub(crate) fn follow(
 ) -> Result<End, Failure> {
     interrupt::listen();
     if arm {
-        client.arm().map_err(failure)?;
+        client.arm().map_err(|error| failure_with(client, error))?;
     }
-    let result = run(client, time, arm, follower);
-    if client.is_armed() {
-        let disarmed = client.disarm().map_err(failure);
-        return result.and_then(|end| disarmed.map(|()| end));
+    let result = catch_unwind(AssertUnwindSafe(|| run(client, time, arm, follower)));
+    let disarmed = if client.is_armed() {
+        client.disarm().map_err(failure)
+    } else {
+        Ok(())
+    };
+    match result {
+        Ok(result) => result.and_then(|end| disarmed.map(|()| end)),
+        Err(panic) => resume_unwind(panic),
     }
-    result
 }
 
 fn run(
@@ -127,4 +132,44 @@ fn check_state(change: &StateChange, arm: bool) -> Result<(), Failure> {
     } else {
         faults.join("\n")
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shipped;
+    use crate::simulated::Simulated;
+    use crepitus_scene::Overrides;
+    use std::path::Path;
+
+    /// Panics once the device is armed.
+    struct Panics;
+
+    impl Follower for Panics {
+        fn block(&mut self, _: &mut Client<Line>, _: &Block) -> Result<(), Failure> {
+            Ok(())
+        }
+
+        fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure> {
+            assert!(!client.is_armed(), "as a mistake in a verb would");
+            Ok(false)
+        }
+    }
+
+    #[test]
+    fn a_panic_disarms_first() {
+        let scene = shipped::scene(Path::new("passive-examination"), &Overrides::default())
+            .expect("a scene");
+        let device = Simulated::of(&scene).expect("a device");
+        let mut client = Client::connect(Line::Simulated(Box::new(device))).expect("a connection");
+        let panicked = catch_unwind(AssertUnwindSafe(|| {
+            follow(&mut client, None, true, &mut Panics)
+        }));
+        assert!(panicked.is_err());
+        let counters = client.counters().expect("the counters");
+        let status = client.status().expect("the status");
+        assert_eq!((status.state, status.drive_fault), (State::Disarmed, 0));
+        let armings = crepitus_protocol::counters::DriveCounter::Armings;
+        assert_eq!(counters.drive[armings.index()], 1);
+    }
 }

@@ -1,16 +1,54 @@
-//! Ctrl-C as a request to stop, so that partial results can be removed.
+//! Ctrl-C, SIGTERM and SIGHUP as a request to stop: torque is turned off, and
+//! files are finished, or removed if they would be partial.
 
+use signal_hook::consts::{SIGINT, SIGTERM};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 
-static REQUESTED: AtomicBool = AtomicBool::new(false);
+static REQUESTED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
-/// Installs the handler: Ctrl-C sets a flag.
+/// Installs the handlers, which set a flag.
 pub(crate) fn listen() {
-    // Without a handler Ctrl-C kills the program; only the cleanup is lost.
-    let _ = ctrlc::set_handler(|| REQUESTED.store(true, Ordering::Relaxed));
+    REQUESTED.get_or_init(|| {
+        let requested = Arc::new(AtomicBool::new(false));
+        for signal in signals() {
+            // Without a handler the signal kills the program; only the order of
+            // its end is lost.
+            let _ = signal_hook::flag::register(signal, requested.clone());
+        }
+        requested
+    });
 }
 
-/// Whether Ctrl-C was pressed.
+/// Whether a stop was requested.
 pub(crate) fn requested() -> bool {
-    REQUESTED.load(Ordering::Relaxed)
+    REQUESTED
+        .get()
+        .is_some_and(|requested| requested.load(Ordering::Relaxed))
+}
+
+#[cfg(unix)]
+fn signals() -> Vec<i32> {
+    use signal_hook::consts::SIGHUP;
+    let mut signals = vec![SIGINT, SIGTERM];
+    if !is_ignored(SIGHUP) {
+        signals.push(SIGHUP);
+    }
+    signals
+}
+
+#[cfg(not(unix))]
+fn signals() -> Vec<i32> {
+    vec![SIGINT, SIGTERM]
+}
+
+/// Whether this program was started with the signal ignored, as by `nohup`.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status
+        .lines()
+        .find_map(|line| line.strip_prefix("SigIgn:"))
+        .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }

@@ -5,21 +5,45 @@ use crate::failure::Failure;
 use crate::shipped;
 use crate::simulated::Simulated;
 use crepitus_client::discovery::{self, Device, DeviceKind};
-use crepitus_client::{Client, Error, Management, Serial, Transport, TransportError};
+use crepitus_client::{Client, Error, Management, RequestKind, Transport, TransportError};
 use crepitus_protocol::ValueError;
 use crepitus_protocol::host::Refusal;
 use crepitus_scene::Overrides;
+use crepitus_sharing::{Program, Shared};
 use std::time::Duration;
 
 /// The name of the simulated device for one command.
 const SIMULATED: &str = "sim";
 
-/// A serial port, or a simulated device in this process.
-pub(crate) struct Line(Box<dyn Transport>);
+/// A device at a serial port, shared with other programs, or a simulated one in
+/// this process.
+pub(crate) enum Line {
+    Shared(Box<Shared>),
+    Simulated(Box<Simulated>),
+}
 
 impl Line {
-    pub(crate) fn new(transport: impl Transport + 'static) -> Self {
-        Self(Box::new(transport))
+    /// The programs that are connected to the device; none to one in this
+    /// process. If they cannot be told, there are none to name.
+    pub(crate) fn programs(&mut self) -> Vec<Program> {
+        match self {
+            Self::Shared(shared) => shared.programs().unwrap_or_default(),
+            Self::Simulated(_) => Vec::new(),
+        }
+    }
+
+    fn transport(&self) -> &dyn Transport {
+        match self {
+            Self::Shared(shared) => &**shared,
+            Self::Simulated(simulated) => &**simulated,
+        }
+    }
+
+    fn transport_mut(&mut self) -> &mut dyn Transport {
+        match self {
+            Self::Shared(shared) => &mut **shared,
+            Self::Simulated(simulated) => &mut **simulated,
+        }
     }
 }
 
@@ -29,7 +53,7 @@ pub(crate) fn open(arguments: &DeviceArguments) -> Result<Line, Failure> {
         Some(SIMULATED) => {
             let scene = shipped::scene(&arguments.scene, &Overrides::default())?;
             let device = Simulated::of(&scene).map_err(Failure::input)?;
-            Ok(Line::new(device))
+            Ok(Line::Simulated(Box::new(device)))
         }
         Some(name) => serial(&port(name)?),
         None => serial(&only_port()?),
@@ -66,8 +90,51 @@ pub(crate) fn failure(error: Error) -> Failure {
     }
 }
 
+/// [`failure`]; a device that another program has armed is told with that
+/// program's name.
+pub(crate) fn failure_with(client: &mut Client<Line>, error: Error) -> Failure {
+    let Error::Refused(refused) = &error else {
+        return failure(error);
+    };
+    let Refusal::Leased { by } = refused.refusal else {
+        return failure(error);
+    };
+    let request = refused.request;
+    let programs = client.transport_mut().programs();
+    let Some(other) = programs.iter().find(|p| p.session == Some(by)) else {
+        return failure(error);
+    };
+    let way_out = if request == RequestKind::Disarm {
+        "`crepitus disarm --force` or `crepitus stop` turns its torque off"
+    } else {
+        "end that program, or run `crepitus stop`"
+    };
+    Failure::Work(format!(
+        "`{request}` is rejected: {} has armed the device; {way_out}",
+        named(other)
+    ))
+}
+
+/// A program for people.
+pub(crate) fn named(program: &Program) -> String {
+    format!("`{}`, process {},", program.name, program.pid)
+}
+
 fn serial(port: &str) -> Result<Line, Failure> {
-    Serial::open(port).map(Line::new).map_err(Failure::input)
+    Shared::open(port, &command_line())
+        .map(|shared| Line::Shared(Box::new(shared)))
+        .map_err(Failure::input)
+}
+
+/// What the user typed, by which other programs name this one.
+fn command_line() -> String {
+    let arguments = std::env::args_os().skip(1);
+    let words = arguments.map(|argument| argument.to_string_lossy().into_owned());
+    ["crepitus".to_owned()]
+        .into_iter()
+        .chain(words)
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// The port of a name: the name itself, or the port of a simulated device.
@@ -107,26 +174,26 @@ fn only_port() -> Result<String, Failure> {
 
 impl Transport for Line {
     fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
-        self.0.send(bytes)
+        self.transport_mut().send(bytes)
     }
 
     fn receive(&mut self, buffer: &mut [u8], timeout: Duration) -> Result<usize, TransportError> {
-        self.0.receive(buffer, timeout)
+        self.transport_mut().receive(buffer, timeout)
     }
 
     fn now(&self) -> Duration {
-        self.0.now()
+        self.transport().now()
     }
 
     fn wait(&mut self, time: Duration) {
-        self.0.wait(time);
+        self.transport_mut().wait(time);
     }
 
     fn reopen(&mut self) -> Result<(), TransportError> {
-        self.0.reopen()
+        self.transport_mut().reopen()
     }
 
     fn name(&self) -> String {
-        self.0.name()
+        self.transport().name()
     }
 }

@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         "the device",
         "two controllers and a leg, simulated and connected",
     )?;
-    let mut client = Client::connect(Line::new(device)).map_err(failure)?;
+    let mut client = Client::connect(Line::Simulated(Box::new(device))).map_err(failure)?;
     let (base, values) = client.parameters().map_err(failure)?;
     let preset = Preset::find(PRESET)
         .ok_or_else(|| Failure::Work(format!("there is no preset {PRESET}")))?;

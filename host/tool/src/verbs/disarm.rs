@@ -11,12 +11,22 @@ use crepitus_client::Client;
 #[command(after_help = "\
 Examples:
   crepitus disarm
-  crepitus disarm --device /dev/ttyACM0")]
+  crepitus disarm --device /dev/ttyACM0
+  crepitus disarm --force")]
 pub(crate) struct Arguments {
+    /// Also if another program has armed the device.
+    #[arg(long)]
+    force: bool,
+
     #[command(flatten)]
     device: DeviceArguments,
 }
 
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    execute(&arguments.device, "disarmed", as_json, Client::disarm)
+    let request = if arguments.force {
+        Client::stop
+    } else {
+        Client::disarm
+    };
+    execute(&arguments.device, "disarmed", as_json, request)
 }

@@ -2,7 +2,7 @@
 
 use crate::cli::{DeviceArguments, key_and_value};
 use crate::failure::{Failure, print, print_json};
-use crate::line::{connect, failure};
+use crate::line::{connect, failure, failure_with};
 use crate::shipped;
 use clap::{Args, Subcommand};
 use crepitus_client::values::{allowed_text, full_name, parse_value, show_value};
@@ -70,7 +70,9 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         Action::Apply { what } => apply(device, what, as_json),
         Action::Save => {
             let mut client = connect(device)?;
-            client.save().map_err(failure)?;
+            client
+                .save()
+                .map_err(|error| failure_with(&mut client, error))?;
             let (revision, _) = client.parameters().map_err(failure)?;
             print_done(revision, "saved for the next start", as_json)
         }

@@ -5,12 +5,11 @@ use crate::interrupt;
 use crate::shipped;
 use clap::Args;
 use crepitus_board::{Start, VirtualDevice};
-use crepitus_client::discovery::simulated_folder;
+use crepitus_client::discovery::{make_user_folder, user_folder};
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_scene::Overrides;
 use crepitus_usb::pty::Pty;
 use serde_json::json;
-use std::fs;
 use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -52,8 +51,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     let scene = shipped::scene(&arguments.scene, &Overrides::default())?;
     let mut device = VirtualDevice::of(&scene, &Start::default()).map_err(Failure::input)?;
-    let folder = simulated_folder();
-    fs::create_dir_all(&folder).map_err(|e| Failure::at(&folder, "cannot be created", &e))?;
+    let folder = make_user_folder()
+        .map_err(|e| Failure::at(&user_folder(), "the folder of simulated devices", &e))?;
     let link = folder.join(&arguments.name);
     let mut pty = Pty::new(Some(&link)).map_err(|e| Failure::at(&link, "cannot be created", &e))?;
     interrupt::listen();

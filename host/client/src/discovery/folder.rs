@@ -1,0 +1,89 @@
+//! The folder of this user: simulated devices, and what programs that share a
+//! device meet by.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// `crepitus` in the user's runtime folder (`XDG_RUNTIME_DIR`), or else
+/// `crepitus-` and the user's number in the temporary folder.
+pub fn user_folder() -> PathBuf {
+    match std::env::var_os("XDG_RUNTIME_DIR") {
+        Some(folder) if !folder.is_empty() => PathBuf::from(folder).join("crepitus"),
+        _ => std::env::temp_dir().join(own_name()),
+    }
+}
+
+/// [`user_folder`], made if it is not there.
+///
+/// # Errors
+/// Of the system; [`io::ErrorKind::PermissionDenied`] if there is something of
+/// that name which other users can write to.
+pub fn make_user_folder() -> io::Result<PathBuf> {
+    let folder = user_folder();
+    make_private(&folder)?;
+    Ok(folder)
+}
+
+#[cfg(unix)]
+fn own_name() -> String {
+    format!("crepitus-{}", rustix::process::geteuid().as_raw())
+}
+
+/// The temporary folder is the user's own.
+#[cfg(not(unix))]
+fn own_name() -> String {
+    "crepitus".to_owned()
+}
+
+#[cfg(unix)]
+fn make_private(folder: &Path) -> io::Result<()> {
+    use std::os::unix::fs::{DirBuilderExt, MetadataExt, PermissionsExt};
+    let made = fs::DirBuilder::new().mode(0o700).create(folder);
+    match made {
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error),
+        _ => {}
+    }
+    // Not what a link leads to: others can make links in the temporary folder.
+    let found = fs::symlink_metadata(folder)?;
+    let is_own = found.is_dir() && found.uid() == rustix::process::geteuid().as_raw();
+    if !is_own {
+        return Err(io::Error::new(
+            io::ErrorKind::PermissionDenied,
+            "it belongs to another user; remove it, or set XDG_RUNTIME_DIR to a folder of your own",
+        ));
+    }
+    if found.mode() & 0o077 != 0 {
+        fs::set_permissions(folder, fs::Permissions::from_mode(0o700))?;
+    }
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn make_private(folder: &Path) -> io::Result<()> {
+    fs::create_dir_all(folder)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    #[test]
+    fn the_folder_is_for_nobody_else() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path().join("crepitus");
+        make_private(&folder).unwrap();
+        let mode = || fs::metadata(&folder).unwrap().permissions().mode() & 0o777;
+        assert_eq!(mode(), 0o700);
+        fs::set_permissions(&folder, fs::Permissions::from_mode(0o777)).unwrap();
+        make_private(&folder).unwrap();
+        assert_eq!(mode(), 0o700);
+        let link = home.path().join("link");
+        symlink(&folder, &link).unwrap();
+        let error = make_private(&link).unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::PermissionDenied);
+        let nowhere = home.path().join("no/such/folder");
+        assert!(make_private(&nowhere).is_err());
+    }
+}

@@ -1,0 +1,270 @@
+//! The hub: the port on one side, programs on the other.
+//!
+//! ```text
+//!           ┌─ receive ──> members ──> outbox, write ──> program     a thread each
+//!  port ──  │
+//!           └─ send <──── one queue <───────── read <─── program
+//! ```
+//!
+//! It ends with its owner, or when the port fails. Then every program is told, and
+//! the lock falls to one of them.
+
+use crate::frames::Frames;
+use crate::member::{Chunk, Member};
+use crate::note::Note;
+use crepitus_client::{Transport, TransportError};
+use crepitus_protocol::host::Request;
+use crepitus_protocol::{Decoder, Lane};
+use interprocess::local_socket::traits::ListenerExt;
+use interprocess::local_socket::{Listener, Stream};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{Read, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+/// How often a thread that waits for bytes looks whether the hub has ended.
+const LOOK_EVERY: Duration = Duration::from_millis(20);
+
+/// Frames on their way to the port.
+const QUEUE: usize = 64;
+
+/// Chunks on their way to a program: several seconds of telemetry.
+const OUTBOX: usize = 8_192;
+
+/// A hub in threads of its own.
+#[derive(Debug)]
+pub(crate) struct Hub {
+    state: Arc<State>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// Shared by the threads.
+#[derive(Debug)]
+struct State {
+    members: Mutex<BTreeMap<u64, Member>>,
+    to_port: SyncSender<Chunk>,
+    is_over: AtomicBool,
+}
+
+impl Hub {
+    /// Serves a port. `wake` connects to the listener; the lock is kept as long
+    /// as the port is open.
+    pub(crate) fn start(
+        ports: (
+            impl Transport + Send + 'static,
+            impl Transport + Send + 'static,
+        ),
+        listener: Listener,
+        wake: impl FnOnce() + Send + 'static,
+        lock: File,
+    ) -> Self {
+        let (to_port, queue) = sync_channel(QUEUE);
+        let state = Arc::new(State {
+            members: Mutex::default(),
+            to_port,
+            is_over: AtomicBool::new(false),
+        });
+        let (receiver, sender) = ports;
+        let [for_accept, for_send, for_receive] = [(); 3].map(|()| state.clone());
+        let acceptor = thread::spawn(move || for_accept.accept(&listener));
+        let sending = thread::spawn(move || for_send.send_all(sender, &queue));
+        let thread = thread::spawn(move || {
+            for_receive.receive_all(receiver);
+            for_receive.end();
+            wake();
+            // A thread that has panicked has ended, too.
+            let _ = sending.join();
+            let _ = acceptor.join();
+            drop(lock);
+        });
+        Self {
+            state,
+            thread: Some(thread),
+        }
+    }
+
+    /// Whether it serves no longer: the port has failed.
+    pub(crate) fn is_over(&self) -> bool {
+        self.state.is_over()
+    }
+}
+
+impl Drop for Hub {
+    fn drop(&mut self) {
+        self.state.end();
+        if let Some(thread) = self.thread.take() {
+            // The port is closed, and the lock free.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl State {
+    fn is_over(&self) -> bool {
+        self.is_over.load(Ordering::Acquire)
+    }
+
+    /// Ends all threads: those of programs when their queues close.
+    fn end(&self) {
+        self.is_over.store(true, Ordering::Release);
+        self.members().clear();
+    }
+
+    fn members(&self) -> MutexGuard<'_, BTreeMap<u64, Member>> {
+        // What a thread that has panicked has left is still a list of programs.
+        self.members.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Bytes of the port to all programs.
+    fn receive_all(&self, mut port: impl Transport) {
+        let (mut frames, mut buffer) = (Frames::default(), [0; 4_096]);
+        while !self.is_over() {
+            let Ok(count) = port.receive(&mut buffer, LOOK_EVERY) else {
+                return;
+            };
+            let mut whole = Vec::new();
+            frames.push(buffer.get(..count).unwrap_or_default(), |frame| {
+                whole.extend_from_slice(frame);
+            });
+            if whole.is_empty() {
+                continue;
+            }
+            let chunk = Chunk::from(whole);
+            for member in self.members().values() {
+                member.pass(&chunk);
+            }
+        }
+    }
+
+    /// Frames of all programs to the port.
+    fn send_all(&self, mut port: impl Transport, queue: &Receiver<Chunk>) {
+        // Whatever the program before has left unfinished.
+        let mut sent = port.send(&[0]);
+        while !self.is_over() {
+            match sent {
+                // Lost frames are sent again by those who miss the answer.
+                Ok(()) | Err(TransportError::Stalled { .. }) => {}
+                Err(_) => return self.end(),
+            }
+            sent = match queue.recv_timeout(LOOK_EVERY) {
+                Ok(frame) => port.send(&frame),
+                Err(RecvTimeoutError::Timeout) => Ok(()),
+                Err(RecvTimeoutError::Disconnected) => return,
+            };
+        }
+    }
+
+    fn accept(self: &Arc<Self>, listener: &Listener) {
+        for (number, stream) in (0..).zip(listener.incoming()) {
+            if self.is_over() {
+                return;
+            }
+            match stream {
+                Ok(stream) => self.admit(number, stream),
+                // Too many open files: some will be closed.
+                Err(_) => thread::sleep(LOOK_EVERY),
+            }
+        }
+    }
+
+    fn admit(self: &Arc<Self>, number: u64, stream: Stream) {
+        let stream = Arc::new(stream);
+        let for_writing = stream.clone();
+        let (outbox, inbox) = sync_channel(OUTBOX);
+        self.members().insert(number, Member::new(outbox));
+        thread::spawn(move || write_all(&for_writing, &inbox));
+        let state = self.clone();
+        thread::spawn(move || {
+            state.read_all(number, &stream);
+            state.dismiss(number);
+        });
+    }
+
+    /// Frames of a program to the port, until it closes its end.
+    fn read_all(&self, number: u64, mut stream: &Stream) {
+        let (mut frames, mut buffer) = (Frames::default(), [0; 4_096]);
+        while let Ok(count @ 1..) = stream.read(&mut buffer) {
+            frames.push(buffer.get(..count).unwrap_or_default(), |frame| {
+                if self.is_for_device(number, frame) {
+                    // Fails only when the hub ends.
+                    let _ = self.to_port.send(Chunk::from(frame));
+                }
+            });
+            if self.is_over() {
+                return;
+            }
+        }
+    }
+
+    /// Takes note of a frame; false if it is for the hub alone.
+    fn is_for_device(&self, number: u64, frame: &[u8]) -> bool {
+        let mut decoder = Decoder::new();
+        for byte in frame {
+            let Some(Ok(body)) = decoder.push(*byte) else {
+                continue;
+            };
+            if let Some(note) = Note::of(&body) {
+                self.note(number, note);
+                return false;
+            }
+            let request = body
+                .message::<Request>()
+                .filter(|_| body.lane() == Some(Lane::Request));
+            if let (Some(request), Some(member)) = (request, self.members().get_mut(&number)) {
+                member.requests(&request);
+            }
+        }
+        true
+    }
+
+    fn note(&self, number: u64, note: Note) {
+        let mut members = self.members();
+        match note {
+            Note::Hello(program) => {
+                if let Some(member) = members.get_mut(&number) {
+                    member.introduce(program);
+                }
+            }
+            Note::Who => {
+                let all = members.values().map(|m| Note::Member(m.program()));
+                let answer: Vec<u8> = all
+                    .chain([Note::End])
+                    .filter_map(|note| note.frame())
+                    .flatten()
+                    .collect();
+                if let Some(member) = members.get(&number) {
+                    member.pass(&Chunk::from(answer));
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// A program has gone.
+    fn dismiss(&self, number: u64) {
+        let Some(member) = self.members().remove(&number) else {
+            return;
+        };
+        for frame in member.last_will() {
+            // Fails only when the hub ends.
+            let _ = self.to_port.send(Chunk::from(frame.as_slice()));
+        }
+    }
+}
+
+/// Chunks to a program, until the hub or the program ends.
+fn write_all(mut stream: &Stream, inbox: &Receiver<Chunk>) {
+    for chunk in inbox {
+        if stream.write_all(&chunk).is_err() {
+            return;
+        }
+    }
+    if let Some(frame) = Note::Leaving.frame() {
+        // A program that does not hear it has gone.
+        let _ = stream.write_all(&frame);
+    }
+}

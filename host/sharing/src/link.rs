@@ -1,0 +1,92 @@
+//! The connection of a program to the hub.
+
+use crate::frames::Frames;
+use crate::note::Note;
+use crepitus_protocol::Decoder;
+use interprocess::local_socket::Stream;
+use interprocess::local_socket::traits::Stream as _;
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind, Read, Write};
+use std::time::Duration;
+
+/// The connection of a program to the hub.
+#[derive(Debug)]
+pub(crate) struct Link {
+    stream: Stream,
+    frames: Frames,
+    /// Frames of the device that were received and not read.
+    unread: VecDeque<u8>,
+    notes: VecDeque<Note>,
+}
+
+impl Link {
+    pub(crate) fn new(stream: Stream) -> Self {
+        Self {
+            stream,
+            frames: Frames::default(),
+            unread: VecDeque::new(),
+            notes: VecDeque::new(),
+        }
+    }
+
+    /// Sends bytes.
+    ///
+    /// # Errors
+    /// The hub has gone.
+    pub(crate) fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.stream.set_nonblocking(false)?;
+        self.stream.write_all(bytes)
+    }
+
+    /// Moves bytes of the device to the buffer.
+    pub(crate) fn take(&mut self, buffer: &mut [u8]) -> usize {
+        self.unread.read(buffer).unwrap_or(0)
+    }
+
+    /// The next note of the hub.
+    pub(crate) fn note(&mut self) -> Option<Note> {
+        self.notes.pop_front()
+    }
+
+    /// Waits for bytes; false on a timeout. With zero it does not wait.
+    ///
+    /// # Errors
+    /// The hub has gone.
+    pub(crate) fn fill(&mut self, patience: Duration) -> io::Result<bool> {
+        let mut buffer = [0; 4_096];
+        // The shortest timeout would wait for a tick of the system's clock, in
+        // which more bytes arrive.
+        self.stream.set_nonblocking(patience.is_zero())?;
+        if !patience.is_zero() {
+            self.stream.set_recv_timeout(Some(patience))?;
+        }
+        let count = match self.stream.read(&mut buffer) {
+            Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
+            Ok(count) => count,
+            Err(error) => {
+                return match error.kind() {
+                    ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => {
+                        Ok(false)
+                    }
+                    _ => Err(error),
+                };
+            }
+        };
+        let (unread, notes) = (&mut self.unread, &mut self.notes);
+        let bytes = buffer.get(..count).unwrap_or_default();
+        self.frames.push(bytes, |frame| match note_of(frame) {
+            Some(note) => notes.push_back(note),
+            None => unread.extend(frame),
+        });
+        Ok(true)
+    }
+}
+
+/// The note of a frame that is one.
+fn note_of(frame: &[u8]) -> Option<Note> {
+    let mut decoder = Decoder::new();
+    frame.iter().find_map(|byte| match decoder.push(*byte) {
+        Some(Ok(body)) => Note::of(&body),
+        _ => None,
+    })
+}

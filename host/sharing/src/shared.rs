@@ -1,0 +1,217 @@
+//! The transport of a program that shares a device.
+
+use crate::hub::Hub;
+use crate::link::Link;
+use crate::note::{Note, Program};
+use crate::place::Place;
+use crepitus_client::{Serial, Transport, TransportError};
+use interprocess::local_socket::traits::Stream as _;
+use interprocess::local_socket::{
+    GenericFilePath, Listener, ListenerOptions, Name, Stream, ToFsName,
+};
+use std::io;
+use std::path::Path;
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// How long programs try to connect to each other: one of them may just be
+/// opening the port.
+const ATTACH: Duration = Duration::from_secs(1);
+
+/// Interval of the tries.
+const TRY_EVERY: Duration = Duration::from_millis(3);
+
+/// Timeout of the hub's answer.
+const ANSWER: Duration = Duration::from_millis(500);
+
+/// A device at a serial port, shared with other programs of this user. Its clock
+/// is real time.
+#[derive(Debug)]
+pub struct Shared {
+    port: String,
+    program: Program,
+    link: Option<Link>,
+    /// Where this program serves the others.
+    hub: Option<Hub>,
+    began: Instant,
+}
+
+impl Shared {
+    /// Connects to the program that has this port open, or else opens it and
+    /// serves it to others. `name` tells the others who this is.
+    ///
+    /// # Errors
+    /// [`TransportError`]: no such port, permission denied, or a program that
+    /// does not share holds it.
+    pub fn open(port: &str, name: &str) -> Result<Self, TransportError> {
+        let mut shared = Self {
+            port: port.to_owned(),
+            program: Program::this(name),
+            link: None,
+            hub: None,
+            began: Instant::now(),
+        };
+        shared.attach()?;
+        Ok(shared)
+    }
+
+    /// The programs that are connected, this one among them.
+    ///
+    /// # Errors
+    /// [`TransportError::Lost`] if the connection is lost.
+    pub fn programs(&mut self) -> Result<Vec<Program>, TransportError> {
+        let Some(frame) = Note::Who.frame() else {
+            return Ok(Vec::new());
+        };
+        self.send(&frame)?;
+        let mut programs = Vec::new();
+        let end = Instant::now() + ANSWER;
+        while let Some(link) = &mut self.link {
+            match link.note() {
+                Some(Note::Member(program)) => programs.push(program),
+                Some(Note::Leaving) => {
+                    self.attach()?;
+                    return self.programs();
+                }
+                Some(_) => break,
+                None => {
+                    let left = end.saturating_duration_since(Instant::now());
+                    match link.fill(left) {
+                        Ok(true) => {}
+                        Ok(false) => break,
+                        Err(_) => {
+                            self.attach()?;
+                            return self.programs();
+                        }
+                    }
+                }
+            }
+        }
+        Ok(programs)
+    }
+
+    /// Connects to the hub, or becomes it.
+    fn attach(&mut self) -> Result<(), TransportError> {
+        self.link = None;
+        if self.hub.as_ref().is_some_and(Hub::is_over) {
+            self.hub = None;
+        }
+        let place = Place::of(&self.port).map_err(|error| self.cannot_meet(&error))?;
+        let end = Instant::now() + ATTACH;
+        loop {
+            if let Ok(stream) = socket(&place.socket).and_then(Stream::connect) {
+                let mut link = Link::new(stream);
+                let hello = Note::Hello(self.program.clone()).frame();
+                if link.send(&hello.unwrap_or_default()).is_ok() {
+                    self.link = Some(link);
+                    return Ok(());
+                }
+            }
+            match place.lock() {
+                Ok(Some(lock)) => {
+                    let ports = Serial::open(&self.port)?.split()?;
+                    let listener =
+                        listen(&place.socket).map_err(|error| self.cannot_meet(&error))?;
+                    let socket_path = place.socket.clone();
+                    let wake = move || {
+                        // Only to end its wait.
+                        let _ = socket(&socket_path).and_then(Stream::connect);
+                    };
+                    self.hub = Some(Hub::start(ports, listener, wake, lock));
+                }
+                // Another program is opening the port, or closing it.
+                Ok(None) if Instant::now() < end => thread::sleep(TRY_EVERY),
+                Ok(None) => {
+                    return Err(TransportError::Busy {
+                        port: self.port.clone(),
+                        holder: None,
+                    });
+                }
+                Err(error) => return Err(self.cannot_meet(&error)),
+            }
+        }
+    }
+
+    fn cannot_meet(&self, error: &io::Error) -> TransportError {
+        TransportError::Open {
+            port: self.port.clone(),
+            detail: format!("it cannot be shared with other programs: {error}"),
+        }
+    }
+}
+
+impl Transport for Shared {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
+        for _ in 0..2 {
+            let link = self.link.as_mut().ok_or_else(|| lost(&self.port))?;
+            if link.send(bytes).is_ok() {
+                return Ok(());
+            }
+            // The hub has ended.
+            self.attach()?;
+        }
+        Err(lost(&self.port))
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], patience: Duration) -> Result<usize, TransportError> {
+        let end = Instant::now() + patience;
+        loop {
+            let link = self.link.as_mut().ok_or_else(|| lost(&self.port))?;
+            let count = link.take(buffer);
+            if count > 0 {
+                return Ok(count);
+            }
+            let is_leaving = match link.note() {
+                Some(note) => note == Note::Leaving,
+                None => match link.fill(end.saturating_duration_since(Instant::now())) {
+                    Ok(true) => false,
+                    Ok(false) => return Ok(0),
+                    Err(_) => true,
+                },
+            };
+            if is_leaving {
+                self.attach().map_err(|_| lost(&self.port))?;
+            }
+        }
+    }
+
+    fn now(&self) -> Duration {
+        self.began.elapsed()
+    }
+
+    fn wait(&mut self, time: Duration) {
+        thread::sleep(time);
+    }
+
+    fn reopen(&mut self) -> Result<(), TransportError> {
+        self.attach()
+    }
+
+    fn name(&self) -> String {
+        self.port.clone()
+    }
+}
+
+fn lost(port: &str) -> TransportError {
+    TransportError::Lost {
+        port: port.to_owned(),
+        detail: "the program that had it open has ended, and it does not open again".to_owned(),
+    }
+}
+
+fn socket(path: &Path) -> io::Result<Name<'_>> {
+    path.to_fs_name::<GenericFilePath>()
+}
+
+/// Listens on a socket that only this user can open. One that an earlier program
+/// has left is replaced; whoever calls this has the lock.
+fn listen(path: &Path) -> io::Result<Listener> {
+    let _ = std::fs::remove_file(path);
+    let options = ListenerOptions::new().name(socket(path)?);
+    #[cfg(unix)]
+    let options = {
+        use interprocess::os::unix::local_socket::ListenerOptionsExt;
+        options.mode(0o600)
+    };
+    options.create_sync()
+}
