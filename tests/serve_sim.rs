@@ -6,81 +6,12 @@ mod support;
 
 use serde_json::Value;
 use std::fs;
-use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::path::Path;
+use std::process::{Command, Stdio};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use support::served::{Served, signal, until};
 use support::{crepitus, csv, repository, stderr, stdout};
-
-/// `serve-sim`, until it is dropped.
-struct Served {
-    child: Child,
-    home: tempfile::TempDir,
-}
-
-impl Served {
-    fn new() -> Self {
-        let home = tempfile::tempdir().unwrap();
-        let mut child = crepitus()
-            .args(["serve-sim", "--name", "knee"])
-            .env("XDG_RUNTIME_DIR", home.path())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        let out = child.stdout.as_mut().unwrap();
-        BufReader::new(out).read_line(&mut line).unwrap();
-        assert!(line.contains("is served as"), "{line}");
-        Self { child, home }
-    }
-
-    fn port(&self) -> PathBuf {
-        self.home.path().join("crepitus/knee")
-    }
-
-    fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = crepitus();
-        command
-            .args(arguments)
-            .env("XDG_RUNTIME_DIR", self.home.path());
-        command
-    }
-
-    fn run(&self, arguments: &[&str]) -> Output {
-        self.command(arguments).output().unwrap()
-    }
-
-    fn info(&self) -> Value {
-        let output = self.run(&["info", "--json"]);
-        assert!(output.status.success(), "{}", stderr(&output));
-        serde_json::from_str(&stdout(&output)).unwrap()
-    }
-}
-
-impl Drop for Served {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-fn signal(child: &Child, name: &str) {
-    let sent = Command::new("kill")
-        .args([name, &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(sent.success());
-}
-
-/// Waits for something that another process does.
-fn until(what: &str, mut is_so: impl FnMut() -> bool) {
-    let begun = Instant::now();
-    while !is_so() {
-        assert!(begun.elapsed() < Duration::from_secs(20), "{what}");
-        sleep(Duration::from_millis(20));
-    }
-}
 
 fn lines(file: &Path) -> usize {
     fs::read_to_string(file).map_or(0, |text| text.lines().count())
@@ -112,12 +43,16 @@ fn it_is_found_and_talks() {
     assert!(got.contains("0.45"), "{got}");
 }
 
+/// By one that does not share it: it is not this user's.
 #[test]
 fn a_port_held_by_another_process_is_reported() {
     let served = Served::new();
     let file = served.home.path().join("held.csv");
-    let mut holder = served
-        .command(&["record", file.to_str().unwrap()])
+    let other = tempfile::tempdir().unwrap();
+    let mut holder = crepitus()
+        .args(["record", file.to_str().unwrap(), "--device"])
+        .arg(served.port())
+        .env("XDG_RUNTIME_DIR", other.path())
         .stdout(Stdio::null())
         .spawn()
         .unwrap();

@@ -2,6 +2,9 @@
 
 #![allow(dead_code, reason = "each test program uses its part")]
 
+#[cfg(target_os = "linux")]
+pub(crate) mod served;
+
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};

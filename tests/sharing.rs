@@ -1,0 +1,383 @@
+//! One device and several programs, each a process of its own.
+#![cfg(target_os = "linux")]
+
+mod support;
+
+use crepitus_board::{Start, VirtualDevice};
+use crepitus_protocol::State;
+use crepitus_protocol::counters::CommsCounter;
+use crepitus_scene::{Overrides, Scene};
+use crepitus_usb::pty::Pty;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{JoinHandle, sleep};
+use std::time::{Duration, Instant};
+use support::served::{Served, signal, until};
+use support::{csv, stderr, stdout};
+
+/// Starts a program whose outputs are kept.
+fn start(served: &Served, arguments: &[&str]) -> Child {
+    served
+        .command(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+fn until_armed(served: &Served) {
+    until("armed", || served.info()["status"]["state"] == "armed");
+}
+
+fn file(served: &Served, name: &str) -> PathBuf {
+    served.home.path().join(name)
+}
+
+/// What the recorder says of the samples, checked against the rows.
+fn check_books(file: &Path) -> [u64; 3] {
+    let text = fs::read_to_string(file.with_extension("json")).unwrap();
+    let books: Value = serde_json::from_str(&text).unwrap();
+    let [produced, received, dropped] =
+        ["produced", "received", "dropped"].map(|key| books["telemetry"][key].as_u64().unwrap());
+    assert_eq!(produced, received + dropped, "{text}");
+    let (_, rows) = csv(file);
+    assert_eq!(u64::try_from(rows.len()).unwrap(), received);
+    let ticks: Vec<u64> = rows.iter().map(|row| row[0].parse().unwrap()).collect();
+    let missing: u64 = ticks.windows(2).map(|pair| pair[1] - pair[0] - 1).sum();
+    // What is missing before the first row is in the books alone.
+    assert!(missing <= dropped, "{missing} {text}");
+    [produced, received, dropped]
+}
+
+#[test]
+fn everything_works_while_another_program_is_armed() {
+    let served = Served::new();
+    let arm = start(&served, &["arm", "--for", "60s"]);
+    until_armed(&served);
+
+    // Another terminal changes parameters, looks, streams and records.
+    let set = served.run(&["params", "set", "crepitus.static_torque_nm=0.45"]);
+    assert!(set.status.success(), "{}", stderr(&set));
+    let streamed = served.run(&["stream", "--for", "300ms", "--rate", "1000"]);
+    assert!(streamed.status.success(), "{}", stderr(&streamed));
+    assert!(stdout(&streamed).lines().count() > 250);
+    let path = file(&served, "a.csv");
+    let recorded = served.run(&["record", path.to_str().unwrap(), "--for", "500ms"]);
+    assert!(recorded.status.success(), "{}", stderr(&recorded));
+    let [_, received, dropped] = check_books(&path);
+    assert!(received >= 9_000 && dropped == 0, "{received} {dropped}");
+    let info = served.info();
+    assert_eq!(info["status"]["state"], "armed");
+    assert_eq!(info["counters"]["drive"]["dropped-samples"], 0);
+
+    // What concerns the torque is for the one that has armed, who is named.
+    let process = format!("`crepitus arm --for 60s`, process {},", arm.id());
+    for verb in ["disarm", "arm", "zero", "clear-fault"] {
+        let refused = served.run(&[verb]);
+        assert_eq!(refused.status.code(), Some(1), "{verb}");
+        assert!(stderr(&refused).contains(&process), "{}", stderr(&refused));
+    }
+    assert!(stderr(&served.run(&["disarm"])).contains("--force"));
+    assert_eq!(served.info()["status"]["state"], "armed");
+
+    // Stopping is for everybody, and says who was armed.
+    let stopped = stdout(&served.run(&["stop"]));
+    assert_eq!(
+        stopped,
+        format!("stopped; {} had armed it\n", process.trim_end_matches(','))
+    );
+    let armed = arm.wait_with_output().unwrap();
+    assert_eq!(armed.status.code(), Some(1));
+    assert!(stderr(&armed).contains("another program has disarmed"));
+    assert_eq!(served.info()["status"]["state"], "disarmed");
+    assert_eq!(stdout(&served.run(&["stop"])), "stopped\n");
+}
+
+#[test]
+fn disarming_by_force_is_for_everybody() {
+    let served = Served::new();
+    let mut arm = start(&served, &["arm", "--for", "60s"]);
+    until_armed(&served);
+    let forced = served.run(&["disarm", "--force"]);
+    assert!(forced.status.success(), "{}", stderr(&forced));
+    assert_eq!(arm.wait().unwrap().code(), Some(1));
+    let info = served.info();
+    assert_eq!(info["status"]["state"], "disarmed");
+    assert_eq!(info["counters"]["drive"]["faults"], 0);
+}
+
+/// The one that serves is killed: the others take over, and an armed one stays
+/// armed.
+#[test]
+fn the_others_go_on_when_the_first_program_ends() {
+    let served = Served::new();
+    let [first, second, third] = ["1.csv", "2.csv", "3.csv"].map(|name| file(&served, name));
+    let record = |path: &Path, more: &[&str]| {
+        let arguments = [&["record", path.to_str().unwrap()], more].concat();
+        let child = start(&served, &arguments);
+        until("rows", || {
+            fs::metadata(path).is_ok_and(|data| data.len() > 1_000)
+        });
+        child
+    };
+    let mut serving = record(&first, &[]);
+    let armed = record(&second, &["--arm"]);
+    let other = record(&third, &[]);
+    until_armed(&served);
+    signal(&serving, "-KILL");
+    serving.wait().unwrap();
+    sleep(Duration::from_millis(700));
+    let info = served.info();
+    assert_eq!(info["status"]["state"], "armed", "{info:#}");
+    for child in [&armed, &other] {
+        signal(child, "-INT");
+    }
+    for child in [armed, other] {
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert!(!stderr(&output).contains("lost"), "{}", stderr(&output));
+    }
+    for path in [&second, &third] {
+        let [_, received, dropped] = check_books(path);
+        // The time in which nobody had the port open.
+        assert!(received > 10_000 && dropped < 4_000, "{received} {dropped}");
+    }
+    let info = served.info();
+    assert_eq!(info["status"]["state"], "disarmed");
+    assert_eq!(info["counters"]["drive"]["faults"], 0);
+}
+
+/// A program that is killed without being able to do anything is disarmed by
+/// the one that serves.
+#[test]
+fn the_one_that_serves_disarms_for_a_program_that_is_killed() {
+    let served = Served::new();
+    let mut serving = start(&served, &["stream", "--rate", "10"]);
+    until("it serves", || {
+        fs::read_dir(served.home.path().join("crepitus/shared"))
+            .is_ok_and(|entries| entries.count() == 2)
+    });
+    let mut armed = start(&served, &["arm"]);
+    until_armed(&served);
+    signal(&armed, "-KILL");
+    armed.wait().unwrap();
+    until("disarmed", || {
+        let info = served.info();
+        assert_ne!(info["status"]["state"], "faulted", "{info:#}");
+        info["status"]["state"] == "disarmed"
+    });
+    signal(&serving, "-INT");
+    serving.wait().unwrap();
+}
+
+#[test]
+fn signals_end_a_command_in_order() {
+    for name in ["-INT", "-TERM", "-HUP"] {
+        let served = Served::new();
+        let path = file(&served, "a.csv");
+        let child = start(&served, &["record", path.to_str().unwrap(), "--arm"]);
+        // Armed, and nobody else has had the port open.
+        until("half a second is recorded", || {
+            fs::metadata(&path).is_ok_and(|data| data.len() > 1_000_000)
+        });
+        signal(&child, name);
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success(), "{name}: {}", stderr(&output));
+        let [_, received, dropped] = check_books(&path);
+        assert!(received > 5_000, "{name}");
+        assert_eq!(dropped, 0, "{name}");
+        let info = served.info();
+        assert_eq!(info["counters"]["drive"]["armings"], 1, "{name}");
+        assert_eq!(info["status"]["state"], "disarmed", "{name}");
+        assert_eq!(info["counters"]["drive"]["faults"], 0, "{name}");
+    }
+}
+
+/// Many programs at once, each killed sooner or later: no torque without a
+/// renewal, and every sample accounted for. A minute of it with
+/// `CREPITUS_LONG=1`, three seconds without.
+#[test]
+fn many_programs_are_killed_at_random() {
+    const PROGRAMS: usize = 20;
+    let is_long = std::env::var_os("CREPITUS_LONG").is_some();
+    let duration = Duration::from_secs(if is_long { 60 } else { 3 });
+    let bench = Bench::start();
+    let mut rng = fastrand::Rng::with_seed(16);
+    let mut files = Vec::new();
+    let mut running: Vec<Child> = Vec::new();
+    let (mut kills, mut ended_in_order) = (0, 0);
+    let begun = Instant::now();
+    while begun.elapsed() < duration {
+        while running.len() < PROGRAMS {
+            let path = bench.home.path().join(format!("{}.csv", files.len()));
+            let file = path.to_str().unwrap().to_owned();
+            let arguments = match rng.u8(0..10) {
+                0..=3 => vec!["record", &file],
+                4 => vec!["record", &file, "--arm"],
+                5 | 6 => vec!["stream", "--rate", "100"],
+                7 => vec!["arm"],
+                8 => vec!["params", "set", "crepitus.static_torque_nm=0.42"],
+                _ => vec!["stream", "--rate", "10", "--arm"],
+            };
+            if arguments[0] == "record" {
+                files.push(path.clone());
+            }
+            running.push(bench.spawn(&arguments));
+        }
+        sleep(Duration::from_millis(rng.u64(0..60)));
+        let victim = rng.usize(0..running.len());
+        signal(
+            &running[victim],
+            rng.choice(["-TERM", "-INT", "-HUP", "-KILL"]).unwrap(),
+        );
+        kills += 1;
+        let mut child = running.swap_remove(victim);
+        ended_in_order += usize::from(child.wait().unwrap().code().is_some());
+    }
+    for child in &running {
+        signal(child, "-INT");
+    }
+    for mut child in running {
+        child.wait().unwrap();
+    }
+    sleep(Duration::from_millis(400));
+    let (observed, _home) = bench.stop();
+    println!("{kills} signals, {ended_in_order} programs ended in order, {observed:?}");
+    assert!(observed.longest_without_renewal <= 5_001, "{observed:?}");
+    assert!(
+        observed.driven_ticks > 0 && !observed.is_driven,
+        "{observed:?}"
+    );
+    let (mut rows, mut complete) = (0, 0);
+    for path in files.iter().filter(|path| path.exists()) {
+        let count = check_rows(path);
+        rows += count;
+        let Ok(text) = fs::read_to_string(path.with_extension("json")) else {
+            // Killed while it began.
+            assert_eq!(count, 0, "{}", path.display());
+            continue;
+        };
+        let books: Value = serde_json::from_str(&text).unwrap();
+        // A recording that was killed says so: its books are not final.
+        if books["complete"] == true {
+            check_books(path);
+            complete += 1;
+        }
+    }
+    println!(
+        "{rows} rows in {} recordings, {complete} of them complete",
+        files.len()
+    );
+    assert!(rows > 10_000 && complete > 3);
+}
+
+/// The rows of a recording up to the last whole one: ticks that grow, and gaps
+/// of whole blocks.
+fn check_rows(path: &Path) -> usize {
+    let text = fs::read_to_string(path).unwrap();
+    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+    let ticks: Vec<u64> = whole
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').next().unwrap().parse().unwrap())
+        .collect();
+    for pair in ticks.windows(2) {
+        assert!(
+            pair[0] < pair[1] && (pair[1] - pair[0] - 1) % 20 == 0,
+            "{pair:?}"
+        );
+    }
+    ticks.len()
+}
+
+/// A simulated device in this process, in real time, at a pty.
+struct Bench {
+    home: tempfile::TempDir,
+    is_over: Arc<AtomicBool>,
+    thread: JoinHandle<Observed>,
+}
+
+/// What the simulator has seen of the torque.
+#[derive(Clone, Copy, Debug, Default)]
+struct Observed {
+    driven_ticks: u64,
+    /// Most ticks from a renewal, or from arming, to torque.
+    longest_without_renewal: u64,
+    is_driven: bool,
+}
+
+impl Bench {
+    fn start() -> Self {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path().join("crepitus");
+        fs::create_dir(&folder).unwrap();
+        let is_over = Arc::new(AtomicBool::new(false));
+        let over = is_over.clone();
+        let link = folder.join("knee");
+        let (ready, is_ready) = std::sync::mpsc::channel();
+        let thread = std::thread::spawn(move || {
+            let scene = include_str!("../scenes/passive-examination.toml");
+            let scene = Scene::parse(Path::new("knee.toml"), scene, &Overrides::default()).unwrap();
+            let mut device = VirtualDevice::of(&scene, &Start::default()).unwrap();
+            let mut pty = Pty::new(Some(&link)).unwrap();
+            ready.send(()).unwrap();
+            observe(&mut device, &mut pty, &over)
+        });
+        is_ready.recv().unwrap();
+        Self {
+            home,
+            is_over,
+            thread,
+        }
+    }
+
+    fn spawn(&self, arguments: &[&str]) -> Child {
+        support::crepitus()
+            .args(arguments)
+            .env("XDG_RUNTIME_DIR", self.home.path())
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap()
+    }
+
+    fn stop(self) -> (Observed, tempfile::TempDir) {
+        self.is_over.store(true, Ordering::Relaxed);
+        (self.thread.join().unwrap(), self.home)
+    }
+}
+
+/// Runs the device in real time; where the machine is too slow for that, time
+/// passes more slowly.
+fn observe(device: &mut VirtualDevice, pty: &mut Pty, over: &AtomicBool) -> Observed {
+    const TICKS_PER_MS: u64 = 20;
+    let mut observed = Observed::default();
+    let (mut renewals, mut was_arming, mut renewed) = (0, false, None);
+    while !over.load(Ordering::Relaxed) {
+        let begun = Instant::now();
+        for _ in 0..TICKS_PER_MS {
+            device.tick();
+            let board = device.board();
+            let now_renewals = board.comms().counters().get(CommsCounter::Renewals);
+            let is_arming = board.comms().state() == State::Arming;
+            if now_renewals != renewals || is_arming && !was_arming {
+                renewed = Some(board.now());
+            }
+            (renewals, was_arming) = (now_renewals, is_arming);
+            observed.is_driven = board.is_driven();
+            if observed.is_driven {
+                observed.driven_ticks += 1;
+                let silence = board.now() - renewed.expect("a renewal");
+                observed.longest_without_renewal = observed.longest_without_renewal.max(silence);
+            }
+        }
+        pty.exchange(device.host().expect("a cable")).unwrap();
+        sleep(Duration::from_millis(1).saturating_sub(begun.elapsed()));
+    }
+    observed
+}
