@@ -167,3 +167,42 @@ fn a_client_in_python_communicates_with_it() {
     let got = stdout(&served.run(&["params", "get", "crepitus.static_torque_nm"]));
     assert!(got.contains("0.45"), "{got}");
 }
+
+#[test]
+fn a_name_in_use_is_refused_and_one_that_was_left_is_taken() {
+    let served = Served::new();
+    let again = served.run(&["serve-sim", "--name", "knee"]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(
+        stderr(&again).contains("another program serves"),
+        "{}",
+        stderr(&again)
+    );
+    assert_eq!(served.info()["status"]["state"], "disarmed");
+    // Killed, it leaves its link.
+    let home = served.kill();
+    let link = home.path().join("crepitus/knee");
+    assert!(link.is_symlink());
+    let ask = |device: &str| {
+        crepitus()
+            .args(["info", "--device", device])
+            .env("XDG_RUNTIME_DIR", home.path())
+            .output()
+            .unwrap()
+    };
+    // As if its pty were somebody's terminal now: it is not opened.
+    fs::remove_file(&link).unwrap();
+    let other = home.path().join("other");
+    fs::write(&other, "").unwrap();
+    std::os::unix::fs::symlink(&other, &link).unwrap();
+    for device in ["knee", link.to_str().unwrap()] {
+        let output = ask(device);
+        assert_eq!(output.status.code(), Some(2), "{device}");
+        assert!(stderr(&output).contains("serve-sim"), "{}", stderr(&output));
+    }
+    assert_eq!(fs::read(&other).unwrap(), b"");
+    fs::remove_file(&link).unwrap();
+    std::os::unix::fs::symlink("/dev/pts/999999", &link).unwrap();
+    let served = Served::at(home);
+    assert_eq!(served.info()["status"]["state"], "disarmed");
+}

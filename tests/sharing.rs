@@ -315,6 +315,9 @@ impl Bench {
         let home = tempfile::tempdir().unwrap();
         let folder = home.path().join("crepitus");
         fs::create_dir(&folder).unwrap();
+        // As a program that serves the name has it.
+        let lock = fs::File::create(folder.join("knee.lock")).unwrap();
+        lock.lock().unwrap();
         let is_over = Arc::new(AtomicBool::new(false));
         let over = is_over.clone();
         let link = folder.join("knee");
@@ -325,7 +328,9 @@ impl Bench {
             let mut device = VirtualDevice::of(&scene, &Start::default()).unwrap();
             let mut pty = Pty::new(Some(&link)).unwrap();
             ready.send(()).unwrap();
-            observe(&mut device, &mut pty, &over)
+            let observed = observe(&mut device, &mut pty, &over);
+            drop(lock);
+            observed
         });
         is_ready.recv().unwrap();
         Self {

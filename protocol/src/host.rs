@@ -57,7 +57,7 @@ pub enum Operation {
     /// Acquires the lease and turns torque on. → [`Answer::Done`]
     Arm,
     /// Turns torque off and releases the lease; rejected while another session
-    /// holds it: use [stop](crate::management). → [`Answer::Done`]
+    /// holds it, unlike stop of the management lane. → [`Answer::Done`]
     Disarm,
     /// Clears the faults. → [`Answer::Done`]
     ClearFault,

@@ -16,7 +16,11 @@ pub(crate) struct Served {
 
 impl Served {
     pub(crate) fn new() -> Self {
-        let home = tempfile::tempdir().unwrap();
+        Self::at(tempfile::tempdir().unwrap())
+    }
+
+    /// In a folder that is there.
+    pub(crate) fn at(home: tempfile::TempDir) -> Self {
         let mut child = crepitus()
             .args(["serve-sim", "--name", "knee"])
             .env("XDG_RUNTIME_DIR", home.path())
@@ -28,6 +32,13 @@ impl Served {
         BufReader::new(out).read_line(&mut line).unwrap();
         assert!(line.contains("is served as"), "{line}");
         Self { child, home }
+    }
+
+    /// Kills it; its files stay.
+    pub(crate) fn kill(mut self) -> tempfile::TempDir {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+        std::mem::replace(&mut self.home, tempfile::tempdir().unwrap())
     }
 
     pub(crate) fn port(&self) -> PathBuf {

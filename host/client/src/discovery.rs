@@ -4,12 +4,15 @@
 //! *and* its name: the ids are shared with other free projects.
 //!
 //! A simulated device is a pty with a symbolic link in [`simulated_folder`]; the
-//! link's name is the device's. Dangling links are ignored.
+//! link's name is the device's. A link that no program serves is ignored, and
+//! never opened: see [`ServedName`].
 
 mod folder;
+mod name;
 
 use crepitus_protocol::usb::{PRODUCT, PRODUCT_ID, VENDOR_ID};
 pub use folder::{make_user_folder, user_folder};
+pub use name::ServedName;
 use serialport::{SerialPortType, UsbPortInfo};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -106,8 +109,7 @@ pub fn simulated_devices(folder: &Path) -> Vec<Device> {
     let mut devices: Vec<_> = entries
         .flatten()
         .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_symlink()))
-        // `exists` follows the link: false if the pty is gone.
-        .filter(|entry| entry.path().exists())
+        .filter(|entry| name::is_served(&entry.path()))
         .filter_map(|entry| {
             Some(Device {
                 port: entry.path().to_str()?.to_owned(),
@@ -119,6 +121,12 @@ pub fn simulated_devices(folder: &Path) -> Vec<Device> {
         .collect();
     devices.sort_by(|a, b| a.port.cmp(&b.port));
     devices
+}
+
+/// Whether this port is the link of a simulated device that no program serves
+/// any more. What is behind it may be anybody's terminal.
+pub fn is_stale(port: &Path) -> bool {
+    port.parent() == Some(&simulated_folder()) && port.is_symlink() && !name::is_served(port)
 }
 
 #[cfg(test)]
@@ -148,15 +156,28 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn links_whose_target_exists_are_devices() {
+    fn links_that_are_served_are_devices() {
         use std::os::unix::fs::symlink;
         let folder = tempfile::tempdir().unwrap();
         assert_eq!(simulated_devices(&folder.path().join("none")), []);
         let target = folder.path().join("file");
         fs::write(&target, "").unwrap();
-        symlink(&target, folder.path().join("knee")).unwrap();
-        symlink(&target, folder.path().join("hip")).unwrap();
-        symlink(folder.path().join("gone"), folder.path().join("stale")).unwrap();
+        let mut locks = Vec::new();
+        for (name, target, is_locked) in [
+            ("knee", &target, true),
+            ("hip", &target, true),
+            ("killed", &target, false),
+            ("gone", &folder.path().join("gone"), true),
+        ] {
+            let link = folder.path().join(name);
+            symlink(target, &link).unwrap();
+            let lock = fs::File::create(folder.path().join(format!("{name}.lock"))).unwrap();
+            if is_locked {
+                lock.lock().unwrap();
+                locks.push(lock);
+            }
+        }
+        symlink(&target, folder.path().join("never-served")).unwrap();
         let names: Vec<_> = simulated_devices(folder.path())
             .into_iter()
             .map(|device| device.kind)

@@ -10,6 +10,7 @@ use crepitus_protocol::ValueError;
 use crepitus_protocol::host::Refusal;
 use crepitus_scene::Overrides;
 use crepitus_sharing::{Program, Shared};
+use std::path::Path;
 use std::time::Duration;
 
 /// The name of the simulated device for one command.
@@ -121,6 +122,12 @@ pub(crate) fn named(program: &Program) -> String {
 }
 
 fn serial(port: &str) -> Result<Line, Failure> {
+    if discovery::is_stale(Path::new(port)) {
+        return Err(Failure::Input(format!(
+            "{port}: no program serves this simulated device any more; \
+             `crepitus serve-sim` starts one"
+        )));
+    }
     Shared::open(port, &command_line())
         .map(|shared| Line::Shared(Box::new(shared)))
         .map_err(Failure::input)

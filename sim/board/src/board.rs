@@ -9,6 +9,7 @@
 //! ```
 
 use crate::leg::{Leg, Terminals};
+use crate::storage::Storage;
 use crate::wire::Wire;
 use crepitus_device::comms::{self, Comms};
 use crepitus_device::drive::command::{Inputs, Outputs};
@@ -99,8 +100,7 @@ pub struct Board {
     /// Last command to the bridge.
     bridge: Bridge,
     /// Parameters that comms stores over a restart.
-    kept: Option<(Revision, Values)>,
-    keeps: bool,
+    storage: Storage,
     comms_has_restarted: bool,
     /// The comparator at the shunt works.
     trips: bool,
@@ -169,8 +169,7 @@ impl Board {
             comms_health: Health::Runs,
             starts: [2; 2],
             bridge: Bridge::Float,
-            kept: start.saved,
-            keeps: true,
+            storage: Storage::new(start.saved),
             comms_has_restarted: false,
             trips: true,
             comparator_tripped: false,
@@ -288,10 +287,8 @@ impl Board {
         self.comms_line.driven = outputs.enable;
         self.comms_line.read = self.comms_line.is_on();
         if let Some(parameters) = outputs.save {
-            if self.keeps {
-                self.kept = Some(parameters);
-            }
-            self.comms.saved(self.keeps);
+            let is_stored = self.storage.store(parameters);
+            self.comms.saved(is_stored);
         }
         if outputs.reboot {
             self.reset(Controller::Comms, ResetCause::Requested);
@@ -325,11 +322,12 @@ impl Board {
         if let Health::StartsAt(tick, cause) = self.comms_health
             && tick <= self.tick
         {
+            self.storage.start();
             self.comms = Comms::new(&comms::Boot {
                 identity: identity(Role::Comms, cause),
                 start: self.starts[1],
                 entropy: u64::from(self.starts[1]),
-                saved: self.kept,
+                saved: self.storage.newest(),
                 counters: 0,
             });
             self.comms_health = Health::Runs;
@@ -440,7 +438,7 @@ impl Board {
 
     /// Sets whether parameters can be stored.
     pub fn set_storage(&mut self, works: bool) {
-        self.keeps = works;
+        self.storage.set_works(works);
     }
 
     /// Sets whether the comparator at the shunt works.

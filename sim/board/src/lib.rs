@@ -19,6 +19,7 @@
 pub mod board;
 pub mod faults;
 pub mod leg;
+mod storage;
 pub mod values;
 pub mod virtual_device;
 pub mod wire;

@@ -5,11 +5,12 @@ use crate::interrupt;
 use crate::shipped;
 use clap::Args;
 use crepitus_board::{Start, VirtualDevice};
-use crepitus_client::discovery::{make_user_folder, user_folder};
+use crepitus_client::discovery::{ServedName, user_folder};
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_scene::Overrides;
 use crepitus_usb::pty::Pty;
 use serde_json::json;
+use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -42,19 +43,26 @@ const MOST_LAG: Duration = Duration::from_millis(200);
 
 /// Serves until Ctrl-C.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    if arguments.name.is_empty() || arguments.name.contains(['/', '\\']) || arguments.name == "sim"
-    {
+    let is_plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    let is_reserved = ["", "sim", "shared"].contains(&&*arguments.name);
+    if is_reserved || !arguments.name.chars().all(is_plain) {
         return Err(Failure::Input(format!(
-            "--name {:?}: expected a name without slashes other than `sim`, which `--device` reserves",
+            "--name {:?}: expected letters, digits, `-` and `_`, and not `sim` or `shared`, which are \
+             reserved",
             arguments.name
         )));
     }
     let scene = shipped::scene(&arguments.scene, &Overrides::default())?;
     let mut device = VirtualDevice::of(&scene, &Start::default()).map_err(Failure::input)?;
-    let folder = make_user_folder()
-        .map_err(|e| Failure::at(&user_folder(), "the folder of simulated devices", &e))?;
-    let link = folder.join(&arguments.name);
-    let mut pty = Pty::new(Some(&link)).map_err(|e| Failure::at(&link, "cannot be created", &e))?;
+    let name = ServedName::take(&arguments.name).map_err(|e| match e.kind() {
+        ErrorKind::AddrInUse => Failure::Input(format!(
+            "--name {:?}: another program serves a device of this name; choose another one",
+            arguments.name
+        )),
+        _ => Failure::at(&user_folder(), "the folder of simulated devices", &e),
+    })?;
+    let link = name.link();
+    let mut pty = Pty::new(Some(link)).map_err(|e| Failure::at(link, "cannot be created", &e))?;
     interrupt::listen();
     if as_json {
         print_json(&json!({ "port": link, "name": arguments.name, "scene": scene.title }))?;
@@ -77,7 +85,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
                 }
                 if let Some(host) = device.host() {
                     pty.exchange(host)
-                        .map_err(|e| Failure::at(&link, "the port failed", &e))?;
+                        .map_err(|e| Failure::at(link, "the port failed", &e))?;
                 }
             }
         }

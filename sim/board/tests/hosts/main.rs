@@ -7,6 +7,7 @@ mod support;
 mod cable;
 mod nonsense;
 mod reboot;
+mod replay;
 mod requests;
 mod two_hosts;
 mod wraps;

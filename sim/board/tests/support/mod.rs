@@ -81,6 +81,8 @@ pub(crate) struct Host {
     pub(crate) device: VirtualDevice,
     pub(crate) session: Session,
     pub(crate) number: u16,
+    /// What was sent, if it is wanted, write by write.
+    pub(crate) sent: Option<Vec<Vec<u8>>>,
     /// Nonces of the sessions that are open.
     nonces: HashMap<Session, Nonce>,
     decoder: Decoder,
@@ -109,6 +111,7 @@ impl Host {
             device,
             session: Session(0x1234),
             number: 0,
+            sent: None,
             nonces: HashMap::new(),
             decoder: Decoder::new(),
             replies: Vec::new(),
@@ -189,6 +192,9 @@ impl Host {
     }
 
     pub(crate) fn send(&mut self, bytes: &[u8]) {
+        if let Some(sent) = &mut self.sent {
+            sent.push(bytes.to_vec());
+        }
         if let Some(host) = self.device.host() {
             host.queue(bytes);
         }
@@ -242,7 +248,7 @@ impl Host {
     }
 
     /// Opens this host's session.
-    fn open(&mut self) {
+    pub(crate) fn open(&mut self) {
         self.number = self.number.wrapping_add(1);
         self.try_open(self.session, self.number, 40)
             .expect("an open session");

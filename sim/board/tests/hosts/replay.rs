@@ -1,0 +1,150 @@
+//! Whatever a host has sent is sent again by somebody else: in order, in
+//! disorder, doubled, late, after restarts of either controller. Nothing of it is
+//! obeyed.
+
+use crate::connected;
+use crate::support::{Host, set};
+use crepitus_board::Controller;
+use crepitus_protocol::counters::{CommsCounter, DriveCounter};
+use crepitus_protocol::host::{Answer, Operation, Refusal};
+use crepitus_protocol::management::ResetCause;
+use crepitus_protocol::{Session, State};
+use fastrand::Rng;
+
+/// What happens between the session and its replay.
+#[derive(Clone, Copy, Debug)]
+enum Between {
+    Nothing,
+    CommsRestarts,
+    DriveRestarts,
+    BothRestart,
+    /// So many sessions that the device has forgotten the first.
+    Others,
+}
+
+/// A session in which everything happens, and its bytes.
+fn session() -> (Host, Vec<Vec<u8>>) {
+    let mut host = connected();
+    host.sent = Some(Vec::new());
+    host.open();
+    host.subscribe();
+    host.commit(|values| set(values, "crepitus.static_torque_nm", 0.5))
+        .expect("a commit");
+    assert_eq!(host.ask(Operation::Zero), Ok(Answer::Done));
+    assert_eq!(host.ask(Operation::Save), Ok(Answer::Done));
+    host.renew_every = Some(1_000);
+    assert_eq!(host.ask(Operation::Arm), Ok(Answer::Done));
+    host.run(4_000);
+    assert!(host.device.board().is_driven());
+    assert_eq!(host.ask(Operation::Disarm), Ok(Answer::Done));
+    host.renew_every = None;
+    let sent = host.sent.take().expect("what was sent");
+    (host, sent)
+}
+
+fn happen(host: &mut Host, between: Between) {
+    let restarted: &[Controller] = match between {
+        Between::Nothing => &[],
+        Between::CommsRestarts => &[Controller::Comms],
+        Between::DriveRestarts => &[Controller::Drive],
+        Between::BothRestart => &[Controller::Comms, Controller::Drive],
+        Between::Others => {
+            for session in 1..=40 {
+                let answer = host.ask_as(Session(session), 1, Operation::Status);
+                assert!(matches!(answer, Some(Ok(_))), "{answer:?}");
+            }
+            &[]
+        }
+    };
+    for controller in restarted {
+        host.device
+            .board_mut()
+            .reset(*controller, ResetCause::Power);
+    }
+    host.run(1_000);
+    if !host.device.board().comms_runs() || host.device.host().is_none() {
+        host.reconnect();
+    }
+    host.run(1_000);
+}
+
+#[test]
+fn nothing_that_is_replayed_is_obeyed() {
+    for between in [
+        Between::Nothing,
+        Between::CommsRestarts,
+        Between::DriveRestarts,
+        Between::BothRestart,
+        Between::Others,
+    ] {
+        let mut rng = Rng::with_seed(2);
+        for round in 0..6 {
+            let (mut host, sent) = session();
+            happen(&mut host, between);
+            let before = host.parameters();
+            let count = |host: &mut Host| {
+                let saved = host.status().saved;
+                (
+                    host.drive_count(DriveCounter::Armings),
+                    host.drive_count(DriveCounter::Commits),
+                    host.comms_count(CommsCounter::Renewals),
+                    saved,
+                )
+            };
+            let counts = count(&mut host);
+            for _ in 0..3 {
+                let mut frames = sent.clone();
+                if round > 0 {
+                    frames.extend(sent.clone());
+                    rng.shuffle(&mut frames);
+                }
+                for frame in &frames {
+                    host.send(frame);
+                    for _ in 0..rng.u64(0..200) {
+                        host.tick();
+                        assert!(!host.device.board().is_driven(), "{between:?} {round}");
+                        assert_ne!(host.device.board().drive().state(), State::Arming);
+                    }
+                }
+            }
+            // Before anything new is asked of it.
+            assert_eq!(count(&mut host), counts, "{between:?} {round}");
+            assert_eq!(host.parameters(), before, "{between:?} {round}");
+        }
+    }
+}
+
+/// A request to arm arrives after the host has given up and disarmed.
+#[test]
+fn a_late_request_to_arm_is_not_heard() {
+    let mut host = connected();
+    host.status();
+    let arm = host.request(Operation::Arm);
+    assert_eq!(host.ask(Operation::Disarm), Ok(Answer::Done));
+    host.say(&arm);
+    for _ in 0..2_000 {
+        host.tick();
+        assert_ne!(host.device.board().drive().state(), State::Arming);
+    }
+    assert_eq!(host.drive_count(DriveCounter::Armings), 0);
+}
+
+/// After a restart of comms not even what the host sends without having noticed
+/// is obeyed.
+#[test]
+fn a_host_that_has_not_noticed_a_restart_is_told() {
+    let mut host = connected();
+    host.status();
+    let arm = host.request(Operation::Arm);
+    host.device
+        .board_mut()
+        .reset(Controller::Comms, ResetCause::Power);
+    host.run(2_000);
+    if host.device.host().is_none() {
+        assert!(host.device.plug_in().is_ok());
+    }
+    host.say(&arm);
+    assert_eq!(host.answer_to(&arm), Some(Err(Refusal::NotOpen)));
+    assert_eq!(host.drive_count(DriveCounter::Armings), 0);
+    assert!(host.comms_count(CommsCounter::NotOpen) > 0);
+}
