@@ -3,10 +3,11 @@
 
 use crate::support::{Host, set};
 use crate::{connected, streaming};
+use crepitus_board::Controller;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::frame::encode_bytes;
 use crepitus_protocol::host::{Answer, Operation, Refusal};
-use crepitus_protocol::management::{self, Action, ManagementRequest};
+use crepitus_protocol::management::{self, Action, ManagementRequest, ResetCause};
 use crepitus_protocol::{Lane, Session, State};
 
 const OTHER: Session = Session(0xbeef);
@@ -105,6 +106,25 @@ fn telemetry_belongs_to_a_session() {
     host.run(2_000);
     let (received, dropped) = books(&host);
     assert!(received >= 1_900 && dropped == 0, "{received} {dropped}");
+}
+
+/// After a restart of the drive what is not sent is counted anew.
+#[test]
+fn accounting_goes_on_after_a_restart_of_the_drive() {
+    let mut host = connected();
+    host.subscribe();
+    host.run(4_000);
+    host.device
+        .board_mut()
+        .reset(Controller::Drive, ResetCause::Power);
+    host.run(1_000);
+    // A host that does not read for a second.
+    for _ in 0..20_000 {
+        host.device.tick();
+    }
+    host.run(2_000);
+    let accounting = host.accounting.expect("a subscription");
+    assert!(accounting.dropped > 1_000, "{accounting:?}");
 }
 
 #[test]
