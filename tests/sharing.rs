@@ -174,6 +174,31 @@ fn the_one_that_serves_disarms_for_a_program_that_is_killed() {
     serving.wait().unwrap();
 }
 
+/// A program that serves and is stopped, as by Ctrl-Z: the others are told, and
+/// torque has ended.
+#[test]
+fn a_program_that_serves_and_hangs_is_named() {
+    let served = Served::new();
+    let path = file(&served, "a.csv");
+    let mut serving = start(&served, &["record", path.to_str().unwrap(), "--arm"]);
+    until("half a second is recorded", || {
+        fs::metadata(&path).is_ok_and(|data| data.len() > 1_000_000)
+    });
+    signal(&serving, "-STOP");
+    let stop = served.run(&["stop"]);
+    assert_eq!(stop.status.code(), Some(2));
+    let text = stderr(&stop);
+    assert!(
+        text.contains("does not respond") && text.contains(&serving.id().to_string()),
+        "{text}"
+    );
+    signal(&serving, "-KILL");
+    serving.wait().unwrap();
+    let info = served.info();
+    assert_eq!(info["status"]["state"], "faulted");
+    assert!(info["faults"][0].as_str().unwrap().contains("lease"));
+}
+
 #[test]
 fn signals_end_a_command_in_order() {
     for name in ["-INT", "-TERM", "-HUP"] {

@@ -82,6 +82,6 @@ pub use reconnect::{Reconnected, Resubscribed};
 pub use refusals::Refused;
 pub use request_kind::RequestKind;
 pub use round_trips::{RoundTrip, RoundTrips};
-pub use serial::Serial;
+pub use serial::{Serial, holder_of};
 pub use session::Options;
 pub use transport::{Holder, Transport, TransportError};

@@ -2,6 +2,8 @@
 
 mod holder;
 
+pub use holder::holder_of;
+
 use crate::transport::{Transport, TransportError};
 use crepitus_protocol::frame::DELIMITER;
 use serialport::{ErrorKind, SerialPort};

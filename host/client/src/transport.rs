@@ -72,6 +72,18 @@ pub enum TransportError {
         /// The process, if it can be determined.
         holder: Option<Holder>,
     },
+    /// The process that serves the port to others does not respond.
+    #[error(
+        "cannot open {port}: {} serves it to other programs and does not respond; continue that \
+         program (`fg`), or end it; torque ends without it after 250 ms",
+        holder_text(.holder.as_ref())
+    )]
+    Hangs {
+        /// The port.
+        port: String,
+        /// The process, if it can be determined.
+        holder: Option<Holder>,
+    },
     /// Permission denied.
     #[error(
         "cannot open {port}: permission denied; \

@@ -227,6 +227,8 @@ impl State {
             Note::Hello(program) => {
                 if let Some(member) = members.get_mut(&number) {
                     member.introduce(program);
+                    let welcome = Note::Welcome.frame();
+                    member.pass(&Chunk::from(welcome.unwrap_or_default().as_slice()));
                 }
             }
             Note::Who => {

@@ -18,7 +18,8 @@ pub(crate) struct Member {
     outbox: SyncSender<Chunk>,
     /// Its last request.
     last: Option<Request>,
-    /// When it renewed the lease last.
+    /// When it asked to be armed, and renewed the lease last.
+    asked: Option<Instant>,
     renewed: Option<Instant>,
     is_subscribed: bool,
 }
@@ -29,6 +30,7 @@ impl Member {
             program: Program::default(),
             outbox,
             last: None,
+            asked: None,
             renewed: None,
             is_subscribed: false,
         }
@@ -45,7 +47,8 @@ impl Member {
         match request.operation {
             // Its number is ignored.
             Operation::Renew => return self.renewed = Some(Instant::now()),
-            Operation::Disarm => self.renewed = None,
+            Operation::Arm => self.asked = Some(Instant::now()),
+            Operation::Disarm => (self.asked, self.renewed) = (None, None),
             Operation::Subscribe => self.is_subscribed = true,
             Operation::Unsubscribe => self.is_subscribed = false,
             _ => {}
@@ -66,7 +69,7 @@ impl Member {
     /// The program, as of now.
     pub(crate) fn program(&self) -> Program {
         Program {
-            is_armed: self.has_lease(),
+            is_armed: is_recent(self.renewed),
             ..self.program.clone()
         }
     }
@@ -76,7 +79,8 @@ impl Member {
         let Some(last) = self.last else {
             return Vec::new();
         };
-        let disarm = self.has_lease().then_some(Operation::Disarm);
+        let may_be_armed = is_recent(self.asked) || is_recent(self.renewed);
+        let disarm = may_be_armed.then_some(Operation::Disarm);
         let unsubscribe = self.is_subscribed.then_some(Operation::Unsubscribe);
         let mut number = last.number;
         disarm
@@ -93,12 +97,12 @@ impl Member {
             })
             .collect()
     }
+}
 
-    fn has_lease(&self) -> bool {
-        let lease = Duration::from_secs(1) * u32::try_from(LEASE_TICKS).unwrap_or(0) / TICKS_PER_S;
-        self.renewed
-            .is_some_and(|renewed| renewed.elapsed() < lease)
-    }
+/// Whether a lease of then may last.
+fn is_recent(then: Option<Instant>) -> bool {
+    let lease = Duration::from_secs(1) * u32::try_from(LEASE_TICKS).unwrap_or(0) / TICKS_PER_S;
+    then.is_some_and(|then| then.elapsed() < lease)
 }
 
 #[cfg(test)]
@@ -134,15 +138,16 @@ mod tests {
         assert_eq!(said(&member.last_will()), []);
         member.requests(&request(0xfffe, Operation::Subscribe));
         member.requests(&request(0xffff, Operation::Arm));
+        let will = [
+            request(0, Operation::Disarm),
+            request(1, Operation::Unsubscribe),
+        ];
+        // Killed before its first renewal, it may be armed all the same.
+        assert_eq!(said(&member.last_will()), will);
+        assert!(!member.program().is_armed);
         member.requests(&request(0xffff, Operation::Renew));
         assert!(member.program().is_armed);
-        assert_eq!(
-            said(&member.last_will()),
-            [
-                request(0, Operation::Disarm),
-                request(1, Operation::Unsubscribe)
-            ]
-        );
+        assert_eq!(said(&member.last_will()), will);
         member.requests(&request(0, Operation::Disarm));
         member.requests(&request(1, Operation::Unsubscribe));
         assert_eq!(said(&member.last_will()), []);

@@ -43,8 +43,10 @@ impl Program {
 /// A message between programs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Note {
-    /// To the hub: who connects.
+    /// To the hub: who connects. Answered by [`Note::Welcome`].
     Hello(Program),
+    /// The hub serves.
+    Welcome,
     /// To the hub: who is connected? Answered by [`Note::Member`]s and
     /// [`Note::End`].
     Who,
@@ -92,7 +94,12 @@ mod tests {
             is_armed: true,
             ..Program::this(&"\u{1f980}".repeat(1_000))
         };
-        for note in [Note::Hello(longest), Note::Who, Note::End, Note::Leaving] {
+        for note in [
+            Note::Hello(longest),
+            Note::Welcome,
+            Note::Who,
+            Note::Leaving,
+        ] {
             let mut decoder = Decoder::new();
             let mut back = None;
             for byte in note.frame().unwrap() {

@@ -4,12 +4,12 @@ use crate::hub::Hub;
 use crate::link::Link;
 use crate::note::{Note, Program};
 use crate::place::Place;
-use crepitus_client::{Serial, Transport, TransportError};
+use crepitus_client::{Serial, Transport, TransportError, discovery};
 use interprocess::local_socket::traits::Stream as _;
 use interprocess::local_socket::{
     GenericFilePath, Listener, ListenerOptions, Name, Stream, ToFsName,
 };
-use std::io;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -96,15 +96,28 @@ impl Shared {
         if self.hub.as_ref().is_some_and(Hub::is_over) {
             self.hub = None;
         }
+        if discovery::is_stale(Path::new(&self.port)) {
+            return Err(TransportError::NotFound {
+                port: self.port.clone(),
+            });
+        }
         let place = Place::of(&self.port).map_err(|error| self.cannot_meet(&error))?;
         let end = Instant::now() + ATTACH;
         loop {
             if let Ok(stream) = socket(&place.socket).and_then(Stream::connect) {
-                let mut link = Link::new(stream);
-                let hello = Note::Hello(self.program.clone()).frame();
-                if link.send(&hello.unwrap_or_default()).is_ok() {
-                    self.link = Some(link);
-                    return Ok(());
+                match self.greet(Link::new(stream)) {
+                    Ok(link) => {
+                        self.link = Some(link);
+                        return Ok(());
+                    }
+                    Err(error) if error.kind() == ErrorKind::TimedOut => {
+                        return Err(TransportError::Hangs {
+                            port: self.port.clone(),
+                            holder: crepitus_client::holder_of(&self.port),
+                        });
+                    }
+                    // It has just ended.
+                    Err(_) => {}
                 }
             }
             match place.lock() {
@@ -128,6 +141,27 @@ impl Shared {
                     });
                 }
                 Err(error) => return Err(self.cannot_meet(&error)),
+            }
+        }
+    }
+
+    /// Says hello and waits for the answer: a program that was stopped accepts
+    /// connections, and does nothing.
+    fn greet(&self, mut link: Link) -> io::Result<Link> {
+        let hello = Note::Hello(self.program.clone()).frame();
+        link.send(&hello.unwrap_or_default())?;
+        let end = Instant::now() + ANSWER;
+        loop {
+            match link.note() {
+                Some(Note::Welcome) => return Ok(link),
+                Some(Note::Leaving) => return Err(ErrorKind::UnexpectedEof.into()),
+                Some(_) => {}
+                None => {
+                    let left = end.saturating_duration_since(Instant::now());
+                    if left.is_zero() || !link.fill(left)? && Instant::now() >= end {
+                        return Err(ErrorKind::TimedOut.into());
+                    }
+                }
             }
         }
     }

@@ -139,6 +139,7 @@ mod tests {
     use super::*;
     use crate::shipped;
     use crate::simulated::Simulated;
+    use crepitus_client::Transport;
     use crepitus_scene::Overrides;
     use std::path::Path;
 
@@ -166,6 +167,8 @@ mod tests {
             follow(&mut client, None, true, &mut Panics)
         }));
         assert!(panicked.is_err());
+        // The drive's own word takes some milliseconds.
+        client.transport_mut().wait(Duration::from_millis(20));
         let counters = client.counters().expect("the counters");
         let status = client.status().expect("the status");
         assert_eq!((status.state, status.drive_fault), (State::Disarmed, 0));

@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// The process that has this port open, if visible: those of other users are
 /// not.
-pub(super) fn holder_of(port: &str) -> Option<Holder> {
+pub fn holder_of(port: &str) -> Option<Holder> {
     let port = fs::canonicalize(port).ok()?;
     fs::read_dir("/proc").ok()?.flatten().find_map(|entry| {
         let pid = entry.file_name().to_str()?.parse().ok()?;

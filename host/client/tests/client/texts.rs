@@ -87,12 +87,17 @@ fn every_port_error_has_a_remedy() {
         TransportError::NotFound { port: port() },
         TransportError::Busy {
             port: port(),
-            holder: Some(holder),
+            holder: Some(holder.clone()),
         },
         TransportError::Busy {
             port: port(),
             holder: None,
         },
+        TransportError::Hangs {
+            port: port(),
+            holder: Some(holder),
+        },
+        TransportError::Forgotten { port: port() },
         TransportError::Denied {
             port: port(),
             group: "dialout".into(),
