@@ -90,7 +90,7 @@ fn the_same_run_gives_the_same_bytes() {
     let home = tempfile::tempdir().unwrap();
     for solver in ["exact", "exact-events"] {
         let files = |name: &str| {
-            let out = home.path().join(name);
+            let out = home.path().join(format!("{solver}-{name}"));
             let output = run(&[
                 "run",
                 "encoder",

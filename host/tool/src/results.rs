@@ -3,8 +3,10 @@
 use crate::failure::Failure;
 use crepitus_scene::output::Folder;
 use serde::Serialize;
-use std::io::Write;
-use std::path::Path;
+use serde_json::Value;
+use std::fs;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
 
 /// Names and contents of files.
 pub(crate) type Files = Vec<(String, Vec<u8>)>;
@@ -21,14 +23,66 @@ pub(crate) fn report_files(
     summary: &impl Serialize,
     pictures: Files,
 ) -> Result<Files, Failure> {
-    let summary = serde_json::to_string_pretty(summary)
-        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
     let mut files = vec![
         ("report.html".to_owned(), page.into()),
-        ("summary.json".to_owned(), (summary + "\n").into()),
+        summary_file(summary)?,
     ];
     files.extend(pictures);
     Ok(files)
+}
+
+/// `summary.json`.
+pub(crate) fn summary_file(summary: &impl Serialize) -> Result<(String, Vec<u8>), Failure> {
+    let summary = serde_json::to_string_pretty(summary)
+        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
+    Ok(("summary.json".to_owned(), (summary + "\n").into()))
+}
+
+/// This folder, or the first of `folder-2`, `folder-3`, … that holds no other
+/// run than that of `as_run`.
+pub(crate) fn free_folder(wanted: &Path, as_run: &str) -> Result<PathBuf, Failure> {
+    /// More than anybody keeps.
+    const MOST: u32 = 10_000;
+    (1..=MOST)
+        .map(|number| {
+            if number == 1 {
+                return wanted.to_owned();
+            }
+            let mut name = wanted.as_os_str().to_owned();
+            name.push(format!("-{number}"));
+            PathBuf::from(name)
+        })
+        .find(|folder| !holds_another(folder, as_run))
+        .ok_or_else(|| {
+            Failure::Input(format!(
+                "{} and {MOST} more hold other runs: name another folder with --out",
+                wanted.display()
+            ))
+        })
+}
+
+/// Whether a folder holds another run.
+fn holds_another(folder: &Path, as_run: &str) -> bool {
+    let Ok(text) = fs::read_to_string(folder.join("summary.json")) else {
+        return false;
+    };
+    let summary: Value = serde_json::from_str(&text).unwrap_or_default();
+    let version = summary["crepitus_version"].as_str();
+    summary["scene_as_run"].as_str() != Some(as_run) || version != Some(env!("CARGO_PKG_VERSION"))
+}
+
+/// Removes what an earlier run in the folder has left and this one does not
+/// replace.
+pub(crate) fn remove_others(folder: &Path) -> Result<(), Failure> {
+    for name in ["trace.csv", "report.html"] {
+        match fs::remove_file(folder.join(name)) {
+            Err(e) if e.kind() != ErrorKind::NotFound => {
+                return Err(Failure::at(folder, "removing an earlier run", &e));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// Writes files into a folder, and moves it into place.

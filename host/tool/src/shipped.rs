@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crepitus_scene::{Overrides, Scene, SceneError};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// A scene that ships.
@@ -71,8 +72,15 @@ impl Shipped {
     }
 }
 
-/// The scene of an argument: a file, or the name of a scene that ships.
+/// The scene of an argument: a file, the name of a scene that ships, or the
+/// summary of a run, which is repeated.
 pub(crate) fn scene(path: &Path, overrides: &Overrides) -> Result<Scene, Failure> {
+    if path
+        .extension()
+        .is_some_and(|extension| extension == "json")
+    {
+        return repeated(path, overrides);
+    }
     if path.exists() {
         return Scene::read(path, overrides).map_err(Failure::input);
     }
@@ -82,6 +90,32 @@ pub(crate) fn scene(path: &Path, overrides: &Overrides) -> Result<Scene, Failure
             "{}: there is no such file, and no such scene ships: `crepitus scenes` lists those that do",
             path.display()
         ))),
+    }
+}
+
+/// The scene of a run, from its summary.
+fn repeated(path: &Path, overrides: &Overrides) -> Result<Scene, Failure> {
+    let no_run = |why: &str| Failure::Input(format!("{}: {why}", path.display()));
+    let text =
+        std::fs::read_to_string(path).map_err(|e| Failure::at(path, "the summary of a run", &e))?;
+    let summary: Value = serde_json::from_str(&text)
+        .map_err(|e| no_run(&format!("this is not the summary of a run: {e}")))?;
+    let (Some(toml), Some(file)) = (summary["scene_as_run"].as_str(), summary["scene"].as_str())
+    else {
+        return Err(no_run(
+            "this is not the summary of a run: `scene` or `scene_as_run` is missing",
+        ));
+    };
+    let scene = Scene::parse(Path::new(file), toml, overrides).map_err(Failure::input)?;
+    let hash = |value: &Value| value["sha256"].as_str().map(str::to_owned);
+    let (then, now) = (hash(&summary["data"]), scene.data.as_ref());
+    match (then, now) {
+        (Some(then), Some(now)) if then != now.sha256 => Err(no_run(&format!(
+            "{} has changed since that run: its SHA-256 was {then}, and is {}",
+            now.file.display(),
+            now.sha256
+        ))),
+        _ => Ok(scene),
     }
 }
 

@@ -5,10 +5,12 @@
 //! line (`--set PATH=VALUE`) take the place of those in the file.
 
 mod section;
+mod writer;
 
 pub(crate) use section::{Range, Section};
 
 use crate::error::{Origin, SceneError};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
@@ -33,11 +35,15 @@ pub(crate) enum Value {
     Other(&'static str),
 }
 
+/// Keys that were left out, and what they were taken to be.
+pub(crate) type Defaults = RefCell<Vec<(String, Value)>>;
+
 /// A scene file's text as a tree.
 #[derive(Clone, Debug)]
 pub(crate) struct Document {
     file: PathBuf,
     root: BTreeMap<String, Node>,
+    defaults: Defaults,
 }
 
 impl Document {
@@ -54,6 +60,7 @@ impl Document {
         Ok(Self {
             file: file.to_owned(),
             root: table_of(table.get_ref(), &|start| Origin::Line(lines.line(start))),
+            defaults: Defaults::default(),
         })
     }
 
@@ -127,7 +134,40 @@ impl Document {
 
     /// The whole document as a section to read keys from.
     pub(crate) fn section(&self) -> Section<'_> {
-        Section::new(&self.file, String::new(), None, &self.root)
+        Section::new(&self.file, String::new(), None, &self.root, &self.defaults)
+    }
+
+    /// The document with every default that was noted, as TOML.
+    pub(crate) fn resolved(&self) -> String {
+        let mut whole = self.clone();
+        for (path, value) in self.defaults.borrow().iter() {
+            whole.put(path, value.clone());
+        }
+        writer::text(&whole.root)
+    }
+
+    /// Puts a value at a path; tables on the way are made.
+    fn put(&mut self, path: &str, value: Value) {
+        let origin = Origin::Override("default".to_owned());
+        let mut table = &mut self.root;
+        let mut names = path.split('.').peekable();
+        while let Some(name) = names.next() {
+            let node = |value| Node {
+                origin: origin.clone(),
+                value,
+            };
+            if names.peek().is_none() {
+                table.insert(name.to_owned(), node(value));
+                return;
+            }
+            let inner = table
+                .entry(name.to_owned())
+                .or_insert_with(|| node(Value::Table(BTreeMap::new())));
+            let Value::Table(inner) = &mut inner.value else {
+                return;
+            };
+            table = inner;
+        }
     }
 }
 

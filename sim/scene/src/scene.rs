@@ -1,5 +1,6 @@
 //! A scene: everything that decides a run, checked.
 
+mod data_file;
 mod device;
 mod effects;
 mod motion;
@@ -7,10 +8,11 @@ mod solver;
 mod stages;
 mod variants;
 
+pub use data_file::DataFile;
 pub use motion::MotionKind;
 pub use solver::{Precision, SolverChoice};
 
-use crate::document::{Document, Range, Section};
+use crate::document::{Document, Range, Section, Value};
 use crate::error::SceneError;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
@@ -56,6 +58,11 @@ pub struct Scene {
     pub substeps: u32,
     /// Time between rows of the trace, s.
     pub trace_step_s: f64,
+    /// The recording that the motion is read from.
+    pub data: Option<DataFile>,
+    /// The scene as it is run, as TOML: overrides applied, every default
+    /// written out, the path of a recording made whole.
+    pub as_run: String,
     /// Warnings.
     pub warnings: Vec<String>,
 }
@@ -128,10 +135,11 @@ impl Scene {
         let solver_section = root.section("solver")?;
         let (solver, substeps) = read_solver(&solver_section)?;
         let effects = effects::read(root.optional_section("effects")?.as_ref())?;
-        let is_device = root.optional_flag("device")?.unwrap_or(false);
+        let is_device = root.flag("device")?;
         let output = root.optional_section("output")?;
         let trace_step_s = read_trace_step(output.as_ref(), &solver_section, solver, duration_s)?;
         root.finish()?;
+        root.note("output.trace_step_s", Value::Number(trace_step_s));
 
         let mut stepped: Vec<_> = effects.listed.iter().map(|l| l.effect.name).collect();
         if effects.encoder.is_some() {
@@ -180,6 +188,8 @@ impl Scene {
             listed: effects.listed,
             substeps,
             trace_step_s,
+            data: motion.data,
+            as_run: document.resolved(),
             warnings,
         };
         scene.assemble().map_err(|e| root.error(e.to_string()))?;

@@ -26,16 +26,27 @@ Examples:
   crepitus run slow-examination --out /tmp/exam --solver exact --step 1e-3
   crepitus run high-speed --set effects.crepitus.preset=fine --set duration_s=2
   crepitus run passive-examination --as-device
+  crepitus run out/high-speed/summary.json
 
-SCENE is a file, or the name of a scene that ships. Any key of the scene can be \
+SCENE is a file, the name of a scene that ships, or the summary.json of a run, which is repeated bit \
+for bit. Any key of the scene can be \
 set: PATH is its name with the tables before it, VALUE is written as in the file.")]
 pub(crate) struct Arguments {
-    /// Scene file, or name of a scene that ships.
+    /// Scene file, name of a scene that ships, or summary.json of a run.
     scene: PathBuf,
 
-    /// Folder for trace.csv, events.csv, summary.json and report.html [default: out/SCENE].
+    /// Folder for trace.csv, events.csv, summary.json and report.html [default: out/SCENE]. If
+    /// another run is there: DIR-2, DIR-3, …
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+
+    /// Replace another run in that folder.
+    #[arg(long)]
+    force: bool,
+
+    /// Write summary.json and events.csv alone: no trace, no report.
+    #[arg(long, conflicts_with_all = ["Pictures", "trace_every"])]
+    no_trace: bool,
 
     /// Another solver: exact, exact-events, reference, … (a wrong name lists them all).
     #[arg(long, value_name = "KIND")]
@@ -68,7 +79,19 @@ pub(crate) struct Arguments {
 /// Runs a scene.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let scene = read(arguments)?;
-    let out = out_folder(arguments, &scene);
+    let wanted = out_folder(arguments, &scene);
+    let out = if arguments.force {
+        wanted.clone()
+    } else {
+        results::free_folder(&wanted, &scene.as_run)?
+    };
+    if out != wanted && !as_json {
+        eprintln!(
+            "{} holds another run: this one goes to {} (--force would replace it)",
+            wanted.display(),
+            out.display()
+        );
+    }
     let summary = simulate(&scene, &out, arguments)?;
     if as_json {
         return print_json(&json!({ "out": out, "summary": summary }));
@@ -76,11 +99,16 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     for warning in &summary.warnings {
         warn(warning);
     }
+    let (what, file) = if arguments.no_trace {
+        ("summary", "summary.json")
+    } else {
+        ("report", "report.html")
+    };
     print(&format!(
-        "{}\n{}\nreport: {}\n",
+        "{}\n{}\n{what}: {}\n",
         summary.title,
         tables::in_brief(&summary),
-        out.join("report.html").display()
+        out.join(file).display()
     ))
 }
 
@@ -104,11 +132,44 @@ fn out_folder(arguments: &Arguments, scene: &Scene) -> PathBuf {
     })
 }
 
+/// Why a run has failed.
+fn why(scene: &Scene, out: &Path, error: RunError<WatchError>) -> Failure {
+    let file = scene.file.display();
+    match error {
+        RunError::Observer(WatchError::Write(e)) => Failure::at(out, "writing the results", &e),
+        RunError::Observer(WatchError::Interrupted) => {
+            Failure::Work("interrupted: nothing was written".to_owned())
+        }
+        RunError::Settings(e) => Failure::Input(format!("{file}: {e}")),
+        RunError::Diverged(e) => Failure::Work(format!("{file}: {e}")),
+        // `RunError` is non-exhaustive.
+        _ => Failure::Work(format!("{file}: the run failed")),
+    }
+}
+
+fn with_commit(summary: Summary) -> Summary {
+    Summary {
+        crepitus_commit: option_env!("CREPITUS_COMMIT"),
+        ..summary
+    }
+}
+
 /// Runs the scene and writes its files.
 fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Summary, Failure> {
     let failed = |e: &std::io::Error| Failure::at(out, "writing the results", e);
     let folder = results::folder(out)?;
     interrupt::listen();
+    let why = |e| why(scene, out, e);
+    if arguments.no_trace {
+        let mut watch =
+            watch::EventsAlone::new(&folder, scene.duration_s).map_err(|e| failed(&e))?;
+        let summary = crepitus_scene::run(scene, &mut watch).map_err(why)?;
+        let summary = with_commit(summary);
+        watch.finish().map_err(|e| failed(&e))?;
+        results::write(folder, out, vec![results::summary_file(&summary)?])?;
+        results::remove_others(out)?;
+        return Ok(summary);
+    }
     let setup = Setup {
         columns: &runner::columns(scene),
         rows_expected: runner::rows(scene),
@@ -117,16 +178,8 @@ fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Summary,
     };
     let mut watch = Watch::new(&folder, &setup, scene.duration_s, arguments.trace_every)
         .map_err(|e| failed(&e))?;
-    let mut summary = crepitus_scene::run(scene, &mut watch).map_err(|e| match e {
-        RunError::Observer(WatchError::Write(e)) => failed(&e),
-        RunError::Observer(WatchError::Interrupted) => {
-            Failure::Work("interrupted: nothing was written".to_owned())
-        }
-        RunError::Settings(e) => Failure::Input(format!("{}: {e}", scene.file.display())),
-        RunError::Diverged(e) => Failure::Work(format!("{}: {e}", scene.file.display())),
-        // `RunError` is non-exhaustive.
-        _ => Failure::Work(format!("{}: the run failed", scene.file.display())),
-    })?;
+    let summary = crepitus_scene::run(scene, &mut watch).map_err(why)?;
+    let mut summary = with_commit(summary);
     runner::measure_costs(scene, &mut summary);
     let mut figures = watch.finish().map_err(|e| failed(&e))?;
     if let Some(balance) = plant::balance(&summary) {

@@ -3,7 +3,7 @@
 //! Each key that is asked for is remembered, so that at the end an unknown key
 //! can be refused with the list of those that are allowed.
 
-use super::{Node, Value};
+use super::{Defaults, Node, Value};
 use crate::error::{Origin, SceneError};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -72,6 +72,7 @@ pub(crate) struct Section<'a> {
     origin: Option<&'a Origin>,
     table: &'a BTreeMap<String, Node>,
     asked: RefCell<Vec<String>>,
+    defaults: &'a Defaults,
 }
 
 impl<'a> Section<'a> {
@@ -80,6 +81,7 @@ impl<'a> Section<'a> {
         path: String,
         origin: Option<&'a Origin>,
         table: &'a BTreeMap<String, Node>,
+        defaults: &'a Defaults,
     ) -> Self {
         Self {
             file,
@@ -87,6 +89,7 @@ impl<'a> Section<'a> {
             origin,
             table,
             asked: RefCell::default(),
+            defaults,
         }
     }
 
@@ -142,20 +145,43 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// A number, or its default, which is noted.
+    pub(crate) fn number_or(
+        &self,
+        key: &str,
+        range: Range,
+        default: f64,
+    ) -> Result<f64, SceneError> {
+        let given = self.optional_number(key, range)?;
+        Ok(given.unwrap_or_else(|| {
+            self.note(key, Value::Number(default));
+            default
+        }))
+    }
+
+    /// Notes what a key was taken to be.
+    pub(crate) fn note(&self, key: &str, value: Value) {
+        let path = self.path_of(key);
+        self.defaults.borrow_mut().push((path, value));
+    }
+
     /// A number that has to be there.
     pub(crate) fn number(&self, key: &str, range: Range) -> Result<f64, SceneError> {
         self.optional_number(key, range)?
             .ok_or_else(|| self.missing(key, &format!("a number {range}")))
     }
 
-    /// A boolean that may be left out.
-    pub(crate) fn optional_flag(&self, key: &str) -> Result<Option<bool>, SceneError> {
+    /// A boolean, false if left out, which is noted.
+    pub(crate) fn flag(&self, key: &str) -> Result<bool, SceneError> {
         match self.ask(key) {
-            None => Ok(None),
+            None => {
+                self.note(key, Value::Flag(false));
+                Ok(false)
+            }
             Some(Node {
                 value: Value::Flag(flag),
                 ..
-            }) => Ok(Some(*flag)),
+            }) => Ok(*flag),
             Some(node) => Err(self.wrong_type(key, node, "true or false")),
         }
     }
@@ -199,6 +225,22 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// One of `choices` by name, or its default, which is noted.
+    pub(crate) fn choice_or<T: Copy + PartialEq>(
+        &self,
+        key: &str,
+        choices: &[(&str, T)],
+        default: T,
+    ) -> Result<T, SceneError> {
+        let given = self.optional_choice(key, choices)?;
+        Ok(given.unwrap_or_else(|| {
+            for (name, _) in choices.iter().filter(|(_, choice)| *choice == default) {
+                self.note(key, Value::Text((*name).to_owned()));
+            }
+            default
+        }))
+    }
+
     /// One of `choices` by name.
     pub(crate) fn choice<T: Copy>(
         &self,
@@ -221,6 +263,7 @@ impl<'a> Section<'a> {
                 self.path_of(key),
                 Some(origin),
                 table,
+                self.defaults,
             ))),
             Some(node) => {
                 Err(self.wrong_type(key, node, &format!("a table [{}]", self.path_of(key))))
@@ -252,6 +295,7 @@ impl<'a> Section<'a> {
                     format!("{}[{i}]", self.path_of(key)),
                     Some(&item.origin),
                     table,
+                    self.defaults,
                 )),
                 _ => Err(self.wrong_type(key, item, wanted)),
             })

@@ -3,7 +3,7 @@
 use super::coupled::PlantTotals;
 use super::tally::Tally;
 use super::{AddedTime, Totals};
-use crate::scene::{Crepitus, SCENE_VERSION, Scene, SolverChoice};
+use crate::scene::{Crepitus, DataFile, SCENE_VERSION, Scene, SolverChoice};
 use crepitus_model::parameters::Tabled;
 use crepitus_model::{Convention, EVENTS_PER_STEP, Parameters};
 use crepitus_plant::effect::{Effect, Part};
@@ -21,8 +21,15 @@ pub struct Summary {
     pub crepitus_version: &'static str,
     /// Version of the scene file's form.
     pub scene_version: u32,
+    /// The commit that the program was built from, if it is known.
+    pub crepitus_commit: Option<&'static str>,
     /// The scene file.
     pub scene: String,
+    /// The scene as it was run, as TOML: `crepitus run summary.json` repeats it.
+    pub scene_as_run: String,
+    /// The recording that the motion was read from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub data: Option<DataFile>,
     /// Its title.
     pub title: String,
     /// Kind of motion.
@@ -272,6 +279,9 @@ pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64) -> Summary 
     Summary {
         summary_version: SUMMARY_VERSION,
         crepitus_version: env!("CARGO_PKG_VERSION"),
+        crepitus_commit: None,
+        scene_as_run: scene.as_run.clone(),
+        data: scene.data.clone(),
         scene_version: SCENE_VERSION,
         scene: scene.file.display().to_string(),
         title: scene.title.clone(),

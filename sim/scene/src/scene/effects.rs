@@ -63,12 +63,8 @@ fn crepitus(section: &Section<'_>, effect: &Effect) -> Result<Crepitus, SceneErr
     let restarts = Restart::ALL.map(|r| (r.name(), r));
     let mut settings = Settings {
         parameters: preset.map(|p| p.parameters).unwrap_or_default(),
-        convention: section
-            .optional_choice("convention", &conventions)?
-            .unwrap_or_default(),
-        restart: section
-            .optional_choice("restart", &restarts)?
-            .unwrap_or_default(),
+        convention: section.choice_or("convention", &conventions, Convention::default())?,
+        restart: section.choice_or("restart", &restarts, Restart::default())?,
     };
     numbers(section, effect.parameters, settings.parameters.values_mut())?;
     section.finish()?;
@@ -93,9 +89,7 @@ fn given(section: &Section<'_>, effect: &Effect) -> Result<Given, SceneError> {
     numbers(section, effect.parameters, &mut given.numbers)?;
     for (choice, chosen) in effect.choices.iter().zip(&mut given.choices) {
         let names: Vec<(&str, usize)> = choice.names.iter().copied().zip(0..).collect();
-        if let Some(place) = section.optional_choice(choice.key, &names)? {
-            *chosen = place;
-        }
+        *chosen = section.choice_or(choice.key, &names, *chosen)?;
     }
     section.finish()?;
     Ok(given)
@@ -109,9 +103,7 @@ fn numbers<'a>(
 ) -> Result<(), SceneError> {
     for (parameter, value) in table.iter().zip(values) {
         let range = Range::closed(parameter.min, parameter.max);
-        if let Some(given) = section.optional_number(parameter.key, range)? {
-            *value = given;
-        }
+        *value = section.number_or(parameter.key, range, *value)?;
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! The `[motion]` table.
 
-use crate::document::{Range, Section};
+use super::data_file::DataFile;
+use crate::document::{Range, Section, Value};
 use crate::error::SceneError;
 use crepitus_plant::Motion;
 use crepitus_plant::motion::{Strokes, VelocityKnot};
@@ -63,24 +64,26 @@ pub(super) struct ReadMotion {
     pub(super) warnings: Vec<String>,
     /// Largest change of Ω̇ between samples of a recording, rad/s².
     pub(super) ripple_rad_s2: Option<f64>,
+    /// The recording.
+    pub(super) data: Option<DataFile>,
 }
 
 pub(super) fn read(section: &Section<'_>, duration_s: f64) -> Result<ReadMotion, SceneError> {
     let kind = section.choice("kind", &MotionKind::ALL.map(|k| (k.name(), k)))?;
     let mut warnings = Vec::new();
-    let mut ripple_rad_s2 = None;
+    let (mut ripple_rad_s2, mut data) = (None, None);
     let motion = match kind {
         MotionKind::Constant => {
             let velocity_rad_s = section.number("velocity_rad_s", ANY_RAD)?;
-            let from_deg = section.optional_number("from_deg", ANY_DEG)?.unwrap_or(0.0);
+            let from_deg = section.number_or("from_deg", ANY_DEG, 0.0)?;
             Motion::constant_from(from_deg.to_radians(), velocity_rad_s)
         }
         MotionKind::Sine => sine(section)?,
         MotionKind::VelocityKnots => velocity_knots(section)?,
         MotionKind::Strokes => strokes(section)?,
         MotionKind::Recording => {
-            let (motion, ripple) = recording(section, duration_s, &mut warnings)?;
-            ripple_rad_s2 = Some(ripple);
+            let (motion, ripple, file) = recording(section, duration_s, &mut warnings)?;
+            (ripple_rad_s2, data) = (Some(ripple), Some(file));
             motion
         }
         MotionKind::Released => Motion::rest(section.number("from_deg", ANY_DEG)?.to_radians()),
@@ -93,6 +96,7 @@ pub(super) fn read(section: &Section<'_>, duration_s: f64) -> Result<ReadMotion,
         seed,
         warnings,
         ripple_rad_s2,
+        data,
     })
 }
 
@@ -136,9 +140,7 @@ fn sine(section: &Section<'_>) -> Result<Motion, SceneError> {
         }
     };
     let frequency_hz = section.number("frequency_hz", Range::above(0.0, 1e4))?;
-    let phase_deg = section
-        .optional_number("phase_deg", Range::closed(-360.0, 360.0))?
-        .unwrap_or(0.0);
+    let phase_deg = section.number_or("phase_deg", Range::closed(-360.0, 360.0), 0.0)?;
     Ok(Motion::sine(amplitude_rad, frequency_hz, phase_deg))
 }
 
@@ -215,19 +217,18 @@ fn strokes(section: &Section<'_>) -> Result<Motion, SceneError> {
     Ok(Motion::Strokes(strokes))
 }
 
-/// The motion of a recording and the largest change of its acceleration.
+/// The motion of a recording, the largest change of its acceleration, and its
+/// file.
 fn recording(
     section: &Section<'_>,
     duration_s: f64,
     warnings: &mut Vec<String>,
-) -> Result<(Motion, f64), SceneError> {
+) -> Result<(Motion, f64, DataFile), SceneError> {
     let file = section.text("file")?;
     let time_column = section.text("time_column")?;
     let angle_column = section.text("angle_column")?;
     let unit = section.choice("unit", &[("deg", AngleUnit::Deg), ("rad", AngleUnit::Rad)])?;
-    let cutoff_hz = section
-        .optional_number("cutoff_hz", Range::above(0.0, 1e6))?
-        .unwrap_or(DEFAULT_CUTOFF_HZ);
+    let cutoff_hz = section.number_or("cutoff_hz", Range::above(0.0, 1e6), DEFAULT_CUTOFF_HZ)?;
     let folder = section.file().parent().unwrap_or(section.file());
     let path = folder.join(file);
     let samples = recording::read(&Source {
@@ -251,5 +252,9 @@ fn recording(
     let segments = recording::smooth(&samples, cutoff_hz)
         .map_err(|e| section.key_error("cutoff_hz", e.to_string()))?;
     let ripple = recording::acceleration_ripple_rad_s2(&segments);
-    Ok((Motion::recording(&segments), ripple))
+    let data = DataFile::of(&path)
+        .map_err(|e| section.key_error("file", format!("cannot be read: {e}")))?;
+    // Whoever repeats the run finds it from anywhere.
+    section.note("file", Value::Text(data.file.display().to_string()));
+    Ok((Motion::recording(&segments), ripple, data))
 }

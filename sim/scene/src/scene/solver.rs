@@ -69,7 +69,7 @@ pub(super) fn read_solver(section: &Section<'_>) -> Result<(SolverChoice, u32), 
     let kind = section.choice("kind", &names)?;
     let step_s = section.optional_number("step_s", Range::above(0.0, 1.0))?;
     let precisions = [Precision::F32, Precision::F64].map(|p| (p.name(), p));
-    let precision = section.optional_choice("precision", &precisions)?;
+    let precision = section.choice_or("precision", &precisions, Precision::F64)?;
     let substeps = read_substeps(section)?;
     section.finish()?;
     let choice = match kind {
@@ -77,7 +77,7 @@ pub(super) fn read_solver(section: &Section<'_>) -> Result<(SolverChoice, u32), 
             if step_s.is_some() {
                 return Err(section.key_error("step_s", "\"reference\" has no step: leave it out"));
             }
-            if precision == Some(Precision::F32) {
+            if precision == Precision::F32 {
                 return Err(section.key_error("precision", "\"reference\" computes in f64 only"));
             }
             SolverChoice::Reference
@@ -93,7 +93,7 @@ pub(super) fn read_solver(section: &Section<'_>) -> Result<(SolverChoice, u32), 
                     ),
                 )
             })?,
-            precision: precision.unwrap_or(Precision::F64),
+            precision,
         },
     };
     Ok((choice, substeps))
@@ -102,15 +102,14 @@ pub(super) fn read_solver(section: &Section<'_>) -> Result<(SolverChoice, u32), 
 /// Steps of the plant in one of the solver: the device's tick stays what it
 /// is.
 fn read_substeps(section: &Section<'_>) -> Result<u32, SceneError> {
-    match section.optional_number("substeps", Range::closed(1.0, 1000.0))? {
-        None => Ok(1),
+    match section.number_or("substeps", Range::closed(1.0, 1000.0), 1.0)? {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "whole and in range"
         )]
-        Some(x) if x.fract() == 0.0 => Ok(x as u32),
-        Some(x) => Err(section.key_error("substeps", format!("{x} is not a whole number"))),
+        x if x.fract() == 0.0 => Ok(x as u32),
+        x => Err(section.key_error("substeps", format!("{x} is not a whole number"))),
     }
 }
 

@@ -71,10 +71,52 @@ impl Observer for Watch {
     }
 
     fn progress(&mut self, time_s: f64) -> Result<(), WatchError> {
-        self.progress.reached(time_s);
-        if interrupt::requested() {
-            return Err(WatchError::Interrupted);
-        }
+        reached(&mut self.progress, time_s)
+    }
+}
+
+/// The observer of a run without a trace.
+pub(super) struct EventsAlone {
+    events: EventsCsv<BufWriter<File>>,
+    progress: Progress,
+}
+
+impl EventsAlone {
+    pub(super) fn new(folder: &Folder, duration_s: f64) -> io::Result<Self> {
+        Ok(Self {
+            events: EventsCsv::new(folder.file("events.csv")?)?,
+            progress: Progress::new(duration_s),
+        })
+    }
+
+    /// Finishes the file.
+    pub(super) fn finish(self) -> io::Result<()> {
+        Folder::finish(self.events.into_inner())
+    }
+}
+
+impl Observer for EventsAlone {
+    type Error = WatchError;
+    const WANTS_ROWS: bool = false;
+
+    fn row(&mut self, _: &[f64]) -> Result<(), WatchError> {
         Ok(())
     }
+
+    fn event(&mut self, event: &EventRecord) -> Result<(), WatchError> {
+        self.events.event(event).map_err(WatchError::Write)
+    }
+
+    fn progress(&mut self, time_s: f64) -> Result<(), WatchError> {
+        reached(&mut self.progress, time_s)
+    }
+}
+
+/// Moves the progress bar, and stops at Ctrl-C.
+fn reached(progress: &mut Progress, time_s: f64) -> Result<(), WatchError> {
+    progress.reached(time_s);
+    if interrupt::requested() {
+        return Err(WatchError::Interrupted);
+    }
+    Ok(())
 }

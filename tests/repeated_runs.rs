@@ -1,0 +1,190 @@
+//! A run's summary holds what is needed to repeat it, and a folder keeps its run.
+
+mod support;
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+use support::{crepitus, names, stderr, stdout, summary};
+
+fn run_in(home: &Path, arguments: &[&str]) -> Output {
+    crepitus()
+        .arg("run")
+        .args(arguments)
+        .current_dir(home)
+        .output()
+        .unwrap()
+}
+
+fn done(home: &Path, arguments: &[&str]) -> String {
+    let output = run_in(home, arguments);
+    assert!(output.status.success(), "{}", stderr(&output));
+    stderr(&output)
+}
+
+/// The summary without what was timed.
+fn numbers(folder: &Path) -> Value {
+    let mut summary = summary(folder);
+    let object = summary.as_object_mut().unwrap();
+    for timed in ["wall_s", "real_time_factor", "effects"] {
+        object.remove(timed).unwrap();
+    }
+    summary
+}
+
+#[test]
+fn a_summary_repeats_its_run_bit_for_bit() {
+    for arguments in [
+        &["high-speed", "--set", "effects.crepitus.preset=fine"][..],
+        &["encoder", "--solver", "exact", "--precision", "f32"],
+        &[
+            "everything",
+            "--as-device",
+            "--set",
+            "effects.limb.body_mass_kg=66",
+        ],
+        &["reversal-inside-stick"],
+        &["knee-pass-physical", "--solver", "reference"],
+    ] {
+        let home = tempfile::tempdir().unwrap();
+        let home = home.path();
+        done(
+            home,
+            &[arguments, &["--set", "duration_s=0.4", "--out", "a"]].concat(),
+        );
+        done(home, &["a/summary.json", "--out", "b"]);
+        for file in ["trace.csv", "events.csv"] {
+            let [a, b] = ["a", "b"].map(|folder| fs::read(home.join(folder).join(file)).unwrap());
+            assert!(a == b, "{file} of {arguments:?}");
+        }
+        assert_eq!(numbers(&home.join("a")), numbers(&home.join("b")));
+        let text = numbers(&home.join("a"))["scene_as_run"].to_string();
+        // Defaults, presets and overrides are written out.
+        for key in [
+            "duration_s = 0.4",
+            "substeps = ",
+            "trace_step_s = ",
+            "device = ",
+        ] {
+            assert!(text.contains(key), "{key} is missing in {text}");
+        }
+    }
+}
+
+#[test]
+fn a_repeated_run_finds_its_recording_from_anywhere_and_notices_another_one() {
+    let home = tempfile::tempdir().unwrap();
+    let rows: Vec<_> = (0..=50)
+        .map(|i| {
+            let t = f64::from(i) * 0.01;
+            format!("{t:.2},{:.3}", 30.0 - 20.0 * (6.0 * t).cos())
+        })
+        .collect();
+    let data = format!("time_s,knee_deg\n{}\n", rows.join("\n"));
+    fs::create_dir(home.path().join("lab")).unwrap();
+    fs::write(home.path().join("lab/knee.csv"), &data).unwrap();
+    fs::write(
+        home.path().join("lab/scene.toml"),
+        "version = 1\ntitle = \"A recording\"\nduration_s = 0.4\n[motion]\nkind = \"recording\"\n\
+         file = 'knee.csv'\ntime_column = \"time_s\"\nangle_column = \"knee_deg\"\nunit = \"deg\"\n\
+         [solver]\nkind = \"exact\"\nstep_s = 5e-5\n[effects.crepitus]\n",
+    )
+    .unwrap();
+    done(home.path(), &["lab/scene.toml", "--out", "a"]);
+    let hash = summary(&home.path().join("a"))["data"]["sha256"].clone();
+    assert_eq!(hash.as_str().unwrap().len(), 64);
+    let elsewhere = tempfile::tempdir().unwrap();
+    let first = home.path().join("a/summary.json");
+    done(elsewhere.path(), &[first.to_str().unwrap(), "--out", "b"]);
+    assert_eq!(
+        numbers(&home.path().join("a")),
+        numbers(&elsewhere.path().join("b"))
+    );
+
+    fs::write(
+        home.path().join("lab/knee.csv"),
+        data.replace("0.20,", "0.20,0"),
+    )
+    .unwrap();
+    let changed = run_in(elsewhere.path(), &[first.to_str().unwrap(), "--out", "c"]);
+    assert_eq!(changed.status.code(), Some(2));
+    assert!(
+        stderr(&changed).contains("has changed since that run"),
+        "{}",
+        stderr(&changed)
+    );
+    assert_eq!(names(elsewhere.path()), ["b"]);
+}
+
+#[test]
+fn a_folder_keeps_its_run() {
+    let home = tempfile::tempdir().unwrap();
+    let home = home.path();
+    let short = ["fig6-ideal-cycle", "--set", "duration_s=0.2"];
+    let long = ["fig6-ideal-cycle", "--set", "duration_s=0.3"];
+    let simulated = |folder: &str| summary(&home.join(folder))["simulated_s"].as_f64().unwrap();
+    done(home, &short);
+    // The same run again is the same run.
+    assert_eq!(done(home, &short), "");
+    let said = done(home, &long);
+    assert!(
+        said.contains("out/fig6-ideal-cycle-2") && said.contains("--force"),
+        "{said}"
+    );
+    assert_eq!(
+        names(&home.join("out")),
+        ["fig6-ideal-cycle", "fig6-ideal-cycle-2"]
+    );
+    assert!((simulated("out/fig6-ideal-cycle") - 0.2).abs() < 1e-9);
+    assert!((simulated("out/fig6-ideal-cycle-2") - 0.3).abs() < 1e-9);
+    let output = run_in(home, &[&long[..], &["--json"]].concat());
+    let told: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(told["out"], "out/fig6-ideal-cycle-2");
+
+    // Replaced on request, and nothing of the other run stays.
+    done(home, &[&long[..], &["--force", "--no-trace"]].concat());
+    assert!((simulated("out/fig6-ideal-cycle") - 0.3).abs() < 1e-9);
+    assert_eq!(
+        names(&home.join("out/fig6-ideal-cycle")),
+        ["events.csv", "summary.json"]
+    );
+}
+
+#[test]
+fn without_a_trace_the_numbers_are_the_same() {
+    let home = tempfile::tempdir().unwrap();
+    let home = home.path();
+    for (scene, more) in [("encoder", &[][..]), ("everything", &["--as-device"])] {
+        let arguments = [&[scene, "--set", "duration_s=0.4"], more].concat();
+        let [with, without] = ["with", "without"].map(|how| format!("{scene}-{how}"));
+        done(home, &[&arguments[..], &["--out", &with]].concat());
+        done(
+            home,
+            &[&arguments[..], &["--out", &without, "--no-trace"]].concat(),
+        );
+        assert_eq!(names(&home.join(&without)), ["events.csv", "summary.json"]);
+        let [with, without] = [with, without].map(|folder| home.join(folder));
+        assert_eq!(numbers(&with), numbers(&without));
+        let events = |folder: &Path| fs::read(folder.join("events.csv")).unwrap();
+        assert!(events(&with) == events(&without));
+    }
+}
+
+#[test]
+fn what_is_no_summary_is_refused() {
+    let home = tempfile::tempdir().unwrap();
+    fs::write(home.path().join("x.json"), "{}").unwrap();
+    fs::write(home.path().join("y.json"), "not JSON").unwrap();
+    for file in ["x.json", "y.json"] {
+        let output = run_in(home.path(), &[file]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(
+            stderr(&output).contains("not the summary of a run"),
+            "{}",
+            stderr(&output)
+        );
+    }
+    assert!(!run_in(home.path(), &["z.json"]).status.success());
+    assert_eq!(names(home.path()), ["x.json", "y.json"]);
+}
