@@ -25,8 +25,9 @@ use crepitus_protocol::link::{Order, ToDrive};
 use crepitus_protocol::management::{Action, Identity, ManagementRequest, ResetCause};
 use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::{
-    Decoder, DeviceSettings, LEASE_TICKS, Lane, Revision, Session, Values, frame, schema,
+    Decoder, DeviceSettings, LEASE_TICKS, Lane, Nonce, Revision, Session, Values, frame, schema,
 };
+use std::collections::BTreeSet;
 
 /// The most milliseconds of one input.
 const MOST_MS: u64 = 4096;
@@ -87,6 +88,8 @@ struct Bench {
     lease_ms: Option<u64>,
     /// A host has requested arming, and none has disarmed since.
     wants: bool,
+    /// Sessions that may hold the lease.
+    armers: BTreeSet<u32>,
     /// Reasons that there were for another revision.
     numbered: u32,
     revision: Revision,
@@ -111,6 +114,7 @@ impl Bench {
             block_ms: None,
             lease_ms: None,
             wants: false,
+            armers: BTreeSet::new(),
             numbered: 0,
             revision: comms.revision(),
             values: saved.into_iter().chain([Values::default()]).collect(),
@@ -146,15 +150,17 @@ impl Bench {
                     48..=63 => *number = number.wrapping_add(bytes.u16()),
                     _ => *number = number.wrapping_add(1),
                 }
+                let number = *number;
                 let session = Session(u32::try_from(place).unwrap_or(0) * 0x1001);
-                let request = Request {
-                    session,
-                    nonce: self.host.nonce(session),
-                    number: *number,
-                    operation,
-                };
-                let frame = frame::encode(Lane::Request, &request);
-                self.send(&frame.expect("every message fits"));
+                if self.host.nonce(session) == Nonce::NONE {
+                    // One number before, so that what follows is newer.
+                    self.request(session, number.wrapping_sub(1), Operation::Open);
+                    self.read(usize::MAX);
+                }
+                self.request(session, number, operation);
+                if number % 8 == 3 {
+                    self.stale_request(session, number.wrapping_add(1), operation);
+                }
             }
             4 => {
                 let count = usize::from(bytes.byte());
@@ -190,6 +196,39 @@ impl Bench {
                 }
             }
         }
+    }
+
+    fn request(&mut self, session: Session, number: u16, operation: Operation) {
+        let request = Request {
+            session,
+            nonce: self.host.nonce(session),
+            number,
+            operation,
+        };
+        let frame = frame::encode(Lane::Request, &request);
+        self.send(&frame.expect("every message fits"));
+    }
+
+    /// A request with another nonce than that of the session is not executed.
+    fn stale_request(&mut self, session: Session, number: u16, operation: Operation) {
+        if operation == Operation::Open {
+            return;
+        }
+        let executed = |comms: &Comms| {
+            let counters = comms.counters();
+            [CommsCounter::Requests, CommsCounter::Renewals].map(|counter| counters.get(counter))
+        };
+        let before = executed(&self.comms);
+        let Nonce(nonce) = self.host.nonce(session);
+        let request = Request {
+            session,
+            nonce: Nonce(nonce ^ 1),
+            number,
+            operation,
+        };
+        let frame = frame::encode(Lane::Request, &request);
+        self.send(&frame.expect("every message fits"));
+        assert_eq!(executed(&self.comms), before, "{request:?}");
     }
 
     fn ask(&mut self, bytes: &mut Bytes<'_>) -> Operation {
@@ -237,7 +276,7 @@ impl Bench {
                 self.note(&request, is_new);
             }
             match question.map(|question| question.action) {
-                Some(Action::Stop) => (self.wants, self.lease_ms) = (false, None),
+                Some(Action::Stop) => self.disarmed(),
                 Some(Action::Reboot) => self.may_reboot = true,
                 _ => {}
             }
@@ -250,8 +289,14 @@ impl Bench {
             Operation::Renew if self.is_leased() => self.lease_ms = Some(self.now_ms),
             _ if !is_new => {}
             // Whether or not it is refused.
-            Operation::Arm => (self.wants, self.lease_ms) = (true, Some(self.now_ms)),
-            Operation::Disarm => (self.wants, self.lease_ms) = (false, None),
+            Operation::Arm => {
+                (self.wants, self.lease_ms) = (true, Some(self.now_ms));
+                self.armers.insert(request.session.0);
+            }
+            // Refused while another host holds the lease.
+            Operation::Disarm if self.armers.iter().all(|armer| *armer == request.session.0) => {
+                self.disarmed();
+            }
             Operation::Commit { values, .. } => {
                 self.numbered += 1;
                 if DeviceSettings::of(&values).is_ok() {
@@ -261,6 +306,11 @@ impl Bench {
             Operation::Save => self.may_save = true,
             _ => {}
         }
+    }
+
+    fn disarmed(&mut self) {
+        (self.wants, self.lease_ms) = (false, None);
+        self.armers.clear();
     }
 
     /// Upper bound from the messages on the wire.
