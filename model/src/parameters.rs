@@ -319,6 +319,28 @@ pub const fn same(a: &str, b: &str) -> bool {
 pub(crate) mod tests {
     use super::*;
 
+    #[test]
+    fn a_parameter_has_the_default_of_what_it_describes() {
+        for parameter in crate::render::effects::DEVICE.iter().copied().flatten() {
+            let default = match parameter.kind {
+                Kind::Number(spec) => spec.default,
+                Kind::Choice(choice) => choice.default,
+            };
+            assert_eq!(parameter.default().to_bits(), default.to_bits());
+        }
+        let switches = crate::render::effects::DEVICE
+            .iter()
+            .map(|device| switch(device));
+        let mut ids: std::vec::Vec<_> = switches.collect();
+        let count = ids.len();
+        ids.sort_unstable();
+        ids.dedup();
+        assert!(
+            ids.len() == count && count > 1,
+            "each effect has its own switch"
+        );
+    }
+
     /// What holds for the table of any settings.
     pub(crate) fn is_its_table_and_is_held_to_it<const N: usize, T: Tabled<N>>() {
         let defaults = T::defaults().values();

@@ -155,6 +155,16 @@ mod tests {
     }
 
     #[test]
+    fn a_restarted_reader_goes_on_with_the_speed_it_is_given() {
+        let reader = EncoderReader::<f32>::new(&EncoderSettings::default(), 5e-5, 0, 0.0);
+        let mut reader = reader.unwrap().restarted(7, 1.5);
+        assert_eq!(reader.omega_rad_s(), 1.5);
+        let step = reader.read(7);
+        assert_eq!((step.delta_phi_rad, step.omega_start_rad_s), (0.0, 1.5));
+        assert_eq!(reader.omega_rad_s(), step.omega_end_rad_s);
+    }
+
+    #[test]
     fn the_estimate_settles_on_the_true_speed() {
         for omega in [0.05, 1.0, -3.0] {
             let (_, estimates) = run(omega, 0, 0.2);

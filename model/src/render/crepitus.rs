@@ -208,6 +208,22 @@ mod tests {
         assert!((shown.torque_nm - 0.24).abs() < 1e-6);
     }
 
+    /// What rings a bone.
+    #[test]
+    fn the_jumps_of_a_tick_are_those_of_its_events() {
+        let mut renderer = after(0);
+        let mut jumps = 0;
+        for _ in 0..4_000 {
+            let mut jump_nm = 0.0;
+            let shown = renderer.render(&moved(5e-5), |event| {
+                jump_nm += event.torque_after_nm - event.torque_before_nm;
+            });
+            assert_eq!(shown.jump_nm, jump_nm);
+            jumps += u32::from(jump_nm != 0.0);
+        }
+        assert!(jumps > 2);
+    }
+
     #[test]
     fn a_sample_that_is_refused_is_no_turning_back() {
         let mut renderer = after(40);
