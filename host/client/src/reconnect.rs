@@ -41,15 +41,15 @@ pub struct Reconnected {
 pub struct Resubscribed {
     /// The tick after the last sample received before.
     pub until_tick: u64,
-    /// The first tick of the resumed stream.
-    pub from_tick: u64,
+    /// Where the resumed stream begins.
+    pub begin: Begin,
 }
 
 impl Resubscribed {
     /// Samples in between, which are not accounted for; unknown if the drive
     /// has restarted.
     pub fn unseen(&self) -> Option<u64> {
-        self.from_tick.checked_sub(self.until_tick)
+        self.begin.first_tick.checked_sub(self.until_tick)
     }
 }
 
@@ -107,21 +107,18 @@ impl<T: Transport> Client<T> {
 
     fn resubscribe(&mut self) -> Result<Resubscribed, Error> {
         let until_tick = self.accounting().map_or(0, Accounting::next_tick);
-        let from_tick = self.begin_subscription(|accounting, begin| match accounting {
+        let begin = self.begin_subscription(|accounting, begin| match accounting {
             Some(accounting) => accounting.resume(begin),
             None => *accounting = Some(Accounting::new(begin)),
         })?;
-        Ok(Resubscribed {
-            until_tick,
-            from_tick,
-        })
+        Ok(Resubscribed { until_tick, begin })
     }
 
     /// Subscribes and starts the accounting.
     pub(crate) fn begin_subscription(
         &mut self,
         begin: impl FnOnce(&mut Option<Accounting>, Begin),
-    ) -> Result<u64, Error> {
+    ) -> Result<Begin, Error> {
         self.telemetry.early = Some(Vec::new());
         let answer = self.request(Operation::Subscribe);
         let early = self.telemetry.early.take().unwrap_or_default();
@@ -152,6 +149,6 @@ impl<T: Transport> Client<T> {
                 self.counts.unasked_blocks += 1;
             }
         }
-        Ok(first_tick)
+        Ok(first)
     }
 }

@@ -1,6 +1,6 @@
 //! The requests.
 
-use crate::accounting::Accounting;
+use crate::accounting::{Accounting, Begin};
 use crate::client::{Client, Lease};
 use crate::errors::{Conflict, Error};
 use crate::event::Event;
@@ -226,12 +226,12 @@ impl<T: Transport> Client<T> {
         answer!(self, Operation::ClearFault, Answer::Done => ())
     }
 
-    /// Starts telemetry; returns the first tick. Restarts the accounting and
+    /// Starts telemetry; returns where it begins. Restarts the accounting and
     /// drops pending blocks of an earlier subscription.
     ///
     /// # Errors
     /// See above.
-    pub fn subscribe(&mut self) -> Result<u64, Error> {
+    pub fn subscribe(&mut self) -> Result<Begin, Error> {
         self.events
             .retain(|event| !matches!(event, Event::Block(_) | Event::DriveRestarted));
         self.telemetry.is_subscribed = false;

@@ -4,10 +4,13 @@ use crate::axis::Axis;
 use crate::drawing::{Anchor, Drawing, Stroke};
 use crate::layout::Frame;
 use crate::marker::Marker;
-use crate::palette::{GRID, Ink, LEVEL, TEXT};
+use crate::palette::{GRID, Ink, LEVEL, PAPER, TEXT};
 use crate::simplify::simplify;
 use crate::text::LINE;
 use crate::thinned::Point;
+
+/// Of a stretch that must be seen, CSS pixels.
+const NARROWEST: f64 = 3.0;
 
 /// Invisible distance, CSS pixels.
 const TOLERANCE: f64 = 0.15;
@@ -99,6 +102,30 @@ impl Plot {
             .map(|(from, to)| [self.at((from, low)), self.at((to, high))])
             .collect();
         self.over.rectangles(corners, ink);
+    }
+
+    /// Stretches of x about which nothing is known: nothing is left of what was
+    /// drawn there, and dotted lines stand at both ends. However short, each can
+    /// be seen.
+    pub fn blank(&mut self, stretches: &[(f64, f64)]) {
+        let (low, high) = (self.x.low(), self.x.high());
+        let Frame { top, bottom, .. } = self.frame;
+        for (from, to) in stretches
+            .iter()
+            .filter(|(from, to)| *to >= low && *from <= high)
+        {
+            let (from, to) = (self.at((*from, 0.0)).0, self.at((*to, 0.0)).0);
+            let middle = 0.5 * (from + to);
+            let half = (0.5 * (to - from)).max(0.5 * NARROWEST);
+            let (from, to) = (middle - half, middle + half);
+            self.over.rectangles([[(from, top), (to, bottom)]], PAPER);
+            let dotted = Stroke {
+                dashes: "1 3",
+                ..Stroke::new(TEXT, 1.0)
+            };
+            self.over
+                .lines([from, to].map(|x| [(x, top), (x, bottom)]), dotted);
+        }
     }
 
     /// A line through points, as wide as this, CSS pixels.

@@ -4,14 +4,15 @@
 mod object;
 mod summary;
 
+use crate::books::Recount;
+use crate::parameters::InForce;
+use crate::recording::Recording;
 use crate::row::Row;
-use crate::sidecar::Sidecar;
-use crepitus_protocol::Revision;
 use crepitus_scene::trace::EventRecord;
 pub use object::Object;
 use object::ObjectTracker;
+pub use summary::RecordingSummary;
 use summary::Tally;
-pub use summary::{RecordingSummary, seconds};
 
 /// What follows from a row and those before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,17 +28,27 @@ pub struct Derived {
 
 /// An analysis in progress.
 #[derive(Debug)]
-pub struct Analysis<'s> {
-    sidecar: &'s Sidecar,
+pub struct Analysis<'r> {
+    recording: &'r Recording,
+    in_force: InForce<'r>,
+    rows: u64,
+    /// Of the ticks alone.
+    recount: Recount<'r>,
+    /// Torque of the motor at the joint by its current, N·m/A; NaN if unknown.
+    nm_per_a: f64,
     object: ObjectTracker,
     tally: Tally,
 }
 
-impl<'s> Analysis<'s> {
+impl<'r> Analysis<'r> {
     /// Begins before the first row.
-    pub fn new(sidecar: &'s Sidecar) -> Self {
+    pub fn new(recording: &'r Recording) -> Self {
         Self {
-            sidecar,
+            recording,
+            in_force: recording.parameters().in_force(),
+            rows: 0,
+            recount: Recount::new(recording.books()),
+            nm_per_a: f64::NAN,
             object: ObjectTracker::default(),
             tally: Tally::default(),
         }
@@ -45,29 +56,29 @@ impl<'s> Analysis<'s> {
 
     /// Takes the next row.
     pub fn row(&mut self, row: &Row) -> Derived {
+        if self.in_force.at(self.rows) {
+            let number = |name| self.in_force.number(name).unwrap_or(f64::NAN);
+            self.nm_per_a = number("motor.torque_constant_nm_per_a") * number("encoder.gear_ratio");
+            let settings = self.in_force.joint_settings();
+            self.object
+                .set(settings.map(|settings| settings.parameters));
+        }
+        self.rows += 1;
+        self.recount.row(row.tick);
         self.tally.row(row);
-        let object = self.object.follow(row, self.sidecar);
+        let object = self.object.follow(row);
         Derived {
             object,
             event: self.object.event(row, &object),
-            motor_torque_nm: self.motor_torque_nm(row),
+            motor_torque_nm: row
+                .current_a
+                .map_or(f64::NAN, |amperes| -f64::from(amperes) * self.nm_per_a),
         }
-    }
-
-    fn motor_torque_nm(&self, row: &Row) -> f64 {
-        let number = |name| self.sidecar.number(Revision(row.revision), name);
-        let nm_per_a = number("motor.torque_constant_nm_per_a")
-            .zip(number("encoder.gear_ratio"))
-            .map(|(constant, gear)| constant * gear);
-        row.current_a
-            .zip(nm_per_a)
-            .map_or(f64::NAN, |(amperes, nm_per_a)| {
-                -f64::from(amperes) * nm_per_a
-            })
     }
 
     /// The summary of all rows so far.
     pub fn finish(self) -> RecordingSummary {
-        self.tally.finish(self.sidecar)
+        self.tally
+            .finish(self.recording, self.recount.differences())
     }
 }

@@ -1,33 +1,61 @@
 //! # Recordings
 //!
-//! Every sample of a device in a CSV file, with a JSON file beside it: which
-//! device made the samples, its parameters from which tick on, and the gaps.
+//! Every sample of a device in one file: which device made the samples, its
+//! parameters from which tick on, and the books of what is missing.
 //!
 //! ```text
-//! blocks ──> Recorder ──> name.csv   one line per sample, appended as they arrive
-//!                    └──> name.json  replaced atomically at each change
-//!
-//! name.csv, name.json ──> Recording ──> rows ──> Analysis ──> object, events, summary
+//!           while recording              when it has ended
+//! blocks ──> Recorder ──> log in FILE ──> Parquet in FILE     (feature `parquet`)
+//!                              │               │
+//!                              └───────┬───────┘
+//!                                  Recording ──> rows ──> Analysis ──> object, events, summary
+//!                                      └──> CSV, MCAP
 //! ```
 //!
-//! Whenever the program is killed, the files can be read: the CSV file up to its
-//! last complete line, and the last JSON file. Gaps since then follow from the
-//! ticks of the lines.
+//! Whenever the program is killed, the log can be read up to its last whole
+//! frame ([`Recorder`]); the Parquet file takes its place at once or not at all.
+//! [`Recording::open`] reads either, checks every byte of it, counts rows and
+//! gaps and compares them with the books. `docs/recorded.md` is the book on the
+//! formats.
 #![forbid(unsafe_code)]
 
 mod analysis;
 mod arming;
-mod recorder;
+mod books;
+mod findings;
+mod log;
+#[cfg(feature = "mcap")]
+mod mcap;
+mod metadata;
+mod parameters;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod recording;
 mod row;
 mod samples;
 mod shaft;
-mod sidecar;
 
-pub use analysis::{Analysis, Derived, Object, RecordingSummary, seconds};
+pub use analysis::{Analysis, Derived, Object, RecordingSummary};
 pub use arming::ArmingPushes;
-pub use recorder::{RecordError, Recorder};
-pub use recording::{ReadError, Recording, Rows};
-pub use row::{COLUMNS, Row, RowError};
+pub use books::{Begin, Books, Cause, Gap, Segment, Totals};
+pub use findings::Findings;
+pub use log::disk::{Background, Disk};
+pub use log::recorder::{RecordError, Recorder};
+#[cfg(feature = "mcap")]
+pub use mcap::write as write_mcap;
+pub use metadata::{Controller, Metadata};
+pub use parameters::{History, InForce, Named, ParameterSet, named_values};
+#[cfg(feature = "parquet")]
+pub use parquet::write as write_parquet;
+pub use recording::{Damage, Format, ReadError, Recording, Rows, seconds};
+pub use row::{COLUMNS, Row};
 pub use samples::Samples;
-pub use sidecar::{Controller, Gap, ParameterSet, Sidecar, Totals, named_values};
+
+/// Lower-case hex digits.
+fn hex(bytes: &[u8]) -> String {
+    use std::fmt::Write as _;
+    bytes.iter().fold(String::new(), |mut hex, byte| {
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
+}

@@ -1,17 +1,26 @@
-//! Reading of a recording.
+//! Reading of a recording, in whichever format it is.
 
-use crate::recorder::sidecar_path;
-use crate::row::{COLUMNS, Row, RowError};
-use crate::sidecar::{FORMAT, Sidecar};
+use crate::books::Books;
+use crate::findings::Findings;
+use crate::log::MAGIC;
+use crate::log::frame::Content;
+use crate::log::reader::LogReader;
+use crate::metadata::{FORMAT, Metadata};
+use crate::parameters::{History, InForce};
+#[cfg(feature = "parquet")]
+use crate::parquet;
+use crate::row::Row;
+use crate::samples::Samples;
+use crepitus_protocol::TICK_S;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// Errors of reading.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// A file cannot be read.
+    /// The file cannot be read.
     #[error("{path}: cannot be read: {source}")]
     Io {
         /// The file.
@@ -19,147 +28,363 @@ pub enum ReadError {
         /// Why not.
         source: io::Error,
     },
-    /// The JSON file is missing.
+    /// Something else.
     #[error(
-        "{0} is missing: expected a CSV file with a JSON file of the same name beside it, as \
-         `crepitus record` writes them"
+        "{0}: not a recording: expected a file that `crepitus record` has written, not one that was \
+         exported from it"
     )]
-    NoSidecar(PathBuf),
-    /// The JSON file is invalid.
-    #[error("{path}: invalid JSON file of a recording: {source}")]
-    Sidecar {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: serde_json::Error,
-    },
+    Foreign(PathBuf),
     /// The format is unknown, of a later version.
-    #[error("{path}: expected format {FORMAT}, got {found}: use a newer version of crepitus")]
+    #[error("{path}: expected a recording of version {FORMAT}, got {found}: use a newer crepitus")]
     Format {
         /// The file.
         path: PathBuf,
-        /// Its format.
+        /// Its version.
         found: u32,
     },
-    /// The header of the CSV file is wrong.
-    #[error("{0}: not the CSV file of a recording: its header does not match")]
-    Header(PathBuf),
-    /// A line is invalid.
-    #[error("{path}:{line}: {source}")]
-    Row {
+    /// This program was built without what reads it.
+    #[error(
+        "{0}: a Parquet file, and this crepitus was built without that format: build it with \
+         `--features parquet`"
+    )]
+    NoParquet(PathBuf),
+    /// The file is not what was written.
+    #[error("{path}: damaged:{findings}\nall that is readable is kept with `--salvage`")]
+    Damaged {
         /// The file.
         path: PathBuf,
-        /// The line, from 1.
-        line: u64,
         /// What is wrong with it.
-        source: RowError,
+        findings: Findings,
     },
+}
+
+/// Whether a damaged file is read as far as possible.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Damage {
+    /// It is an error.
+    Refuse,
+    /// What is readable is kept.
+    Salvage,
+}
+
+/// The format of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// That of a recording in progress.
+    Log,
+    /// Parquet.
+    Parquet,
 }
 
 /// A recording.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Recording {
     path: PathBuf,
-    sidecar: Sidecar,
+    metadata: Metadata,
+    books: Books,
+    history: History,
+    is_complete: bool,
+    cut_bytes: u64,
+    findings: Findings,
+    source: Source,
+}
+
+#[derive(Debug)]
+enum Source {
+    Log,
+    #[cfg(feature = "parquet")]
+    Parquet(parquet::Reader),
 }
 
 impl Recording {
-    /// Opens the recording of a CSV file, or of its JSON file.
+    /// Opens a recording, and reads all of it once to check it.
     ///
     /// # Errors
-    /// [`ReadError`] if there is none.
-    pub fn open(path: &Path) -> Result<Self, ReadError> {
-        let path = path.with_extension("csv");
-        let json = sidecar_path(&path);
-        let text = std::fs::read_to_string(&json).map_err(|source| match source.kind() {
-            io::ErrorKind::NotFound if path.exists() => ReadError::NoSidecar(json.clone()),
-            _ => ReadError::Io {
-                path: json.clone(),
-                source,
-            },
-        })?;
-        let sidecar: Sidecar =
-            serde_json::from_str(&text).map_err(|source| ReadError::Sidecar {
-                path: json.clone(),
-                source,
-            })?;
-        if sidecar.format != FORMAT {
+    /// [`ReadError`] if it is none, or damaged and that is refused.
+    pub fn open(path: &Path, damage: Damage) -> Result<Self, ReadError> {
+        let failed = |source| ReadError::Io {
+            path: path.to_owned(),
+            source,
+        };
+        let format = format_of(path)
+            .map_err(failed)?
+            .ok_or_else(|| ReadError::Foreign(path.to_owned()))?;
+        let recording = match format {
+            Format::Log => Self::log(path).map_err(failed)?,
+            #[cfg(feature = "parquet")]
+            Format::Parquet => Self::parquet(path).map_err(failed)?,
+            #[cfg(not(feature = "parquet"))]
+            Format::Parquet => return Err(ReadError::NoParquet(path.to_owned())),
+        };
+        // 0: its header is damaged.
+        if ![0, FORMAT].contains(&recording.metadata.format) {
             return Err(ReadError::Format {
-                path: json,
-                found: sidecar.format,
+                path: path.to_owned(),
+                found: recording.metadata.format,
             });
         }
-        Ok(Self { path, sidecar })
+        if damage == Damage::Refuse && !recording.findings.is_empty() {
+            return Err(ReadError::Damaged {
+                path: path.to_owned(),
+                findings: recording.findings,
+            });
+        }
+        Ok(recording)
     }
 
-    /// The metadata.
-    pub fn sidecar(&self) -> &Sidecar {
-        &self.sidecar
+    fn log(path: &Path) -> io::Result<Self> {
+        let mut reader = LogReader::new(opened(path)?)?;
+        while reader.next()?.is_some() {}
+        let scanned = reader.finish();
+        Ok(Self {
+            path: path.to_owned(),
+            metadata: scanned.metadata,
+            books: scanned.ledger.into_books(),
+            history: scanned.history,
+            is_complete: scanned.is_complete,
+            cut_bytes: scanned.cut_bytes,
+            findings: scanned.findings,
+            source: Source::Log,
+        })
     }
 
-    /// Its samples in order. An incomplete last line is left out.
-    ///
-    /// # Errors
-    /// [`ReadError`] if the CSV file is not that of a recording.
-    pub fn rows(&self) -> Result<Rows, ReadError> {
-        let file = File::open(&self.path).map_err(|source| ReadError::Io {
-            path: self.path.clone(),
-            source,
-        })?;
-        let mut rows = Rows {
-            path: self.path.clone(),
-            file: BufReader::with_capacity(1 << 16, file),
-            text: String::new(),
-            line: 0,
-        };
-        let header: Vec<_> = COLUMNS.iter().map(|(name, _)| *name).collect();
-        match rows.next_line() {
-            Some(Ok(())) if rows.text == header.join(",") => Ok(rows),
-            Some(Err(error)) => Err(error),
-            _ => Err(ReadError::Header(self.path.clone())),
+    #[cfg(feature = "parquet")]
+    fn parquet(path: &Path) -> io::Result<Self> {
+        let (reader, read, findings) = parquet::Reader::open(path)?;
+        Ok(Self {
+            path: path.to_owned(),
+            metadata: read.metadata,
+            books: read.books,
+            history: read.parameters,
+            is_complete: read.is_complete,
+            cut_bytes: 0,
+            findings,
+            source: Source::Parquet(reader),
+        })
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What is recorded.
+    pub fn metadata(&self) -> &Metadata {
+        &self.metadata
+    }
+
+    /// The books, counted in what is readable.
+    pub fn books(&self) -> &Books {
+        &self.books
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> &History {
+        &self.history
+    }
+
+    /// Whether it was ended in order, not cut off.
+    pub fn is_complete(&self) -> bool {
+        self.is_complete
+    }
+
+    /// The format of the file.
+    pub fn format(&self) -> Format {
+        match self.source {
+            Source::Log => Format::Log,
+            #[cfg(feature = "parquet")]
+            Source::Parquet(_) => Format::Parquet,
         }
     }
+
+    /// What is damaged or missing, in sentences.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if !self.findings.is_empty() {
+            warnings.push(
+                "The file is damaged, and this is what could be read of it. What is wrong:"
+                    .to_owned(),
+            );
+            warnings.extend(self.findings.sentences());
+        }
+        if !self.is_complete {
+            let cut = match self.cut_bytes {
+                0 => String::new(),
+                bytes => format!(" Its last {bytes} bytes are no whole sample."),
+            };
+            warnings.push(format!(
+                "The recording is incomplete: the program that made it was stopped before its end.{cut}"
+            ));
+        }
+        warnings.extend(self.missing());
+        warnings
+    }
+
+    fn missing(&self) -> Option<String> {
+        let totals = &self.books.totals;
+        let causes = [
+            ("dropped by the device", totals.by_device),
+            ("lost on the way", totals.on_the_way()),
+            (
+                "not recorded while the connection was lost",
+                totals.not_connected,
+            ),
+            ("damaged in the file", totals.damaged),
+        ];
+        let causes: Vec<_> = causes
+            .iter()
+            .filter(|(_, samples)| *samples > 0)
+            .map(|(cause, samples)| format!("{samples} {cause}"))
+            .collect();
+        (totals.dropped > 0).then(|| {
+            format!(
+                "{} of {} samples ({:.3} s) are missing in {} gap{}: {}.",
+                totals.dropped,
+                totals.produced,
+                seconds(totals.dropped),
+                self.books.gap_count,
+                if self.books.gap_count == 1 { "" } else { "s" },
+                causes.join(", ")
+            )
+        })
+    }
+
+    /// Its samples in order.
+    ///
+    /// # Errors
+    /// [`ReadError::Io`].
+    pub fn rows(&self) -> Result<Rows<'_>, ReadError> {
+        let source = match &self.source {
+            Source::Log => opened(&self.path)
+                .and_then(LogReader::new)
+                .map(|reader| RowSource::Log(Box::new(LogRows::new(reader, &self.history)))),
+            #[cfg(feature = "parquet")]
+            Source::Parquet(reader) => Ok(RowSource::Parquet(reader.rows())),
+        };
+        Ok(Rows {
+            path: &self.path,
+            source: source.map_err(|source| self.failed(source))?,
+        })
+    }
+
+    fn failed(&self, source: io::Error) -> ReadError {
+        ReadError::Io {
+            path: self.path.clone(),
+            source,
+        }
+    }
+}
+
+/// So many ticks, s.
+#[expect(clippy::cast_precision_loss, reason = "centuries of ticks")]
+pub fn seconds(ticks: u64) -> f64 {
+    ticks as f64 * TICK_S
 }
 
 /// The samples of a recording.
 #[derive(Debug)]
-pub struct Rows {
-    path: PathBuf,
-    file: BufReader<File>,
-    text: String,
-    line: u64,
+pub struct Rows<'r> {
+    path: &'r Path,
+    source: RowSource<'r>,
 }
 
-impl Rows {
-    /// The next whole line, without its end, in `text`.
-    fn next_line(&mut self) -> Option<Result<(), ReadError>> {
-        self.text.clear();
-        match self.file.read_line(&mut self.text) {
-            Ok(0) => None,
-            Ok(_) => {
-                self.line += 1;
-                // Without a newline it is incomplete.
-                self.text.pop().filter(|end| *end == '\n').map(|_| Ok(()))
-            }
-            Err(source) => Some(Err(ReadError::Io {
-                path: self.path.clone(),
-                source,
-            })),
-        }
-    }
+#[derive(Debug)]
+enum RowSource<'r> {
+    Log(Box<LogRows<'r>>),
+    #[cfg(feature = "parquet")]
+    Parquet(parquet::ParquetRows<'r>),
 }
 
-impl Iterator for Rows {
+impl Iterator for Rows<'_> {
     type Item = Result<Row, ReadError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        match self.next_line()? {
-            Ok(()) => Some(Row::parse(&self.text).map_err(|source| ReadError::Row {
-                path: self.path.clone(),
-                line: self.line,
-                source,
-            })),
-            Err(error) => Some(Err(error)),
+        let row = match &mut self.source {
+            RowSource::Log(rows) => rows.next(),
+            #[cfg(feature = "parquet")]
+            RowSource::Parquet(rows) => rows.next(),
+        };
+        row.map_err(|source| ReadError::Io {
+            path: self.path.to_owned(),
+            source,
+        })
+        .transpose()
+    }
+}
+
+/// Rows of the blocks of a log.
+#[derive(Debug)]
+struct LogRows<'r> {
+    reader: LogReader<BufReader<File>>,
+    in_force: InForce<'r>,
+    samples: Samples,
+    /// Of the block at hand.
+    block: std::vec::IntoIter<Row>,
+    count: u64,
+}
+
+impl<'r> LogRows<'r> {
+    fn new(reader: LogReader<BufReader<File>>, history: &'r History) -> Self {
+        Self {
+            reader,
+            in_force: history.in_force(),
+            samples: Samples::default(),
+            block: Vec::new().into_iter(),
+            count: 0,
         }
     }
+
+    fn next(&mut self) -> io::Result<Option<Row>> {
+        if let Some(row) = self.block.next() {
+            return Ok(Some(row));
+        }
+        let Some(block) = self.reader.next()? else {
+            return Ok(None);
+        };
+        if self.in_force.at(self.count)
+            && let Some(values) = self.in_force.values()
+        {
+            self.samples.set(&values);
+        }
+        self.count += block.samples.len() as u64;
+        let rows: Vec<_> = self.samples.rows(&block).collect();
+        self.block = rows.into_iter();
+        Ok(self.block.next())
+    }
+}
+
+fn opened(path: &Path) -> io::Result<BufReader<File>> {
+    Ok(BufReader::with_capacity(1 << 16, File::open(path)?))
+}
+
+/// First and last bytes of a Parquet file.
+const PARQUET: &[u8] = b"PAR1";
+
+/// Bytes in which a damaged recording has at least one frame in order.
+const HEAD_BYTES: u64 = 1 << 16;
+
+/// The format of a file, also of one whose first bytes are damaged; none if it
+/// is no recording.
+fn format_of(path: &Path) -> io::Result<Option<Format>> {
+    let mut file = File::open(path)?;
+    let mut head = Vec::new();
+    (&mut file).take(HEAD_BYTES).read_to_end(&mut head)?;
+    if head.starts_with(MAGIC) {
+        return Ok(Some(Format::Log));
+    }
+    if head.starts_with(PARQUET) {
+        return Ok(Some(Format::Parquet));
+    }
+    let length = file.metadata()?.len();
+    if length > PARQUET.len() as u64 {
+        let mut tail = Vec::new();
+        file.seek(SeekFrom::End(-(PARQUET.len() as i64)))?;
+        file.read_to_end(&mut tail)?;
+        if tail == PARQUET {
+            return Ok(Some(Format::Parquet));
+        }
+    }
+    let mut frames = head.split_mut(|byte| *byte == 0);
+    let is_log = frames.any(|frame| !frame.is_empty() && Content::of(frame).is_some());
+    Ok(is_log.then_some(Format::Log))
 }

@@ -10,14 +10,28 @@ use crepitus_protocol::{TICKS_PER_S, Values};
 #[derive(Clone, Debug)]
 pub struct Samples {
     shaft: Shaft,
-    first_tick: Option<u64>,
+    /// Of the first block since the drive has started.
+    begin: Begin,
+    next_tick: u64,
+    has_begun: bool,
+}
+
+/// Where a count of ticks begins.
+#[derive(Clone, Copy, Debug, Default)]
+struct Begin {
+    start: u8,
+    tick: u64,
+    /// Ticks of time that have passed before it.
+    passed: u64,
 }
 
 impl Default for Samples {
     fn default() -> Self {
         Self {
             shaft: Shaft::new(),
-            first_tick: None,
+            begin: Begin::default(),
+            next_tick: 0,
+            has_begun: false,
         }
     }
 }
@@ -28,28 +42,60 @@ impl Samples {
         self.shaft.set(values);
     }
 
-    /// The rows of a block. Time starts at the first block.
+    /// The rows of a block. Time starts at the first block, and goes on at once
+    /// where the drive has restarted: how long that took is not known.
     pub fn rows<'a>(&'a mut self, block: &'a Block) -> impl Iterator<Item = Row> + 'a {
-        let first_tick = *self.first_tick.get_or_insert(block.first_tick);
-        (block.first_tick..)
-            .zip(&block.samples)
-            .map(move |(tick, sample)| {
-                let (angle_rad, omega_rad_s) = self.shaft.see(tick, sample.count);
-                let since = tick.saturating_sub(first_tick);
-                Row {
-                    tick,
-                    #[expect(clippy::cast_precision_loss, reason = "centuries of ticks")]
-                    time_s: since as f64 / f64::from(TICKS_PER_S),
-                    count: sample.count,
-                    angle_rad,
-                    omega_rad_s,
-                    model_torque_nm: sample.model_torque_nm,
-                    torque_nm: sample.torque_nm,
-                    current_a: (sample.current_ma != NO_CURRENT)
-                        .then(|| f32::from(sample.current_ma) * 1e-3),
-                    revision: block.revision.0,
-                    flags: sample.flags,
-                }
-            })
+        let (start, tick) = (block.flags.start(), block.first_tick);
+        if !self.has_begun || start != self.begin.start || tick < self.begin.tick {
+            let passed = self.begin.passed + self.next_tick.saturating_sub(self.begin.tick);
+            self.begin = Begin {
+                start,
+                tick,
+                passed,
+            };
+            self.has_begun = true;
+        }
+        self.next_tick = block.end_tick();
+        let begin = self.begin;
+        (tick..).zip(&block.samples).map(move |(tick, sample)| {
+            let (angle_rad, omega_rad_s) = self.shaft.see(tick, sample.count);
+            let since = tick.saturating_sub(begin.tick) + begin.passed;
+            Row {
+                tick,
+                #[expect(clippy::cast_precision_loss, reason = "centuries of ticks")]
+                time_s: since as f64 / f64::from(TICKS_PER_S),
+                count: sample.count,
+                angle_rad,
+                omega_rad_s,
+                model_torque_nm: sample.model_torque_nm,
+                torque_nm: sample.torque_nm,
+                current_a: (sample.current_ma != NO_CURRENT)
+                    .then(|| f32::from(sample.current_ma) * 1e-3),
+                revision: block.revision.0,
+                flags: sample.flags,
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_protocol::State;
+    use crepitus_protocol::telemetry::BlockFlags;
+
+    #[test]
+    fn time_goes_on_where_the_drive_has_restarted() {
+        let block = |first_tick, start| Block {
+            first_tick,
+            flags: BlockFlags::new(State::Disarmed, false, start),
+            ..Block::default()
+        };
+        let mut samples = Samples::default();
+        let mut first_s = |block: Block| samples.rows(&block).next().expect("a row").time_s;
+        assert_eq!(first_s(block(5_000, 1)), 0.0);
+        assert_eq!(first_s(block(5_040, 1)), 0.002);
+        assert_eq!(first_s(block(0, 2)), 0.003);
+        assert_eq!(first_s(block(20, 2)), 0.004);
     }
 }

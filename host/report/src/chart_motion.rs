@@ -184,6 +184,9 @@ fn words(figures: &Figures, lines: &Lines) -> (Vec<Key>, String) {
     if leg || intended {
         caption.push_str(" At the bottom: how far each is ahead of the shaft.");
     }
+    if !figures.gaps.is_empty() {
+        caption.push_str(" Blank between dotted lines: samples are missing there.");
+    }
     if !figures.marks.is_empty() {
         caption.push_str(" Dotted lines: from there on other parameters were in force.");
     }

@@ -59,6 +59,16 @@ impl Choice {
         }
     }
 
+    /// Rows are missing before the next one: no window reaches across.
+    pub(crate) fn gap(&mut self) {
+        self.candidate = None;
+        self.onset = match std::mem::replace(&mut self.onset, Onset::Ahead(VecDeque::new())) {
+            Onset::Running(window) => Onset::Done(window),
+            Onset::Ahead(_) => Onset::Ahead(VecDeque::new()),
+            done @ Onset::Done(_) => done,
+        };
+    }
+
     pub(crate) fn event(&mut self, event: &EventRecord) {
         self.onset_event(event);
         self.candidate_event(event);

@@ -20,6 +20,9 @@ use crepitus_plot::{Mark, Plot, Thinned};
 /// Bins of the lines over the whole run: more than a chart has pixels.
 const LINE: usize = 1600;
 
+/// Gaps that are drawn one by one: more than a chart has pixels.
+const GAPS: usize = 2000;
+
 /// Collects a bounded amount of data while a run streams by.
 ///
 /// An event at time t comes before the first row with a time of t or later.
@@ -42,6 +45,7 @@ pub struct Collector {
     fast: Option<FastPart>,
     marks: Vec<Mark>,
     pushes: Vec<(f64, f64)>,
+    gaps: Vec<(f64, f64)>,
 }
 
 /// Collected data of a complete run.
@@ -69,6 +73,8 @@ pub struct Figures {
     pub(crate) marks: Vec<Mark>,
     /// When the motor was pushed to arm it, s.
     pub(crate) pushes: Vec<(f64, f64)>,
+    /// From the last row before missing ones to the first one after them, s.
+    pub(crate) gaps: Vec<(f64, f64)>,
 }
 
 impl Figures {
@@ -77,9 +83,10 @@ impl Figures {
         self.balance = Some(balance);
     }
 
-    /// Draws on a panel over time when parameters changed; the first panel of a
-    /// chart names it.
+    /// Draws on a panel over time where rows are missing and when parameters
+    /// changed, after the lines; the first panel of a chart names it.
     pub(crate) fn draw_marks(&self, plot: &mut Plot, named: bool) {
+        plot.blank(&self.gaps);
         plot.moments(&self.marks, named);
     }
 
@@ -102,6 +109,7 @@ impl Figures {
         });
         let mut marks: Vec<Mark> = pushes.chain(self.marks.iter().cloned()).collect();
         marks.sort_by(|a, b| a.at.total_cmp(&b.at));
+        plot.blank(&self.gaps);
         plot.moments(&marks, true);
     }
 
@@ -153,6 +161,7 @@ impl Collector {
             fast,
             marks: Vec::new(),
             pushes: Vec::new(),
+            gaps: Vec::new(),
         }
     }
 
@@ -191,6 +200,23 @@ impl Collector {
     /// polarity; its torque is none that was rendered.
     pub fn arming_push(&mut self, from_s: f64, to_s: f64) {
         self.pushes.push((from_s, to_s));
+    }
+
+    /// Rows between these times, s, are missing; the next row is the one after
+    /// them.
+    pub fn gap(&mut self, from_s: f64, to_s: f64) {
+        if self.gaps.len() < GAPS {
+            self.gaps.push((from_s, to_s));
+        } else if let Some((_, end_s)) = self.gaps.last_mut() {
+            // Rather too much is missing than too little.
+            *end_s = to_s;
+        }
+        self.envelope.gap();
+        self.choice.gap();
+        self.hysteresis.gap();
+        if let Some(welch) = &mut self.welch {
+            welch.gap();
+        }
     }
 
     /// Takes one event.
@@ -270,6 +296,7 @@ impl Collector {
             balance: None,
             marks: self.marks,
             pushes: self.pushes,
+            gaps: self.gaps,
         }
     }
 }

@@ -108,6 +108,12 @@ impl Envelope {
         }
     }
 
+    /// Rows are missing before the next one: in which phase is not known.
+    pub(crate) fn gap(&mut self) {
+        self.phase = None;
+        self.since = f64::NAN;
+    }
+
     pub(crate) fn row(&mut self, time: f64, torque: f64, phase: Option<Phase>) {
         self.advance(time);
         // With events, only they end a phase.

@@ -58,6 +58,11 @@ impl Hysteresis {
         }
     }
 
+    /// Rows are missing before the next one.
+    pub(crate) fn gap(&mut self) {
+        self.last_angle = f64::NAN;
+    }
+
     pub(crate) fn row(&mut self, angle: f64, omega: f64, theta: f64) {
         if !(angle.is_finite() && theta.is_finite()) {
             return;

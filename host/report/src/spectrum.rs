@@ -107,6 +107,15 @@ impl Welch {
         self.last = [self.last[1], Some(value)];
     }
 
+    /// Samples are missing before the next one.
+    pub(crate) fn gap(&mut self) {
+        self.last = [None; 2];
+        self.of.gap();
+        if let Some(slow) = &mut self.slow {
+            slow.gap();
+        }
+    }
+
     pub(crate) fn finish(self) -> Option<Spectrum> {
         let whole = self.of.finish()?;
         let slow = self.slow.and_then(spectrum::Welch::finish);

@@ -8,7 +8,7 @@ use crate::device_text;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::line::{Line, failure, failure_with};
-use crepitus_client::{Client, Event, StateChange};
+use crepitus_client::{Begin, Client, Event, StateChange};
 use crepitus_protocol::State;
 use crepitus_protocol::telemetry::Block;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -33,6 +33,11 @@ pub(crate) enum End {
 pub(crate) trait Follower {
     /// Handles a telemetry block; requests to `client` are allowed.
     fn block(&mut self, client: &mut Client<Line>, block: &Block) -> Result<(), Failure>;
+
+    /// The connection was opened again, and the subscription goes on here.
+    fn resumed(&mut self, _: Begin) -> Result<(), Failure> {
+        Ok(())
+    }
 
     /// Called every few milliseconds; returns whether to stop.
     fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure>;
@@ -93,7 +98,7 @@ fn run(
                         "warning: {error}; reconnecting for up to {} s",
                         RECONNECT_TIMEOUT.as_secs()
                     );
-                    reconnect(client, arm)?;
+                    reconnect(client, arm, follower)?;
                     break;
                 }
                 _ => {}
@@ -105,9 +110,16 @@ fn run(
     }
 }
 
-fn reconnect(client: &mut Client<Line>, arm: bool) -> Result<(), Failure> {
+fn reconnect(
+    client: &mut Client<Line>,
+    arm: bool,
+    follower: &mut impl Follower,
+) -> Result<(), Failure> {
     let back = client.reconnect(RECONNECT_TIMEOUT).map_err(failure)?;
     eprintln!("reconnected");
+    if let Some(resubscribed) = back.resubscribed {
+        follower.resumed(resubscribed.begin)?;
+    }
     if arm && back.was_armed {
         return Err(Failure::Work(
             "the connection was lost while the device was armed, so it has disarmed; it is not armed \

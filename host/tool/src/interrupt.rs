@@ -20,6 +20,13 @@ pub(crate) fn listen() {
     });
 }
 
+/// Forgets a request that was obeyed; the next one counts.
+pub(crate) fn forget() {
+    if let Some(requested) = REQUESTED.get() {
+        requested.store(false, Ordering::Relaxed);
+    }
+}
+
 /// Whether a stop was requested.
 pub(crate) fn requested() -> bool {
     REQUESTED

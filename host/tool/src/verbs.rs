@@ -11,6 +11,7 @@ pub(crate) mod devices;
 pub(crate) mod disarm;
 pub(crate) mod doctor;
 pub(crate) mod effects;
+pub(crate) mod export;
 pub(crate) mod info;
 pub(crate) mod params;
 pub(crate) mod presets;
@@ -61,6 +62,7 @@ verbs! {
     Stream: stream,
     Record: record,
     Report: report,
+    Export: export,
     ServeSim: serve_sim,
     Run: run,
     Accuracy: accuracy,

@@ -124,6 +124,12 @@ impl Welch {
         }
     }
 
+    /// Samples are missing here: the segment begins anew, as one across them
+    /// would have a step that there was not.
+    pub fn gap(&mut self) {
+        self.segment.clear();
+    }
+
     fn add_segment(&mut self) {
         // The mean is not vibration, and would leak into the lowest bins.
         let mean = self.segment.iter().sum::<f64>() / self.segment.len() as f64;

@@ -22,7 +22,7 @@ fn blocks_for(client: &mut Client<Port>, time: std::time::Duration) -> Vec<Block
 fn ten_seconds_arrive_whole() {
     let (shared, mut client) = turning(|t| 0.3 * t);
     client.arm().unwrap();
-    let first_tick = client.subscribe().unwrap();
+    let first_tick = client.subscribe().unwrap().first_tick;
     let blocks = blocks_for(&mut client, ms(10_000));
     client.unsubscribe().unwrap();
     let end = blocks.last().unwrap().end_tick();
@@ -202,10 +202,10 @@ fn a_restart_of_comms_is_noticed_and_the_subscription_resumed() {
 #[test]
 fn a_new_subscription_restarts_the_accounting() {
     let (_, mut client) = connected();
-    let first = client.subscribe().unwrap();
+    let first = client.subscribe().unwrap().first_tick;
     pump_for(&mut client, ms(50));
     client.transport_mut().wait(ms(20));
-    let second = client.subscribe().unwrap();
+    let second = client.subscribe().unwrap().first_tick;
     assert!(second >= first + 1_400);
     pump_for(&mut client, ms(50));
     let [produced, received, _, _] = check_books(&client);

@@ -1,11 +1,10 @@
 //! The imaginary object, reconstructed from a device's samples.
 
 use crate::row::Row;
-use crate::sidecar::Sidecar;
 use crepitus_model::Parameters;
 use crepitus_model::joint::oscillator::Oscillator;
+use crepitus_protocol::TICK_S;
 use crepitus_protocol::telemetry::SampleFlags;
-use crepitus_protocol::{Revision, TICK_S};
 use crepitus_scene::trace::{EventKind, EventRecord};
 
 /// Angle and velocity of the imaginary object; NaN where they are unknown.
@@ -27,7 +26,8 @@ const UNKNOWN: Object = Object {
 /// shaft's speed.
 #[derive(Debug, Default)]
 pub(super) struct ObjectTracker {
-    parameters: Option<(u32, Parameters)>,
+    /// None if they are unknown.
+    parameters: Option<Parameters>,
     object: Option<Object>,
     previous: Option<(i8, f64)>,
     /// Of the row before the one that was followed last.
@@ -35,12 +35,16 @@ pub(super) struct ObjectTracker {
 }
 
 impl ObjectTracker {
+    /// Sets the parameters from the next row on.
+    pub(super) fn set(&mut self, parameters: Option<Parameters>) {
+        self.parameters = parameters;
+    }
+
     /// The object in this row.
-    pub(super) fn follow(&mut self, row: &Row, sidecar: &Sidecar) -> Object {
-        let parameters = self.parameters(row.revision, sidecar);
+    pub(super) fn follow(&mut self, row: &Row) -> Object {
         let sign = row.flags.phase_sign();
         let torque_nm = f64::from(row.model_torque_nm);
-        let object = match (parameters, sign) {
+        let object = match (self.parameters, sign) {
             (None, _) => UNKNOWN,
             (Some(p), 0) => Object {
                 theta_rad: torque_nm / p.stiffness_nm_per_rad,
@@ -95,16 +99,5 @@ impl ObjectTracker {
             torque_before_nm,
             torque_after_nm: f64::from(row.model_torque_nm),
         })
-    }
-
-    fn parameters(&mut self, revision: u32, sidecar: &Sidecar) -> Option<Parameters> {
-        if let Some((known, parameters)) = self.parameters
-            && known == revision
-        {
-            return Some(parameters);
-        }
-        let parameters = sidecar.joint_settings(Revision(revision))?.parameters;
-        self.parameters = Some((revision, parameters));
-        Some(parameters)
     }
 }

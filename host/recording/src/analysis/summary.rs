@@ -1,7 +1,10 @@
 //! The summary of a recording.
 
+use crate::books::Totals;
+use crate::metadata::Controller;
+use crate::parameters::History;
+use crate::recording::{Recording, seconds};
 use crate::row::Row;
-use crate::sidecar::{Controller, ParameterSet, Sidecar, Totals};
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{LimitReason, TICK_S};
 use crepitus_scene::run::TorqueSummary;
@@ -30,7 +33,7 @@ pub struct RecordingSummary {
     /// Samples produced, received and dropped.
     pub telemetry: Totals,
     /// Number of gaps.
-    pub gaps: usize,
+    pub gaps: u64,
     /// Starts of the drive during the recording.
     pub drive_restarts: u32,
     /// Breaks while armed.
@@ -49,8 +52,9 @@ pub struct RecordingSummary {
     pub lost_samples: u64,
     /// Ticks whose rendering was late.
     pub late_ticks: u64,
-    /// Every parameter set in use, in order.
-    pub parameters: Vec<ParameterSet>,
+    /// Every parameter set in use, in order: all parameters, then those that
+    /// have changed.
+    pub parameters: History,
     /// What to know before relying on the numbers.
     pub warnings: Vec<String>,
 }
@@ -129,48 +133,39 @@ impl Tally {
         }
     }
 
-    pub(super) fn finish(self, sidecar: &Sidecar) -> RecordingSummary {
-        let mut telemetry = sidecar.telemetry;
-        let mut warnings = Vec::new();
-        if !sidecar.complete {
-            warnings.push(
-                "The recording is incomplete: the program that made it was stopped. This report has \
-                 what was written until then."
-                    .to_owned(),
-            );
-            // The CSV file is newer than the JSON file.
-            telemetry.received = self.rows;
-            telemetry.produced = self.rows + telemetry.dropped;
-        }
-        if telemetry.dropped > 0 {
+    pub(super) fn finish(
+        self,
+        recording: &Recording,
+        differences: Vec<String>,
+    ) -> RecordingSummary {
+        let (metadata, books) = (recording.metadata(), recording.books());
+        let mut warnings = recording.warnings();
+        warnings.extend(
+            differences
+                .into_iter()
+                .map(|difference| format!("Counted in its rows: {difference}.")),
+        );
+        if books.drive_restarts > 0 {
             warnings.push(format!(
-                "{} samples ({:.3} s) are missing in {} gaps.",
-                telemetry.dropped,
-                seconds(telemetry.dropped),
-                sidecar.drops.len()
-            ));
-        }
-        if sidecar.drive_restarts > 0 {
-            warnings.push(format!(
-                "The drive restarted {} times during the recording.",
-                sidecar.drive_restarts
+                "The drive restarted {} times during the recording; how long each took is not known.",
+                books.drive_restarts
             ));
         }
         if self.armed.count == 0 && self.rows > 0 {
             warnings.push("The device was never armed, so there was no torque.".to_owned());
         }
         RecordingSummary {
-            title: sidecar.title.clone(),
+            title: metadata.title.clone(),
             crepitus_version: env!("CARGO_PKG_VERSION"),
-            begun_unix_s: sidecar.begun_unix_s,
-            comms: sidecar.comms.clone(),
-            drive: sidecar.drive.clone(),
-            complete: sidecar.complete,
+            begun_unix_s: metadata.begun_unix_s,
+            comms: metadata.comms.clone(),
+            drive: metadata.drive.clone(),
+            complete: recording.is_complete(),
             duration_s: seconds(self.rows),
             armed_s: seconds(self.armed.count),
-            telemetry,
-            gaps: sidecar.drops.len(),
-            drive_restarts: sidecar.drive_restarts,
+            telemetry: books.totals,
+            gaps: books.gap_count,
+            drive_restarts: books.drive_restarts,
             breaks: self.breaks,
             sticks: self.sticks,
             fastest_rad_s: self.fastest_rad_s,
@@ -183,14 +178,8 @@ impl Tally {
                 .collect(),
             lost_samples: self.lost,
             late_ticks: self.late,
-            parameters: sidecar.parameters.clone(),
+            parameters: recording.parameters().clone(),
             warnings,
         }
     }
-}
-
-/// The length of so many ticks, s.
-#[expect(clippy::cast_precision_loss, reason = "centuries of ticks")]
-pub fn seconds(ticks: u64) -> f64 {
-    ticks as f64 * TICK_S
 }

@@ -1,22 +1,22 @@
 //! `crepitus demo`: the whole chain in one process, from the host's library to
 //! the simulated leg.
 
-use super::record::Recording;
 use super::report::{self, in_brief};
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Follower, follow};
 use crate::line::{Line, failure};
 use crate::pictures::Pictures;
 use crate::progress::Progress;
+use crate::recorded::{EXTENSION, Recorded};
 use crate::shipped;
 use crate::simulated::Simulated;
 use clap::Args;
-use crepitus_client::{Client, RequestKind};
+use crepitus_client::{Begin, Client, RequestKind};
 use crepitus_model::joint::presets::Preset;
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};
-use crepitus_recording::RecordingSummary;
+use crepitus_recording::{Damage, RecordingSummary};
 use crepitus_scene::Overrides;
 use serde_json::json;
 use std::fmt::Write as _;
@@ -33,8 +33,7 @@ Examples:
 
 Only the hardware is simulated: the host's library, a USB stack and a virtual cable, the \
 program of the comms controller, the link, the program of the drive, and a simulated leg that an \
-examiner bends and straightens. DIR gets recording.csv, recording.json, report.html and \
-summary.json.")]
+examiner bends and straightens. DIR gets the recording, report.html and summary.json.")]
 pub(crate) struct Arguments {
     /// Folder for the recording and its report [default: out/demo].
     #[arg(long, value_name = "DIR")]
@@ -84,8 +83,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     client.zero().map_err(failure)?;
     narration.step("parameters", &format!("preset {PRESET} applied; zero set"))?;
 
-    let recording = Recording::begin(&mut client, &file, &scene.title)?;
-    client.subscribe().map_err(failure)?;
+    let recording = Recorded::begin(&mut client, &file, &scene.title)?;
     let mut examination = Examination {
         recording,
         changes: CHANGES
@@ -104,24 +102,22 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     recording.finish()?;
     narration.step("examination", &examination_text(&client, &made))?;
 
-    let recording = crepitus_recording::Recording::open(&file).map_err(Failure::input)?;
+    let recording =
+        crepitus_recording::Recording::open(&file, Damage::Refuse).map_err(Failure::input)?;
     let summary = report::write(&recording, &out, &arguments.pictures)?;
-    done(&summary, &out, &client, begun.elapsed(), as_json)
+    done(&summary, &out, &file, &client, begun.elapsed(), as_json)
 }
 
 /// Creates the folder and removes an earlier recording.
 fn prepared(out: &Path) -> Result<PathBuf, Failure> {
     fs::create_dir_all(out).map_err(|e| Failure::at(out, "cannot be created", &e))?;
-    let file = out.join("recording.csv");
-    for old in [file.clone(), file.with_extension("json")] {
-        match fs::remove_file(&old) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                return Err(Failure::at(&old, "cannot be replaced", &e));
-            }
-            _ => {}
+    let file = out.join("recording").with_extension(EXTENSION);
+    match fs::remove_file(&file) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+            Err(Failure::at(&file, "cannot be replaced", &e))
         }
+        _ => Ok(file),
     }
-    Ok(file)
 }
 
 /// Waits until the drive reports that it has disarmed.
@@ -154,7 +150,7 @@ impl Narration {
 
 /// A recorded examination with parameter changes.
 struct Examination {
-    recording: Recording,
+    recording: Recorded,
     /// Pending changes: time, parameter, value.
     changes: std::collections::VecDeque<(Duration, &'static str, f64)>,
     begin: Duration,
@@ -165,6 +161,10 @@ struct Examination {
 impl Follower for Examination {
     fn block(&mut self, client: &mut Client<Line>, block: &Block) -> Result<(), Failure> {
         self.recording.block(client, block)
+    }
+
+    fn resumed(&mut self, begin: Begin) -> Result<(), Failure> {
+        self.recording.resumed(begin)
     }
 
     fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure> {
@@ -207,6 +207,7 @@ fn examination_text(client: &Client<Line>, made: &[(&'static str, f64, Revision)
 fn done(
     summary: &RecordingSummary,
     out: &Path,
+    file: &Path,
     client: &Client<Line>,
     wall: Duration,
     as_json: bool,
@@ -224,6 +225,6 @@ fn done(
     print(&format!(
         "{}recording: {}\n{device_s:.1} s of device time took {wall_s:.1} s in all\n",
         in_brief(summary, out),
-        out.join("recording.csv").display()
+        file.display()
     ))
 }

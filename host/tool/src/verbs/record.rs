@@ -2,32 +2,30 @@
 
 use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print, print_json};
-use crate::following::{Follower, follow};
-use crate::line::{Line, connect, failure};
-use crate::status_line::StatusLine;
+use crate::following::follow;
+use crate::line::connect;
+use crate::recorded::{Recorded, print_ended};
 use clap::Args;
-use crepitus_client::Client;
-use crepitus_protocol::Revision;
-use crepitus_protocol::telemetry::Block;
-use crepitus_recording::{Recorder, Sidecar};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Record a device's samples to a file.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  crepitus record monday.csv --for 60s --arm
-  crepitus record try.csv --device sim --for 5s --arm --title \"First try\"
-  crepitus report monday.csv
+  crepitus record monday.parquet --for 60s --arm
+  crepitus record try --device sim --for 5s --arm --title \"First try\"
+  crepitus report monday.parquet
+  crepitus export monday.parquet --format csv
 
-Every sample of the drive, 20000 a second, goes to FILE; parameters, units and gaps go to a JSON \
-file of the same name. A recording that was interrupted can still be reported. About 100 MB a \
-minute.")]
+Every sample of the drive, 20000 a second, goes to FILE, with the parameters, the devices, and the \
+accounting of what is missing. While recording, FILE can be read whatever happens to this program: \
+`report` says first what is missing. When the recording has ended, FILE becomes a Parquet file, which \
+pandas, polars and DuckDB read, if this program was built with `--features parquet`. About 20 MB a \
+minute while recording, 6 MB in the end.")]
 pub(crate) struct Arguments {
-    /// The CSV file; it must not exist.
+    /// The file, with any name; it must not exist.
     file: PathBuf,
 
     /// Duration: 500ms, 30s, 5m [default: until Ctrl-C].
@@ -48,89 +46,17 @@ pub(crate) struct Arguments {
 
 /// Records.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let file = &arguments.file;
     let mut client = connect(&arguments.device)?;
-    let mut recording = Recording::begin(&mut client, &arguments.file, &arguments.title)?;
-    client.subscribe().map_err(failure)?;
-    let end = follow(&mut client, arguments.for_s, arguments.arm, &mut recording);
-    // Finishes the files also after an error.
-    let sidecar = recording.finish()?;
+    let mut recorded = Recorded::begin(&mut client, file, &arguments.title)?;
+    let end = follow(&mut client, arguments.for_s, arguments.arm, &mut recorded);
+    // Finishes the file also after an error.
+    let totals = recorded.finish()?;
     end?;
-    let t = sidecar.telemetry;
-    if as_json {
-        return print_json(&json!({
-            "file": arguments.file,
-            "telemetry": t,
-            "drive_restarts": sidecar.drive_restarts,
-        }));
-    }
-    print(&format!(
-        "{}: {} samples produced = {} received + {} dropped\n\
-         write its report with `crepitus report {}`\n",
-        arguments.file.display(),
-        t.produced,
-        t.received,
-        t.dropped,
-        arguments.file.display()
-    ))
-}
-
-/// A recording in progress.
-pub(crate) struct Recording {
-    recorder: Recorder,
-    announced: Option<Revision>,
-    status: StatusLine,
-}
-
-impl Recording {
-    /// Creates the files.
-    pub(crate) fn begin(
-        client: &mut Client<Line>,
-        file: &Path,
-        title: &str,
-    ) -> Result<Self, Failure> {
-        let now = SystemTime::now()
-            .duration_since(UNIX_EPOCH)
-            .map_or(0, |since| since.as_secs());
-        let handshake = client.handshake();
-        let sidecar = Sidecar::new(title, now, &handshake.comms, handshake.drive.as_ref());
-        Ok(Self {
-            recorder: Recorder::create(file, sidecar).map_err(Failure::input)?,
-            announced: None,
-            status: StatusLine::new(),
-        })
-    }
-
-    /// Finishes the files.
-    pub(crate) fn finish(self) -> Result<Sidecar, Failure> {
-        self.recorder.finish().map_err(stopped)
-    }
-}
-
-/// A write error ends the recording.
-#[expect(
-    clippy::needless_pass_by_value,
-    reason = "used where errors are mapped"
-)]
-fn stopped(error: crepitus_recording::RecordError) -> Failure {
-    Failure::Work(format!(
-        "{error}; the recording ends here, and `crepitus report` can read what was written"
-    ))
-}
-
-impl Follower for Recording {
-    fn block(&mut self, client: &mut Client<Line>, block: &Block) -> Result<(), Failure> {
-        if self.announced != Some(block.revision) {
-            let (revision, values) = client.parameters().map_err(failure)?;
-            self.recorder.announce(revision, &values);
-            self.announced = Some(block.revision);
-        }
-        self.status.block(block);
-        self.recorder.block(block).map_err(stopped)
-    }
-
-    fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure> {
-        self.recorder.flush().map_err(stopped)?;
-        self.status.show(client.accounting());
-        Ok(false)
+    match totals {
+        None if as_json => print_json(&json!({ "file": null })),
+        None => print("no sample came: nothing was recorded\n"),
+        Some(totals) if as_json => print_json(&json!({ "file": file, "telemetry": totals })),
+        Some(totals) => print_ended(file, &totals),
     }
 }

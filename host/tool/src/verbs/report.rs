@@ -6,11 +6,12 @@ use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crate::pictures::Pictures;
 use crate::progress::Progress;
+use crate::recorded::beside;
 use crate::results::{self, footer, report_files};
 use crate::sections::torque_levels;
 use clap::Args;
-use crepitus_protocol::{Revision, TICK_S};
-use crepitus_recording::{Analysis, ArmingPushes, Recording, RecordingSummary, Sidecar};
+use crepitus_protocol::TICK_S;
+use crepitus_recording::{Analysis, ArmingPushes, Damage, History, Recording, RecordingSummary};
 use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
 use crepitus_scene::trace::{Column, ColumnKind};
 use serde_json::json;
@@ -46,15 +47,23 @@ const PROGRESS_ROWS: u64 = 1 << 14;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  crepitus report out/demo/recording.csv
-  crepitus report monday.csv --out monday-report --pictures")]
+  crepitus report monday.parquet
+  crepitus report monday.parquet --out monday-report --pictures
+  crepitus report damaged --salvage
+
+What is missing is said first. A recording that was interrupted is reported up to where it ends; a \
+damaged one is refused, or, with --salvage, reported as far as it can be read.")]
 pub(crate) struct Arguments {
-    /// The recording: its CSV file.
+    /// The recording.
     file: PathBuf,
 
-    /// Folder for report.html and summary.json [default: FILE without its extension].
+    /// Folder for report.html and summary.json [default: FILE-report].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+
+    /// Report what is readable of a damaged recording.
+    #[arg(long)]
+    salvage: bool,
 
     #[command(flatten)]
     pictures: Pictures,
@@ -62,11 +71,16 @@ pub(crate) struct Arguments {
 
 /// Reports.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let recording = Recording::open(&arguments.file).map_err(Failure::input)?;
+    let damage = if arguments.salvage {
+        Damage::Salvage
+    } else {
+        Damage::Refuse
+    };
+    let recording = Recording::open(&arguments.file, damage).map_err(Failure::input)?;
     let out = arguments
         .out
         .clone()
-        .unwrap_or_else(|| arguments.file.with_extension(""));
+        .unwrap_or_else(|| beside(&arguments.file, "-report"));
     interrupt::listen();
     let summary = write(&recording, &out, &arguments.pictures)?;
     if as_json {
@@ -81,24 +95,35 @@ pub(super) fn write(
     out: &Path,
     pictures: &Pictures,
 ) -> Result<RecordingSummary, Failure> {
-    let sidecar = recording.sidecar();
+    let parameters = recording.parameters();
     let folder = results::folder(out)?;
-    let expected = sidecar.telemetry.received;
+    let expected = recording.books().totals.received;
     let setup = Setup {
         columns: &COLUMNS,
         rows_expected: expected,
         row_step_s: TICK_S,
-        levels: levels(sidecar),
+        levels: levels(parameters),
     };
     let mut collector = Collector::new(&setup);
-    for (at, name) in sidecar.changes() {
-        collector.mark(Mark { at, name });
-    }
+    let mut changes = parameters.changes().peekable();
+    let mut changed_at_s = Vec::new();
+    let mut previous_s = 0.0;
     let mut pushes = ArmingPushes::default();
-    let mut analysis = Analysis::new(sidecar);
+    let mut analysis = Analysis::new(recording);
     let mut progress = Progress::of_reading();
     for (n, row) in (0_u64..).zip(recording.rows().map_err(Failure::input)?) {
         let row = row.map_err(Failure::input)?;
+        while let Some((_, name)) = changes.next_if(|(first_row, _)| *first_row <= n) {
+            if n > 0 {
+                let at = row.time_s;
+                collector.mark(Mark { at, name });
+            }
+            changed_at_s.push(row.time_s);
+        }
+        if row.time_s - previous_s > 1.5 * TICK_S {
+            collector.gap(previous_s, row.time_s);
+        }
+        previous_s = row.time_s;
         let derived = analysis.row(&row);
         collector.row(&[
             row.time_s,
@@ -126,10 +151,10 @@ pub(super) fn write(
     }
     let summary = analysis.finish();
     let text = Text {
-        title: sidecar.title.clone(),
+        title: recording.metadata().title.clone(),
         description: None,
         warnings: summary.warnings.clone(),
-        sections: tables::sections(&summary, sidecar),
+        sections: tables::sections(&summary, recording.books(), &changed_at_s),
         footer: footer(),
     };
     let figures = collector.finish();
@@ -141,10 +166,11 @@ pub(super) fn write(
 }
 
 /// The torque levels, if they were the same all the time.
-fn levels(sidecar: &Sidecar) -> Option<TorqueLevels> {
-    let mut sets = sidecar.parameters.iter().map(|set| {
-        let settings = sidecar.joint_settings(Revision(set.revision))?;
-        Some(torque_levels(&settings))
+fn levels(parameters: &History) -> Option<TorqueLevels> {
+    let mut in_force = parameters.in_force();
+    let mut sets = parameters.0.iter().map(|set| {
+        in_force.at(set.first_row);
+        Some(torque_levels(&in_force.joint_settings()?))
     });
     let first = sets.next()??;
     sets.all(|other| other == Some(first)).then_some(first)
@@ -162,8 +188,8 @@ pub(crate) fn in_brief(s: &RecordingSummary, out: &Path) -> String {
         )
     });
     format!(
-        "{}\n  {:.3} s, {:.3} s of it armed, with {} breaks and {} sticks\n{torque}  \
-         {} samples produced = {} received + {} dropped\n{warnings}report: {}\n",
+        "{}\n{warnings}  {:.3} s, {:.3} s of it armed, with {} breaks and {} sticks\n{torque}  \
+         {} samples produced = {} received + {} dropped\nreport: {}\n",
         s.title,
         s.duration_s,
         s.armed_s,

@@ -1,15 +1,17 @@
 //! The tables of a recording's report.
 
 use crate::sections::{section, torque_section};
-use crepitus_recording::{Controller, ParameterSet, RecordingSummary, Sidecar, seconds};
+use crepitus_recording::{Books, Controller, ParameterSet, RecordingSummary, seconds};
 use crepitus_report::Section;
 use serde_json::Value;
 
 /// Gaps that are shown.
 const SHOWN_GAPS: usize = 20;
 
-pub(super) fn sections(s: &RecordingSummary, sidecar: &Sidecar) -> Vec<Section> {
-    let mut sections = vec![recording(s)];
+/// `changed_at_s`: when each parameter set took effect.
+pub(super) fn sections(s: &RecordingSummary, books: &Books, changed_at_s: &[f64]) -> Vec<Section> {
+    let mut sections: Vec<_> = missing(books).into_iter().collect();
+    sections.push(recording(s));
     sections.extend(
         s.model_torque
             .map(|t| torque_section("Torque of the model while armed", &t)),
@@ -25,21 +27,29 @@ pub(super) fn sections(s: &RecordingSummary, sidecar: &Sidecar) -> Vec<Section> 
             .map(|(reason, time_s)| ((*reason).to_owned(), format!("{time_s:.3} s")));
         sections.push(section("What limited the torque", rows));
     }
-    let mut before: Option<&ParameterSet> = None;
-    for set in &s.parameters {
-        sections.push(parameters(set, before, sidecar));
-        before = Some(set);
-    }
-    if !sidecar.drops.is_empty() {
-        let rows = sidecar.drops.iter().take(SHOWN_GAPS).map(|gap| {
-            (
-                format!("from tick {}", gap.first_tick),
-                format!("{} samples, {:.4} s", gap.samples, seconds(gap.samples)),
-            )
-        });
-        sections.push(section("Missing samples", rows));
+    for (n, (set, at_s)) in s.parameters.0.iter().zip(changed_at_s).enumerate() {
+        sections.push(parameters(set, (n > 0).then_some(*at_s)));
     }
     sections
+}
+
+/// What is missing comes first.
+fn missing(books: &Books) -> Option<Section> {
+    let rows = books.gaps.iter().take(SHOWN_GAPS).map(|gap| {
+        let (samples, cause) = (gap.samples, gap.cause.text());
+        (
+            format!("from tick {}", gap.first_tick),
+            format!("{samples} samples, {:.4} s: {cause}", seconds(samples)),
+        )
+    });
+    let title = match books.gap_count {
+        0 => return None,
+        n if n > SHOWN_GAPS as u64 => {
+            format!("Missing samples: the first {SHOWN_GAPS} of {n} gaps")
+        }
+        _ => "Missing samples".to_owned(),
+    };
+    Some(section(&title, rows))
 }
 
 fn recording(s: &RecordingSummary) -> Section {
@@ -76,20 +86,16 @@ fn recording(s: &RecordingSummary) -> Section {
 }
 
 /// All of the first set, and of each later one what has changed.
-fn parameters(set: &ParameterSet, before: Option<&ParameterSet>, sidecar: &Sidecar) -> Section {
-    let begin = sidecar
-        .parameters
-        .first()
-        .map_or(0, |first| first.first_tick);
-    let at_s = seconds(set.first_tick.saturating_sub(begin));
-    let title = match before {
+fn parameters(set: &ParameterSet, at_s: Option<f64>) -> Section {
+    let title = match at_s {
         None => format!("Parameters: revision {}", set.revision),
-        Some(_) => format!("Revision {}, from {at_s:.3} s on", set.revision),
+        Some(at_s) => format!("Revision {}, from {at_s:.3} s on", set.revision),
     };
-    let rows = set
-        .values
+    let Some(values) = &set.values else {
+        return section(&title, [("values", "unknown".to_owned())]);
+    };
+    let rows = values
         .iter()
-        .filter(|(name, value)| before.is_none_or(|before| before.values.get(*name) != Some(value)))
         .map(|(name, value)| (name.clone(), shown(value)));
     section(&title, rows)
 }

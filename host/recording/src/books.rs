@@ -1,0 +1,434 @@
+//! Accounting of a recording: every sample that the drive produced while a
+//! program recorded it is a row, or missing with a cause.
+//!
+//! ```text
+//! produced = received + dropped
+//! dropped  = by the device + on the way + while not connected + damaged in the file
+//! ```
+//!
+//! It begins at the first tick of the subscription. Each block carries the
+//! number of samples that the device has not sent so far; what is missing
+//! beyond that was lost after it.
+
+use crepitus_protocol::telemetry::Block;
+use serde::{Deserialize, Serialize};
+
+/// Limit of listed gaps; further ones are only counted.
+const LISTED_GAPS: usize = 1_000;
+
+/// Where a subscription begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Begin {
+    /// Its first tick.
+    pub first_tick: u64,
+    /// Samples before it that the device has not sent.
+    pub dropped: u32,
+    /// The drive's start that counts them, as in the flags of its blocks.
+    pub start: u8,
+}
+
+/// Why samples are missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    /// The device has not sent them, and says so.
+    Device,
+    /// They were lost between the device and the file.
+    OnTheWay,
+    /// Some of them one, some the other.
+    Both,
+    /// The connection was lost and opened again.
+    NotConnected,
+    /// That part of the file is damaged.
+    Damaged,
+}
+
+impl Cause {
+    /// In a few words.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Device => "dropped by the device",
+            Self::OnTheWay => "lost on the way",
+            Self::Both => "dropped by the device or lost on the way",
+            Self::NotConnected => "not connected",
+            Self::Damaged => "damaged in the file",
+        }
+    }
+}
+
+/// Consecutive missing samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Gap {
+    /// Number of rows before it.
+    pub row: u64,
+    /// The first missing tick.
+    pub first_tick: u64,
+    /// Number of missing samples.
+    pub samples: u64,
+    /// Why.
+    pub cause: Cause,
+}
+
+/// Sums of samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Totals {
+    /// Produced by the drive from the first tick of the subscription to the last
+    /// recorded one.
+    pub produced: u64,
+    /// Recorded.
+    pub received: u64,
+    /// Missing, for any reason.
+    pub dropped: u64,
+    /// Of these, not sent by the device.
+    pub by_device: u64,
+    /// Of these, produced while the connection was lost.
+    pub not_connected: u64,
+    /// Of these, damaged in the file.
+    pub damaged: u64,
+}
+
+impl Totals {
+    /// Missing samples that were lost between the device and the file.
+    pub fn on_the_way(&self) -> u64 {
+        self.dropped
+            .saturating_sub(self.by_device)
+            .saturating_sub(self.not_connected)
+            .saturating_sub(self.damaged)
+    }
+}
+
+/// Rows with increasing ticks: from a subscription, or a restart of the drive,
+/// to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Segment {
+    /// Number of rows before it.
+    pub first_row: u64,
+    /// Tick at which its accounting begins.
+    pub first_tick: u64,
+    /// The lowest bits of the drive's boot counter.
+    pub start: u8,
+}
+
+/// The books of a recording.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Books {
+    /// The sums.
+    pub totals: Totals,
+    /// In order.
+    pub segments: Vec<Segment>,
+    /// The first thousand gaps.
+    pub gaps: Vec<Gap>,
+    /// Number of gaps.
+    pub gap_count: u64,
+    /// Restarts of the drive; its ticks restart from 0.
+    pub drive_restarts: u32,
+}
+
+impl Books {
+    fn gap(&mut self, first_tick: u64, samples: u64, cause: Cause) {
+        if samples == 0 {
+            return;
+        }
+        self.gap_count += 1;
+        if self.gaps.len() < LISTED_GAPS {
+            let row = self.totals.received;
+            self.gaps.push(Gap {
+                row,
+                first_tick,
+                samples,
+                cause,
+            });
+        }
+        self.totals.produced += samples;
+        self.totals.dropped += samples;
+    }
+
+    fn segment(&mut self, first_tick: u64, start: u8) {
+        let segment = Segment {
+            first_row: self.totals.received,
+            first_tick,
+            start,
+        };
+        self.segments.push(segment);
+    }
+}
+
+/// Keeps the books as blocks arrive.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Ledger {
+    books: Books,
+    /// Of the current segment.
+    next_tick: u64,
+    start: Option<u8>,
+    /// The device's own count.
+    said: u32,
+    /// A part of the file before the next block is damaged.
+    is_damaged: bool,
+}
+
+impl Ledger {
+    /// A subscription begins, the first one or after a lost connection.
+    pub(crate) fn subscribed(&mut self, begin: Begin) {
+        if self.start == Some(begin.start) && begin.first_tick >= self.next_tick {
+            let missing = begin.first_tick - self.next_tick;
+            self.books.gap(self.next_tick, missing, Cause::NotConnected);
+            self.books.totals.not_connected += missing;
+        } else if self.start.is_some_and(|start| start != begin.start) {
+            self.books.drive_restarts += 1;
+        }
+        self.begin(begin);
+    }
+
+    fn begin(&mut self, begin: Begin) {
+        self.books.segment(begin.first_tick, begin.start);
+        self.next_tick = begin.first_tick;
+        self.start = Some(begin.start);
+        self.said = begin.dropped;
+    }
+
+    /// Takes the next block; false, and nothing else, if it is not newer than
+    /// the one before.
+    #[must_use]
+    pub(crate) fn block(&mut self, block: &Block) -> bool {
+        let start = block.flags.start();
+        if self.start != Some(start) {
+            self.books.drive_restarts += u32::from(self.start.is_some());
+            // The device counts from its start, too.
+            self.begin(Begin {
+                first_tick: block.first_tick.saturating_sub(u64::from(block.dropped)),
+                dropped: 0,
+                start,
+            });
+        } else if block.first_tick < self.next_tick {
+            return false;
+        }
+        let missing = block.first_tick - self.next_tick;
+        let by_device = u64::from(block.dropped.wrapping_sub(self.said)).min(missing);
+        let damaged = if self.is_damaged {
+            missing - by_device
+        } else {
+            0
+        };
+        let cause = match (damaged, by_device) {
+            (1.., _) => Cause::Damaged,
+            (_, 0) => Cause::OnTheWay,
+            _ if by_device == missing => Cause::Device,
+            _ => Cause::Both,
+        };
+        self.books.gap(self.next_tick, missing, cause);
+        let totals = &mut self.books.totals;
+        totals.by_device += by_device;
+        totals.damaged += damaged;
+        let samples = block.samples.len() as u64;
+        totals.produced += samples;
+        totals.received += samples;
+        self.next_tick = block.end_tick();
+        self.said = block.dropped;
+        self.is_damaged = false;
+        true
+    }
+
+    /// What is missing before the next block may be damaged in the file.
+    pub(crate) fn damaged(&mut self) {
+        self.is_damaged = true;
+    }
+
+    /// The recorder had received so many samples up to here.
+    pub(crate) fn expect_received(&mut self, received: u64) {
+        let totals = &mut self.books.totals;
+        let absent = received.saturating_sub(totals.received);
+        let most = totals.damaged + totals.on_the_way();
+        totals.damaged = totals.damaged.max(absent.min(most));
+    }
+
+    pub(crate) fn books(&self) -> &Books {
+        &self.books
+    }
+
+    pub(crate) fn into_books(self) -> Books {
+        self.books
+    }
+
+    /// The tick after the last sample.
+    pub(crate) fn next_tick(&self) -> u64 {
+        self.next_tick
+    }
+}
+
+/// Counts rows and gaps in the ticks alone, to compare them with the books.
+#[derive(Clone, Debug)]
+pub(crate) struct Recount<'b> {
+    books: &'b Books,
+    rows: u64,
+    next_tick: u64,
+    segments: usize,
+    dropped: u64,
+    gaps: u64,
+    disordered: u64,
+}
+
+impl<'b> Recount<'b> {
+    pub(crate) fn new(books: &'b Books) -> Self {
+        Self {
+            books,
+            rows: 0,
+            next_tick: 0,
+            segments: 0,
+            dropped: 0,
+            gaps: 0,
+            disordered: 0,
+        }
+    }
+
+    /// Takes the next row's tick; false if it is not newer than the one before.
+    pub(crate) fn row(&mut self, tick: u64) -> bool {
+        while let Some(segment) = self.books.segments.get(self.segments)
+            && segment.first_row <= self.rows
+        {
+            self.enter(segment);
+        }
+        self.rows += 1;
+        if tick < self.next_tick {
+            self.disordered += 1;
+            return false;
+        }
+        self.missing(tick - self.next_tick);
+        self.next_tick = tick + 1;
+        true
+    }
+
+    fn missing(&mut self, samples: u64) {
+        self.dropped += samples;
+        self.gaps += u64::from(samples > 0);
+    }
+
+    fn enter(&mut self, segment: &Segment) {
+        let before = self
+            .segments
+            .checked_sub(1)
+            .map(|last| self.books.segments[last]);
+        // The same start: samples were produced meanwhile.
+        if before.is_some_and(|before| before.start == segment.start) {
+            self.missing(segment.first_tick.saturating_sub(self.next_tick));
+        }
+        self.segments += 1;
+        self.next_tick = segment.first_tick;
+    }
+
+    /// What differs from the books, in words; none if they agree.
+    pub(crate) fn differences(mut self) -> Vec<String> {
+        while let Some(segment) = self.books.segments.get(self.segments) {
+            self.enter(segment);
+        }
+        let totals = &self.books.totals;
+        let produced = self.rows + self.dropped;
+        let counts = [
+            ("samples produced", produced, totals.produced),
+            ("rows", self.rows, totals.received),
+            ("missing samples", self.dropped, totals.dropped),
+            ("gaps", self.gaps, self.books.gap_count),
+            ("rows out of order", self.disordered, 0),
+        ];
+        counts
+            .into_iter()
+            .filter(|(_, counted, said)| counted != said)
+            .map(|(what, counted, said)| format!("{what}: {counted}, but its books say {said}"))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_protocol::State;
+    use crepitus_protocol::telemetry::BlockFlags;
+
+    fn block(first_tick: u64, dropped: u32, start: u16) -> Block {
+        Block {
+            first_tick,
+            dropped,
+            flags: BlockFlags::new(State::Disarmed, false, start),
+            ..Block::default()
+        }
+    }
+
+    fn begin(first_tick: u64, dropped: u32, start: u8) -> Begin {
+        Begin {
+            first_tick,
+            dropped,
+            start,
+        }
+    }
+
+    /// Every cause once: sums, gaps, and the recount of the same rows.
+    #[test]
+    fn every_missing_sample_has_a_cause() {
+        let mut ledger = Ledger::default();
+        let mut ticks = Vec::new();
+        let mut take = |ledger: &mut Ledger, block: &Block| {
+            assert!(ledger.block(block));
+            ticks.extend(block.first_tick..block.end_tick());
+        };
+        ledger.subscribed(begin(1_000, 60, 1));
+        // 20 on the way before the first block.
+        take(&mut ledger, &block(1_020, 60, 1));
+        // 40 by the device.
+        take(&mut ledger, &block(1_080, 100, 1));
+        // 20 by the device, 20 on the way.
+        take(&mut ledger, &block(1_140, 120, 1));
+        assert!(!ledger.block(&block(1_140, 120, 1)), "doubled");
+        ledger.damaged();
+        take(&mut ledger, &block(1_200, 120, 1));
+        // The connection is lost for 80 samples.
+        ledger.subscribed(begin(1_300, 180, 1));
+        take(&mut ledger, &block(1_300, 180, 1));
+        // The drive restarts and drops its first block.
+        take(&mut ledger, &block(20, 20, 2));
+        take(&mut ledger, &block(40, 20, 2));
+        let books = ledger.into_books();
+        assert_eq!(
+            books.totals,
+            Totals {
+                produced: 380,
+                received: 140,
+                dropped: 240,
+                by_device: 80,
+                not_connected: 80,
+                damaged: 40,
+            }
+        );
+        assert_eq!(books.totals.on_the_way(), 40);
+        let causes: Vec<_> = books.gaps.iter().map(|gap| (gap.row, gap.cause)).collect();
+        assert_eq!(
+            causes,
+            [
+                (0, Cause::OnTheWay),
+                (20, Cause::Device),
+                (40, Cause::Both),
+                (60, Cause::Damaged),
+                (80, Cause::NotConnected),
+                (100, Cause::Device),
+            ]
+        );
+        assert_eq!((books.drive_restarts, books.segments.len()), (1, 3));
+        let recount = |ticks: &[u64]| {
+            let mut recount = Recount::new(&books);
+            for tick in ticks {
+                recount.row(*tick);
+            }
+            recount.differences()
+        };
+        assert_eq!(recount(&ticks), [""; 0]);
+        for wrong in [0, 50, 139] {
+            let mut fewer = ticks.clone();
+            fewer.remove(wrong);
+            assert!(!recount(&fewer).is_empty(), "row {wrong} is missing");
+            let mut more = ticks.clone();
+            more.insert(wrong, ticks[wrong]);
+            assert!(!recount(&more).is_empty(), "row {wrong} is there twice");
+        }
+        let mut swapped = ticks.clone();
+        swapped.swap(30, 31);
+        assert!(!recount(&swapped).is_empty());
+    }
+}

@@ -1,0 +1,253 @@
+//! Writing of a recording as the samples arrive.
+
+use super::disk::{Background, Disk};
+use super::frame::{Checkpoint, Entry};
+use super::{CHECKPOINT_BLOCKS, MAGIC};
+use crate::books::{Begin, Ledger, Totals};
+use crate::metadata::Metadata;
+use crate::parameters::named_values;
+use crepitus_protocol::telemetry::Block;
+use crepitus_protocol::{Lane, Revision, Values, frame};
+use sha2::{Digest, Sha256};
+use std::fs::OpenOptions;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Parameter entries of which one holds all parameters.
+const WHOLE_EVERY: u64 = 16;
+
+/// Errors of recording.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// A file of this name exists.
+    #[error("{0} already exists: choose another name, or remove it")]
+    Exists(PathBuf),
+    /// A write error.
+    #[error("{path}: {doing}: {source}")]
+    Disk {
+        /// The file.
+        path: PathBuf,
+        /// What was being done.
+        doing: &'static str,
+        /// Why not.
+        source: io::Error,
+    },
+}
+
+/// A recording in progress.
+#[derive(Debug)]
+pub struct Recorder<D = Background> {
+    path: PathBuf,
+    disk: D,
+    /// To be appended.
+    pending: Vec<u8>,
+    /// Bytes since the last checkpoint.
+    sum: Sha256,
+    id: String,
+    checkpoints: u64,
+    /// Blocks since the last checkpoint.
+    blocks: u64,
+    ledger: Ledger,
+    /// Of the last block.
+    revision: Option<Revision>,
+    /// The last known values that were written.
+    values: Option<Values>,
+    /// Parameter entries.
+    sets: u64,
+    /// Announced before their first block.
+    announced: Vec<(Revision, Values)>,
+}
+
+impl Recorder {
+    /// Begins a recording in a file that must not exist.
+    ///
+    /// # Errors
+    /// [`RecordError`] if it exists, or cannot be written.
+    pub fn create(path: &Path, metadata: &Metadata) -> Result<Self, RecordError> {
+        let file = OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(path)
+            .map_err(|error| match error.kind() {
+                io::ErrorKind::AlreadyExists => RecordError::Exists(path.to_owned()),
+                _ => RecordError::Disk {
+                    path: path.to_owned(),
+                    doing: "cannot be created",
+                    source: error,
+                },
+            })?;
+        Self::on(Background::new(file), path, metadata)
+    }
+}
+
+impl<D: Disk> Recorder<D> {
+    /// Begins a recording on an empty disk; errors name `path`.
+    ///
+    /// # Errors
+    /// [`RecordError`] if it cannot be written.
+    pub fn on(disk: D, path: &Path, metadata: &Metadata) -> Result<Self, RecordError> {
+        let mut recorder = Self {
+            path: path.to_owned(),
+            disk,
+            pending: Vec::new(),
+            sum: Sha256::new(),
+            id: metadata.id.clone(),
+            checkpoints: 0,
+            blocks: 0,
+            ledger: Ledger::default(),
+            revision: None,
+            values: None,
+            sets: 0,
+            announced: Vec::new(),
+        };
+        recorder.put(MAGIC);
+        recorder.entry(&Entry::Header(metadata.clone()))?;
+        recorder.flush()?;
+        Ok(recorder)
+    }
+
+    /// A subscription begins, the first one or after a lost connection.
+    ///
+    /// # Errors
+    /// [`RecordError`] if it cannot be written.
+    pub fn subscribed(&mut self, begin: Begin) -> Result<(), RecordError> {
+        self.ledger.subscribed(begin);
+        self.entry(&Entry::Subscribed(begin))
+    }
+
+    /// Announces the parameters of a revision, before its first block.
+    pub fn announce(&mut self, revision: Revision, values: &Values) {
+        self.announced.retain(|(known, _)| *known != revision);
+        self.announced.push((revision, *values));
+    }
+
+    /// Takes a block; one that is not newer than the last is left out.
+    ///
+    /// # Errors
+    /// [`RecordError`] if a checkpoint cannot be written.
+    pub fn block(&mut self, block: &Block) -> Result<(), RecordError> {
+        if !self.ledger.block(block) {
+            return Ok(());
+        }
+        self.note_parameters(block.revision)?;
+        let frame = frame::encode(Lane::Telemetry, block)
+            .map_err(|_| self.failed("a block is too long", io::ErrorKind::InvalidData.into()))?;
+        self.put(&frame);
+        self.blocks += 1;
+        if self.blocks >= CHECKPOINT_BLOCKS {
+            self.checkpoint(false)?;
+            self.flush()?;
+            self.disk
+                .sync()
+                .map_err(|error| self.failed(WRITING, error))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the parameters of a revision, if they are not those in force.
+    fn note_parameters(&mut self, revision: Revision) -> Result<(), RecordError> {
+        let at = (self.announced.iter()).position(|(known, _)| *known == revision);
+        let values = at.map(|at| self.announced.remove(at).1);
+        if self.revision == Some(revision) && (values.is_none() || values == self.values) {
+            return Ok(());
+        }
+        self.revision = Some(revision);
+        // Now and then all, so that damage before does not matter any more.
+        let is_whole =
+            values.is_some() && (self.values.is_none() || self.sets.is_multiple_of(WHOLE_EVERY));
+        let changed = values.map(|values| {
+            let mut named = named_values(&values);
+            if let Some(before) = self.values.replace(values)
+                && !is_whole
+            {
+                let before = named_values(&before);
+                named.retain(|name, value| before.get(name) != Some(value));
+            }
+            named
+        });
+        let number = self.sets;
+        self.sets += 1;
+        self.entry(&Entry::Parameters {
+            number,
+            revision: revision.0,
+            is_whole,
+            values: changed,
+        })
+    }
+
+    /// Sums so far.
+    pub fn totals(&self) -> Totals {
+        self.ledger.books().totals
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Appends what is pending to the file.
+    ///
+    /// # Errors
+    /// [`RecordError`] if that fails. What was written before can be read.
+    pub fn flush(&mut self) -> Result<(), RecordError> {
+        if self.pending.is_empty() {
+            return Ok(());
+        }
+        let written = self.disk.append(&self.pending);
+        self.pending.clear();
+        written.map_err(|error| self.failed(WRITING, error))
+    }
+
+    /// Finishes the recording: the last checkpoint, then everything is durable.
+    ///
+    /// # Errors
+    /// [`RecordError`] if a write fails.
+    pub fn finish(mut self) -> Result<Totals, RecordError> {
+        self.checkpoint(true)?;
+        self.flush()?;
+        self.disk
+            .finish()
+            .map_err(|error| self.failed(WRITING, error))?;
+        Ok(self.totals())
+    }
+
+    fn checkpoint(&mut self, is_end: bool) -> Result<(), RecordError> {
+        let sum = std::mem::take(&mut self.sum).finalize();
+        let checkpoint = Entry::Checkpoint(Checkpoint {
+            id: self.id.clone(),
+            number: self.checkpoints,
+            sha256: crate::hex(&sum),
+            totals: self.totals(),
+            is_end,
+        });
+        self.entry(&checkpoint)?;
+        // It is covered by its own checksum.
+        self.sum = Sha256::new();
+        self.checkpoints += 1;
+        self.blocks = 0;
+        Ok(())
+    }
+
+    fn entry(&mut self, entry: &Entry) -> Result<(), RecordError> {
+        let frame = entry.frame().map_err(|error| self.failed(WRITING, error))?;
+        self.put(&frame);
+        Ok(())
+    }
+
+    fn put(&mut self, bytes: &[u8]) {
+        self.sum.update(bytes);
+        self.pending.extend(bytes);
+    }
+
+    fn failed(&self, doing: &'static str, source: io::Error) -> RecordError {
+        RecordError::Disk {
+            path: self.path.clone(),
+            doing,
+            source,
+        }
+    }
+}
+
+/// What fails.
+const WRITING: &str = "the samples cannot be written";

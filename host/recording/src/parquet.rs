@@ -1,0 +1,71 @@
+//! A recording as one Parquet file.
+//!
+//! ```text
+//! PAR1 ‖ group ‖ seal ‖ group ‖ seal … ‖ footer ‖ PAR1
+//! ```
+//!
+//! A *group* holds two seconds of rows, column by column. Its *seal*
+//! ([`seal`]) has the group's checksum and a footer for this group alone, so
+//! that the rest can be read if any part of the file is lost. Other readers
+//! follow the offsets in the footer and skip the seals.
+//!
+//! The footer's key-value metadata has the recording's own (`crepitus`: JSON)
+//! and `crepitus_sha256`, the SHA-256 of the whole file with that value's 64
+//! digits replaced by zeros: every bit of the file is covered.
+
+mod columns;
+mod reader;
+mod seal;
+mod words;
+mod writer;
+
+use crate::books::Books;
+use crate::metadata::Metadata;
+use crate::parameters::History;
+use parquet::errors::ParquetError;
+pub(crate) use reader::{ParquetRows, Reader};
+use serde::{Deserialize, Serialize};
+use std::io;
+pub use writer::write;
+
+/// Rows of a group: two seconds.
+const GROUP_ROWS: usize = 40_000;
+
+/// Keys of the footer's metadata.
+const KEY: &str = "crepitus";
+const SUM_KEY: &str = "crepitus_sha256";
+
+/// Stands for the file's own checksum while that is computed.
+const NO_SUM: [u8; 64] = [b'0'; 64];
+
+/// All of a recording but its rows.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct About {
+    #[serde(flatten)]
+    pub(crate) metadata: Metadata,
+    pub(crate) is_complete: bool,
+    pub(crate) parameters: History,
+    pub(crate) books: Books,
+}
+
+/// Where the checksum stands in the bytes of a footer.
+fn sum_place(footer: &[u8]) -> Option<usize> {
+    let key = SUM_KEY.as_bytes();
+    let at = footer
+        .windows(key.len())
+        .rposition(|window| window == key)?;
+    // Behind the key: the next field's type, and its length.
+    let value = at + key.len() + 2;
+    (value + NO_SUM.len() <= footer.len()).then_some(value)
+}
+
+/// An error of the library.
+fn other(error: ParquetError) -> io::Error {
+    match error {
+        ParquetError::External(source) => match source.downcast::<io::Error>() {
+            Ok(error) => *error,
+            Err(source) => io::Error::other(source),
+        },
+        error => io::Error::other(error),
+    }
+}

@@ -1,0 +1,298 @@
+//! Reading: only what its checksums say is right is handed to the decoder.
+
+use super::seal::{self, Seal};
+use super::{About, KEY, NO_SUM, columns, other};
+use crate::books::{Books, Recount};
+use crate::findings::Findings;
+use crate::row::Row;
+use bytes::{Buf, Bytes, buf};
+use crepitus_protocol::frame::CRC;
+use parquet::errors::Result as ParquetResult;
+use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
+use parquet::file::reader::{ChunkReader, Length};
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A Parquet file that was checked.
+#[derive(Debug)]
+pub(crate) struct Reader {
+    file: File,
+    /// Of the groups that are in order.
+    seals: Vec<Seal>,
+}
+
+/// Bytes of the file's end: the footer's length and `PAR1`.
+const TAIL: u64 = 8;
+
+impl Reader {
+    /// Reads all of it once.
+    pub(crate) fn open(path: &Path) -> io::Result<(Self, About, Findings)> {
+        let file = File::open(path)?;
+        let mut findings = Findings::default();
+        let footer = footer(&file)?;
+        let is_whole = sum_is_right(&file, footer.as_ref())?;
+        let mut seals = seal::find(&file)?;
+        seals.sort_by_key(|seal| seal.first_row);
+        let mut about = None;
+        if let (true, Some((_, bytes))) = (is_whole, &footer) {
+            about = about_of(&decoded(bytes)?);
+        }
+        if !is_whole {
+            findings.add("Its checksum is not that of its content".to_owned());
+        }
+        // The first one has no group.
+        about = about.or_else(|| {
+            let mut heads = seals.iter().filter(|seal| seal.bytes == PRELUDE_BYTES);
+            heads.find_map(|seal| about_of(&seal.footer))
+        });
+        if about.is_none() {
+            let (_, bytes) = footer.as_ref().ok_or_else(unreadable)?;
+            about = decoded(bytes).ok().as_ref().and_then(about_of);
+            findings.add("Its metadata could not be checked".to_owned());
+        }
+        let mut about = about.ok_or_else(unreadable)?;
+        let mut reader = Self {
+            file,
+            seals: Vec::new(),
+        };
+        reader.keep(seals, &mut about, &mut findings)?;
+        Ok((reader, about, findings))
+    }
+
+    /// Keeps the groups that are in order, and counts their rows.
+    fn keep(
+        &mut self,
+        seals: Vec<Seal>,
+        about: &mut About,
+        findings: &mut Findings,
+    ) -> io::Result<()> {
+        let books = about.books.clone();
+        let mut recount = Recount::new(&books);
+        let mut kept = Vec::new();
+        let mut next_row = 0;
+        let groups = seals.into_iter().filter(|seal| seal.rows() > 0);
+        for seal in groups {
+            if seal.first_row < next_row {
+                findings.add(format!("Rows from {} on are there twice", seal.first_row));
+                continue;
+            }
+            let Some(rows) = self.group(&seal)? else {
+                continue;
+            };
+            if seal.first_row > next_row {
+                findings.add(format!(
+                    "Rows {next_row} to {} of {} are damaged",
+                    seal.first_row - 1,
+                    books.totals.received
+                ));
+            }
+            for row in &rows {
+                recount.row(row.tick);
+            }
+            next_row = seal.first_row + rows.len() as u64;
+            kept.push((seal.first_row, rows.len() as u64));
+            self.seals.push(seal);
+        }
+        if next_row < books.totals.received {
+            findings.add(format!(
+                "Rows {next_row} to {} are missing at its end",
+                books.totals.received - 1
+            ));
+        }
+        if findings.is_empty() {
+            for difference in recount.differences() {
+                findings.add(format!("It has {difference}"));
+            }
+        } else {
+            forget_lost_rows(about, &kept);
+        }
+        Ok(())
+    }
+
+    /// The rows of a group; none if it is damaged.
+    fn group(&self, seal: &Seal) -> io::Result<Option<Vec<Row>>> {
+        let length = usize::try_from(seal.bytes).map_err(io::Error::other)?;
+        let mut bytes = Vec::new();
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start(seal.first_byte))?;
+        file.take(seal.bytes).read_to_end(&mut bytes)?;
+        if bytes.len() != length || CRC.checksum(&bytes) != seal.crc {
+            return Ok(None);
+        }
+        let group = GroupBytes {
+            first_byte: seal.first_byte,
+            bytes: bytes.into(),
+        };
+        columns::read(&Arc::new(group), seal.footer.row_group(0)).map(Some)
+    }
+
+    pub(crate) fn rows(&self) -> ParquetRows<'_> {
+        ParquetRows {
+            reader: self,
+            due: self.seals.iter(),
+            group: Vec::new().into_iter(),
+        }
+    }
+}
+
+/// Bytes before the first seal.
+const PRELUDE_BYTES: u64 = 4;
+
+fn unreadable() -> io::Error {
+    io::Error::new(
+        io::ErrorKind::InvalidData,
+        "neither its footer nor the seal of any group can be read: nothing is left of it, or \
+         `crepitus record` has not written it",
+    )
+}
+
+/// Where the footer begins, and its bytes.
+fn footer(mut file: &File) -> io::Result<Option<(u64, Vec<u8>)>> {
+    let length = file.metadata()?.len();
+    let Some(tail_at) = length.checked_sub(TAIL) else {
+        return Ok(None);
+    };
+    let mut tail = [0; TAIL as usize];
+    file.seek(SeekFrom::Start(tail_at))?;
+    file.read_exact(&mut tail)?;
+    let [a, b, c, d, ..] = tail;
+    let footer_bytes = u64::from(u32::from_le_bytes([a, b, c, d]));
+    let Some(at) = tail_at.checked_sub(footer_bytes) else {
+        return Ok(None);
+    };
+    let mut footer = Vec::new();
+    file.seek(SeekFrom::Start(at))?;
+    file.read_to_end(&mut footer)?;
+    Ok(Some((at, footer)))
+}
+
+fn decoded(footer: &[u8]) -> io::Result<ParquetMetaData> {
+    let thrift = footer.len().saturating_sub(TAIL as usize);
+    ParquetMetaDataReader::decode_metadata(&footer[..thrift]).map_err(other)
+}
+
+fn about_of(footer: &ParquetMetaData) -> Option<About> {
+    let pairs = footer.file_metadata().key_value_metadata()?;
+    let about = pairs.iter().find(|pair| pair.key == KEY)?;
+    serde_json::from_str(about.value.as_deref()?).ok()
+}
+
+/// Whether the file is the one that was written, to the last bit.
+fn sum_is_right(mut file: &File, footer: Option<&(u64, Vec<u8>)>) -> io::Result<bool> {
+    let Some((footer_byte, footer)) = footer else {
+        return Ok(false);
+    };
+    let Some(at) = super::sum_place(footer) else {
+        return Ok(false);
+    };
+    let mut zeroed = footer.clone();
+    let Some(place) = zeroed.get_mut(at..at + NO_SUM.len()) else {
+        return Ok(false);
+    };
+    let said = place.to_vec();
+    place.copy_from_slice(&NO_SUM);
+    let mut sum = Sha256::new();
+    file.seek(SeekFrom::Start(0))?;
+    let mut before = file.take(*footer_byte);
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        match before.read(&mut buffer)? {
+            0 => break,
+            count => sum.update(&buffer[..count]),
+        }
+    }
+    sum.update(&zeroed);
+    Ok(crate::hex(&sum.finalize()).as_bytes() == said)
+}
+
+/// Numbers of rows are counted anew, where some are lost.
+fn forget_lost_rows(about: &mut About, kept: &[(u64, u64)]) {
+    let kept_before = |row: u64| {
+        kept.iter()
+            .map(|(first, rows)| row.saturating_sub(*first).min(*rows))
+            .sum::<u64>()
+    };
+    let books: &mut Books = &mut about.books;
+    let received = kept_before(u64::MAX);
+    books.totals.damaged += books.totals.received.saturating_sub(received);
+    books.totals.dropped = books.totals.produced.saturating_sub(received);
+    books.totals.received = received;
+    for segment in &mut books.segments {
+        segment.first_row = kept_before(segment.first_row);
+    }
+    for gap in &mut books.gaps {
+        gap.row = kept_before(gap.row);
+    }
+    for set in &mut about.parameters.0 {
+        set.first_row = kept_before(set.first_row);
+    }
+}
+
+/// A group in memory, at its place in the file.
+struct GroupBytes {
+    first_byte: u64,
+    bytes: Bytes,
+}
+
+impl GroupBytes {
+    fn from(&self, start: u64) -> ParquetResult<Bytes> {
+        let at = start
+            .checked_sub(self.first_byte)
+            .and_then(|at| usize::try_from(at).ok())
+            .filter(|at| *at <= self.bytes.len());
+        let at =
+            at.ok_or_else(|| parquet::errors::ParquetError::EOF("outside its group".to_owned()))?;
+        Ok(self.bytes.slice(at..))
+    }
+}
+
+impl Length for GroupBytes {
+    fn len(&self) -> u64 {
+        self.first_byte + self.bytes.len() as u64
+    }
+}
+
+impl ChunkReader for GroupBytes {
+    type T = buf::Reader<Bytes>;
+
+    fn get_read(&self, start: u64) -> ParquetResult<Self::T> {
+        Ok(self.from(start)?.reader())
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> ParquetResult<Bytes> {
+        let bytes = self.from(start)?;
+        if length > bytes.len() {
+            return Err(parquet::errors::ParquetError::EOF(
+                "outside its group".to_owned(),
+            ));
+        }
+        Ok(bytes.slice(..length))
+    }
+}
+
+/// Rows, a group at a time.
+#[derive(Debug)]
+pub(crate) struct ParquetRows<'r> {
+    reader: &'r Reader,
+    due: std::slice::Iter<'r, Seal>,
+    group: std::vec::IntoIter<Row>,
+}
+
+impl ParquetRows<'_> {
+    pub(crate) fn next(&mut self) -> io::Result<Option<Row>> {
+        loop {
+            if let Some(row) = self.group.next() {
+                return Ok(Some(row));
+            }
+            let Some(seal) = self.due.next() else {
+                return Ok(None);
+            };
+            let rows = self.reader.group(seal)?;
+            let changed = || io::Error::other("the file changes while it is read");
+            self.group = rows.ok_or_else(changed)?.into_iter();
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! The columns of words: phase, event, limit, notes.
+
+use crate::row::{NOTES, Row};
+use crepitus_model::render::effects::Phases;
+use crepitus_protocol::LimitReason;
+use crepitus_protocol::telemetry::SampleFlags;
+use std::io;
+
+/// Phase, event, limit and notes.
+pub(super) type Words = [String; 4];
+
+/// The words of a row.
+pub(super) fn of(row: &Row) -> Words {
+    let mut notes = String::new();
+    row.append_notes(&mut notes);
+    let limit = row.flags.limit().name();
+    [row.phase(), row.event(), limit, &notes].map(str::to_owned)
+}
+
+/// The flags of these words.
+pub(super) fn flags([phase, event, limit, notes]: &Words) -> io::Result<SampleFlags> {
+    let wrong = |column: &str, word: &str| {
+        io::Error::new(
+            io::ErrorKind::InvalidData,
+            format!("column {column}: {word:?} is none of its words"),
+        )
+    };
+    let sign = match phase.as_str() {
+        "stick" => 0,
+        "slip+" => 1,
+        "slip-" => -1,
+        _ => return Err(wrong("phase", phase)),
+    };
+    let (breaks, sticks) = match event.as_str() {
+        "" => (false, false),
+        "break" => (true, false),
+        "stick" => (false, true),
+        "both" => (true, true),
+        _ => return Err(wrong("event", event)),
+    };
+    let reason = LimitReason::ALL
+        .into_iter()
+        .find(|reason| reason.name() == limit)
+        .ok_or_else(|| wrong("limit", limit))?;
+    let mut flags = SampleFlags::default()
+        .with_phase(sign)
+        .with(SampleFlags::BREAK, breaks)
+        .with(SampleFlags::STICK, sticks)
+        .with(SampleFlags::ENERGISED, reason != LimitReason::NotArmed)
+        .with_limit(reason);
+    for note in notes.split('+').filter(|note| !note.is_empty()) {
+        flags = match note.split_once(':') {
+            Some((effect, phase)) => Phases::default()
+                .with_named(effect, phase)
+                .map(|phases| flags.with_phases(phases)),
+            None => NOTES
+                .iter()
+                .find(|(_, known)| *known == note)
+                .map(|(bit, _)| flags.with(*bit, true)),
+        }
+        .ok_or_else(|| wrong("notes", notes))?;
+    }
+    Ok(flags)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_read_back_from_their_words() {
+        for reason in LimitReason::ALL {
+            for bits in [
+                0,
+                SampleFlags::SETTLING | SampleFlags::LATE,
+                SampleFlags::LOST | SampleFlags::BREAK,
+                SampleFlags::BREAK | SampleFlags::STICK,
+            ] {
+                for sign in [-1, 0, 1] {
+                    let flags = SampleFlags(bits)
+                        .with_phase(sign)
+                        .with(SampleFlags::ENERGISED, reason != LimitReason::NotArmed)
+                        .with_limit(reason);
+                    let row = Row {
+                        flags,
+                        ..Row::default()
+                    };
+                    assert_eq!(super::flags(&of(&row)).unwrap(), flags);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_word_that_there_is_not_is_refused() {
+        let good = of(&Row::default());
+        for (column, word) in [
+            (0, "slip"),
+            (1, "breaks"),
+            (2, ""),
+            (3, "no-effect:contact"),
+            (3, "bone-shaping:"),
+            (3, "later"),
+        ] {
+            let mut words = good.clone();
+            words[column] = word.to_owned();
+            let error = flags(&words).unwrap_err().to_string();
+            assert!(error.contains(&format!("{word:?}")), "{error}");
+        }
+    }
+}

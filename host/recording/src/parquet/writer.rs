@@ -1,0 +1,168 @@
+//! Writing.
+
+use super::seal::seal;
+use super::{About, GROUP_ROWS, KEY, NO_SUM, SUM_KEY, columns, other};
+use crate::recording::{ReadError, Recording};
+use crate::row::Row;
+use parquet::file::metadata::{FileMetaData, KeyValue};
+use parquet::file::writer::SerializedFileWriter;
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::{self, BufWriter, ErrorKind, Seek, SeekFrom, Write};
+use std::sync::Arc;
+
+/// The file, with what was written since the last seal.
+struct Output<'f> {
+    file: BufWriter<&'f File>,
+    sum: Sha256,
+    length: u64,
+    group: Vec<u8>,
+}
+
+impl Write for Output<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.file.write(bytes)?;
+        let written = &bytes[..count];
+        self.sum.update(written);
+        self.group.extend(written);
+        self.length += count as u64;
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// Writes a recording to an empty file, durably. `progress` gets the number of
+/// rows so far; if it returns false, writing ends with [`ErrorKind::Interrupted`].
+///
+/// # Errors
+/// Of either file.
+pub fn write(
+    recording: &Recording,
+    file: &File,
+    progress: &mut dyn FnMut(u64) -> bool,
+) -> io::Result<()> {
+    let about = About {
+        metadata: recording.metadata().clone(),
+        is_complete: recording.is_complete(),
+        parameters: recording.parameters().clone(),
+        books: recording.books().clone(),
+    };
+    let mut writer = Writer::new(file, serde_json::to_string(&about)?)?;
+    let mut rows = Vec::with_capacity(GROUP_ROWS);
+    for row in recording.rows().map_err(io_error)? {
+        rows.push(row.map_err(io_error)?);
+        if rows.len() == GROUP_ROWS {
+            writer.group(&mut rows)?;
+            if !progress(writer.rows) {
+                return Err(ErrorKind::Interrupted.into());
+            }
+        }
+    }
+    if !rows.is_empty() {
+        writer.group(&mut rows)?;
+    }
+    writer.finish(file)
+}
+
+fn io_error(error: ReadError) -> io::Error {
+    match error {
+        ReadError::Io { source, .. } => source,
+        error => io::Error::other(error),
+    }
+}
+
+struct Writer<'f> {
+    writer: SerializedFileWriter<Output<'f>>,
+    about: KeyValue,
+    rows: u64,
+}
+
+impl<'f> Writer<'f> {
+    fn new(file: &'f File, about: String) -> io::Result<Self> {
+        let output = Output {
+            file: BufWriter::new(file),
+            sum: Sha256::new(),
+            length: 0,
+            group: Vec::new(),
+        };
+        let schema = Arc::new(columns::schema().map_err(other)?);
+        let properties = Arc::new(columns::properties().map_err(other)?);
+        let mut writer = Self {
+            writer: SerializedFileWriter::new(output, schema, properties).map_err(other)?,
+            about: KeyValue::new(KEY.to_owned(), about),
+            rows: 0,
+        };
+        writer.begin_group()?;
+        let about = Some(vec![writer.about.clone()]);
+        writer.seal(0, about)?;
+        Ok(writer)
+    }
+
+    /// What is written from here on belongs to a group.
+    fn begin_group(&mut self) -> io::Result<()> {
+        self.writer.flush()?;
+        self.writer.inner_mut().group.clear();
+        Ok(())
+    }
+
+    fn group(&mut self, rows: &mut Vec<Row>) -> io::Result<()> {
+        let mut group = self.writer.next_row_group().map_err(other)?;
+        columns::write(rows, &mut group).map_err(other)?;
+        group.close().map_err(other)?;
+        self.writer.flush()?;
+        self.seal(self.rows, None)?;
+        self.rows += rows.len() as u64;
+        rows.clear();
+        Ok(())
+    }
+
+    /// Seals what was written since the last seal.
+    fn seal(&mut self, first_row: u64, about: Option<Vec<KeyValue>>) -> io::Result<()> {
+        let groups: Vec<_> = self
+            .writer
+            .flushed_row_groups()
+            .last()
+            .cloned()
+            .into_iter()
+            .collect();
+        let rows = groups
+            .iter()
+            .map(parquet::file::metadata::RowGroupMetaData::num_rows)
+            .sum();
+        let properties = self.writer.properties();
+        let file = FileMetaData::new(
+            properties.writer_version().as_num(),
+            rows,
+            Some(properties.created_by().to_owned()),
+            about,
+            self.writer.schema_descr().clone().into(),
+            None,
+        );
+        let output = self.writer.inner();
+        let first_byte = output.length - output.group.len() as u64;
+        let seal = seal((first_byte, &output.group), first_row, file, groups)?;
+        self.writer.write_all(&seal)?;
+        self.begin_group()
+    }
+
+    /// Writes the footer, and then the checksum into it.
+    fn finish(mut self, file: &File) -> io::Result<()> {
+        let sum = String::from_utf8_lossy(&NO_SUM).into_owned();
+        for pair in [self.about, KeyValue::new(SUM_KEY.to_owned(), sum)] {
+            self.writer.append_key_value_metadata(pair);
+        }
+        let mut output = self.writer.into_inner().map_err(other)?;
+        output.flush()?;
+        let footer_byte = output.length - output.group.len() as u64;
+        let at = super::sum_place(&output.group)
+            .ok_or_else(|| io::Error::other("the footer has no checksum"))?;
+        let sum = crate::hex(&output.sum.finalize());
+        let mut file = file;
+        file.seek(SeekFrom::Start(footer_byte + at as u64))?;
+        file.write_all(sum.as_bytes())?;
+        file.sync_all()
+    }
+}

@@ -1,0 +1,236 @@
+//! Files of recordings: written while a device is followed, turned into their
+//! final format when it has ended.
+
+use crate::failure::{Failure, print, warn};
+use crate::following::Follower;
+use crate::interrupt;
+use crate::line::{Line, failure};
+use crate::progress::Progress;
+use crate::shell;
+use crate::status_line::StatusLine;
+use crepitus_client::{Begin, Client};
+use crepitus_protocol::Revision;
+use crepitus_protocol::telemetry::Block;
+use crepitus_recording::{Damage, Metadata, RecordError, Recorder, Recording, Totals};
+use std::fs::{self, File};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// A recording in progress.
+pub(crate) struct Recorded {
+    recorder: Recorder,
+    announced: Option<Revision>,
+    status: StatusLine,
+}
+
+impl Recorded {
+    /// Creates the file and subscribes. A file without samples is removed.
+    pub(crate) fn begin(
+        client: &mut Client<Line>,
+        file: &Path,
+        title: &str,
+    ) -> Result<Self, Failure> {
+        let handshake = client.handshake();
+        let metadata = Metadata::new(title, &handshake.comms, handshake.drive.as_ref());
+        let mut recorded = Self {
+            recorder: Recorder::create(file, &metadata).map_err(Failure::input)?,
+            announced: None,
+            status: StatusLine::new(),
+        };
+        let begun = client
+            .subscribe()
+            .map_err(failure)
+            .and_then(|begin| recorded.resumed(begin));
+        match begun {
+            Ok(()) => Ok(recorded),
+            Err(error) => {
+                recorded.discard()?;
+                Err(error)
+            }
+        }
+    }
+
+    /// Removes the file.
+    fn discard(self) -> Result<(), Failure> {
+        let file = self.recorder.path().to_owned();
+        drop(self.recorder);
+        fs::remove_file(&file).map_err(|e| Failure::at(&file, "cannot be removed", &e))
+    }
+
+    /// Finishes the file; none if there is no sample, and then no file either.
+    pub(crate) fn finish(self) -> Result<Option<Totals>, Failure> {
+        if self.recorder.totals().received == 0 {
+            return self.discard().map(|()| None);
+        }
+        let file = self.recorder.path().to_owned();
+        let totals = self.recorder.finish().map_err(stopped)?;
+        in_final_format(&file);
+        Ok(Some(totals))
+    }
+}
+
+/// A write error ends the recording.
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "used where errors are mapped"
+)]
+fn stopped(error: RecordError) -> Failure {
+    Failure::Work(format!(
+        "{error}; the recording ends here, and `crepitus report` can read what was written"
+    ))
+}
+
+impl Follower for Recorded {
+    fn block(&mut self, client: &mut Client<Line>, block: &Block) -> Result<(), Failure> {
+        if self.announced != Some(block.revision) {
+            let (revision, values) = client.parameters().map_err(failure)?;
+            self.recorder.announce(revision, &values);
+            self.announced = Some(block.revision);
+        }
+        self.status.block(block);
+        self.recorder.block(block).map_err(stopped)
+    }
+
+    fn resumed(&mut self, begin: Begin) -> Result<(), Failure> {
+        // Its parameters may be others, also with the same revision.
+        self.announced = None;
+        let begin = crepitus_recording::Begin {
+            first_tick: begin.first_tick,
+            dropped: begin.dropped,
+            start: begin.start,
+        };
+        self.recorder.subscribed(begin).map_err(stopped)
+    }
+
+    fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure> {
+        self.recorder.flush().map_err(stopped)?;
+        self.status.show(client.accounting());
+        Ok(false)
+    }
+}
+
+/// Extension of the files that this program leaves when a recording has ended.
+pub(crate) const EXTENSION: &str = if cfg!(feature = "parquet") {
+    "parquet"
+} else {
+    "crepitus"
+};
+
+/// What writes Parquet files; none if this program was built without it.
+pub(crate) fn parquet_writer() -> Option<Write> {
+    #[cfg(feature = "parquet")]
+    return Some(crepitus_recording::write_parquet);
+    #[cfg(not(feature = "parquet"))]
+    None
+}
+
+/// Replaces a finished recording by its Parquet file, if this program can. If
+/// that fails, the recording stays as it is.
+fn in_final_format(file: &Path) {
+    let Some(writer) = parquet_writer() else {
+        return;
+    };
+    // What ended the recording must not end this; but it may be stopped, too.
+    interrupt::forget();
+    let made = Recording::open(file, Damage::Refuse)
+        .map_err(Failure::input)
+        .and_then(|recording| written(&recording, file, Clash::Replace, writer));
+    if let Err(Failure::Input(error) | Failure::Work(error)) = made {
+        warn(format!(
+            "{error}; {} is whole, in the format of a recording in progress: `crepitus export {} \
+             --format parquet` makes the Parquet file",
+            file.display(),
+            shell::word(file)
+        ));
+    }
+}
+
+/// What to do if there is a file of that name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Clash {
+    /// It is an error.
+    Refuse,
+    /// Replace it.
+    Replace,
+}
+
+/// A function that writes a recording to an empty file, and tells the number of
+/// rows so far.
+pub(crate) type Write = fn(&Recording, &File, &mut dyn FnMut(u64) -> bool) -> io::Result<()>;
+
+/// Writes a recording into a file, which appears whole or not at all.
+pub(crate) fn written(
+    recording: &Recording,
+    out: &Path,
+    clash: Clash,
+    write: Write,
+) -> Result<(), Failure> {
+    if clash == Clash::Refuse && out.exists() {
+        return Err(exists(out));
+    }
+    let folder = match out.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".crepitus-");
+    // The usual permissions, not those of a temporary file.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let failed = |error: io::Error| match error.kind() {
+        ErrorKind::Interrupted => Failure::Work("interrupted: nothing was written".to_owned()),
+        _ => Failure::at(out, "cannot be written", &error),
+    };
+    let file = builder.tempfile_in(folder).map_err(failed)?;
+    let mut progress = Progress::of_reading();
+    let expected = recording.books().totals.received.max(1);
+    write(recording, file.as_file(), &mut |rows| {
+        #[expect(clippy::cast_precision_loss, reason = "a share")]
+        progress.reached(rows as f64 / expected as f64);
+        !interrupt::requested()
+    })
+    .map_err(failed)?;
+    match clash {
+        Clash::Replace => file.persist(out).map_err(|error| failed(error.error))?,
+        Clash::Refuse => file.persist_noclobber(out).map_err(|error| {
+            if error.error.kind() == ErrorKind::AlreadyExists {
+                exists(out)
+            } else {
+                failed(error.error)
+            }
+        })?,
+    };
+    // The name, too, outlives a power cut.
+    #[cfg(unix)]
+    File::open(folder)
+        .and_then(|folder| folder.sync_all())
+        .map_err(failed)?;
+    Ok(())
+}
+
+fn exists(out: &Path) -> Failure {
+    Failure::Input(format!(
+        "{} already exists: choose another name with --out, or remove it",
+        out.display()
+    ))
+}
+
+/// Prints the sums of a recording, and what to do with it.
+pub(crate) fn print_ended(file: &Path, totals: &Totals) -> Result<(), Failure> {
+    print(&format!(
+        "{}: {} samples produced = {} received + {} dropped\n\
+         write its report with `crepitus report {}`\n",
+        file.display(),
+        totals.produced,
+        totals.received,
+        totals.dropped,
+        shell::word(file)
+    ))
+}
+
+/// A file beside a recording: its whole name, and more.
+pub(crate) fn beside(file: &Path, more: &str) -> PathBuf {
+    let mut name = file.as_os_str().to_owned();
+    name.push(more);
+    PathBuf::from(name)
+}

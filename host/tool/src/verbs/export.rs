@@ -1,0 +1,135 @@
+//! `crepitus export`: a recording in another format.
+
+use crate::failure::{Failure, print, print_json, warn};
+use crate::interrupt;
+use crate::recorded::{Clash, Write, beside, parquet_writer, written};
+use clap::{Args, ValueEnum};
+use crepitus_recording::{COLUMNS, Damage, Recording};
+use serde_json::json;
+use std::fs::File;
+use std::io::{self, BufWriter, ErrorKind, Write as _};
+use std::path::PathBuf;
+
+/// Formats of exported files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ExportFormat {
+    /// A header, and one line a sample.
+    Csv,
+    /// For Foxglove: 1 kHz, events and parameters.
+    Mcap,
+    /// One file with everything, for pandas, polars, DuckDB.
+    Parquet,
+}
+
+impl ExportFormat {
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Csv => ".csv",
+            Self::Mcap => ".mcap",
+            Self::Parquet => ".parquet",
+        }
+    }
+
+    /// What writes it; none if this program was built without it.
+    fn writer(self) -> Option<Write> {
+        match self {
+            Self::Csv => Some(csv),
+            Self::Mcap => mcap(),
+            Self::Parquet => parquet_writer(),
+        }
+    }
+}
+
+#[cfg(feature = "mcap")]
+fn mcap() -> Option<Write> {
+    Some(crepitus_recording::write_mcap)
+}
+
+#[cfg(not(feature = "mcap"))]
+fn mcap() -> Option<Write> {
+    None
+}
+
+/// Write a recording in another format.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus export monday.parquet --format csv
+  crepitus export monday.parquet --format mcap --out monday.mcap
+  crepitus export interrupted --format parquet
+  crepitus export damaged --format parquet --salvage
+
+FILE stays as it is. csv has every sample, without parameters and devices; mcap a message a \
+millisecond, every break and stick, the parameters and the gaps, for Foxglove; parquet everything: \
+also of a recording that was interrupted. mcap and parquet need a program that was built with \
+`--features mcap` and `--features parquet`.")]
+pub(crate) struct Arguments {
+    /// The recording.
+    file: PathBuf,
+
+    /// Format of the new file.
+    #[arg(long)]
+    format: ExportFormat,
+
+    /// The new file; it must not exist [default: FILE with .csv, .mcap or .parquet appended].
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+
+    /// Keep what is readable of a damaged recording.
+    #[arg(long)]
+    salvage: bool,
+}
+
+/// Exports.
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let format = arguments.format;
+    let name = &format.extension()[1..];
+    let writer = format.writer().ok_or_else(|| {
+        Failure::Input(format!(
+            "this crepitus was built without that format: build it with `--features {name}`"
+        ))
+    })?;
+    let damage = if arguments.salvage {
+        Damage::Salvage
+    } else {
+        Damage::Refuse
+    };
+    let recording = Recording::open(&arguments.file, damage).map_err(Failure::input)?;
+    let warnings = recording.warnings();
+    if !as_json {
+        warnings.iter().for_each(warn);
+    }
+    let out =
+        (arguments.out.clone()).unwrap_or_else(|| beside(&arguments.file, format.extension()));
+    interrupt::listen();
+    written(&recording, &out, Clash::Refuse, writer)?;
+    let totals = recording.books().totals;
+    if as_json {
+        return print_json(&json!({ "out": out, "telemetry": totals, "warnings": warnings }));
+    }
+    print(&format!("{}: {} samples\n", out.display(), totals.received))
+}
+
+/// Rows between two updates of the progress.
+const PROGRESS_ROWS: u64 = 1 << 14;
+
+fn csv(
+    recording: &Recording,
+    file: &File,
+    progress: &mut dyn FnMut(u64) -> bool,
+) -> io::Result<()> {
+    let mut out = BufWriter::with_capacity(1 << 16, file);
+    let header: Vec<_> = COLUMNS.iter().map(|(name, _)| *name).collect();
+    let mut line = header.join(",") + "\n";
+    for (count, row) in (0_u64..).zip(recording.rows().map_err(io::Error::other)?) {
+        row.map_err(io::Error::other)?.append_to(&mut line);
+        out.write_all(line.as_bytes())?;
+        line.clear();
+        if count.is_multiple_of(PROGRESS_ROWS) && !progress(count) {
+            return Err(ErrorKind::Interrupted.into());
+        }
+    }
+    out.write_all(line.as_bytes())?;
+    out.flush()?;
+    file.sync_all()
+}
