@@ -192,6 +192,9 @@ impl Ledger {
     pub(crate) fn block(&mut self, block: &Block) -> bool {
         let start = block.flags.start();
         if self.start != Some(start) {
+            if self.is_past(start) {
+                return false;
+            }
             self.books.drive_restarts += u32::from(self.start.is_some());
             // The device counts from its start, too.
             self.begin(Begin {
@@ -226,6 +229,20 @@ impl Ledger {
         self.said = block.dropped;
         self.is_damaged = false;
         true
+    }
+
+    /// Whether a start of the drive is over. Their numbers have five bits.
+    fn is_past(&self, start: u8) -> bool {
+        let mut latest = Vec::new();
+        for segment in self.books.segments.iter().rev() {
+            if latest.last() != Some(&segment.start) {
+                latest.push(segment.start);
+            }
+            if latest.len() == 31 {
+                break;
+            }
+        }
+        latest.contains(&start)
     }
 
     /// What is missing before the next block may be damaged in the file.

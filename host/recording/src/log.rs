@@ -22,9 +22,13 @@ pub(crate) mod disk;
 pub(crate) mod frame;
 pub(crate) mod reader;
 pub(crate) mod recorder;
+mod repair;
 
 /// The first bytes of the file.
 pub(crate) const MAGIC: &[u8] = b"crepitus recording 2\0";
+
+/// More bytes than any frame has.
+const FRAME_LIMIT: u64 = 1 << 20;
 
 /// Blocks between two checkpoints: a second.
 pub(crate) const CHECKPOINT_BLOCKS: u64 = 1_000;

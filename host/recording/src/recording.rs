@@ -4,7 +4,7 @@ use crate::books::Books;
 use crate::findings::Findings;
 use crate::log::MAGIC;
 use crate::log::frame::Content;
-use crate::log::reader::LogReader;
+use crate::log::reader::{self, LogReader};
 use crate::metadata::{FORMAT, Metadata};
 use crate::parameters::{History, InForce};
 #[cfg(feature = "parquet")]
@@ -91,7 +91,7 @@ pub struct Recording {
 
 #[derive(Debug)]
 enum Source {
-    Log,
+    Log(File),
     #[cfg(feature = "parquet")]
     Parquet(parquet::Reader),
 }
@@ -133,9 +133,8 @@ impl Recording {
     }
 
     fn log(path: &Path) -> io::Result<Self> {
-        let mut reader = LogReader::new(opened(path)?)?;
-        while reader.next()?.is_some() {}
-        let scanned = reader.finish();
+        let file = File::open(path)?;
+        let scanned = reader::scan(&file)?;
         Ok(Self {
             path: path.to_owned(),
             metadata: scanned.metadata,
@@ -144,7 +143,7 @@ impl Recording {
             is_complete: scanned.is_complete,
             cut_bytes: scanned.cut_bytes,
             findings: scanned.findings,
-            source: Source::Log,
+            source: Source::Log(scanned.sorted.unwrap_or(file)),
         })
     }
 
@@ -191,7 +190,7 @@ impl Recording {
     /// The format of the file.
     pub fn format(&self) -> Format {
         match self.source {
-            Source::Log => Format::Log,
+            Source::Log(_) => Format::Log,
             #[cfg(feature = "parquet")]
             Source::Parquet(_) => Format::Parquet,
         }
@@ -255,9 +254,9 @@ impl Recording {
     /// [`ReadError::Io`].
     pub fn rows(&self) -> Result<Rows<'_>, ReadError> {
         let source = match &self.source {
-            Source::Log => opened(&self.path)
-                .and_then(LogReader::new)
-                .map(|reader| RowSource::Log(Box::new(LogRows::new(reader, &self.history)))),
+            Source::Log(file) => {
+                LogRows::new(file, &self.history).map(|rows| RowSource::Log(Box::new(rows)))
+            }
             #[cfg(feature = "parquet")]
             Source::Parquet(reader) => Ok(RowSource::Parquet(reader.rows())),
         };
@@ -315,7 +314,7 @@ impl Iterator for Rows<'_> {
 /// Rows of the blocks of a log.
 #[derive(Debug)]
 struct LogRows<'r> {
-    reader: LogReader<BufReader<File>>,
+    reader: LogReader<BufReader<&'r File>>,
     in_force: InForce<'r>,
     samples: Samples,
     /// Of the block at hand.
@@ -324,14 +323,15 @@ struct LogRows<'r> {
 }
 
 impl<'r> LogRows<'r> {
-    fn new(reader: LogReader<BufReader<File>>, history: &'r History) -> Self {
-        Self {
-            reader,
+    fn new(mut file: &'r File, history: &'r History) -> io::Result<Self> {
+        file.seek(SeekFrom::Start(0))?;
+        Ok(Self {
+            reader: LogReader::new(BufReader::with_capacity(1 << 16, file))?,
             in_force: history.in_force(),
             samples: Samples::default(),
             block: Vec::new().into_iter(),
             count: 0,
-        }
+        })
     }
 
     fn next(&mut self) -> io::Result<Option<Row>> {
@@ -351,10 +351,6 @@ impl<'r> LogRows<'r> {
         self.block = rows.into_iter();
         Ok(self.block.next())
     }
-}
-
-fn opened(path: &Path) -> io::Result<BufReader<File>> {
-    Ok(BufReader::with_capacity(1 << 16, File::open(path)?))
 }
 
 /// First and last bytes of a Parquet file.

@@ -1,7 +1,7 @@
 //! Reading of the file of a recording in progress, in order to any damage.
 
-use super::MAGIC;
 use super::frame::{Checkpoint, Content, Entry};
+use super::{FRAME_LIMIT, MAGIC, repair};
 use crate::books::Ledger;
 use crate::findings::Findings;
 use crate::metadata::Metadata;
@@ -9,10 +9,8 @@ use crate::parameters::{History, Named, ParameterSet};
 use crepitus_protocol::frame::DELIMITER;
 use crepitus_protocol::telemetry::Block;
 use sha2::{Digest, Sha256};
-use std::io::{self, BufRead, Read};
-
-/// More bytes than any frame has.
-const FRAME_LIMIT: u64 = 1 << 20;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 
 /// Reads blocks, and keeps books and findings meanwhile.
 #[derive(Debug)]
@@ -50,9 +48,35 @@ pub(crate) struct Scanned {
     pub(crate) ledger: Ledger,
     pub(crate) history: History,
     pub(crate) is_complete: bool,
+    is_disordered: bool,
     /// Bytes at the end that are no frame.
     pub(crate) cut_bytes: u64,
     pub(crate) findings: Findings,
+    /// A copy with frames in their order, if the file has not.
+    pub(crate) sorted: Option<File>,
+}
+
+/// Reads a whole file. Of one whose frames are out of order, a copy is made.
+pub(crate) fn scan(file: &File) -> io::Result<Scanned> {
+    let scanned = read_all(file)?;
+    if !scanned.is_disordered {
+        return Ok(scanned);
+    }
+    let sorted = repair::sorted(file)?;
+    let copy = read_all(&sorted)?;
+    Ok(Scanned {
+        ledger: copy.ledger,
+        history: copy.history,
+        sorted: Some(sorted),
+        ..scanned
+    })
+}
+
+fn read_all(mut file: &File) -> io::Result<Scanned> {
+    file.seek(SeekFrom::Start(0))?;
+    let mut reader = LogReader::new(BufReader::with_capacity(1 << 16, file))?;
+    while reader.next()?.is_some() {}
+    Ok(reader.finish())
 }
 
 impl<R: BufRead> LogReader<R> {
@@ -275,6 +299,8 @@ impl<R: BufRead> LogReader<R> {
             is_complete: self.is_ended,
             cut_bytes,
             findings: self.findings,
+            is_disordered: self.repeated > 0,
+            sorted: None,
         }
     }
 }

@@ -45,7 +45,7 @@ impl Reader {
         }
         // The first one has no group.
         about = about.or_else(|| {
-            let mut heads = seals.iter().filter(|seal| seal.bytes == PRELUDE_BYTES);
+            let mut heads = seals.iter().filter(|seal| seal.rows() == 0);
             heads.find_map(|seal| about_of(&seal.footer))
         });
         if about.is_none() {
@@ -137,9 +137,6 @@ impl Reader {
         }
     }
 }
-
-/// Bytes before the first seal.
-const PRELUDE_BYTES: u64 = 4;
 
 fn unreadable() -> io::Error {
     io::Error::new(

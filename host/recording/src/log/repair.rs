@@ -1,0 +1,91 @@
+//! Frames that are out of order, put in order again: a copy of the file for
+//! reading on.
+
+use super::MAGIC;
+use super::frame::{Content, Entry};
+use crepitus_protocol::frame::DELIMITER;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+
+/// A frame and where it belongs: the ticks of a start of the drive, or, of an
+/// entry, the block that follows it.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    start: u8,
+    tick: u64,
+    from: u64,
+    bytes: u64,
+}
+
+/// Copies what is readable, blocks by start and tick, each once; entries stay
+/// before the block that they stand before. Checkpoints are left out.
+pub(super) fn sorted(file: &File) -> io::Result<File> {
+    let (header, places) = places(file)?;
+    let mut copy = BufWriter::new(tempfile::tempfile()?);
+    copy.write_all(MAGIC)?;
+    let frames = header.iter().chain(places.iter());
+    for place in frames {
+        let mut file = file;
+        file.seek(SeekFrom::Start(place.from))?;
+        io::copy(&mut file.take(place.bytes), &mut copy)?;
+    }
+    let mut copy = copy.into_inner().map_err(io::IntoInnerError::into_error)?;
+    copy.seek(SeekFrom::Start(0))?;
+    Ok(copy)
+}
+
+/// The header, and every other frame in its order.
+fn places(mut file: &File) -> io::Result<(Option<Place>, Vec<Place>)> {
+    file.seek(SeekFrom::Start(MAGIC.len() as u64))?;
+    let mut input = BufReader::new(file);
+    let (mut header, mut places, mut waiting) = (None, Vec::new(), Vec::new());
+    let mut from = MAGIC.len() as u64;
+    let mut chunk = Vec::new();
+    loop {
+        chunk.clear();
+        let bytes = input
+            .by_ref()
+            .take(super::FRAME_LIMIT)
+            .read_until(DELIMITER, &mut chunk)? as u64;
+        if bytes == 0 {
+            break;
+        }
+        let mut place = Place {
+            start: 0,
+            tick: 0,
+            from,
+            bytes,
+        };
+        from += bytes;
+        let frame = chunk.strip_suffix(&[DELIMITER]).unwrap_or_default();
+        match Content::of(&mut frame.to_vec()) {
+            Some(Content::Block(block)) => {
+                (place.start, place.tick) = (block.flags.start(), block.first_tick);
+                for mut entry in waiting.drain(..) {
+                    let Place { from, bytes, .. } = entry;
+                    entry = Place {
+                        from,
+                        bytes,
+                        ..place
+                    };
+                    places.push(entry);
+                }
+                places.push(place);
+            }
+            Some(Content::Entry(Entry::Header(_))) => header = header.or(Some(place)),
+            Some(Content::Entry(Entry::Checkpoint(_))) | None => {}
+            Some(Content::Entry(_)) => waiting.push(place),
+        }
+    }
+    // Starts in the order in which most of their blocks stand.
+    let mut sums: BTreeMap<u8, (u128, u128)> = BTreeMap::new();
+    for (at, place) in (0_u128..).zip(&places) {
+        let (sum, count) = sums.entry(place.start).or_default();
+        (*sum, *count) = (*sum + at, *count + 1);
+    }
+    let rank = |place: &Place| sums.get(&place.start).map(|(sum, count)| sum / count);
+    // Stable: entries stay before their block.
+    places.sort_by_key(|place| (rank(place), place.tick));
+    Ok((header, places))
+}

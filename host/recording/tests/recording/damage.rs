@@ -1,0 +1,165 @@
+//! Files that are not what was written: each is noticed and named, and what is
+//! readable is kept.
+
+use crate::support::{check_books, is_part, open, recorded, rows, rows_of, salvaged, sent};
+use crepitus_recording::ReadError;
+use std::fs;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// A recording of 1,100 blocks: a checkpoint, and the end.
+struct Bench {
+    folder: tempfile::TempDir,
+    whole: Vec<u8>,
+    all: Vec<crepitus_recording::Row>,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("whole");
+        let sent = sent(1_100);
+        recorded(&path, "a test", &sent);
+        Self {
+            whole: fs::read(&path).unwrap(),
+            all: rows_of(&sent),
+            folder,
+        }
+    }
+
+    fn path(&self) -> PathBuf {
+        self.folder.path().join("damaged")
+    }
+
+    /// The file is refused, or said to be incomplete; salvaged, it has this
+    /// many rows at least, each one that was recorded. Returns what is said.
+    fn check(&self, bytes: &[u8], rows_least: usize) -> String {
+        let path = self.path();
+        fs::write(&path, bytes).unwrap();
+        let said = noticed(&path);
+        let salvaged = salvaged(&path);
+        let kept = rows(&salvaged);
+        assert!(is_part(&kept, &self.all), "{said}");
+        assert!(kept.len() >= rows_least, "{} rows kept: {said}", kept.len());
+        check_books(&salvaged);
+        assert!(!salvaged.warnings().is_empty());
+        said
+    }
+
+    /// Where the frames are, without their delimiters.
+    fn frames(&self) -> Vec<Range<usize>> {
+        let mut frames = Vec::new();
+        let mut from = 0;
+        for (at, byte) in self.whole.iter().enumerate() {
+            if *byte == 0 {
+                frames.push(from..at + 1);
+                from = at + 1;
+            }
+        }
+        frames
+    }
+}
+
+/// What opening says is wrong with a file.
+fn noticed(path: &Path) -> String {
+    match open(path) {
+        Err(error @ ReadError::Damaged { .. }) => error.to_string(),
+        Err(error) => panic!("{error}"),
+        Ok(recording) => {
+            assert!(!recording.is_complete(), "nothing was noticed");
+            recording.warnings().join(" ")
+        }
+    }
+}
+
+#[test]
+fn every_flipped_bit_is_noticed_and_costs_a_few_blocks() {
+    let bench = Bench::new();
+    let mut random = fastrand::Rng::with_seed(1);
+    let bits = bench.whole.len() * 8;
+    let rows = bench.all.len();
+    // Everywhere, and all of the first and last bytes.
+    let places = (0..1_000).map(|_| random.usize(..bits));
+    for bit in places
+        .chain((0..200).step_by(3))
+        .chain((bits - 200..bits).step_by(3))
+    {
+        let mut flipped = bench.whole.clone();
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        bench.check(&flipped, rows - 60);
+    }
+}
+
+#[test]
+fn frames_that_are_missing_doubled_or_elsewhere_are_noticed() {
+    let bench = Bench::new();
+    let frames = bench.frames();
+    let rows = bench.all.len();
+    let mut random = fastrand::Rng::with_seed(2);
+    for _ in 0..60 {
+        let one = frames[random.usize(1..frames.len())].clone();
+        let other = frames[random.usize(1..frames.len())].clone();
+        let [one, other] = if one.start <= other.start {
+            [one, other]
+        } else {
+            [other, one]
+        };
+        let w = &bench.whole;
+        let missing = [&w[..one.start], &w[one.end..]].concat();
+        bench.check(&missing, rows - 20);
+        let doubled = [&w[..one.end], &w[one.start..]].concat();
+        bench.check(&doubled, rows);
+        if one != other {
+            let (a, b) = (&w[one.clone()], &w[other.clone()]);
+            let swapped = [
+                &w[..one.start],
+                b,
+                &w[one.end..other.start],
+                a,
+                &w[other.end..],
+            ]
+            .concat();
+            // An entry that stands elsewhere costs what depends on it, no row.
+            bench.check(&swapped, rows - 20);
+        }
+    }
+}
+
+#[test]
+fn a_zeroed_page_is_named_and_the_rest_is_kept() {
+    let bench = Bench::new();
+    let rows = bench.all.len();
+    for page in 0..bench.whole.len() / 4_096 {
+        let mut zeroed = bench.whole.clone();
+        zeroed[page * 4_096..(page + 1) * 4_096].fill(0);
+        let said = bench.check(&zeroed, rows - 14 * 20);
+        if page > 0 && (page + 2) * 4_096 < bench.whole.len() {
+            assert!(said.contains("bytes from byte"), "{said}");
+        }
+    }
+}
+
+#[test]
+fn a_part_of_another_recording_is_named() {
+    let bench = Bench::new();
+    let path = bench.folder.path().join("other");
+    recorded(&path, "another", &sent(1_100));
+    let other = fs::read(&path).unwrap();
+    let both = [&bench.whole[..], &other[..]].concat();
+    let said = bench.check(&both, bench.all.len());
+    assert!(said.contains("more after its end"), "{said}");
+    // The header of one, the samples of the other.
+    let header = bench.frames()[1].end;
+    let mixed = [&bench.whole[..header], &other[header..]].concat();
+    let said = bench.check(&mixed, bench.all.len());
+    assert!(said.contains("of another recording"), "{said}");
+}
+
+#[test]
+fn cut_rows_of_an_ended_recording_are_said_to_be_missing() {
+    let bench = Bench::new();
+    for cut in [1, 100, 5_000, 200_000] {
+        let said = bench.check(&bench.whole[..bench.whole.len() - cut], 9_000);
+        assert!(said.contains("incomplete"), "{said}");
+    }
+}

@@ -1,0 +1,87 @@
+//! The MCAP file of a recording, read with the library of Foxglove.
+
+use crate::support::{open, recorded, rows_of, sent};
+use crepitus_recording::write_mcap;
+use mcap::MessageStream;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+
+/// Whether a message is what its schema says; all members, no others.
+fn fits(message: &Value, schema: &Value, path: &str) {
+    let is = match schema["type"].as_str().unwrap() {
+        "object" => message.is_object(),
+        "integer" => message.is_i64() || message.is_u64(),
+        "string" => message.is_string(),
+        "number" => message.is_number() || message.is_null(),
+        other => panic!("{other}"),
+    };
+    assert!(is, "{path}: {message} is no {schema}");
+    if let (Some(properties), Some(members)) =
+        (schema["properties"].as_object(), message.as_object())
+    {
+        let names: Vec<_> = properties.keys().collect();
+        assert_eq!(members.keys().collect::<Vec<_>>(), names, "{path}");
+        for (name, member) in members {
+            fits(member, &properties[name], &format!("{path}.{name}"));
+        }
+    }
+}
+
+#[test]
+fn foxglove_reads_a_message_a_millisecond_and_every_event() {
+    let folder = tempfile::tempdir().unwrap();
+    let (log, out) = (folder.path().join("log"), folder.path().join("a.mcap"));
+    let sent = sent(1_100);
+    recorded(&log, "a test", &sent);
+    let recording = open(&log).unwrap();
+    write_mcap(&recording, &File::create(&out).unwrap(), &mut |_| true).unwrap();
+    let bytes = fs::read(&out).unwrap();
+    let mut counts = BTreeMap::new();
+    let mut last = 0;
+    let mut torques = Vec::new();
+    for message in MessageStream::new(&bytes).unwrap() {
+        let message = message.unwrap();
+        let channel = &message.channel;
+        let schema = channel.schema.as_ref().unwrap();
+        assert_eq!(
+            (schema.encoding.as_str(), channel.message_encoding.as_str()),
+            ("jsonschema", "json")
+        );
+        let schema: Value = serde_json::from_slice(&schema.data).unwrap();
+        let data: Value = serde_json::from_slice(&message.data).unwrap();
+        if channel.topic != "/parameters" {
+            fits(&data, &schema, &channel.topic);
+        }
+        *counts.entry(channel.topic.clone()).or_insert(0) += 1;
+        if channel.topic == "/knee" {
+            assert!(message.log_time >= last);
+            last = message.log_time;
+            torques.push(data["model_torque_nm_high"].as_f64().unwrap());
+        }
+    }
+    let all = rows_of(&sent);
+    let events = all
+        .iter()
+        .filter(|row| row.to_json()["event"] != "")
+        .count();
+    let events = events
+        - all
+            .iter()
+            .filter(|row| row.to_json()["event"].is_null())
+            .count();
+    assert_eq!(counts["/knee"], 1_100);
+    assert_eq!(counts["/events"], events);
+    assert_eq!(counts["/parameters"], 12);
+    // The title, what is missing, and each of the gaps.
+    assert_eq!(counts["/log"], 2 + 4);
+    for (bin, torque) in all.chunks(20).zip(&torques) {
+        let high = bin
+            .iter()
+            .map(|row| row.model_torque_nm)
+            .fold(f32::MIN, f32::max);
+        assert!((f64::from(high) - torque).abs() < 1e-6);
+    }
+    let duration_ns = last - recording.metadata().begun_unix_s * 1_000_000_000;
+    assert!((duration_ns as f64 * 1e-9 - all.last().unwrap().time_s).abs() < 1e-6);
+}

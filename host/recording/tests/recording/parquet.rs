@@ -1,0 +1,170 @@
+//! The Parquet file of a recording.
+
+use crate::support::{check_books, is_part, open, recorded, rows, rows_of, salvaged, sent};
+use crepitus_recording::{Format, Row, write_parquet};
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+/// Five seconds: three groups.
+const BLOCKS: u64 = 5_000;
+
+struct Bench {
+    folder: tempfile::TempDir,
+    whole: Vec<u8>,
+    all: Vec<Row>,
+}
+
+impl Bench {
+    fn new(blocks: u64) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let log = folder.path().join("log");
+        let sent = sent(blocks);
+        recorded(&log, "a test", &sent);
+        let parquet = folder.path().join("parquet");
+        converted(&log, &parquet);
+        Self {
+            whole: fs::read(parquet).unwrap(),
+            all: rows_of(&sent),
+            folder,
+        }
+    }
+
+    fn write(&self, bytes: &[u8]) -> PathBuf {
+        let path = self.folder.path().join("damaged");
+        fs::write(&path, bytes).unwrap();
+        path
+    }
+
+    /// The file is refused; salvaged, it has this many rows at least.
+    fn check(&self, bytes: &[u8], least: usize) -> String {
+        let path = self.write(bytes);
+        let said = open(&path).expect_err("nothing was noticed").to_string();
+        let recording = salvaged(&path);
+        let kept = rows(&recording);
+        assert!(is_part(&kept, &self.all));
+        assert!(kept.len() >= least, "{} rows kept: {said}", kept.len());
+        check_books(&recording);
+        said
+    }
+}
+
+fn converted(from: &Path, to: &Path) {
+    let recording = open(from).unwrap();
+    let file = File::create(to).unwrap();
+    write_parquet(&recording, &file, &mut |_| true).unwrap();
+}
+
+#[test]
+fn the_file_holds_all_that_the_log_held() {
+    let bench = Bench::new(BLOCKS);
+    let log = open(&bench.folder.path().join("log")).unwrap();
+    let parquet = open(&bench.folder.path().join("parquet")).unwrap();
+    assert_eq!(parquet.format(), Format::Parquet);
+    assert_eq!(parquet.metadata(), log.metadata());
+    assert_eq!(parquet.books(), log.books());
+    assert_eq!(parquet.parameters(), log.parameters());
+    assert_eq!(parquet.warnings(), log.warnings());
+    assert!(parquet.is_complete());
+    assert_eq!(rows(&parquet), bench.all);
+    let bits = |rows: &[Row]| -> Vec<_> {
+        let bits = |row: &Row| {
+            (
+                row.time_s.to_bits(),
+                row.angle_rad.to_bits(),
+                row.omega_rad_s.to_bits(),
+            )
+        };
+        rows.iter().map(bits).collect()
+    };
+    assert_eq!(bits(&rows(&parquet)), bits(&rows(&log)));
+    check_books(&parquet);
+    let again = bench.folder.path().join("again");
+    converted(&bench.folder.path().join("parquet"), &again);
+    assert_eq!(
+        fs::read(again).unwrap(),
+        bench.whole,
+        "the same bytes from either"
+    );
+}
+
+#[test]
+fn every_flipped_bit_is_noticed_and_costs_two_seconds_at_most() {
+    let bench = Bench::new(4_200);
+    let mut random = fastrand::Rng::with_seed(4);
+    let bits = bench.whole.len() * 8;
+    let places = (0..300).map(|_| random.usize(..bits));
+    let ends = (0..160).step_by(7).chain((bits - 8_000..bits).step_by(40));
+    let mut whole = 0;
+    for bit in places.chain(ends) {
+        let mut flipped = bench.whole.clone();
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        bench.check(&flipped, 40_000);
+        whole += usize::from(rows(&salvaged(&bench.write(&flipped))).len() == bench.all.len());
+    }
+    assert!(whole > 100, "a flip in the footer costs nothing: {whole}");
+}
+
+#[test]
+fn wherever_it_is_cut_the_groups_before_are_kept() {
+    let bench = Bench::new(BLOCKS);
+    let length = bench.whole.len();
+    for (share, least) in [(0.999, 100_000), (0.9, 80_000), (0.6, 40_000)] {
+        let cut = (length as f64 * share) as usize;
+        let said = bench.check(&bench.whole[..cut], least);
+        assert!(said.contains("checksum"), "{said}");
+    }
+    let path = bench.write(&bench.whole[..10]);
+    assert!(
+        open(&path)
+            .unwrap_err()
+            .to_string()
+            .contains("nothing is left")
+    );
+}
+
+#[test]
+fn a_zeroed_page_costs_its_group() {
+    let bench = Bench::new(BLOCKS);
+    for page in (0..bench.whole.len() / 4_096).step_by(11) {
+        let mut zeroed = bench.whole.clone();
+        zeroed[page * 4_096..(page + 1) * 4_096].fill(0);
+        bench.check(&zeroed, 20_000);
+    }
+}
+
+#[test]
+fn a_group_that_is_lost_leaves_rows_and_parameters_in_step() {
+    let bench = Bench::new(BLOCKS);
+    let mut damaged = bench.whole.clone();
+    // In the first group.
+    damaged[10_000] ^= 1;
+    let recording = salvaged(&bench.write(&damaged));
+    let kept = rows(&recording);
+    assert_eq!(kept, bench.all[40_000..]);
+    let mut in_force = recording.parameters().in_force();
+    let whole = open(&bench.folder.path().join("log")).unwrap();
+    let mut expected = whole.parameters().in_force();
+    for row in [0, 1_939, 1_940, 30_000, 59_999] {
+        in_force.at(row);
+        expected.at(row + 40_000);
+        let name = "crepitus.static_torque_nm";
+        assert_eq!(in_force.number(name), expected.number(name), "row {row}");
+    }
+    let totals = recording.books().totals;
+    assert_eq!(totals.damaged, 40_000);
+    let warnings = recording.warnings().join("\n");
+    assert!(
+        warnings.contains("Rows 0 to 39999 of 100000 are damaged"),
+        "{warnings}"
+    );
+    assert!(warnings.contains("40000 damaged in the file"), "{warnings}");
+}
+
+#[test]
+fn writing_stops_when_it_is_told_to() {
+    let bench = Bench::new(BLOCKS);
+    let recording = open(&bench.folder.path().join("log")).unwrap();
+    let file = File::create(bench.folder.path().join("stopped")).unwrap();
+    let error = write_parquet(&recording, &file, &mut |_| false).unwrap_err();
+    assert_eq!(error.kind(), std::io::ErrorKind::Interrupted);
+}
