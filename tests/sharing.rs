@@ -6,9 +6,9 @@ mod support;
 use crepitus_board::{Start, VirtualDevice};
 use crepitus_protocol::State;
 use crepitus_protocol::counters::CommsCounter;
+use crepitus_recording::Recording;
 use crepitus_scene::{Overrides, Scene};
 use crepitus_usb::pty::Pty;
-use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
 use support::served::{Served, signal, until};
-use support::{csv, stderr, stdout};
+use support::{HALF_A_SECOND, recording, stderr, stdout};
 
 /// Starts a program whose outputs are kept.
 fn start(served: &Served, arguments: &[&str]) -> Child {
@@ -37,20 +37,12 @@ fn file(served: &Served, name: &str) -> PathBuf {
     served.home.path().join(name)
 }
 
-/// What the recorder says of the samples, checked against the rows.
+/// The books of a recording that ended in order, counted anew.
 fn check_books(file: &Path) -> [u64; 3] {
-    let text = fs::read_to_string(file.with_extension("json")).unwrap();
-    let books: Value = serde_json::from_str(&text).unwrap();
-    let [produced, received, dropped] =
-        ["produced", "received", "dropped"].map(|key| books["telemetry"][key].as_u64().unwrap());
-    assert_eq!(produced, received + dropped, "{text}");
-    let (_, rows) = csv(file);
-    assert_eq!(u64::try_from(rows.len()).unwrap(), received);
-    let ticks: Vec<u64> = rows.iter().map(|row| row[0].parse().unwrap()).collect();
-    let missing: u64 = ticks.windows(2).map(|pair| pair[1] - pair[0] - 1).sum();
-    // What is missing before the first row is in the books alone.
-    assert!(missing <= dropped, "{missing} {text}");
-    [produced, received, dropped]
+    let recording = recording(file);
+    assert!(recording.is_complete());
+    let totals = support::check_books(&recording);
+    [totals.produced, totals.received, totals.dropped]
 }
 
 #[test]
@@ -120,7 +112,7 @@ fn the_others_go_on_when_the_first_program_ends() {
         let arguments = [&["record", path.to_str().unwrap()], more].concat();
         let child = start(&served, &arguments);
         until("rows", || {
-            fs::metadata(path).is_ok_and(|data| data.len() > 1_000)
+            fs::metadata(path).is_ok_and(|data| data.len() > 10_000)
         });
         child
     };
@@ -182,7 +174,7 @@ fn a_program_that_serves_and_hangs_is_named() {
     let path = file(&served, "a.csv");
     let mut serving = start(&served, &["record", path.to_str().unwrap(), "--arm"]);
     until("half a second is recorded", || {
-        fs::metadata(&path).is_ok_and(|data| data.len() > 1_000_000)
+        fs::metadata(&path).is_ok_and(|data| data.len() > HALF_A_SECOND)
     });
     signal(&serving, "-STOP");
     let stop = served.run(&["stop"]);
@@ -207,7 +199,7 @@ fn signals_end_a_command_in_order() {
         let child = start(&served, &["record", path.to_str().unwrap(), "--arm"]);
         // Armed, and nobody else has had the port open.
         until("half a second is recorded", || {
-            fs::metadata(&path).is_ok_and(|data| data.len() > 1_000_000)
+            fs::metadata(&path).is_ok_and(|data| data.len() > HALF_A_SECOND)
         });
         signal(&child, name);
         let output = child.wait_with_output().unwrap();
@@ -279,19 +271,9 @@ fn many_programs_are_killed_at_random() {
     );
     let (mut rows, mut complete) = (0, 0);
     for path in files.iter().filter(|path| path.exists()) {
-        let count = check_rows(path);
-        rows += count;
-        let Ok(text) = fs::read_to_string(path.with_extension("json")) else {
-            // Killed while it began.
-            assert_eq!(count, 0, "{}", path.display());
-            continue;
-        };
-        let books: Value = serde_json::from_str(&text).unwrap();
-        // A recording that was killed says so: its books are not final.
-        if books["complete"] == true {
-            check_books(path);
-            complete += 1;
-        }
+        let recording = readable(path);
+        rows += recording.books().totals.received;
+        complete += usize::from(recording.is_complete());
     }
     println!(
         "{rows} rows in {} recordings, {complete} of them complete",
@@ -300,29 +282,85 @@ fn many_programs_are_killed_at_random() {
     assert!(rows > 10_000 && complete > 3);
 }
 
-/// The rows of a recording up to the last whole one: ticks that grow, and gaps
-/// of whole blocks.
-fn check_rows(path: &Path) -> usize {
-    let text = fs::read_to_string(path).unwrap();
-    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
-    let ticks: Vec<u64> = whole
-        .lines()
-        .skip(1)
-        .map(|line| line.split(',').next().unwrap().parse().unwrap())
-        .collect();
-    for pair in ticks.windows(2) {
-        assert!(
-            pair[0] < pair[1] && (pair[1] - pair[0] - 1) % 20 == 0,
-            "{pair:?}"
-        );
+/// A recording, complete or not, whose books are true.
+fn readable(path: &Path) -> Recording {
+    let recording = recording(path);
+    support::check_books(&recording);
+    if !recording.is_complete() {
+        let warnings = recording.warnings();
+        assert!(warnings[0].contains("incomplete"), "{warnings:?}");
     }
-    ticks.len()
+    recording
+}
+
+/// `record --arm` is killed at any instant: the file is there and true, or not
+/// there; torque is off. 500 kills with `CREPITUS_LONG=1`, 16 without.
+#[test]
+fn record_is_killed_at_any_instant() {
+    let is_long = std::env::var_os("CREPITUS_LONG").is_some();
+    let kills = if is_long { 500 } else { 16 };
+    let bench = Bench::start();
+    let mut rng = fastrand::Rng::with_seed(500);
+    let (mut absent, mut cut, mut complete, mut samples, mut expired) = (0, 0, 0, 0, 0);
+    for n in 0..kills {
+        let path = bench.home.path().join(format!("recording {n}.json"));
+        let mut child = bench.spawn(&["record", path.to_str().unwrap(), "--arm"]);
+        // As often while it begins as when torque is on.
+        let ms = if rng.bool() {
+            rng.u64(0..80)
+        } else {
+            rng.u64(80..600)
+        };
+        sleep(Duration::from_millis(ms));
+        let name = ["-TERM", "-HUP", "-INT", "-KILL"][n % 4];
+        signal(&child, name);
+        let status = child.wait().unwrap();
+        let ended_in_order = status.code().is_some();
+        if ended_in_order {
+            // Torque is off when the program has ended.
+            sleep(Duration::from_millis(5));
+            assert!(!bench.is_driven(), "{name} after {ms} ms");
+        }
+        if path.exists() {
+            let recording = readable(&path);
+            // A program that had not come to its handlers is killed by them all.
+            assert!(
+                !ended_in_order || recording.is_complete(),
+                "{name} after {ms} ms"
+            );
+            samples += recording.books().totals.received;
+            complete += usize::from(recording.is_complete());
+            cut += usize::from(!recording.is_complete());
+        } else {
+            absent += 1;
+        }
+        // The next one can arm only if nothing is left of this one.
+        until("the lease has ended", || !bench.is_driven());
+        sleep(Duration::from_millis(260));
+        expired += usize::from(bench.is_faulted());
+        bench.spawn(&["clear-fault"]).wait().unwrap();
+    }
+    let others: Vec<_> = fs::read_dir(bench.home.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name.starts_with(".crepitus-"))
+        .collect();
+    let (observed, _home) = bench.stop();
+    println!(
+        "{kills} kills: {absent} without a file, {cut} cut off, {complete} complete, {samples} samples, \
+         {expired} leases expired; {} temporary files left; {observed:?}",
+        others.len()
+    );
+    assert!(observed.longest_without_renewal <= 5_001, "{observed:?}");
+    assert!(observed.driven_ticks > 0 && cut > 0 && complete > 0);
+    assert!(others.len() <= kills / 4, "only SIGKILL leaves any");
 }
 
 /// A simulated device in this process, in real time, at a pty.
 struct Bench {
     home: tempfile::TempDir,
     is_over: Arc<AtomicBool>,
+    now: Arc<Now>,
     thread: JoinHandle<Observed>,
 }
 
@@ -335,7 +373,22 @@ struct Observed {
     is_driven: bool,
 }
 
+/// What is true of the device at this moment.
+#[derive(Debug, Default)]
+struct Now {
+    is_driven: AtomicBool,
+    is_faulted: AtomicBool,
+}
+
 impl Bench {
+    fn is_driven(&self) -> bool {
+        self.now.is_driven.load(Ordering::Relaxed)
+    }
+
+    fn is_faulted(&self) -> bool {
+        self.now.is_faulted.load(Ordering::Relaxed)
+    }
+
     fn start() -> Self {
         let home = tempfile::tempdir().unwrap();
         let folder = home.path().join("crepitus");
@@ -345,6 +398,8 @@ impl Bench {
         lock.lock().unwrap();
         let is_over = Arc::new(AtomicBool::new(false));
         let over = is_over.clone();
+        let now = Arc::new(Now::default());
+        let of_device = now.clone();
         let link = folder.join("knee");
         let (ready, is_ready) = std::sync::mpsc::channel();
         let thread = std::thread::spawn(move || {
@@ -353,7 +408,7 @@ impl Bench {
             let mut device = VirtualDevice::of(&scene, &Start::default()).unwrap();
             let mut pty = Pty::new(Some(&link)).unwrap();
             ready.send(()).unwrap();
-            let observed = observe(&mut device, &mut pty, &over);
+            let observed = observe(&mut device, &mut pty, &over, &of_device);
             drop(lock);
             observed
         });
@@ -361,6 +416,7 @@ impl Bench {
         Self {
             home,
             is_over,
+            now,
             thread,
         }
     }
@@ -384,7 +440,7 @@ impl Bench {
 
 /// Runs the device in real time; where the machine is too slow for that, time
 /// passes more slowly.
-fn observe(device: &mut VirtualDevice, pty: &mut Pty, over: &AtomicBool) -> Observed {
+fn observe(device: &mut VirtualDevice, pty: &mut Pty, over: &AtomicBool, now: &Now) -> Observed {
     const TICKS_PER_MS: u64 = 20;
     let mut observed = Observed::default();
     let (mut renewals, mut was_arming, mut renewed) = (0, false, None);
@@ -406,6 +462,9 @@ fn observe(device: &mut VirtualDevice, pty: &mut Pty, over: &AtomicBool) -> Obse
                 observed.longest_without_renewal = observed.longest_without_renewal.max(silence);
             }
         }
+        now.is_driven.store(observed.is_driven, Ordering::Relaxed);
+        let is_faulted = device.board().comms().state() == State::Faulted;
+        now.is_faulted.store(is_faulted, Ordering::Relaxed);
         pty.exchange(device.host().expect("a cable")).unwrap();
         sleep(Duration::from_millis(1).saturating_sub(begun.elapsed()));
     }

@@ -5,6 +5,7 @@
 #[cfg(target_os = "linux")]
 pub(crate) mod served;
 
+use crepitus_recording::{Damage, Recording, Row, Totals};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -80,6 +81,50 @@ pub(crate) fn csv(file: &Path) -> (Vec<String>, Vec<Vec<String>>) {
         .map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
     let header = lines.next().expect("a header");
     (header, lines.collect())
+}
+
+/// Bytes of a recording in progress after half a second.
+pub(crate) const HALF_A_SECOND: u64 = 170_000;
+
+/// Bytes of a file, 0 if there is none.
+pub(crate) fn length(file: &Path) -> u64 {
+    fs::metadata(file).map_or(0, |data| data.len())
+}
+
+/// A recording that is not damaged.
+pub(crate) fn recording(file: &Path) -> Recording {
+    Recording::open(file, Damage::Refuse).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Its rows.
+pub(crate) fn rows(recording: &Recording) -> Vec<Row> {
+    let rows = recording.rows().expect("rows");
+    rows.map(|row| row.expect("a row")).collect()
+}
+
+/// The books of a recording, counted anew in its rows. The drive has not
+/// restarted.
+pub(crate) fn check_books(recording: &Recording) -> Totals {
+    let totals = recording.books().totals;
+    assert_eq!(totals.produced, totals.received + totals.dropped);
+    let rows = rows(recording);
+    assert_eq!(rows.len() as u64, totals.received);
+    let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
+        return totals;
+    };
+    let begin = recording.books().segments[0].first_tick;
+    assert_eq!(last.tick + 1 - begin, totals.produced);
+    let mut missing = first.tick - begin;
+    for pair in rows.windows(2) {
+        let gap = pair[1]
+            .tick
+            .checked_sub(pair[0].tick + 1)
+            .expect("growing ticks");
+        assert_eq!(gap % 20, 0, "gaps of whole blocks");
+        missing += gap;
+    }
+    assert_eq!(missing, totals.dropped);
+    totals
 }
 
 /// A number in a CSV file.

@@ -41,15 +41,33 @@ pub use books::{Begin, Books, Cause, Gap, Segment, Totals};
 pub use findings::Findings;
 pub use log::disk::{Background, Disk};
 pub use log::recorder::{RecordError, Recorder};
-#[cfg(feature = "mcap")]
-pub use mcap::write as write_mcap;
 pub use metadata::{Controller, Metadata};
 pub use parameters::{History, InForce, Named, ParameterSet, named_values};
-#[cfg(feature = "parquet")]
-pub use parquet::write as write_parquet;
 pub use recording::{Damage, Format, ReadError, Recording, Rows, seconds};
 pub use row::{COLUMNS, Row};
 pub use samples::Samples;
+
+/// Writes a recording to an empty file, durably; tells the number of rows so
+/// far, and ends with [`Interrupted`](std::io::ErrorKind::Interrupted) if that
+/// returns false.
+pub type Write = fn(&Recording, &std::fs::File, &mut dyn FnMut(u64) -> bool) -> std::io::Result<()>;
+
+/// What writes Parquet files; none if this was built without the feature
+/// `parquet`.
+pub fn parquet_writer() -> Option<Write> {
+    #[cfg(feature = "parquet")]
+    return Some(parquet::write);
+    #[cfg(not(feature = "parquet"))]
+    None
+}
+
+/// What writes MCAP files; none if this was built without the feature `mcap`.
+pub fn mcap_writer() -> Option<Write> {
+    #[cfg(feature = "mcap")]
+    return Some(mcap::write);
+    #[cfg(not(feature = "mcap"))]
+    None
+}
 
 /// Lower-case hex digits.
 fn hex(bytes: &[u8]) -> String {

@@ -313,7 +313,7 @@ impl<'f> Messages<'f> {
 ///
 /// # Errors
 /// Of either file.
-pub fn write(
+pub(crate) fn write(
     recording: &Recording,
     file: &File,
     progress: &mut dyn FnMut(u64) -> bool,

@@ -26,7 +26,7 @@ use parquet::errors::ParquetError;
 pub(crate) use reader::{ParquetRows, Reader};
 use serde::{Deserialize, Serialize};
 use std::io;
-pub use writer::write;
+pub(crate) use writer::write;
 
 /// Rows of a group: two seconds.
 const GROUP_ROWS: usize = 40_000;

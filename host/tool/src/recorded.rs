@@ -11,7 +11,9 @@ use crate::status_line::StatusLine;
 use crepitus_client::{Begin, Client};
 use crepitus_protocol::Revision;
 use crepitus_protocol::telemetry::Block;
-use crepitus_recording::{Damage, Metadata, RecordError, Recorder, Recording, Totals};
+use crepitus_recording::{
+    Damage, Metadata, RecordError, Recorder, Recording, Totals, Write, parquet_writer,
+};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -110,18 +112,12 @@ impl Follower for Recorded {
 }
 
 /// Extension of the files that this program leaves when a recording has ended.
-pub(crate) const EXTENSION: &str = if cfg!(feature = "parquet") {
-    "parquet"
-} else {
-    "crepitus"
-};
-
-/// What writes Parquet files; none if this program was built without it.
-pub(crate) fn parquet_writer() -> Option<Write> {
-    #[cfg(feature = "parquet")]
-    return Some(crepitus_recording::write_parquet);
-    #[cfg(not(feature = "parquet"))]
-    None
+pub(crate) fn extension() -> &'static str {
+    if parquet_writer().is_some() {
+        "parquet"
+    } else {
+        "crepitus"
+    }
 }
 
 /// Replaces a finished recording by its Parquet file, if this program can. If
@@ -153,10 +149,6 @@ pub(crate) enum Clash {
     /// Replace it.
     Replace,
 }
-
-/// A function that writes a recording to an empty file, and tells the number of
-/// rows so far.
-pub(crate) type Write = fn(&Recording, &File, &mut dyn FnMut(u64) -> bool) -> io::Result<()>;
 
 /// Writes a recording into a file, which appears whole or not at all.
 pub(crate) fn written(

@@ -2,8 +2,11 @@
 
 use std::fs::File;
 use std::io::{self, Write};
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
+use std::time::Duration;
 
 /// A file that grows at its end.
 pub trait Disk {
@@ -38,8 +41,12 @@ impl Disk for File {
     }
 }
 
-/// Appends that may wait: about 20 s of samples.
-const WAITING: usize = 1_000;
+/// Bytes that may wait for the disk: three minutes of samples.
+const MOST_WAITING: u64 = 64 << 20;
+
+/// Where a device that is faster than its time, a simulated one, is held up.
+const MANY_WAITING: u64 = 16 << 20;
+const HOLD_UP: Duration = Duration::from_millis(20);
 
 enum Order {
     Append(Vec<u8>),
@@ -50,28 +57,28 @@ enum Order {
 /// from renewing its lease.
 #[derive(Debug)]
 pub struct Background {
-    orders: Option<SyncSender<Order>>,
+    orders: Option<Sender<Order>>,
+    /// Bytes that wait.
+    waiting: Arc<AtomicU64>,
     thread: Option<JoinHandle<io::Result<()>>>,
 }
 
 impl Background {
     /// Writes to this disk.
     pub fn new(disk: impl Disk + Send + 'static) -> Self {
-        let (orders, due) = sync_channel(WAITING);
+        let (orders, due) = channel();
+        let waiting = Arc::new(AtomicU64::new(0));
+        let of_thread = waiting.clone();
         Self {
             orders: Some(orders),
-            thread: Some(thread::spawn(move || work(disk, &due))),
+            waiting,
+            thread: Some(thread::spawn(move || work(disk, &due, &of_thread))),
         }
     }
 
     fn order(&mut self, order: Order) -> io::Result<()> {
-        let sent = self.orders.as_ref().map(|orders| orders.try_send(order));
-        match sent {
+        match self.orders.as_ref().map(|orders| orders.send(order)) {
             Some(Ok(())) => Ok(()),
-            Some(Err(TrySendError::Full(_))) => Err(io::Error::new(
-                io::ErrorKind::TimedOut,
-                "the disk has stalled for 20 s",
-            )),
             // The thread has ended, with an error.
             _ => self.finish(),
         }
@@ -80,6 +87,18 @@ impl Background {
 
 impl Disk for Background {
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let waiting = self
+            .waiting
+            .fetch_add(bytes.len() as u64, Ordering::Relaxed);
+        if waiting > MOST_WAITING {
+            return Err(io::Error::new(
+                io::ErrorKind::TimedOut,
+                "the disk is too slow: three minutes of samples wait for it",
+            ));
+        }
+        if waiting > MANY_WAITING {
+            thread::sleep(HOLD_UP);
+        }
         self.order(Order::Append(bytes.to_vec()))
     }
 
@@ -105,10 +124,13 @@ impl Drop for Background {
     }
 }
 
-fn work(mut disk: impl Disk, due: &Receiver<Order>) -> io::Result<()> {
+fn work(mut disk: impl Disk, due: &Receiver<Order>, waiting: &AtomicU64) -> io::Result<()> {
     for order in due {
         match order {
-            Order::Append(bytes) => disk.append(&bytes)?,
+            Order::Append(bytes) => {
+                disk.append(&bytes)?;
+                waiting.fetch_sub(bytes.len() as u64, Ordering::Relaxed);
+            }
             Order::Sync => disk.sync()?,
         }
     }

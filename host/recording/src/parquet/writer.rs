@@ -39,7 +39,7 @@ impl Write for Output<'_> {
 ///
 /// # Errors
 /// Of either file.
-pub fn write(
+pub(crate) fn write(
     recording: &Recording,
     file: &File,
     progress: &mut dyn FnMut(u64) -> bool,

@@ -1,7 +1,7 @@
 //! The MCAP file of a recording, read with the library of Foxglove.
 
 use crate::support::{open, recorded, rows_of, sent};
-use crepitus_recording::write_mcap;
+use crepitus_recording::mcap_writer;
 use mcap::MessageStream;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -35,7 +35,7 @@ fn foxglove_reads_a_message_a_millisecond_and_every_event() {
     let sent = sent(1_100);
     recorded(&log, "a test", &sent);
     let recording = open(&log).unwrap();
-    write_mcap(&recording, &File::create(&out).unwrap(), &mut |_| true).unwrap();
+    mcap_writer().unwrap()(&recording, &File::create(&out).unwrap(), &mut |_| true).unwrap();
     let bytes = fs::read(&out).unwrap();
     let mut counts = BTreeMap::new();
     let mut last = 0;

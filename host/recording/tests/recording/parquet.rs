@@ -1,7 +1,7 @@
 //! The Parquet file of a recording.
 
 use crate::support::{check_books, is_part, open, recorded, rows, rows_of, salvaged, sent};
-use crepitus_recording::{Format, Row, write_parquet};
+use crepitus_recording::{Format, Row, parquet_writer};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
@@ -51,7 +51,7 @@ impl Bench {
 fn converted(from: &Path, to: &Path) {
     let recording = open(from).unwrap();
     let file = File::create(to).unwrap();
-    write_parquet(&recording, &file, &mut |_| true).unwrap();
+    parquet_writer().unwrap()(&recording, &file, &mut |_| true).unwrap();
 }
 
 #[test]
@@ -165,6 +165,6 @@ fn writing_stops_when_it_is_told_to() {
     let bench = Bench::new(BLOCKS);
     let recording = open(&bench.folder.path().join("log")).unwrap();
     let file = File::create(bench.folder.path().join("stopped")).unwrap();
-    let error = write_parquet(&recording, &file, &mut |_| false).unwrap_err();
+    let error = parquet_writer().unwrap()(&recording, &file, &mut |_| false).unwrap_err();
     assert_eq!(error.kind(), std::io::ErrorKind::Interrupted);
 }

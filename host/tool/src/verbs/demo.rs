@@ -7,7 +7,7 @@ use crate::following::{Follower, follow};
 use crate::line::{Line, failure};
 use crate::pictures::Pictures;
 use crate::progress::Progress;
-use crate::recorded::{EXTENSION, Recorded};
+use crate::recorded::{Recorded, extension};
 use crate::shipped;
 use crate::simulated::Simulated;
 use clap::Args;
@@ -111,7 +111,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 /// Creates the folder and removes an earlier recording.
 fn prepared(out: &Path) -> Result<PathBuf, Failure> {
     fs::create_dir_all(out).map_err(|e| Failure::at(out, "cannot be created", &e))?;
-    let file = out.join("recording").with_extension(EXTENSION);
+    let file = out.join("recording").with_extension(extension());
     match fs::remove_file(&file) {
         Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
             Err(Failure::at(&file, "cannot be replaced", &e))

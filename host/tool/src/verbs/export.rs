@@ -2,9 +2,9 @@
 
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
-use crate::recorded::{Clash, Write, beside, parquet_writer, written};
+use crate::recorded::{Clash, beside, written};
 use clap::{Args, ValueEnum};
-use crepitus_recording::{COLUMNS, Damage, Recording};
+use crepitus_recording::{COLUMNS, Damage, Recording, Write, mcap_writer, parquet_writer};
 use serde_json::json;
 use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write as _};
@@ -34,20 +34,10 @@ impl ExportFormat {
     fn writer(self) -> Option<Write> {
         match self {
             Self::Csv => Some(csv),
-            Self::Mcap => mcap(),
+            Self::Mcap => mcap_writer(),
             Self::Parquet => parquet_writer(),
         }
     }
-}
-
-#[cfg(feature = "mcap")]
-fn mcap() -> Option<Write> {
-    Some(crepitus_recording::write_mcap)
-}
-
-#[cfg(not(feature = "mcap"))]
-fn mcap() -> Option<Write> {
-    None
 }
 
 /// Write a recording in another format.
