@@ -66,6 +66,12 @@ fn everything_works_while_another_program_is_armed() {
     assert_eq!(info["status"]["state"], "armed");
     assert_eq!(info["counters"]["drive"]["dropped-samples"], 0);
 
+    // Recording with torque is refused, and leaves nothing.
+    let refused = file(&served, "refused");
+    let output = served.run(&["record", refused.to_str().unwrap(), "--arm"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(!refused.exists());
+
     // What concerns the torque is for the one that has armed, who is named.
     let process = format!("`crepitus arm --for 60s`, process {},", arm.id());
     for verb in ["disarm", "arm", "zero", "clear-fault"] {

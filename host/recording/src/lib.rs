@@ -47,6 +47,10 @@ pub use recording::{Damage, Format, ReadError, Recording, Rows, seconds};
 pub use row::{COLUMNS, Row};
 pub use samples::Samples;
 
+use std::io;
+use std::path::Path;
+use tempfile::NamedTempFile;
+
 /// Writes a recording to an empty file, durably; tells the number of rows so
 /// far, and ends with [`Interrupted`](std::io::ErrorKind::Interrupted) if that
 /// returns false.
@@ -67,6 +71,23 @@ pub fn mcap_writer() -> Option<Write> {
     return Some(mcap::write);
     #[cfg(not(feature = "mcap"))]
     None
+}
+
+/// A file that is to appear whole, with this name in the end.
+///
+/// # Errors
+/// Of the disk.
+pub fn new_file(path: &Path) -> io::Result<NamedTempFile> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".crepitus-");
+    // The usual permissions, not those of a temporary file.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
 }
 
 /// Lower-case hex digits.

@@ -12,7 +12,7 @@ use crepitus_client::{Begin, Client};
 use crepitus_protocol::Revision;
 use crepitus_protocol::telemetry::Block;
 use crepitus_recording::{
-    Damage, Metadata, RecordError, Recorder, Recording, Totals, Write, parquet_writer,
+    Damage, Metadata, RecordError, Recorder, Recording, Totals, Write, new_file, parquet_writer,
 };
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
@@ -160,20 +160,11 @@ pub(crate) fn written(
     if clash == Clash::Refuse && out.exists() {
         return Err(exists(out));
     }
-    let folder = match out.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".crepitus-");
-    // The usual permissions, not those of a temporary file.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let failed = |error: io::Error| match error.kind() {
         ErrorKind::Interrupted => Failure::Work("interrupted: nothing was written".to_owned()),
         _ => Failure::at(out, "cannot be written", &error),
     };
-    let file = builder.tempfile_in(folder).map_err(failed)?;
+    let file = new_file(out).map_err(failed)?;
     let mut progress = Progress::of_reading();
     let expected = recording.books().totals.received.max(1);
     write(recording, file.as_file(), &mut |rows| {
@@ -194,7 +185,9 @@ pub(crate) fn written(
     };
     // The name, too, outlives a power cut.
     #[cfg(unix)]
-    File::open(folder)
+    out.parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .map_or_else(|| File::open("."), File::open)
         .and_then(|folder| folder.sync_all())
         .map_err(failed)?;
     Ok(())

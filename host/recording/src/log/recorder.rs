@@ -9,8 +9,7 @@ use crate::parameters::named_values;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Lane, Revision, Values, frame};
 use sha2::{Digest, Sha256};
-use std::fs::OpenOptions;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Parameter entries of which one holds all parameters.
@@ -60,25 +59,34 @@ pub struct Recorder<D = Background> {
 }
 
 impl Recorder {
-    /// Begins a recording in a file that must not exist.
+    /// Begins a recording in a file that must not exist. It appears with its
+    /// header: there is no instant at which it cannot be read.
     ///
     /// # Errors
     /// [`RecordError`] if it exists, or cannot be written.
     pub fn create(path: &Path, metadata: &Metadata) -> Result<Self, RecordError> {
-        let file = OpenOptions::new()
-            .write(true)
-            .create_new(true)
-            .open(path)
-            .map_err(|error| match error.kind() {
+        let failed = |source| RecordError::Disk {
+            path: path.to_owned(),
+            doing: "cannot be created",
+            source,
+        };
+        let head = head(metadata).map_err(failed)?;
+        let mut file = crate::new_file(path).map_err(failed)?;
+        file.write_all(&head).map_err(failed)?;
+        let file = file
+            .persist_noclobber(path)
+            .map_err(|error| match error.error.kind() {
                 io::ErrorKind::AlreadyExists => RecordError::Exists(path.to_owned()),
-                _ => RecordError::Disk {
-                    path: path.to_owned(),
-                    doing: "cannot be created",
-                    source: error,
-                },
+                _ => failed(error.error),
             })?;
-        Self::on(Background::new(file), path, metadata)
+        Ok(Self::behind(&head, Background::new(file), path, metadata))
     }
+}
+
+/// The first bytes of a recording.
+fn head(metadata: &Metadata) -> io::Result<Vec<u8>> {
+    let header = Entry::Header(metadata.clone()).frame()?;
+    Ok([MAGIC, &header].concat())
 }
 
 impl<D: Disk> Recorder<D> {
@@ -86,12 +94,26 @@ impl<D: Disk> Recorder<D> {
     ///
     /// # Errors
     /// [`RecordError`] if it cannot be written.
-    pub fn on(disk: D, path: &Path, metadata: &Metadata) -> Result<Self, RecordError> {
-        let mut recorder = Self {
+    pub fn on(mut disk: D, path: &Path, metadata: &Metadata) -> Result<Self, RecordError> {
+        let written = head(metadata).and_then(|head| {
+            disk.append(&head)?;
+            Ok(head)
+        });
+        let head = written.map_err(|source| RecordError::Disk {
+            path: path.to_owned(),
+            doing: WRITING,
+            source,
+        })?;
+        Ok(Self::behind(&head, disk, path, metadata))
+    }
+
+    /// Goes on behind the first bytes.
+    fn behind(head: &[u8], disk: D, path: &Path, metadata: &Metadata) -> Self {
+        Self {
             path: path.to_owned(),
             disk,
             pending: Vec::new(),
-            sum: Sha256::new(),
+            sum: Sha256::new_with_prefix(head),
             id: metadata.id.clone(),
             checkpoints: 0,
             blocks: 0,
@@ -100,11 +122,7 @@ impl<D: Disk> Recorder<D> {
             values: None,
             sets: 0,
             announced: Vec::new(),
-        };
-        recorder.put(MAGIC);
-        recorder.entry(&Entry::Header(metadata.clone()))?;
-        recorder.flush()?;
-        Ok(recorder)
+        }
     }
 
     /// A subscription begins, the first one or after a lost connection.

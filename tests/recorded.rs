@@ -1,0 +1,343 @@
+//! Recordings as their users meet them: names, hints, exports, damage.
+
+mod support;
+
+use crepitus_recording::{Damage, Recording};
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use support::{check_books, crepitus, names, recording, rows, run, stderr, stdout, summary};
+
+/// A recording of the simulated device, half a second long.
+fn record(folder: &Path, name: &str) -> Output {
+    crepitus()
+        .current_dir(folder)
+        .args([
+            "record", "--device", "sim", "--for", "500ms", "--arm", "--", name,
+        ])
+        .output()
+        .unwrap()
+}
+
+fn recorded(folder: &Path, name: &str) -> PathBuf {
+    let output = record(folder, name);
+    assert!(output.status.success(), "{}", stderr(&output));
+    folder.join(name)
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+#[test]
+fn any_name_works_and_the_hint_can_be_pasted() {
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path();
+    let all = [
+        "x.json",
+        "x.csv",
+        "x.parquet",
+        "x",
+        "run.1",
+        "noext",
+        "two words",
+        "it's",
+        "-dash",
+        "$HOME",
+        "knie ö",
+        "a\nb",
+    ];
+    for name in all {
+        let output = record(folder, name);
+        assert!(output.status.success(), "{name:?}: {}", stderr(&output));
+        let said = stdout(&output);
+        let hint = said.split('`').nth(1).unwrap();
+        let program = env!("CARGO_BIN_EXE_crepitus");
+        let hint = hint.replacen("crepitus", &format!("'{program}'"), 1);
+        // As a person pastes it.
+        let pasted = Command::new("bash")
+            .current_dir(folder)
+            .args(["-c", &hint])
+            .output()
+            .unwrap();
+        assert!(pasted.status.success(), "{hint}: {}", stderr(&pasted));
+    }
+    // Each recording and each report stands, none wrote over another.
+    assert_eq!(names(folder).len(), 2 * all.len(), "{:?}", names(folder));
+    for name in all {
+        let recording = recording(&folder.join(name));
+        assert!(recording.is_complete());
+        assert_eq!(check_books(&recording).dropped, 0);
+        let again = record(folder, name);
+        assert_eq!(again.status.code(), Some(2));
+        assert!(stderr(&again).contains("already exists"));
+    }
+}
+
+#[test]
+fn a_refused_recording_leaves_nothing() {
+    let home = tempfile::tempdir().unwrap();
+    let file = home.path().join("a");
+    // Coulomb's limit above what the device allows: arming is refused.
+    let output = run(&[
+        "record",
+        text(&file),
+        "--device",
+        "none-of-this-name",
+        "--arm",
+    ]);
+    assert!(!output.status.success());
+    assert_eq!(names(home.path()), [""; 0]);
+    let folder = home.path().join("no folder").join("a");
+    let output = run(&["record", text(&folder), "--device", "sim", "--for", "100ms"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("cannot be created"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn exports_hold_every_sample_and_replace_nothing() {
+    let home = tempfile::tempdir().unwrap();
+    let file = recorded(home.path(), "a");
+    let before = fs::read(&file).unwrap();
+    for format in ["csv", "mcap", "parquet"] {
+        let arguments = ["export", text(&file), "--format", format];
+        let output = run(&arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let again = run(&arguments);
+        assert_eq!(again.status.code(), Some(2));
+        assert!(stderr(&again).contains("already exists"));
+    }
+    assert_eq!(names(home.path()), ["a", "a.csv", "a.mcap", "a.parquet"]);
+    assert_eq!(fs::read(&file).unwrap(), before);
+    let (header, lines) = support::csv(&home.path().join("a.csv"));
+    let all = rows(&recording(&file));
+    assert_eq!(lines.len(), all.len());
+    let tick = header.iter().position(|name| name == "tick").unwrap();
+    for (line, row) in lines.iter().zip(&all) {
+        assert_eq!(line[tick], row.tick.to_string());
+    }
+    assert_eq!(rows(&recording(&home.path().join("a.parquet"))), all);
+    // An exported file is no recording, and the error says so.
+    let output = run(&["report", text(&home.path().join("a.csv"))]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("not one that was exported"));
+}
+
+/// A log of which the middle is missing, with a picture of that.
+#[test]
+fn what_is_missing_is_said_first_and_drawn() {
+    let home = tempfile::tempdir().unwrap();
+    let log = home.path().join("log");
+    let damaged = home.path().join("damaged");
+    let whole = recording_in_progress(&log);
+    let mut bytes = whole.clone();
+    let middle = bytes.len() / 2;
+    bytes[middle..middle + 20_000].fill(0);
+    fs::write(&damaged, &bytes).unwrap();
+    let output = run(&["report", text(&damaged)]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    for part in ["damaged:", "bytes from byte", "--salvage"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert_eq!(names(home.path()), ["damaged", "log"]);
+    let output = run(&["report", text(&damaged), "--salvage"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let said = stdout(&output);
+    let (missing, length) = (
+        said.find("are missing").unwrap(),
+        said.find(" s of it armed").unwrap(),
+    );
+    assert!(missing < length, "{said}");
+    let folder = home.path().join("damaged-report");
+    let numbers = summary(&folder);
+    let warnings = numbers["warnings"].as_array().unwrap();
+    assert!(warnings[0].as_str().unwrap().contains("damaged"));
+    let missing = numbers["telemetry"]["damaged"].as_u64().unwrap();
+    assert!((1_000..1_400).contains(&missing), "{missing}");
+    let page = fs::read_to_string(folder.join("report.html")).unwrap();
+    let table = page.find("Missing samples").expect("a table");
+    assert!(table < page.find("Parameters: revision").unwrap());
+    assert!(page.contains("Blank between dotted lines"));
+    // The same report without a gap has none.
+    assert!(run(&["report", text(&log)]).status.success());
+    let page = fs::read_to_string(home.path().join("log-report/report.html")).unwrap();
+    assert!(!page.contains("Blank between") && !page.contains("Missing samples"));
+    // What was salvaged can be kept as a whole file.
+    let kept = home.path().join("kept.parquet");
+    let export = [
+        "export",
+        text(&damaged),
+        "--format",
+        "parquet",
+        "--out",
+        text(&kept),
+    ];
+    assert_eq!(run(&export).status.code(), Some(2));
+    let output = run(&[&export[..], &["--salvage"]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let kept = recording(&kept);
+    assert_eq!(check_books(&kept).damaged, missing);
+}
+
+/// The file as it was before it became Parquet: that of a full disk.
+fn recording_in_progress(path: &Path) -> Vec<u8> {
+    use crepitus_protocol::management::Identity;
+    use crepitus_protocol::telemetry::{Block, BlockFlags};
+    use crepitus_protocol::{Revision, State, Values};
+    use crepitus_recording::{Begin, Metadata, Recorder};
+    let metadata = Metadata::new("a test", &Identity::default(), None);
+    let mut recorder = Recorder::create(path, &metadata).unwrap();
+    let begin = Begin {
+        first_tick: 100,
+        ..Begin::default()
+    };
+    recorder.subscribed(begin).unwrap();
+    recorder.announce(Revision(1), &Values::default());
+    for n in 0..1_500 {
+        let first_tick = 100 + 20 * n;
+        let mut block = Block {
+            first_tick,
+            revision: Revision(1),
+            flags: BlockFlags::new(State::Armed, true, 0),
+            ..Block::default()
+        };
+        for (at, sample) in block.samples.iter_mut().enumerate() {
+            let t = (first_tick + at as u64) as f64 * 5e-5;
+            sample.count = (2_000.0 * t.sin()) as i32;
+            sample.model_torque_nm = (30.0 * t).sin() as f32;
+        }
+        recorder.block(&block).unwrap();
+    }
+    recorder.finish().unwrap();
+    fs::read(path).unwrap()
+}
+
+/// Wherever the disk gets full while the Parquet file is made, the recording
+/// stays; the new file appears whole or not at all.
+#[cfg(unix)]
+#[test]
+fn a_disk_that_gets_full_at_the_end_costs_nothing() {
+    let home = tempfile::tempdir().unwrap();
+    let log = home.path().join("log");
+    recording_in_progress(&log);
+    let export = |kilobytes: u32, out: &str| {
+        let script = format!(
+            "trap '' XFSZ; ulimit -f {kilobytes}; exec '{}' export '{}' --format parquet --out '{out}'",
+            env!("CARGO_BIN_EXE_crepitus"),
+            log.display()
+        );
+        Command::new("bash")
+            .current_dir(home.path())
+            .args(["-c", &script])
+            .output()
+            .unwrap()
+    };
+    assert!(export(100_000, "whole").status.success());
+    let whole = fs::read(home.path().join("whole")).unwrap();
+    let most = u32::try_from(whole.len() / 1_024).unwrap();
+    for kilobytes in (0..=most).step_by(9) {
+        let output = export(kilobytes, "cut");
+        assert_eq!(output.status.code(), Some(1), "{kilobytes} kB");
+        assert!(
+            stderr(&output).contains("cannot be written"),
+            "{}",
+            stderr(&output)
+        );
+        assert_eq!(names(home.path()), ["log", "whole"]);
+    }
+    assert!(recording(&log).is_complete());
+}
+
+#[test]
+fn pandas_polars_and_duckdb_open_the_file() {
+    let home = tempfile::tempdir().unwrap();
+    let file = recorded(home.path(), "a.parquet");
+    let all = rows(&recording(&file));
+    let sum: i64 = all.iter().map(|row| i64::from(row.count)).sum();
+    let measured = all.iter().filter(|row| row.current_a.is_some()).count();
+    let expected = format!("{} {sum} {measured} not-armed", all.len());
+    let python = std::env::var("CREPITUS_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let path = text(&file);
+    let programs = [
+        (
+            "pandas",
+            format!(
+                "import pandas; t = pandas.read_parquet('{path}')\n\
+                 print(len(t), t['count'].sum(), t.current_a.notna().sum(), t.limit[0])"
+            ),
+        ),
+        (
+            "polars",
+            format!(
+                "import polars; t = polars.read_parquet('{path}')\n\
+                 print(len(t), t['count'].cast(polars.Int64).sum(), t['current_a'].is_not_null().sum(), t['limit'][0])"
+            ),
+        ),
+        (
+            "duckdb",
+            format!(
+                "import duckdb; t = duckdb.sql(\"select count(*), sum(count), count(current_a), \
+                 arg_min(\\\"limit\\\", tick) from '{path}'\").fetchall()[0]\nprint(*t)"
+            ),
+        ),
+        (
+            "pyarrow",
+            format!(
+                "import pyarrow.parquet as p, json; m = p.read_metadata('{path}')\n\
+                 about = json.loads(m.metadata[b'crepitus'])\n\
+                 t = p.read_table('{path}')\n\
+                 assert about['columns']['torque_nm'].endswith('N·m')\n\
+                 assert about['books']['totals']['received'] == len(t)\n\
+                 assert about['parameters'][0]['values']['crepitus.static_torque_nm'] > 0\n\
+                 assert len(about['comms']['serial']) == 24 and len(about['drive']['serial']) == 24\n\
+                 print(len(t), sum(t['count'].to_pylist()), len(t) - t['current_a'].null_count, t['limit'][0])"
+            ),
+        ),
+    ];
+    for (library, program) in programs {
+        let import = program.split(['.', ';', ' ']).nth(1).unwrap();
+        let is_there = Command::new(&python)
+            .args(["-c", &format!("import {import}")])
+            .output()
+            .is_ok_and(|output| output.status.success());
+        if !is_there {
+            eprintln!("left out: {library} is not installed for {python}");
+            continue;
+        }
+        let output = Command::new(&python)
+            .args(["-c", &program])
+            .output()
+            .unwrap();
+        assert_eq!(
+            stdout(&output).trim(),
+            expected,
+            "{library}: {}",
+            stderr(&output)
+        );
+        println!("{library} reads the file");
+    }
+}
+
+/// The exported summary of what is wrong is for programs, too.
+#[test]
+fn findings_are_json_for_programs() {
+    let home = tempfile::tempdir().unwrap();
+    let log = home.path().join("log");
+    let whole = recording_in_progress(&log);
+    fs::write(&log, &whole[..whole.len() - 30_000]).unwrap();
+    let output = run(&["export", text(&log), "--format", "csv", "--json"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let said: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert!(said["warnings"][0].as_str().unwrap().contains("incomplete"));
+    let recording = Recording::open(&log, Damage::Refuse).unwrap();
+    assert_eq!(
+        said["telemetry"]["received"],
+        check_books(&recording).received
+    );
+}
