@@ -89,19 +89,25 @@ fn the_file_holds_all_that_the_log_held() {
 
 #[test]
 fn every_flipped_bit_is_noticed_and_costs_two_seconds_at_most() {
-    let bench = Bench::new(4_200);
+    // Two groups, the second one short.
+    let bench = Bench::new(2_100);
     let mut random = fastrand::Rng::with_seed(4);
     let bits = bench.whole.len() * 8;
-    let places = (0..300).map(|_| random.usize(..bits));
+    let places = (0..800).map(|_| random.usize(..bits));
+    // Of the footer more than its share.
     let ends = (0..160).step_by(7).chain((bits - 8_000..bits).step_by(40));
     let mut whole = 0;
-    for bit in places.chain(ends) {
+    for (n, bit) in places.chain(ends).enumerate() {
         let mut flipped = bench.whole.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);
-        bench.check(&flipped, 40_000);
+        if n % 10 > 0 {
+            open(&bench.write(&flipped)).expect_err("nothing was noticed");
+            continue;
+        }
+        bench.check(&flipped, 2_000);
         whole += usize::from(rows(&salvaged(&bench.write(&flipped))).len() == bench.all.len());
     }
-    assert!(whole > 100, "a flip in the footer costs nothing: {whole}");
+    assert!(whole > 15, "a flip in the footer costs nothing: {whole}");
 }
 
 #[test]
