@@ -1,5 +1,11 @@
 //! Recordings as their users meet them: names, hints, exports, damage.
 
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "small numbers"
+)]
+
 mod support;
 
 use crepitus_recording::{Damage, Recording};
@@ -344,11 +350,19 @@ fn findings_are_json_for_programs() {
 
 /// What a program took.
 #[cfg(target_os = "linux")]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 struct Took {
     seconds: f64,
     /// Its highest memory, kB.
     kilobytes: u64,
+}
+
+#[cfg(target_os = "linux")]
+impl std::fmt::Display for Took {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let megabytes = self.kilobytes / 1_000;
+        write!(f, "{:.2} s, at most {megabytes} MB of memory", self.seconds)
+    }
 }
 
 #[cfg(target_os = "linux")]
@@ -384,27 +398,52 @@ fn took(arguments: &[&str]) -> Took {
 #[test]
 fn memory_does_not_grow_with_the_recording() {
     let is_long = std::env::var_os("CREPITUS_LONG").is_some();
-    let durations = if is_long { ["60s", "60m"] } else { ["5s", "20s"] };
+    let durations = if is_long {
+        ["60s", "60m"]
+    } else {
+        ["5s", "20s"]
+    };
     let home = tempfile::tempdir().unwrap();
     let mut highest = Vec::new();
     for duration in durations {
         let file = home.path().join(duration);
         let mut all = vec![took(&[
-            "record", text(&file), "--device", "sim", "--arm", "--for", duration,
+            "record",
+            text(&file),
+            "--device",
+            "sim",
+            "--arm",
+            "--for",
+            duration,
         ])];
-        println!("record --for {duration}: {:?}", all[0]);
+        println!("record --for {duration}: {}", all[0]);
         for format in ["csv", "parquet", "mcap"] {
             let out = home.path().join("out");
-            let took = took(&["export", text(&file), "--format", format, "--out", text(&out)]);
-            println!("{duration} as {format}: {took:?}, {} bytes", support::length(&out));
+            let took = took(&[
+                "export",
+                text(&file),
+                "--format",
+                format,
+                "--out",
+                text(&out),
+            ]);
+            println!(
+                "{duration} as {format}: {took}, {} bytes",
+                support::length(&out)
+            );
             fs::remove_file(out).unwrap();
             all.push(took);
         }
-        all.push(took(&["report", text(&file), "--out", text(&home.path().join("report"))]));
-        println!("report of {duration}: {:?}", all[4]);
+        all.push(took(&[
+            "report",
+            text(&file),
+            "--out",
+            text(&home.path().join("report")),
+        ]));
+        println!("report of {duration}: {}", all[4]);
         highest.push(all);
     }
     for (short, long) in highest[0].iter().zip(&highest[1]) {
-        assert!(long.kilobytes < short.kilobytes + 24_000, "{short:?} {long:?}");
+        assert!(long.kilobytes < short.kilobytes + 24_000, "{short}; {long}");
     }
 }

@@ -254,9 +254,8 @@ impl Recording {
     /// [`ReadError::Io`].
     pub fn rows(&self) -> Result<Rows<'_>, ReadError> {
         let source = match &self.source {
-            Source::Log(file) => {
-                LogRows::new(file, &self.history).map(|rows| RowSource::Log(Box::new(rows)))
-            }
+            Source::Log(file) => LogRows::new(file, &self.history, self.books.totals.received)
+                .map(|rows| RowSource::Log(Box::new(rows))),
             #[cfg(feature = "parquet")]
             Source::Parquet(reader) => Ok(RowSource::Parquet(reader.rows())),
         };
@@ -320,10 +319,12 @@ struct LogRows<'r> {
     /// Of the block at hand.
     block: std::vec::IntoIter<Row>,
     count: u64,
+    /// Of the file when it was opened: it may be growing.
+    rows: u64,
 }
 
 impl<'r> LogRows<'r> {
-    fn new(mut file: &'r File, history: &'r History) -> io::Result<Self> {
+    fn new(mut file: &'r File, history: &'r History, rows: u64) -> io::Result<Self> {
         file.seek(SeekFrom::Start(0))?;
         Ok(Self {
             reader: LogReader::new(BufReader::with_capacity(1 << 16, file))?,
@@ -331,12 +332,16 @@ impl<'r> LogRows<'r> {
             samples: Samples::default(),
             block: Vec::new().into_iter(),
             count: 0,
+            rows,
         })
     }
 
     fn next(&mut self) -> io::Result<Option<Row>> {
         if let Some(row) = self.block.next() {
             return Ok(Some(row));
+        }
+        if self.count >= self.rows {
+            return Ok(None);
         }
         let Some(block) = self.reader.next()? else {
             return Ok(None);
@@ -354,7 +359,7 @@ impl<'r> LogRows<'r> {
 }
 
 /// First and last bytes of a Parquet file.
-const PARQUET: &[u8] = b"PAR1";
+const PARQUET: &[u8; 4] = b"PAR1";
 
 /// Bytes in which a damaged recording has at least one frame in order.
 const HEAD_BYTES: u64 = 1 << 16;
@@ -374,7 +379,7 @@ fn format_of(path: &Path) -> io::Result<Option<Format>> {
     let length = file.metadata()?.len();
     if length > PARQUET.len() as u64 {
         let mut tail = Vec::new();
-        file.seek(SeekFrom::End(-(PARQUET.len() as i64)))?;
+        file.seek(SeekFrom::End(-4))?;
         file.read_to_end(&mut tail)?;
         if tail == PARQUET {
             return Ok(Some(Format::Parquet));

@@ -1,5 +1,6 @@
 //! File names in commands that are printed to be pasted.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 /// A path as one word of a shell's command line.
@@ -15,8 +16,12 @@ pub(crate) fn word(path: &Path) -> String {
         }
         // Not to be printed as it is.
         _ => {
-            let escaped: String = bytes.iter().map(|byte| format!("\\x{byte:02x}")).collect();
-            format!("$'{prefix}{escaped}'")
+            let mut word = format!("$'{prefix}");
+            for byte in bytes {
+                // Writing to a string does not fail.
+                let _ = write!(word, "\\x{byte:02x}");
+            }
+            word + "'"
         }
     }
 }

@@ -17,7 +17,7 @@ const ENTRY: [u8; 2] = *b"J2";
 #[serde(tag = "entry", rename_all = "kebab-case")]
 pub(crate) enum Entry {
     /// The first frame.
-    Header(Metadata),
+    Header(Box<Metadata>),
     /// A subscription begins.
     Subscribed(Begin),
     /// Parameters, from the next block on.
@@ -66,7 +66,7 @@ impl Entry {
 /// What a frame holds.
 pub(crate) enum Content {
     Block(Box<Block>),
-    Entry(Entry),
+    Entry(Box<Entry>),
 }
 
 impl Content {
@@ -79,7 +79,9 @@ impl Content {
         }
         let (kind, payload) = body.split_first_chunk::<2>()?;
         if *kind == ENTRY {
-            return serde_json::from_slice(payload).ok().map(Self::Entry);
+            return serde_json::from_slice(payload)
+                .ok()
+                .map(|entry| Self::Entry(Box::new(entry)));
         }
         // The tag is that of the wire's schema; `FORMAT` is that of blocks here.
         if kind[0] != Lane::Telemetry.byte() {

@@ -41,6 +41,14 @@ pub(crate) struct LogReader<R> {
     findings: Findings,
 }
 
+/// What stands between two delimiters.
+enum Frame {
+    Whole(Content),
+    Damaged,
+    /// Nothing: the file ends.
+    End,
+}
+
 /// What a whole file holds.
 #[derive(Debug)]
 pub(crate) struct Scanned {
@@ -115,40 +123,42 @@ impl<R: BufRead> LogReader<R> {
     pub(crate) fn next(&mut self) -> io::Result<Option<Box<Block>>> {
         loop {
             let from = self.offset;
-            let Some(content) = self.content()? else {
-                return Ok(None);
-            };
-            if let Some(content) = content {
-                self.note_damage();
-                if let Some(block) = self.take(content, from) {
-                    return Ok(Some(block));
+            match self.frame()? {
+                Frame::Whole(content) => {
+                    self.note_damage();
+                    if let Some(block) = self.take(content, from) {
+                        return Ok(Some(block));
+                    }
                 }
-            } else {
-                let (first, bytes) = self.damage.unwrap_or((from, 0));
-                self.damage = Some((first, bytes + self.chunk.len() as u64));
+                Frame::Damaged => {
+                    let (first, bytes) = self.damage.unwrap_or((from, 0));
+                    self.damage = Some((first, bytes + self.chunk.len() as u64));
+                }
+                Frame::End => return Ok(None),
             }
         }
     }
 
-    /// The next frame, `Some(None)` if it is damaged; none at the end.
-    fn content(&mut self) -> io::Result<Option<Option<Content>>> {
+    /// The next frame.
+    fn frame(&mut self) -> io::Result<Frame> {
         self.chunk.clear();
         let read = (&mut self.input)
             .take(FRAME_LIMIT)
             .read_until(DELIMITER, &mut self.chunk)?;
         if read == 0 {
-            return Ok(None);
+            return Ok(Frame::End);
         }
         self.offset += read as u64;
         let Some((&DELIMITER, frame)) = self.chunk.split_last() else {
             self.sum.update(&self.chunk);
-            return Ok(Some(None));
+            return Ok(Frame::Damaged);
         };
         let content = Content::of(&mut frame.to_vec());
-        if !matches!(content, Some(Content::Entry(Entry::Checkpoint(_)))) {
+        let is_checkpoint = matches!(&content, Some(Content::Entry(entry)) if matches!(**entry, Entry::Checkpoint(_)));
+        if !is_checkpoint {
             self.sum.update(&self.chunk);
         }
-        Ok(Some(content))
+        Ok(content.map_or(Frame::Damaged, Frame::Whole))
     }
 
     /// Frames follow bytes that are none.
@@ -169,24 +179,27 @@ impl<R: BufRead> LogReader<R> {
                 .add(format!("There is more after its end, from byte {from} on"));
             return None;
         }
-        match content {
+        let entry = match content {
             Content::Block(block) => return self.block(block),
-            Content::Entry(Entry::Header(metadata)) => {
+            Content::Entry(entry) => *entry,
+        };
+        match entry {
+            Entry::Header(metadata) => {
                 if self.metadata.is_some() {
                     self.findings
                         .add(format!("Another recording begins in it, at byte {from}"));
                 } else {
-                    self.metadata = Some(metadata);
+                    self.metadata = Some(*metadata);
                 }
             }
-            Content::Entry(Entry::Subscribed(begin)) => self.ledger.subscribed(begin),
-            Content::Entry(Entry::Parameters {
+            Entry::Subscribed(begin) => self.ledger.subscribed(begin),
+            Entry::Parameters {
                 number,
                 revision,
                 is_whole,
                 values,
-            }) => self.parameters(number, revision, is_whole, values),
-            Content::Entry(Entry::Checkpoint(checkpoint)) => self.checkpoint(&checkpoint),
+            } => self.parameters(number, revision, is_whole, values),
+            Entry::Checkpoint(checkpoint) => self.checkpoint(&checkpoint),
         }
         None
     }

@@ -85,7 +85,7 @@ impl Recorder {
 
 /// The first bytes of a recording.
 fn head(metadata: &Metadata) -> io::Result<Vec<u8>> {
-    let header = Entry::Header(metadata.clone()).frame()?;
+    let header = Entry::Header(Box::new(metadata.clone())).frame()?;
     Ok([MAGIC, &header].concat())
 }
 

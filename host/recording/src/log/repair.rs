@@ -73,9 +73,12 @@ fn places(mut file: &File) -> io::Result<(Option<Place>, Vec<Place>)> {
                 }
                 places.push(place);
             }
-            Some(Content::Entry(Entry::Header(_))) => header = header.or(Some(place)),
-            Some(Content::Entry(Entry::Checkpoint(_))) | None => {}
-            Some(Content::Entry(_)) => waiting.push(place),
+            Some(Content::Entry(entry)) => match *entry {
+                Entry::Header(_) => header = header.or(Some(place)),
+                Entry::Checkpoint(_) => {}
+                _ => waiting.push(place),
+            },
+            None => {}
         }
     }
     // Starts in the order in which most of their blocks stand.

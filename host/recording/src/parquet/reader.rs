@@ -25,7 +25,7 @@ pub(crate) struct Reader {
 }
 
 /// Bytes of the file's end: the footer's length and `PAR1`.
-const TAIL: u64 = 8;
+const TAIL: usize = 8;
 
 impl Reader {
     /// Reads all of it once.
@@ -149,10 +149,10 @@ fn unreadable() -> io::Error {
 /// Where the footer begins, and its bytes.
 fn footer(mut file: &File) -> io::Result<Option<(u64, Vec<u8>)>> {
     let length = file.metadata()?.len();
-    let Some(tail_at) = length.checked_sub(TAIL) else {
+    let Some(tail_at) = length.checked_sub(TAIL as u64) else {
         return Ok(None);
     };
-    let mut tail = [0; TAIL as usize];
+    let mut tail = [0; TAIL];
     file.seek(SeekFrom::Start(tail_at))?;
     file.read_exact(&mut tail)?;
     let [a, b, c, d, ..] = tail;
@@ -167,7 +167,7 @@ fn footer(mut file: &File) -> io::Result<Option<(u64, Vec<u8>)>> {
 }
 
 fn decoded(footer: &[u8]) -> io::Result<ParquetMetaData> {
-    let thrift = footer.len().saturating_sub(TAIL as usize);
+    let thrift = footer.len().saturating_sub(TAIL);
     ParquetMetaDataReader::decode_metadata(&footer[..thrift]).map_err(other)
 }
 

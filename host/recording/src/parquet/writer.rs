@@ -75,7 +75,7 @@ fn io_error(error: ReadError) -> io::Error {
 }
 
 struct Writer<'f> {
-    writer: SerializedFileWriter<Output<'f>>,
+    file: SerializedFileWriter<Output<'f>>,
     about: KeyValue,
     rows: u64,
 }
@@ -91,7 +91,7 @@ impl<'f> Writer<'f> {
         let schema = Arc::new(columns::schema().map_err(other)?);
         let properties = Arc::new(columns::properties().map_err(other)?);
         let mut writer = Self {
-            writer: SerializedFileWriter::new(output, schema, properties).map_err(other)?,
+            file: SerializedFileWriter::new(output, schema, properties).map_err(other)?,
             about: KeyValue::new(KEY.to_owned(), about),
             rows: 0,
         };
@@ -103,16 +103,16 @@ impl<'f> Writer<'f> {
 
     /// What is written from here on belongs to a group.
     fn begin_group(&mut self) -> io::Result<()> {
-        self.writer.flush()?;
-        self.writer.inner_mut().group.clear();
+        self.file.flush()?;
+        self.file.inner_mut().group.clear();
         Ok(())
     }
 
     fn group(&mut self, rows: &mut Vec<Row>) -> io::Result<()> {
-        let mut group = self.writer.next_row_group().map_err(other)?;
+        let mut group = self.file.next_row_group().map_err(other)?;
         columns::write(rows, &mut group).map_err(other)?;
         group.close().map_err(other)?;
-        self.writer.flush()?;
+        self.file.flush()?;
         self.seal(self.rows, None)?;
         self.rows += rows.len() as u64;
         rows.clear();
@@ -122,7 +122,7 @@ impl<'f> Writer<'f> {
     /// Seals what was written since the last seal.
     fn seal(&mut self, first_row: u64, about: Option<Vec<KeyValue>>) -> io::Result<()> {
         let groups: Vec<_> = self
-            .writer
+            .file
             .flushed_row_groups()
             .last()
             .cloned()
@@ -132,19 +132,19 @@ impl<'f> Writer<'f> {
             .iter()
             .map(parquet::file::metadata::RowGroupMetaData::num_rows)
             .sum();
-        let properties = self.writer.properties();
+        let properties = self.file.properties();
         let file = FileMetaData::new(
             properties.writer_version().as_num(),
             rows,
             Some(properties.created_by().to_owned()),
             about,
-            self.writer.schema_descr().clone().into(),
+            self.file.schema_descr().clone().into(),
             None,
         );
-        let output = self.writer.inner();
+        let output = self.file.inner();
         let first_byte = output.length - output.group.len() as u64;
         let seal = seal((first_byte, &output.group), first_row, file, groups)?;
-        self.writer.write_all(&seal)?;
+        self.file.write_all(&seal)?;
         self.begin_group()
     }
 
@@ -152,9 +152,9 @@ impl<'f> Writer<'f> {
     fn finish(mut self, file: &File) -> io::Result<()> {
         let sum = String::from_utf8_lossy(&NO_SUM).into_owned();
         for pair in [self.about, KeyValue::new(SUM_KEY.to_owned(), sum)] {
-            self.writer.append_key_value_metadata(pair);
+            self.file.append_key_value_metadata(pair);
         }
-        let mut output = self.writer.into_inner().map_err(other)?;
+        let mut output = self.file.into_inner().map_err(other)?;
         output.flush()?;
         let footer_byte = output.length - output.group.len() as u64;
         let at = super::sum_place(&output.group)

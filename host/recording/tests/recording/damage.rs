@@ -2,7 +2,7 @@
 //! readable is kept.
 
 use crate::support::{check_books, is_part, open, recorded, rows, rows_of, salvaged, sent};
-use crepitus_recording::ReadError;
+use crepitus_recording::{Damage, ReadError, Recording};
 use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -123,6 +123,38 @@ fn frames_that_are_missing_doubled_or_elsewhere_are_noticed() {
             bench.check(&swapped, rows - 20);
         }
     }
+}
+
+/// Whatever a file is made of: an error, or rows whose books add up.
+#[test]
+fn no_bytes_are_too_strange() {
+    let bench = Bench::new();
+    let mut random = fastrand::Rng::with_seed(5);
+    let mut read = 0;
+    for _ in 0..300 {
+        let mut bytes = bench.whole.clone();
+        for _ in 0..random.usize(1..6) {
+            let mut ends = [random.usize(..bytes.len()), random.usize(..bytes.len())];
+            ends.sort_unstable();
+            let [from, to] = ends;
+            let to = to.min(from + 1 + random.usize(..30_000));
+            let part = bytes[from..to].to_vec();
+            match random.u8(..5) {
+                0 => bytes.truncate(to.max(1_000)),
+                1 => drop(bytes.drain(from..to)),
+                2 => bytes[from..to].fill_with(|| random.u8(..)),
+                3 => bytes.extend(part),
+                _ => drop(bytes.splice(from..from, part)),
+            }
+        }
+        let path = bench.path();
+        fs::write(&path, &bytes).unwrap();
+        if let Ok(recording) = Recording::open(&path, Damage::Salvage) {
+            check_books(&recording);
+            read += 1;
+        }
+    }
+    assert!(read > 100, "{read}");
 }
 
 #[test]

@@ -92,6 +92,21 @@ fn one_that_was_killed_is_read_up_to_its_last_whole_block() {
     assert!(last > 21_000, "{last}");
 }
 
+/// A report while it is recorded.
+#[test]
+fn one_that_grows_is_read_as_it_was_when_it_was_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a");
+    let sent = sent(300);
+    recorded(&path, "whole", &sent);
+    let whole = fs::read(&path).unwrap();
+    fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+    let recording = open(&path).unwrap();
+    fs::write(&path, &whole).unwrap();
+    check_books(&recording);
+    assert!(!recording.is_complete());
+}
+
 #[test]
 fn nothing_is_written_over() {
     let folder = tempfile::tempdir().unwrap();
@@ -112,7 +127,7 @@ fn what_is_no_recording_is_refused() {
         &b""[..],
         b"tick,t_s\n1,0.0\n",
         &[0; 5_000],
-        &[7; 100_000],
+        &[7; 9_000],
         b"PAR",
     ] {
         fs::write(&path, content).unwrap();
