@@ -120,6 +120,9 @@ pub struct Books {
     pub gaps: Vec<Gap>,
     /// Number of gaps.
     pub gap_count: u64,
+    /// Samples after the last row that are known to be missing.
+    #[serde(default)]
+    pub missing_at_end: u64,
     /// Restarts of the drive; its ticks restart from 0.
     pub drive_restarts: u32,
 }
@@ -280,7 +283,9 @@ pub(crate) struct Recount<'b> {
     next_tick: u64,
     segments: usize,
     dropped: u64,
-    gaps: u64,
+    gap_count: u64,
+    /// The first thousand.
+    gaps: Vec<Gap>,
     disordered: u64,
 }
 
@@ -292,31 +297,68 @@ impl<'b> Recount<'b> {
             next_tick: 0,
             segments: 0,
             dropped: 0,
-            gaps: 0,
+            gap_count: 0,
+            gaps: Vec::new(),
             disordered: 0,
         }
     }
 
-    /// Takes the next row's tick; false if it is not newer than the one before.
-    pub(crate) fn row(&mut self, tick: u64) -> bool {
+    /// Takes the next row's tick.
+    pub(crate) fn row(&mut self, tick: u64) {
         while let Some(segment) = self.books.segments.get(self.segments)
             && segment.first_row <= self.rows
         {
             self.enter(segment);
         }
-        self.rows += 1;
         if tick < self.next_tick {
+            self.rows += 1;
             self.disordered += 1;
-            return false;
+            return;
         }
         self.missing(tick - self.next_tick);
+        self.rows += 1;
         self.next_tick = tick + 1;
-        true
     }
 
     fn missing(&mut self, samples: u64) {
+        if samples == 0 {
+            return;
+        }
         self.dropped += samples;
-        self.gaps += u64::from(samples > 0);
+        self.gap_count += 1;
+        if self.gaps.len() < LISTED_GAPS {
+            let (row, first_tick) = (self.rows, self.next_tick);
+            let same = |gap: &&Gap| (gap.first_tick, gap.samples) == (first_tick, samples);
+            let known = self.books.gaps.iter().find(same);
+            self.gaps.push(Gap {
+                row,
+                first_tick,
+                samples,
+                cause: known.map_or(Cause::Damaged, |gap| gap.cause),
+            });
+        }
+    }
+
+    /// The books of these rows, of which others are damaged.
+    #[cfg(feature = "parquet")]
+    pub(crate) fn into_books(mut self) -> Books {
+        let mut books = self.books.clone();
+        let totals = &mut books.totals;
+        self.missing(totals.produced.saturating_sub(self.rows + self.dropped));
+        totals.damaged += totals.received.saturating_sub(self.rows);
+        totals.dropped = totals.produced.saturating_sub(self.rows);
+        totals.received = self.rows;
+        books.missing_at_end = match self.gaps.last() {
+            Some(gap) if gap.row == self.rows => gap.samples,
+            _ => 0,
+        };
+        // Of the last ones no row may be left.
+        books
+            .segments
+            .retain(|segment| segment.first_row < self.rows);
+        books.gap_count = self.gap_count;
+        books.gaps = self.gaps;
+        books
     }
 
     fn enter(&mut self, segment: &Segment) {
@@ -337,13 +379,14 @@ impl<'b> Recount<'b> {
         while let Some(segment) = self.books.segments.get(self.segments) {
             self.enter(segment);
         }
+        self.missing(self.books.missing_at_end);
         let totals = &self.books.totals;
         let produced = self.rows + self.dropped;
         let counts = [
             ("samples produced", produced, totals.produced),
             ("rows", self.rows, totals.received),
             ("missing samples", self.dropped, totals.dropped),
-            ("gaps", self.gaps, self.books.gap_count),
+            ("gaps", self.gap_count, self.books.gap_count),
             ("rows out of order", self.disordered, 0),
         ];
         counts

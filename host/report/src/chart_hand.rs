@@ -102,7 +102,7 @@ fn panel<'f>(
     let time = if bins.is_none() && !window.torque.is_empty() {
         Axis::linear(window.start, window.end, 8)
     } else {
-        time_axis(&course.points())
+        time_axis(figures, &course.points())
     };
     let height = if last { LAST_HEIGHT } else { HEIGHT };
     Panel::new(height, time, (title, course.axis(5)), move |plot| {

@@ -20,12 +20,16 @@ pub(crate) fn degrees(points: &[Point]) -> Vec<Point> {
         .collect()
 }
 
-/// The time of all points, with about eight ticks.
-pub(crate) fn time_axis(points: &[Point]) -> Axis {
-    match (points.first(), points.last()) {
-        (Some(first), Some(last)) => Axis::linear(first.x, last.x, 8),
-        _ => Axis::linear(0.0, 1.0, 8),
+/// The time of all points and of what is missing, with about eight ticks.
+pub(crate) fn time_axis(figures: &Figures, points: &[Point]) -> Axis {
+    let (mut from, mut to) = match (points.first(), points.last()) {
+        (Some(first), Some(last)) => (first.x, last.x),
+        _ => (0.0, 1.0),
+    };
+    for (gap_from, gap_to) in &figures.gaps {
+        (from, to) = (from.min(*gap_from), to.max(*gap_to));
     }
+    Axis::linear(from, to, 8)
 }
 
 /// What moves beside the shaft, in degrees.
@@ -100,7 +104,7 @@ fn panels<'f>(figures: &'f Figures, lines: &'f Lines, beside: bool) -> Vec<Panel
         let values = lines.iter().flat_map(|line| line.iter().map(|p| p.y));
         Axis::covering(values.chain(also), ticks)
     };
-    let time = time_axis(if angle.is_empty() { speed } else { angle });
+    let time = time_axis(figures, if angle.is_empty() { speed } else { angle });
     let of_hand = |plot: &mut Plot, line: &[Point]| plot.stroke(line, Stroke::dashed(LEVEL, 1.5));
     let angles = axis(&[angle, &leg.angle, &intended.angle], None, 5);
     let mut panels = vec![Panel::new(

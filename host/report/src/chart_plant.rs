@@ -66,7 +66,7 @@ pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
 }
 
 fn chart(figures: &Figures, shown: &Shown, course: &Course) -> Chart {
-    let time = time_axis(&course.points());
+    let time = time_axis(figures, &course.points());
     let panel = Panel::new(HEIGHT, time, (shown.axis, course.axis(4)), |plot| {
         if shown.has_pushes {
             figures.shade_pushes(plot);

@@ -79,7 +79,8 @@ fn line<'f>(figures: &'f Figures, torque: &'f [Point]) -> Panel<'f> {
     let levels = levels::levels_in(figures.levels, torque);
     let y = levels::torque_axis(torque, &levels);
     let names = levels::names(&y, &levels, HEIGHT);
-    let time = Axis::linear(window.start, window.end, 8);
+    let ends = [window.start, window.end].map(|time| Point::new(time, 0.0));
+    let time = time_axis(figures, &ends);
     let panel = Panel::new(HEIGHT, time, ("Torque (N·m)", y), move |plot| {
         shade(plot, &window.spans(window.start, window.end));
         plot.grid();
@@ -107,7 +108,7 @@ fn range<'f>(figures: &'f Figures, torque: &[Point]) -> Vec<Panel<'f>> {
         .map(|bin| Point::new(bin.middle(), bin.mean()))
         .filter(|point| point.y.is_finite())
         .collect();
-    let time = time_axis(torque);
+    let time = time_axis(figures, torque);
     let levels = levels::levels_in(figures.levels, torque);
     let y = levels::torque_axis(torque, &levels);
     let names = levels::names(&y, &levels, RANGE_HEIGHT);

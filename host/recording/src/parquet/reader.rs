@@ -2,7 +2,7 @@
 
 use super::seal::{self, Seal};
 use super::{About, KEY, NO_SUM, columns, other};
-use crate::books::{Books, Recount};
+use crate::books::Recount;
 use crate::findings::Findings;
 use crate::row::Row;
 use bytes::{Buf, Bytes, buf};
@@ -106,9 +106,16 @@ impl Reader {
             for difference in recount.differences() {
                 findings.add(format!("It has {difference}"));
             }
-        } else {
-            forget_lost_rows(about, &kept);
+            return Ok(());
         }
+        forget_lost_rows(about, &kept);
+        let books = about.books.clone();
+        let mut recount = Recount::new(&books);
+        let mut rows = self.rows();
+        while let Some(row) = rows.next()? {
+            recount.row(row.tick);
+        }
+        about.books = recount.into_books();
         Ok(())
     }
 
@@ -212,16 +219,8 @@ fn forget_lost_rows(about: &mut About, kept: &[(u64, u64)]) {
             .map(|(first, rows)| row.saturating_sub(*first).min(*rows))
             .sum::<u64>()
     };
-    let books: &mut Books = &mut about.books;
-    let received = kept_before(u64::MAX);
-    books.totals.damaged += books.totals.received.saturating_sub(received);
-    books.totals.dropped = books.totals.produced.saturating_sub(received);
-    books.totals.received = received;
-    for segment in &mut books.segments {
+    for segment in &mut about.books.segments {
         segment.first_row = kept_before(segment.first_row);
-    }
-    for gap in &mut books.gaps {
-        gap.row = kept_before(gap.row);
     }
     for set in &mut about.parameters.0 {
         set.first_row = kept_before(set.first_row);

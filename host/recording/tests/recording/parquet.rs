@@ -1,7 +1,7 @@
 //! The Parquet file of a recording.
 
 use crate::support::{check_books, is_part, open, recorded, rows, rows_of, salvaged, sent};
-use crepitus_recording::{Damage, Format, Recording, Row, parquet_writer};
+use crepitus_recording::{Analysis, Cause, Damage, Format, Recording, Row, parquet_writer};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
@@ -44,6 +44,12 @@ impl Bench {
         assert!(is_part(&kept, &self.all));
         assert!(kept.len() >= least, "{} rows kept: {said}", kept.len());
         check_books(&recording);
+        let mut analysis = Analysis::new(&recording);
+        for row in &kept {
+            analysis.row(row);
+        }
+        let warnings = analysis.finish().warnings.join("\n");
+        assert!(!warnings.contains("Counted"), "{warnings}");
         said
     }
 }
@@ -164,6 +170,11 @@ fn a_group_that_is_lost_leaves_rows_and_parameters_in_step() {
         "{warnings}"
     );
     assert!(warnings.contains("40000 damaged in the file"), "{warnings}");
+    let gap = recording.books().gaps[0];
+    assert_eq!(
+        (gap.row, gap.first_tick, gap.cause),
+        (0, 1_000, Cause::Damaged)
+    );
 }
 
 /// Whatever a file is made of: an error, or rows whose books add up.

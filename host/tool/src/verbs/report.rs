@@ -11,7 +11,9 @@ use crate::results::{self, footer, report_files};
 use crate::sections::torque_levels;
 use clap::Args;
 use crepitus_protocol::TICK_S;
-use crepitus_recording::{Analysis, ArmingPushes, Damage, History, Recording, RecordingSummary};
+use crepitus_recording::{
+    Analysis, ArmingPushes, Damage, History, Recording, RecordingSummary, seconds,
+};
 use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
 use crepitus_scene::trace::{Column, ColumnKind};
 use serde_json::json;
@@ -148,6 +150,10 @@ pub(super) fn write(
                 return Err(Failure::Work("interrupted: nothing was written".to_owned()));
             }
         }
+    }
+    let missing_s = seconds(recording.books().missing_at_end);
+    if missing_s > 0.0 {
+        collector.gap(previous_s, previous_s + missing_s);
     }
     let summary = analysis.finish();
     let text = Text {
