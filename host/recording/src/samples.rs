@@ -2,7 +2,7 @@
 
 use crate::row::Row;
 use crate::shaft::Shaft;
-use crepitus_protocol::telemetry::{Block, NO_CURRENT};
+use crepitus_protocol::telemetry::{BLOCK_TICKS, Block, NO_CURRENT};
 use crepitus_protocol::{TICKS_PER_S, Values};
 
 /// Converts samples to rows, with angle and speed from the drive's own
@@ -57,8 +57,9 @@ impl Samples {
         }
         self.next_tick = block.end_tick();
         let begin = self.begin;
+        let counts_per_s = counts_per_s(block);
         (tick..).zip(&block.samples).map(move |(tick, sample)| {
-            let (angle_rad, omega_rad_s) = self.shaft.see(tick, sample.count);
+            let (angle_rad, omega_rad_s) = self.shaft.see(tick, sample.count, counts_per_s);
             let since = tick.saturating_sub(begin.tick) + begin.passed;
             Row {
                 tick,
@@ -76,6 +77,13 @@ impl Samples {
             }
         })
     }
+}
+
+/// Mean speed over a block.
+fn counts_per_s(block: &Block) -> f64 {
+    let [first, .., last] = &block.samples;
+    let moved = last.count.wrapping_sub(first.count);
+    f64::from(moved) * f64::from(TICKS_PER_S) / f64::from(BLOCK_TICKS - 1)
 }
 
 #[cfg(test)]
@@ -97,5 +105,30 @@ mod tests {
         assert_eq!(first_s(block(5_040, 1)), 0.002);
         assert_eq!(first_s(block(0, 2)), 0.003);
         assert_eq!(first_s(block(20, 2)), 0.004);
+    }
+
+    /// No jump from rest that there was not.
+    #[test]
+    fn speed_is_right_from_the_first_sample_and_after_a_gap() {
+        let block = |first_tick: u64| {
+            let mut block = Block {
+                first_tick,
+                ..Block::default()
+            };
+            // Ten counts a tick.
+            for (sample, tick) in block.samples.iter_mut().zip(first_tick..) {
+                sample.count = i32::try_from(10 * tick).expect("early");
+            }
+            block
+        };
+        let mut samples = Samples::default();
+        let per_count = crepitus_model::control::encoder::EncoderSettings::default();
+        let expected = 10.0 * f64::from(TICKS_PER_S) * per_count.rad_per_count();
+        for first_tick in [100, 120, 5_000] {
+            for row in samples.rows(&block(first_tick)) {
+                let error = f64::from(row.omega_rad_s) / expected - 1.0;
+                assert!(error.abs() < 1e-4, "tick {}: {error}", row.tick);
+            }
+        }
     }
 }

@@ -30,19 +30,23 @@ impl Shaft {
         }
     }
 
-    /// Angle and estimated speed in a tick. After a gap the estimator is reset,
-    /// and settles within 20 ms.
-    pub(crate) fn see(&mut self, tick: u64, count: i32) -> (f64, f32) {
+    /// Angle and estimated speed in a tick. At the first one, and after a gap, the
+    /// estimator begins anew, with the speed of the next millisecond; what it
+    /// knew before is gone within 20 ms.
+    pub(crate) fn see(&mut self, tick: u64, count: i32, counts_per_s: f64) -> (f64, f32) {
         if tick != self.next_tick {
             self.reader = None;
         }
         self.next_tick = tick.wrapping_add(1);
-        let angle_rad = f64::from(count) * self.settings.rad_per_count();
+        let rad_per_count = self.settings.rad_per_count();
+        let angle_rad = f64::from(count) * rad_per_count;
         let omega_rad_s = if let Some(reader) = &mut self.reader {
             reader.read(count).omega_end_rad_s
         } else {
-            self.reader = EncoderReader::new(&self.settings, TICK_S, count, 0.0).ok();
-            0.0
+            #[expect(clippy::cast_possible_truncation, reason = "a speed has few digits")]
+            let begin = (counts_per_s * rad_per_count) as f32;
+            self.reader = EncoderReader::new(&self.settings, TICK_S, count, begin).ok();
+            begin
         };
         (angle_rad, omega_rad_s)
     }
