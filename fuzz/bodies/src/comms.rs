@@ -9,13 +9,16 @@
 //!   as many replies as it was sent times, and there are no others;
 //! - the revision changes only after a commit, or a refusal, to the next one. Parameters that
 //!   are read, sent or saved are those of the boot or of a commit, and valid;
-//! - every sample of a subscription is accounted for;
+//! - every sample of a subscription is accounted for, and a block is the drive's;
 //! - nothing is saved and nothing reboots without a request.
 
+use crate::block_frames;
 use crate::bytes::Bytes;
 use crate::drive_model::DriveModel;
 use crate::host_oracle::HostOracle;
+use crate::known_values::KnownValues;
 use crate::link_inputs;
+use crate::sent::Sent;
 use crepitus_device::Comms;
 use crepitus_device::comms::{Boot, Inputs, Outputs};
 use crepitus_device::usb_port::HostBytes;
@@ -23,14 +26,16 @@ use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::host::{Operation, Request};
 use crepitus_protocol::link::{Order, ToDrive};
 use crepitus_protocol::management::{Action, Identity, ManagementRequest, ResetCause};
-use crepitus_protocol::pieces::{self, Piece};
+use crepitus_protocol::pieces::Piece;
+use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{
-    Decoder, DeviceSettings, LEASE_TICKS, Lane, Nonce, Revision, Session, Values, frame, schema,
+    Decoder, LEASE_TICKS, Lane, Nonce, Revision, Session, State, frame, schema,
 };
 use std::collections::BTreeSet;
 
-/// The most milliseconds of one input.
-const MOST_MS: u64 = 4096;
+/// The most milliseconds of one input: a lease that is renewed, and one that
+/// ends; a request that times out.
+const MOST_MS: u64 = 700;
 
 /// Length of a lease, ms.
 const LEASE_MS: u64 = 250;
@@ -68,6 +73,15 @@ pub fn body(data: &[u8]) {
     bench.read(usize::MAX);
 }
 
+/// A duration: mostly as short as what needs no timeout, up to that of a lease.
+fn milliseconds(bytes: &mut Bytes<'_>) -> u16 {
+    match u16::from(bytes.byte()) {
+        short @ 0..64 => short,
+        short @ 64..240 => short % 16,
+        long => (long - 239) * 16,
+    }
+}
+
 /// Comms, and an oracle that observes both its wires.
 #[expect(
     clippy::struct_excessive_bools,
@@ -82,6 +96,8 @@ struct Bench {
     /// Decoders of the bytes from hosts and to the drive.
     ear: Decoder,
     link_ear: Decoder,
+    /// The last byte from hosts was no delimiter.
+    is_in_frame: bool,
     numbers: [u16; 5],
     /// When a block came last, and when a lease was taken or renewed last.
     block_ms: Option<u64>,
@@ -93,8 +109,7 @@ struct Bench {
     /// Reasons that there were for another revision.
     numbered: u32,
     revision: Revision,
-    /// All values that there may be.
-    values: Vec<Values>,
+    values: KnownValues,
     may_save: bool,
     may_reboot: bool,
 }
@@ -102,7 +117,6 @@ struct Bench {
 impl Bench {
     fn new(boot: &Boot) -> Self {
         let comms = Comms::new(boot);
-        let saved = boot.saved.map(|(_, values)| values);
         Self {
             now_ms: 0,
             line_is_on: false,
@@ -110,6 +124,7 @@ impl Bench {
             host: HostOracle::default(),
             ear: Decoder::new(),
             link_ear: Decoder::new(),
+            is_in_frame: false,
             numbers: [0, 1, 0x7ffe, 0xfffe, 9],
             block_ms: None,
             lease_ms: None,
@@ -117,7 +132,7 @@ impl Bench {
             armers: BTreeSet::new(),
             numbered: 0,
             revision: comms.revision(),
-            values: saved.into_iter().chain([Values::default()]).collect(),
+            values: KnownValues::new(boot.saved.map(|(_, values)| values)),
             may_save: false,
             may_reboot: false,
             comms,
@@ -133,10 +148,17 @@ impl Bench {
             }
             // Normal operation, for this many milliseconds.
             1 => {
-                let reads = bytes.byte();
-                for _ in 0..bytes.byte() {
+                let count = if bytes.byte() < 128 { usize::MAX } else { 8 };
+                for _ in 0..milliseconds(bytes) {
+                    if self.now_ms >= MOST_MS {
+                        break;
+                    }
                     self.good_millisecond();
-                    self.read(if reads < 128 { usize::MAX } else { 8 });
+                    self.read(count);
+                }
+                // What follows finds the drive present.
+                if let Some(block) = self.drive.due_block() {
+                    self.drive_says(&block);
                 }
             }
             2 | 3 => {
@@ -164,8 +186,7 @@ impl Bench {
             }
             4 => {
                 let count = usize::from(bytes.byte());
-                let raw = bytes.take_some(count).to_vec();
-                self.send(&raw);
+                self.send_raw(bytes.take_some(count));
             }
             5 => {
                 let question = ManagementRequest {
@@ -173,7 +194,7 @@ impl Bench {
                     token: bytes.byte(),
                 };
                 let frame = frame::encode_bytes(Lane::Management, &question.bytes());
-                self.send(&frame.expect("a short frame"));
+                self.send(&frame.expect("a short frame"), &Sent::Question(question));
             }
             6 => {
                 let frame = self.drive.anything(bytes);
@@ -185,6 +206,7 @@ impl Bench {
                     self.comms.host_lost();
                     self.host.cut();
                     self.ear.reset();
+                    self.is_in_frame = false;
                 }
                 16..=63 => self.comms.saved(bytes.byte() < 200),
                 count => self.read(usize::from(count)),
@@ -206,7 +228,8 @@ impl Bench {
             operation,
         };
         let frame = frame::encode(Lane::Request, &request);
-        self.send(&frame.expect("every message fits"));
+        let frame = frame.expect("every message fits");
+        self.send(&frame, &Sent::Request(request));
     }
 
     /// A request with another nonce than that of the session is not executed.
@@ -227,7 +250,8 @@ impl Bench {
             operation,
         };
         let frame = frame::encode(Lane::Request, &request);
-        self.send(&frame.expect("every message fits"));
+        let frame = frame.expect("every message fits");
+        self.send(&frame, &Sent::Request(request));
         assert_eq!(executed(&self.comms), before, "{request:?}");
     }
 
@@ -256,34 +280,50 @@ impl Bench {
         }
     }
 
-    /// Bytes of a host, for comms and for the oracle.
-    fn send(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            let (mut request, mut question) = (None, None);
-            match self.ear.push(*byte) {
-                Some(Ok(body)) if body.lane() == Some(Lane::Request) => {
-                    request = body.message::<Request>();
-                }
-                Some(Ok(body)) if body.lane() == Some(Lane::Management) => {
-                    question = ManagementRequest::of(body.payload);
-                }
-                _ => {}
+    /// A frame of a host, for comms and for the oracle. After a delimiter it is
+    /// received as it was sent.
+    fn send(&mut self, frame: &[u8], sent: &Sent) {
+        if self.is_in_frame {
+            return self.send_raw(frame);
+        }
+        let requests = self.requests();
+        self.comms.received(frame);
+        self.note(sent, requests);
+    }
+
+    /// Any bytes of a host; what was received is known only from decoding them.
+    fn send_raw(&mut self, bytes: &[u8]) {
+        for run in bytes.split_inclusive(|byte| *byte == frame::DELIMITER) {
+            let sent = run.iter().fold(None, |sent, byte| {
+                let body = self.ear.push(*byte).and_then(Result::ok);
+                body.as_ref().and_then(Sent::of).or(sent)
+            });
+            let requests = self.requests();
+            self.comms.received(run);
+            if let Some(sent) = sent {
+                self.note(&sent, requests);
             }
-            let requests = self.comms.counters().get(CommsCounter::Requests);
-            self.comms.received(&[*byte]);
-            let is_new = self.comms.counters().get(CommsCounter::Requests) != requests;
-            if let Some(request) = request {
-                self.note(&request, is_new);
-            }
-            match question.map(|question| question.action) {
-                Some(Action::Stop) => self.disarmed(),
-                Some(Action::Reboot) => self.may_reboot = true,
-                _ => {}
-            }
+            self.is_in_frame = run.last() != Some(&frame::DELIMITER);
         }
     }
 
-    fn note(&mut self, request: &Request, is_new: bool) {
+    /// Requests that were executed.
+    fn requests(&self) -> u32 {
+        self.comms.counters().get(CommsCounter::Requests)
+    }
+
+    fn note(&mut self, sent: &Sent, requests_before: u32) {
+        match sent {
+            Sent::Request(request) => self.requested(request, self.requests() != requests_before),
+            Sent::Question(question) => match question.action {
+                Action::Stop => self.disarmed(),
+                Action::Reboot => self.may_reboot = true,
+                Action::Hello => {}
+            },
+        }
+    }
+
+    fn requested(&mut self, request: &Request, is_new: bool) {
         self.host.requested(request);
         match request.operation {
             Operation::Renew if self.is_leased() => self.lease_ms = Some(self.now_ms),
@@ -299,9 +339,7 @@ impl Bench {
             }
             Operation::Commit { values, .. } => {
                 self.numbered += 1;
-                if DeviceSettings::of(&values).is_ok() {
-                    self.values.push(values);
-                }
+                self.values.add(&values);
             }
             Operation::Save => self.may_save = true,
             _ => {}
@@ -328,7 +366,9 @@ impl Bench {
     }
 
     fn good_millisecond(&mut self) {
-        for frame in self.drive.millisecond() {
+        let is_live = matches!(self.comms.state(), State::Arming | State::Armed);
+        let is_idle = !is_live && self.host.is_idle();
+        for frame in self.drive.millisecond(is_idle) {
             self.drive_says(&frame);
         }
         self.tick(None);
@@ -355,7 +395,7 @@ impl Bench {
         if let Some((revision, values)) = outputs.save {
             assert!(std::mem::take(&mut self.may_save));
             assert_eq!(revision, self.comms.revision());
-            assert!(self.values.contains(&values));
+            assert!(self.values.has(&values));
         }
         if outputs.reboot {
             assert!(self.may_reboot, "it starts anew, and nobody has asked");
@@ -415,12 +455,8 @@ impl Bench {
             ToDrive::Commit {
                 checksum, piece, ..
             } => {
-                let source = self
-                    .values
-                    .iter()
-                    .find(|values| pieces::checksum(&values.0) == *checksum)
-                    .expect("values of a host");
-                assert!(DeviceSettings::of(source).is_ok());
+                let source = self.values.by_checksum(*checksum);
+                let source = source.expect("valid values of a host");
                 assert_eq!(Piece::of(&source.0, piece.index), Some(*piece));
             }
             ToDrive::Command { order, .. } => assert!(*order != Order::Arm || self.wants),
@@ -432,12 +468,21 @@ impl Bench {
         let mut left = count;
         while left > 0 && !self.comms.to_send().is_empty() {
             let run = self.comms.to_send();
-            let run = run[..run.len().min(left)].to_vec();
-            self.comms.sent(run.len());
-            left -= run.len();
-            for byte in &run {
-                self.host.receive(*byte, &self.values);
-            }
+            let run = &run[..run.len().min(left)];
+            let drive = &mut self.drive;
+            self.host.receive(run, &self.values, |frame| {
+                let block = block_frames::decode(frame).expect("a block of zeros");
+                let sent = drive
+                    .take_block(block.sequence)
+                    .expect("of the drive, in order");
+                // Comms counts anew what was dropped.
+                let dropped = block.dropped;
+                assert_eq!(block, Block { dropped, ..sent });
+                block
+            });
+            let count = run.len();
+            self.comms.sent(count);
+            left -= count;
         }
     }
 }

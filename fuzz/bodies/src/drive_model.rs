@@ -1,6 +1,7 @@
 //! Model of a drive as comms sees it: it executes orders, and sends any other
 //! message that the input bytes make.
 
+use crate::block_frames;
 use crate::bytes::Bytes;
 use crate::link_inputs;
 use crepitus_protocol::frame::{self, Frame};
@@ -9,16 +10,32 @@ use crepitus_protocol::link::{
 };
 use crepitus_protocol::management::{Answer, Identity, Role};
 use crepitus_protocol::pieces::Reassembly;
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, BlockFlags};
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, BLOCK_TICKS, Block, BlockFlags};
 use crepitus_protocol::{Lane, Revision, State, ValueError, schema};
+use std::collections::VecDeque;
 
 /// Ticks stay within two months, the range of a drive.
 const MOST_TICK: u64 = 1 << 37;
 
+/// Milliseconds between two blocks.
+const BLOCK_MS: u8 = 4;
+
+/// Milliseconds between two statuses, if nothing changes.
+const STATUS_MS: u8 = 5;
+
 /// The drive.
 pub(crate) struct DriveModel {
     status: DriveStatus,
+    /// What the last status said, and milliseconds since.
+    reported: DriveStatus,
+    reported_ms: u8,
+    /// Milliseconds since the last block.
+    block_ms: u8,
     sequence: u16,
+    /// Samples that it did not send.
+    dropped: u32,
+    /// Blocks that it sent.
+    blocks: VecDeque<Block>,
     comms_start: u16,
     has_sent_hello: bool,
     has_rejected: bool,
@@ -32,7 +49,12 @@ impl DriveModel {
                 comms_start: Some(comms_start),
                 ..DriveStatus::default()
             },
+            reported: DriveStatus::default(),
+            reported_ms: STATUS_MS,
+            block_ms: 0,
             sequence: 0,
+            dropped: 0,
+            blocks: VecDeque::new(),
             comms_start,
             has_sent_hello: false,
             has_rejected: false,
@@ -89,31 +111,65 @@ impl DriveModel {
         }
     }
 
-    /// Messages of a normal drive in a millisecond.
-    pub(crate) fn millisecond(&mut self) -> Vec<Frame> {
-        let mut frames = vec![self.block(0), self.status()];
-        if !std::mem::replace(&mut self.has_sent_hello, true) {
-            frames.push(hello(schema::HASH));
+    /// The messages of a normal drive in a millisecond: a status after every
+    /// change, or else every 5 ms; and as few blocks as keep it from being
+    /// silent, since they cost most. It drops the others. While comms is idle it
+    /// sends changes only.
+    pub(crate) fn millisecond(&mut self, is_idle: bool) -> impl Iterator<Item = Frame> + use<> {
+        self.block_ms = self.block_ms.saturating_add(1);
+        let block = if is_idle { None } else { self.due_block() };
+        if block.is_none() {
+            self.advance();
+            self.dropped = self.dropped.wrapping_add(BLOCK_TICKS);
         }
-        frames
+        self.reported_ms = self.reported_ms.saturating_add(1);
+        self.reported.tick = self.status.tick;
+        let is_due = !is_idle && self.reported_ms >= STATUS_MS;
+        let status = (is_due || self.reported != self.status).then(|| self.status());
+        let is_first = !std::mem::replace(&mut self.has_sent_hello, true);
+        let hello = is_first.then(|| hello(schema::HASH));
+        [block, status, hello].into_iter().flatten()
     }
 
-    fn block(&mut self, dropped: u32) -> Frame {
-        let status = &mut self.status;
+    /// A block, unless the last one was sent less than [`BLOCK_MS`] ago.
+    pub(crate) fn due_block(&mut self) -> Option<Frame> {
+        (self.block_ms >= BLOCK_MS).then(|| self.block())
+    }
+
+    /// A block's time passes.
+    fn advance(&mut self) {
+        self.status.tick = (self.status.tick + BLOCK_SAMPLES as u64).min(MOST_TICK);
+    }
+
+    fn block(&mut self) -> Frame {
+        let status = &self.status;
         let block = Block {
             sequence: self.sequence,
             first_tick: status.tick,
             revision: status.revision,
-            dropped,
+            dropped: self.dropped,
             flags: BlockFlags::new(status.state, status.zeroed, status.start),
             ..Block::default()
         };
+        self.block_ms = 0;
+        self.blocks.push_back(block);
         self.sequence = self.sequence.wrapping_add(1);
-        status.tick = (status.tick + BLOCK_SAMPLES as u64).min(MOST_TICK);
-        frame::encode(Lane::Telemetry, &block).expect("every message fits")
+        self.advance();
+        block_frames::encode(&block)
     }
 
-    fn status(&self) -> Frame {
+    /// Takes the block with this number, and those before it.
+    pub(crate) fn take_block(&mut self, sequence: u16) -> Option<Block> {
+        while let Some(block) = self.blocks.pop_front() {
+            if block.sequence == sequence {
+                return Some(block);
+            }
+        }
+        None
+    }
+
+    fn status(&mut self) -> Frame {
+        (self.reported, self.reported_ms) = (self.status, 0);
         let message = FromDrive::Status(self.status);
         frame::encode(Lane::FromDrive, &message).expect("every message fits")
     }
@@ -124,8 +180,8 @@ impl DriveModel {
             // Samples are lost on the link, or were dropped before it.
             0 => {
                 self.status.tick += BLOCK_SAMPLES as u64 * u64::from(bytes.byte());
-                let dropped = u32::from(bytes.byte()) * 20;
-                self.block(dropped)
+                self.dropped = u32::from(bytes.byte()) * BLOCK_TICKS;
+                self.block()
             }
             // It has restarted.
             1 => {
@@ -134,8 +190,8 @@ impl DriveModel {
                     tick: u64::from(bytes.byte()) * 20,
                     ..DriveStatus::default()
                 };
-                self.has_sent_hello = false;
-                self.block(0)
+                (self.has_sent_hello, self.dropped) = (false, 0);
+                self.block()
             }
             2 => {
                 self.status.state = bytes.choice(&State::ALL);

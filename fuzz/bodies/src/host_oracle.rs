@@ -1,10 +1,12 @@
 //! Oracle of a host: the replies and blocks that comms may send.
 
+use crate::known_values::KnownValues;
+use crepitus_protocol::frame::DELIMITER;
 use crepitus_protocol::host::{Answer, Operation, Reply, Request};
-use crepitus_protocol::management;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
-use crepitus_protocol::{Decoder, Lane, Nonce, Session, Values};
+use crepitus_protocol::{Decoder, Lane, Nonce, Session, management};
 use std::collections::BTreeMap;
+use std::io::BufRead;
 
 /// Accounting of a subscription.
 #[derive(Clone, Copy)]
@@ -19,6 +21,8 @@ struct SampleAccounting {
 /// A host that receives all replies.
 #[derive(Default)]
 pub(crate) struct HostOracle {
+    /// A frame of which not all bytes have come.
+    partial: Vec<u8>,
     decoder: Decoder,
     /// How many replies may still come to each request.
     expected: BTreeMap<(u32, u16), u32>,
@@ -48,9 +52,14 @@ impl HostOracle {
 
     /// The connection was lost, with the bytes in flight.
     pub(crate) fn cut(&mut self) {
-        self.decoder.reset();
+        self.partial.clear();
         self.subscriptions.clear();
         self.accountings.clear();
+    }
+
+    /// Whether no reply and no telemetry is to come.
+    pub(crate) fn is_idle(&self) -> bool {
+        self.accountings.is_empty() && self.expected.values().all(|count| *count == 0)
     }
 
     /// The nonce of a session.
@@ -58,29 +67,50 @@ impl HostOracle {
         self.nonces.get(&session.0).copied().unwrap_or_default()
     }
 
-    /// A byte from comms; `values` are those that there may be.
-    pub(crate) fn receive(&mut self, byte: u8, values: &[Values]) {
-        let Some(body) = self.decoder.push(byte) else {
-            return;
-        };
-        let body = body.expect("a frame in order");
-        match body.lane() {
-            Some(Lane::Reply) => {
-                let reply = body.message().expect("a reply");
-                self.reply(&reply, values);
+    /// Bytes from comms; `values` are those that there may be, `block` decodes
+    /// a frame of the telemetry lane and checks it.
+    pub(crate) fn receive(
+        &mut self,
+        mut bytes: &[u8],
+        values: &KnownValues,
+        mut block: impl FnMut(&[u8]) -> Block,
+    ) {
+        // Reading up to a delimiter, not byte by byte: most of this is telemetry.
+        while let Ok(1..) = bytes.read_until(DELIMITER, &mut self.partial) {
+            if self.partial.last() == Some(&DELIMITER) {
+                let frame = std::mem::take(&mut self.partial);
+                match frame.get(1) {
+                    // Empty, as before the first frame.
+                    None => {}
+                    Some(lane) if *lane == Lane::Telemetry.byte() => self.block(&block(&frame)),
+                    Some(_) => self.frame(&frame, values),
+                }
+                self.partial = frame;
+                self.partial.clear();
             }
-            Some(Lane::Telemetry) => {
-                let block = body.message().expect("a block");
-                self.block(&block);
-            }
-            Some(Lane::ManagementAnswer) => {
-                assert!(management::Answer::of(body.payload).is_some());
-            }
-            other => panic!("{other:?} from comms"),
         }
     }
 
-    fn reply(&mut self, reply: &Reply, values: &[Values]) {
+    fn frame(&mut self, frame: &[u8], values: &KnownValues) {
+        for byte in frame {
+            let Some(body) = self.decoder.push(*byte) else {
+                continue;
+            };
+            let body = body.expect("a frame in order");
+            match body.lane() {
+                Some(Lane::Reply) => {
+                    let reply = body.message().expect("a reply");
+                    return self.reply(&reply, values);
+                }
+                Some(Lane::ManagementAnswer) => {
+                    assert!(management::Answer::of(body.payload).is_some());
+                }
+                other => panic!("{other:?} from comms"),
+            }
+        }
+    }
+
+    fn reply(&mut self, reply: &Reply, values: &KnownValues) {
         let expected = self.expected.get_mut(&(reply.session.0, reply.number));
         let expected = expected.expect("a reply to nobody");
         assert!(*expected > 0, "a reply too many: {reply:?}");
@@ -106,7 +136,7 @@ impl HostOracle {
                 self.nonces.insert(reply.session.0, nonce);
             }
             Ok(Answer::Parameters { values: told, .. }) => {
-                assert!(values.contains(&told), "nobody's values");
+                assert!(values.has(&told), "nobody's values");
             }
             _ => {}
         }

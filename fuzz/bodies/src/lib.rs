@@ -17,6 +17,7 @@
 //! | [`drive`] | messages and sensor values for the drive controller |
 //! | [`comms`] | messages of hosts and of the drive for the comms controller |
 
+mod block_frames;
 mod bytes;
 pub mod comms;
 pub mod drive;
@@ -25,12 +26,14 @@ pub mod encoder;
 pub mod frames;
 pub mod guarded;
 mod host_oracle;
+mod known_values;
 mod laws;
 mod link_inputs;
 pub mod recording;
 pub mod renderer;
 mod rung;
 pub mod scene;
+mod sent;
 mod shaft;
 pub mod step;
 mod winding;
