@@ -4,34 +4,38 @@
 //! - its line is on only while a host holds the lease, blocks arrive, and
 //!   there is no fault of comms; and only after a host has requested arming, and
 //!   none since disarming or a stop. The same holds for `enable` in heartbeats;
-//! - no heartbeat carries a longer lease than there is;
+//! - no heartbeat carries a longer lease than there is, by either clock;
 //! - every frame for a host or for the drive is in order. A request has at most
-//!   as many replies as it was sent times, and there are no others;
+//!   as many replies as it was sent times, and there are no others; it is executed
+//!   once;
 //! - the revision changes only after a commit, or a refusal, to the next one. Parameters that
-//!   are read, sent or saved are those of the boot or of a commit, and valid;
+//!   are read, sent or saved are those of the boot or of a commit that was not
+//!   refused, and valid;
 //! - every sample of a subscription is accounted for, and a block is the drive's;
 //! - nothing is saved and nothing reboots without a request.
 
 use crate::block_frames;
 use crate::bytes::Bytes;
 use crate::drive_model::DriveModel;
+use crate::from_comms::{self, Frames, FromComms};
 use crate::host_oracle::HostOracle;
 use crate::known_values::KnownValues;
+use crate::lease_oracle::LeaseOracle;
 use crate::link_inputs;
 use crate::sent::Sent;
 use crepitus_device::Comms;
 use crepitus_device::comms::{Boot, Inputs, Outputs};
 use crepitus_device::usb_port::HostBytes;
 use crepitus_protocol::counters::CommsCounter;
-use crepitus_protocol::host::{Operation, Request};
+use crepitus_protocol::host::{Operation, Refusal, Reply, Request};
 use crepitus_protocol::link::{Order, ToDrive};
 use crepitus_protocol::management::{Action, Identity, ManagementRequest, ResetCause};
 use crepitus_protocol::pieces::Piece;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{
-    Decoder, LEASE_TICKS, Lane, Nonce, Revision, Session, State, frame, schema,
+    Decoder, LEASE_TICKS, Lane, Nonce, Revision, Session, State, Values, frame, schema,
 };
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 /// The most milliseconds of one input: a lease that is renewed, and one that
 /// ends; a request that times out.
@@ -73,15 +77,6 @@ pub fn body(data: &[u8]) {
     bench.read(usize::MAX);
 }
 
-/// A duration: mostly as short as what needs no timeout, up to that of a lease.
-fn milliseconds(bytes: &mut Bytes<'_>) -> u16 {
-    match u16::from(bytes.byte()) {
-        short @ 0..64 => short,
-        short @ 64..240 => short % 16,
-        long => (long - 239) * 16,
-    }
-}
-
 /// Comms, and an oracle that observes both its wires.
 #[expect(
     clippy::struct_excessive_bools,
@@ -93,19 +88,23 @@ struct Bench {
     line_is_on: bool,
     drive: DriveModel,
     host: HostOracle,
+    from_comms: Frames,
     /// Decoders of the bytes from hosts and to the drive.
     ear: Decoder,
     link_ear: Decoder,
     /// The last byte from hosts was no delimiter.
     is_in_frame: bool,
     numbers: [u16; 5],
-    /// When a block came last, and when a lease was taken or renewed last.
+    /// When a block came last.
     block_ms: Option<u64>,
-    lease_ms: Option<u64>,
-    /// A host has requested arming, and none has disarmed since.
-    wants: bool,
-    /// Sessions that may hold the lease.
-    armers: BTreeSet<u32>,
+    lease: LeaseOracle,
+    /// The tick at which the lease ends, at most; none, if the drive's ticks
+    /// have restarted since it was acquired.
+    lease_end_tick: Option<u64>,
+    /// Last request of each session that was executed.
+    executed: BTreeMap<u32, (Nonce, u16)>,
+    /// Commits that were sent, until they are refused.
+    commits: BTreeMap<(u32, u16), Values>,
     /// Reasons that there were for another revision.
     numbered: u32,
     revision: Revision,
@@ -122,14 +121,16 @@ impl Bench {
             line_is_on: false,
             drive: DriveModel::new(boot.start),
             host: HostOracle::default(),
+            from_comms: Frames::default(),
             ear: Decoder::new(),
             link_ear: Decoder::new(),
             is_in_frame: false,
             numbers: [0, 1, 0x7ffe, 0xfffe, 9],
             block_ms: None,
-            lease_ms: None,
-            wants: false,
-            armers: BTreeSet::new(),
+            lease: LeaseOracle::new(LEASE_MS),
+            lease_end_tick: None,
+            executed: BTreeMap::new(),
+            commits: BTreeMap::new(),
             numbered: 0,
             revision: comms.revision(),
             values: KnownValues::new(boot.saved.map(|(_, values)| values)),
@@ -149,7 +150,7 @@ impl Bench {
             // Normal operation, for this many milliseconds.
             1 => {
                 let count = if bytes.byte() < 128 { usize::MAX } else { 8 };
-                for _ in 0..milliseconds(bytes) {
+                for _ in 0..link_inputs::milliseconds(bytes) {
                     if self.now_ms >= MOST_MS {
                         break;
                     }
@@ -163,7 +164,7 @@ impl Bench {
             }
             2 | 3 => {
                 let place = usize::from(bytes.byte()) % self.numbers.len();
-                let operation = self.ask(bytes);
+                let operation = link_inputs::operation(bytes, self.comms.revision());
                 let number = &mut self.numbers[place];
                 match bytes.byte() {
                     // Repeated; but of a subscription nobody could tell which
@@ -198,6 +199,9 @@ impl Bench {
             }
             6 => {
                 let frame = self.drive.anything(bytes);
+                if self.drive.has_restarted() {
+                    self.lease_end_tick = None;
+                }
                 self.numbered += u32::from(self.drive.has_rejected());
                 self.drive_says(&frame);
             }
@@ -205,6 +209,7 @@ impl Bench {
                 0..=15 => {
                     self.comms.host_lost();
                     self.host.cut();
+                    self.from_comms.cut();
                     self.ear.reset();
                     self.is_in_frame = false;
                 }
@@ -255,31 +260,6 @@ impl Bench {
         assert_eq!(executed(&self.comms), before, "{request:?}");
     }
 
-    fn ask(&mut self, bytes: &mut Bytes<'_>) -> Operation {
-        match bytes.byte() % 16 {
-            0 | 1 => Operation::Renew,
-            2 => Operation::Open,
-            3 if bytes.byte() < 128 => Operation::Status,
-            3 => Operation::Counters,
-            4 => Operation::Parameters,
-            5 | 6 => Operation::Commit {
-                base: if bytes.byte() < 224 {
-                    self.comms.revision()
-                } else {
-                    Revision(u32::from(bytes.byte()))
-                },
-                values: link_inputs::values(bytes),
-            },
-            7 => Operation::Save,
-            8 => Operation::Zero,
-            9..=11 => Operation::Arm,
-            12 => Operation::Disarm,
-            13 => Operation::ClearFault,
-            14 => Operation::Subscribe,
-            _ => Operation::Unsubscribe,
-        }
-    }
-
     /// A frame of a host, for comms and for the oracle. After a delimiter it is
     /// received as it was sent.
     fn send(&mut self, frame: &[u8], sent: &Sent) {
@@ -316,7 +296,7 @@ impl Bench {
         match sent {
             Sent::Request(request) => self.requested(request, self.requests() != requests_before),
             Sent::Question(question) => match question.action {
-                Action::Stop => self.disarmed(),
+                Action::Stop => self.lease.stop(),
                 Action::Reboot => self.may_reboot = true,
                 Action::Hello => {}
             },
@@ -324,37 +304,62 @@ impl Bench {
     }
 
     fn requested(&mut self, request: &Request, is_new: bool) {
+        let Request {
+            session,
+            nonce,
+            number,
+            operation,
+        } = *request;
         self.host.requested(request);
-        match request.operation {
-            Operation::Renew if self.is_leased() => self.lease_ms = Some(self.now_ms),
-            _ if !is_new => {}
+        let end_tick = self.drive.tick() + LEASE_TICKS;
+        if operation == Operation::Renew {
+            if nonce == self.host.nonce(session) {
+                self.lease.renew(session, self.now_ms);
+                self.lease_end_tick = self.lease_end_tick.map(|end| end.max(end_tick));
+            }
+            return;
+        }
+        if !is_new {
+            return;
+        }
+        if operation != Operation::Open {
+            let before = self.executed.insert(session.0, (nonce, number));
+            assert_ne!(before, Some((nonce, number)), "executed twice");
+        }
+        match operation {
             // Whether or not it is refused.
             Operation::Arm => {
-                (self.wants, self.lease_ms) = (true, Some(self.now_ms));
-                self.armers.insert(request.session.0);
+                let is_first = !self.lease.is_alive(self.now_ms);
+                self.lease.arm(session, self.now_ms);
+                self.lease_end_tick = match self.lease_end_tick {
+                    _ if is_first => Some(end_tick),
+                    before => before.map(|end| end.max(end_tick)),
+                };
             }
-            // Refused while another host holds the lease.
-            Operation::Disarm if self.armers.iter().all(|armer| *armer == request.session.0) => {
-                self.disarmed();
-            }
+            Operation::Disarm => self.lease.disarm(session),
             Operation::Commit { values, .. } => {
                 self.numbered += 1;
                 self.values.add(&values);
+                self.commits.insert((session.0, number), values);
             }
             Operation::Save => self.may_save = true,
             _ => {}
         }
     }
 
-    fn disarmed(&mut self) {
-        (self.wants, self.lease_ms) = (false, None);
-        self.armers.clear();
-    }
-
-    /// Upper bound from the messages on the wire.
-    fn is_leased(&self) -> bool {
-        self.lease_ms
-            .is_some_and(|lease_ms| self.now_ms - lease_ms < LEASE_MS)
+    fn replied(&mut self, reply: &Reply) {
+        // After a timeout a commit may come into effect.
+        if reply
+            .answer
+            .is_err_and(|refusal| refusal != Refusal::Unconfirmed)
+            && let Some(values) = self.commits.remove(&(reply.session.0, reply.number))
+        {
+            self.values.withdraw(&values);
+            assert!(
+                self.values.has(self.comms.values()),
+                "refused, and committed"
+            );
+        }
     }
 
     fn drive_says(&mut self, frame: &[u8]) {
@@ -386,8 +391,8 @@ impl Bench {
 
     fn hold(&mut self, outputs: &Outputs) {
         if outputs.enable {
-            assert!(self.is_leased(), "enabled without a lease");
-            assert!(self.wants, "enabled, and nobody wants it");
+            assert!(self.lease.is_alive(self.now_ms), "enabled without a lease");
+            assert!(self.lease.is_wanted(), "enabled, and nobody wants it");
             assert_eq!(self.comms.fault(), None);
             let heard = self.block_ms.expect("a block");
             assert!(self.now_ms - heard < SILENT_MS, "the drive is silent");
@@ -448,9 +453,12 @@ impl Bench {
         self.drive.receive(message);
         match message {
             ToDrive::Heartbeat(heartbeat) => {
-                assert!(u64::from(heartbeat.lease_left) < LEASE_TICKS);
-                assert!(heartbeat.lease_left == 0 || self.is_leased());
-                assert!(!heartbeat.enable || self.wants);
+                let left = u64::from(heartbeat.lease_left);
+                assert!(left < LEASE_TICKS);
+                assert!(left == 0 || self.lease.is_alive(self.now_ms));
+                let end = self.lease_end_tick.filter(|_| left > 0);
+                assert!(end.is_none_or(|end| heartbeat.seen_tick + left < end));
+                assert!(!heartbeat.enable || self.lease.is_wanted());
             }
             ToDrive::Commit {
                 checksum, piece, ..
@@ -459,7 +467,9 @@ impl Bench {
                 let source = source.expect("valid values of a host");
                 assert_eq!(Piece::of(&source.0, piece.index), Some(*piece));
             }
-            ToDrive::Command { order, .. } => assert!(*order != Order::Arm || self.wants),
+            ToDrive::Command { order, .. } => {
+                assert!(*order != Order::Arm || self.lease.is_wanted());
+            }
         }
     }
 
@@ -469,20 +479,34 @@ impl Bench {
         while left > 0 && !self.comms.to_send().is_empty() {
             let run = self.comms.to_send();
             let run = &run[..run.len().min(left)];
-            let drive = &mut self.drive;
-            self.host.receive(run, &self.values, |frame| {
-                let block = block_frames::decode(frame).expect("a block of zeros");
-                let sent = drive
-                    .take_block(block.sequence)
-                    .expect("of the drive, in order");
-                // Comms counts anew what was dropped.
-                let dropped = block.dropped;
-                assert_eq!(block, Block { dropped, ..sent });
-                block
+            let (drive, host, values) = (&mut self.drive, &mut self.host, &self.values);
+            let mut replies = Vec::new();
+            self.from_comms.split(run, |frame| {
+                if from_comms::is_block(frame) {
+                    host.block(&same_block(frame, drive));
+                } else if let FromComms::Reply(reply) = FromComms::of(frame) {
+                    host.reply(&reply, values);
+                    replies.push(reply);
+                }
             });
             let count = run.len();
             self.comms.sent(count);
             left -= count;
+            for reply in &replies {
+                self.replied(reply);
+            }
         }
     }
+}
+
+/// A block as the drive has sent it, in order, but for the samples dropped,
+/// which comms counts itself.
+fn same_block(frame: &[u8], drive: &mut DriveModel) -> Block {
+    let block = block_frames::decode(frame).expect("a block of zeros");
+    let sent = drive
+        .take_block(block.sequence)
+        .expect("of the drive, in order");
+    let dropped = block.dropped;
+    assert_eq!(block, Block { dropped, ..sent });
+    block
 }

@@ -39,6 +39,9 @@ pub(crate) struct DriveModel {
     comms_start: u16,
     has_sent_hello: bool,
     has_rejected: bool,
+    has_restarted: bool,
+    /// Tick after the last block.
+    end_tick: u64,
     reassembly: (Revision, Reassembly),
 }
 
@@ -58,6 +61,8 @@ impl DriveModel {
             comms_start,
             has_sent_hello: false,
             has_rejected: false,
+            has_restarted: false,
+            end_tick: 0,
             reassembly: (Revision::NONE, Reassembly::new(0)),
         }
     }
@@ -65,6 +70,16 @@ impl DriveModel {
     /// Whether it has rejected a commit since the last call.
     pub(crate) fn has_rejected(&mut self) -> bool {
         std::mem::take(&mut self.has_rejected)
+    }
+
+    /// Whether its ticks have restarted since the last call.
+    pub(crate) fn has_restarted(&mut self) -> bool {
+        std::mem::take(&mut self.has_restarted)
+    }
+
+    /// The latest tick that it has reported, or will.
+    pub(crate) fn tick(&self) -> u64 {
+        self.status.tick.max(self.end_tick)
     }
 
     /// Executes a message of comms.
@@ -152,6 +167,7 @@ impl DriveModel {
             ..Block::default()
         };
         self.block_ms = 0;
+        self.end_tick = self.end_tick.max(block.end_tick());
         self.blocks.push_back(block);
         self.sequence = self.sequence.wrapping_add(1);
         self.advance();
@@ -185,8 +201,14 @@ impl DriveModel {
             }
             // It has restarted.
             1 => {
+                let start = u16::from(bytes.byte());
+                // Comms sees the lowest bits only; without a change it keeps on
+                // with the ticks of before.
+                if (start ^ self.status.start).trailing_zeros() < 5 {
+                    (self.has_restarted, self.end_tick) = (true, 0);
+                }
                 self.status = DriveStatus {
-                    start: u16::from(bytes.byte()),
+                    start,
                     tick: u64::from(bytes.byte()) * 20,
                     ..DriveStatus::default()
                 };

@@ -1,12 +1,10 @@
 //! Oracle of a host: the replies and blocks that comms may send.
 
 use crate::known_values::KnownValues;
-use crepitus_protocol::frame::DELIMITER;
 use crepitus_protocol::host::{Answer, Operation, Reply, Request};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
-use crepitus_protocol::{Decoder, Lane, Nonce, Session, management};
-use std::collections::BTreeMap;
-use std::io::BufRead;
+use crepitus_protocol::{Nonce, Session};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Accounting of a subscription.
 #[derive(Clone, Copy)]
@@ -21,13 +19,12 @@ struct SampleAccounting {
 /// A host that receives all replies.
 #[derive(Default)]
 pub(crate) struct HostOracle {
-    /// A frame of which not all bytes have come.
-    partial: Vec<u8>,
-    decoder: Decoder,
     /// How many replies may still come to each request.
     expected: BTreeMap<(u32, u16), u32>,
     /// Nonces of the sessions.
     nonces: BTreeMap<u32, Nonce>,
+    /// Sessions whose nonce is of this start of comms.
+    open: BTreeSet<u32>,
     /// Which request of each session was a subscription; the last one counts.
     subscriptions: BTreeMap<u32, u16>,
     /// Of each session, also of one that has unsubscribed: the count is one for
@@ -50,9 +47,32 @@ impl HostOracle {
         *self.expected.entry(key).or_default() += 1;
     }
 
+    /// A request was sent again, and will not be executed.
+    pub(crate) fn repeated(&mut self, request: &Request) {
+        if request.operation != Operation::Renew {
+            let key = (request.session.0, request.number);
+            *self.expected.entry(key).or_default() += 1;
+        }
+    }
+
+    /// Comms has restarted: no session is open.
+    pub(crate) fn closed(&mut self) {
+        self.open.clear();
+    }
+
+    /// A host has heard that its session is not open.
+    pub(crate) fn forget(&mut self, session: Session) {
+        self.nonces.remove(&session.0);
+        self.open.remove(&session.0);
+    }
+
+    /// Whether comms has given this session its nonce since its restart.
+    pub(crate) fn is_open(&self, session: Session) -> bool {
+        self.open.contains(&session.0)
+    }
+
     /// The connection was lost, with the bytes in flight.
     pub(crate) fn cut(&mut self) {
-        self.partial.clear();
         self.subscriptions.clear();
         self.accountings.clear();
     }
@@ -67,50 +87,9 @@ impl HostOracle {
         self.nonces.get(&session.0).copied().unwrap_or_default()
     }
 
-    /// Bytes from comms; `values` are those that there may be, `block` decodes
-    /// a frame of the telemetry lane and checks it.
-    pub(crate) fn receive(
-        &mut self,
-        mut bytes: &[u8],
-        values: &KnownValues,
-        mut block: impl FnMut(&[u8]) -> Block,
-    ) {
-        // Reading up to a delimiter, not byte by byte: most of this is telemetry.
-        while let Ok(1..) = bytes.read_until(DELIMITER, &mut self.partial) {
-            if self.partial.last() == Some(&DELIMITER) {
-                let frame = std::mem::take(&mut self.partial);
-                match frame.get(1) {
-                    // Empty, as before the first frame.
-                    None => {}
-                    Some(lane) if *lane == Lane::Telemetry.byte() => self.block(&block(&frame)),
-                    Some(_) => self.frame(&frame, values),
-                }
-                self.partial = frame;
-                self.partial.clear();
-            }
-        }
-    }
-
-    fn frame(&mut self, frame: &[u8], values: &KnownValues) {
-        for byte in frame {
-            let Some(body) = self.decoder.push(*byte) else {
-                continue;
-            };
-            let body = body.expect("a frame in order");
-            match body.lane() {
-                Some(Lane::Reply) => {
-                    let reply = body.message().expect("a reply");
-                    return self.reply(&reply, values);
-                }
-                Some(Lane::ManagementAnswer) => {
-                    assert!(management::Answer::of(body.payload).is_some());
-                }
-                other => panic!("{other:?} from comms"),
-            }
-        }
-    }
-
-    fn reply(&mut self, reply: &Reply, values: &KnownValues) {
+    /// A reply has come; `values` are those that there may be. Returns
+    /// whether a subscription begins with it.
+    pub(crate) fn reply(&mut self, reply: &Reply, values: &KnownValues) -> bool {
         let expected = self.expected.get_mut(&(reply.session.0, reply.number));
         let expected = expected.expect("a reply to nobody");
         assert!(*expected > 0, "a reply too many: {reply:?}");
@@ -130,19 +109,23 @@ impl HostOracle {
                     next_tick: 0,
                 };
                 self.accountings.insert(reply.session.0, accounting);
+                return true;
             }
             Ok(Answer::Opened { nonce }) => {
                 assert_ne!(nonce, Nonce::NONE);
                 self.nonces.insert(reply.session.0, nonce);
+                self.open.insert(reply.session.0);
             }
             Ok(Answer::Parameters { values: told, .. }) => {
                 assert!(values.has(&told), "nobody's values");
             }
             _ => {}
         }
+        false
     }
 
-    fn block(&mut self, block: &Block) {
+    /// A block has come.
+    pub(crate) fn block(&mut self, block: &Block) {
         for accounting in self.accountings.values_mut() {
             accounting.block(block);
         }

@@ -31,6 +31,15 @@ impl KnownValues {
         });
     }
 
+    /// They were refused: forgets them once.
+    pub(crate) fn withdraw(&mut self, values: &Values) {
+        let checksum = pieces::checksum(&values.0);
+        // The newest; there may be the same from before.
+        if let Some(place) = self.0.iter().rposition(|known| known.checksum == checksum) {
+            self.0.remove(place);
+        }
+    }
+
     /// Whether these are known, and valid.
     pub(crate) fn has(&self, values: &Values) -> bool {
         self.valid().any(|known| known.values == *values)
