@@ -14,7 +14,6 @@
 //! - every sample of a subscription is accounted for, and a block is the drive's;
 //! - nothing is saved and nothing reboots without a request.
 
-use crate::block_frames;
 use crate::bytes::Bytes;
 use crate::drive_model::DriveModel;
 use crate::from_comms::{self, Frames, FromComms};
@@ -31,7 +30,6 @@ use crepitus_protocol::host::{Operation, Refusal, Reply, Request};
 use crepitus_protocol::link::{Order, ToDrive};
 use crepitus_protocol::management::{Action, Identity, ManagementRequest, ResetCause};
 use crepitus_protocol::pieces::Piece;
-use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{
     Decoder, LEASE_TICKS, Lane, Nonce, Revision, Session, State, Values, frame, schema,
 };
@@ -226,15 +224,7 @@ impl Bench {
     }
 
     fn request(&mut self, session: Session, number: u16, operation: Operation) {
-        let request = Request {
-            session,
-            nonce: self.host.nonce(session),
-            number,
-            operation,
-        };
-        let frame = frame::encode(Lane::Request, &request);
-        let frame = frame.expect("every message fits");
-        self.send(&frame, &Sent::Request(request));
+        self.request_with(self.host.nonce(session), session, number, operation);
     }
 
     /// A request with another nonce than that of the session is not executed.
@@ -248,16 +238,19 @@ impl Bench {
         };
         let before = executed(&self.comms);
         let Nonce(nonce) = self.host.nonce(session);
+        self.request_with(Nonce(nonce ^ 1), session, number, operation);
+        assert_eq!(executed(&self.comms), before, "{session:?} {operation:?}");
+    }
+
+    fn request_with(&mut self, nonce: Nonce, session: Session, number: u16, operation: Operation) {
         let request = Request {
             session,
-            nonce: Nonce(nonce ^ 1),
+            nonce,
             number,
             operation,
         };
-        let frame = frame::encode(Lane::Request, &request);
-        let frame = frame.expect("every message fits");
+        let frame = frame::encode(Lane::Request, &request).expect("every message fits");
         self.send(&frame, &Sent::Request(request));
-        assert_eq!(executed(&self.comms), before, "{request:?}");
     }
 
     /// A frame of a host, for comms and for the oracle. After a delimiter it is
@@ -348,17 +341,16 @@ impl Bench {
     }
 
     fn replied(&mut self, reply: &Reply) {
-        // After a timeout a commit may come into effect.
-        if reply
-            .answer
-            .is_err_and(|refusal| refusal != Refusal::Unconfirmed)
-            && let Some(values) = self.commits.remove(&(reply.session.0, reply.number))
-        {
+        // After a timeout a commit may come into effect; and a request that was
+        // not executed may have the number of one that was.
+        if matches!(reply.answer, Err(Refusal::Unconfirmed | Refusal::NotOpen)) {
+            return;
+        }
+        let commit = self.commits.remove(&(reply.session.0, reply.number));
+        if let (Some(values), Err(_)) = (commit, reply.answer) {
             self.values.withdraw(&values);
-            assert!(
-                self.values.has(self.comms.values()),
-                "refused, and committed"
-            );
+            let committed = self.comms.values();
+            assert!(self.values.has(committed), "refused, and committed");
         }
     }
 
@@ -483,7 +475,7 @@ impl Bench {
             let mut replies = Vec::new();
             self.from_comms.split(run, |frame| {
                 if from_comms::is_block(frame) {
-                    host.block(&same_block(frame, drive));
+                    host.block(&drive.take_block(frame));
                 } else if let FromComms::Reply(reply) = FromComms::of(frame) {
                     host.reply(&reply, values);
                     replies.push(reply);
@@ -497,16 +489,4 @@ impl Bench {
             }
         }
     }
-}
-
-/// A block as the drive has sent it, in order, but for the samples dropped,
-/// which comms counts itself.
-fn same_block(frame: &[u8], drive: &mut DriveModel) -> Block {
-    let block = block_frames::decode(frame).expect("a block of zeros");
-    let sent = drive
-        .take_block(block.sequence)
-        .expect("of the drive, in order");
-    let dropped = block.dropped;
-    assert_eq!(block, Block { dropped, ..sent });
-    block
 }

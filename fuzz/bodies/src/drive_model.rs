@@ -40,8 +40,8 @@ pub(crate) struct DriveModel {
     has_sent_hello: bool,
     has_rejected: bool,
     has_restarted: bool,
-    /// Tick after the last block.
-    end_tick: u64,
+    /// The latest tick that it has reported since.
+    latest_tick: u64,
     reassembly: (Revision, Reassembly),
 }
 
@@ -62,7 +62,7 @@ impl DriveModel {
             has_sent_hello: false,
             has_rejected: false,
             has_restarted: false,
-            end_tick: 0,
+            latest_tick: 0,
             reassembly: (Revision::NONE, Reassembly::new(0)),
         }
     }
@@ -77,9 +77,9 @@ impl DriveModel {
         std::mem::take(&mut self.has_restarted)
     }
 
-    /// The latest tick that it has reported, or will.
+    /// The latest tick that it has reported.
     pub(crate) fn tick(&self) -> u64 {
-        self.status.tick.max(self.end_tick)
+        self.latest_tick
     }
 
     /// Executes a message of comms.
@@ -167,25 +167,28 @@ impl DriveModel {
             ..Block::default()
         };
         self.block_ms = 0;
-        self.end_tick = self.end_tick.max(block.end_tick());
+        self.latest_tick = self.latest_tick.max(block.end_tick());
         self.blocks.push_back(block);
         self.sequence = self.sequence.wrapping_add(1);
         self.advance();
         block_frames::encode(&block)
     }
 
-    /// Takes the block with this number, and those before it.
-    pub(crate) fn take_block(&mut self, sequence: u16) -> Option<Block> {
-        while let Some(block) = self.blocks.pop_front() {
-            if block.sequence == sequence {
-                return Some(block);
-            }
-        }
-        None
+    /// Takes a block that comms has forwarded, in order: as it was sent, but for
+    /// the samples dropped, which comms counts itself.
+    pub(crate) fn take_block(&mut self, frame: &[u8]) -> Block {
+        let block = block_frames::decode(frame).expect("a block of zeros");
+        let (number, dropped) = (block.sequence, block.dropped);
+        let place = self.blocks.iter().position(|sent| sent.sequence == number);
+        let sent = self.blocks.drain(..=place.expect("a block of the drive"));
+        let sent = sent.last().expect("at least this one");
+        assert_eq!(block, Block { dropped, ..sent });
+        block
     }
 
     fn status(&mut self) -> Frame {
         (self.reported, self.reported_ms) = (self.status, 0);
+        self.latest_tick = self.latest_tick.max(self.status.tick);
         let message = FromDrive::Status(self.status);
         frame::encode(Lane::FromDrive, &message).expect("every message fits")
     }
@@ -205,7 +208,7 @@ impl DriveModel {
                 // Comms sees the lowest bits only; without a change it keeps on
                 // with the ticks of before.
                 if (start ^ self.status.start).trailing_zeros() < 5 {
-                    (self.has_restarted, self.end_tick) = (true, 0);
+                    (self.has_restarted, self.latest_tick) = (true, 0);
                 }
                 self.status = DriveStatus {
                     start,
