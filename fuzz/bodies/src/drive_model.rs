@@ -180,8 +180,8 @@ impl DriveModel {
         let block = block_frames::decode(frame).expect("a block of zeros");
         let (number, dropped) = (block.sequence, block.dropped);
         let place = self.blocks.iter().position(|sent| sent.sequence == number);
-        let sent = self.blocks.drain(..=place.expect("a block of the drive"));
-        let sent = sent.last().expect("at least this one");
+        let mut sent = self.blocks.drain(..=place.expect("a block of the drive"));
+        let sent = sent.next_back().expect("this one");
         assert_eq!(block, Block { dropped, ..sent });
         block
     }
