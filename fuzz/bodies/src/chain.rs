@@ -45,6 +45,10 @@ const MOST_RESTARTS: u16 = 30;
 /// Sessions of hosts.
 const SESSIONS: [Session; 3] = [Session(0), Session(7), Session(0x1001)];
 
+/// Numbers of their first requests, also after a restart of comms: so requests
+/// of before are not just older.
+const NUMBERS: [u16; SESSIONS.len()] = [0, 0x7ffe, 0xfffe];
+
 /// Checks the laws.
 ///
 /// # Panics
@@ -101,7 +105,7 @@ impl Chain {
             device: Device::new(saved),
             host: HostOracle::default(),
             frames: Frames::default(),
-            numbers: [0, 0x7ffe, 0xfffe],
+            numbers: NUMBERS,
             sent: Vec::new(),
             host_losses: 0,
             reads: usize::MAX,

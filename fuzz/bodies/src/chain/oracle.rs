@@ -1,7 +1,7 @@
 //! What hosts do, and what has to be true after each tick.
 
 use crate::chain::device::{COMMS_TICKS, Readings};
-use crate::chain::{Chain, MOST_RESTARTS, MOST_TICKS, SESSIONS, Sent};
+use crate::chain::{Chain, MOST_RESTARTS, MOST_TICKS, NUMBERS, SESSIONS, Sent};
 use crate::from_comms::FromComms;
 use crepitus_device::usb_port::HostBytes;
 use crepitus_protocol::counters::CommsCounter;
@@ -155,6 +155,7 @@ impl Chain {
         self.host.closed();
         self.lease.stop();
         self.commits.clear();
+        self.numbers = NUMBERS;
         self.stopped = self.device.tick.saturating_sub(COMMS_TICKS);
     }
 
