@@ -204,10 +204,14 @@ impl DriveModel {
             }
             // It has restarted.
             1 => {
-                let start = u16::from(bytes.byte());
-                // Comms sees the lowest bits only; without a change it keeps on
-                // with the ticks of before.
-                if (start ^ self.status.start).trailing_zeros() < 5 {
+                // Mostly with the next number. The books see five bits of it: one
+                // of long ago would be taken for the same start.
+                let start = match bytes.byte() {
+                    0..64 => self.status.start,
+                    _ => self.status.start.wrapping_add(1),
+                };
+                // Without a change comms keeps on with the ticks of before.
+                if start != self.status.start {
                     (self.has_restarted, self.latest_tick) = (true, 0);
                 }
                 self.status = DriveStatus {
