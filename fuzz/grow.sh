@@ -8,11 +8,11 @@
 # PIECE_S    seconds of a piece                              300
 # ROUNDS     pieces for each target, then it ends            without end
 # GROWN      folder of corpora, ledger, crashes, programs    target/fuzz-grown
-# MOST_FILES files that a merge may leave in a corpus        120
+# MOST_FILES files that a merge may leave in a corpus        200
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-piece_s=${PIECE_S:-300} rounds=${ROUNDS:-1000000000} most_files=${MOST_FILES:-120}
+piece_s=${PIECE_S:-300} rounds=${ROUNDS:-1000000000} most_files=${MOST_FILES:-200}
 grown=${GROWN:-$PWD/target/fuzz-grown}
 ledger=$grown/ledger.tsv
 targets=$(sed -n 's/^name = "\([a-z]*\)"$/\1/p' fuzz/Cargo.toml)
@@ -86,24 +86,40 @@ status() {
         }' "$ledger"
 }
 
-# The smallest set of files that takes every edge that the grown corpus takes.
-# What was made by hand or once broke a law stays; others are named for what
-# they are.
+# Few files that take every edge that the grown corpus takes. What was made by
+# hand or once broke a law stays; others are named for what they are. libFuzzer
+# would keep the smallest file for each edge, which are many: of its list of
+# edges by file, this takes the file with the most, then what adds to it.
 merge() {
-    local target=$1 out file name
+    local target=$1 out control file first count=0
     out=$(mktemp -d)
+    control=$grown/merge-$target.control
     for file in "fuzz/corpus/$target"/{seed,crash}-*; do
         if [ -f "$file" ]; then cp "$file" "$out"; fi
     done
     mkdir -p "$grown/$target"
-    "$grown/bin/$target" -set_cover_merge=1 -use_counters=0 "$out" "$grown/$target" "fuzz/corpus/$target" \
-        >"$grown/merge-$target.log" 2>&1
+    rm -f "$control"
+    "$grown/bin/$target" -set_cover_merge=1 -use_counters=0 -merge_control_file="$control" \
+        "$out" "$grown/$target" "fuzz/corpus/$target" >"$grown/merge-$target.log" 2>&1
+    # The control file: number of files, of those in the first folder, their
+    # names, then a line of edges for each.
+    first=$(sed -n 2p "$control")
+    mkdir "$out/found"
+    while read -r file; do
+        if [ "$count" -ge "$most_files" ]; then break; fi
+        cp "$(sed -n "$((file + 3))p" "$control")" "$out/found/file"
+        mv "$out/found/file" "$out/found/$(sha1sum "$out/found/file" | cut -c1-12)"
+        count=$((count + 1))
+    done < <(awk -v first="$first" '$1 == "FT" { print ($2 < first ? 1e9 : NF - 2), $2, $0 }' "$control" | sort -k1,1nr -k2,2n |
+        awk -v first="$first" '{
+            adds = 0
+            for (i = 5; i <= NF; i++) if (!($i in seen)) { seen[$i]; adds = 1 }
+            if (adds && $2 >= first) print $2
+        }')
     rm -f "fuzz/corpus/$target"/found-*
-    # Those that a cap leaves out are the longest.
-    find "$out" -type f ! -name 'seed-*' ! -name 'crash-*' -printf '%s %f\n' | sort -n | head -n "$most_files" |
-        while read -r _ name; do
-            mv "$out/$name" "fuzz/corpus/$target/found-$(sha1sum "$out/$name" | cut -c1-12)"
-        done
+    for file in "$out/found"/*; do
+        if [ -f "$file" ]; then mv "$file" "fuzz/corpus/$target/found-$(basename "$file")"; fi
+    done
     rm -r "$out"
     echo "$target: $(find "fuzz/corpus/$target" -type f | wc -l) files, $(cat "fuzz/corpus/$target"/* | wc -c) bytes"
 }
