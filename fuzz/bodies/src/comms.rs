@@ -4,33 +4,40 @@
 //! - its line is on only while a host holds the lease, blocks arrive, and
 //!   there is no fault of comms; and only after a host has requested arming, and
 //!   none since disarming or a stop. The same holds for `enable` in heartbeats;
-//! - no heartbeat carries a longer lease than there is;
+//! - no heartbeat carries a longer lease than there is, by either clock;
 //! - every frame for a host or for the drive is in order. A request has at most
-//!   as many replies as it was sent times, and there are no others;
+//!   as many replies as it was sent times, and there are no others; it is executed
+//!   once;
 //! - the revision changes only after a commit, or a refusal, to the next one. Parameters that
-//!   are read, sent or saved are those of the boot or of a commit, and valid;
-//! - every sample of a subscription is accounted for;
+//!   are read, sent or saved are those of the boot or of a commit that was not
+//!   refused, and valid;
+//! - every sample of a subscription is accounted for, and a block is the drive's;
 //! - nothing is saved and nothing reboots without a request.
 
 use crate::bytes::Bytes;
 use crate::drive_model::DriveModel;
+use crate::from_comms::{self, Frames, FromComms};
 use crate::host_oracle::HostOracle;
+use crate::known_values::KnownValues;
+use crate::lease_oracle::LeaseOracle;
 use crate::link_inputs;
+use crate::sent::Sent;
 use crepitus_device::Comms;
 use crepitus_device::comms::{Boot, Inputs, Outputs};
 use crepitus_device::usb_port::HostBytes;
 use crepitus_protocol::counters::CommsCounter;
-use crepitus_protocol::host::{Operation, Request};
+use crepitus_protocol::host::{Operation, Refusal, Reply, Request};
 use crepitus_protocol::link::{Order, ToDrive};
 use crepitus_protocol::management::{Action, Identity, ManagementRequest, ResetCause};
-use crepitus_protocol::pieces::{self, Piece};
+use crepitus_protocol::pieces::Piece;
 use crepitus_protocol::{
-    Decoder, DeviceSettings, LEASE_TICKS, Lane, Nonce, Revision, Session, Values, frame, schema,
+    Decoder, LEASE_TICKS, Lane, Nonce, Revision, Session, State, Values, frame, schema,
 };
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
-/// The most milliseconds of one input.
-const MOST_MS: u64 = 4096;
+/// The most milliseconds of one input: a lease that is renewed, and one that
+/// ends; a request that times out.
+const MOST_MS: u64 = 700;
 
 /// Length of a lease, ms.
 const LEASE_MS: u64 = 250;
@@ -79,22 +86,27 @@ struct Bench {
     line_is_on: bool,
     drive: DriveModel,
     host: HostOracle,
+    from_comms: Frames,
     /// Decoders of the bytes from hosts and to the drive.
     ear: Decoder,
     link_ear: Decoder,
+    /// The last byte from hosts was no delimiter.
+    is_in_frame: bool,
     numbers: [u16; 5],
-    /// When a block came last, and when a lease was taken or renewed last.
+    /// When a block came last.
     block_ms: Option<u64>,
-    lease_ms: Option<u64>,
-    /// A host has requested arming, and none has disarmed since.
-    wants: bool,
-    /// Sessions that may hold the lease.
-    armers: BTreeSet<u32>,
+    lease: LeaseOracle,
+    /// The tick at which the lease ends, at most; none, if the drive's ticks
+    /// have restarted since it was acquired.
+    lease_end_tick: Option<u64>,
+    /// Last request of each session that was executed.
+    executed: BTreeMap<u32, (Nonce, u16)>,
+    /// Commits that were sent, until they are refused.
+    commits: BTreeMap<(u32, u16), Values>,
     /// Reasons that there were for another revision.
     numbered: u32,
     revision: Revision,
-    /// All values that there may be.
-    values: Vec<Values>,
+    values: KnownValues,
     may_save: bool,
     may_reboot: bool,
 }
@@ -102,22 +114,24 @@ struct Bench {
 impl Bench {
     fn new(boot: &Boot) -> Self {
         let comms = Comms::new(boot);
-        let saved = boot.saved.map(|(_, values)| values);
         Self {
             now_ms: 0,
             line_is_on: false,
             drive: DriveModel::new(boot.start),
             host: HostOracle::default(),
+            from_comms: Frames::default(),
             ear: Decoder::new(),
             link_ear: Decoder::new(),
+            is_in_frame: false,
             numbers: [0, 1, 0x7ffe, 0xfffe, 9],
             block_ms: None,
-            lease_ms: None,
-            wants: false,
-            armers: BTreeSet::new(),
+            lease: LeaseOracle::new(LEASE_MS),
+            lease_end_tick: None,
+            executed: BTreeMap::new(),
+            commits: BTreeMap::new(),
             numbered: 0,
             revision: comms.revision(),
-            values: saved.into_iter().chain([Values::default()]).collect(),
+            values: KnownValues::new(boot.saved.map(|(_, values)| values)),
             may_save: false,
             may_reboot: false,
             comms,
@@ -133,15 +147,22 @@ impl Bench {
             }
             // Normal operation, for this many milliseconds.
             1 => {
-                let reads = bytes.byte();
-                for _ in 0..bytes.byte() {
+                let count = if bytes.byte() < 128 { usize::MAX } else { 8 };
+                for _ in 0..link_inputs::milliseconds(bytes) {
+                    if self.now_ms >= MOST_MS {
+                        break;
+                    }
                     self.good_millisecond();
-                    self.read(if reads < 128 { usize::MAX } else { 8 });
+                    self.read(count);
+                }
+                // What follows finds the drive present.
+                if let Some(block) = self.drive.due_block() {
+                    self.drive_says(&block);
                 }
             }
             2 | 3 => {
                 let place = usize::from(bytes.byte()) % self.numbers.len();
-                let operation = self.ask(bytes);
+                let operation = link_inputs::operation(bytes, self.comms.revision());
                 let number = &mut self.numbers[place];
                 match bytes.byte() {
                     // Repeated; but of a subscription nobody could tell which
@@ -164,8 +185,7 @@ impl Bench {
             }
             4 => {
                 let count = usize::from(bytes.byte());
-                let raw = bytes.take_some(count).to_vec();
-                self.send(&raw);
+                self.send_raw(bytes.take_some(count));
             }
             5 => {
                 let question = ManagementRequest {
@@ -173,10 +193,13 @@ impl Bench {
                     token: bytes.byte(),
                 };
                 let frame = frame::encode_bytes(Lane::Management, &question.bytes());
-                self.send(&frame.expect("a short frame"));
+                self.send(&frame.expect("a short frame"), &Sent::Question(question));
             }
             6 => {
                 let frame = self.drive.anything(bytes);
+                if self.drive.has_restarted() {
+                    self.lease_end_tick = None;
+                }
                 self.numbered += u32::from(self.drive.has_rejected());
                 self.drive_says(&frame);
             }
@@ -184,7 +207,9 @@ impl Bench {
                 0..=15 => {
                     self.comms.host_lost();
                     self.host.cut();
+                    self.from_comms.cut();
                     self.ear.reset();
+                    self.is_in_frame = false;
                 }
                 16..=63 => self.comms.saved(bytes.byte() < 200),
                 count => self.read(usize::from(count)),
@@ -199,14 +224,7 @@ impl Bench {
     }
 
     fn request(&mut self, session: Session, number: u16, operation: Operation) {
-        let request = Request {
-            session,
-            nonce: self.host.nonce(session),
-            number,
-            operation,
-        };
-        let frame = frame::encode(Lane::Request, &request);
-        self.send(&frame.expect("every message fits"));
+        self.request_with(self.host.nonce(session), session, number, operation);
     }
 
     /// A request with another nonce than that of the session is not executed.
@@ -220,103 +238,120 @@ impl Bench {
         };
         let before = executed(&self.comms);
         let Nonce(nonce) = self.host.nonce(session);
+        self.request_with(Nonce(nonce ^ 1), session, number, operation);
+        assert_eq!(executed(&self.comms), before, "{session:?} {operation:?}");
+    }
+
+    fn request_with(&mut self, nonce: Nonce, session: Session, number: u16, operation: Operation) {
         let request = Request {
             session,
-            nonce: Nonce(nonce ^ 1),
+            nonce,
             number,
             operation,
         };
-        let frame = frame::encode(Lane::Request, &request);
-        self.send(&frame.expect("every message fits"));
-        assert_eq!(executed(&self.comms), before, "{request:?}");
+        let frame = frame::encode(Lane::Request, &request).expect("every message fits");
+        self.send(&frame, &Sent::Request(request));
     }
 
-    fn ask(&mut self, bytes: &mut Bytes<'_>) -> Operation {
-        match bytes.byte() % 16 {
-            0 | 1 => Operation::Renew,
-            2 => Operation::Open,
-            3 if bytes.byte() < 128 => Operation::Status,
-            3 => Operation::Counters,
-            4 => Operation::Parameters,
-            5 | 6 => Operation::Commit {
-                base: if bytes.byte() < 224 {
-                    self.comms.revision()
-                } else {
-                    Revision(u32::from(bytes.byte()))
-                },
-                values: link_inputs::values(bytes),
+    /// A frame of a host, for comms and for the oracle. After a delimiter it is
+    /// received as it was sent.
+    fn send(&mut self, frame: &[u8], sent: &Sent) {
+        if self.is_in_frame {
+            return self.send_raw(frame);
+        }
+        let requests = self.requests();
+        self.comms.received(frame);
+        self.note(sent, requests);
+    }
+
+    /// Any bytes of a host; what was received is known only from decoding them.
+    fn send_raw(&mut self, bytes: &[u8]) {
+        for run in bytes.split_inclusive(|byte| *byte == frame::DELIMITER) {
+            let sent = run.iter().fold(None, |sent, byte| {
+                let body = self.ear.push(*byte).and_then(Result::ok);
+                body.as_ref().and_then(Sent::of).or(sent)
+            });
+            let requests = self.requests();
+            self.comms.received(run);
+            if let Some(sent) = sent {
+                self.note(&sent, requests);
+            }
+            self.is_in_frame = run.last() != Some(&frame::DELIMITER);
+        }
+    }
+
+    /// Requests that were executed.
+    fn requests(&self) -> u32 {
+        self.comms.counters().get(CommsCounter::Requests)
+    }
+
+    fn note(&mut self, sent: &Sent, requests_before: u32) {
+        match sent {
+            Sent::Request(request) => self.requested(request, self.requests() != requests_before),
+            Sent::Question(question) => match question.action {
+                Action::Stop => self.lease.stop(),
+                Action::Reboot => self.may_reboot = true,
+                Action::Hello => {}
             },
-            7 => Operation::Save,
-            8 => Operation::Zero,
-            9..=11 => Operation::Arm,
-            12 => Operation::Disarm,
-            13 => Operation::ClearFault,
-            14 => Operation::Subscribe,
-            _ => Operation::Unsubscribe,
         }
     }
 
-    /// Bytes of a host, for comms and for the oracle.
-    fn send(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            let (mut request, mut question) = (None, None);
-            match self.ear.push(*byte) {
-                Some(Ok(body)) if body.lane() == Some(Lane::Request) => {
-                    request = body.message::<Request>();
-                }
-                Some(Ok(body)) if body.lane() == Some(Lane::Management) => {
-                    question = ManagementRequest::of(body.payload);
-                }
-                _ => {}
-            }
-            let requests = self.comms.counters().get(CommsCounter::Requests);
-            self.comms.received(&[*byte]);
-            let is_new = self.comms.counters().get(CommsCounter::Requests) != requests;
-            if let Some(request) = request {
-                self.note(&request, is_new);
-            }
-            match question.map(|question| question.action) {
-                Some(Action::Stop) => self.disarmed(),
-                Some(Action::Reboot) => self.may_reboot = true,
-                _ => {}
-            }
-        }
-    }
-
-    fn note(&mut self, request: &Request, is_new: bool) {
+    fn requested(&mut self, request: &Request, is_new: bool) {
+        let Request {
+            session,
+            nonce,
+            number,
+            operation,
+        } = *request;
         self.host.requested(request);
-        match request.operation {
-            Operation::Renew if self.is_leased() => self.lease_ms = Some(self.now_ms),
-            _ if !is_new => {}
+        let end_tick = self.drive.tick() + LEASE_TICKS;
+        if operation == Operation::Renew {
+            if nonce == self.host.nonce(session) {
+                self.lease.renew(session, self.now_ms);
+                self.lease_end_tick = self.lease_end_tick.map(|end| end.max(end_tick));
+            }
+            return;
+        }
+        if !is_new {
+            return;
+        }
+        if operation != Operation::Open {
+            let before = self.executed.insert(session.0, (nonce, number));
+            assert_ne!(before, Some((nonce, number)), "executed twice");
+        }
+        match operation {
             // Whether or not it is refused.
             Operation::Arm => {
-                (self.wants, self.lease_ms) = (true, Some(self.now_ms));
-                self.armers.insert(request.session.0);
+                let is_first = !self.lease.is_alive(self.now_ms);
+                self.lease.arm(session, self.now_ms);
+                self.lease_end_tick = match self.lease_end_tick {
+                    _ if is_first => Some(end_tick),
+                    before => before.map(|end| end.max(end_tick)),
+                };
             }
-            // Refused while another host holds the lease.
-            Operation::Disarm if self.armers.iter().all(|armer| *armer == request.session.0) => {
-                self.disarmed();
-            }
+            Operation::Disarm => self.lease.disarm(session),
             Operation::Commit { values, .. } => {
                 self.numbered += 1;
-                if DeviceSettings::of(&values).is_ok() {
-                    self.values.push(values);
-                }
+                self.values.add(&values);
+                self.commits.insert((session.0, number), values);
             }
             Operation::Save => self.may_save = true,
             _ => {}
         }
     }
 
-    fn disarmed(&mut self) {
-        (self.wants, self.lease_ms) = (false, None);
-        self.armers.clear();
-    }
-
-    /// Upper bound from the messages on the wire.
-    fn is_leased(&self) -> bool {
-        self.lease_ms
-            .is_some_and(|lease_ms| self.now_ms - lease_ms < LEASE_MS)
+    fn replied(&mut self, reply: &Reply) {
+        // After a timeout a commit may come into effect; and a request that was
+        // not executed may have the number of one that was.
+        if matches!(reply.answer, Err(Refusal::Unconfirmed | Refusal::NotOpen)) {
+            return;
+        }
+        let commit = self.commits.remove(&(reply.session.0, reply.number));
+        if let (Some(values), Err(_)) = (commit, reply.answer) {
+            self.values.withdraw(&values);
+            let committed = self.comms.values();
+            assert!(self.values.has(committed), "refused, and committed");
+        }
     }
 
     fn drive_says(&mut self, frame: &[u8]) {
@@ -328,7 +363,9 @@ impl Bench {
     }
 
     fn good_millisecond(&mut self) {
-        for frame in self.drive.millisecond() {
+        let is_live = matches!(self.comms.state(), State::Arming | State::Armed);
+        let is_idle = !is_live && self.host.is_idle();
+        for frame in self.drive.millisecond(is_idle) {
             self.drive_says(&frame);
         }
         self.tick(None);
@@ -346,8 +383,8 @@ impl Bench {
 
     fn hold(&mut self, outputs: &Outputs) {
         if outputs.enable {
-            assert!(self.is_leased(), "enabled without a lease");
-            assert!(self.wants, "enabled, and nobody wants it");
+            assert!(self.lease.is_alive(self.now_ms), "enabled without a lease");
+            assert!(self.lease.is_wanted(), "enabled, and nobody wants it");
             assert_eq!(self.comms.fault(), None);
             let heard = self.block_ms.expect("a block");
             assert!(self.now_ms - heard < SILENT_MS, "the drive is silent");
@@ -355,7 +392,7 @@ impl Bench {
         if let Some((revision, values)) = outputs.save {
             assert!(std::mem::take(&mut self.may_save));
             assert_eq!(revision, self.comms.revision());
-            assert!(self.values.contains(&values));
+            assert!(self.values.has(&values));
         }
         if outputs.reboot {
             assert!(self.may_reboot, "it starts anew, and nobody has asked");
@@ -408,22 +445,23 @@ impl Bench {
         self.drive.receive(message);
         match message {
             ToDrive::Heartbeat(heartbeat) => {
-                assert!(u64::from(heartbeat.lease_left) < LEASE_TICKS);
-                assert!(heartbeat.lease_left == 0 || self.is_leased());
-                assert!(!heartbeat.enable || self.wants);
+                let left = u64::from(heartbeat.lease_left);
+                assert!(left < LEASE_TICKS);
+                assert!(left == 0 || self.lease.is_alive(self.now_ms));
+                let end = self.lease_end_tick.filter(|_| left > 0);
+                assert!(end.is_none_or(|end| heartbeat.seen_tick + left < end));
+                assert!(!heartbeat.enable || self.lease.is_wanted());
             }
             ToDrive::Commit {
                 checksum, piece, ..
             } => {
-                let source = self
-                    .values
-                    .iter()
-                    .find(|values| pieces::checksum(&values.0) == *checksum)
-                    .expect("values of a host");
-                assert!(DeviceSettings::of(source).is_ok());
+                let source = self.values.by_checksum(*checksum);
+                let source = source.expect("valid values of a host");
                 assert_eq!(Piece::of(&source.0, piece.index), Some(*piece));
             }
-            ToDrive::Command { order, .. } => assert!(*order != Order::Arm || self.wants),
+            ToDrive::Command { order, .. } => {
+                assert!(*order != Order::Arm || self.lease.is_wanted());
+            }
         }
     }
 
@@ -432,11 +470,22 @@ impl Bench {
         let mut left = count;
         while left > 0 && !self.comms.to_send().is_empty() {
             let run = self.comms.to_send();
-            let run = run[..run.len().min(left)].to_vec();
-            self.comms.sent(run.len());
-            left -= run.len();
-            for byte in &run {
-                self.host.receive(*byte, &self.values);
+            let run = &run[..run.len().min(left)];
+            let (drive, host, values) = (&mut self.drive, &mut self.host, &self.values);
+            let mut replies = Vec::new();
+            self.from_comms.split(run, |frame| {
+                if from_comms::is_block(frame) {
+                    host.block(&drive.take_block(frame));
+                } else if let FromComms::Reply(reply) = FromComms::of(frame) {
+                    host.reply(&reply, values);
+                    replies.push(reply);
+                }
+            });
+            let count = run.len();
+            self.comms.sent(count);
+            left -= count;
+            for reply in &replies {
+                self.replied(reply);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Model of a drive as comms sees it: it executes orders, and sends any other
 //! message that the input bytes make.
 
+use crate::block_frames;
 use crate::bytes::Bytes;
 use crate::link_inputs;
 use crepitus_protocol::frame::{self, Frame};
@@ -9,19 +10,38 @@ use crepitus_protocol::link::{
 };
 use crepitus_protocol::management::{Answer, Identity, Role};
 use crepitus_protocol::pieces::Reassembly;
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, BlockFlags};
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, BLOCK_TICKS, Block, BlockFlags};
 use crepitus_protocol::{Lane, Revision, State, ValueError, schema};
+use std::collections::VecDeque;
 
 /// Ticks stay within two months, the range of a drive.
 const MOST_TICK: u64 = 1 << 37;
 
+/// Milliseconds between two blocks.
+const BLOCK_MS: u8 = 4;
+
+/// Milliseconds between two statuses, if nothing changes.
+const STATUS_MS: u8 = 5;
+
 /// The drive.
 pub(crate) struct DriveModel {
     status: DriveStatus,
+    /// What the last status said, and milliseconds since.
+    reported: DriveStatus,
+    reported_ms: u8,
+    /// Milliseconds since the last block.
+    block_ms: u8,
     sequence: u16,
+    /// Samples that it did not send.
+    dropped: u32,
+    /// Blocks that it sent.
+    blocks: VecDeque<Block>,
     comms_start: u16,
     has_sent_hello: bool,
     has_rejected: bool,
+    has_restarted: bool,
+    /// The latest tick that it has reported since.
+    latest_tick: u64,
     reassembly: (Revision, Reassembly),
 }
 
@@ -32,10 +52,17 @@ impl DriveModel {
                 comms_start: Some(comms_start),
                 ..DriveStatus::default()
             },
+            reported: DriveStatus::default(),
+            reported_ms: STATUS_MS,
+            block_ms: 0,
             sequence: 0,
+            dropped: 0,
+            blocks: VecDeque::new(),
             comms_start,
             has_sent_hello: false,
             has_rejected: false,
+            has_restarted: false,
+            latest_tick: 0,
             reassembly: (Revision::NONE, Reassembly::new(0)),
         }
     }
@@ -43,6 +70,16 @@ impl DriveModel {
     /// Whether it has rejected a commit since the last call.
     pub(crate) fn has_rejected(&mut self) -> bool {
         std::mem::take(&mut self.has_rejected)
+    }
+
+    /// Whether its ticks have restarted since the last call.
+    pub(crate) fn has_restarted(&mut self) -> bool {
+        std::mem::take(&mut self.has_restarted)
+    }
+
+    /// The latest tick that it has reported.
+    pub(crate) fn tick(&self) -> u64 {
+        self.latest_tick
     }
 
     /// Executes a message of comms.
@@ -89,31 +126,69 @@ impl DriveModel {
         }
     }
 
-    /// Messages of a normal drive in a millisecond.
-    pub(crate) fn millisecond(&mut self) -> Vec<Frame> {
-        let mut frames = vec![self.block(0), self.status()];
-        if !std::mem::replace(&mut self.has_sent_hello, true) {
-            frames.push(hello(schema::HASH));
+    /// The messages of a normal drive in a millisecond: a status after every
+    /// change, or else every 5 ms; and as few blocks as keep it from being
+    /// silent, since they cost most. It drops the others. While comms is idle it
+    /// sends changes only.
+    pub(crate) fn millisecond(&mut self, is_idle: bool) -> impl Iterator<Item = Frame> + use<> {
+        self.block_ms = self.block_ms.saturating_add(1);
+        let block = if is_idle { None } else { self.due_block() };
+        if block.is_none() {
+            self.advance();
+            self.dropped = self.dropped.wrapping_add(BLOCK_TICKS);
         }
-        frames
+        self.reported_ms = self.reported_ms.saturating_add(1);
+        self.reported.tick = self.status.tick;
+        let is_due = !is_idle && self.reported_ms >= STATUS_MS;
+        let status = (is_due || self.reported != self.status).then(|| self.status());
+        let is_first = !std::mem::replace(&mut self.has_sent_hello, true);
+        let hello = is_first.then(|| hello(schema::HASH));
+        [block, status, hello].into_iter().flatten()
     }
 
-    fn block(&mut self, dropped: u32) -> Frame {
-        let status = &mut self.status;
+    /// A block, unless the last one was sent less than [`BLOCK_MS`] ago.
+    pub(crate) fn due_block(&mut self) -> Option<Frame> {
+        (self.block_ms >= BLOCK_MS).then(|| self.block())
+    }
+
+    /// A block's time passes.
+    fn advance(&mut self) {
+        self.status.tick = (self.status.tick + BLOCK_SAMPLES as u64).min(MOST_TICK);
+    }
+
+    fn block(&mut self) -> Frame {
+        let status = &self.status;
         let block = Block {
             sequence: self.sequence,
             first_tick: status.tick,
             revision: status.revision,
-            dropped,
+            dropped: self.dropped,
             flags: BlockFlags::new(status.state, status.zeroed, status.start),
             ..Block::default()
         };
+        self.block_ms = 0;
+        self.latest_tick = self.latest_tick.max(block.end_tick());
+        self.blocks.push_back(block);
         self.sequence = self.sequence.wrapping_add(1);
-        status.tick = (status.tick + BLOCK_SAMPLES as u64).min(MOST_TICK);
-        frame::encode(Lane::Telemetry, &block).expect("every message fits")
+        self.advance();
+        block_frames::encode(&block)
     }
 
-    fn status(&self) -> Frame {
+    /// Takes a block that comms has forwarded, in order: as it was sent, but for
+    /// the samples dropped, which comms counts itself.
+    pub(crate) fn take_block(&mut self, frame: &[u8]) -> Block {
+        let block = block_frames::decode(frame).expect("a block of zeros");
+        let (number, dropped) = (block.sequence, block.dropped);
+        let place = self.blocks.iter().position(|sent| sent.sequence == number);
+        let mut sent = self.blocks.drain(..=place.expect("a block of the drive"));
+        let sent = sent.next_back().expect("this one");
+        assert_eq!(block, Block { dropped, ..sent });
+        block
+    }
+
+    fn status(&mut self) -> Frame {
+        (self.reported, self.reported_ms) = (self.status, 0);
+        self.latest_tick = self.latest_tick.max(self.status.tick);
         let message = FromDrive::Status(self.status);
         frame::encode(Lane::FromDrive, &message).expect("every message fits")
     }
@@ -124,18 +199,28 @@ impl DriveModel {
             // Samples are lost on the link, or were dropped before it.
             0 => {
                 self.status.tick += BLOCK_SAMPLES as u64 * u64::from(bytes.byte());
-                let dropped = u32::from(bytes.byte()) * 20;
-                self.block(dropped)
+                self.dropped = u32::from(bytes.byte()) * BLOCK_TICKS;
+                self.block()
             }
             // It has restarted.
             1 => {
+                // Mostly with the next number. The books see five bits of it: one
+                // of long ago would be taken for the same start.
+                let start = match bytes.byte() {
+                    0..64 => self.status.start,
+                    _ => self.status.start.wrapping_add(1),
+                };
+                // Without a change comms keeps on with the ticks of before.
+                if start != self.status.start {
+                    (self.has_restarted, self.latest_tick) = (true, 0);
+                }
                 self.status = DriveStatus {
-                    start: u16::from(bytes.byte()),
+                    start,
                     tick: u64::from(bytes.byte()) * 20,
                     ..DriveStatus::default()
                 };
-                self.has_sent_hello = false;
-                self.block(0)
+                (self.has_sent_hello, self.dropped) = (false, 0);
+                self.block()
             }
             2 => {
                 self.status.state = bytes.choice(&State::ALL);

@@ -1,10 +1,10 @@
 //! Oracle of a host: the replies and blocks that comms may send.
 
+use crate::known_values::KnownValues;
 use crepitus_protocol::host::{Answer, Operation, Reply, Request};
-use crepitus_protocol::management;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
-use crepitus_protocol::{Decoder, Lane, Nonce, Session, Values};
-use std::collections::BTreeMap;
+use crepitus_protocol::{Nonce, Session};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Accounting of a subscription.
 #[derive(Clone, Copy)]
@@ -19,11 +19,12 @@ struct SampleAccounting {
 /// A host that receives all replies.
 #[derive(Default)]
 pub(crate) struct HostOracle {
-    decoder: Decoder,
     /// How many replies may still come to each request.
     expected: BTreeMap<(u32, u16), u32>,
     /// Nonces of the sessions.
     nonces: BTreeMap<u32, Nonce>,
+    /// Sessions whose nonce is of this start of comms.
+    open: BTreeSet<u32>,
     /// Which request of each session was a subscription; the last one counts.
     subscriptions: BTreeMap<u32, u16>,
     /// Of each session, also of one that has unsubscribed: the count is one for
@@ -46,11 +47,39 @@ impl HostOracle {
         *self.expected.entry(key).or_default() += 1;
     }
 
+    /// A request was sent again, and will not be executed.
+    pub(crate) fn repeated(&mut self, request: &Request) {
+        if request.operation != Operation::Renew {
+            let key = (request.session.0, request.number);
+            *self.expected.entry(key).or_default() += 1;
+        }
+    }
+
+    /// Comms has restarted: no session is open.
+    pub(crate) fn closed(&mut self) {
+        self.open.clear();
+    }
+
+    /// A host has heard that its session is not open.
+    pub(crate) fn forget(&mut self, session: Session) {
+        self.nonces.remove(&session.0);
+        self.open.remove(&session.0);
+    }
+
+    /// Whether comms has given this session its nonce since its restart.
+    pub(crate) fn is_open(&self, session: Session) -> bool {
+        self.open.contains(&session.0)
+    }
+
     /// The connection was lost, with the bytes in flight.
     pub(crate) fn cut(&mut self) {
-        self.decoder.reset();
         self.subscriptions.clear();
         self.accountings.clear();
+    }
+
+    /// Whether no reply and no telemetry is to come.
+    pub(crate) fn is_idle(&self) -> bool {
+        self.accountings.is_empty() && self.expected.values().all(|count| *count == 0)
     }
 
     /// The nonce of a session.
@@ -58,29 +87,9 @@ impl HostOracle {
         self.nonces.get(&session.0).copied().unwrap_or_default()
     }
 
-    /// A byte from comms; `values` are those that there may be.
-    pub(crate) fn receive(&mut self, byte: u8, values: &[Values]) {
-        let Some(body) = self.decoder.push(byte) else {
-            return;
-        };
-        let body = body.expect("a frame in order");
-        match body.lane() {
-            Some(Lane::Reply) => {
-                let reply = body.message().expect("a reply");
-                self.reply(&reply, values);
-            }
-            Some(Lane::Telemetry) => {
-                let block = body.message().expect("a block");
-                self.block(&block);
-            }
-            Some(Lane::ManagementAnswer) => {
-                assert!(management::Answer::of(body.payload).is_some());
-            }
-            other => panic!("{other:?} from comms"),
-        }
-    }
-
-    fn reply(&mut self, reply: &Reply, values: &[Values]) {
+    /// A reply has come; `values` are those that there may be. Returns
+    /// whether a subscription begins with it.
+    pub(crate) fn reply(&mut self, reply: &Reply, values: &KnownValues) -> bool {
         let expected = self.expected.get_mut(&(reply.session.0, reply.number));
         let expected = expected.expect("a reply to nobody");
         assert!(*expected > 0, "a reply too many: {reply:?}");
@@ -100,19 +109,23 @@ impl HostOracle {
                     next_tick: 0,
                 };
                 self.accountings.insert(reply.session.0, accounting);
+                return true;
             }
             Ok(Answer::Opened { nonce }) => {
                 assert_ne!(nonce, Nonce::NONE);
                 self.nonces.insert(reply.session.0, nonce);
+                self.open.insert(reply.session.0);
             }
             Ok(Answer::Parameters { values: told, .. }) => {
-                assert!(values.contains(&told), "nobody's values");
+                assert!(values.has(&told), "nobody's values");
             }
             _ => {}
         }
+        false
     }
 
-    fn block(&mut self, block: &Block) {
+    /// A block has come.
+    pub(crate) fn block(&mut self, block: &Block) {
         for accounting in self.accountings.values_mut() {
             accounting.block(block);
         }

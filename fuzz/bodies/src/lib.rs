@@ -16,21 +16,28 @@
 //! | [`frames`] | bytes on a wire |
 //! | [`drive`] | messages and sensor values for the drive controller |
 //! | [`comms`] | messages of hosts and of the drive for the comms controller |
+//! | [`chain`] | requests of hosts, faults of the wires, restarts: host, comms, link, drive |
 
+mod block_frames;
 mod bytes;
+pub mod chain;
 pub mod comms;
 pub mod drive;
 mod drive_model;
 pub mod encoder;
 pub mod frames;
+mod from_comms;
 pub mod guarded;
 mod host_oracle;
+mod known_values;
 mod laws;
+mod lease_oracle;
 mod link_inputs;
 pub mod recording;
 pub mod renderer;
 mod rung;
 pub mod scene;
+mod sent;
 mod shaft;
 pub mod step;
 mod winding;
@@ -40,7 +47,8 @@ pub type Body = fn(&[u8]);
 
 /// All targets: the name of each, which is also its folder in the corpus, and
 /// its body.
-pub const TARGETS: [(&str, Body); 9] = [
+pub const TARGETS: [(&str, Body); 10] = [
+    ("chain", chain::body),
     ("comms", comms::body),
     ("drive", drive::body),
     ("encoder", encoder::body),

@@ -1,9 +1,10 @@
 //! Messages made of bytes, mostly plausible.
 
 use crate::bytes::Bytes;
-use crepitus_protocol::Values;
+use crepitus_protocol::host::Operation;
 use crepitus_protocol::management::Action;
 use crepitus_protocol::parameters::{Kind, PARAMETERS};
+use crepitus_protocol::{Revision, Values};
 
 /// A tick that is about now: mostly now, or a little earlier.
 pub(crate) fn near(bytes: &mut Bytes<'_>, now: u64) -> u64 {
@@ -32,6 +33,42 @@ pub(crate) fn values(bytes: &mut Bytes<'_>) -> Values {
         values.set(parameter.id, value);
     }
     values
+}
+
+/// An operation; a commit is mostly made from `revision`.
+pub(crate) fn operation(bytes: &mut Bytes<'_>, revision: Revision) -> Operation {
+    match bytes.byte() % 16 {
+        0 | 1 => Operation::Renew,
+        2 => Operation::Open,
+        3 if bytes.byte() < 128 => Operation::Status,
+        3 => Operation::Counters,
+        4 => Operation::Parameters,
+        5 | 6 => Operation::Commit {
+            base: if bytes.byte() < 224 {
+                revision
+            } else {
+                Revision(u32::from(bytes.byte()))
+            },
+            values: values(bytes),
+        },
+        7 => Operation::Save,
+        8 => Operation::Zero,
+        9..=11 => Operation::Arm,
+        12 => Operation::Disarm,
+        13 => Operation::ClearFault,
+        14 => Operation::Subscribe,
+        _ => Operation::Unsubscribe,
+    }
+}
+
+/// A duration, ms: mostly as short as what needs no timeout, up to that of a
+/// lease.
+pub(crate) fn milliseconds(bytes: &mut Bytes<'_>) -> u16 {
+    match u16::from(bytes.byte()) {
+        short @ 0..64 => short,
+        short @ 64..240 => short % 16,
+        long => (long - 239) * 16,
+    }
 }
 
 /// A question of the lane that never changes.
