@@ -11,7 +11,7 @@ use std::thread::sleep;
 use std::time::Duration;
 use support::served::{Served, signal, until};
 use support::{
-    HALF_A_SECOND, check_books, crepitus, length, recording, repository, stderr, stdout,
+    HALF_A_SECOND, check_books, crepitus, length, recording, repository, rows, stderr, stdout,
 };
 
 #[test]
@@ -121,6 +121,46 @@ fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
         stdout(&output)
     );
     assert!(check_books(&recording(&file)).received > 9_000);
+}
+
+/// As when the cable is pulled and the device starts anew.
+#[test]
+fn a_recording_goes_on_when_the_device_comes_back() {
+    let served = Served::new();
+    let file = served.home.path().join("a");
+    let child = served
+        .command(&["record", file.to_str().unwrap()])
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    until("half a second is recorded", || {
+        length(&file) > HALF_A_SECOND
+    });
+    let served = Served::at(served.kill());
+    let before = length(&file);
+    until("more is recorded", || {
+        length(&file) > before + HALF_A_SECOND
+    });
+    signal(&child, "-INT");
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("reconnected"),
+        "{}",
+        stderr(&output)
+    );
+    let recording = recording(&file);
+    let books = recording.books();
+    assert!(recording.is_complete());
+    assert_eq!((books.drive_restarts, books.segments.len()), (1, 2));
+    let rows = rows(&recording);
+    assert_eq!(rows.len() as u64, books.totals.received);
+    assert!(rows.len() > 18_000);
+    let second = usize::try_from(books.segments[1].first_row).unwrap();
+    assert!(rows[second].tick < rows[second - 1].tick, "a new start");
+    assert!(rows.windows(2).all(|pair| pair[0].time_s < pair[1].time_s));
+    drop(served);
 }
 
 #[test]

@@ -45,8 +45,8 @@ impl Reader {
         }
         // The first one has no group.
         about = about.or_else(|| {
-            let mut heads = seals.iter().filter(|seal| seal.rows() == 0);
-            heads.find_map(|seal| about_of(&seal.footer))
+            let mut heads = seals.iter().filter(|seal| seal.rows == 0);
+            heads.find_map(|seal| about_of(&seal.footer().ok()?))
         });
         if about.is_none() {
             let (_, bytes) = footer.as_ref().ok_or_else(unreadable)?;
@@ -73,7 +73,7 @@ impl Reader {
         let mut recount = Recount::new(&books);
         let mut kept = Vec::new();
         let mut next_row = 0;
-        let groups = seals.into_iter().filter(|seal| seal.rows() > 0);
+        let groups = seals.into_iter().filter(|seal| seal.rows > 0);
         for seal in groups {
             if seal.first_row < next_row {
                 findings.add(format!("Rows from {} on are there twice", seal.first_row));
@@ -133,7 +133,7 @@ impl Reader {
             first_byte: seal.first_byte,
             bytes: bytes.into(),
         };
-        columns::read(&Arc::new(group), seal.footer.row_group(0)).map(Some)
+        columns::read(&Arc::new(group), seal.footer()?.row_group(0)).map(Some)
     }
 
     pub(crate) fn rows(&self) -> ParquetRows<'_> {

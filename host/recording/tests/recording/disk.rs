@@ -119,6 +119,8 @@ fn whenever_power_is_cut_everything_up_to_the_last_second_is_read() {
     let model = Model::default();
     run(&model).unwrap();
     let asked = model.asked();
+    let syncs = asked.iter().filter(|asked| matches!(asked, Asked::Sync));
+    assert!(syncs.count() >= 2, "every second, and at the end");
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a");
     let mut random = fastrand::Rng::with_seed(3);
