@@ -317,14 +317,14 @@ impl<'b> Recount<'b> {
         }
         self.missing(tick - self.next_tick);
         self.rows += 1;
-        self.next_tick = tick + 1;
+        self.next_tick = tick.saturating_add(1);
     }
 
     fn missing(&mut self, samples: u64) {
         if samples == 0 {
             return;
         }
-        self.dropped += samples;
+        self.dropped = self.dropped.saturating_add(samples);
         self.gap_count += 1;
         if self.gaps.len() < LISTED_GAPS {
             let (row, first_tick) = (self.rows, self.next_tick);
@@ -344,7 +344,11 @@ impl<'b> Recount<'b> {
     pub(crate) fn into_books(mut self) -> Books {
         let mut books = self.books.clone();
         let totals = &mut books.totals;
-        self.missing(totals.produced.saturating_sub(self.rows + self.dropped));
+        self.missing(
+            totals
+                .produced
+                .saturating_sub(self.rows.saturating_add(self.dropped)),
+        );
         totals.damaged += totals.received.saturating_sub(self.rows);
         totals.dropped = totals.produced.saturating_sub(self.rows);
         totals.received = self.rows;
@@ -381,7 +385,7 @@ impl<'b> Recount<'b> {
         }
         self.missing(self.books.missing_at_end);
         let totals = &self.books.totals;
-        let produced = self.rows + self.dropped;
+        let produced = self.rows.saturating_add(self.dropped);
         let counts = [
             ("samples produced", produced, totals.produced),
             ("rows", self.rows, totals.received),

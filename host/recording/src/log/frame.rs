@@ -63,6 +63,21 @@ impl Entry {
     }
 }
 
+/// More than any count reaches: centuries of ticks. A file with larger ones is
+/// none of ours, however right its checksums are.
+const MOST: u64 = 1 << 48;
+
+impl Entry {
+    fn is_plausible(&self) -> bool {
+        match self {
+            Self::Header(_) => true,
+            Self::Subscribed(begin) => begin.first_tick < MOST,
+            Self::Parameters { number, .. } => *number < MOST,
+            Self::Checkpoint(checkpoint) => checkpoint.number < MOST,
+        }
+    }
+}
+
 /// What a frame holds.
 pub(crate) enum Content {
     Block(Box<Block>),
@@ -79,17 +94,52 @@ impl Content {
         }
         let (kind, payload) = body.split_first_chunk::<2>()?;
         if *kind == ENTRY {
-            return serde_json::from_slice(payload)
-                .ok()
-                .map(|entry| Self::Entry(Box::new(entry)));
+            let entry: Entry = serde_json::from_slice(payload).ok()?;
+            return entry.is_plausible().then(|| Self::Entry(Box::new(entry)));
         }
         // The tag is that of the wire's schema; `FORMAT` is that of blocks here.
         if kind[0] != Lane::Telemetry.byte() {
             return None;
         }
-        match postcard::take_from_bytes(payload) {
-            Ok((block, [])) => Some(Self::Block(Box::new(block))),
+        match postcard::take_from_bytes::<Block>(payload) {
+            Ok((block, [])) if block.first_tick < MOST => Some(Self::Block(Box::new(block))),
             _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_protocol::frame::encode;
+
+    fn is_read(frame: &[u8]) -> bool {
+        let (_, body) = frame.split_last().expect("a delimiter");
+        Content::of(&mut body.to_vec()).is_some()
+    }
+
+    #[test]
+    fn counts_that_nobody_has_reached_are_refused_before_they_overflow() {
+        for (first_tick, is_ours) in [(MOST - 1, true), (MOST, false), (u64::MAX, false)] {
+            let block = Block {
+                first_tick,
+                ..Block::default()
+            };
+            let frame = encode(Lane::Telemetry, &block).expect("a block fits");
+            assert_eq!(is_read(&frame), is_ours, "{first_tick}");
+            let begin = Entry::Subscribed(Begin {
+                first_tick,
+                ..Begin::default()
+            });
+            let parameters = Entry::Parameters {
+                number: first_tick,
+                revision: 1,
+                is_whole: true,
+                values: None,
+            };
+            for entry in [begin, parameters] {
+                assert_eq!(is_read(&entry.frame().expect("JSON")), is_ours, "{entry:?}");
+            }
         }
     }
 }
