@@ -372,6 +372,58 @@ mod tests {
         assert!(high - low < 0.5, "the weight is gone: {low} to {high}");
     }
 
+    /// Ten seconds, of which two are missing: nothing reaches across.
+    #[test]
+    fn no_phase_window_or_spectrum_reaches_across_a_gap() {
+        let columns = Run::columns(true, false);
+        let collect = |says_so: bool| {
+            let collector = RefCell::new(Collector::new(&Setup {
+                columns: &columns,
+                rows_expected: 160_000,
+                row_step_s: 5e-5,
+                levels: None,
+            }));
+            let before = RefCell::new(0.0);
+            let is_missing = |time_s: f64| (4.0..6.0).contains(&time_s);
+            Run::new(Motion::Constant { speed: 1.0 }, 10.0, 5e-5).play(
+                |row| {
+                    if is_missing(row[0]) {
+                        return;
+                    }
+                    let before = before.replace(row[0]);
+                    if says_so && row[0] - before > 1e-4 {
+                        collector.borrow_mut().gap(before, row[0]);
+                    }
+                    collector.borrow_mut().row(row);
+                },
+                |event| {
+                    if !is_missing(event.time_s) {
+                        collector.borrow_mut().event(event);
+                    }
+                },
+            );
+            collector.into_inner().finish()
+        };
+        let known_s = |figures: &Figures| -> f64 {
+            let bins = figures.envelope.bins.iter();
+            bins.map(crate::envelope::Bin::known_s).sum()
+        };
+        let (with, without) = (collect(true), collect(false));
+        assert_eq!((with.gaps.len(), without.gaps.len()), (1, 0));
+        assert!((known_s(&with) - 8.0).abs() < 0.1, "{}", known_s(&with));
+        assert!(known_s(&without) > 9.9);
+        let spans = |window: &Option<Window>| {
+            let window = window.as_ref().expect("a window");
+            window.start < 4.0 && window.end > 6.0
+        };
+        assert!(!spans(&with.onset));
+        let segments = |figures: &Figures| {
+            let spectrum = figures.spectrum.as_ref().expect("long enough");
+            spectrum.points.iter().map(|point| point.y).sum::<f64>()
+        };
+        assert!(segments(&with) != segments(&without));
+    }
+
     #[test]
     fn a_run_without_rows_finishes() {
         let columns = Run::columns(true, false);

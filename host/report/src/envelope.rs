@@ -77,6 +77,12 @@ impl Bin {
         })
     }
 
+    /// Time in any phase, s.
+    #[cfg(test)]
+    pub(crate) fn known_s(&self) -> f64 {
+        self.stick_s + self.positive_s + self.negative_s
+    }
+
     fn is_active(&self) -> bool {
         self.positive_s + self.negative_s > 0.0
     }

@@ -125,6 +125,57 @@ fn frames_that_are_missing_doubled_or_elsewhere_are_noticed() {
     }
 }
 
+/// Values that depend on a lost entry are not made up; the next entry with all of
+/// them ends that.
+#[test]
+fn parameters_behind_a_lost_entry_are_unknown() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("whole");
+    // 21 entries; the first and the seventeenth have all values.
+    recorded(&path, "a test", &sent(2_000));
+    let whole = fs::read(&path).unwrap();
+    let value_at = |recording: &Recording, row: u64| {
+        let mut in_force = recording.parameters().in_force();
+        in_force.at(row);
+        in_force.number("crepitus.static_torque_nm")
+    };
+    let expected = open(&path).unwrap();
+    // The third entry: from row 2·97·20 on.
+    let mark = br#""number":2,"revision":3"#;
+    let at = whole.windows(mark.len()).position(|window| window == mark);
+    let mut damaged = whole.clone();
+    damaged[at.expect("an entry in plain text")] ^= 1;
+    let path = folder.path().join("damaged");
+    fs::write(&path, &damaged).unwrap();
+    let salvaged = salvaged(&path);
+    for (entry, is_known) in [
+        (0, true),
+        (1, true),
+        (2, false),
+        (3, false),
+        (15, false),
+        (16, true),
+        (20, true),
+    ] {
+        let row = entry * 97 * 20 + 5;
+        let known = value_at(&expected, row).filter(|_| is_known);
+        assert_eq!(value_at(&salvaged, row), known, "entry {entry}");
+    }
+}
+
+#[test]
+fn samples_whose_frame_is_missing_are_damaged_in_the_file() {
+    let bench = Bench::new();
+    let frames = bench.frames();
+    // Blocks in the middle of the first second.
+    let (from, to) = (frames[110].start, frames[112].end);
+    let w = &bench.whole;
+    let said = bench.check(&[&w[..from], &w[to..]].concat(), bench.all.len() - 60);
+    assert!(said.contains("is not what was written"), "{said}");
+    let totals = salvaged(&bench.path()).books().totals;
+    assert_eq!((totals.damaged, totals.on_the_way()), (60, 20));
+}
+
 /// Whatever a file is made of: an error, or rows whose books add up.
 #[test]
 fn no_bytes_are_too_strange() {
