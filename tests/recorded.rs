@@ -348,7 +348,7 @@ fn findings_are_json_for_programs() {
     );
 }
 
-/// What a program took.
+/// Cost of a program.
 #[cfg(target_os = "linux")]
 #[derive(Clone, Copy)]
 struct Took {

@@ -123,7 +123,7 @@ fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
     assert!(check_books(&recording(&file)).received > 9_000);
 }
 
-/// As when the cable is pulled and the device starts anew.
+/// As when the cable is pulled and the device restarts.
 #[test]
 fn a_recording_goes_on_when_the_device_comes_back() {
     let served = Served::new();

@@ -37,7 +37,7 @@ fn file(served: &Served, name: &str) -> PathBuf {
     served.home.path().join(name)
 }
 
-/// The books of a recording that ended in order, counted anew.
+/// The books of a recording that ended in order, recounted.
 fn check_books(file: &Path) -> [u64; 3] {
     let recording = recording(file);
     assert!(recording.is_complete());
@@ -379,7 +379,7 @@ struct Observed {
     is_driven: bool,
 }
 
-/// What is true of the device at this moment.
+/// State of the device at this moment.
 #[derive(Debug, Default)]
 struct Now {
     is_driven: AtomicBool,

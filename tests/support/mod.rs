@@ -102,7 +102,7 @@ pub(crate) fn rows(recording: &Recording) -> Vec<Row> {
     rows.map(|row| row.expect("a row")).collect()
 }
 
-/// The books of a recording, counted anew in its rows. The drive has not
+/// The books of a recording, recounted in its rows. The drive has not
 /// restarted.
 pub(crate) fn check_books(recording: &Recording) -> Totals {
     let totals = recording.books().totals;

@@ -41,7 +41,7 @@ pub struct Reconnected {
 pub struct Resubscribed {
     /// The tick after the last sample received before.
     pub until_tick: u64,
-    /// Where the resumed stream begins.
+    /// Begin of the resumed stream.
     pub begin: Begin,
 }
 

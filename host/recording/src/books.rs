@@ -234,7 +234,7 @@ impl Ledger {
         true
     }
 
-    /// Whether a start of the drive is over. Their numbers have five bits.
+    /// True if this start of the drive is over. Their numbers have five bits.
     fn is_past(&self, start: u8) -> bool {
         let mut latest = Vec::new();
         for segment in self.books.segments.iter().rev() {
@@ -248,7 +248,7 @@ impl Ledger {
         latest.contains(&start)
     }
 
-    /// What is missing before the next block may be damaged in the file.
+    /// Samples that are missing before the next block may be damaged in the file.
     pub(crate) fn damaged(&mut self) {
         self.is_damaged = true;
     }
@@ -378,7 +378,7 @@ impl<'b> Recount<'b> {
         self.next_tick = segment.first_tick;
     }
 
-    /// What differs from the books, in words; none if they agree.
+    /// Differences from the books, in words; none if they agree.
     pub(crate) fn differences(mut self) -> Vec<String> {
         while let Some(segment) = self.books.segments.get(self.segments) {
             self.enter(segment);

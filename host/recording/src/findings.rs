@@ -1,11 +1,11 @@
-//! What is wrong with a file.
+//! Defects of a file.
 
 use std::fmt::{self, Display, Formatter};
 
 /// Findings that are listed; further ones are counted.
 const LISTED: usize = 12;
 
-/// What is wrong with a file, in the order in which it was found.
+/// Defects of a file, in the order in which they were found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Findings {
     listed: Vec<String>,
@@ -22,7 +22,7 @@ impl Findings {
         }
     }
 
-    /// Whether nothing was found.
+    /// True if nothing was found.
     pub fn is_empty(&self) -> bool {
         self.listed.is_empty()
     }

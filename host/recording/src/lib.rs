@@ -56,7 +56,7 @@ use tempfile::NamedTempFile;
 /// returns false.
 pub type Write = fn(&Recording, &std::fs::File, &mut dyn FnMut(u64) -> bool) -> std::io::Result<()>;
 
-/// What writes Parquet files; none if this was built without the feature
+/// The writer of Parquet files; none if this was built without the feature
 /// `parquet`.
 pub fn parquet_writer() -> Option<Write> {
     #[cfg(feature = "parquet")]
@@ -65,7 +65,7 @@ pub fn parquet_writer() -> Option<Write> {
     None
 }
 
-/// What writes MCAP files; none if this was built without the feature `mcap`.
+/// The writer of MCAP files; none if this was built without the feature `mcap`.
 pub fn mcap_writer() -> Option<Write> {
     #[cfg(feature = "mcap")]
     return Some(mcap::write);

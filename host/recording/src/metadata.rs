@@ -1,4 +1,4 @@
-//! What is recorded: by which program, of which device.
+//! Identity of a recording: title, device, program.
 
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::{TICKS_PER_S, schema};
@@ -36,7 +36,7 @@ impl From<&Identity> for Controller {
     }
 }
 
-/// What is recorded.
+/// Identity of a recording.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Metadata {
     /// Version of recordings.

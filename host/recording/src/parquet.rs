@@ -48,7 +48,7 @@ pub(crate) struct About {
     pub(crate) books: Books,
 }
 
-/// Where the checksum stands in the bytes of a footer.
+/// Position of the checksum in the bytes of a footer.
 fn sum_place(footer: &[u8]) -> Option<usize> {
     let key = SUM_KEY.as_bytes();
     let at = footer

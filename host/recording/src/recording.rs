@@ -58,12 +58,12 @@ pub enum ReadError {
     },
 }
 
-/// Whether a damaged file is read as far as possible.
+/// Handling of damaged files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damage {
-    /// It is an error.
+    /// Return an error.
     Refuse,
-    /// What is readable is kept.
+    /// Keep what is readable.
     Salvage,
 }
 
@@ -167,7 +167,7 @@ impl Recording {
         &self.path
     }
 
-    /// What is recorded.
+    /// Title, device, program.
     pub fn metadata(&self) -> &Metadata {
         &self.metadata
     }
@@ -182,7 +182,7 @@ impl Recording {
         &self.history
     }
 
-    /// Whether it was ended in order, not cut off.
+    /// True if it was ended in order, not cut off.
     pub fn is_complete(&self) -> bool {
         self.is_complete
     }
@@ -196,7 +196,7 @@ impl Recording {
         }
     }
 
-    /// What is damaged or missing, in sentences.
+    /// Damage and missing samples, in sentences.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         if !self.findings.is_empty() {

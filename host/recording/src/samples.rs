@@ -16,7 +16,7 @@ pub struct Samples {
     has_begun: bool,
 }
 
-/// Where a count of ticks begins.
+/// Begin of a count of ticks.
 #[derive(Clone, Copy, Debug, Default)]
 struct Begin {
     start: u8,

@@ -31,8 +31,8 @@ impl Shaft {
     }
 
     /// Angle and estimated speed in a tick. At the first one, and after a gap, the
-    /// estimator begins anew, with the speed of the next millisecond; what it
-    /// knew before is gone within 20 ms.
+    /// estimator restarts with the speed of the next millisecond; the difference
+    /// from one that never stopped is gone within 20 ms.
     pub(crate) fn see(&mut self, tick: u64, count: i32, counts_per_s: f64) -> (f64, f32) {
         if tick != self.next_tick {
             self.reader = None;

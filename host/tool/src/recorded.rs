@@ -141,7 +141,7 @@ fn in_final_format(file: &Path) {
     }
 }
 
-/// What to do if there is a file of that name.
+/// Handling of an existing file of that name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Clash {
     /// It is an error.

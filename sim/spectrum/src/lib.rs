@@ -124,7 +124,7 @@ impl Welch {
         }
     }
 
-    /// Samples are missing here: the segment begins anew, as one across them
+    /// Samples are missing here: the segment restarts, as one across them
     /// would have a step that there was not.
     pub fn gap(&mut self) {
         self.segment.clear();

@@ -1,4 +1,4 @@
-//! Where a recording is written: appended, and now and then made durable.
+//! The disk under a recording: appended to, and now and then synced.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -44,7 +44,7 @@ impl Disk for File {
 /// Bytes that may wait for the disk: three minutes of samples.
 const MOST_WAITING: u64 = 64 << 20;
 
-/// Where a device that is faster than its time, a simulated one, is held up.
+/// From here on a simulated device, which is faster than its time, has to wait.
 const MANY_WAITING: u64 = 16 << 20;
 const HOLD_UP: Duration = Duration::from_millis(20);
 
@@ -118,7 +118,7 @@ impl Disk for Background {
 impl Drop for Background {
     fn drop(&mut self) {
         if self.thread.is_some() {
-            // What was appended is written, whoever forgets to finish.
+            // Pending bytes are written even if nobody called `finish`.
             let _ = self.finish();
         }
     }

@@ -12,7 +12,7 @@ use std::io;
 /// Lane and tag of our own frames.
 const ENTRY: [u8; 2] = *b"J2";
 
-/// What the device does not say in its blocks.
+/// Entries between the device's blocks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "entry", rename_all = "kebab-case")]
 pub(crate) enum Entry {
@@ -25,8 +25,7 @@ pub(crate) enum Entry {
         /// From 0.
         number: u64,
         revision: u32,
-        /// Whether `values` holds all parameters, not only those that have
-        /// changed.
+        /// `values` holds all parameters, not only those that have changed.
         is_whole: bool,
         /// None if they are unknown.
         values: Option<Named>,
@@ -35,7 +34,7 @@ pub(crate) enum Entry {
     Checkpoint(Checkpoint),
 }
 
-/// What stands in the file up to here.
+/// Sums of the file up to here.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Checkpoint {
     /// The recording's.
@@ -46,7 +45,7 @@ pub(crate) struct Checkpoint {
     pub(crate) sha256: String,
     /// So far.
     pub(crate) totals: Totals,
-    /// Whether the recording ends here.
+    /// The recording ends here.
     pub(crate) is_end: bool,
 }
 
@@ -78,7 +77,7 @@ impl Entry {
     }
 }
 
-/// What a frame holds.
+/// Content of a frame.
 pub(crate) enum Content {
     Block(Box<Block>),
     Entry(Box<Entry>),

@@ -27,10 +27,10 @@ pub(crate) struct LogReader<R> {
     known: Named,
     /// Parameter entries that were read or have been missed.
     entries: u64,
-    /// What changes refer to is missing.
+    /// The set that changes refer to is missing.
     is_history_broken: bool,
     checkpoints: u64,
-    /// Where the last checkpoint was.
+    /// Tick of the last checkpoint.
     checked_tick: u64,
     /// Damage since the last checkpoint was found.
     is_noted: bool,
@@ -41,7 +41,7 @@ pub(crate) struct LogReader<R> {
     findings: Findings,
 }
 
-/// What stands between two delimiters.
+/// Bytes between two delimiters.
 enum Frame {
     Whole(Content),
     Damaged,
@@ -49,7 +49,7 @@ enum Frame {
     End,
 }
 
-/// What a whole file holds.
+/// Result of reading a whole file.
 #[derive(Debug)]
 pub(crate) struct Scanned {
     pub(crate) metadata: Metadata,
@@ -295,7 +295,7 @@ impl<R: BufRead> LogReader<R> {
         }
     }
 
-    /// What was read so far. At the end of the file that is everything.
+    /// The result of reading, up to here.
     pub(crate) fn finish(mut self) -> Scanned {
         let cut_bytes = self.damage.map_or(0, |(_, bytes)| bytes);
         if self.is_ended && cut_bytes > 0 {

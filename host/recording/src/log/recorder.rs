@@ -27,7 +27,7 @@ pub enum RecordError {
     Disk {
         /// The file.
         path: PathBuf,
-        /// What was being done.
+        /// The action that failed.
         doing: &'static str,
         /// Why not.
         source: io::Error,
@@ -267,5 +267,5 @@ impl<D: Disk> Recorder<D> {
     }
 }
 
-/// What fails.
+/// The action in most errors.
 const WRITING: &str = "the samples cannot be written";

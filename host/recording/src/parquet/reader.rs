@@ -153,7 +153,7 @@ fn unreadable() -> io::Error {
     )
 }
 
-/// Where the footer begins, and its bytes.
+/// Offset of the footer, and its bytes.
 fn footer(mut file: &File) -> io::Result<Option<(u64, Vec<u8>)>> {
     let length = file.metadata()?.len();
     let Some(tail_at) = length.checked_sub(TAIL as u64) else {
@@ -184,7 +184,7 @@ fn about_of(footer: &ParquetMetaData) -> Option<About> {
     serde_json::from_str(about.value.as_deref()?).ok()
 }
 
-/// Whether the file is the one that was written, to the last bit.
+/// True if the file is the one that was written, to the last bit.
 fn sum_is_right(mut file: &File, footer: Option<&(u64, Vec<u8>)>) -> io::Result<bool> {
     let Some((footer_byte, footer)) = footer else {
         return Ok(false);
@@ -212,7 +212,7 @@ fn sum_is_right(mut file: &File, footer: Option<&(u64, Vec<u8>)>) -> io::Result<
     Ok(crate::hex(&sum.finalize()).as_bytes() == said)
 }
 
-/// Numbers of rows are counted anew, where some are lost.
+/// Renumbers rows where some are lost.
 fn forget_lost_rows(about: &mut About, kept: &[(u64, u64)]) {
     let kept_before = |row: u64| {
         kept.iter()

@@ -25,7 +25,7 @@ const HEAD: usize = 8;
 /// Bytes of the body before the footer.
 const FIXED: usize = 28;
 
-/// What a seal says of its group.
+/// A seal.
 #[derive(Clone, Debug)]
 pub(super) struct Seal {
     pub(super) first_byte: u64,
@@ -133,7 +133,7 @@ pub(super) fn find(mut file: &File) -> io::Result<Vec<Seal>> {
     }
 }
 
-/// Where the next mark is.
+/// Offset of the next mark.
 fn position(bytes: &[u8]) -> Option<usize> {
     bytes.windows(MARK.len()).position(|window| window == MARK)
 }

@@ -101,7 +101,7 @@ impl<'f> Writer<'f> {
         Ok(writer)
     }
 
-    /// What is written from here on belongs to a group.
+    /// Begins a group with what is written next.
     fn begin_group(&mut self) -> io::Result<()> {
         self.file.flush()?;
         self.file.inner_mut().group.clear();

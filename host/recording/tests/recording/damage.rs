@@ -1,7 +1,9 @@
 //! Files that are not what was written: each is noticed and named, and what is
 //! readable is kept.
 
-use crate::support::{check_books, is_part, open, recorded, rows, rows_of, salvaged, sent};
+use crate::support::{
+    check_books, is_part, mangled, open, recorded, rows, rows_of, salvaged, sent,
+};
 use crepitus_recording::{Damage, ReadError, Recording};
 use std::fs;
 use std::ops::Range;
@@ -46,7 +48,7 @@ impl Bench {
         said
     }
 
-    /// Where the frames are, without their delimiters.
+    /// The frames, with their delimiters.
     fn frames(&self) -> Vec<Range<usize>> {
         let mut frames = Vec::new();
         let mut from = 0;
@@ -60,7 +62,7 @@ impl Bench {
     }
 }
 
-/// What opening says is wrong with a file.
+/// The message on opening a damaged file.
 fn noticed(path: &Path) -> String {
     match open(path) {
         Err(error @ ReadError::Damaged { .. }) => error.to_string(),
@@ -183,21 +185,7 @@ fn no_bytes_are_too_strange() {
     let mut random = fastrand::Rng::with_seed(5);
     let mut read = 0;
     for _ in 0..300 {
-        let mut bytes = bench.whole.clone();
-        for _ in 0..random.usize(1..6) {
-            let mut ends = [random.usize(..bytes.len()), random.usize(..bytes.len())];
-            ends.sort_unstable();
-            let [from, to] = ends;
-            let to = to.min(from + 1 + random.usize(..30_000));
-            let part = bytes[from..to].to_vec();
-            match random.u8(..5) {
-                0 => bytes.truncate(to.max(1_000)),
-                1 => drop(bytes.drain(from..to)),
-                2 => bytes[from..to].fill_with(|| random.u8(..)),
-                3 => bytes.extend(part),
-                _ => drop(bytes.splice(from..from, part)),
-            }
-        }
+        let bytes = mangled(&bench.whole, &mut random);
         let path = bench.path();
         fs::write(&path, &bytes).unwrap();
         if let Ok(recording) = Recording::open(&path, Damage::Salvage) {

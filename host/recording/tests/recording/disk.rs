@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-/// What was asked of a disk.
+/// Calls of a disk.
 #[derive(Clone, Debug)]
 enum Asked {
     Append(Vec<u8>),

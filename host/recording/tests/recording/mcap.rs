@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 
-/// Whether a message is what its schema says; all members, no others.
+/// Checks a message against its schema: all members, no others.
 fn fits(message: &Value, schema: &Value, path: &str) {
     let is = match schema["type"].as_str().unwrap() {
         "object" => message.is_object(),

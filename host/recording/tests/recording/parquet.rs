@@ -1,6 +1,8 @@
 //! The Parquet file of a recording.
 
-use crate::support::{check_books, is_part, open, recorded, rows, rows_of, salvaged, sent};
+use crate::support::{
+    check_books, is_part, mangled, open, recorded, rows, rows_of, salvaged, sent,
+};
 use crepitus_recording::{Analysis, Cause, Damage, Format, Recording, Row, parquet_writer};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -184,19 +186,7 @@ fn no_bytes_are_too_strange() {
     let mut random = fastrand::Rng::with_seed(6);
     let mut read = 0;
     for _ in 0..100 {
-        let mut bytes = bench.whole.clone();
-        for _ in 0..random.usize(1..4) {
-            let from = random.usize(..bytes.len());
-            let to = (from + 1 + random.usize(..30_000)).min(bytes.len());
-            let part = bytes[from..to].to_vec();
-            match random.u8(..5) {
-                0 => bytes.truncate(to.max(1_000)),
-                1 => drop(bytes.drain(from..to)),
-                2 => bytes[from..to].fill_with(|| random.u8(..)),
-                3 => bytes.extend(part),
-                _ => drop(bytes.splice(from..from, part)),
-            }
-        }
+        let bytes = mangled(&bench.whole, &mut random);
         let path = bench.write(&bytes);
         assert!(open(&path).is_err(), "nothing was noticed");
         if let Ok(recording) = Recording::open(&path, Damage::Salvage) {

@@ -35,7 +35,7 @@ pub(crate) fn block(first_tick: u64, revision: u32, dropped: u32, start: u16) ->
     }
 }
 
-/// What a device sent, and when its host subscribed.
+/// Messages of a device, and subscriptions of its host.
 #[derive(Clone, Debug)]
 pub(crate) enum Sent {
     Subscribed(Begin),
@@ -170,4 +170,22 @@ pub(crate) fn is_part(some: &[Row], all: &[Row]) -> bool {
     };
     let mut all = all.iter();
     some.iter().all(|row| all.any(|other| same(row, other)))
+}
+
+/// Cuts, overwrites, doubles and moves parts of a file.
+pub(crate) fn mangled(whole: &[u8], random: &mut fastrand::Rng) -> Vec<u8> {
+    let mut bytes = whole.to_vec();
+    for _ in 0..random.usize(1..6) {
+        let from = random.usize(..bytes.len());
+        let to = (from + 1 + random.usize(..30_000)).min(bytes.len());
+        let part = bytes[from..to].to_vec();
+        match random.u8(..5) {
+            0 => bytes.truncate(to.max(1_000)),
+            1 if bytes.len() > 60_000 => drop(bytes.drain(from..to)),
+            1 | 2 => bytes[from..to].fill_with(|| random.u8(..)),
+            3 => bytes.extend(part),
+            _ => drop(bytes.splice(from..from, part)),
+        }
+    }
+    bytes
 }

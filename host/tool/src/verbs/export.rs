@@ -30,7 +30,7 @@ impl ExportFormat {
         }
     }
 
-    /// What writes it; none if this program was built without it.
+    /// Its writer; none if this program was built without it.
     fn writer(self) -> Option<Write> {
         match self {
             Self::Csv => Some(csv),

@@ -33,7 +33,7 @@ pub(super) fn sections(s: &RecordingSummary, books: &Books, changed_at_s: &[f64]
     sections
 }
 
-/// What is missing comes first.
+/// Missing samples come first.
 fn missing(books: &Books) -> Option<Section> {
     let rows = books.gaps.iter().take(SHOWN_GAPS).map(|gap| {
         let (samples, cause) = (gap.samples, gap.cause.text());
