@@ -176,7 +176,9 @@ impl Ledger {
             let missing = begin.first_tick - self.next_tick;
             self.books.gap(self.next_tick, missing, Cause::NotConnected);
             self.books.totals.not_connected += missing;
-        } else if self.start.is_some_and(|start| start != begin.start) {
+        } else if self.start.is_some() {
+            // Also with the same number, where its ticks have gone back: a device
+            // that does not keep its count, or 32 restarts.
             self.books.drive_restarts += 1;
         }
         self.begin(begin);
@@ -494,5 +496,16 @@ mod tests {
         let mut swapped = ticks.clone();
         swapped.swap(30, 31);
         assert!(!recount(&swapped).is_empty());
+    }
+
+    #[test]
+    fn a_restart_with_the_same_number_is_one() {
+        let mut ledger = Ledger::default();
+        ledger.subscribed(begin(1_000, 0, 1));
+        assert!(ledger.block(&block(1_000, 0, 1)));
+        ledger.subscribed(begin(200, 0, 1));
+        assert!(ledger.block(&block(200, 0, 1)));
+        let books = ledger.into_books();
+        assert_eq!((books.drive_restarts, books.totals.dropped), (1, 0));
     }
 }

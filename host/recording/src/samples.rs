@@ -46,7 +46,7 @@ impl Samples {
     /// where the drive has restarted: how long that took is not known.
     pub fn rows<'a>(&'a mut self, block: &'a Block) -> impl Iterator<Item = Row> + 'a {
         let (start, tick) = (block.flags.start(), block.first_tick);
-        if !self.has_begun || start != self.begin.start || tick < self.begin.tick {
+        if !self.has_begun || start != self.begin.start || tick < self.next_tick {
             let passed = self.begin.passed + self.next_tick.saturating_sub(self.begin.tick);
             self.begin = Begin {
                 start,
@@ -105,6 +105,8 @@ mod tests {
         assert_eq!(first_s(block(5_040, 1)), 0.002);
         assert_eq!(first_s(block(0, 2)), 0.003);
         assert_eq!(first_s(block(20, 2)), 0.004);
+        // With the same number.
+        assert_eq!(first_s(block(20, 2)), 0.005);
     }
 
     /// No jump from rest that there was not.
