@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
-use support::served::{Served, signal, until};
+use support::served::{Served, ending_signals, signal, until};
 use support::{HALF_A_SECOND, recording, stderr, stdout};
 
 /// Starts a program whose outputs are kept.
@@ -199,7 +199,7 @@ fn a_program_that_serves_and_hangs_is_named() {
 
 #[test]
 fn signals_end_a_command_in_order() {
-    for name in ["-INT", "-TERM", "-HUP"] {
+    for name in ending_signals() {
         let served = Served::new();
         let path = file(&served, "a.csv");
         let child = start(&served, &["record", path.to_str().unwrap(), "--arm"]);
@@ -230,6 +230,7 @@ fn many_programs_are_killed_at_random() {
     let duration = Duration::from_secs(if is_long { 60 } else { 3 });
     let bench = Bench::start();
     let mut rng = fastrand::Rng::with_seed(16);
+    let signals = [ending_signals(), vec!["-KILL"]].concat();
     let mut files = Vec::new();
     let mut running: Vec<Child> = Vec::new();
     let (mut kills, mut ended_in_order) = (0, 0);
@@ -253,10 +254,7 @@ fn many_programs_are_killed_at_random() {
         }
         sleep(Duration::from_millis(rng.u64(0..60)));
         let victim = rng.usize(0..running.len());
-        signal(
-            &running[victim],
-            rng.choice(["-TERM", "-INT", "-HUP", "-KILL"]).unwrap(),
-        );
+        signal(&running[victim], rng.choice(&signals).unwrap());
         kills += 1;
         let mut child = running.swap_remove(victim);
         ended_in_order += usize::from(child.wait().unwrap().code().is_some());
@@ -307,6 +305,7 @@ fn record_is_killed_at_any_instant() {
     let kills = if is_long { 500 } else { 16 };
     let bench = Bench::start();
     let mut rng = fastrand::Rng::with_seed(500);
+    let signals = [ending_signals(), vec!["-KILL"]].concat();
     let (mut absent, mut cut, mut complete, mut samples, mut expired) = (0, 0, 0, 0, 0);
     for n in 0..kills {
         let path = bench.home.path().join(format!("recording {n}.json"));
@@ -318,7 +317,7 @@ fn record_is_killed_at_any_instant() {
             rng.u64(80..600)
         };
         sleep(Duration::from_millis(ms));
-        let name = ["-TERM", "-HUP", "-INT", "-KILL"][n % 4];
+        let name = signals[n % signals.len()];
         signal(&child, name);
         let status = child.wait().unwrap();
         let ended_in_order = status.code().is_some();

@@ -79,6 +79,24 @@ pub(crate) fn signal(child: &Child, name: &str) {
     assert!(sent.success());
 }
 
+/// Signals that end a program in order. Without SIGHUP where these tests, and so
+/// their children, ignore it, as under `nohup`.
+pub(crate) fn ending_signals() -> Vec<&'static str> {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let ignored = status
+        .lines()
+        .find_map(|line| line.strip_prefix("SigIgn:"))
+        .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .unwrap();
+    let mut names = vec!["-TERM", "-INT"];
+    if ignored & 1 == 0 {
+        names.push("-HUP");
+    } else {
+        eprintln!("left out: SIGHUP, which is ignored here");
+    }
+    names
+}
+
 /// Waits for something that another process does.
 pub(crate) fn until(what: &str, mut is_so: impl FnMut() -> bool) {
     let begun = Instant::now();
