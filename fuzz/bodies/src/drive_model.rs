@@ -26,7 +26,7 @@ const STATUS_MS: u8 = 5;
 /// The drive.
 pub(crate) struct DriveModel {
     status: DriveStatus,
-    /// What the last status said, and milliseconds since.
+    /// The last status, and milliseconds since.
     reported: DriveStatus,
     reported_ms: u8,
     /// Milliseconds since the last block.
@@ -72,7 +72,7 @@ impl DriveModel {
         std::mem::take(&mut self.has_rejected)
     }
 
-    /// Whether its ticks have restarted since the last call.
+    /// True if its ticks have restarted since the last call.
     pub(crate) fn has_restarted(&mut self) -> bool {
         std::mem::take(&mut self.has_restarted)
     }

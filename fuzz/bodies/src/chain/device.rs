@@ -17,7 +17,7 @@ use crepitus_protocol::{Revision, State, Values, schema};
 /// Ticks of the drive in a tick of comms.
 pub(super) const COMMS_TICKS: u64 = 20;
 
-/// What the sensors show, and what is late.
+/// Sensor values, and delays.
 #[derive(Clone, Copy)]
 pub(super) struct Readings {
     /// Counts in a tick.
@@ -40,7 +40,7 @@ impl Readings {
     };
 }
 
-/// What the link from the drive has lost.
+/// Losses of the link from the drive.
 #[derive(Clone, Copy)]
 struct LinkLoss {
     blocks: u32,

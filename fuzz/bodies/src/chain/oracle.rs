@@ -1,4 +1,4 @@
-//! What hosts do, and what has to be true after each tick.
+//! Actions of the hosts, and the checks after each tick.
 
 use crate::chain::device::{COMMS_TICKS, Readings};
 use crate::chain::{Chain, MOST_RESTARTS, MOST_TICKS, NUMBERS, SESSIONS, Sent};
@@ -193,7 +193,7 @@ impl Chain {
         }
     }
 
-    /// What the drive renders with was committed or saved.
+    /// Parameters in force were committed or saved.
     fn check_values(&mut self) {
         let revision = self.device.drive.revision();
         if self.revision == Some(revision) {
@@ -234,7 +234,7 @@ impl Chain {
         }
     }
 
-    /// A reply; one that is lost is told to the oracle only.
+    /// A reply; only the oracle sees one that is lost.
     fn replied(&mut self, reply: &Reply, arrives: bool) {
         let begins = self.host.reply(reply, &self.values);
         if let (true, true, Ok(answer)) = (begins, arrives, &reply.answer) {

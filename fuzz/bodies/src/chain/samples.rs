@@ -1,4 +1,4 @@
-//! What the drive has produced, tick by tick, and what arrives of it.
+//! Samples of the drive, tick by tick, and those that arrive.
 
 use crepitus_client::{Accounting, Begin};
 use crepitus_device::drive::rendering::Rendered;

@@ -55,7 +55,7 @@ impl Wire {
         self.faults = Some((fault, count));
     }
 
-    /// Whether the sender has a buffer for another frame.
+    /// True if the sender has a buffer for another frame.
     pub(super) fn has_room(&self, now: u64) -> bool {
         let waiting = self.in_flight.iter().filter(|frame| frame.due > now);
         waiting.count() < PLACES
