@@ -303,7 +303,11 @@ impl Bench {
             number,
             operation,
         } = *request;
-        self.host.requested(request);
+        if is_new {
+            self.host.requested(request);
+        } else {
+            self.host.repeated(request);
+        }
         let end_tick = self.drive.tick() + LEASE_TICKS;
         if operation == Operation::Renew {
             if nonce == self.host.nonce(session) {

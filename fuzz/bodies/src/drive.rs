@@ -24,7 +24,7 @@ use crepitus_protocol::management::{Answer, Identity, ManagementRequest, ResetCa
 use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, SampleFlags};
 use crepitus_protocol::{
-    Decoder, DeviceSettings, HEARTBEAT_TICKS, Lane, Revision, State, Values, frame, schema,
+    Decoder, DeviceSettings, HEARTBEAT_TICKS, Lane, Revision, State, TICK_US, Values, frame, schema,
 };
 use std::collections::VecDeque;
 
@@ -325,14 +325,17 @@ impl Bench {
         let tick = self.drive.next_tick();
         self.ticks += 1;
         self.counter = self.counter.wrapping_add_signed(readings.turn.into());
-        self.drive.sample_encoder(self.counter);
-        if !readings.is_late {
-            self.drive.render_torque();
+        // Ticks begin with the first result.
+        if !readings.is_late || self.drive.rendered().is_none() {
+            self.drive.render_torque(self.counter);
         }
         let current_a = readings.current_a.unwrap_or(self.winding.current_a());
         let inputs = Inputs {
             current_a: readings.has_current.then_some(current_a),
+            monitor_a: readings.has_current.then_some(current_a),
+            interval_us: TICK_US,
             enable_is_on: readings.line.unwrap_or(self.line_is_on),
+            comms_enable_is_on: true,
             has_tripped: readings.has_tripped,
         };
         let outputs = self.drive.command_motor(&inputs);

@@ -12,7 +12,7 @@ use crepitus_device::drive::{self, Drive};
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::management::{Identity, ResetCause, Role};
 use crepitus_protocol::telemetry::BLOCK_TICKS;
-use crepitus_protocol::{Revision, State, Values, schema};
+use crepitus_protocol::{Revision, State, TICK_US, Values, schema};
 
 /// Ticks of the drive in a tick of comms.
 pub(super) const COMMS_TICKS: u64 = 20;
@@ -177,24 +177,27 @@ impl Device {
 
     fn drive_tick(&mut self, readings: Readings) {
         self.counter = self.counter.wrapping_add_signed(readings.turn.into());
-        self.drive.sample_encoder(self.counter);
-        if !readings.is_late {
-            self.drive.render_torque();
+        // Ticks begin with the first result.
+        if !readings.is_late || self.drive.rendered().is_none() {
+            self.drive.render_torque(self.counter);
         }
         let current_a = self.winding.current_a();
         let outputs = self.drive.command_motor(&Inputs {
             current_a: readings.has_current.then_some(current_a),
+            monitor_a: readings.has_current.then_some(current_a),
+            interval_us: TICK_US,
             enable_is_on: readings.line.unwrap_or(self.drive_line),
+            comms_enable_is_on: self.comms_line,
             has_tripped: readings.has_tripped,
         });
         (self.drive_line, self.bridge) = (outputs.enable, outputs.bridge);
-        // Also in a tick without a measured current, in which the bridge floats.
-        let is_energised = self.drive.state() == State::Armed && self.drive_line;
+        let is_driven = matches!(outputs.bridge, Bridge::Driven(_));
+        let is_energised = self.drive.state() == State::Armed && is_driven;
         let [start, _] = self.drive_start.to_le_bytes();
         self.samples.produced(
             start,
             Produced {
-                rendered: self.drive.rendered().copied().unwrap_or_default(),
+                rendered: self.drive.rendered().unwrap_or_default(),
                 is_energised,
                 has_current: readings.has_current,
             },

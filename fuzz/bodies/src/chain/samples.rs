@@ -1,7 +1,7 @@
 //! Samples of the drive, tick by tick, and those that arrive.
 
 use crepitus_client::{Accounting, Begin};
-use crepitus_device::drive::rendering::Rendered;
+use crepitus_device::drive::exchange::Rendered;
 use crepitus_protocol::host::Answer;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, NO_CURRENT, Sample, SampleFlags};
 use std::collections::BTreeMap;

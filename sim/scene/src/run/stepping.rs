@@ -118,7 +118,18 @@ impl<F: Real, S: Sensor<F>> JointVisitor<F> for Run<'_, S> {
         let mut fastest_rad_s = walk.now().omega_rad_s.abs();
         accounting.tally.shown(joint.torque_nm().to_f64());
         loop {
-            if wants_rows && walk.steps().is_multiple_of(every) {
+            let is_row = wants_rows && walk.steps().is_multiple_of(every);
+            // Before its row: a trace holds numbers.
+            if (is_row || walk.steps().is_multiple_of(CHECK_STEPS) || walk.steps() == steps)
+                && !(joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite())
+            {
+                return Err(RunError::Diverged(Diverged {
+                    solver: scene.solver.name(),
+                    by_s: walk.time_s(),
+                    radians_per_step: settings.parameters.natural_rad_s() * step_s,
+                }));
+            }
+            if is_row {
                 row.clear();
                 row.extend([
                     walk.time_s(),
@@ -131,15 +142,6 @@ impl<F: Real, S: Sensor<F>> JointVisitor<F> for Run<'_, S> {
                 ]);
                 sensor.write(&mut row);
                 watch.row(&row)?;
-            }
-            if (walk.steps().is_multiple_of(CHECK_STEPS) || walk.steps() == steps)
-                && !(joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite())
-            {
-                return Err(RunError::Diverged(Diverged {
-                    solver: scene.solver.name(),
-                    by_s: walk.time_s(),
-                    radians_per_step: settings.parameters.natural_rad_s() * step_s,
-                }));
             }
             if walk.steps().is_multiple_of(PROGRESS_STEPS) {
                 watch.progress(walk.time_s())?;
