@@ -11,7 +11,18 @@
 //! There each is one branch of an `if`, so that one build serves them all
 //! (mutant schemata: Untch, Offutt and Harrold 1993).
 
+//!
+//! Faults of the drive's firmware are built one by one instead:
+//!
+//! ```text
+//! firmware.toml ─> scratch copy of the sources ─> an image a fault ─> the emulator's tests
+//!                                                   └─> docs/planted-firmware-faults.md
+//! ```
+
 pub mod fault;
+pub mod firmware;
+pub mod firmware_page;
+pub mod firmware_trial;
 pub mod outcome;
 pub mod page;
 pub mod process;

@@ -1,5 +1,8 @@
 //! `crepitus-faults`: plants the faults of `faults.toml` one at a time and
-//! writes which hard cases and which of the model's tests detect them.
+//! writes which hard cases and which of the model's tests detect them; those of
+//! `firmware.toml` with the emulator's tests.
+
+mod firmware_run;
 
 use clap::Parser;
 use crepitus_faults::fault::Fault;
@@ -24,6 +27,9 @@ struct Arguments {
     /// List the faults and exit.
     #[arg(long)]
     list: bool,
+    /// Plant the faults of the drive's firmware instead of those of the model.
+    #[arg(long)]
+    firmware: bool,
     /// Run the hard cases only, and leave the model's tests to a later run.
     #[arg(long)]
     cases_only: bool,
@@ -49,6 +55,9 @@ fn main() -> ExitCode {
 }
 
 fn work(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
+    if arguments.firmware {
+        return firmware_run::work(arguments);
+    }
     let all = fault::all()?;
     if arguments.list {
         for fault in &all {

@@ -13,6 +13,18 @@ const LEFT_OUT: [&str; 5] = [".git", "target", "out", "docs", "bench"];
 /// Folders that the outcome of a fault depends on.
 const DECIDES: [&str; 5] = ["model", "sim/ladder", "sim/plant", "sim/scene", "sim/study"];
 
+/// The same for faults of the firmware.
+const FIRMWARE_DECIDES: [&str; 8] = [
+    "model",
+    "protocol",
+    "device",
+    "firmware",
+    "sim/plant",
+    "sim/scene",
+    "sim/board",
+    "sim/emulator",
+];
+
 /// Makes `to` a copy of the sources in `from`, with other texts for some files.
 /// A file that is already the same is not written, so that it is not rebuilt.
 ///
@@ -55,8 +67,20 @@ pub fn write_if_changed(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// # Errors
 /// What the file system says.
 pub fn fingerprint(root: &Path) -> io::Result<u64> {
+    fingerprint_of(root, &DECIDES)
+}
+
+/// The same for faults of the firmware.
+///
+/// # Errors
+/// What the file system says.
+pub fn firmware_fingerprint(root: &Path) -> io::Result<u64> {
+    fingerprint_of(root, &FIRMWARE_DECIDES)
+}
+
+fn fingerprint_of(root: &Path, folders: &[&str]) -> io::Result<u64> {
     let mut hasher = DefaultHasher::new();
-    for folder in DECIDES {
+    for folder in folders {
         for file in files(&root.join(folder))? {
             file.hash(&mut hasher);
             fs::read(root.join(folder).join(&file))?.hash(&mut hasher);

@@ -61,13 +61,16 @@ pub enum TrialError {
     /// The sources with the faults do not build.
     #[error("the sources with the faults do not build: see {}", .0.display())]
     Build(PathBuf),
+    /// A fault of the firmware does not apply.
+    #[error("{0}")]
+    Firmware(String),
     /// Something fails without any fault.
     #[error("without a fault this fails: {0}")]
     Baseline(String),
 }
 
 /// Adds the file to an error of the file system.
-fn io(what: &Path) -> impl FnOnce(io::Error) -> TrialError + '_ {
+pub(crate) fn io(what: &Path) -> impl FnOnce(io::Error) -> TrialError + '_ {
     move |source| TrialError::Io {
         what: what.display().to_string(),
         source,
@@ -85,10 +88,19 @@ pub struct Workshop {
     all: Vec<String>,
 }
 
+/// A built program.
 #[derive(Clone, Debug)]
-struct Program {
-    name: String,
-    path: PathBuf,
+pub(crate) struct Program {
+    pub(crate) name: String,
+    pub(crate) path: PathBuf,
+}
+
+/// Builds programs from the sources, or from a copy of them with faults.
+pub(crate) struct Builder<'a> {
+    pub(crate) scratch: &'a Path,
+    pub(crate) tree: &'a Path,
+    pub(crate) cargo: &'a str,
+    pub(crate) has_faults: bool,
 }
 
 #[derive(Deserialize)]
@@ -141,14 +153,19 @@ impl Workshop {
             all: Vec::new(),
         };
         let example = ["build", "-p", "crepitus-study", "--example", "broken_cases"];
-        let built = workshop.build(cargo, &example)?;
+        let builder = Builder {
+            scratch,
+            tree: &workshop.tree,
+            cargo,
+            has_faults: true,
+        };
+        let built = builder.build(&example)?;
         workshop.cases = match built.into_iter().find(|b| b.name == "broken_cases") {
             Some(program) => program.path,
             None => return Err(TrialError::Build(workshop.scratch.join("build.txt"))),
         };
         if with_tests {
-            workshop.tests =
-                workshop.build(cargo, &["test", "-p", "crepitus-model", "--no-run"])?;
+            workshop.tests = builder.build(&["test", "-p", "crepitus-model", "--no-run"])?;
         }
         workshop.baseline()?;
         Ok(workshop)
@@ -239,22 +256,26 @@ impl Workshop {
         let end = run(command, &log, RUN).map_err(io(&log))?;
         Ok((end, fs::read_to_string(&log).map_err(io(&log))?))
     }
+}
 
+impl Builder<'_> {
     /// Builds, and returns the programs.
-    fn build(&self, cargo: &str, arguments: &[&str]) -> Result<Vec<Program>, TrialError> {
+    pub(crate) fn build(&self, arguments: &[&str]) -> Result<Vec<Program>, TrialError> {
         let log = self.scratch.join("build.txt");
-        // Never that of the work tree: to Cargo the copy's crates are the same, and
-        // their faults would remain there.
-        let target = self.scratch.join("target");
-        let mut command = Command::new(cargo);
+        let mut command = Command::new(self.cargo);
         command
             .args(arguments)
             .args(["--quiet", "--message-format", "json"])
-            .current_dir(&self.tree)
-            // Each fault is in brackets, some of which are not needed.
-            .env("RUSTFLAGS", "--cap-lints allow")
-            .env("CARGO_TARGET_DIR", target);
-        let end = run(&mut command, &log, BUILD).map_err(io(Path::new(cargo)))?;
+            .current_dir(self.tree);
+        if self.has_faults {
+            command
+                // Each fault is in brackets, some of which are not needed.
+                .env("RUSTFLAGS", "--cap-lints allow")
+                // Never that of the work tree: to Cargo the copy's crates are the
+                // same, and their faults would remain there.
+                .env("CARGO_TARGET_DIR", self.scratch.join("target"));
+        }
+        let end = run(&mut command, &log, BUILD).map_err(io(Path::new(self.cargo)))?;
         let text = fs::read_to_string(&log).map_err(io(&log))?;
         if end != End::Success {
             return Err(TrialError::Build(log));

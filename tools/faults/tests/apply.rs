@@ -1,6 +1,7 @@
 //! Every fault still applies to the sources as they are.
 
 use crepitus_faults::fault::all;
+use crepitus_faults::firmware;
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -34,4 +35,20 @@ fn every_fault_has_its_place_in_the_sources() {
         }
     }
     assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[test]
+fn every_fault_of_the_firmware_has_its_place_in_the_sources() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let faults = firmware::all().expect("the list can be read");
+    assert!(faults.len() >= 33, "{} faults", faults.len());
+    let mut names = HashSet::new();
+    for fault in &faults {
+        assert!(names.insert(&fault.name), "{} is there twice", fault.name);
+        let has_edit = !fault.edit.is_empty() || fault.image.is_some();
+        assert!(has_edit, "{} changes nothing", fault.name);
+        if let Err(error) = fault.sources(&root) {
+            panic!("{error}");
+        }
+    }
 }
