@@ -3,10 +3,10 @@
 //! | part | from |
 //! |---|---|
 //! | RCC, PWR, FLASH, GPIO, TIM1 to TIM5, TIM8, DMA, IWDG, RNG, DBGMCU | the library |
-//! | the break of TIM1, ADC1, USART6 | [`crate::devices`] |
+//! | the break of TIM1, ADC1 to ADC3, USART6 | [`crate::devices`] |
 //!
 //! Wired: interrupts, the requests of USART6 to DMA2, the trigger outputs of
-//! TIM2, TIM3 and TIM8 to ADC1, the encoder's channels to TIM5, the watchdog
+//! TIM2, TIM3 and TIM8 to the converters, the encoder's channels to TIM5, the watchdog
 //! to the reset. Not wired: timers to each other, pins to EXTI.
 
 pub(crate) mod bus;
@@ -16,10 +16,11 @@ pub(crate) mod part;
 pub(crate) mod state_hash;
 pub(crate) mod wires;
 
-use crate::devices::adc::{self, Adc};
+use crate::devices::adc::{self, Adc, Adcs, Analog};
 use crate::devices::brake::Brake;
 use crate::devices::registers::AsRegisters;
 use crate::devices::usart::Usart;
+use crate::pins::Pins;
 use bus::{Bus, Now};
 use clocks::{Clock, Rates};
 use part::{Gate, Library, Part, registers};
@@ -59,8 +60,9 @@ pub(crate) struct Chip {
     pub(crate) flash: Arc<Flash>,
     pub(crate) ports: Vec<Arc<Gpio>>,
     pub(crate) brake: Arc<Brake>,
-    pub(crate) adc: Arc<Adc>,
-    pub(crate) analog: adc::Input,
+    pub(crate) adcs: Arc<Adcs>,
+    pub(crate) analog: Arc<Analog>,
+    pub(crate) pins: Arc<Pins>,
     pub(crate) usart: Arc<Usart>,
     pub(crate) dma: [Arc<Dma>; 2],
     /// Channels A and B of the encoder.
@@ -131,10 +133,12 @@ impl Chip {
             watchdog,
         ));
         let ports = Self::add_ports(&mut parts);
+        let pins = Arc::new(Pins::new(&ports));
+        let analog = Arc::new(Analog::new(pins.clone()));
         Self::add_dma(&mut parts, &nets, &dma);
-        let (adc, analog) = Self::add_adc(&mut parts, &nets, &rates, &now);
-        let brake = Self::add_bridge_timer(&mut parts, &nets);
-        let quadrature = Self::add_timers(&mut parts, &nets, &adc);
+        let adcs = Self::add_adcs(&mut parts, &nets, &rates, &now, &analog);
+        let brake = Self::add_bridge_timer(&mut parts, &nets, &pins);
+        let quadrature = Self::add_timers(&mut parts, &nets, &adcs);
         let usart = Self::add_usart(&mut parts, &nets, &rates, &now, &dma[1]);
         let causes = wires::Causes::new(&nets, &rcc);
         Self {
@@ -143,8 +147,9 @@ impl Chip {
             flash,
             ports,
             brake,
-            adc,
+            adcs,
             analog,
+            pins,
             usart,
             dma,
             quadrature,
@@ -201,34 +206,27 @@ impl Chip {
         }
     }
 
-    fn add_adc(
+    fn add_adcs(
         parts: &mut Vec<Part>,
         nets: &Nets<'_>,
         rates: &Arc<Rates>,
         now: &Now,
-    ) -> (Arc<Adc>, adc::Input) {
-        let analog = adc::Input::default();
-        let interrupt = nets.interrupt(18);
-        let adc = Arc::new(Adc::new(
-            rates.clone(),
-            now.clone(),
-            interrupt,
-            analog.clone(),
-        ));
-        let registers = Arc::new(AsRegisters(adc.clone()));
+        analog: &Arc<Analog>,
+    ) -> Arc<Adcs> {
+        let adcs = [1, 2, 3].map(|number| {
+            let interrupt = nets.interrupt(18);
+            let (rates, now, analog) = (rates.clone(), now.clone(), analog.clone());
+            Arc::new(Adc::new(number, rates, now, interrupt, analog))
+        });
+        let adcs = Arc::new(Adcs(adcs));
+        let registers = Arc::new(AsRegisters(adcs.clone()));
         let (clock, gate) = (Clock::Time, Gate::apb2(8));
-        parts.push(Part::new(
-            "ADC1",
-            0x4001_2000,
-            clock,
-            gate,
-            registers,
-            adc.clone(),
-        ));
-        (adc, analog)
+        let part = Part::new("ADC", 0x4001_2000, clock, gate, registers, adcs.clone());
+        parts.push(part);
+        adcs
     }
 
-    fn add_bridge_timer(parts: &mut Vec<Part>, nets: &Nets<'_>) -> Arc<Brake> {
+    fn add_bridge_timer(parts: &mut Vec<Part>, nets: &Nets<'_>, pins: &Arc<Pins>) -> Arc<Brake> {
         let timer = timer("advanced", 16);
         for (port, interrupt) in [("irq-up", 25), ("irq-trg", 26), ("irq-cc", 27)] {
             let connected = timer.connect(port, nets.interrupt(interrupt));
@@ -238,6 +236,7 @@ impl Chip {
             registers(&*timer),
             Arc::new(Library(timer)),
             nets.interrupt(24),
+            pins.clone(),
         ));
         let (clock, gate) = (Clock::Timers2, Gate::apb2(0));
         parts.push(Part::new(
@@ -251,7 +250,7 @@ impl Chip {
         brake
     }
 
-    fn add_timers(parts: &mut Vec<Part>, nets: &Nets<'_>, adc: &Arc<Adc>) -> [WireSource; 2] {
+    fn add_timers(parts: &mut Vec<Part>, nets: &Nets<'_>, adcs: &Arc<Adcs>) -> [WireSource; 2] {
         const TIMERS: [(&str, u32, u32, u32, u16); 4] = [
             ("TIM2", 0x4000_0000, 0, 32, 28),
             ("TIM3", 0x4000_0400, 1, 16, 29),
@@ -264,7 +263,7 @@ impl Chip {
             let connected = timer.connect("irq", nets.interrupt(interrupt));
             connected.expect("every timer has an interrupt");
             if let Some((_, number)) = adc::TRIGGERS.iter().find(|(timer, _)| *timer == name) {
-                let connected = timer.connect("trgo", nets.to(adc.clone(), *number));
+                let connected = timer.connect("trgo", nets.to(adcs.clone(), *number));
                 connected.expect("every timer has a trigger output");
             }
             if name == "TIM5" {

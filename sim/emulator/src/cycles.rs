@@ -50,13 +50,15 @@ pub struct Cycles {
     costs: BTreeMap<u16, Cost>,
     /// Number of preemptions by pair of exceptions.
     preemptions: BTreeMap<(u16, u16), u64>,
-    /// Cycles in exceptions, tick by tick from the first step on.
+    /// Cycles in exceptions, microsecond by microsecond from the first step on.
     busy: Vec<u64>,
     begin: Option<Time>,
 }
 
-/// A tick of the drive.
-const TICK: Time = Time::from_us(50);
+/// Microseconds of a tick of the drive.
+const TICK_US: usize = 50;
+
+const MICROSECOND: Time = Time::from_us(1);
 
 impl Cycles {
     /// The cost of each exception's task.
@@ -73,12 +75,14 @@ impl Cycles {
     /// Cycles that all tasks have taken in a tick, in the mean.
     #[expect(clippy::cast_precision_loss, reason = "for people")]
     pub fn mean_busy_cycles(&self) -> f64 {
-        self.busy.iter().sum::<u64>() as f64 / self.busy.len().max(1) as f64
+        let ticks = self.busy.len().max(1) as f64 / TICK_US as f64;
+        self.busy.iter().sum::<u64>() as f64 / ticks
     }
 
-    /// Cycles that all tasks have taken in the worst tick.
+    /// Cycles that all tasks have taken in the worst 50 µs, wherever they begin.
     pub fn worst_busy_cycles(&self) -> u64 {
-        self.busy.iter().copied().max().unwrap_or(0)
+        let ticks = self.busy.windows(TICK_US);
+        ticks.map(|tick| tick.iter().sum()).max().unwrap_or(0)
     }
 
     /// Clears all but the running tasks.
@@ -91,14 +95,15 @@ impl Cycles {
 
     fn count_busy(&mut self, step: &Step) {
         let begin = *self.begin.get_or_insert(step.at);
-        let tick = (step.at - begin).units() / TICK.units();
-        let tick = usize::try_from(tick).unwrap_or(usize::MAX);
-        if self.busy.len() <= tick {
-            self.busy.resize(tick + 1, 0);
+        let at = (step.at - begin).units() / MICROSECOND.units();
+        let at = usize::try_from(at).unwrap_or(usize::MAX);
+        if self.busy.len() <= at {
+            self.busy.resize(at + 1, 0);
         }
-        // From the entry on, which is the step after which it is active.
-        if step.active > 0 {
-            self.busy[tick] += u64::from(step.cycles);
+        // From the entry on, which is the step after which it is active, to the
+        // return, after which it no longer is.
+        if step.active > 0 || !self.runs.is_empty() {
+            self.busy[at] += u64::from(step.cycles);
         }
     }
 

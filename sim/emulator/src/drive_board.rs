@@ -2,9 +2,9 @@
 //!
 //! ```text
 //!   native Comms ── 4.2 Mbaud ──> USART6 ┌───────────┐ TIM5 <── edges ─────┐
-//!                <────────────────       │ the image │ ADC1 <── current ── Leg
+//!                <────────────────       │ the image │ ADCs <── current ── Leg
 //!        │                               └───────────┘ TIM1 ──> voltage ───┘
-//!   enable line of comms ────────────┬──── PB0, read back on PB1
+//!   enable line of comms, PB10 ──────┬──── PB0, read back on PB1
 //!                              motor supply
 //! ```
 //!
@@ -12,18 +12,23 @@
 //! synchronised with the bridge's timer once it runs: a tick begins at its
 //! bottom. The leg gets the bridge's mean voltage: duty times supply,
 //! without dead time. The encoder's edges are evenly spaced in the last six
-//! tenths of a half. The comparator at the shunt is evaluated as a half ends.
+//! tenths of a half. The comparator is evaluated as a half ends.
+//!
+//! A pin that is not set up for its wire connects nothing, and
+//! [`DriveBoard::errors`] names it, as it does a shoot-through, a converter
+//! that samples at the wrong time, and the rest of [`BoardError`].
 
 mod access;
 mod encoder_edges;
 mod half_bridges;
 mod link_wires;
+mod wiring;
 
 use crate::image::Image;
-use crate::mcu::{Mcu, Pin, Reset, Watch};
+use crate::mcu::{Mcu, Reset, Watch};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
-use crepitus_board::leg::{Leg, Terminals};
+use crepitus_board::leg::{CurrentPath, Leg, Terminals};
 use crepitus_device::comms::{Boot, Comms, Inputs};
 use crepitus_device::drive::plausibility::TRIP_A;
 use crepitus_protocol::management::{Identity, ResetCause, Role};
@@ -31,6 +36,9 @@ use crepitus_protocol::{Revision, Values, schema};
 use crepitus_scene::Scene;
 use encoder_edges::Edges;
 use link_wires::{Down, Up};
+use wiring::{BREAK, COMMS_LINE, LINE, LINE_BACK, MONITOR, SENSOR};
+
+pub use wiring::BoardError;
 
 /// Half a tick.
 pub const HALF: Time = Time::from_us(25);
@@ -38,14 +46,7 @@ pub const HALF: Time = Time::from_us(25);
 /// Halves in a millisecond, the tick of comms.
 const COMMS_HALVES: u64 = 40;
 
-/// The drive's enable line: what drives it, and where it is read back.
-const LINE: Pin = Pin::new('B', 0);
-const LINE_BACK: Pin = Pin::new('B', 1);
-
-/// Low: overcurrent.
-const BREAK: Pin = Pin::new('B', 12);
-
-/// Share of the converter's reference per ampere: 33 mΩ, 20 V/V, of 3.3 V.
+/// Share of the converters' reference per ampere: 33 mΩ, 20 V/V, of 3.3 V.
 const SHARE_PER_A: f64 = 20.0 * 0.033 / 3.3;
 
 /// Faults of the board.
@@ -61,7 +62,7 @@ pub struct Faults {
     pub up_is_cut: bool,
     /// Comms hangs; its line stays as it is.
     pub comms_hangs: bool,
-    /// The comparator at the shunt never trips.
+    /// The comparator behind the monitor's amplifier never trips.
     pub trip_is_blind: bool,
     /// The drive's line is stuck at this level.
     pub line_is_stuck: Option<bool>,
@@ -85,6 +86,9 @@ pub struct DriveBoard {
     end: Time,
     is_synchronised: bool,
     resets: Vec<(Time, Reset)>,
+    errors: Vec<(Time, BoardError)>,
+    /// Time without switching on both sides of the middle of the last tick.
+    quiet: Time,
 }
 
 fn identity() -> Identity {
@@ -129,6 +133,8 @@ impl DriveBoard {
             end: Time::ZERO,
             is_synchronised: false,
             resets: Vec::new(),
+            errors: Vec::new(),
+            quiet: HALF,
         }
     }
 
@@ -155,6 +161,8 @@ impl DriveBoard {
 
     /// Half a tick of everything.
     pub fn half(&mut self, mut watch: Option<&mut dyn Watch>) {
+        // In the half in which it becomes so, edges come when they no longer fit.
+        let was_synchronised = self.is_synchronised;
         self.synchronise();
         self.connect();
         let before = self.leg.count();
@@ -163,9 +171,13 @@ impl DriveBoard {
         } else {
             self.leg.first_half();
         }
+        let counter = wiring::counter(&self.mcu);
         let begin = self.mcu.now().min(self.end);
-        self.mcu
-            .set_analog(0.5 + SHARE_PER_A * self.leg.current_a());
+        let sensor_a = self.leg.current_a(CurrentPath::Sensor);
+        let monitor_a = self.leg.current_a(CurrentPath::Monitor);
+        self.mcu.set_analog(SENSOR, 0.5 + SHARE_PER_A * sensor_a);
+        // Wired the other way round.
+        self.mcu.set_analog(MONITOR, 0.5 - SHARE_PER_A * monitor_a);
         self.end = self.end.max(begin) + HALF;
         let start = self.end - HALF;
         for (at, channel, level) in self.edges.between(before, self.leg.count(), start) {
@@ -175,14 +187,44 @@ impl DriveBoard {
         go(&mut self.mcu, self.end, &mut watch);
         self.check_comparator();
         self.carry();
+        let resets = self.mcu.take_resets();
+        self.is_synchronised &= resets.is_empty();
+        self.resets.extend(resets);
+        if was_synchronised && self.is_synchronised {
+            let turned = self.leg.count().wrapping_sub(before);
+            self.check_wiring(turned, counter);
+        }
         if self.halves.is_multiple_of(COMMS_HALVES) && !self.faults.comms_hangs {
             self.comms_millisecond();
         }
         self.halves += 1;
         self.is_second = !self.is_second;
-        let resets = self.mcu.take_resets();
-        self.is_synchronised &= resets.is_empty();
-        self.resets.extend(resets);
+    }
+
+    /// Adds new mismatches of image and wiring to the errors.
+    fn check_wiring(&mut self, turned: i32, counter: i32) {
+        let samplings = self.mcu.take_samplings();
+        if !self.is_second {
+            self.quiet = half_bridges::quiet(&self.mcu);
+        }
+        let Self { mcu, errors, .. } = self;
+        let now = mcu.now();
+        let mut report = |error| {
+            if !errors.iter().any(|(_, known)| *known == error) {
+                errors.push((now, error));
+            }
+        };
+        wiring::check(mcu, &mut report);
+        let middle = if self.is_second {
+            self.end - HALF
+        } else {
+            self.end
+        };
+        wiring::check_samplings(&samplings, (middle, self.quiet), &mut report);
+        let counted = wiring::counter(mcu).wrapping_sub(counter);
+        if counted != turned {
+            report(BoardError::Encoder { counted, turned });
+        }
     }
 
     /// Once the bridge's timer runs, aligns the ends of halves with its bottom
@@ -195,6 +237,8 @@ impl DriveBoard {
             return;
         };
         self.is_synchronised = true;
+        // Those until now were not in step with anything.
+        self.mcu.take_samplings();
         self.is_second = phase >= HALF;
         let into = if self.is_second { phase - HALF } else { phase };
         self.end = self.mcu.now() - into;
@@ -204,6 +248,7 @@ impl DriveBoard {
     fn connect(&mut self) {
         let line = self.line_is_on();
         self.mcu.drive_pin(LINE_BACK, line);
+        self.mcu.drive_pin(COMMS_LINE, self.comms_line);
         let terminals = if line && self.comms_line {
             half_bridges::terminals(&self.mcu, self.leg.supply_v())
         } else {
@@ -213,7 +258,8 @@ impl DriveBoard {
     }
 
     fn check_comparator(&mut self) {
-        let is_over = self.leg.winding_current_a().abs() > f64::from(TRIP_A);
+        let monitor_a = self.leg.current_a(CurrentPath::Monitor);
+        let is_over = monitor_a.abs() > f64::from(TRIP_A);
         self.mcu
             .drive_pin(BREAK, !is_over || self.faults.trip_is_blind);
     }

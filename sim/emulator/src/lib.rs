@@ -8,6 +8,8 @@
 //! | the drive with leg, link and comms | [`drive_board`] |
 //! | the interface of a microcontroller | [`mcu`] |
 //! | its implementation | [`stm32f405`] |
+//! | configuration registers as a table | [`registers`] |
+//! | setup of pins | [`pins`] |
 //! | cycles of a task | [`cycles`] |
 //! | cost of a step of each solver | [`ladder`] |
 //! | building and reading images | [`firmware`], [`image`] |
@@ -39,7 +41,13 @@ pub mod image;
 pub mod ladder;
 #[cfg(feature = "core")]
 pub mod mcu;
+#[cfg(feature = "core")]
+mod observed_ram;
 pub mod on_target;
+#[cfg(feature = "core")]
+pub mod pins;
+#[cfg(feature = "core")]
+pub mod registers;
 #[cfg(feature = "core")]
 pub mod stm32f405;
 #[cfg(feature = "core")]

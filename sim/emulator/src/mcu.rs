@@ -4,10 +4,12 @@
 //! one implementation, with the library `rsemu` behind it.
 
 use crate::devices::usart::Character;
+use crate::pins::PinSetup;
 use crate::time::Time;
+use std::fmt;
 
 /// A pin: `Pin::new('B', 12)` is PB12.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pin {
     port: u8,
     number: u8,
@@ -33,6 +35,12 @@ impl Pin {
     }
 }
 
+impl fmt::Display for Pin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "P{}{}", char::from(b'A' + self.port), self.number)
+    }
+}
+
 /// Why a chip is reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reset {
@@ -53,6 +61,27 @@ pub trait Watch {
     /// A step of the core has ended: an instruction, or the entry into an
     /// exception.
     fn step(&mut self, step: &Step);
+
+    /// The core has accessed RAM that [`crate::Stm32f405::observe_ram`] names.
+    fn ram_access(&mut self, _: &RamAccess) {}
+}
+
+/// An access of the core to observed RAM.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RamAccess {
+    /// Of the instruction.
+    pub pc: u32,
+    /// Of the first byte.
+    pub address: u32,
+    /// Written, not read.
+    pub is_write: bool,
+    /// The exception being handled; 0 if none.
+    pub exception: u16,
+    /// Execution priority, with BASEPRI and PRIMASK: the lower, the more urgent;
+    /// 256 without any exception.
+    pub priority: i32,
+    /// When the instruction began.
+    pub at: Time,
 }
 
 /// A step of the core.
@@ -81,6 +110,21 @@ pub struct Access {
     pub value: u32,
     /// Written, not read.
     pub is_write: bool,
+}
+
+/// A sampling interval of a converter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sampling {
+    /// The converter, from 1 on.
+    pub converter: u32,
+    /// Its input.
+    pub channel: u32,
+    /// The pin of that, if it has one.
+    pub pin: Option<Pin>,
+    /// Begin.
+    pub begin: Time,
+    /// End.
+    pub end: Time,
 }
 
 /// A microcontroller.
@@ -116,13 +160,21 @@ pub trait Mcu {
     /// Drives a pin from outside.
     fn drive_pin(&mut self, pin: Pin, level: bool);
 
-    /// Share of its reference at the input of the converter.
-    fn set_analog(&mut self, share: f64);
+    /// The setup of a pin.
+    fn pin_setup(&self, pin: Pin) -> PinSetup;
 
-    /// Feeds a character to the link's receiver, in order.
+    /// Sets the voltage at a pin, as share of the converters' reference.
+    fn set_analog(&mut self, pin: Pin, share: f64);
+
+    /// Takes the sampling intervals of the converters since the last call.
+    fn take_samplings(&mut self) -> Vec<Sampling>;
+
+    /// Feeds a character to the link's receiver, in order. Lost unless its pin
+    /// is connected to it.
     fn link_feed(&mut self, character: Character);
 
-    /// Takes the characters sent by the link since the last call.
+    /// Takes the characters sent by the link since the last call; none unless its
+    /// pin is connected to it.
     fn link_take(&mut self) -> Vec<Character>;
 
     /// Units of time of a character on the link, as the program has set it.

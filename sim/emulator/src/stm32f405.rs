@@ -16,14 +16,23 @@ use crate::chip::Chip;
 use crate::chip::clocks::Clock;
 use crate::chip::memory::Memory;
 use crate::image::Image;
-use crate::mcu::{Mcu, Pin, Reset, Step, Watch};
+use crate::mcu::{Mcu, Pin, RamAccess, Reset, Step, Watch};
+use crate::pins::Mode;
 use crate::time::Time;
 use rsemu::core::wire::Level;
 use rsemu::cpu::arm::v7m::{ArmV7m, Config};
+use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
 
 /// SysTick is enabled.
 const SYSTICK_ENABLE: u32 = 1;
+
+/// Pins of the encoder's channels and of the link, and their functions.
+const ENCODER_PINS: [Pin; 2] = [Pin::new('A', 0), Pin::new('A', 1)];
+const ENCODER_FUNCTION: Mode = Mode::Alternate(2);
+const LINK_SENDS: Pin = Pin::new('C', 6);
+const LINK_RECEIVES: Pin = Pin::new('C', 7);
+const LINK_FUNCTION: Mode = Mode::Alternate(8);
 
 /// Interval at which the core is polled for a reset request, or for sleep
 /// with its own timer running: 10 µs.
@@ -48,6 +57,8 @@ pub struct Stm32f405 {
     /// Number of active exceptions.
     active: u32,
     is_hung: bool,
+    /// At the pins of the encoder's channels.
+    encoder: [bool; 2],
     resets: Vec<(Time, Reset)>,
 }
 
@@ -78,29 +89,61 @@ impl Stm32f405 {
             cycles: 0,
             active: 0,
             is_hung: false,
+            encoder: [false; 2],
             resets: Vec::new(),
         };
         Mcu::reset(&mut mcu, Reset::PowerOn);
         mcu
     }
 
-    /// Changes channel A (0) or B (1) of the encoder.
+    /// Changes channel A (0) or B (1) of the encoder. TIM5 sees it only if the
+    /// channel's pin is connected to it.
     pub fn drive_encoder(&mut self, channel: usize, level: bool) {
-        self.chip.bus.touch("TIM5");
-        if let Some(source) = self.chip.quadrature.get(channel) {
-            source.set(Level::from(level));
+        if let (Some(pin), Some(known)) = (ENCODER_PINS.get(channel), self.encoder.get_mut(channel))
+        {
+            *known = level;
+            self.drive_pin(*pin, level);
+            self.connect_encoder();
+            self.settle();
         }
-        self.settle();
     }
 
-    /// Sets whether the converter never ends a conversion.
-    pub fn set_converter_dead(&mut self, is_dead: bool) {
-        self.chip.adc.set_dead(is_dead);
+    /// Shows TIM5 the levels of the pins that are connected to it.
+    fn connect_encoder(&self) {
+        self.chip.bus.touch("TIM5");
+        let sources = self.chip.quadrature.iter().zip(ENCODER_PINS);
+        for ((source, pin), level) in sources.zip(self.encoder) {
+            let is_connected = self.chip.pins.mode(pin) == ENCODER_FUNCTION;
+            source.set(Level::from(level && is_connected));
+        }
     }
 
-    /// Triggers that the converter has missed because it was converting.
+    /// Passes accesses of the core to these addresses of RAM to
+    /// [`Watch::ram_access`] from now on, while it is watched.
+    pub fn observe_ram(&mut self, ranges: &[Range<u32>]) {
+        self.memory.observe(ranges);
+    }
+
+    /// Changes words of flash, as if another image had been flashed.
+    ///
+    /// # Panics
+    /// If the address is outside of flash.
+    pub fn patch_flash(&mut self, address: u32, bytes: &[u8]) {
+        let offset = u64::from(address.wrapping_sub(crate::image::FLASH));
+        let stored = self.chip.flash.load_image(offset, bytes);
+        stored.expect("an address in flash");
+    }
+
+    /// Sets whether a converter, counted from 0, never ends a conversion.
+    pub fn set_converter_dead(&mut self, converter: usize, is_dead: bool) {
+        if let Some(adc) = self.chip.adcs.0.get(converter) {
+            adc.set_dead(is_dead);
+        }
+    }
+
+    /// Triggers that the converters have missed because they were converting.
     pub fn lost_triggers(&self) -> u32 {
-        self.chip.adc.lost_triggers()
+        self.chip.adcs.0.iter().map(|adc| adc.lost_triggers()).sum()
     }
 
     /// The watchdog's oscillator runs at this frequency, Hz: 17,000 to 47,000
@@ -128,9 +171,14 @@ impl Stm32f405 {
     }
 
     fn settle(&mut self) {
-        if self.chip.bus.is_touched() {
-            self.chip.bus.settle();
+        if !self.chip.bus.is_touched() {
+            return;
         }
+        if self.chip.bus.take_pins_changed() {
+            self.connect_encoder();
+            self.chip.brake.pins_changed();
+        }
+        self.chip.bus.settle();
     }
 
     /// Sleeps without its own timer: nothing happens before the next event.
@@ -179,9 +227,17 @@ impl Stm32f405 {
                 break;
             }
             self.chip.bus.now.store(self.now, Relaxed);
-            let pc = if WATCHED { self.core.pc() } else { 0 };
+            let before = WATCHED.then(|| self.before());
+            let pc = before.map_or(0, |before| before.pc);
             let cycles = self.step();
-            if WATCHED {
+            if let Some(before) = before {
+                for (address, is_write) in self.memory.take_accesses() {
+                    watch.ram_access(&RamAccess {
+                        address,
+                        is_write,
+                        ..before
+                    });
+                }
                 watch.step(&Step {
                     pc,
                     exception: self.core.current_exception().0,
@@ -199,10 +255,22 @@ impl Stm32f405 {
             self.cycles += cycles;
             self.now += cycles * units;
             if self.chip.bus.is_touched() {
-                self.chip.bus.settle();
+                self.settle();
                 units = self.chip.bus.rates.units(Clock::Core);
                 stop = stop.min(self.chip.bus.deadline());
             }
+        }
+    }
+
+    /// What the next step begins with.
+    fn before(&self) -> RamAccess {
+        RamAccess {
+            pc: self.core.pc(),
+            address: 0,
+            is_write: false,
+            exception: self.core.current_exception().0,
+            priority: self.core.execution_priority(),
+            at: Time::from_units(self.now),
         }
     }
 

@@ -20,6 +20,13 @@ const PAGE: u32 = 0x400;
 /// the bridge repeats half a word, or a byte, over all of it (RM0090 2.1).
 const AHB: u32 = 0x4002_0000;
 
+/// Registers of the ports that decide what a pin is connected to: all but those
+/// of levels.
+fn decides_pins(address: u32) -> bool {
+    const PORTS: std::ops::Range<u32> = AHB..AHB + 9 * PAGE;
+    PORTS.contains(&address) && !(0x10..0x1c).contains(&(address % PAGE))
+}
+
 /// Beats that a controller moves before it looks up: more than all requests
 /// that can be there at once.
 const BEATS: u64 = 64;
@@ -37,6 +44,8 @@ pub(crate) struct Bus {
     dma: [Arc<Dma>; 2],
     /// A part has been accessed: deadlines and requests may have changed.
     is_touched: AtomicBool,
+    /// The setup of a pin may have changed.
+    pins_changed: AtomicBool,
     /// Parts to be polled again.
     touched: Mutex<Vec<usize>>,
     /// Unmapped addresses that were accessed.
@@ -64,6 +73,7 @@ impl Bus {
             rcc,
             dma,
             is_touched: AtomicBool::new(true),
+            pins_changed: AtomicBool::new(false),
             touched: Mutex::default(),
             strays: Mutex::default(),
             listens: AtomicBool::new(false),
@@ -159,6 +169,7 @@ impl Bus {
 
     /// Resets all parts.
     pub(crate) fn reset(&self) {
+        self.pins_changed.store(true, Relaxed);
         for part in &self.parts {
             part.peripheral.reset();
         }
@@ -168,6 +179,11 @@ impl Bus {
             part.rerate(self.now());
         }
         self.look_ahead();
+    }
+
+    /// Whether the setup of a pin may have changed since the last call.
+    pub(crate) fn take_pins_changed(&self) -> bool {
+        self.pins_changed.swap(false, Relaxed)
     }
 
     /// Base addresses of all parts.
@@ -301,6 +317,9 @@ impl MemOps for Window {
         part.advance(bus.now(), &bus.rates);
         bus.mark(place);
         bus.hear(address, true, from);
+        if decides_pins(address) {
+            bus.pins_changed.store(true, Relaxed);
+        }
         let offset = u64::from(address - part.base);
         let result = if address >= AHB {
             part.registers.write(offset, from, attrs)

@@ -11,10 +11,13 @@
 
 use super::Chip;
 use super::bus::Window;
+use crate::observed_ram::ObservedRam;
 use rsemu::core::device::Device;
-use rsemu::core::space::{AddressSpace, RamStore, Region, RegionRef, RequesterId};
+use rsemu::core::space::{AddressSpace, Mapping, RamStore, Region, RegionRef, RequesterId};
+use std::ops::Range;
 use std::sync::Arc;
 
+const RAM: u32 = 0x2000_0000;
 const RAM_BYTES: u64 = 128 << 10;
 const CCM_BYTES: u64 = 64 << 10;
 
@@ -31,6 +34,7 @@ pub(crate) struct Memory {
     _dma_space: Arc<AddressSpace>,
     pub(crate) ram: Arc<RamStore>,
     pub(crate) ccm: Arc<RamStore>,
+    observed: Option<Arc<ObservedRam>>,
 }
 
 impl Memory {
@@ -70,7 +74,28 @@ impl Memory {
             _dma_space: dma_space,
             ram,
             ccm,
+            observed: None,
         }
+    }
+
+    /// Writes down accesses of the core to these addresses of RAM from now on.
+    pub(crate) fn observe(&mut self, ranges: &[Range<u32>]) {
+        let (ram, space) = (&self.ram, &self.space);
+        let observed = self.observed.get_or_insert_with(|| {
+            let observed = Arc::new(ObservedRam::new(ram.clone(), RAM));
+            let region = Region::io("observed RAM", RAM_BYTES, observed.clone());
+            let mapping = Mapping::new(region, u64::from(RAM)).with_priority(1);
+            let mapped = space.topology().map_with(mapping);
+            mapped.expect("a mapping of higher priority may overlap");
+            observed
+        });
+        observed.observe(ranges);
+    }
+
+    /// Takes the accesses since the last call: address, whether it was a write.
+    pub(crate) fn take_accesses(&self) -> Vec<(u32, bool)> {
+        let observed = self.observed.as_ref();
+        observed.map_or_else(Vec::new, |observed| observed.take())
     }
 
     /// Makes the content undefined, as after power was off.

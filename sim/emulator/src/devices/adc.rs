@@ -1,14 +1,16 @@
-//! A converter that a timer starts.
+//! The three converters, which a timer starts.
 //!
 //! ```text
 //! trigger ── sampling ── 12 clocks ──> DR, EOC
 //! ```
 //!
-//! Modelled: one converter of the three, regular conversions of a sequence of
+//! Modelled: regular conversions of a sequence of
 //! any length, started by software or on an edge of a timer's trigger output;
 //! sampling times, prescaler, 12 bits right-aligned; EOC, OVR, STRT and the
 //! interrupts of EOC and OVR. The voltage is that at the end of
-//! sampling. Not modelled: injected conversions, DMA, the analog watchdog, other
+//! sampling, of the pin of the channel, and 0 unless that pin is analog. The
+//! three share pins and prescaler. Not modelled: injected conversions, DMA, the
+//! analog watchdog, other
 //! resolutions and triggers, continuous mode; [`Adc::uses_unmodelled_features`]
 //! reports their use.
 
@@ -16,7 +18,11 @@ use super::registers::Words;
 use crate::chip::bus::Now;
 use crate::chip::clocks::{Clock, Rates};
 use crate::chip::part::{Peripheral, lock};
+use crate::mcu::{Pin, Sampling};
+use crate::pins::{Mode, Pins};
+use crate::time::Time;
 use rsemu::core::wire::{Level, WireId, WireSink, WireSource};
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
@@ -48,8 +54,47 @@ const TOP: f64 = 4095.0;
 /// The trigger outputs that are wired, with their numbers in EXTSEL.
 pub(crate) const TRIGGERS: [(&str, u32); 3] = [("TIM2", 6), ("TIM3", 8), ("TIM8", 14)];
 
-/// Voltage at the converter's input, as share of its reference.
-pub(crate) type Input = Arc<Mutex<f64>>;
+/// The most sampling intervals that are kept.
+const KEPT: usize = 64;
+
+/// The pin of a channel.
+fn pin(channel: u32) -> Option<Pin> {
+    let number = u8::try_from(channel).ok()?;
+    match number {
+        0..8 => Some(Pin::new('A', number)),
+        8..10 => Some(Pin::new('B', number - 8)),
+        10..16 => Some(Pin::new('C', number - 10)),
+        _ => None,
+    }
+}
+
+/// Voltages at the pins, as share of the converter's reference.
+#[derive(Debug)]
+pub(crate) struct Analog {
+    pins: Arc<Pins>,
+    shares: Mutex<BTreeMap<Pin, f64>>,
+}
+
+impl Analog {
+    pub(crate) fn new(pins: Arc<Pins>) -> Self {
+        Self {
+            pins,
+            shares: Mutex::default(),
+        }
+    }
+
+    /// Sets the voltage at a pin.
+    pub(crate) fn set(&self, pin: Pin, share: f64) {
+        lock(&self.shares).insert(pin, share);
+    }
+
+    /// What a channel converts.
+    fn channel(&self, channel: u32) -> f64 {
+        let pin = pin(channel).filter(|pin| self.pins.mode(*pin) == Mode::Analog);
+        let share = pin.and_then(|pin| lock(&self.shares).get(&pin).copied());
+        share.unwrap_or(0.0)
+    }
+}
 
 #[derive(Debug, Default)]
 struct State {
@@ -62,8 +107,9 @@ struct State {
     ccr: u32,
     /// Index in the sequence of the current conversion, and its end.
     converting: Option<(u32, u64)>,
-    /// End of its sampling, if it has not ended.
-    sampling: Option<u64>,
+    /// Its sampling, if it has not ended.
+    sampling: Option<Sampling>,
+    samplings: Vec<Sampling>,
     sampled: f64,
     trigger_levels: u32,
     lost_triggers: u32,
@@ -73,21 +119,30 @@ struct State {
 /// The device.
 pub(crate) struct Adc {
     state: Mutex<State>,
+    /// From 1 on.
+    number: u32,
     rates: Arc<Rates>,
     now: Now,
     interrupt: WireSource,
-    input: Input,
+    analog: Arc<Analog>,
     asked_too_much: AtomicBool,
 }
 
 impl Adc {
-    pub(crate) fn new(rates: Arc<Rates>, now: Now, interrupt: WireSource, input: Input) -> Self {
+    pub(crate) fn new(
+        number: u32,
+        rates: Arc<Rates>,
+        now: Now,
+        interrupt: WireSource,
+        analog: Arc<Analog>,
+    ) -> Self {
         Self {
             state: Mutex::default(),
+            number,
             rates,
             now,
             interrupt,
-            input,
+            analog,
             asked_too_much: AtomicBool::new(false),
         }
     }
@@ -100,6 +155,11 @@ impl Adc {
     /// Sets whether it never ends a conversion.
     pub(crate) fn set_dead(&self, is_dead: bool) {
         lock(&self.state).is_dead = is_dead;
+    }
+
+    /// Takes the sampling intervals since the last call.
+    pub(crate) fn take_samplings(&self) -> Vec<Sampling> {
+        std::mem::take(&mut lock(&self.state).samplings)
     }
 
     /// Triggers that came while it was converting.
@@ -123,7 +183,13 @@ impl Adc {
         let sampling = SAMPLING[(word >> (channel % 10 * 3) & 7) as usize];
         let units = self.units(state);
         let end = at + sampling * units;
-        state.sampling = Some(end);
+        state.sampling = Some(Sampling {
+            converter: self.number,
+            channel,
+            pin: pin(channel),
+            begin: Time::from_units(at),
+            end: Time::from_units(end),
+        });
         state.converting = Some((place, end + CONVERSION * units));
         state.sr |= STRT;
     }
@@ -141,9 +207,12 @@ impl Adc {
     }
 
     fn happen(&self, state: &mut State, at: u64) {
-        if state.sampling == Some(at) {
-            state.sampling = None;
-            state.sampled = *lock(&self.input);
+        let is_due = |sampling: &Sampling| sampling.end.units() == at;
+        if let Some(sampling) = state.sampling.take_if(|sampling| is_due(sampling)) {
+            state.sampled = self.analog.channel(sampling.channel);
+            if state.samplings.len() < KEPT {
+                state.samplings.push(sampling);
+            }
         }
         let Some((place, end)) = state.converting.filter(|(_, end)| *end == at) else {
             return;
@@ -171,7 +240,8 @@ impl Adc {
 
     fn next(state: &State) -> Option<u64> {
         let end = state.converting.map(|(_, end)| end);
-        [state.sampling, end].into_iter().flatten().min()
+        let sampled = state.sampling.map(|sampling| sampling.end.units());
+        [sampled, end].into_iter().flatten().min()
     }
 
     fn update_outputs(&self) {
@@ -212,9 +282,9 @@ impl Peripheral for Adc {
     }
 }
 
-/// A timer's trigger output; the line is its number in EXTSEL.
-impl WireSink for Adc {
-    fn set_level(&self, _: WireId, line: u32, level: Level) {
+impl Adc {
+    /// A timer's trigger output; the line is its number in EXTSEL.
+    fn set_trigger(&self, line: u32, level: Level) {
         let mut state = lock(&self.state);
         let was_high = state.trigger_levels >> line & 1 == 1;
         state.trigger_levels &= !(1 << line);
@@ -292,5 +362,59 @@ impl Words for Adc {
             }
         }
         self.update_outputs();
+    }
+}
+
+/// Bytes from the registers of a converter to those of the next; those of all
+/// three follow.
+const SPAN: u32 = 0x100;
+
+/// Their common control register, as each of them keeps it.
+const COMMON: u32 = 0x304;
+
+/// The three converters at their place on the bus.
+pub(crate) struct Adcs(pub(crate) [Arc<Adc>; 3]);
+
+impl Adcs {
+    fn of(&self, offset: u32) -> Option<(&Adc, u32)> {
+        let adc = self.0.get((offset / SPAN) as usize)?;
+        Some((adc, offset % SPAN))
+    }
+}
+
+impl Words for Adcs {
+    fn read(&self, offset: u32, is_debugger: bool) -> u32 {
+        match self.of(offset) {
+            Some((adc, offset)) => adc.read(offset, is_debugger),
+            None => self.0[0].read(offset, is_debugger),
+        }
+    }
+
+    fn write(&self, offset: u32, value: u32) {
+        match self.of(offset) {
+            Some((adc, offset)) => adc.write(offset, value),
+            None if offset == COMMON => self.0.iter().for_each(|adc| adc.write(COMMON, value)),
+            None => {}
+        }
+    }
+}
+
+impl Peripheral for Adcs {
+    fn advance_to(&self, tick: u64) {
+        self.0.iter().for_each(|adc| adc.advance_to(tick));
+    }
+
+    fn next_event(&self) -> Option<u64> {
+        self.0.iter().filter_map(|adc| adc.next_event()).min()
+    }
+
+    fn reset(&self) {
+        self.0.iter().for_each(|adc| adc.reset());
+    }
+}
+
+impl WireSink for Adcs {
+    fn set_level(&self, _: WireId, line: u32, level: Level) {
+        self.0.iter().for_each(|adc| adc.set_trigger(line, level));
     }
 }

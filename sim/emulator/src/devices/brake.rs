@@ -1,6 +1,8 @@
 //! The break of an advanced timer, in front of the library's timer, which has
 //! none.
 //!
+//! The input is low unless its pin is connected to the timer.
+//!
 //! Modelled: BKE, BKP, BG; BIF and its interrupt; MOE that falls with the
 //! break and cannot rise while it is active; the lock of level 1 over BDTR and
 //! of CR2's idle levels. Not modelled: dead time (its register can be read),
@@ -8,6 +10,8 @@
 //! over CCER and CCMR; [`Brake::uses_unmodelled_features`] reports AOE.
 
 use crate::chip::part::{Peripheral, lock};
+use crate::mcu::Pin;
+use crate::pins::{Mode, Pins};
 use rsemu::core::space::{MemAttrs, MemOps, MemResult};
 use rsemu::core::wire::{Level, WireSource};
 use std::fmt;
@@ -30,6 +34,10 @@ const LOCKED_1: u32 = 0xff | 3 << 8 | BKE | BKP | AOE;
 /// OSSI, OSSR.
 const LOCKED_2: u32 = 3 << 10;
 
+/// The pin, and its alternate function.
+pub(crate) const PIN: Pin = Pin::new('B', 12);
+const FUNCTION: Mode = Mode::Alternate(1);
+
 #[derive(Clone, Copy, Debug, Default)]
 struct State {
     has_broken: bool,
@@ -43,6 +51,7 @@ pub(crate) struct Brake {
     timer: Arc<dyn MemOps>,
     behind: Arc<dyn Peripheral>,
     interrupt: WireSource,
+    pins: Arc<Pins>,
     state: Mutex<State>,
     asked_too_much: AtomicBool,
 }
@@ -58,11 +67,13 @@ impl Brake {
         timer: Arc<dyn MemOps>,
         behind: Arc<dyn Peripheral>,
         interrupt: WireSource,
+        pins: Arc<Pins>,
     ) -> Self {
         Self {
             timer,
             behind,
             interrupt,
+            pins,
             state: Mutex::default(),
             asked_too_much: AtomicBool::new(false),
         }
@@ -87,13 +98,18 @@ impl Brake {
 
     /// Whether the break is active.
     fn is_break_active(&self, bdtr: u32) -> bool {
-        let is_high = lock(&self.state).input;
+        let is_high = lock(&self.state).input && self.pins.mode(PIN) == FUNCTION;
         bdtr & BKE != 0 && is_high == (bdtr & BKP != 0)
     }
 
-    /// The level at the pin; low if nothing is connected.
+    /// Sets the level at the pin.
     pub(crate) fn set_input(&self, is_high: bool) {
         lock(&self.state).input = is_high;
+        self.update(false);
+    }
+
+    /// The pin may have been connected, or disconnected.
+    pub(crate) fn pins_changed(&self) {
         self.update(false);
     }
 

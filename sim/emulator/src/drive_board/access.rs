@@ -1,6 +1,6 @@
 //! Access to the parts of the board, for tests and faults.
 
-use super::DriveBoard;
+use super::{BoardError, DriveBoard};
 use crate::devices::usart::Character;
 use crate::mcu::Reset;
 use crate::stm32f405::Stm32f405;
@@ -12,6 +12,12 @@ impl DriveBoard {
     /// Resets of the chip since the board was switched on.
     pub fn resets(&self) -> &[(Time, Reset)] {
         &self.resets
+    }
+
+    /// Mismatches between image and wiring, each with the time of its first
+    /// occurrence.
+    pub fn errors(&self) -> &[(Time, BoardError)] {
+        &self.errors
     }
 
     /// The microcontroller.

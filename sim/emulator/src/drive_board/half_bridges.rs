@@ -1,65 +1,241 @@
-//! The motor's terminals, from TIM1.
+//! The four switches of the bridge, from TIM1 and its pins.
 //!
-//! Read from its registers and those of its pins, not from switched levels: a
-//! half is on while its two pins belong to the timer, its two outputs are
-//! enabled and MOE is set. The share of the period is CCR / ARR, of PWM mode 1
-//! in centre-aligned counting.
+//! Read from registers, not from switched levels: each half has a state while
+//! its reference (OCxREF) is active, one while it is inactive, and one in the
+//! dead time between them.
+//!
+//! | MOE | OSSI, OSSR | CCxE, CCxNE | CHx | CHxN |
+//! |---|---|---|---|---|
+//! | 1 | | both | reference ⊕ CCxP | ¬reference ⊕ CCxNP; in the dead time both inactive |
+//! | 1 | OSSR | one | that one follows the reference, the other inactive; not driven without OSSR | |
+//! | 0 | OSSI | any | idle level OISx; inactive if that would close both | idle level OISxN, likewise |
+//! | 0 | no OSSI | any | not driven | not driven |
+//!
+//! (RM0090, output control bits of complementary channels.) A pin that is not
+//! driven has the level of its internal resistor; a pin that is not connected
+//! to the timer, what its port says. The voltage is the mean of a period,
+//! without dead time.
 
-use crate::mcu::Mcu;
+use super::wiring::{BoardError, HALF_A, HALF_B};
+use crate::mcu::{Mcu, Pin};
+use crate::pins::{Mode, Pull};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
 use crepitus_board::leg::Terminals;
 
 const CR1: u32 = 0x4001_0000;
+const CR2: u32 = 0x4001_0004;
 const CCMR1: u32 = 0x4001_0018;
 const CCER: u32 = 0x4001_0020;
 const CNT: u32 = 0x4001_0024;
 const ARR: u32 = 0x4001_002c;
 const CCR1: u32 = 0x4001_0034;
-const CCR2: u32 = 0x4001_0038;
 const BDTR: u32 = 0x4001_0044;
 
 const CEN: u32 = 1;
 const DIR: u32 = 1 << 4;
+const CMS: u32 = 3 << 5;
+const ARPE: u32 = 1 << 7;
+const OSSI: u32 = 1 << 10;
+const OSSR: u32 = 1 << 11;
 const MOE: u32 = 1 << 15;
 
-/// PWM mode 1 with preload, of channels 1 and 2.
-const MODES: u32 = 0x6868;
-
-/// CH1, CH1N, CH2, CH2N.
-const OUTPUTS: u32 = 0x55;
-
-/// Port and number of the four pins.
-const PINS: [(u32, u32); 4] = [(0, 8), (1, 13), (0, 9), (1, 14)];
+/// OCxM with OCxPE of a channel: PWM mode 1 with preload.
+const PWM_1_WITH_PRELOAD: u32 = 0x68;
 
 /// Units of time in a clock of TIM1.
 const UNITS: u64 = 2;
+
+/// Dead time that the bridge needs, and that the converter's pause allows, ns.
+const DEAD_NS: std::ops::RangeInclusive<u64> = 200..=500;
+
+/// The upper and the lower switch of a half: closed, open, or undefined.
+type Switches = [Option<bool>; 2];
+
+const OPEN: Switches = [Some(false); 2];
+const UPPER: Switches = [Some(true), Some(false)];
+const LOWER: Switches = [Some(false), Some(true)];
+const BOTH: Switches = [Some(true); 2];
+
+/// TIM1's registers.
+struct Timer<'a> {
+    mcu: &'a Stm32f405,
+    cr1: u32,
+    cr2: u32,
+    ccmr: u32,
+    ccer: u32,
+    bdtr: u32,
+    top: u32,
+    compare: [u32; 2],
+}
 
 fn word(mcu: &Stm32f405, address: u32) -> u32 {
     mcu.peek(address).unwrap_or_default()
 }
 
-/// Whether a pin belongs to TIM1: alternate function 1.
-fn belongs((port, number): (u32, u32), mcu: &Stm32f405) -> bool {
-    let base = 0x4002_0000 + 0x400 * port;
-    let mode = word(mcu, base) >> (2 * number) & 3;
-    let function = word(mcu, base + 0x20 + 4 * (number / 8)) >> (4 * (number % 8)) & 15;
-    (mode, function) == (2, 1)
+impl<'a> Timer<'a> {
+    fn new(mcu: &'a Stm32f405) -> Self {
+        Self {
+            mcu,
+            cr1: word(mcu, CR1),
+            cr2: word(mcu, CR2),
+            ccmr: word(mcu, CCMR1),
+            ccer: word(mcu, CCER),
+            bdtr: word(mcu, BDTR),
+            top: word(mcu, ARR),
+            compare: [word(mcu, CCR1), word(mcu, CCR1 + 4)],
+        }
+    }
+
+    /// Levels of a channel's two outputs; `None` where it drives none. The
+    /// reference is `None` in the dead time.
+    fn outputs(&self, channel: usize, reference: Option<bool>) -> [Option<bool>; 2] {
+        let nibble = self.ccer >> (4 * channel);
+        let is_on = [nibble & 1 != 0, nibble & 4 != 0];
+        let inactive = [nibble & 2 != 0, nibble & 8 != 0];
+        if is_on == [false; 2] {
+            return [None; 2];
+        }
+        if self.bdtr & MOE == 0 {
+            if self.bdtr & OSSI == 0 {
+                return [None; 2];
+            }
+            let idle = [8, 9].map(|bit| self.cr2 >> (bit + 2 * channel) & 1 != 0);
+            let closes_both = idle[0] != inactive[0] && idle[1] != inactive[1];
+            return (if closes_both { inactive } else { idle }).map(Some);
+        }
+        if is_on == [true; 2] {
+            let active = reference.map_or([false; 2], |reference| [reference, !reference]);
+            return [0, 1].map(|output| Some(active[output] != inactive[output]));
+        }
+        [0, 1].map(|output| {
+            if is_on[output] {
+                Some(reference.unwrap_or_default() != inactive[output])
+            } else {
+                (self.bdtr & OSSR != 0).then_some(inactive[output])
+            }
+        })
+    }
+
+    /// What the gates of a half see.
+    fn switches(&self, channel: usize, reference: Option<bool>) -> Switches {
+        let outputs = self.outputs(channel, reference);
+        let pins = [HALF_A, HALF_B][channel];
+        [0, 1].map(|output| self.level(pins[output], outputs[output]))
+    }
+
+    fn level(&self, pin: Pin, driven: Option<bool>) -> Option<bool> {
+        let setup = self.mcu.pin_setup(pin);
+        let driven = match setup.mode {
+            Mode::Alternate(1) => driven,
+            Mode::Output => Some(self.mcu.pin(pin)),
+            _ => None,
+        };
+        match (driven, setup.pull) {
+            (Some(true), _) if setup.is_open_drain => None,
+            (Some(level), _) => Some(level),
+            (None, Pull::Up) => Some(true),
+            (None, Pull::Down) => Some(false),
+            (None, Pull::None) => None,
+        }
+    }
+
+    fn dead_clocks(&self) -> u32 {
+        let set = self.bdtr & 0xff;
+        let clocks = match set >> 5 {
+            0..4 => set,
+            4 | 5 => 2 * (64 + (set & 63)),
+            6 => 8 * (32 + (set & 31)),
+            _ => 16 * (32 + (set & 31)),
+        };
+        clocks << (self.cr1 >> 8 & 3)
+    }
+
+    /// The states of a half in a period, and the counts of it for which the
+    /// upper switch is closed.
+    fn half(&self, channel: usize) -> (Vec<Switches>, Option<u32>) {
+        let compare = self.compare[channel].min(self.top);
+        let [active, inactive] = [true, false].map(|it| self.switches(channel, Some(it)));
+        let mut states = Vec::new();
+        if compare > 0 {
+            states.push(active);
+        }
+        if compare < self.top {
+            states.push(inactive);
+        }
+        if self.dead_clocks() > 0 {
+            states.push(self.switches(channel, None));
+        }
+        let closed = match (active, inactive) {
+            (UPPER, LOWER) => Some(compare),
+            (LOWER, UPPER) => Some(self.top - compare),
+            _ => None,
+        };
+        (states, closed)
+    }
+
+    fn terminals(&self, supply_v: f64) -> Terminals {
+        let is_pwm = self.cr1 & CEN != 0 && self.mode_problem().is_none();
+        let [a, b] = [0, 1].map(|channel| self.half(channel).1);
+        let (true, Some(a), Some(b)) = (is_pwm, a, b) else {
+            return Terminals::Open;
+        };
+        let share = (f64::from(a) - f64::from(b)) / f64::from(self.top.max(1));
+        Terminals::Driven(share * supply_v)
+    }
+
+    /// What is wrong with the mode of the timer or of a channel.
+    fn mode_problem(&self) -> Option<&'static str> {
+        if self.cr1 & CMS == 0 {
+            Some("not centre-aligned")
+        } else if self.cr1 & ARPE == 0 {
+            Some("its period has no preload")
+        } else if self.ccmr & 0xff != PWM_1_WITH_PRELOAD {
+            Some("channel 1 is not in PWM mode 1 with preload")
+        } else if self.ccmr >> 8 & 0xff != PWM_1_WITH_PRELOAD {
+            Some("channel 2 is not in PWM mode 1 with preload")
+        } else {
+            None
+        }
+    }
 }
 
 /// The motor's terminals.
 pub(super) fn terminals(mcu: &Stm32f405, supply_v: f64) -> Terminals {
-    let is_on = word(mcu, CR1) & CEN != 0
-        && word(mcu, BDTR) & MOE != 0
-        && word(mcu, CCER) & OUTPUTS == OUTPUTS
-        && word(mcu, CCMR1) == MODES
-        && PINS.iter().all(|pin| belongs(*pin, mcu));
-    if !is_on {
-        return Terminals::Open;
+    Timer::new(mcu).terminals(supply_v)
+}
+
+/// Everything about the switches that the power board does not stand.
+pub(super) fn check(mcu: &Stm32f405, mut report: impl FnMut(BoardError)) {
+    let timer = Timer::new(mcu);
+    for (channel, half) in ['A', 'B'].into_iter().enumerate() {
+        let (states, _) = timer.half(channel);
+        if states.contains(&BOTH) {
+            report(BoardError::ShootThrough { half });
+        }
+        if states.iter().flatten().any(Option::is_none) {
+            report(BoardError::UndefinedSwitch { half });
+        }
+        let is_float = timer.bdtr & MOE == 0;
+        if is_float && states.iter().any(|state| *state != OPEN && *state != BOTH) {
+            report(BoardError::ClosedAtRest { half });
+        }
     }
-    let (top, a, b) = (word(mcu, ARR), word(mcu, CCR1), word(mcu, CCR2));
-    let share = (f64::from(a.min(top)) - f64::from(b.min(top))) / f64::from(top.max(1));
-    Terminals::Driven(share * supply_v)
+    if let Some(what) = timer.mode_problem() {
+        report(BoardError::Pwm { what });
+    }
+    let dead_ns = u64::from(timer.dead_clocks()) * UNITS * 1_000 / 336;
+    if !DEAD_NS.contains(&dead_ns) {
+        report(BoardError::DeadTime { ns: dead_ns });
+    }
+}
+
+/// Time between the top of TIM1 and the nearest switching, dead time included.
+pub(super) fn quiet(mcu: &Stm32f405) -> Time {
+    let timer = Timer::new(mcu);
+    let [a, b] = timer.compare.map(|compare| compare.min(timer.top));
+    let clocks = (timer.top - a.max(b)).saturating_sub(timer.dead_clocks());
+    Time::from_units(u64::from(clocks) * UNITS)
 }
 
 /// Time since TIM1 was at its bottom, if it runs.

@@ -1,10 +1,11 @@
 //! The chip as a microcontroller.
 
-use super::Stm32f405;
-use crate::chip::part::lock;
+use super::{LINK_FUNCTION, LINK_RECEIVES, LINK_SENDS, Stm32f405};
 use crate::chip::state_hash::Hash;
+use crate::devices::brake;
 use crate::devices::usart::Character;
-use crate::mcu::{Access, Mcu, Pin, Reset, Watch};
+use crate::mcu::{Access, Mcu, Pin, Reset, Sampling, Watch};
+use crate::pins::PinSetup;
 use crate::time::Time;
 use rsemu::core::device::{Device, ResetKind};
 use rsemu::core::space::MemAttrs;
@@ -28,12 +29,20 @@ impl Mcu for Stm32f405 {
     }
 
     fn peek(&self, address: u32) -> Option<u32> {
+        /// From here on registers are the core's own.
+        const CORE: u32 = 0xe000_0000;
+        if address >= CORE {
+            return self.core.with_sys(|sys| sys.read_word(address, true));
+        }
         let address = u64::from(address);
         let word = self.memory.space.read(address, Width::U32, MemAttrs::DEBUG);
         word.ok().and_then(|word| u32::try_from(word).ok())
     }
 
     fn poke(&mut self, address: u32, value: u32) {
+        if self.core.with_sys(|sys| sys.write_word(address, value)) {
+            return;
+        }
         let (address, value) = (u64::from(address), u64::from(value));
         // Nothing is there: nothing is written.
         let _ = self
@@ -57,30 +66,45 @@ impl Mcu for Stm32f405 {
     }
 
     fn drive_pin(&mut self, pin: Pin, level: bool) {
-        /// Of TIM1.
-        const BREAK: Pin = Pin::new('B', 12);
         if let Some(port) = self.port(pin) {
             port.set_external(pin.number(), level);
         }
-        if pin == BREAK {
+        if pin == brake::PIN {
             self.chip.bus.touch("TIM1");
             self.chip.brake.set_input(level);
             self.settle();
         }
     }
 
-    fn set_analog(&mut self, share: f64) {
-        *lock(&self.chip.analog) = share;
+    fn pin_setup(&self, pin: Pin) -> PinSetup {
+        self.chip.pins.setup(pin)
+    }
+
+    fn set_analog(&mut self, pin: Pin, share: f64) {
+        self.chip.analog.set(pin, share);
+    }
+
+    fn take_samplings(&mut self) -> Vec<Sampling> {
+        let adcs = self.chip.adcs.0.iter();
+        adcs.flat_map(|adc| adc.take_samplings()).collect()
     }
 
     fn link_feed(&mut self, character: Character) {
+        if self.chip.pins.mode(LINK_RECEIVES) != LINK_FUNCTION {
+            return;
+        }
         self.chip.usart.feed(character);
         self.chip.bus.touch("USART6");
         self.settle();
     }
 
     fn link_take(&mut self) -> Vec<Character> {
-        self.chip.usart.take_sent()
+        let sent = self.chip.usart.take_sent();
+        if self.chip.pins.mode(LINK_SENDS) == LINK_FUNCTION {
+            sent
+        } else {
+            Vec::new()
+        }
     }
 
     fn link_character_units(&self) -> u64 {
@@ -148,7 +172,14 @@ impl Mcu for Stm32f405 {
         let strays = strays.iter().map(|address| format!("{address:#010x}"));
         let asked = [
             ("USART6", self.chip.usart.uses_unmodelled_features()),
-            ("ADC1", self.chip.adc.uses_unmodelled_features()),
+            (
+                "ADC",
+                self.chip
+                    .adcs
+                    .0
+                    .iter()
+                    .any(|adc| adc.uses_unmodelled_features()),
+            ),
             ("TIM1", self.chip.brake.uses_unmodelled_features()),
         ];
         let asked = asked.iter().filter(|(_, is_asked)| *is_asked);

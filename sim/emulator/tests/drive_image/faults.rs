@@ -2,7 +2,7 @@
 //! the table says, measured in half ticks of the leg.
 
 use crate::host::{Host, examination, image};
-use crepitus_board::leg::EncoderWiring;
+use crepitus_board::leg::{CurrentPath, CurrentSensor, EncoderWiring};
 use crepitus_emulator::mcu::{Step, Watch};
 use crepitus_emulator::{Mcu, Reset, Time};
 use crepitus_protocol::fault::{FAULTS, Fault};
@@ -84,6 +84,144 @@ fn interference_on_the_encoder() {
     assert_eq!(drive_fault(&mut host), Fault::EncoderLost.code());
 }
 
+/// Control and reload registers of the timers of `command_motor` and
+/// `render_torque`.
+const COMMAND_CONTROL: u32 = 0x4000_0400;
+const COMMAND_RELOAD: u32 = 0x4000_042c;
+const RENDER_CONTROL: u32 = 0x4000_0800;
+const RENDER_RELOAD: u32 = 0x4000_082c;
+
+/// Stops a timer.
+fn stop(host: &mut Host, control: u32) {
+    let mcu = host.board.mcu_mut();
+    let word = mcu.peek(control).expect("a timer");
+    mcu.poke(control, word & !1);
+}
+
+#[test]
+fn a_stopped_timer_of_the_model() {
+    let Some(mut host) = under_torque() else {
+        return;
+    };
+    stop(&mut host, RENDER_CONTROL);
+    let halves = host.halves_until_off(limit(Fault::RenderingLate));
+    println!("timer of the model stopped: off after {halves} half ticks");
+    host.run(200);
+    assert_eq!(drive_fault(&mut host), Fault::RenderingLate.code());
+}
+
+/// Heartbeats time out by a clock that does not depend on it.
+#[test]
+fn a_stopped_timer_of_the_model_and_a_link_that_is_cut() {
+    let Some(mut host) = under_torque() else {
+        return;
+    };
+    // One result in five is late, which is not too many.
+    host.board.faults.down_is_cut = true;
+    for halves in 0..=limit(Fault::CommsSilent) {
+        if !host.board.drive_is_on() {
+            println!("timer of the model stopping, link cut: off after {halves} half ticks");
+            return;
+        }
+        if halves % 40 == 0 {
+            stop(&mut host, RENDER_CONTROL);
+        } else if halves % 40 == 8 {
+            let mcu = host.board.mcu_mut();
+            let word = mcu.peek(RENDER_CONTROL).expect("a timer");
+            mcu.poke(RENDER_CONTROL, word | 1);
+        }
+        host.board.half(None);
+    }
+    panic!("still on");
+}
+
+#[test]
+fn a_timer_of_the_model_at_half_its_rate() {
+    let Some(mut host) = under_torque() else {
+        return;
+    };
+    host.board.mcu_mut().poke(RENDER_RELOAD, 2 * 4_200 - 1);
+    // Every other tick is late, of which a quarter is made up for.
+    let halves = host.halves_until_off(4 * limit(Fault::RenderingLate));
+    println!("timer of the model at half its rate: off after {halves} half ticks");
+    host.run(200);
+    assert_eq!(drive_fault(&mut host), Fault::RenderingLate.code());
+}
+
+#[test]
+fn a_timer_of_the_command_at_another_rate() {
+    for reload in [3_500, 5_000] {
+        let Some(mut host) = under_torque() else {
+            return;
+        };
+        // The converters sample at other times.
+        host.breaks_board = true;
+        host.board.mcu_mut().poke(COMMAND_RELOAD, reload);
+        let halves = host.halves_until_off(2 * limit(Fault::TickIrregular));
+        println!("timer of the command, {reload}: off after {halves} half ticks");
+        host.run(200);
+        assert_eq!(drive_fault(&mut host), Fault::TickIrregular.code());
+    }
+}
+
+#[test]
+fn a_stopped_timer_of_the_command() {
+    let Some(mut host) = under_torque() else {
+        return;
+    };
+    stop(&mut host, COMMAND_CONTROL);
+    // Comms takes its line away, and the watchdog is not fed.
+    for halves in 0..=limit(Fault::DriveSilent) {
+        if !host.board.is_driven() {
+            println!("timer of the command stopped: comms' line off after {halves} half ticks");
+            break;
+        }
+        host.board.half(None);
+    }
+    assert!(!host.board.is_driven());
+    let halves = host.halves_until_off(SLOWEST_WATCHDOG);
+    println!("and the drive is reset after {halves} more");
+    assert_eq!(
+        host.board.resets().last().map(|(_, reset)| *reset),
+        Some(Reset::Watchdog)
+    );
+}
+
+/// With the comparator blind, too: the two ways of the current differ.
+#[test]
+fn a_current_sensor_that_is_broken() {
+    for (path, sensor) in [
+        (CurrentPath::Sensor, CurrentSensor::StuckAt(0.6)),
+        (CurrentPath::Sensor, CurrentSensor::Offset(-0.5)),
+        (CurrentPath::Monitor, CurrentSensor::StuckAt(-0.6)),
+        (CurrentPath::Monitor, CurrentSensor::Offset(0.5)),
+    ] {
+        let Some(mut host) = under_torque() else {
+            return;
+        };
+        host.board.faults.trip_is_blind = true;
+        host.board.leg_mut().set_current_sensor(path, sensor);
+        let halves = host.halves_until_off(limit(Fault::CurrentDisagreement));
+        println!("{path:?} {sensor:?}: off after {halves} half ticks");
+        host.run(200);
+        assert_eq!(drive_fault(&mut host), Fault::CurrentDisagreement.code());
+    }
+}
+
+#[test]
+fn a_converter_that_stops() {
+    for converter in [0, 1] {
+        let Some(mut host) = under_torque() else {
+            return;
+        };
+        host.board.mcu_mut().set_converter_dead(converter, true);
+        let halves = host.halves_until_off(limit(Fault::CurrentMissing));
+        println!("converter {converter} stops: off after {halves} half ticks");
+        host.run(200);
+        assert_eq!(drive_fault(&mut host), Fault::CurrentMissing.code());
+    }
+}
+
 #[test]
 fn an_encoder_that_is_unplugged() {
     let Some(mut host) = under_torque() else {
@@ -152,7 +290,7 @@ fn a_stack_that_was_written_over() {
         return;
     };
     let mcu = host.board.mcu_mut();
-    // In `sample_encoder`, with the way back on the stack.
+    // In `render_torque`, with the way back on the stack.
     let mut below = Below(0);
     let until = Time::from_units(mcu.now().units() + 26 * 336);
     mcu.watch_until(until, &mut below);

@@ -1,9 +1,10 @@
 //! A host at the USB end of the native comms.
 
+use crate::locks::LockCheck;
 use crepitus_board::values::values;
 use crepitus_device::usb_port::HostBytes;
 use crepitus_emulator::firmware::{Program, image_for_test};
-use crepitus_emulator::{DriveBoard, Image, Mcu};
+use crepitus_emulator::{DriveBoard, Image, Mcu, Time};
 use crepitus_protocol::frame;
 use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request};
 use crepitus_protocol::telemetry::Block;
@@ -29,6 +30,10 @@ pub(crate) struct Host {
     decoded: usize,
     /// What the drive has told.
     pub(crate) blocks: Vec<Block>,
+    /// Checks every step of the core.
+    pub(crate) locks: Option<LockCheck>,
+    /// A test breaks what the board checks, on purpose.
+    pub(crate) breaks_board: bool,
 }
 
 pub(crate) fn image() -> Option<Image> {
@@ -55,11 +60,26 @@ impl Host {
     /// With accesses to these registers written down from the first
     /// instruction on.
     pub(crate) fn listening(image: &Image, scene: &Scene, registers: &[u32]) -> Self {
+        let mut host = Self::switched_on(image, scene, registers);
+        host.boot();
+        host
+    }
+
+    /// As [`Self::new`], with `locks` checked from the first instruction on.
+    pub(crate) fn locked(image: &Image, scene: &Scene, locks: LockCheck) -> Self {
+        let mut host = Self::switched_on(image, scene, &[]);
+        host.board.mcu_mut().observe_ram(&locks.ranges());
+        host.locks = Some(locks);
+        host.boot();
+        host
+    }
+
+    fn switched_on(image: &Image, scene: &Scene, registers: &[u32]) -> Self {
         let values = values(scene).expect("a scene for the device");
         let mut board = DriveBoard::new(image, scene, Some((Revision(1), values)));
         board.record_bytes();
         board.mcu_mut().listen(registers);
-        let mut host = Self {
+        Self {
             board,
             number: 0,
             nonce: Nonce::NONE,
@@ -70,12 +90,17 @@ impl Host {
             from_drive: Decoder::new(),
             decoded: 0,
             blocks: Vec::new(),
-        };
+            locks: None,
+            breaks_board: false,
+        }
+    }
+
+    fn boot(&mut self) {
         for _ in 0..BOOT_TICKS {
-            if host.board.is_synchronised() {
-                return host;
+            if self.board.is_synchronised() {
+                return;
             }
-            host.run(1);
+            self.run(1);
         }
         panic!("the image does not start");
     }
@@ -85,10 +110,29 @@ impl Host {
             if self.holds_lease && self.ticks.is_multiple_of(RENEWAL_TICKS) {
                 self.say(0, Operation::Renew);
             }
-            self.board.run(1);
+            match &mut self.locks {
+                Some(locks) => self.board.watch(1, locks),
+                None => self.board.run(1),
+            }
             self.ticks += 1;
             self.listen();
+            self.check_board();
         }
+    }
+
+    /// Fails at the first mismatch of image and board.
+    fn check_board(&self) {
+        let errors = self.board.errors();
+        let lines = errors.iter().map(|(at, error)| {
+            let tick = at.units() / Time::from_us(50).units();
+            format!("tick {tick}: {error}")
+        });
+        let lines: Vec<String> = lines.collect();
+        assert!(
+            lines.is_empty() || self.breaks_board,
+            "{}",
+            lines.join("\n")
+        );
     }
 
     fn say(&mut self, number: u16, operation: Operation) {
@@ -147,18 +191,43 @@ impl Host {
         panic!("no answer to {operation:?}");
     }
 
+    /// Sends a request, and does not wait for its answer.
+    pub(crate) fn request(&mut self, operation: Operation) {
+        self.number += 1;
+        self.say(self.number, operation);
+    }
+
     /// Takes the lease and arms, as soon as the drive has its parameters.
     pub(crate) fn arm(&mut self) {
+        match self.try_to_arm() {
+            Ok(Answer::Done) => {}
+            other => panic!("arming: {other:?}"),
+        }
+    }
+
+    /// As [`Self::arm`], with the answer.
+    pub(crate) fn try_to_arm(&mut self) -> Result<Answer, Refusal> {
         self.holds_lease = true;
         self.say(0, Operation::Renew);
         for _ in 0..100 {
             match self.ask(Operation::Arm) {
-                Ok(Answer::Done) => return,
                 Err(Refusal::Busy | Refusal::DriveSilent) => self.run(200),
-                other => panic!("arming: {other:?}"),
+                answer => return answer,
             }
         }
         panic!("not armed");
+    }
+
+    /// Where the idle loop goes on after it has slept.
+    pub(crate) fn idle_pc(&mut self) -> u32 {
+        for _ in 0..100 {
+            let mcu = self.board.mcu();
+            if mcu.exception() == 0 {
+                return mcu.program_counter();
+            }
+            self.board.half(None);
+        }
+        panic!("the idle loop does not run");
     }
 
     /// Whether the drive's last block has shown torque.

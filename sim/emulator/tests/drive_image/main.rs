@@ -2,8 +2,14 @@
 
 mod boot;
 mod budget;
+mod commits;
 mod faults;
 mod host;
+mod killed;
+mod locks;
+mod outputs;
+mod registers;
 mod replay;
 mod tasks;
 mod torque;
+mod wiring;

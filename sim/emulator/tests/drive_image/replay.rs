@@ -1,7 +1,7 @@
 //! The image's torque is that of the native `Drive`, bit for bit.
 //!
 //! What the image reads from its registers is written down, in its order: the
-//! encoder's counter, the converter, the enable line, the break, and how far
+//! encoder's counter, the converters, the clock, the enable line, the break, and how far
 //! the DMA has come. The native drive is given just that, at the same places
 //! of its program, and has to send the same blocks.
 
@@ -16,16 +16,20 @@ use crepitus_protocol::{Decoder, Lane, Revision, State};
 use std::collections::BTreeMap;
 
 const ENCODER: u32 = 0x4000_0c24;
-const CONVERTER_FLAGS: u32 = 0x4001_2000;
-const CONVERTER_DATA: u32 = 0x4001_204c;
+const SENSOR_FLAGS: u32 = 0x4001_2000;
+const SENSOR_DATA: u32 = 0x4001_204c;
+const MONITOR_DATA: u32 = 0x4001_214c;
+const CLOCK: u32 = 0x4000_0024;
 const LINE: u32 = 0x4002_0410;
 const BREAK_FLAGS: u32 = 0x4001_0010;
 const LINK_CONTROL: u32 = 0x4001_140c;
 const RECEIVED_LEFT: u32 = 0x4002_642c;
-const REGISTERS: [u32; 7] = [
+const REGISTERS: [u32; 9] = [
     ENCODER,
-    CONVERTER_FLAGS,
-    CONVERTER_DATA,
+    SENSOR_FLAGS,
+    SENSOR_DATA,
+    MONITOR_DATA,
+    CLOCK,
     LINE,
     BREAK_FLAGS,
     LINK_CONTROL,
@@ -36,7 +40,7 @@ const REGISTERS: [u32; 7] = [
 const RING: u32 = 2_048;
 
 /// The most that a run of the task takes of them.
-const RUN: u32 = 16;
+const RUN: u32 = 10;
 
 /// Ticks that are compared, at least.
 const TICKS: usize = 20_000;
@@ -52,6 +56,7 @@ fn amperes(counts: u32) -> f32 {
 struct Replay<'a> {
     drive: Drive,
     inputs: Inputs,
+    clock_us: u32,
     /// Bytes that the image's link has received.
     bytes: std::slice::Iter<'a, u8>,
     next: u32,
@@ -70,10 +75,18 @@ impl Replay<'_> {
         }
         match access.address {
             ENCODER => self.sample(access.value),
-            CONVERTER_FLAGS => self.inputs = Inputs::default(),
-            CONVERTER_DATA => self.inputs.current_a = Some(amperes(access.value)),
-            // PB1.
-            LINE => self.inputs.enable_is_on = access.value >> 1 & 1 == 1,
+            SENSOR_FLAGS => self.inputs = Inputs::default(),
+            SENSOR_DATA => self.inputs.current_a = Some(amperes(access.value)),
+            MONITOR_DATA => self.inputs.monitor_a = Some(-amperes(access.value)),
+            CLOCK => {
+                self.inputs.interval_us = access.value.wrapping_sub(self.clock_us);
+                self.clock_us = access.value;
+            }
+            // PB1, PB10.
+            LINE => {
+                self.inputs.enable_is_on = access.value >> 1 & 1 == 1;
+                self.inputs.comms_enable_is_on = access.value >> 10 & 1 == 1;
+            }
             BREAK_FLAGS => {
                 self.inputs.has_tripped = access.value >> 7 & 1 == 1;
                 self.drive.command_motor(&self.inputs);
@@ -101,8 +114,7 @@ impl Replay<'_> {
         if in_force.is_some_and(|revision| *revision != self.drive.revision()) {
             self.drive.prepare();
         }
-        self.drive.sample_encoder(counter);
-        self.drive.render_torque();
+        self.drive.render_torque(counter);
     }
 
     fn send(&mut self) {
@@ -141,7 +153,7 @@ fn twenty_thousand_ticks_are_those_of_the_native_drive_bit_for_bit() {
     // Until the first current is asked for the counter is read to begin with.
     let begin = accesses
         .iter()
-        .position(|access| access.address == CONVERTER_FLAGS)
+        .position(|access| access.address == SENSOR_FLAGS)
         .expect("a first tick");
     let counter = accesses[..begin]
         .iter()
@@ -156,6 +168,7 @@ fn twenty_thousand_ticks_are_those_of_the_native_drive_bit_for_bit() {
     let mut replay = Replay {
         drive: Drive::new(&boot).expect("a drive"),
         inputs: Inputs::default(),
+        clock_us: 0,
         bytes: bytes.iter(),
         next: 0,
         pushed: 0,

@@ -7,10 +7,9 @@ use crepitus_protocol::telemetry::SampleFlags;
 
 /// Exceptions of the tasks, and their priority.
 const COMMAND: u16 = 16 + 29;
-const SAMPLE: u16 = 16 + 30;
-const RENDER: u16 = 16 + 49;
+const RENDER: u16 = 16 + 30;
 const LINK: u16 = 16 + 69;
-const PRIORITIES: [(u16, u8); 4] = [(COMMAND, 4), (SAMPLE, 3), (RENDER, 2), (LINK, 1)];
+const PRIORITIES: [(u16, u8); 3] = [(COMMAND, 4), (RENDER, 3), (LINK, 1)];
 
 /// Units of time in a tick.
 const TICK_UNITS: u64 = 16_800;
@@ -41,7 +40,6 @@ fn a_task_is_interrupted_by_higher_ones_only_and_every_tick_has_all() {
     }
     for (name, exception) in [
         ("command_motor", COMMAND),
-        ("sample_encoder", SAMPLE),
         ("render_torque", RENDER),
         ("link", LINK),
     ] {
@@ -68,9 +66,8 @@ fn a_task_gives_way_at_once_to_a_higher_one() {
     // after the middle of a tick, where the board stops, until the next timer's
     // interrupt has come: then the second of these has interrupted the first.
     for (from_ns, until_ns, below, above) in [
-        (25_700, 52_000, SAMPLE, COMMAND),
-        (28_000, 52_000, RENDER, COMMAND),
-        (9_000, 25_400, LINK, SAMPLE),
+        (25_700, 52_000, RENDER, COMMAND),
+        (9_000, 25_400, LINK, RENDER),
     ] {
         let mut host = Host::new(&image, &examination());
         host.arm();
@@ -123,7 +120,7 @@ fn tasks_begin_when_they_should() {
     let tick = TICK_UNITS;
     for (name, register, most_us) in [
         ("command_motor", MIDDLE, 3.0),
-        ("sample_encoder", BEGIN, 3.0),
+        ("render_torque", BEGIN, 3.0),
     ] {
         let writes = accesses
             .iter()

@@ -1,0 +1,264 @@
+//! The wiring of the board, and what does not match it.
+//!
+//! A peripheral sees and drives only pins that are connected to it. Beyond
+//! that the board names every mismatch, from the time on at which the
+//! bridge's timer runs: that is the last that the image starts.
+
+use super::{HALF, half_bridges};
+use crate::mcu::{Mcu, Pin, Sampling};
+use crate::pins::{Mode, PinSetup, Pull};
+use crate::stm32f405::Stm32f405;
+use crate::time::Time;
+
+/// Upper and lower switch of each half of the bridge.
+pub(super) const HALF_A: [Pin; 2] = [Pin::new('A', 8), Pin::new('B', 13)];
+pub(super) const HALF_B: [Pin; 2] = [Pin::new('A', 9), Pin::new('B', 14)];
+
+/// The drive's enable line: what drives it, and where it is read back.
+pub(super) const LINE: Pin = Pin::new('B', 0);
+pub(super) const LINE_BACK: Pin = Pin::new('B', 1);
+
+/// Low: overcurrent.
+pub(super) const BREAK: Pin = Pin::new('B', 12);
+
+/// The enable line of comms, at its gate.
+pub(super) const COMMS_LINE: Pin = Pin::new('B', 10);
+
+/// The amplifiers of the two current paths.
+pub(super) const SENSOR: Pin = Pin::new('C', 0);
+pub(super) const MONITOR: Pin = Pin::new('C', 1);
+
+/// The converters, from 1 on, and the pins that they convert in the middle of a
+/// tick.
+const CURRENTS: [(u32, Pin); 2] = [(1, SENSOR), (2, MONITOR)];
+
+/// The encoder's counter.
+const COUNTER: u32 = 0x4000_0c24;
+
+/// Units of time of ten bits at 4.2 Mbaud, and the most that a receiver
+/// stands: 2 %.
+const CHARACTER_UNITS: u64 = 800;
+const MOST_OFF_UNITS: u64 = 16;
+
+/// Time between the middle of a tick and the middle of a sampling, at most.
+const MOST_OFF_MIDDLE: Time = Time::from_units(336 / 4);
+
+/// A wire between a pin and a part of the board.
+struct Wire {
+    pin: Pin,
+    /// The part.
+    to: &'static str,
+    mode: Mode,
+    /// `None`: any.
+    pull: Option<Pull>,
+}
+
+const fn wire(pin: Pin, to: &'static str, mode: Mode, pull: Option<Pull>) -> Wire {
+    Wire {
+        pin,
+        to,
+        mode,
+        pull,
+    }
+}
+
+/// All wires, as docs/hardware.md has them.
+const WIRES: [Wire; 14] = {
+    use Mode::{Alternate, Analog, Input, Output};
+    const DOWN: Option<Pull> = Some(Pull::Down);
+    const UP: Option<Pull> = Some(Pull::Up);
+    [
+        wire(
+            HALF_A[0],
+            "upper switch of half A, TIM1 CH1",
+            Alternate(1),
+            DOWN,
+        ),
+        wire(
+            HALF_A[1],
+            "lower switch of half A, TIM1 CH1N",
+            Alternate(1),
+            DOWN,
+        ),
+        wire(
+            HALF_B[0],
+            "upper switch of half B, TIM1 CH2",
+            Alternate(1),
+            DOWN,
+        ),
+        wire(
+            HALF_B[1],
+            "lower switch of half B, TIM1 CH2N",
+            Alternate(1),
+            DOWN,
+        ),
+        wire(BREAK, "break line, TIM1 BKIN", Alternate(1), DOWN),
+        wire(SENSOR, "amplifier of the sensor, ADC1 IN10", Analog, None),
+        wire(MONITOR, "amplifier of the monitor, ADC2 IN11", Analog, None),
+        wire(COMMS_LINE, "enable line of comms", Input, DOWN),
+        wire(Pin::new('A', 0), "encoder A, TIM5 CH1", Alternate(2), UP),
+        wire(Pin::new('A', 1), "encoder B, TIM5 CH2", Alternate(2), UP),
+        wire(LINE, "enable line", Output, None),
+        wire(LINE_BACK, "read-back of the enable line", Input, DOWN),
+        wire(
+            Pin::new('C', 6),
+            "link to comms, USART6 TX",
+            Alternate(8),
+            None,
+        ),
+        wire(
+            Pin::new('C', 7),
+            "link from comms, USART6 RX",
+            Alternate(8),
+            UP,
+        ),
+    ]
+};
+
+/// A mismatch between the image and the board's wiring.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BoardError {
+    /// A pin is not set up for what it is wired to.
+    #[error("{pin} is {is}; its wire, {to}, needs {needs}")]
+    Pin {
+        /// The pin.
+        pin: Pin,
+        /// Its setup.
+        is: PinSetup,
+        /// The other end of its wire.
+        to: &'static str,
+        /// Mode and pull that this needs.
+        needs: String,
+    },
+    /// Both switches of a half are closed at once: the timer asks for it,
+    /// whether or not the gates are open.
+    #[error("shoot-through: both switches of half {half} are closed at once")]
+    ShootThrough {
+        /// 'A' or 'B'.
+        half: char,
+    },
+    /// Nothing defines the level at a gate.
+    #[error("a switch of half {half} is neither driven nor pulled down")]
+    UndefinedSwitch {
+        /// 'A' or 'B'.
+        half: char,
+    },
+    /// A switch is closed although the timer's outputs are off.
+    #[error("a switch of half {half} is closed although the outputs of TIM1 are off")]
+    ClosedAtRest {
+        /// 'A' or 'B'.
+        half: char,
+    },
+    /// The timer does not make the bridge's PWM.
+    #[error("TIM1 does not make the PWM of the bridge: {what}")]
+    Pwm {
+        /// What is wrong.
+        what: &'static str,
+    },
+    /// The dead time does not suit the bridge.
+    #[error("a dead time of {ns} ns; the bridge needs 200 to 500 ns")]
+    DeadTime {
+        /// As the timer is set.
+        ns: u64,
+    },
+    /// A converter samples another channel than that of its current.
+    #[error("ADC{converter} samples channel {channel}, to which its current is not wired")]
+    Channel {
+        /// From 1 on.
+        converter: u32,
+        /// The channel.
+        channel: u32,
+    },
+    /// A converter does not sample its current in the middle of the tick.
+    #[error(
+        "ADC{converter} samples {off_ns} ns off the middle of the tick; at most 250 ns are allowed"
+    )]
+    SamplingTime {
+        /// From 1 on.
+        converter: u32,
+        /// From the middle of the tick to the middle of the sampling.
+        off_ns: u64,
+    },
+    /// A switch opens or closes while a converter samples its current.
+    #[error("a switch of the bridge switches while ADC{converter} samples")]
+    SwitchingWhileSampling {
+        /// From 1 on.
+        converter: u32,
+    },
+    /// The link has another speed.
+    #[error("a character of USART6 takes {units} units of time; one of the link takes 800")]
+    Baud {
+        /// As the program has set it.
+        units: u64,
+    },
+    /// The counter does not follow the encoder.
+    #[error("TIM5 has counted {counted} while the encoder turned by {turned}")]
+    Encoder {
+        /// Counts of the timer in half a tick.
+        counted: i32,
+        /// Counts of the encoder.
+        turned: i32,
+    },
+}
+
+/// Reports every pin and every switch that does not match.
+pub(super) fn check(mcu: &Stm32f405, mut report: impl FnMut(BoardError)) {
+    for wire in &WIRES {
+        let is = mcu.pin_setup(wire.pin);
+        let is_pulled = wire.pull.is_none_or(|pull| pull == is.pull);
+        if is.mode != wire.mode || !is_pulled || is.is_open_drain {
+            let pull = wire
+                .pull
+                .map(|pull| format!(", {pull}"))
+                .unwrap_or_default();
+            report(BoardError::Pin {
+                pin: wire.pin,
+                is,
+                to: wire.to,
+                needs: format!("{}{pull}", wire.mode),
+            });
+        }
+    }
+    half_bridges::check(mcu, &mut report);
+    let units = mcu.link_character_units();
+    if units.abs_diff(CHARACTER_UNITS) > MOST_OFF_UNITS {
+        report(BoardError::Baud { units });
+    }
+}
+
+/// Reports samplings of a wrong channel, not in the middle of a tick, one of
+/// which was at `middle`, or not within `quiet` from it.
+pub(super) fn check_samplings(
+    samplings: &[Sampling],
+    (middle, quiet): (Time, Time),
+    mut report: impl FnMut(BoardError),
+) {
+    for sampling in samplings {
+        let (converter, channel) = (sampling.converter, sampling.channel);
+        let is_wired =
+            |(number, pin): &(u32, Pin)| *number == converter && Some(*pin) == sampling.pin;
+        if !CURRENTS.iter().any(is_wired) {
+            report(BoardError::Channel { converter, channel });
+            continue;
+        }
+        let center = u64::midpoint(sampling.begin.units(), sampling.end.units());
+        // From the nearest middle: the core may have run ahead of the board.
+        let tick = 2 * HALF.units();
+        let off = center.abs_diff(middle.units()) % tick;
+        let off = off.min(tick - off);
+        if off > MOST_OFF_MIDDLE.units() {
+            let off_ns = off * 1_000 / 336;
+            report(BoardError::SamplingTime { converter, off_ns });
+        }
+        let half_length = (sampling.end - sampling.begin).units() / 2;
+        if off + half_length > quiet.units() {
+            report(BoardError::SwitchingWhileSampling { converter });
+        }
+    }
+}
+
+/// The encoder's counter.
+pub(super) fn counter(mcu: &Stm32f405) -> i32 {
+    mcu.peek(COUNTER).unwrap_or_default().cast_signed()
+}

@@ -1,0 +1,84 @@
+//! The configuration registers of the images are those of docs/registers.md.
+
+use crate::host::image;
+use crepitus_emulator::firmware::{Program, image_for_test};
+use crepitus_emulator::registers::tables;
+use crepitus_emulator::{Image, Mcu, Stm32f405, Time};
+use std::fmt::Write as _;
+use std::path::Path;
+
+const BLESS: &str =
+    "CREPITUS_BLESS=1 cargo test -p crepitus-emulator --test drive_image registers::";
+
+/// Time after which the drive's `init` is over, and that of comms waits for its
+/// USB controller.
+const STARTED: Time = Time::from_us(50_000);
+
+const HEAD: &str = "\
+# Registers
+
+What the two images write into the chip's configuration registers, read from the emulator after they have started:
+modelled silicon, not measured on hardware. Made and checked by
+
+```text
+CREPITUS_BLESS=1 cargo test -p crepitus-emulator --test drive_image registers::
+```
+
+Only configuration is shown, no counters, flags and addresses that a build moves. A register that is not shown has its
+value after a reset, and so have the fields that are not named. Names are those of RM0090 and PM0214.
+
+";
+
+/// What is missing of comms, and why.
+const COMMS_HEAD: &str = "\
+## Comms
+
+As far as its `init` runs here: it waits for AHBIDL in OTG_FS_GRSTCTL, as the emulator has no USB controller yet. Up to
+there it has set up clocks, pins, link, timer and the priorities of its interrupts; the registers of the USB controller,
+and the watchdog, which is started last, are missing.
+
+";
+
+/// A chip without a board around it, so that the registers show whatever a
+/// board says.
+fn started(image: &Image) -> Stm32f405 {
+    let mut mcu = Stm32f405::new(image);
+    mcu.run_until(STARTED);
+    assert!(!mcu.is_locked_up());
+    // A part whose clock is off, or an address where nothing is, but for the USB
+    // controller that the emulator lacks.
+    let is_usb = |what: &String| what.starts_with("0x500");
+    let unknown: Vec<String> = mcu
+        .not_modelled()
+        .into_iter()
+        .filter(|what| !is_usb(what))
+        .collect();
+    assert!(unknown.is_empty(), "{unknown:?}");
+    mcu
+}
+
+#[test]
+fn the_registers_are_those_of_the_page() {
+    let Some(image) = image() else { return };
+    let Some(comms) = image_for_test(Program::Comms) else {
+        return;
+    };
+    let mut page = HEAD.to_owned();
+    // Writing to a String cannot fail.
+    let _ = writeln!(page, "## Drive\n\n{}", tables(&started(&image)));
+    let _ = write!(page, "{COMMS_HEAD}{}", tables(&started(&comms)));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/registers.md");
+    if std::env::var_os("CREPITUS_BLESS").is_some_and(|value| value != "0") {
+        std::fs::write(&path, &page).expect("the page can be written");
+        return;
+    }
+    let known = std::fs::read_to_string(&path).expect("the page is there");
+    let differ = |ours: &str, theirs: &str, sign: &str| {
+        let lines = ours
+            .lines()
+            .filter(|line| !theirs.lines().any(|other| other == *line));
+        lines.fold(String::new(), |all, line| all + sign + line + "\n")
+    };
+    let changes = differ(&known, &page, "- ") + &differ(&page, &known, "+ ");
+    assert_eq!(known, page, "docs/registers.md differs:\n{changes}{BLESS}");
+}
