@@ -13,6 +13,7 @@
 //! between. Nothing blocks: bytes that the host does not read are dropped and
 //! counted.
 
+pub mod drive_clock;
 pub mod drive_view;
 pub mod enable_line;
 pub mod job;
@@ -21,6 +22,7 @@ mod management;
 pub mod outbox;
 pub mod parameters;
 mod requests;
+pub mod sample_checks;
 pub mod sessions;
 pub mod stream;
 pub mod supervision;
@@ -34,11 +36,13 @@ use crepitus_protocol::link::FromDrive;
 use crepitus_protocol::management::{Answer, Identity};
 use crepitus_protocol::telemetry::{BLOCK_TICKS, Block};
 use crepitus_protocol::{Decoder, Fault, Lane, Revision, State, Values};
+use drive_clock::DriveClock;
 use drive_view::{Continuity, DriveView};
 use job::Job;
 use lease::Lease;
 use outbox::Outbox;
 use parameters::Parameters;
+use sample_checks::SampleChecks;
 use sessions::Sessions;
 use stream::Stream;
 use supervision::Supervision;
@@ -98,6 +102,8 @@ pub struct Comms {
     /// The line of comms, as read back.
     line_is_on: bool,
     drive: DriveView,
+    drive_clock: DriveClock,
+    sample_checks: SampleChecks,
     to_drive: ToDriveQueue,
     from_drive: Decoder,
     from_host: Decoder,
@@ -126,6 +132,8 @@ impl Comms {
             supervision: Supervision::new(boot.identity.reset),
             line_is_on: false,
             drive: DriveView::default(),
+            drive_clock: DriveClock::default(),
+            sample_checks: SampleChecks::default(),
             to_drive: ToDriveQueue::default(),
             from_drive: Decoder::new(),
             from_host: Decoder::new(),
@@ -248,15 +256,18 @@ impl Comms {
 
     fn block(&mut self, block: &Block) {
         let samples = BLOCK_TICKS;
-        match self.drive.receive_block(block, self.now_ms) {
+        let continuity = self.drive.receive_block(block, self.now_ms);
+        match continuity {
             Continuity::Stale => return,
             Continuity::Restarted => {
                 self.counters.count(CommsCounter::DriveRestarts);
                 self.supervision.drive_restarted();
+                self.drive_clock.restart();
                 self.stream = Stream::new(block.first_tick);
             }
             Continuity::Next { lost } => self.counters.add(CommsCounter::LostSamples, lost),
         }
+        self.supervise(block, continuity == Continuity::Next { lost: 0 });
         self.counters.add(CommsCounter::ReceivedSamples, samples);
         if !self.sessions.has_subscriber() {
             return;
@@ -267,6 +278,21 @@ impl Comms {
             CommsCounter::DroppedSamples
         };
         self.counters.add(counter, samples);
+    }
+}
+
+impl Comms {
+    /// Checks a block by itself, whatever the drive makes of it.
+    fn supervise(&mut self, block: &Block, is_next: bool) {
+        self.parameters.shown(block);
+        let bounds = self.parameters.bounds_in_force();
+        let fault = (self.sample_checks.check(block, &bounds, is_next))
+            .or_else(|| self.drive_clock.check(self.now_ms, block.end_tick()));
+        if let Some(fault) = fault
+            && self.supervision.observed(fault)
+        {
+            self.counters.count(CommsCounter::Faults);
+        }
     }
 }
 

@@ -3,12 +3,15 @@
 //! ```text
 //! priority   task               when                      parts
 //! 4          command_motor      half a tick later, at the  Safety, Motor, Plausibility, Batch
-//!                               converter's end
-//! 3          sample_encoder     every 50 µs                Sampler
-//! 2          render_torque      after it                   Rendering
+//!                               converters' end
+//! 3          render_torque      every 50 µs                Sampler, Rendering
 //! 1          link               bytes, room to send        Link
 //! idle                                                     Preparation
 //! ```
+//!
+//! **The clock is that of `command_motor`**, whose ticks every timeout counts. A
+//! tick without a new result of `render_torque` is late, whatever kept it:
+//! [`exchange`] numbers the results.
 //!
 //! In the firmware each task owns its part. [`Drive`] combines them, in the
 //! order in which they run when none is late: the simulator runs it, and the
@@ -18,6 +21,8 @@ pub mod arming;
 pub mod batch;
 pub mod command;
 pub mod commits;
+pub mod emf_check;
+pub mod exchange;
 pub mod heartbeat_monitor;
 pub mod link;
 pub mod link_task;
@@ -35,10 +40,10 @@ use commits::Commits;
 use crepitus_protocol::frame::{FRAME_BYTES, Frame, FrameBuffer};
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::{Fault, Revision, State, ValueError, Values};
+use exchange::{Exchange, Rendered};
 use link_task::{LinkTask, Shared};
-use prepare::{CommandPlan, Preparation, Prepared, RenderingPlan, Start};
-use rendering::{Rendered, Rendering};
-use sampler::{Sampled, Sampler};
+use prepare::{Preparation, Prepared, Start};
+use rendering::Rendering;
 
 /// Boot-time inputs of the drive.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,33 +67,24 @@ pub struct Drive {
     /// Owned by the idle loop.
     preparation: Preparation,
     /// Owned by the tasks.
-    sampler: Sampler,
     rendering: Rendering,
     command: Command,
     link: LinkTask<FrameBuffer>,
     /// Passed between the tasks.
     commits: Commits,
     prepared: Option<Prepared>,
-    rendering_plan: Option<RenderingPlan>,
-    command_plan: Option<CommandPlan>,
-    sampled: Option<Sampled>,
-    rendered: Option<Rendered>,
+    exchange: Exchange,
 }
 
 /// The link task's shared resources; here the tasks never run concurrently.
 struct Parts<'a> {
     command: &'a mut Command,
-    sampler: &'a mut Sampler,
     commits: &'a mut Commits,
 }
 
 impl Shared for Parts<'_> {
     fn command<R>(&mut self, work: impl FnOnce(&mut Command) -> R) -> R {
         work(self.command)
-    }
-
-    fn sampler<R>(&mut self, work: impl FnOnce(&mut Sampler) -> R) -> R {
-        work(self.sampler)
     }
 
     fn commits<R>(&mut self, work: impl FnOnce(&mut Commits) -> R) -> R {
@@ -112,65 +108,31 @@ impl Drive {
         Ok(Self {
             counters: Counters::new(),
             preparation,
-            sampler: Sampler::new(&reader, boot.counter, boot.tick),
-            rendering: Rendering::new(&prepared.rendering),
+            rendering: Rendering::new(&reader, boot.counter, &prepared.rendering),
             command: Command::new(&motor, &prepared.command, boot),
             link: LinkTask::new(boot.identity, boot.start),
             commits: Commits::default(),
             prepared: None,
-            rendering_plan: None,
-            command_plan: None,
-            sampled: None,
-            rendered: None,
+            exchange: Exchange::new(boot.tick),
         })
     }
 
-    /// `sample_encoder`, priority 3: reads the counter as the tick begins. At
-    /// the first tick of a block it passes new parameters to the other tasks.
-    pub fn sample_encoder(&mut self, counter: u32) {
-        if self.sampler.begins_block()
-            && let Some(prepared) = self.prepared.take()
-        {
-            if let Some(reader) = &prepared.reader {
-                self.sampler.replace(reader);
-            }
-            self.rendering_plan = Some(prepared.rendering);
-            self.command_plan = Some(prepared.command);
-        }
-        self.sampled = Some(self.sampler.sample(counter));
-    }
-
-    /// `render_torque`, priority 2.
-    pub fn render_torque(&mut self) {
-        let Some(sampled) = &self.sampled else {
-            return;
-        };
-        if let Some(plan) = self.rendering_plan.take() {
-            self.rendering.apply(&plan, sampled.omega_rad_s);
-        }
-        let was_armed = self.command.was_armed();
-        self.rendered = Some(self.rendering.tick(sampled, was_armed));
+    /// `render_torque`, priority 3: with the counter as the tick begins.
+    pub fn render_torque(&mut self, counter: u32) {
+        let plan = self.prepared.as_ref().map(|prepared| &prepared.rendering);
+        self.rendering.tick(counter, plan, &self.exchange);
     }
 
     /// `command_motor`, priority 4: half a tick later.
     pub fn command_motor(&mut self, inputs: &Inputs) -> Outputs {
-        let Some(sampled) = &self.sampled else {
-            return Outputs::default();
-        };
-        if let Some(plan) = self.command_plan.take() {
-            self.command.apply(&plan, &self.counters);
-        }
+        let plan = self.prepared.as_ref().map(|prepared| &prepared.command);
         self.command
-            .tick(inputs, sampled, self.rendered.as_ref(), &self.counters)
+            .tick(inputs, plan, &self.exchange, &self.counters)
     }
 
     /// `idle`: prepares a pending commit once the previous one has settled.
     pub fn prepare(&mut self) {
-        let is_busy = self.prepared.is_some()
-            || self.rendering_plan.is_some()
-            || self.command_plan.is_some()
-            || self.rendering.is_settling();
-        if is_busy {
+        if self.exchange.is_busy() {
             return;
         }
         let Some((revision, reassembly)) = self.commits.take() else {
@@ -183,7 +145,10 @@ impl Drive {
         let result = self.preparation.prepare(revision, &values, is_live);
         let done = result.as_ref().map(|_| ()).map_err(|error| *error);
         self.commits.done(revision, done, &self.counters);
-        self.prepared = result.ok();
+        if let Ok(prepared) = result {
+            self.prepared = Some(prepared);
+            self.exchange.plan_stored();
+        }
     }
 
     /// `link`, priority 1: a byte from comms.
@@ -205,7 +170,6 @@ impl Drive {
     fn link(&mut self) -> (&mut LinkTask<FrameBuffer>, Parts<'_>, &Counters) {
         let parts = Parts {
             command: &mut self.command,
-            sampler: &mut self.sampler,
             commits: &mut self.commits,
         };
         (&mut self.link, parts, &self.counters)
@@ -218,7 +182,7 @@ impl Drive {
 
     /// Number of the next tick, counted from boot.
     pub fn next_tick(&self) -> u64 {
-        self.sampler.next_tick()
+        self.command.next_tick()
     }
 
     /// The safety state.
@@ -238,13 +202,12 @@ impl Drive {
 
     /// Values of the active parameters; `None` while a commit is pending.
     pub fn values(&self) -> Option<&Values> {
-        let is_pending = self.prepared.is_some() || self.command_plan.is_some();
-        (!is_pending).then(|| self.preparation.values())
+        (!self.exchange.has_plan()).then(|| self.preparation.values())
     }
 
     /// Output of the last `render_torque`.
-    pub fn rendered(&self) -> Option<&Rendered> {
-        self.rendered.as_ref()
+    pub fn rendered(&self) -> Option<Rendered> {
+        self.exchange.rendered()
     }
 
     /// The counters of the drive.

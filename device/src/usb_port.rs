@@ -33,6 +33,9 @@ use usb_device::prelude::{
 };
 use usbd_serial::{SerialPort, USB_CLASS_CDC};
 
+/// What the bus supplies, mA: the host's side of the isolator.
+const ISOLATOR_MA: usize = 20;
+
 /// The largest packet of a full-speed bulk endpoint, bytes.
 const MAX_PACKET: usize = 64;
 /// Enough to keep the IN endpoint in full packets between two calls of `poll`, bytes.
@@ -123,8 +126,11 @@ impl<'b, B: UsbBus> UsbPort<'b, B> {
             .device_class(USB_CLASS_CDC)
             // 2.0, not the default 2.1: a 2.1 device owes the host capability descriptors.
             .usb_rev(UsbRev::Usb200)
+            // Comms has a supply of its own; the bus feeds the isolator's side only.
+            .self_powered(true)
             // The default, 8 bytes, makes enumeration eight times as chatty.
             .max_packet_size_0(64)
+            .and_then(|builder| builder.max_power(ISOLATOR_MA))
             .and_then(|builder| builder.strings(&[strings]))
             .map_err(UsbPortError::Description)?
             .build();

@@ -26,6 +26,10 @@ pub enum Fault {
     DriveWatchdog = 16,
     DriveBrownOut = 17,
     DrivePanic = 18,
+    CurrentDisagreement = 19,
+    TickIrregular = 20,
+    CommsLineOff = 21,
+    CurrentWhileFloating = 22,
     DriveSilent = 32,
     DriveRestarted = 33,
     CommsEnableStuckOn = 34,
@@ -34,6 +38,11 @@ pub enum Fault {
     CommsWatchdog = 37,
     CommsBrownOut = 38,
     CommsPanic = 39,
+    DriveClock = 40,
+    CommsOvercurrent = 41,
+    TorqueBeyondBounds = 42,
+    CurrentBesideTorque = 43,
+    CommsOverspeed = 44,
 }
 
 /// Controller that detects a fault.
@@ -78,12 +87,13 @@ pub struct FaultSpec {
 }
 
 const FLOAT: &str = "the bridge floats (coast)";
+const LINE_OFF: &str = "comms switches its enable line off: the bridge floats";
 const STAYS: &str = "the bridge stays floating; arming is refused";
 const CLEAR: &str = "clear-fault";
 const REPAIR: &str = "repair, then clear-fault";
 
 /// All faults, in the order of their codes.
-pub const FAULTS: [FaultSpec; 26] = [
+pub const FAULTS: [FaultSpec; 35] = [
     FaultSpec {
         fault: Fault::CommsSilent,
         name: "comms-silent",
@@ -138,12 +148,15 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::SpeedMismatch,
         name: "speed-mismatch",
-        cause: "an encoder that has frozen or slips, a broken motor line, or no supply while little torque is commanded",
+        cause: "the supply is off or the hand-held stop is pressed, a broken motor line, an encoder that has frozen or \
+                slips, or two current sensors that are wrong in the same way",
         detector: Detector::Drive,
-        detection: "speed from back-EMF and speed from the encoder differ for 400 ticks (20 ms) while armed; \
+        detection: "speed from back-EMF and speed from the encoder contradict each other while armed: over 4 ticks twice \
+                    in a row by 0.28 rad/s and a quarter of what the voltage drives, or for 400 ticks (20 ms), or in \
+                    sum by 10 mrad, beyond 0.5 rad/s and a quarter; \
                     an encoder that freezes is detected only once the shaft moves faster than 0.5 rad/s (29 deg/s)",
         reaction: FLOAT,
-        within_ticks: Some(1_000),
+        within_ticks: Some(200),
         clear: REPAIR,
     },
     FaultSpec {
@@ -161,7 +174,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "current-offset",
         cause: "the current sensor has drifted or is broken",
         detector: Detector::Drive,
-        detection: "more than 0.1 A is measured at arming while the bridge floats",
+        detection: "more than 0.1 A is measured at arming, by one of the sensors, while the bridge floats",
         reaction: STAYS,
         within_ticks: None,
         clear: REPAIR,
@@ -181,7 +194,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         name: "current-missing",
         cause: "the converter does not run",
         detector: Detector::Drive,
-        detection: "3 consecutive ticks without a measured current while armed",
+        detection: "3 consecutive ticks without a measured current, from one of the sensors, while armed",
         reaction: FLOAT,
         within_ticks: Some(4),
         clear: REPAIR,
@@ -189,11 +202,10 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::CurrentMismatch,
         name: "current-mismatch",
-        cause: "a broken motor line; or, while more than 0.2 A (0.67 N·m) is commanded, the supply is off or the \
-                hand-held stop is pressed",
+        cause: "the current loop does not follow: its parameters do not fit the motor",
         detector: Detector::Drive,
-        detection: "the current stays more than 0.2 A from the setpoint, without an active limit, \
-                    for 100 ticks (5 ms)",
+        detection: "the current stays more than 0.2 A from the setpoint for 100 ticks (5 ms), though the voltage \
+                    could drive it at this speed",
         reaction: FLOAT,
         within_ticks: Some(101),
         clear: REPAIR,
@@ -221,9 +233,9 @@ pub const FAULTS: [FaultSpec; 26] = [
     FaultSpec {
         fault: Fault::RenderingLate,
         name: "rendering-late",
-        cause: "the model's task does not finish within its tick",
+        cause: "the model's task does not finish within its tick, or its timer has stopped or is out of step",
         detector: Detector::Drive,
-        detection: "20 consecutive late ticks",
+        detection: "20 consecutive ticks without a new result; one in time makes up for a quarter of one that is late",
         reaction: FLOAT,
         within_ticks: Some(21),
         clear: CLEAR,
@@ -269,12 +281,53 @@ pub const FAULTS: [FaultSpec; 26] = [
         clear: CLEAR,
     },
     FaultSpec {
+        fault: Fault::CurrentDisagreement,
+        name: "current-disagreement",
+        cause: "one of the two shunts, amplifiers or converters of the motor's current is broken or has drifted",
+        detector: Detector::Drive,
+        detection: "the two sensors of the current differ by more than 0.2 A in 2 consecutive ticks while armed",
+        reaction: FLOAT,
+        within_ticks: Some(3),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::TickIrregular,
+        name: "tick-irregular",
+        cause: "the timer of the drive's tasks is disturbed, or something holds up its most urgent task",
+        detector: Detector::Drive,
+        detection: "the time between two ticks, by another timer, is not 50 ± 5 µs 3 consecutive times while armed",
+        reaction: FLOAT,
+        within_ticks: Some(4),
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::CommsLineOff,
+        name: "comms-line-off",
+        cause: "the wire by which the drive reads the enable line of comms is broken",
+        detector: Detector::Drive,
+        detection: "that line reads off for 120 ticks (6 ms) while comms permits torque; the bridge floats meanwhile",
+        reaction: FLOAT,
+        within_ticks: Some(2),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::CurrentWhileFloating,
+        name: "current-while-floating",
+        cause: "a switch of the bridge is shorted: with a diode of another it brakes the joint, in one direction",
+        detector: Detector::Drive,
+        detection: "both sensors show more than 0.2 A for 20 ticks (1 ms) while the bridge floats and the joint is \
+                    slower than its supply could drive it",
+        reaction: "none can be taken by a program: press the hand-held stop, which opens the motor's own line",
+        within_ticks: None,
+        clear: REPAIR,
+    },
+    FaultSpec {
         fault: Fault::DriveSilent,
         name: "drive-silent",
         cause: "the link is cut or too noisy, or the drive hangs, is reset or has no power",
         detector: Detector::Comms,
         detection: "no block from the drive for 5 ms",
-        reaction: "comms switches its enable line off: the bridge floats",
+        reaction: LINE_OFF,
         within_ticks: Some(140),
         clear: CLEAR,
     },
@@ -284,7 +337,7 @@ pub const FAULTS: [FaultSpec; 26] = [
         cause: "the drive was reset while armed and is back within 5 ms; if it takes longer it is drive-silent",
         detector: Detector::Comms,
         detection: "the drive's ticks restart",
-        reaction: "comms switches its enable line off: the bridge floats",
+        reaction: LINE_OFF,
         within_ticks: Some(140),
         clear: CLEAR,
     },
@@ -346,6 +399,57 @@ pub const FAULTS: [FaultSpec; 26] = [
         detection: "its panic or fault handler, at the next boot",
         reaction: STAYS,
         within_ticks: None,
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::DriveClock,
+        name: "drive-clock",
+        cause: "a crystal of the wrong frequency, a timer that is disturbed, or blocks that are late by 20 ms",
+        detector: Detector::Comms,
+        detection: "the drive's ticks and the milliseconds of comms differ by more than 20 ms within 4 s",
+        reaction: LINE_OFF,
+        within_ticks: Some(1_100),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::CommsOvercurrent,
+        name: "comms-overcurrent",
+        cause: "the drive does not react to too much current",
+        detector: Detector::Comms,
+        detection: "more than 1.95 A in 4 consecutive samples while the drive is armed",
+        reaction: LINE_OFF,
+        within_ticks: Some(100),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::TorqueBeyondBounds,
+        name: "torque-beyond-bounds",
+        cause: "the drive computes wrongly",
+        detector: Detector::Comms,
+        detection: "in 4 consecutive samples the torque is above limits.torque_nm, or the model's above its static \
+                    torque, as committed",
+        reaction: LINE_OFF,
+        within_ticks: Some(100),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::CurrentBesideTorque,
+        name: "current-beside-torque",
+        cause: "the drive's current loop does not follow, and it does not react",
+        detector: Detector::Comms,
+        detection: "in 120 consecutive samples that are not limited the current is more than 0.25 A from that of the torque",
+        reaction: LINE_OFF,
+        within_ticks: Some(220),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::CommsOverspeed,
+        name: "comms-overspeed",
+        cause: "the drive does not react to too much speed",
+        detector: Detector::Comms,
+        detection: "in 3 consecutive blocks the counts are above 1.15 times limits.speed_rad_s",
+        reaction: LINE_OFF,
+        within_ticks: Some(160),
         clear: CLEAR,
     },
 ];

@@ -82,6 +82,9 @@ pub use state::{LimitReason, State};
 /// Ticks of the drive in a second.
 pub const TICKS_PER_S: u32 = 20_000;
 
+/// Length of a tick of the drive, µs.
+pub const TICK_US: u32 = 50;
+
 /// Length of a tick of the drive, s.
 pub const TICK_S: f64 = 5e-5;
 

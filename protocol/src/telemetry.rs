@@ -88,7 +88,9 @@ impl SampleFlags {
     pub const SETTLING: u16 = 1 << 2;
     /// The encoder's count was implausible.
     pub const LOST: u16 = 1 << 3;
-    /// The bridge is driven.
+    /// The motor is driven with the torque of the sample. Not while arming pushes,
+    /// and not in a tick in which the bridge floats: without a measured current, or
+    /// without the enable line of comms.
     pub const ENERGISED: u16 = 1 << 4;
     /// Lowest bit of the [`LimitReason`].
     pub const LIMIT_SHIFT: u32 = 5;

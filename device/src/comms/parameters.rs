@@ -1,5 +1,7 @@
 //! The parameters that comms owns: committed, pending at the drive, saved.
 
+use crate::comms::sample_checks::Bounds;
+use crepitus_protocol::telemetry::{Block, SampleFlags};
 use crepitus_protocol::{DeviceSettings, Revision, ValueError, Values};
 
 /// Committed parameters, and a pending commit.
@@ -12,6 +14,10 @@ pub struct Parameters {
     /// The latest revision number used.
     latest: Revision,
     saved: Option<Revision>,
+    /// Bounds of the committed values.
+    bounds: Bounds,
+    /// Bounds of all values that may still be in force.
+    wide_bounds: Bounds,
 }
 
 impl Parameters {
@@ -21,12 +27,16 @@ impl Parameters {
             *revision != Revision::NONE && DeviceSettings::of(values).is_ok()
         });
         let (revision, values) = saved.unwrap_or((Revision(1), Values::default()));
+        // Both are valid: of the defaults a test knows.
+        let bounds = DeviceSettings::of(&values).map_or(Bounds::NONE, |s| Bounds::of(&s));
         Self {
             revision,
             values,
             pending: None,
             latest: revision,
             saved: saved.map(|(revision, _)| revision),
+            bounds,
+            wide_bounds: bounds,
         }
     }
 
@@ -56,12 +66,13 @@ impl Parameters {
     /// [`ValueError`] if the values are invalid, or need a disarmed device and
     /// it `is_live`.
     pub fn propose(&mut self, values: &Values, is_live: bool) -> Result<Revision, ValueError> {
-        DeviceSettings::of(values)?;
+        let settings = DeviceSettings::of(values)?;
         if is_live && let Some(id) = values.needs_disarmed(&self.values) {
             return Err(ValueError::NeedsDisarmed { id });
         }
         self.latest = self.latest.next();
         self.pending = Some((self.latest, *values));
+        self.wide_bounds = self.wide_bounds.or(Bounds::of(&settings));
         Ok(self.latest)
     }
 
@@ -69,6 +80,9 @@ impl Parameters {
     pub fn accept(&mut self) {
         if let Some((revision, values)) = self.pending.take() {
             (self.revision, self.values) = (revision, values);
+            if let Ok(settings) = DeviceSettings::of(&values) {
+                self.bounds = Bounds::of(&settings);
+            }
         }
     }
 
@@ -81,6 +95,20 @@ impl Parameters {
     pub fn renumber(&mut self) {
         self.latest = self.latest.next();
         self.revision = self.latest;
+    }
+
+    /// Narrows the bounds once a block shows that the committed values are in
+    /// force, with no ramp in progress.
+    pub fn shown(&mut self, block: &Block) {
+        let is_settling = (block.samples.iter()).any(|s| s.flags.has(SampleFlags::SETTLING));
+        if block.revision == self.revision && self.pending.is_none() && !is_settling {
+            self.wide_bounds = self.bounds;
+        }
+    }
+
+    /// Bounds of all values that may still be in force.
+    pub fn bounds_in_force(&self) -> Bounds {
+        self.wide_bounds
     }
 
     /// The values that the drive lacks: the pending commit, else the committed

@@ -196,6 +196,7 @@ impl Comms {
         if let Some(fault) = self.supervision.clear(self.line_is_on) {
             return Err(Refusal::Faulted { code: fault.code() });
         }
+        self.drive_clock.restart();
         if self.drive.status().is_some_and(|status| status.fault != 0) {
             self.command(request, Order::ClearFault)
         } else {

@@ -76,6 +76,14 @@ impl Supervision {
         }
     }
 
+    /// Raises a fault that comms has seen in the drive's samples; returns whether
+    /// there was none before.
+    pub fn observed(&mut self, fault: Fault) -> bool {
+        let is_first = self.fault.is_none();
+        self.fail(fault);
+        is_first
+    }
+
     /// Compares the drive's schema hash with that of comms.
     pub fn check_schema(&mut self, hash: u64) {
         self.schema_mismatch = hash != schema::HASH;

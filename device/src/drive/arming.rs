@@ -18,7 +18,7 @@ use crepitus_protocol::Fault;
 /// Ticks over which the sensor's offset is averaged.
 const OFFSET_TICKS: u32 = 64;
 
-/// Largest offset of the current sensor, A.
+/// Largest offset of a current sensor, A.
 const LARGEST_OFFSET_A: f32 = 0.1;
 
 /// Ticks within which the read-back follows the output.
@@ -63,7 +63,8 @@ pub struct Arming {
     step: Step,
     /// Ticks in this step.
     ticks: u32,
-    offset_sum_a: f32,
+    /// Sums of the two sensors' currents.
+    offset_sums_a: (f32, f32),
     /// Counts moved in the push's direction, minus those against it.
     moved_counts: i32,
     last_count: Option<i32>,
@@ -74,7 +75,7 @@ impl Default for Arming {
         Self {
             step: Step::Offset,
             ticks: 0,
-            offset_sum_a: 0.0,
+            offset_sums_a: (0.0, 0.0),
             moved_counts: 0,
             last_count: None,
         }
@@ -82,8 +83,14 @@ impl Default for Arming {
 }
 
 impl Arming {
-    /// Runs one tick with the raw current, the line's read-back and the encoder.
-    pub fn tick(&mut self, raw_a: Option<f32>, line_is_on: bool, count: i32) -> ArmingOutput {
+    /// Runs one tick with the raw currents of sensor and monitor, the line's
+    /// read-back and the encoder.
+    pub fn tick(
+        &mut self,
+        raw_a: Option<(f32, f32)>,
+        line_is_on: bool,
+        count: i32,
+    ) -> ArmingOutput {
         self.ticks = self.ticks.saturating_add(1);
         match self.step {
             Step::Offset => self.offset(raw_a, line_is_on),
@@ -94,11 +101,12 @@ impl Arming {
         }
     }
 
-    /// The current sensor's offset, once measured, A.
-    pub fn offset_a(&self) -> Option<f32> {
+    /// Offsets of the current sensor and of the monitor, once measured, A.
+    pub fn offsets_a(&self) -> Option<(f32, f32)> {
         #[expect(clippy::cast_precision_loss, reason = "a small number")]
-        let mean_a = self.offset_sum_a / OFFSET_TICKS as f32;
-        (self.step != Step::Offset).then_some(mean_a)
+        let share = 1.0 / OFFSET_TICKS as f32;
+        let (sensor_a, monitor_a) = self.offset_sums_a;
+        (self.step != Step::Offset).then_some((sensor_a * share, monitor_a * share))
     }
 
     /// Whether the push has shown that encoder and motor turn the same way.
@@ -110,22 +118,24 @@ impl Arming {
         (self.step, self.ticks) = (step, 0);
     }
 
-    fn offset(&mut self, raw_a: Option<f32>, line_is_on: bool) -> ArmingOutput {
+    fn offset(&mut self, raw_a: Option<(f32, f32)>, line_is_on: bool) -> ArmingOutput {
         if line_is_on {
             return ArmingOutput::Failed(Fault::EnableStuckOn);
         }
-        let Some(raw_a) = raw_a else {
+        let Some((sensor_a, monitor_a)) = raw_a else {
             return ArmingOutput::Failed(Fault::CurrentMissing);
         };
-        self.offset_sum_a += raw_a;
+        self.offset_sums_a.0 += sensor_a;
+        self.offset_sums_a.1 += monitor_a;
         if self.ticks < OFFSET_TICKS {
             return ArmingOutput::Off;
         }
         self.go_to(Step::FirstOn);
         // `<=` so that NaN fails.
+        let is_small = |offset_a: f32| offset_a.abs() <= LARGEST_OFFSET_A;
         if self
-            .offset_a()
-            .is_some_and(|mean_a| mean_a.abs() <= LARGEST_OFFSET_A)
+            .offsets_a()
+            .is_some_and(|(sensor_a, monitor_a)| is_small(sensor_a) && is_small(monitor_a))
         {
             ArmingOutput::Line
         } else {
@@ -188,7 +198,7 @@ mod tests {
         let (mut line, mut count, mut ticks) = (stuck.unwrap_or(false), i32::MAX - 20, 0);
         let mut speed = 0;
         loop {
-            let wish = arming.tick(Some(raw_a), stuck.unwrap_or(line), count);
+            let wish = arming.tick(Some((raw_a, raw_a)), stuck.unwrap_or(line), count);
             ticks += 1;
             match wish {
                 ArmingOutput::Off => line = false,
@@ -237,7 +247,7 @@ mod tests {
                 let (wish, is_proven) = (0_i32..1_000)
                     .find_map(|tick| {
                         let hand = per_mille * tick * tick / 2_000;
-                        let wish = arming.tick(Some(0.0), line, hand + pushed);
+                        let wish = arming.tick(Some((0.0, 0.0)), line, hand + pushed);
                         match wish {
                             ArmingOutput::Off => line = false,
                             ArmingOutput::Line => line = true,
@@ -280,7 +290,7 @@ mod tests {
     fn a_line_that_does_not_fall_again_is_stuck() {
         let mut arming = Arming::default();
         let wish = (0..200)
-            .map(|n| arming.tick(Some(0.0), n >= 65, 0))
+            .map(|n| arming.tick(Some((0.0, 0.0)), n >= 65, 0))
             .find(|wish| matches!(wish, ArmingOutput::Failed(_)));
         assert_eq!(wish, Some(ArmingOutput::Failed(Fault::EnableStuckOn)));
     }

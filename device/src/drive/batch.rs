@@ -77,6 +77,11 @@ impl Batch {
         self.first_tick = self.first_tick.wrapping_add(BLOCK_SAMPLES as u64);
     }
 
+    /// True if the next sample begins a block.
+    pub fn begins_block(&self) -> bool {
+        self.filled == 0
+    }
+
     /// Number of queued blocks.
     pub fn queued(&self) -> usize {
         self.queued

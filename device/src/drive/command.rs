@@ -4,27 +4,45 @@
 use crate::counters::Counters;
 use crate::drive::Boot;
 use crate::drive::batch::Batch;
+use crate::drive::emf_check::{EmfCheck, Tick};
+use crate::drive::exchange::{Exchange, Rendered, Turn};
 use crate::drive::motor::{Bridge, Motor};
 use crate::drive::plausibility::{Observation, Plausibility};
 use crate::drive::prepare::{CommandPlan, MotorPlan};
-use crate::drive::rendering::Rendered;
 use crate::drive::safety::{Permit, Safety};
-use crate::drive::sampler::Sampled;
 use crepitus_model::Real;
 use crepitus_model::control::current_loop::Limit;
 
 use crepitus_protocol::counters::DriveCounter;
+use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::telemetry::{Block, BlockFlags, NO_CURRENT, Sample, SampleFlags};
-use crepitus_protocol::{LimitReason, Revision, State};
+use crepitus_protocol::{Fault, LimitReason, Revision, State};
+
+/// Ticks for which the enable line of comms may be off though comms permits torque:
+/// more than the timeout of heartbeats, which says what is the matter.
+const COMMS_LINE_TICKS: u32 = 120;
+
+/// Largest current of a floating bridge, A: twice the largest offset.
+const FLOATING_A: f32 = 0.2;
+
+/// For how long it may be larger, ticks: the current dies away within one.
+const FLOATING_TICKS: u32 = 20;
 
 /// Inputs from the peripherals in the middle of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inputs {
-    /// The current, A, positive towards growing angle; `None` if the converter
-    /// has no result.
+    /// The current, A, positive towards growing angle: that of the loop. `None`
+    /// if its converter has no result.
     pub current_a: Option<f32>,
+    /// The same by a shunt, an amplifier and a converter of its own, which
+    /// nothing but checks uses.
+    pub monitor_a: Option<f32>,
+    /// Time since the last call, by another timer than the one that calls, µs.
+    pub interval_us: u32,
     /// The drive's enable line, as read back.
     pub enable_is_on: bool,
+    /// The enable line of comms, at its gate.
+    pub comms_enable_is_on: bool,
     /// The hardware's break input has tripped.
     pub has_tripped: bool,
 }
@@ -36,24 +54,39 @@ pub struct Outputs {
     pub enable: bool,
     /// The bridge: floating at once, or driven from the next PWM period on.
     pub bridge: Bridge,
+    /// The same as a share of the supply's voltage, −1 to 1, rounded.
+    pub duty: f32,
 }
 
 /// Commands the motor, once a tick.
 #[derive(Clone, Debug)]
 pub struct Command {
+    /// Number of the next tick: the clock of every timeout.
+    next_tick: u64,
     safety: Safety,
     motor: Motor,
+    /// Offset of the monitor, A.
+    monitor_offset_a: f32,
     plausibility: Plausibility,
+    emf_check: EmfCheck,
+    /// Angle of one count, rad.
+    rad_per_count: f32,
     speed_limit_rad_s: f32,
     /// The bridge was driven in the previous tick.
     was_driven: bool,
-    /// The state after that tick.
-    last_state: State,
+    /// Consecutive ticks with a current while the bridge floats.
+    conducting_ticks: u32,
+    /// Consecutive ticks without the enable line of comms.
+    without_comms_ticks: u32,
     /// Revision of the active parameters.
     revision: Revision,
     /// The line, as read back.
     line_is_on: bool,
     batch: Batch,
+    /// The encoder's last count, and that of the angle's zero.
+    count: i32,
+    zero: i32,
+    lost_ticks: u32,
     zeroed: bool,
     /// Boot counter of the drive.
     start: u16,
@@ -63,25 +96,33 @@ impl Command {
     /// The state after boot.
     pub fn new(motor: &MotorPlan, plan: &CommandPlan, boot: &Boot) -> Self {
         Self {
+            next_tick: boot.tick,
             safety: Safety::new(boot.identity.reset),
             motor: Motor::new(motor),
+            monitor_offset_a: 0.0,
             plausibility: Plausibility::default(),
+            emf_check: EmfCheck::default(),
+            rad_per_count: plan.rad_per_count,
             speed_limit_rad_s: plan.speed_limit_rad_s,
             was_driven: false,
-            last_state: State::Disarmed,
+            conducting_ticks: 0,
+            without_comms_ticks: 0,
             revision: plan.revision,
             line_is_on: false,
             batch: Batch::new(boot.tick, boot.sequence),
+            count: boot.counter.cast_signed(),
+            zero: boot.counter.cast_signed(),
+            lost_ticks: 0,
             zeroed: false,
             start: boot.start,
         }
     }
 
-    /// Applies new parameters from the next tick on.
-    pub fn apply(&mut self, plan: &CommandPlan, counters: &Counters) {
+    fn apply(&mut self, plan: &CommandPlan, counters: &Counters) {
         if let Some(motor) = &plan.motor {
             self.motor = Motor::new(motor);
         }
+        self.rad_per_count = plan.rad_per_count;
         self.speed_limit_rad_s = plan.speed_limit_rad_s;
         self.revision = plan.revision;
         counters.count(DriveCounter::Commits);
@@ -97,9 +138,33 @@ impl Command {
         self.line_is_on
     }
 
-    /// Records that the angle's zero was set.
-    pub fn set_zeroed(&mut self) {
+    /// Number of the next tick.
+    pub fn next_tick(&self) -> u64 {
+        self.next_tick
+    }
+
+    /// Sets the angle's zero here.
+    ///
+    /// # Errors
+    /// [`DriveRefusal::Armed`] while it is armed or arming.
+    pub fn zero(&mut self) -> Result<(), DriveRefusal> {
+        if self.safety.is_live() {
+            return Err(DriveRefusal::Armed);
+        }
+        self.zero = self.count;
         self.zeroed = true;
+        Ok(())
+    }
+
+    /// Starts arming.
+    ///
+    /// # Errors
+    /// [`DriveRefusal`] if it cannot start.
+    pub fn arm(&mut self) -> Result<(), DriveRefusal> {
+        if self.revision == Revision::NONE {
+            return Err(DriveRefusal::NoParameters);
+        }
+        self.safety.arm(self.next_tick, self.lost_ticks)
     }
 
     /// Whether the angle's zero was set.
@@ -122,11 +187,6 @@ impl Command {
         self.batch.pop();
     }
 
-    /// Whether the drive was armed after the last tick; then torque is applied.
-    pub fn was_armed(&self) -> bool {
-        self.last_state == State::Armed
-    }
-
     /// The safety state machine.
     pub fn safety(&self) -> &Safety {
         &self.safety
@@ -137,50 +197,131 @@ impl Command {
         &mut self.safety
     }
 
-    /// Runs one tick.
+    /// Runs one tick with the newest result of `render_torque`, and with the plan
+    /// that is stored, which it applies when it is due. Before the first result
+    /// there is no tick.
     pub fn tick(
         &mut self,
         inputs: &Inputs,
-        sampled: &Sampled,
-        rendered: Option<&Rendered>,
+        plan: Option<&CommandPlan>,
+        exchange: &Exchange,
         counters: &Counters,
     ) -> Outputs {
+        let Some(rendered) = exchange.rendered() else {
+            return Outputs::default();
+        };
+        if let Some(plan) = plan.filter(|_| exchange.command_takes_plan()) {
+            self.apply(plan, counters);
+            exchange.command_took_plan();
+        }
+        let outputs = self.command(inputs, &rendered, counters);
+        exchange.announce(Turn {
+            tick: low(self.next_tick),
+            begins_block: self.batch.begins_block(),
+            is_armed: self.safety.state() == State::Armed,
+        });
+        outputs
+    }
+
+    fn command(&mut self, inputs: &Inputs, rendered: &Rendered, counters: &Counters) -> Outputs {
+        let now = self.next_tick;
+        self.next_tick = now.wrapping_add(1);
         self.line_is_on = inputs.enable_is_on;
-        let is_late = rendered.is_none_or(|rendered| rendered.tick != sampled.tick);
-        let rendered = rendered.copied().unwrap_or_default();
+        (self.count, self.lost_ticks) = (rendered.count, rendered.lost_ticks);
+        let is_late = rendered.tick != low(now);
         let mut permit = self.safety.tick(
-            sampled.tick,
-            inputs.current_a,
+            now,
+            inputs.current_a.zip(inputs.monitor_a),
             inputs.enable_is_on,
-            sampled.count,
+            rendered.count,
             counters,
         );
-        if let Some(offset_a) = self.safety.offset_a() {
-            self.motor.set_offset(offset_a);
+        if let Some((sensor_a, monitor_a)) = self.safety.offsets_a() {
+            self.motor.set_offset(sensor_a);
+            self.monitor_offset_a = monitor_a;
         }
+        permit = self.with_comms(permit, inputs.comms_enable_is_on, counters);
         let current_a = inputs.current_a.map(|raw_a| self.motor.current_a(raw_a));
+        let monitor_a = inputs.monitor_a.map(|raw_a| raw_a - self.monitor_offset_a);
+        self.check_floating(current_a.zip(monitor_a), rendered.omega_rad_s, counters);
         if matches!(permit, Permit::Torque | Permit::Push(_)) {
+            let emf_contradicts = self.check_emf(rendered, current_a, is_late);
             permit = self.checked(
                 permit,
                 &Observation {
-                    lost_ticks: sampled.lost_ticks,
-                    omega_rad_s: sampled.omega_rad_s,
+                    lost_ticks: rendered.lost_ticks,
+                    omega_rad_s: rendered.omega_rad_s,
                     is_late,
                     torque_is_finite: rendered.torque_nm.is_finite(),
                     current_a,
+                    monitor_a,
+                    emf_contradicts,
+                    interval_us: inputs.interval_us,
                     enable_is_on: inputs.enable_is_on,
                     has_tripped: inputs.has_tripped,
                 },
                 counters,
             );
         }
-        let outputs = self.drive(permit, sampled, &rendered, current_a);
-        let sample = self.sample(permit, sampled, &rendered, current_a, is_late, counters);
-        let state = self.safety.state();
-        self.last_state = state;
-        let flags = BlockFlags::new(state, self.zeroed, self.start);
+        let outputs = self.drive(permit, rendered, current_a);
+        let is_energised = permit == Permit::Torque && outputs.bridge != Bridge::Float;
+        let sample = self.sample(is_energised, rendered, current_a, is_late, counters);
+        let flags = BlockFlags::new(self.safety.state(), self.zeroed, self.start);
         self.batch.push(sample, self.revision, flags, counters);
         outputs
+    }
+
+    /// Lets the bridge float while the enable line of comms is off, so that the
+    /// checks do not take an open bridge for a broken sensor. The reason follows on
+    /// the link; without one, the wire is broken.
+    fn with_comms(&mut self, permit: Permit, is_on: bool, counters: &Counters) -> Permit {
+        let is_driving = matches!(permit, Permit::Torque | Permit::Push(_));
+        if is_on || !is_driving {
+            self.without_comms_ticks = 0;
+            return permit;
+        }
+        self.without_comms_ticks = self.without_comms_ticks.saturating_add(1);
+        if self.without_comms_ticks < COMMS_LINE_TICKS {
+            return Permit::Line;
+        }
+        self.safety.fail(Fault::CommsLineOff, counters);
+        Permit::Nothing
+    }
+
+    /// Compares back-EMF with the counts; true if they contradict each other.
+    fn check_emf(&mut self, rendered: &Rendered, current_a: Option<f32>, is_late: bool) -> bool {
+        let is_sound = !is_late && rendered.lost_ticks == 0;
+        let tick = (self.motor.mean_v().zip(current_a))
+            .filter(|_| is_sound)
+            .map(|(volts, current_a)| Tick {
+                volts,
+                current_a,
+                count: rendered.count,
+            });
+        self.emf_check
+            .contradicts(tick, self.motor.plan(), self.rad_per_count)
+    }
+
+    /// Checks that a floating bridge has no current: a shorted switch and a diode
+    /// would brake. Both sensors have to agree.
+    fn check_floating(
+        &mut self,
+        currents_a: Option<(f32, f32)>,
+        omega_rad_s: f32,
+        counters: &Counters,
+    ) {
+        let conducts = currents_a.is_some_and(|(sensor_a, monitor_a)| {
+            sensor_a.abs() > FLOATING_A && monitor_a.abs() > FLOATING_A
+        });
+        let is_slow = omega_rad_s.abs() < self.motor.plan().floats_below_rad_s;
+        self.conducting_ticks = if conducts && is_slow && !self.was_driven {
+            self.conducting_ticks.saturating_add(1)
+        } else {
+            0
+        };
+        if self.conducting_ticks >= FLOATING_TICKS {
+            self.safety.fail(Fault::CurrentWhileFloating, counters);
+        }
     }
 
     /// Withdraws the permit if a plausibility check fails.
@@ -205,13 +346,7 @@ impl Command {
         }
     }
 
-    fn drive(
-        &mut self,
-        permit: Permit,
-        sampled: &Sampled,
-        rendered: &Rendered,
-        current_a: Option<f32>,
-    ) -> Outputs {
+    fn drive(&mut self, permit: Permit, rendered: &Rendered, current_a: Option<f32>) -> Outputs {
         let torque_nm = match permit {
             Permit::Nothing | Permit::Line => None,
             Permit::Push(amperes) => Some(-amperes * self.motor.joint_constant()),
@@ -221,7 +356,7 @@ impl Command {
             None => self.motor.float(),
             Some(torque_nm) => {
                 if !self.was_driven {
-                    self.motor.start(sampled.omega_rad_s);
+                    self.motor.start(rendered.omega_rad_s);
                 }
                 self.motor.drive(torque_nm, current_a)
             }
@@ -230,36 +365,35 @@ impl Command {
         Outputs {
             enable: permit != Permit::Nothing,
             bridge,
+            duty: self.motor.duty(bridge),
         }
     }
 
     fn sample(
         &self,
-        permit: Permit,
-        sampled: &Sampled,
+        is_energised: bool,
         rendered: &Rendered,
         current_a: Option<f32>,
         is_late: bool,
         counters: &Counters,
     ) -> Sample {
-        let is_armed = permit == Permit::Torque;
         let by_motor = match self.motor.limited_by() {
             Some(Limit::Current) => LimitReason::Current,
             Some(Limit::Voltage) => LimitReason::Voltage,
             None => LimitReason::None,
         };
-        let limit = match (is_armed, rendered.flags.limit()) {
+        let limit = match (is_energised, rendered.flags.limit()) {
             (false, _) => LimitReason::NotArmed,
             (true, LimitReason::None | LimitReason::NotArmed) => by_motor,
             (true, reason) => reason,
         };
         for (counter, is_active) in [
-            (DriveCounter::LostSamples, sampled.lost_ticks > 0),
+            (DriveCounter::LostSamples, rendered.lost_ticks > 0),
             (DriveCounter::LateTicks, is_late),
             (DriveCounter::MissedCurrents, current_a.is_none()),
             (
                 DriveCounter::LimitedTicks,
-                is_armed && limit != LimitReason::None,
+                is_energised && limit != LimitReason::None,
             ),
         ] {
             if is_active {
@@ -267,17 +401,27 @@ impl Command {
             }
         }
         Sample {
-            count: sampled.count,
+            count: rendered.count.wrapping_sub(self.zero),
             model_torque_nm: rendered.model_torque_nm,
-            torque_nm: if is_armed { rendered.torque_nm } else { 0.0 },
+            torque_nm: if is_energised {
+                rendered.torque_nm
+            } else {
+                0.0
+            },
             current_ma: current_a.map_or(NO_CURRENT, milliamperes),
             flags: rendered
                 .flags
                 .with_limit(limit)
-                .with(SampleFlags::ENERGISED, is_armed)
+                .with(SampleFlags::ENERGISED, is_energised)
                 .with(SampleFlags::LATE, is_late),
         }
     }
+}
+
+/// The lowest 32 bits.
+#[expect(clippy::cast_possible_truncation, reason = "the lowest bits")]
+fn low(tick: u64) -> u32 {
+    tick as u32
 }
 
 /// Rounds and clamps to the range of i16, never [`NO_CURRENT`].

@@ -7,7 +7,6 @@ use crate::drive::commits::Commits;
 use crate::drive::heartbeat_monitor::Freshness;
 use crate::drive::link::Link;
 use crate::drive::outgoing::{Outgoing, PIECE_SAMPLES};
-use crate::drive::sampler::Sampler;
 use core::borrow::BorrowMut;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::frame::{EncodedFrame, FrameBuffer};
@@ -18,11 +17,8 @@ use crepitus_protocol::{Decoder, Fault, Lane, Revision, State};
 /// Resources shared with the other tasks. The firmware holds a lock while
 /// `work` runs, so `work` is short.
 pub trait Shared {
-    /// Owned by `command_motor`: state, faults, blocks.
+    /// Owned by `command_motor`: the clock, state, faults, blocks, the zero.
     fn command<R>(&mut self, work: impl FnOnce(&mut Command) -> R) -> R;
-
-    /// Owned by `sample_encoder`: the clock, the angle's zero.
-    fn sampler<R>(&mut self, work: impl FnOnce(&mut Sampler) -> R) -> R;
 
     /// Owned by the idle loop: pending commits.
     fn commits<R>(&mut self, work: impl FnOnce(&mut Commits) -> R) -> R;
@@ -90,8 +86,8 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
     fn handle(&mut self, message: &ToDrive, shared: &mut impl Shared, counters: &Counters) {
         match message {
             ToDrive::Heartbeat(heartbeat) => {
-                let now = shared.sampler(|sampler| sampler.next_tick());
                 let freshness = shared.command(|command| {
+                    let now = command.next_tick();
                     command
                         .safety_mut()
                         .receive_heartbeat(now, heartbeat, counters)
@@ -117,9 +113,9 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
                 number,
                 order,
             } => {
-                let now = shared.sampler(|sampler| sampler.next_tick());
+                let now = shared.command(|command| command.next_tick());
                 if self.link.accepts(now, *seen_tick, *number, counters)
-                    && let Some(result) = execute(now, *order, shared)
+                    && let Some(result) = execute(*order, shared)
                 {
                     self.link.finish(result);
                 }
@@ -187,9 +183,9 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             let answer = self.link.take_answer()?;
             return self.outgoing.begin_answer(buffer, &answer).ok();
         }
-        let now = shared.sampler(|sampler| sampler.next_tick());
+        let (now, has_block) =
+            shared.command(|command| (command.next_tick(), command.block().is_some()));
         let is_status_due = self.link.is_status_due(now);
-        let has_block = shared.command(|command| command.block().is_some());
         if has_block && !(is_status_due && self.blocks_before_status == 0) {
             let buffer = spare()?;
             let outgoing = &mut self.outgoing;
@@ -198,18 +194,18 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
         if is_status_due {
             let buffer = spare()?;
             self.link.status_sent(now);
-            let status = self.status(now, shared, counters);
+            let status = self.status(shared, counters);
             return self.outgoing.begin_status(buffer, &status).ok();
         }
         None
     }
 
-    fn status(&self, now: u64, shared: &mut impl Shared, counters: &Counters) -> DriveStatus {
+    fn status(&self, shared: &mut impl Shared, counters: &Counters) -> DriveStatus {
         let refused = shared.commits(|commits| commits.refused());
         shared.command(|command| {
             let safety = command.safety();
             DriveStatus {
-                tick: now,
+                tick: command.next_tick(),
                 start: self.start,
                 comms_start: safety.comms_start(),
                 state: safety.state(),
@@ -248,35 +244,14 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
 }
 
 /// Executes an order; `None` while its result is pending.
-fn execute(now: u64, order: Order, shared: &mut impl Shared) -> Option<Result<(), DriveRefusal>> {
-    match order {
-        Order::Arm => {
-            let lost_ticks = shared.sampler(|sampler| sampler.lost_ticks());
-            shared.command(|command| {
-                if command.revision() == Revision::NONE {
-                    return Some(Err(DriveRefusal::NoParameters));
-                }
-                // The result of arming comes later.
-                command.safety_mut().arm(now, lost_ticks).err().map(Err)
-            })
-        }
-        Order::Zero => {
-            let is_live = shared.command(|command| {
-                let is_live = command.safety().is_live();
-                if !is_live {
-                    command.set_zeroed();
-                }
-                is_live
-            });
-            if is_live {
-                return Some(Err(DriveRefusal::Armed));
-            }
-            shared.sampler(Sampler::zero);
-            Some(Ok(()))
-        }
-        Order::ClearFault => Some(shared.command(|command| {
+fn execute(order: Order, shared: &mut impl Shared) -> Option<Result<(), DriveRefusal>> {
+    shared.command(|command| match order {
+        // The result of arming comes later.
+        Order::Arm => command.arm().err().map(Err),
+        Order::Zero => Some(command.zero()),
+        Order::ClearFault => {
             let line_is_on = command.line_is_on();
-            command.safety_mut().clear(line_is_on)
-        })),
-    }
+            Some(command.safety_mut().clear(line_is_on))
+        }
+    })
 }

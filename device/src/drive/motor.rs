@@ -1,5 +1,6 @@
 //! The current loop of `command_motor`, and the back-EMF speed estimate.
 
+use crate::drive::plausibility::CURRENT_SLACK_A;
 use crate::drive::prepare::MotorPlan;
 use crepitus_model::Real;
 use crepitus_model::control::current_loop::{CurrentLoop, Limit};
@@ -17,6 +18,10 @@ pub enum Bridge {
 /// Filter gain per tick of the back-EMF speed estimate: 50 Hz.
 const EMF_SHARE: f32 = 0.015_6;
 
+/// Resistance of a winding that is 80 K warmer than assumed, as a share, with a
+/// margin for the speed, which is estimated.
+const WARM: f32 = 1.5;
+
 /// The motor with its current loop.
 #[derive(Clone, Copy, Debug)]
 pub struct Motor {
@@ -28,6 +33,8 @@ pub struct Motor {
     measured_a: f32,
     bridge: Bridge,
     emf_rad_s: f32,
+    /// Output of the tick before the last.
+    before: Bridge,
 }
 
 impl Motor {
@@ -41,6 +48,7 @@ impl Motor {
             measured_a: 0.0,
             bridge: Bridge::Float,
             emf_rad_s: 0.0,
+            before: Bridge::Float,
         }
     }
 
@@ -56,7 +64,7 @@ impl Motor {
 
     /// Lets the bridge float.
     pub fn float(&mut self) -> Bridge {
-        self.bridge = Bridge::Float;
+        (self.before, self.bridge) = (Bridge::Float, Bridge::Float);
         self.setpoint_a = 0.0;
         self.measured_a = 0.0;
         self.bridge
@@ -77,6 +85,7 @@ impl Motor {
     /// growing angle. Without a measurement the bridge floats for this tick.
     pub fn drive(&mut self, torque_nm: f32, current_a: Option<f32>) -> Bridge {
         let setpoint_a = -torque_nm * self.plan.amperes_per_nm;
+        self.before = self.bridge;
         self.bridge = match current_a {
             Some(measured_a) if measured_a.is_finite() && setpoint_a.is_finite() => {
                 self.update_emf(measured_a);
@@ -108,9 +117,49 @@ impl Motor {
         self.current_loop.limited_by()
     }
 
+    /// Whether the limit of the voltage explains that the current is not the
+    /// setpoint: on a shaft of this speed, so much voltage does not drive it. A
+    /// loop whose sensor is broken ends at the limit, too, but with voltage to
+    /// spare.
+    pub fn is_out_of_voltage(&self, omega_rad_s: f32) -> bool {
+        let Bridge::Driven(volts) = self.bridge else {
+            return false;
+        };
+        if self.limited_by() != Some(Limit::Voltage) {
+            return false;
+        }
+        let left_v = (volts - self.plan.joint_constant * omega_rad_s) * 1.0_f32.copysign(volts);
+        let needed_a = self.setpoint_a.abs() + CURRENT_SLACK_A;
+        left_v < WARM * self.plan.resistance_ohm * needed_a
+    }
+
     /// Current setpoint of the last tick, A.
     pub fn setpoint_a(&self) -> f32 {
         self.setpoint_a
+    }
+
+    /// Mean voltage at the motor from the middle of the last tick to that of this
+    /// one, V, before [`Self::drive`]: an output acts from the beginning of the
+    /// tick after its own. `None` if the bridge floated.
+    pub fn mean_v(&self) -> Option<f32> {
+        match (self.before, self.bridge) {
+            (Bridge::Driven(before), Bridge::Driven(last)) => Some(0.5 * (before + last)),
+            _ => None,
+        }
+    }
+
+    /// An output as a share of the supply's voltage, which the loop stays within;
+    /// rounded.
+    pub fn duty(&self, bridge: Bridge) -> f32 {
+        match bridge {
+            Bridge::Driven(volts) => volts * self.plan.duty_per_volt,
+            Bridge::Float => 0.0,
+        }
+    }
+
+    /// Its coefficients.
+    pub fn plan(&self) -> &MotorPlan {
+        &self.plan
     }
 
     /// Joint speed from back-EMF, rad/s; lags 3 ms.
@@ -121,5 +170,41 @@ impl Motor {
     /// Torque at the joint of one ampere, N·m/A.
     pub fn joint_constant(&self) -> f32 {
         self.plan.joint_constant
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::prepare::Preparation;
+
+    /// A motor whose sensor shows nothing, until its voltage is at the limit.
+    fn at_the_limit(torque_nm: f32) -> Motor {
+        let mut motor = Motor::new(&Preparation::new().unwrap().1.motor);
+        motor.start(0.0);
+        for _ in 0..200 {
+            motor.drive(torque_nm, Some(0.0));
+        }
+        assert_eq!(motor.limited_by(), Some(Limit::Voltage));
+        // Torque against growing angle needs a voltage against it.
+        let off = motor.duty(motor.bridge) + 1.0_f32.copysign(torque_nm);
+        assert!(off.abs() < 1e-6);
+        motor
+    }
+
+    #[test]
+    fn the_limit_of_the_voltage_excuses_what_it_explains() {
+        for torque_nm in [-4.0_f32, 4.0] {
+            let motor = at_the_limit(torque_nm);
+            let fast_rad_s = -7.0_f32.copysign(torque_nm);
+            assert!(motor.is_out_of_voltage(fast_rad_s));
+            // With the voltage to spare of a motor at rest, or that is pulled.
+            for omega_rad_s in [0.0, 0.5 * fast_rad_s, -fast_rad_s] {
+                assert!(!motor.is_out_of_voltage(omega_rad_s), "{omega_rad_s}");
+            }
+        }
+        let motor = Motor::new(&Preparation::new().unwrap().1.motor);
+        assert!(!motor.is_out_of_voltage(7.0), "it floats");
+        assert_eq!(motor.duty(Bridge::Float), 0.0);
     }
 }

@@ -1,38 +1,98 @@
 //! Plausibility checks while armed.
 //!
-//! Each check is debounced by the number of ticks that
-//! [`FAULTS`](crepitus_protocol::fault::FAULTS) gives for its fault: a single
-//! disturbed sample is no fault.
+//! Each check is debounced: a single disturbed sample is no fault. The table below has
+//! the ticks, by which [`FAULTS`](crepitus_protocol::fault::FAULTS) gives its
+//! times.
+//!
+//! **Current** is judged by three opinions: the sensor of the loop, the monitor
+//! with a shunt and an amplifier of its own, and what voltage and motion say
+//! ([`emf_check`](crate::drive::emf_check)). The monitor's amplifier also feeds the
+//! comparator, which needs no program.
 
 use crate::drive::motor::Motor;
+use crate::drive::sampler::LOST_TICKS;
 use crepitus_model::Real;
-use crepitus_model::control::current_loop::Limit;
-use crepitus_protocol::Fault;
+use crepitus_protocol::{Fault, TICK_US};
 
 /// Overcurrent threshold, A: the hardware trips there, too.
 pub const TRIP_A: f32 = 1.95;
 
 /// Largest deviation of the current from its setpoint, A.
-const CURRENT_SLACK_A: f32 = 0.2;
+pub(crate) const CURRENT_SLACK_A: f32 = 0.2;
+
+/// Largest difference of the two current sensors, A: 2 × 1 % of the range, and
+/// the noise of two conversions.
+const SENSORS_SLACK_A: f32 = 0.2;
+
+/// Largest deviation of the time between two ticks, µs.
+const INTERVAL_SLACK_US: u32 = 5;
 
 /// Largest difference of back-EMF speed and encoder speed, rad/s, and as a
 /// share of the larger: copper 80 K warmer than assumed.
 const SPEED_SLACK_RAD_S: f32 = 0.5;
 const SPEED_SLACK_SHARE: f32 = 0.25;
 
-/// Debounce: counts consecutive ticks in which a condition holds.
-#[derive(Clone, Copy, Debug, Default)]
-struct Debounce(u32);
+/// Largest sum of what is beyond the slack, rad/s times ticks: 10 mrad.
+const SPEED_EXCESS: f32 = 200.0;
 
-impl Debounce {
-    /// Whether the condition has held for `ticks` consecutive ticks.
-    fn trips(&mut self, condition: bool, ticks: u32) -> bool {
-        if !condition {
-            self.0 = 0;
-            return false;
-        }
-        self.0 = self.0.saturating_add(1);
-        self.0 >= ticks
+/// Late ticks that are too many, and what share of one a tick in time makes up
+/// for.
+const LATE_TICKS: f32 = 20.0;
+const LATE_SHARE: f32 = 0.25;
+
+/// A condition that is a fault when it has held for so many consecutive ticks.
+#[derive(Clone, Copy, Debug)]
+struct Check {
+    fault: Fault,
+    ticks: u16,
+}
+
+const fn check(fault: Fault, ticks: u16) -> Check {
+    Check { fault, ticks }
+}
+
+/// Number of the checks.
+const CHECKS: usize = 12;
+
+/// The checks, the most urgent first; [`Conditions`] has a bit for each.
+const TABLE: [Check; CHECKS] = [
+    check(Fault::Overcurrent, 1),
+    check(Fault::NotANumber, 1),
+    check(Fault::Overcurrent, 2),
+    check(Fault::CurrentDisagreement, 2),
+    check(Fault::SpeedMismatch, 1),
+    check(Fault::CurrentMissing, 3),
+    check(Fault::TickIrregular, 3),
+    check(Fault::EnableStuckOff, 9),
+    check(Fault::EncoderLost, 1),
+    check(Fault::Overspeed, 20),
+    check(Fault::CurrentMismatch, 100),
+    check(Fault::SpeedMismatch, 400),
+];
+
+/// The conditions that hold in a tick, a bit each, in the order of [`TABLE`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Conditions(u16);
+
+impl Conditions {
+    #[inline]
+    fn of(holds: [bool; CHECKS]) -> Self {
+        let bits = holds.into_iter().rev();
+        Self(bits.fold(0, |bits, holds| bits << 1 | u16::from(holds)))
+    }
+}
+
+/// Sums an excess from tick to tick; below zero it forgets. What is far off trips
+/// soon, and what comes and goes trips as well.
+#[derive(Clone, Copy, Debug, Default)]
+struct Excess(f32);
+
+impl Excess {
+    /// Whether the sum has reached `most`.
+    fn trips(&mut self, excess: f32, most: f32) -> bool {
+        self.0 = (self.0 + excess).at_least(0.0);
+        // A NaN trips.
+        self.0.is_nan() || self.0 >= most
     }
 }
 
@@ -53,22 +113,27 @@ pub struct Observation {
     pub torque_is_finite: bool,
     /// The current without the sensor's offset, A.
     pub current_a: Option<f32>,
+    /// The same of the monitor.
+    pub monitor_a: Option<f32>,
+    /// Voltage, current and motion contradict each other over some ticks.
+    pub emf_contradicts: bool,
+    /// Time since the tick before, by another timer, µs.
+    pub interval_us: u32,
     /// The enable line, as read back.
     pub enable_is_on: bool,
     /// The hardware's break input has tripped.
     pub has_tripped: bool,
 }
 
-/// The checks and their debounce counters.
+/// The checks' debounce counters.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Plausibility {
-    overspeed: Debounce,
-    late: Debounce,
-    missing: Debounce,
-    overcurrent: Debounce,
-    mismatch: Debounce,
-    speeds: Debounce,
-    enable: Debounce,
+    /// Consecutive ticks in which each condition has held.
+    held: [u16; CHECKS],
+    late: Excess,
+    speeds: Excess,
+    /// One of the above is not zero.
+    remembers: bool,
 }
 
 impl Plausibility {
@@ -80,47 +145,163 @@ impl Plausibility {
         motor: &Motor,
         speed_limit_rad_s: f32,
     ) -> Option<Fault> {
-        let current_a = observed.current_a;
-        let over = current_a.is_some_and(|a| a.abs() > TRIP_A);
-        let deviates = current_a.is_some_and(|a| {
-            (a - motor.setpoint_a()).abs() > CURRENT_SLACK_A
-                && motor.limited_by() != Some(Limit::Voltage)
-        });
         let (emf, encoder) = (motor.emf_rad_s(), observed.omega_rad_s);
         let slack = SPEED_SLACK_RAD_S + SPEED_SLACK_SHARE * emf.abs().at_least(encoder.abs());
-        let speeds_differ = (emf - encoder).abs() > slack;
-        // Every check runs in every tick, so that no counter misses one.
-        let overcurrent = self.overcurrent.trips(over, 2);
-        let missing = self.missing.trips(current_a.is_none(), 3);
-        let enable = self.enable.trips(!observed.enable_is_on, 9);
-        let is_fast = encoder.abs() > speed_limit_rad_s;
-        let overspeed = self.overspeed.trips(is_fast, 20);
-        let late = self.late.trips(observed.is_late, 20);
-        let mismatch = self.mismatch.trips(deviates, 100);
-        let speeds = self.speeds.trips(speeds_differ, 400);
-        // By urgency.
-        if observed.has_tripped {
-            Some(Fault::Overcurrent)
-        } else if !observed.torque_is_finite {
-            Some(Fault::NotANumber)
-        } else if overcurrent {
-            Some(Fault::Overcurrent)
-        } else if missing {
-            Some(Fault::CurrentMissing)
-        } else if enable {
-            Some(Fault::EnableStuckOff)
-        } else if observed.lost_ticks >= crate::drive::sampler::LOST_TICKS {
-            Some(Fault::EncoderLost)
-        } else if overspeed {
-            Some(Fault::Overspeed)
-        } else if late {
-            Some(Fault::RenderingLate)
-        } else if mismatch {
-            Some(Fault::CurrentMismatch)
-        } else if speeds {
-            Some(Fault::SpeedMismatch)
-        } else {
-            None
+        let speeds_excess = (emf - encoder).abs() - slack;
+        let conditions = conditions(observed, motor, speed_limit_rad_s, speeds_excess);
+        // Mostly there is nothing, and was nothing.
+        if conditions == Conditions(0) && !observed.is_late && !self.remembers {
+            return None;
         }
+        self.count(conditions, observed.is_late, speeds_excess)
+    }
+
+    #[inline(never)]
+    fn count(
+        &mut self,
+        Conditions(mut bits): Conditions,
+        is_late: bool,
+        speeds_excess: f32,
+    ) -> Option<Fault> {
+        let mut fault = None;
+        self.remembers = bits != 0;
+        for (held, check) in self.held.iter_mut().zip(&TABLE) {
+            *held = if bits & 1 == 0 {
+                0
+            } else {
+                held.saturating_add(1)
+            };
+            if fault.is_none() && *held >= check.ticks {
+                fault = Some(check.fault);
+            }
+            bits >>= 1;
+        }
+        let late = self
+            .late
+            .trips(if is_late { 1.0 } else { -LATE_SHARE }, LATE_TICKS);
+        let speeds = self.speeds.trips(speeds_excess, SPEED_EXCESS);
+        self.remembers |= self.late.0 != 0.0 || self.speeds.0 != 0.0;
+        fault
+            .or(late.then_some(Fault::RenderingLate))
+            .or(speeds.then_some(Fault::SpeedMismatch))
+    }
+}
+
+/// The conditions of a tick.
+fn conditions(
+    observed: &Observation,
+    motor: &Motor,
+    speed_limit_rad_s: f32,
+    speeds_excess: f32,
+) -> Conditions {
+    let (current_a, monitor_a) = (observed.current_a, observed.monitor_a);
+    let encoder = observed.omega_rad_s;
+    let is_over = |a: Option<f32>| a.is_some_and(|a| a.abs() > TRIP_A);
+    let sensors_differ = (current_a.zip(monitor_a))
+        .is_some_and(|(sensor, monitor)| (sensor - monitor).abs() > SENSORS_SLACK_A);
+    let deviates = current_a.is_some_and(|a| {
+        (a - motor.setpoint_a()).abs() > CURRENT_SLACK_A && !motor.is_out_of_voltage(encoder)
+    });
+    let is_irregular = observed.interval_us.abs_diff(TICK_US) > INTERVAL_SLACK_US;
+    Conditions::of([
+        observed.has_tripped,
+        !observed.torque_is_finite,
+        is_over(current_a) || is_over(monitor_a),
+        sensors_differ,
+        observed.emf_contradicts,
+        current_a.is_none() || monitor_a.is_none(),
+        is_irregular,
+        !observed.enable_is_on,
+        observed.lost_ticks >= LOST_TICKS,
+        encoder.abs() > speed_limit_rad_s,
+        deviates,
+        speeds_excess > 0.0,
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::prepare::Preparation;
+
+    #[test]
+    fn a_condition_counts_while_it_holds_and_the_most_urgent_is_reported() {
+        for (n, check) in TABLE.iter().enumerate() {
+            let mut plausibility = Plausibility::default();
+            let mut holds = [false; CHECKS];
+            holds[n] = true;
+            let mut run = |holds| plausibility.count(Conditions::of(holds), false, -1.0);
+            for ticks in 1..check.ticks {
+                assert_eq!(run(holds), None, "{n} after {ticks}");
+            }
+            if check.ticks > 1 {
+                assert_eq!(run([false; CHECKS]), None);
+                for _ in 1..check.ticks {
+                    assert_eq!(run(holds), None, "{n} begins anew");
+                }
+            }
+            assert_eq!(run(holds), Some(check.fault));
+        }
+        let mut plausibility = Plausibility::default();
+        let all = Conditions::of([true; CHECKS]);
+        for _ in 0..500 {
+            assert_eq!(plausibility.count(all, true, 1.0), Some(Fault::Overcurrent));
+        }
+        assert!(plausibility.remembers);
+        for _ in 0..2_100 {
+            let none = Conditions::of([false; CHECKS]);
+            plausibility.count(none, false, -1.0);
+        }
+        assert!(!plausibility.remembers);
+    }
+
+    #[test]
+    fn every_other_late_tick_is_too_many_and_one_in_five_is_not() {
+        let none = Conditions::of([false; CHECKS]);
+        for (period, faults) in [(1, true), (2, true), (5, false)] {
+            let mut plausibility = Plausibility::default();
+            let fault = (0..200).find_map(|n| plausibility.count(none, n % period == 0, -1.0));
+            let expected = faults.then_some(Fault::RenderingLate);
+            assert_eq!(fault, expected, "one in {period}");
+        }
+    }
+
+    #[test]
+    fn either_sensor_of_the_current_trips() {
+        let motor = Motor::new(&Preparation::new().unwrap().1.motor);
+        for (current_a, monitor_a, holds) in [
+            (1.9, 1.9, false),
+            (2.0, 1.9, true),
+            (1.9, 2.0, true),
+            (-1.9, -2.0, true),
+        ] {
+            let observed = Observation {
+                lost_ticks: 0,
+                omega_rad_s: 0.0,
+                is_late: false,
+                torque_is_finite: true,
+                current_a: Some(current_a),
+                monitor_a: Some(monitor_a),
+                emf_contradicts: false,
+                interval_us: TICK_US,
+                enable_is_on: true,
+                has_tripped: false,
+            };
+            let mut plausibility = Plausibility::default();
+            let faults = [(); 2].map(|()| plausibility.check(&observed, &motor, 7.0));
+            assert_eq!(faults, [None, holds.then_some(Fault::Overcurrent)]);
+        }
+    }
+
+    #[test]
+    fn an_excess_adds_up_and_is_forgotten() {
+        let mut excess = Excess::default();
+        let mut run = |values: &[f32]| values.iter().any(|value| excess.trips(*value, 20.0));
+        assert!(!run(&[1.0; 19]));
+        assert!(!run(&[-1.0; 100]));
+        // One in three is late: never. Every other: soon.
+        assert!(!run(&[1.0, -0.5, -0.5].repeat(100)));
+        assert!(!run(&[1.0, -0.25].repeat(26)));
+        assert!(run(&[1.0, -0.25].repeat(2)));
     }
 }

@@ -16,6 +16,10 @@ use crepitus_protocol::{DeviceSettings, Revision, TICK_S, ValueError, Values};
 /// Faster counts are disturbances.
 const FASTEST_RAD_S: f64 = 50.0;
 
+/// Share of the supply that the back-EMF of a floating motor may have: the
+/// estimate of its speed lags.
+const FLOATS_SHARE: f64 = 0.7;
+
 /// Delay of the torque: half a tick to a tick and a half, and a lag.
 const TIMING: Timing = Timing {
     step_s: TICK_S,
@@ -85,6 +89,10 @@ pub struct MotorPlan {
     pub resistance_ohm: f32,
     /// Inductance over a tick, Ω: voltage for a change of 1 A per tick.
     pub inductance_per_tick_ohm: f32,
+    /// Share of the supply's voltage for a volt, 1/V.
+    pub duty_per_volt: f32,
+    /// Speed below which no back-EMF makes a floating bridge conduct, rad/s.
+    pub floats_below_rad_s: f32,
     /// Largest current setpoint, A.
     pub current_limit_a: f32,
 }
@@ -92,6 +100,8 @@ pub struct MotorPlan {
 /// New coefficients for `render_torque`.
 #[derive(Clone, Copy, Debug)]
 pub struct RenderingPlan {
+    /// The encoder, if it has changed.
+    pub reader: Option<Reader>,
     /// Angle of one count, rad.
     pub rad_per_count: f32,
     /// The joint.
@@ -111,6 +121,8 @@ pub struct CommandPlan {
     pub revision: Revision,
     /// The motor, if it has changed.
     pub motor: Option<MotorPlan>,
+    /// Angle of one count, rad.
+    pub rad_per_count: f32,
     /// Overspeed threshold, rad/s.
     pub speed_limit_rad_s: f32,
 }
@@ -118,8 +130,6 @@ pub struct CommandPlan {
 /// Prepared parameters, for the tasks to apply.
 #[derive(Clone, Copy, Debug)]
 pub struct Prepared {
-    /// The encoder, if it has changed.
-    pub reader: Option<Reader>,
     /// For `render_torque`.
     pub rendering: RenderingPlan,
     /// For `command_motor`.
@@ -234,8 +244,8 @@ impl Preparation {
         let motor_changed = now.current_loop != next.current_loop
             || now.joint_constant().to_bits() != next.joint_constant().to_bits();
         let prepared = Prepared {
-            reader: encoder_changed.then_some(reader),
             rendering: RenderingPlan {
+                reader: encoder_changed.then_some(reader),
                 rad_per_count: reader.rad_per_count,
                 joint,
                 effects: next.effects.changes(&now.effects, &TIMING)?,
@@ -249,6 +259,7 @@ impl Preparation {
                 } else {
                     None
                 },
+                rad_per_count: reader.rad_per_count,
                 speed_limit_rad_s: single(next.limits.speed_rad_s),
             },
         };
@@ -275,6 +286,7 @@ fn motor(settings: &DeviceSettings) -> Result<MotorPlan, SettingsError> {
         resistance_ohm,
         inductance_h,
         current_limit_a,
+        supply_v,
         ..
     } = settings.current_loop;
     let constant = settings.joint_constant();
@@ -284,6 +296,8 @@ fn motor(settings: &DeviceSettings) -> Result<MotorPlan, SettingsError> {
         amperes_per_nm: single(1.0 / constant),
         resistance_ohm: single(resistance_ohm),
         inductance_per_tick_ohm: single(inductance_h / TICK_S),
+        duty_per_volt: single(1.0 / supply_v),
+        floats_below_rad_s: single(FLOATS_SHARE * supply_v / constant),
         current_limit_a: single(current_limit_a),
     })
 }

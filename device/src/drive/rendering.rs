@@ -1,10 +1,11 @@
-//! `render_torque`: the [pipeline](crepitus_model::render) with the firmware's
-//! stages, and the application of a commit.
+//! `render_torque`: the encoder, the [pipeline](crepitus_model::render) with the
+//! firmware's stages, and the application of a commit.
 //!
 //! The joint runs in every tick, also while torque is off.
 
-use crate::drive::prepare::{JointPlan, RenderingPlan};
-use crate::drive::sampler::Sampled;
+use crate::drive::exchange::{Exchange, Rendered};
+use crate::drive::prepare::{JointPlan, Reader, RenderingPlan};
+use crate::drive::sampler::{Sampled, Sampler};
 use crepitus_model::render::effects::SwitchedEffects;
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
@@ -20,22 +21,10 @@ pub type Symptoms = Option<Crepitus<f32, ExactEvents>>;
 /// The stages of the device.
 pub type Stages = Pipeline<f32, InputCheck<f32>, Symptoms, SwitchedEffects<f32>, TorqueLimits<f32>>;
 
-/// The torque of a tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Rendered {
-    /// Ticks since the start.
-    pub tick: u64,
-    /// Torque setpoint of the motor, N·m.
-    pub torque_nm: f32,
-    /// The model's torque before limits, N·m.
-    pub model_torque_nm: f32,
-    /// Sample flags, without those of the motor.
-    pub flags: SampleFlags,
-}
-
 /// Renders the torque, once a tick.
 #[derive(Clone, Debug)]
 pub struct Rendering {
+    sampler: Sampler,
     stages: Stages,
     /// The joint is removed once it has settled.
     is_removing: bool,
@@ -43,11 +32,12 @@ pub struct Rendering {
 }
 
 impl Rendering {
-    /// Starts with these coefficients.
-    pub fn new(plan: &RenderingPlan) -> Self {
+    /// Starts with these coefficients on a shaft at rest at this count.
+    pub fn new(reader: &Reader, counter: u32, plan: &RenderingPlan) -> Self {
         let limits = InputLimits::device(TICK_S);
         let slew_nm = plan.slew_nm;
         let mut rendering = Self {
+            sampler: Sampler::new(reader, counter),
             stages: Stages::new(
                 InputCheck::new(&limits, f32::from_f64(TICK_S), 0.0),
                 None,
@@ -61,8 +51,7 @@ impl Rendering {
         rendering
     }
 
-    /// Applies new coefficients from the next tick on.
-    pub fn apply(&mut self, plan: &RenderingPlan, omega_rad_s: f32) {
+    fn apply(&mut self, plan: &RenderingPlan, omega_rad_s: f32) {
         let stages = &mut self.stages;
         self.is_removing = false;
         match plan.joint {
@@ -84,13 +73,25 @@ impl Rendering {
         stages.limits.change(plan.torque_limit_nm, plan.slew_nm);
     }
 
-    /// Whether a ramp is in progress: the next commit waits.
-    pub fn is_settling(&self) -> bool {
-        self.is_settling
+    /// Runs one tick with the encoder's counter as the tick begins, and with
+    /// the plan that is stored, which it applies when it is due.
+    pub fn tick(&mut self, counter: u32, plan: Option<&RenderingPlan>, exchange: &Exchange) {
+        let turn = exchange.turn();
+        let due = plan.filter(|_| exchange.render_takes_plan());
+        if let Some(reader) = due.and_then(|plan| plan.reader.as_ref()) {
+            self.sampler.replace(reader);
+        }
+        let sampled = self.sampler.sample(counter);
+        if let Some(plan) = due {
+            self.apply(plan, sampled.omega_rad_s);
+            exchange.render_took_plan();
+        }
+        let rendered = self.render(turn.tick, &sampled, turn.is_armed);
+        exchange.set_settling(self.is_settling);
+        exchange.show(&rendered);
     }
 
-    /// Runs one tick.
-    pub fn tick(&mut self, sampled: &Sampled, is_energised: bool) -> Rendered {
+    fn render(&mut self, tick: u32, sampled: &Sampled, is_energised: bool) -> Rendered {
         let seen = Seen {
             sample: sampled.shaft,
             omega_rad_s: sampled.omega_rad_s,
@@ -112,7 +113,10 @@ impl Rendering {
         }
         self.is_settling = shown.settling;
         Rendered {
-            tick: sampled.tick,
+            tick,
+            count: sampled.count,
+            omega_rad_s: sampled.omega_rad_s,
+            lost_ticks: sampled.lost_ticks,
             torque_nm: shown.torque_nm,
             model_torque_nm: shown.model_torque_nm,
             flags: with(flags, &shown).with(SampleFlags::LOST, sampled.lost_ticks > 0),

@@ -95,9 +95,10 @@ impl Safety {
         self.polarity_proven
     }
 
-    /// The current sensor's offset, once arming has measured it, A.
-    pub fn offset_a(&self) -> Option<f32> {
-        self.arming.offset_a()
+    /// Offsets of the current sensor and of the monitor, A, once arming has
+    /// measured them.
+    pub fn offsets_a(&self) -> Option<(f32, f32)> {
+        self.arming.offsets_a()
     }
 
     /// Takes the result of the last order to arm.
@@ -202,7 +203,7 @@ impl Safety {
     pub fn tick(
         &mut self,
         now: u64,
-        raw_a: Option<f32>,
+        raw_a: Option<(f32, f32)>,
         line_is_on: bool,
         count: i32,
         counters: &Counters,

@@ -1,9 +1,8 @@
-//! `sample_encoder`: shaft motion from the encoder's counter.
+//! Shaft motion from the encoder's counter: the first part of `render_torque`.
 
 use crate::drive::prepare::Reader;
 use crepitus_model::Sample;
 use crepitus_model::control::encoder::EncoderReader;
-use crepitus_protocol::telemetry::BLOCK_TICKS;
 
 /// After this many consecutive implausible counts the reader restarts at the
 /// counter's value: the counter itself was disturbed.
@@ -12,9 +11,7 @@ pub const LOST_TICKS: u32 = 20;
 /// Motion of the shaft in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampled {
-    /// Ticks since the start.
-    pub tick: u64,
-    /// Counts from the angle's zero; wraps.
+    /// The last plausible count; wraps.
     pub count: i32,
     /// The shaft's motion since the last tick.
     pub shaft: Sample<f32>,
@@ -30,33 +27,20 @@ pub struct Sampler {
     reader: EncoderReader<f32>,
     /// Most plausible counts in a tick.
     most_counts: u32,
-    tick: u64,
-    /// Ticks of the current block so far.
-    in_block: u32,
     last: i32,
-    zero: i32,
     lost_ticks: u32,
 }
 
 impl Sampler {
-    /// Starts on a shaft at rest at this count; the next tick is `tick`.
-    pub fn new(reader: &Reader, counter: u32, tick: u64) -> Self {
+    /// Starts on a shaft at rest at this count.
+    pub fn new(reader: &Reader, counter: u32) -> Self {
         let last = counter.cast_signed();
         Self {
             reader: reader.at_zero.restarted(last, 0.0),
             most_counts: reader.most_counts,
-            tick,
-            in_block: 0,
             last,
-            zero: last,
             lost_ticks: 0,
         }
-    }
-
-    /// Whether the next tick begins a block of telemetry: the time to apply
-    /// parameters.
-    pub fn begins_block(&self) -> bool {
-        self.in_block == 0
     }
 
     /// Replaces the encoder: the estimator restarts.
@@ -65,21 +49,6 @@ impl Sampler {
             .at_zero
             .restarted(self.last, self.reader.omega_rad_s());
         self.most_counts = reader.most_counts;
-    }
-
-    /// Sets the angle's zero here.
-    pub fn zero(&mut self) {
-        self.zero = self.last;
-    }
-
-    /// Consecutive ticks without a plausible count.
-    pub fn lost_ticks(&self) -> u32 {
-        self.lost_ticks
-    }
-
-    /// Number of the next tick.
-    pub fn next_tick(&self) -> u64 {
-        self.tick
     }
 
     /// Runs one tick with the 32-bit counter of the quadrature timer.
@@ -101,12 +70,8 @@ impl Sampler {
             }
             Sample::Lost
         };
-        let tick = self.tick;
-        self.tick = tick.wrapping_add(1);
-        self.in_block = self.in_block.wrapping_add(1) % BLOCK_TICKS;
         Sampled {
-            tick,
-            count: self.last.wrapping_sub(self.zero),
+            count: self.last,
             shaft,
             omega_rad_s: self.reader.omega_rad_s(),
             lost_ticks: self.lost_ticks,
@@ -120,20 +85,19 @@ mod tests {
     use crepitus_model::control::encoder::EncoderSettings;
 
     fn sampler(start: u32) -> Sampler {
-        Sampler::new(&Reader::of(&EncoderSettings::default()).unwrap(), start, 0)
+        Sampler::new(&Reader::of(&EncoderSettings::default()).unwrap(), start)
     }
 
     #[test]
-    fn counts_are_counted_from_zero_across_the_wrap() {
+    fn counts_are_counted_across_the_wrap() {
         for start in [0, 7, u32::MAX - 10, 0x7fff_fffa] {
             let mut sampler = sampler(start);
             for i in 1..=30_i32 {
                 let sampled = sampler.sample(start.wrapping_add(i.cast_unsigned()));
-                assert_eq!((sampled.count, sampled.lost_ticks), (i, 0));
+                let count = start.cast_signed().wrapping_add(i);
+                assert_eq!((sampled.count, sampled.lost_ticks), (count, 0));
                 assert!(matches!(sampled.shaft, Sample::Taken(_)));
             }
-            sampler.zero();
-            assert_eq!(sampler.sample(start.wrapping_add(29)).count, -1);
         }
     }
 
@@ -143,7 +107,7 @@ mod tests {
         sampler.sample(101);
         // A disturbance of one tick does not affect those after it.
         let lost = sampler.sample(90_000);
-        assert_eq!((lost.shaft, lost.count), (Sample::Lost, 1));
+        assert_eq!((lost.shaft, lost.count), (Sample::Lost, 101));
         assert!(matches!(
             sampler.sample(103).shaft,
             Sample::Taken(step) if step.delta_phi_rad > 0.0

@@ -6,15 +6,15 @@
 mod motor;
 
 use crepitus_device::comms::{self, Comms};
+use crepitus_device::drive::exchange::Rendered;
 use crepitus_device::drive::motor::Bridge;
-use crepitus_device::drive::rendering::Rendered;
 use crepitus_device::drive::{self, Drive};
 use crepitus_device::usb_port::HostBytes;
 use crepitus_protocol::frame::FRAME_BYTES;
 use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request};
 use crepitus_protocol::management::{Identity, Role};
 use crepitus_protocol::telemetry::Block;
-use crepitus_protocol::{Decoder, Lane, Nonce, Session, frame, schema};
+use crepitus_protocol::{Decoder, Lane, Nonce, Session, TICK_US, frame, schema};
 use motor::Motor;
 use std::collections::VecDeque;
 
@@ -122,14 +122,16 @@ impl Bench {
     fn tick(&mut self) {
         let next = self.script.pop_front();
         self.motor.turned = next.or(self.motor.turned);
-        self.drive.sample_encoder(self.motor.counter());
-        self.drive.render_torque();
+        self.drive.render_torque(self.motor.counter());
         if next.is_some() {
             self.rendered.extend(self.drive.rendered());
         }
         let outputs = self.drive.command_motor(&drive::command::Inputs {
             current_a: Some(self.motor.current_a()),
+            monitor_a: Some(self.motor.current_a()),
+            interval_us: TICK_US,
             enable_is_on: self.enable[0],
+            comms_enable_is_on: self.enable[1],
             has_tripped: false,
         });
         self.enable[0] = outputs.enable;

@@ -17,12 +17,9 @@
 
 use crate::clocks::APB2_TIMER_HZ;
 use crepitus_model::Real;
-use stm32f4xx_hal::gpio::{PA8, PA9, PB12, PB13, PB14, Pull};
+use stm32f4xx_hal::gpio::{Alternate, PA8, PA9, PB12, PB13, PB14, Pin, Pull, Speed};
 use stm32f4xx_hal::pac::TIM1;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
-
-/// The motor's supply, V.
-pub const SUPPLY_V: f32 = 24.0;
 
 /// Counts from bottom to top.
 const TOP: u16 = 4_200;
@@ -78,22 +75,10 @@ impl Bridge {
         breaks
             .into_alternate::<1>()
             .set_internal_resistor(Pull::Down);
-        half_a
-            .0
-            .into_alternate::<1>()
-            .set_internal_resistor(Pull::Down);
-        half_a
-            .1
-            .into_alternate::<1>()
-            .set_internal_resistor(Pull::Down);
-        half_b
-            .0
-            .into_alternate::<1>()
-            .set_internal_resistor(Pull::Down);
-        half_b
-            .1
-            .into_alternate::<1>()
-            .set_internal_resistor(Pull::Down);
+        output(half_a.0.into_alternate::<1>());
+        output(half_a.1.into_alternate::<1>());
+        output(half_b.0.into_alternate::<1>());
+        output(half_b.1.into_alternate::<1>());
         bridge.float();
         bridge
     }
@@ -103,14 +88,14 @@ impl Bridge {
         &self.timer
     }
 
-    /// Applies a voltage, V, from the next period on. NaN or an infinity floats
-    /// the bridge.
-    pub fn drive(&mut self, volts: f32) {
-        if !volts.is_finite() {
+    /// Applies a share of the supply's voltage, −1 to 1, from the next period on.
+    /// NaN or an infinity floats the bridge.
+    pub fn drive(&mut self, duty: f32) {
+        if !duty.is_finite() {
             self.float();
             return;
         }
-        self.set_duty(volts);
+        self.set_duty(duty);
         if !self.is_driven {
             self.is_driven = true;
             // Has no effect while the break is there.
@@ -131,9 +116,9 @@ impl Bridge {
         self.timer.sr().read().bif().bit()
     }
 
-    fn set_duty(&mut self, volts: f32) {
+    fn set_duty(&mut self, duty: f32) {
         let half = f32::from(TOP / 2);
-        let swing = (volts / SUPPLY_V).within(1.0) * half;
+        let swing = duty.within(1.0) * half;
         self.timer
             .ccr1()
             .write(|w| w.ccr().set(counts(half + swing)));
@@ -141,6 +126,13 @@ impl Bridge {
             .ccr2()
             .write(|w| w.ccr().set(counts(half - swing)));
     }
+}
+
+/// A pin of the bridge: low where nothing drives it, and with edges that are
+/// short beside the dead time.
+fn output<const P: char, const N: u8>(pin: Pin<P, N, Alternate<1>>) {
+    let mut pin = pin.speed(Speed::Medium);
+    pin.set_internal_resistor(Pull::Down);
 }
 
 fn counts(share: f32) -> u16 {

@@ -2,13 +2,13 @@
 
 use crate::bridge::Bridge;
 use crate::clocks;
-use crate::converter::Converter;
-use crate::enable_line::EnableLine;
+use crate::converter::Converters;
+use crate::enable_line::{EnableLine, OtherLine};
 use crate::encoder::Encoder;
 use crate::identity::identity;
 use crate::link::{BUFFERS, DmaBuffer, Link};
 use crate::start::{Start, start};
-use crate::ticks::{BeginOfTick, MiddleOfTick};
+use crate::ticks::{BeginOfTick, FreeClock, MiddleOfTick};
 use crepitus_protocol::management::{Identity, Role};
 use stm32f4xx_hal::pac::{IWDG, Peripherals};
 use stm32f4xx_hal::prelude::*;
@@ -21,18 +21,22 @@ pub struct DriveBoard {
     pub identity: Identity,
     /// PB0, read back on PB1.
     pub line: EnableLine,
+    /// PB10: that of comms.
+    pub comms_line: OtherLine,
     /// PA8, PB13, PA9, PB14; break on PB12.
     pub bridge: Bridge,
-    /// PC0.
-    pub converter: Converter,
+    /// PC0, PC1.
+    pub converters: Converters,
     /// PA0, PA1.
     pub encoder: Encoder,
     /// PC6, PC7.
     pub link: Link,
-    /// Starts `sample_encoder`.
+    /// Starts `render_torque`.
     pub begin: BeginOfTick,
     /// Starts `command_motor`.
     pub middle: MiddleOfTick,
+    /// Measures the time between two ticks.
+    pub clock: FreeClock,
     /// Started last.
     pub watchdog: IWDG,
 }
@@ -59,12 +63,19 @@ impl DriveBoard {
             start,
             identity: identity(Role::Drive, &start),
             line,
+            comms_line: OtherLine::new(b.pb10),
             bridge,
-            converter: Converter::new(chip.ADC1, &chip.ADC_COMMON, c.pc0, &mut rcc),
+            converters: Converters::new(
+                (chip.ADC1, chip.ADC2),
+                &chip.ADC_COMMON,
+                (c.pc0, c.pc1),
+                &mut rcc,
+            ),
             encoder: Encoder::new(chip.TIM5, a.pa0, a.pa1, &mut rcc),
             link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), buffers, &mut rcc),
             begin: BeginOfTick::new(chip.TIM4, &mut rcc),
             middle: MiddleOfTick::new(chip.TIM3, &mut rcc),
+            clock: FreeClock::start(chip.TIM2, &mut rcc),
             watchdog: chip.IWDG,
         }
     }

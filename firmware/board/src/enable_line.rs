@@ -1,9 +1,10 @@
-//! An enable line: driven, and read back at its far end.
+//! The enable lines: one is driven, and read back at its far end; the drive reads
+//! that of comms, too.
 //!
 //! The resistor that pulls it down on the power board keeps it off while a
 //! controller is in reset, off, or without a program.
 
-use stm32f4xx_hal::gpio::{Input, Output, PB0, PB1};
+use stm32f4xx_hal::gpio::{Input, Output, PB0, PB1, PB10};
 
 /// The pin of GPIOB that drives the line, on both boards.
 pub(crate) const PIN: u8 = 0;
@@ -34,5 +35,21 @@ impl EnableLine {
     /// Reads the line back.
     pub fn is_on(&self) -> bool {
         self.reads.is_high()
+    }
+}
+
+/// The line of the other controller, at its gate.
+#[derive(Debug)]
+pub struct OtherLine(PB10<Input>);
+
+impl OtherLine {
+    /// Off, where nothing drives it.
+    pub fn new(reads: PB10) -> Self {
+        Self(reads.into_pull_down_input())
+    }
+
+    /// Reads the line.
+    pub fn is_on(&self) -> bool {
+        self.0.is_high()
     }
 }

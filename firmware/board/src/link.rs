@@ -19,7 +19,7 @@
 use crate::raw;
 use core::sync::atomic::{AtomicU8, Ordering, fence};
 use crepitus_protocol::frame::{EncodedFrame, FRAME_BYTES, Frame, FrameBuffer};
-use stm32f4xx_hal::gpio::{PC6, PC7, Pull};
+use stm32f4xx_hal::gpio::{PC6, PC7, Pull, Speed};
 use stm32f4xx_hal::pac::{DMA2, USART6};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
@@ -68,7 +68,8 @@ impl Link {
         USART6::reset(rcc);
         DMA2::enable(rcc);
         DMA2::reset(rcc);
-        sends.into_alternate::<8>();
+        // A bit is 238 ns; at the slowest setting an edge may take 100.
+        sends.into_alternate::<8>().set_speed(Speed::Medium);
         // Without a sender the line is idle.
         receives
             .into_alternate::<8>()

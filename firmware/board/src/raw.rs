@@ -94,7 +94,7 @@ fn address(address: usize) -> u32 {
 }
 
 /// Selects the channel that is converted.
-pub(crate) fn converter_channel(converter: &pac::ADC1, channel: u8) {
+pub(crate) fn converter_channel(converter: &pac::adc1::RegisterBlock, channel: u8) {
     // SAFETY: see the table.
     converter.sqr3().write(|w| unsafe { w.sq1().bits(channel) });
 }

@@ -1,15 +1,16 @@
-//! The timers that start tasks.
+//! The timers that start tasks, and the one that checks them.
 //!
 //! ```text
 //! TIM1   ╱╲        bridge: up and down in 50 µs; switches load at the bottom
 //!       ╱  ╲
-//! TIM4  |          sample_encoder, at the bottom
-//! TIM3     |       the converter, in the middle of the top: no switching near
-//!           |      command_motor, 2 µs later: the current is converted
+//! TIM4  |          render_torque, at the bottom
+//! TIM3     |       the converters, in the middle of the top: no switching near
+//!           |      command_motor, 2 µs later: the currents are converted
+//! TIM2  ...        µs, for the time between two ticks
 //! ```
 //!
-//! All three count the same crystal, start together and are never stopped:
-//! ticks continue whatever the bridge does.
+//! All count the same crystal and are never stopped: ticks continue whatever the
+//! bridge does. The first three start together.
 
 use crate::bridge::Bridge;
 use crate::clocks::APB1_TIMER_HZ;
@@ -20,13 +21,17 @@ use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 const COUNTS: u16 = 4_200;
 const _: () = assert!(COUNTS as u32 * 20_000 == APB1_TIMER_HZ);
 
-/// The converter samples for 15 of its clocks, 0.71 µs: it begins 0.36 µs
+/// The converters sample for 15 of their clocks, 0.71 µs: they begin 0.36 µs
 /// before the middle of the tick.
 const CONVERTER_EARLY: u16 = 30;
 
-/// From the converter's start to `command_motor`: 2 µs. A conversion takes 27
+/// From the converters' start to `command_motor`: 2 µs. A conversion takes 27
 /// clocks of 21 MHz, 1.29 µs.
 const CONVERSION: u16 = 168;
+
+/// Clocks of TIM2 in a microsecond.
+const MICROSECOND: u16 = 84;
+const _: () = assert!(MICROSECOND as u32 * 1_000_000 == APB1_TIMER_HZ);
 
 /// The middle of a tick.
 pub struct MiddleOfTick(TIM3);
@@ -44,7 +49,7 @@ impl MiddleOfTick {
             .cnt()
             .write(|w| w.cnt().set(COUNTS / 2 + CONVERTER_EARLY));
         timer.ccr1().write(|w| w.ccr().set(CONVERSION));
-        // Its overflow starts the converter, its first channel the task.
+        // Its overflow starts the converters, its first channel the task.
         timer.cr2().write(|w| w.mms().update());
         timer.dier().write(|w| w.cc1ie().set_bit());
         Self(timer)
@@ -79,6 +84,32 @@ pub fn start(bridge: &Bridge, middle: &MiddleOfTick, begin: &BeginOfTick) {
         middle.0.cr1().modify(|_, w| w.cen().set_bit());
         begin.0.cr1().modify(|_, w| w.cen().set_bit());
     });
+}
+
+/// A clock that runs by itself: µs, for the drive.
+pub struct FreeClock {
+    timer: TIM2,
+    last_us: u32,
+}
+
+impl FreeClock {
+    /// Starts it.
+    pub fn start(timer: TIM2, rcc: &mut Rcc) -> Self {
+        TIM2::enable(rcc);
+        TIM2::reset(rcc);
+        timer.psc().write(|w| w.psc().set(MICROSECOND - 1));
+        timer.arr().write(|w| w.arr().set(u32::MAX));
+        // Loads the prescaler.
+        timer.egr().write(|w| w.ug().set_bit());
+        timer.cr1().write(|w| w.cen().set_bit());
+        Self { timer, last_us: 0 }
+    }
+
+    /// Time since the last call, µs; wraps.
+    pub fn interval_us(&mut self) -> u32 {
+        let now_us = self.timer.cnt().read().cnt().bits();
+        now_us.wrapping_sub(core::mem::replace(&mut self.last_us, now_us))
+    }
 }
 
 /// Quarters of a millisecond, for comms.

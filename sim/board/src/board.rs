@@ -8,7 +8,9 @@
 //!  comms          every 20th tick
 //! ```
 
-use crate::leg::{Leg, Terminals};
+mod breakage;
+
+use crate::leg::{CurrentPath, Leg, Terminals};
 use crate::storage::Storage;
 use crate::wire::Wire;
 use crepitus_device::comms::{self, Comms};
@@ -17,7 +19,7 @@ use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::plausibility::TRIP_A;
 use crepitus_device::drive::{self, Drive};
 use crepitus_protocol::management::{Identity, ResetCause, Role};
-use crepitus_protocol::{Revision, ValueError, Values, schema};
+use crepitus_protocol::{Revision, TICK_US, ValueError, Values, schema};
 use crepitus_scene::Scene;
 
 /// Ticks of the drive in a tick of comms.
@@ -102,14 +104,20 @@ pub struct Board {
     /// Parameters that comms stores over a restart.
     storage: Storage,
     comms_has_restarted: bool,
-    /// The comparator at the shunt works.
+    /// The comparator behind the monitor's amplifier works.
     trips: bool,
     /// It has opened the bridge, until the drive floats it.
     comparator_tripped: bool,
-    /// The drive's converter works.
-    converts: bool,
+    /// The drive's converters work: that of the sensor, and of the monitor.
+    converts: [bool; 2],
     /// The drive's rendering is ready in time.
     renders: bool,
+    /// The drive's crystal has 12 MHz instead of 8.
+    drive_is_fast: bool,
+    /// The wire by which the drive reads the line of comms is whole.
+    comms_line_reaches_drive: bool,
+    /// Length of a tick of the drive, by its other timer, µs.
+    interval_us: u32,
     /// Schema hash of the drive's program, from its next start on.
     drive_schema: u64,
     tick: u64,
@@ -173,8 +181,11 @@ impl Board {
             comms_has_restarted: false,
             trips: true,
             comparator_tripped: false,
-            converts: true,
+            converts: [true; 2],
             renders: true,
+            drive_is_fast: false,
+            comms_line_reaches_drive: true,
+            interval_us: TICK_US,
             drive_schema: schema::HASH,
             tick: 0,
         })
@@ -183,22 +194,17 @@ impl Board {
     /// One tick of 50 µs.
     pub fn tick(&mut self) {
         self.start_due_controllers();
+        if self.drive_is_fast && self.tick.is_multiple_of(2) {
+            self.extra_drive_tick();
+        }
         let drive_runs = self.drive_health == Health::Runs;
-        if drive_runs {
-            self.drive.sample_encoder(self.leg.count().cast_unsigned());
-            if self.renders {
-                self.drive.render_torque();
-            }
+        if drive_runs && self.renders {
+            self.drive.render_torque(self.leg.count().cast_unsigned());
         }
         self.leg.first_half();
         self.check_comparator();
         if drive_runs {
-            let outputs = self.drive.command_motor(&Inputs {
-                current_a: self.converts.then(|| single(self.leg.current_a())),
-                enable_is_on: self.drive_line.read,
-                has_tripped: self.comparator_tripped,
-            });
-            self.execute(outputs);
+            self.command();
         }
         self.leg.second_half();
         self.check_comparator();
@@ -217,11 +223,35 @@ impl Board {
         self.tick += 1;
     }
 
-    /// The comparator at the shunt, which needs no program.
+    fn command(&mut self) {
+        let outputs = self.drive.command_motor(&Inputs {
+            current_a: self.converted(CurrentPath::Sensor),
+            monitor_a: self.converted(CurrentPath::Monitor),
+            interval_us: self.interval_us,
+            enable_is_on: self.drive_line.read,
+            comms_enable_is_on: self.comms_line_reaches_drive && self.comms_line.is_on(),
+            has_tripped: self.comparator_tripped,
+        });
+        self.execute(outputs);
+    }
+
+    /// A tick of a drive whose crystal is too fast.
+    fn extra_drive_tick(&mut self) {
+        if self.drive_health == Health::Runs && self.renders {
+            self.drive.render_torque(self.leg.count().cast_unsigned());
+            self.command();
+        }
+    }
+
+    fn converted(&self, path: CurrentPath) -> Option<f32> {
+        self.converts[path as usize].then(|| single(self.leg.current_a(path)))
+    }
+
+    /// The comparator behind the monitor's amplifier, which needs no program.
     fn check_comparator(&mut self) {
         if self.bridge == Bridge::Float {
             self.comparator_tripped = false;
-        } else if self.trips && self.leg.winding_current_a().abs() > f64::from(TRIP_A) {
+        } else if self.trips && self.leg.current_a(CurrentPath::Monitor).abs() > f64::from(TRIP_A) {
             self.comparator_tripped = true;
             self.switch();
         }
@@ -394,78 +424,6 @@ impl Board {
     /// replaced by a new one.
     pub fn take_comms_restart(&mut self) -> bool {
         std::mem::take(&mut self.comms_has_restarted)
-    }
-}
-
-/// Faults of the board.
-impl Board {
-    /// Makes an enable line stuck, or repairs it.
-    pub fn set_stuck(&mut self, controller: Controller, stuck: Option<bool>) {
-        match controller {
-            Controller::Drive => self.drive_line.stuck = stuck,
-            Controller::Comms => self.comms_line.stuck = stuck,
-        }
-        self.switch();
-    }
-
-    /// A controller hangs: its pins stay as they are.
-    pub fn hang(&mut self, controller: Controller) {
-        *self.health(controller) = Health::Hangs;
-    }
-
-    /// A controller is reset: its pins fall, and it restarts.
-    pub fn reset(&mut self, controller: Controller, cause: ResetCause) {
-        self.reset_for(controller, cause, START_TICKS);
-    }
-
-    /// The same, with a start-up time in ticks.
-    pub fn reset_for(&mut self, controller: Controller, cause: ResetCause, ticks: u64) {
-        *self.health(controller) = Health::StartsAt(self.tick + ticks, cause);
-        match controller {
-            Controller::Drive => {
-                self.drive_line.driven = false;
-                self.bridge = Bridge::Float;
-                self.up.sender_reset();
-            }
-            Controller::Comms => {
-                self.comms_line.driven = false;
-                self.comms_line.read = self.comms_line.is_on();
-                self.down.sender_reset();
-            }
-        }
-        self.switch();
-    }
-
-    /// Sets whether parameters can be stored.
-    pub fn set_storage(&mut self, works: bool) {
-        self.storage.set_works(works);
-    }
-
-    /// Sets whether the comparator at the shunt works.
-    pub fn set_trip(&mut self, works: bool) {
-        self.trips = works;
-    }
-
-    /// Sets whether the drive's converter works.
-    pub fn set_converter(&mut self, works: bool) {
-        self.converts = works;
-    }
-
-    /// Sets whether the drive's model is ready within its tick, or never.
-    pub fn set_rendering(&mut self, in_time: bool) {
-        self.renders = in_time;
-    }
-
-    /// Sets the schema hash of the drive's program from its next start on.
-    pub fn set_drive_schema(&mut self, schema: u64) {
-        self.drive_schema = schema;
-    }
-
-    fn health(&mut self, controller: Controller) -> &mut Health {
-        match controller {
-            Controller::Drive => &mut self.drive_health,
-            Controller::Comms => &mut self.comms_health,
-        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Motor, encoder and current sensor on a leg that moves as a scene says.
+//! Motor, encoder and current sensors on a leg that moves as a scene says.
 //!
 //! ```text
 //! tick n       first half        second half
@@ -26,8 +26,9 @@ mod sensors;
 mod tests;
 
 pub use crepitus_plant::effects::motor::bridge::Terminals;
-pub use sensors::{CurrentSensor, EncoderWiring};
+pub use sensors::{CurrentPath, CurrentSensor, EncoderWiring};
 
+use crepitus_model::Sense;
 use crepitus_plant::chain::Body;
 use crepitus_plant::effects::motor::bridge::Bridge;
 use crepitus_plant::effects::motor::{self, MotorNumbers};
@@ -45,7 +46,8 @@ pub struct Leg {
     walk: Walk<Motion>,
     steps_per_half: u32,
     counter: Counter,
-    current_sensor: CurrentSensor,
+    /// Of the loop, and of the monitor.
+    current_sensors: [CurrentSensor; 2],
     /// Command to the bridge.
     terminals: Terminals,
     is_supplied: bool,
@@ -71,7 +73,7 @@ impl Leg {
             plant,
             walk: Walk::new(scene.endless_motion(), step_s),
             steps_per_half,
-            current_sensor: CurrentSensor::Right,
+            current_sensors: [CurrentSensor::Right; 2],
             terminals: Terminals::Open,
             is_supplied: true,
             felt_nm: 0.0,
@@ -127,9 +129,9 @@ impl Leg {
         self.counter.preset(count);
     }
 
-    /// Reading of the current sensor, A.
-    pub fn current_a(&self) -> f64 {
-        self.current_sensor.shows(self.winding_current_a())
+    /// What one of the two shunts with its amplifier shows of the current, A.
+    pub fn current_a(&self, path: CurrentPath) -> f64 {
+        self.current_sensors[path as usize].shows(self.winding_current_a())
     }
 
     /// The true current, A; positive drives towards growing angle.
@@ -186,9 +188,22 @@ impl Leg {
         self.counter.wiring = wiring;
     }
 
-    /// Breaks or repairs the current sensor.
-    pub fn set_current_sensor(&mut self, sensor: CurrentSensor) {
-        self.current_sensor = sensor;
+    /// Breaks or repairs one of the two shunts with its amplifier.
+    pub fn set_current_sensor(&mut self, path: CurrentPath, sensor: CurrentSensor) {
+        self.current_sensors[path as usize] = sensor;
+    }
+
+    /// Shorts a switch of the bridge, so that a current of this sense flows while
+    /// it is open, or repairs it.
+    pub fn set_shorted_switch(&mut self, shorted: Option<Sense>) {
+        self.plant.actuator_mut().set_shorted(shorted);
+        self.switch();
+    }
+
+    /// Presses or releases the hand-held stop: it opens supply and motor line.
+    pub fn press_stop(&mut self, is_pressed: bool) {
+        self.plant.actuator_mut().set_line(is_pressed);
+        self.set_supply(!is_pressed);
     }
 
     /// Turns the motor's supply on or off. Without it the terminals are open,

@@ -2,7 +2,9 @@
 //! tick, one frame after the other, as DMA sends them.
 
 use crate::faults::FaultInjector;
-use crepitus_protocol::frame::Frame;
+use crepitus_protocol::frame::{self, Frame};
+use crepitus_protocol::telemetry::Block;
+use crepitus_protocol::{Decoder, Lane};
 use std::collections::VecDeque;
 
 /// Bytes that the UART carries in a tick: 4.2 Mbaud, ten bits a byte, 50 µs.
@@ -27,6 +29,9 @@ pub struct Traffic {
 pub struct Wire {
     /// Its faults.
     pub injector: FaultInjector,
+    /// What the sender has come to say in its blocks: a defect of its program, or
+    /// of its memory.
+    pub falsify: Option<fn(&mut Block)>,
     /// The frame being sent, and the number of bytes sent.
     sending: Option<(Frame, usize)>,
     /// Frames after it.
@@ -41,6 +46,7 @@ impl Wire {
     pub fn new(seed: u64) -> Self {
         Self {
             injector: FaultInjector::new(seed),
+            falsify: None,
             sending: None,
             waiting: VecDeque::new(),
             on_the_way: VecDeque::new(),
@@ -87,6 +93,7 @@ impl Wire {
             if sent + part < frame.len() {
                 self.sending = Some((frame, sent + part));
             } else {
+                let frame = falsified(frame, self.falsify);
                 let on_the_way = &mut self.on_the_way;
                 self.injector.pass(&frame, |late, bytes| {
                     on_the_way.push_back((now + late, bytes.to_vec()));
@@ -113,6 +120,23 @@ impl Wire {
             }
         }
     }
+}
+
+/// A frame with another block in it, if it has a block.
+fn falsified(frame: Frame, falsify: Option<fn(&mut Block)>) -> Frame {
+    let Some(falsify) = falsify else {
+        return frame;
+    };
+    let mut decoder = Decoder::new();
+    let block = frame.iter().find_map(|byte| match decoder.push(*byte) {
+        Some(Ok(body)) if body.lane() == Some(Lane::Telemetry) => body.message::<Block>(),
+        _ => None,
+    });
+    let Some(mut block) = block else {
+        return frame;
+    };
+    falsify(&mut block);
+    frame::encode(Lane::Telemetry, &block).unwrap_or(frame)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 mod support;
 
 use crepitus_board::board::Controller;
-use crepitus_board::leg::EncoderWiring;
+use crepitus_board::leg::{CurrentPath, EncoderWiring};
 use crepitus_board::{Board, Start};
 use crepitus_protocol::host::{Answer, Operation, Refusal};
 use crepitus_protocol::link::DriveRefusal;
@@ -41,8 +41,8 @@ fn a_moment_under_torque_is_no_fault() {
     flicker(
         &mut host,
         2,
-        |board| board.set_converter(false),
-        |board| board.set_converter(true),
+        |board| board.set_converter(CurrentPath::Sensor, false),
+        |board| board.set_converter(CurrentPath::Sensor, true),
     );
     flicker(
         &mut host,
@@ -128,9 +128,15 @@ preset = "coarse"
                 assert_eq!(answer, Ok(Answer::Done), "round {round}");
                 proven += u32::from(is_proven);
             } else {
-                // In the wrong sense the bridge starts with the wrong voltage:
-                // a fast leg makes a large current of it.
-                let is_refused = [Fault::EncoderPolarity, Fault::Overcurrent]
+                // In the wrong sense the bridge starts with the wrong voltage: a
+                // fast leg makes a large current of it, and back-EMF contradicts
+                // the counts.
+                let faults = [
+                    Fault::EncoderPolarity,
+                    Fault::Overcurrent,
+                    Fault::SpeedMismatch,
+                ];
+                let is_refused = faults
                     .map(Fault::code)
                     .map(|code| Err(Refusal::Drive(DriveRefusal::Faulted { code })))
                     .contains(&answer);

@@ -2,6 +2,7 @@
 
 mod support;
 
+use crepitus_board::leg::CurrentPath;
 use crepitus_board::{Faults, Start};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::host::{Answer, Operation, Refusal, Request};
@@ -45,11 +46,15 @@ fn armed_and_faulted_in_one_word() {
         host.tick();
     }
     host.device.board_mut().up().injector.faults = cut(true);
-    host.device.board_mut().set_converter(false);
+    host.device
+        .board_mut()
+        .set_converter(CurrentPath::Sensor, false);
     while host.device.board().drive().state() == State::Armed {
         host.tick();
     }
-    host.device.board_mut().set_converter(true);
+    host.device
+        .board_mut()
+        .set_converter(CurrentPath::Sensor, true);
     host.run(20);
     host.device.board_mut().up().injector.faults = cut(false);
     assert_eq!(host.answer_to(&arm), Some(Ok(Answer::Done)));

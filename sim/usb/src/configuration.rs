@@ -14,6 +14,8 @@ pub struct ConfigurationDescriptor {
     pub value: u8,
     /// `bMaxPower`, milliamperes.
     pub max_power_ma: u16,
+    /// It has a supply of its own.
+    pub is_self_powered: bool,
     /// The interfaces, each alternate setting apart.
     pub interfaces: Vec<InterfaceDescriptor>,
 }
@@ -61,6 +63,9 @@ impl EndpointDescriptor {
     }
 }
 
+/// The bit of a configuration's attributes.
+const SELF_POWERED: u8 = 1 << 6;
+
 impl ConfigurationDescriptor {
     /// The length of the configuration's own descriptor, bytes.
     pub const LENGTH: u16 = 9;
@@ -73,7 +78,7 @@ impl ConfigurationDescriptor {
 
     /// Reads a whole configuration. Descriptors of unknown types are passed over.
     pub fn parse(bytes: &[u8]) -> Result<Self, DescriptorError> {
-        let [_, _, _, _, _, value, _, _, max_power] =
+        let [_, _, _, _, _, value, _, attributes, max_power] =
             *first(bytes, descriptor_type::CONFIGURATION)?;
         let mut interfaces: Vec<InterfaceDescriptor> = Vec::new();
         let mut at = 0;
@@ -110,6 +115,7 @@ impl ConfigurationDescriptor {
         }
         Ok(Self {
             value,
+            is_self_powered: attributes & SELF_POWERED != 0,
             max_power_ma: u16::from(max_power) * 2,
             interfaces,
         })

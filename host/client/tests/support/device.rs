@@ -6,7 +6,7 @@ use crepitus_device::usb_port::HostBytes;
 use crepitus_device::{Comms, Drive, comms, drive};
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_protocol::management::{Identity, ResetCause, Role};
-use crepitus_protocol::{Revision, TICK_S, Values, schema};
+use crepitus_protocol::{Revision, TICK_S, TICK_US, Values, schema};
 use std::collections::VecDeque;
 
 /// Motor of the device: R, Ω; L, H; N·m/A at the joint.
@@ -188,13 +188,15 @@ impl Device {
     }
 
     fn tick(&mut self) {
-        self.drive.sample_encoder(self.counter());
-        self.drive.render_torque();
+        self.drive.render_torque(self.counter());
         #[expect(clippy::cast_possible_truncation, reason = "rounded to f32")]
         let current_a = self.current_a as f32;
         let outputs = self.drive.command_motor(&drive::command::Inputs {
             current_a: Some(current_a),
+            monitor_a: Some(current_a),
+            interval_us: TICK_US,
             enable_is_on: self.drive_line,
+            comms_enable_is_on: self.comms_line,
             has_tripped: false,
         });
         self.drive.prepare();

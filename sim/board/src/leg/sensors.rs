@@ -1,4 +1,4 @@
-//! The two sensors of the drive, and their faults.
+//! The sensors of the drive, and their faults.
 
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_plant::encoder::Encoder;
@@ -15,7 +15,17 @@ pub enum EncoderWiring {
     Unplugged,
 }
 
-/// Reading of the current sensor.
+/// The two ways on which the current is measured: each has a shunt, an amplifier
+/// and a converter of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CurrentPath {
+    /// That of the current loop.
+    Sensor,
+    /// That of the monitor, whose amplifier the comparator sees, too.
+    Monitor,
+}
+
+/// What a shunt with its amplifier shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum CurrentSensor {
     /// The true current.
@@ -23,6 +33,8 @@ pub enum CurrentSensor {
     Right,
     /// The current plus an offset, A.
     Offset(f64),
+    /// The current times a gain.
+    Gain(f64),
     /// A constant, A.
     StuckAt(f64),
 }
@@ -32,6 +44,7 @@ impl CurrentSensor {
         match self {
             Self::Right => current_a,
             Self::Offset(offset_a) => current_a + offset_a,
+            Self::Gain(gain) => current_a * gain,
             Self::StuckAt(stuck_a) => stuck_a,
         }
     }

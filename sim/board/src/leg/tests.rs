@@ -79,10 +79,10 @@ fn the_current_of_a_locked_rotor_rises_exponentially() {
             let start_s = f64::from(n) * TICK_S;
             leg.first_half();
             let known = after(0.0, final_a, start_s + TICK_S / 2.0);
-            assert!((leg.current_a() - known).abs() < 1e-13);
+            assert!((leg.winding_current_a() - known).abs() < 1e-13);
             leg.second_half();
             let known = after(0.0, final_a, start_s + TICK_S);
-            assert!((leg.current_a() - known).abs() < 1e-13);
+            assert!((leg.winding_current_a() - known).abs() < 1e-13);
         }
         // The hand holds against the motor.
         ticks(&mut leg, 100);
@@ -97,11 +97,11 @@ fn a_voltage_begins_when_it_is_set() {
     let mut leg = turning(0.0);
     leg.set_terminals(Terminals::Driven(5.0));
     leg.first_half();
-    let half_a = leg.current_a();
+    let half_a = leg.winding_current_a();
     leg.set_terminals(Terminals::Driven(-8.0));
     leg.second_half();
     let known = after(half_a, -8.0 / OHM, TICK_S / 2.0);
-    assert!((leg.current_a() - known).abs() < 1e-14);
+    assert!((leg.winding_current_a() - known).abs() < 1e-14);
 }
 
 /// An emergency off in the middle of a tick: the current is gone in it, and
@@ -112,21 +112,21 @@ fn an_open_bridge_coasts() {
     leg.set_terminals(Terminals::Driven(5.0));
     ticks(&mut leg, 200);
     leg.first_half();
-    let from_a = leg.current_a();
+    let from_a = leg.winding_current_a();
     let mean_nm = leg.motor_nm();
     leg.set_terminals(Terminals::Open);
     leg.second_half();
     let final_a = (SUPPLY_V + 2.0 * DIODE_V - CONSTANT * 2.0) / OHM;
     let dies_s = TAU_S * (1.0 - from_a / final_a).ln();
     assert!(from_a < 0.0 && dies_s < TICK_S / 2.0);
-    assert_eq!(leg.current_a(), 0.0);
+    assert_eq!(leg.winding_current_a(), 0.0);
     let charge_c = final_a * dies_s + TAU_S * from_a;
     let known_nm = 0.5 * mean_nm - CONSTANT * charge_c / TICK_S;
     assert!((leg.motor_nm() - known_nm).abs() < 1e-8);
     for _ in 0..100 {
         ticks(&mut leg, 1);
         assert_eq!(
-            (leg.current_a(), leg.motor_nm(), leg.felt_nm()),
+            (leg.winding_current_a(), leg.motor_nm(), leg.felt_nm()),
             (0.0, 0.0, 0.0)
         );
     }
@@ -144,6 +144,36 @@ fn shorted_terminals_brake() {
     is_balanced(&leg);
 }
 
+/// One diode is all that a current of one sense meets.
+#[test]
+fn a_shorted_switch_brakes_one_way_until_the_stop_is_pressed() {
+    for (omega, brakes) in [(1.5, true), (-1.5, false)] {
+        let mut leg = turning(omega);
+        leg.set_shorted_switch(Some(Sense::Negative));
+        ticks(&mut leg, 400);
+        let known = if brakes {
+            -(CONSTANT * omega - DIODE_V) / OHM
+        } else {
+            0.0
+        };
+        assert!((leg.winding_current_a() - known).abs() < 1e-9);
+        assert!((leg.felt_nm() + CONSTANT * known).abs() < 1e-8);
+        is_balanced(&leg);
+        // Without the supply alone it goes on.
+        leg.set_supply(false);
+        ticks(&mut leg, 400);
+        assert!((leg.winding_current_a() - known).abs() < 1e-9);
+        leg.press_stop(true);
+        ticks(&mut leg, 1);
+        assert_eq!((leg.winding_current_a(), leg.felt_nm()), (0.0, 0.0));
+        is_balanced(&leg);
+        leg.press_stop(false);
+        leg.set_shorted_switch(None);
+        ticks(&mut leg, 400);
+        assert_eq!(leg.winding_current_a(), 0.0);
+    }
+}
+
 #[test]
 fn a_motor_faster_than_its_supply_generates() {
     for omega in [8.5_f64, -9.0, 7.6, -7.6] {
@@ -151,7 +181,7 @@ fn a_motor_faster_than_its_supply_generates() {
         ticks(&mut leg, 200);
         let beyond_v = (CONSTANT * omega.abs() - SUPPLY_V - 2.0 * DIODE_V).max(0.0);
         let known = -omega.signum() * beyond_v / OHM;
-        assert!((leg.current_a() - known).abs() < 1e-12);
+        assert!((leg.winding_current_a() - known).abs() < 1e-12);
         assert!((leg.felt_nm() + CONSTANT * known).abs() < 1e-10);
         is_balanced(&leg);
     }
@@ -204,11 +234,22 @@ fn a_current_sensor_can_be_wrong() {
     leg.set_terminals(Terminals::Driven(1.0));
     ticks(&mut leg, 400);
     let true_a = leg.winding_current_a();
-    assert_eq!(leg.current_a(), true_a);
-    leg.set_current_sensor(CurrentSensor::Offset(-0.2));
-    assert_eq!(leg.current_a(), true_a - 0.2);
-    leg.set_current_sensor(CurrentSensor::StuckAt(0.05));
-    assert_eq!(leg.current_a(), 0.05);
+    for (path, other) in [
+        (CurrentPath::Sensor, CurrentPath::Monitor),
+        (CurrentPath::Monitor, CurrentPath::Sensor),
+    ] {
+        for (sensor, shown_a) in [
+            (CurrentSensor::Right, true_a),
+            (CurrentSensor::Offset(-0.2), true_a - 0.2),
+            (CurrentSensor::Gain(0.5), 0.5 * true_a),
+            (CurrentSensor::StuckAt(0.05), 0.05),
+        ] {
+            leg.set_current_sensor(path, sensor);
+            assert_eq!(leg.current_a(path), shown_a);
+            assert_eq!(leg.current_a(other), true_a);
+        }
+        leg.set_current_sensor(path, CurrentSensor::Right);
+    }
     assert_eq!(leg.winding_current_a(), true_a);
 }
 
@@ -225,7 +266,7 @@ fn without_a_supply_the_terminals_are_open() {
     // When it comes back the bridge does what it was told meanwhile.
     leg.set_supply(true);
     ticks(&mut leg, 200);
-    assert!((leg.current_a() - (-12.0 - CONSTANT) / OHM).abs() < 1e-7);
+    assert!((leg.winding_current_a() - (-12.0 - CONSTANT) / OHM).abs() < 1e-7);
     is_balanced(&leg);
 }
 
@@ -287,7 +328,7 @@ fn effects_of_the_device_leave_nothing_behind() {
         thrash(&mut bare, 200);
         thrash(&mut full, 200);
         assert_eq!(bare.shaft(), full.shaft());
-        assert_eq!(bare.current_a(), full.current_a());
+        assert_eq!(bare.winding_current_a(), full.winding_current_a());
     }
     assert_eq!(bare.balance(), full.balance());
 }

@@ -2,7 +2,7 @@
 
 use crate::support::{Host, examination, scene};
 use crepitus_board::Start;
-use crepitus_board::leg::{CurrentSensor, EncoderWiring};
+use crepitus_board::leg::{CurrentPath, CurrentSensor, EncoderWiring};
 use crepitus_protocol::State;
 
 /// Armed, on a leg that moves faster than this, rad/s.
@@ -23,9 +23,11 @@ fn a_dead_sensor_without_a_comparator_ends_by_the_speed() {
     let mut host = rendering(Host::new(&examination(), &Start::default()), 0.5);
     let board = host.device.board_mut();
     board.set_trip(false);
-    board
-        .leg_mut()
-        .set_current_sensor(CurrentSensor::StuckAt(0.0));
+    for path in [CurrentPath::Sensor, CurrentPath::Monitor] {
+        board
+            .leg_mut()
+            .set_current_sensor(path, CurrentSensor::StuckAt(0.0));
+    }
     let (mut ticks, mut most_a, mut most_nm) = (0, 0.0_f64, 0.0_f64);
     while host.device.board().drive().state() == State::Armed {
         host.tick();
@@ -47,7 +49,7 @@ fn a_dead_sensor_without_a_comparator_ends_by_the_speed() {
 /// was, within Ts.
 #[test]
 fn an_encoder_that_freezes_under_a_slow_motion_does_no_harm() {
-    for (peak_deg_s, is_noticed) in [(30.0, false), (60.0, true)] {
+    for (peak_deg_s, is_noticed) in [(15.0, false), (30.0, true)] {
         let text = format!(
             r#"
 version = 1
@@ -74,7 +76,7 @@ preset = "coarse"
 "#
         );
         let host = Host::new(&scene(&text), &Start::default());
-        let mut host = rendering(host, 0.3);
+        let mut host = rendering(host, 0.2);
         host.device
             .board_mut()
             .leg_mut()

@@ -2,7 +2,7 @@
 
 use crate::support::Host;
 use crepitus_board::board::Controller::{self, Comms, Drive};
-use crepitus_board::leg::{CurrentSensor, EncoderWiring};
+use crepitus_board::leg::{CurrentPath, CurrentSensor, EncoderWiring};
 use crepitus_board::{Board, Faults};
 use crepitus_protocol::management::ResetCause;
 
@@ -58,19 +58,33 @@ pub(crate) fn jump_count(board: &mut Board, counts: i32) {
 }
 
 pub(crate) fn break_sensor(host: &mut Host, sensor: CurrentSensor) {
-    board(host).leg_mut().set_current_sensor(sensor);
+    break_path(host, CurrentPath::Sensor, sensor);
 }
 
-pub(crate) fn mend_sensor(host: &mut Host) {
+pub(crate) fn break_monitor(host: &mut Host, sensor: CurrentSensor) {
+    break_path(host, CurrentPath::Monitor, sensor);
+}
+
+fn break_path(host: &mut Host, path: CurrentPath, sensor: CurrentSensor) {
+    board(host).leg_mut().set_current_sensor(path, sensor);
+}
+
+pub(crate) fn mend_sensors(host: &mut Host) {
     break_sensor(host, CurrentSensor::Right);
+    break_monitor(host, CurrentSensor::Right);
 }
 
 pub(crate) fn stop_converter(host: &mut Host, _: u64) {
-    board(host).set_converter(false);
+    board(host).set_converter(CurrentPath::Sensor, false);
 }
 
-pub(crate) fn mend_converter(host: &mut Host) {
-    board(host).set_converter(true);
+pub(crate) fn stop_monitor(host: &mut Host, _: u64) {
+    board(host).set_converter(CurrentPath::Monitor, false);
+}
+
+pub(crate) fn mend_converters(host: &mut Host) {
+    board(host).set_converter(CurrentPath::Sensor, true);
+    board(host).set_converter(CurrentPath::Monitor, true);
 }
 
 pub(crate) fn supply_off(host: &mut Host, _: u64) {

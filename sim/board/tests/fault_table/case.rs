@@ -1,16 +1,14 @@
 //! A cause of a fault, and its repair.
 
 use crate::support::Host;
-use crepitus_device::drive::plausibility::TRIP_A;
+use crepitus_board::leg::CurrentPath;
 use crepitus_protocol::State;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
+use crepitus_protocol::telemetry::Block;
 use std::ops::Range;
 
 /// By so much the estimated speed lags behind a hand's, with a margin.
 pub(crate) const ESTIMATE_TICKS: u64 = 150;
-
-/// Ticks that the slowest current takes for the last 20 mA.
-pub(crate) const OVER_TICKS: u64 = 3;
 
 /// A torque whose current is worth measuring: 1.1 N·m.
 const HEAVY: &[(&str, f64)] = &[
@@ -18,6 +16,9 @@ const HEAVY: &[(&str, f64)] = &[
     ("crepitus.static_torque_nm", 1.1),
     ("crepitus.kinetic_torque_nm", 1.0),
 ];
+
+/// A current loop that takes 30 ms.
+pub(crate) const SLOW_LOOP: &[(&str, f64)] = &[("motor.bandwidth_hz", 5.0)];
 
 /// When the cause comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +43,8 @@ pub(crate) struct Case {
     pub(crate) settled: fn(&Host) -> bool,
     /// And so many ticks more.
     pub(crate) phases: Range<u64>,
+    /// What the drive's blocks have come to say, from the first tick on.
+    pub(crate) falsify: Option<fn(&mut Block)>,
     /// The cause, before each tick; ticks since the first.
     pub(crate) cause: fn(&mut Host, u64),
     /// Whether it has come to what the table calls the cause.
@@ -60,6 +63,7 @@ pub(crate) fn case(name: &'static str, cause: fn(&mut Host, u64), repair: fn(&mu
         moment: Moment::Armed,
         settled: moves,
         phases: 0..20,
+        falsify: None,
         cause,
         onset: |_| true,
         lag: 0,
@@ -129,10 +133,10 @@ fn changes(host: &Host, now: u32) -> bool {
     host.watched.replace(now) != now
 }
 
-/// There is almost more current than there may be: what grows slowly takes
-/// [`OVER_TICKS`] more.
-pub(crate) fn is_over(host: &Host) -> bool {
-    host.device.board().leg().winding_current_a().abs() > f64::from(TRIP_A) - 0.02
+/// The two sensors of the current differ by more than they may.
+pub(crate) fn disagrees(host: &Host) -> bool {
+    let leg = host.device.board().leg();
+    (leg.current_a(CurrentPath::Sensor) - leg.current_a(CurrentPath::Monitor)).abs() > 0.2
 }
 
 /// The drive has let go.

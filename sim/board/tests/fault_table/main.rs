@@ -11,6 +11,8 @@ mod support;
 mod blind;
 mod breakage;
 mod case;
+mod page;
+mod pairs;
 mod provocation;
 mod trial;
 
@@ -25,20 +27,29 @@ const AT_ONCE_TICKS: u32 = 2;
 #[test]
 fn every_fault_is_noticed_in_time_latched_and_cleared() {
     let mut wrong = Vec::new();
-    println!(
-        "{:<23} {:<42} {:>6} {:>7} {:>8} {:>5}",
-        "fault", "cause", "table", "floats", "latched", "mA"
-    );
+    let mut rows = vec![
+        "| fault | cause | noticed by | may take, ticks | floats after | latched after | most N·m |".into(),
+        "|---|---|---|---|---|---|---|".into(),
+    ];
     for spec in &FAULTS {
         match provocation(spec.fault) {
             Provocation::Cases(cases) => {
                 for case in &cases {
                     let times = trial::run(spec, case);
-                    let table = spec.within_ticks.map_or("-".into(), |t| t.to_string());
-                    println!(
-                        "{:<23} {:<42} {table:>6} {:>7} {:>8} {:>5}",
-                        spec.name, case.name, times.floats, times.latched, times.current_ma
+                    let may =
+                        (spec.within_ticks).map_or("floats already".into(), |t| t.to_string());
+                    let row = format!(
+                        "| [{0}](faults.md#{1}-{0}) | {2} | {3} | {may} | {4} | {5} | {6:.1} |",
+                        spec.name,
+                        spec.fault.code(),
+                        case.name,
+                        spec.detector.name(),
+                        times.floats,
+                        times.latched,
+                        times.most_nm
                     );
+                    println!("{row}");
+                    rows.push(row);
                     // Where the table has no time the bridge floats already,
                     // or with the cause.
                     let most = match case.moment {
@@ -54,8 +65,14 @@ fn every_fault_is_noticed_in_time_latched_and_cleared() {
                     }
                 }
             }
-            Provocation::None(reason) => println!("{:<23} not here: {reason}", spec.name),
+            Provocation::None(reason) => rows.push(format!(
+                "| [{0}](faults.md#{1}-{0}) | not here: {reason} | {2} | | | | |",
+                spec.name,
+                spec.fault.code(),
+                spec.detector.name(),
+            )),
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    page::hold("single", &rows);
 }

@@ -24,8 +24,8 @@ pub(crate) struct Times {
     pub(crate) floats: u64,
     /// Ticks from the cause until the fault was latched.
     pub(crate) latched: u64,
-    /// The largest current that there was meanwhile, mA.
-    pub(crate) current_ma: u64,
+    /// The largest torque of the motor meanwhile, N·m.
+    pub(crate) most_nm: f64,
 }
 
 /// Tries a case at each of its phases.
@@ -38,12 +38,12 @@ pub(crate) fn run(spec: &FaultSpec, case: &Case) -> Times {
             spec,
             case,
             context: &context,
-            current_a: 0.0,
+            most_nm: 0.0,
         }
         .run();
         worst.floats = worst.floats.max(times.floats);
         worst.latched = worst.latched.max(times.latched);
-        worst.current_ma = worst.current_ma.max(times.current_ma);
+        worst.most_nm = worst.most_nm.max(times.most_nm);
     }
     worst
 }
@@ -79,8 +79,8 @@ struct Trial<'a> {
     spec: &'a FaultSpec,
     case: &'a Case,
     context: &'a str,
-    /// The largest current so far, A.
-    current_a: f64,
+    /// The largest torque of the motor so far, N·m.
+    most_nm: f64,
 }
 
 impl Trial<'_> {
@@ -107,23 +107,20 @@ impl Trial<'_> {
     /// A tick with the cause.
     fn tick(&mut self, since: u64) -> bool {
         (self.case.cause)(&mut self.host, since);
+        if since == 0 {
+            self.host.device.board_mut().up().falsify = self.case.falsify;
+        }
         self.host.tick();
         let board = self.host.device.board();
-        self.current_a = self.current_a.max(board.leg().winding_current_a().abs());
+        self.most_nm = self.most_nm.max(board.leg().motor_nm().abs());
         board.is_driven()
     }
 
     fn times(&self, floats: u64, latched: u64) -> Times {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "to be printed"
-        )]
-        let current_ma = (self.current_a * 1e3) as u64;
         Times {
             floats,
             latched,
-            current_ma,
+            most_nm: self.most_nm,
         }
     }
 

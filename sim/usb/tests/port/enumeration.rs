@@ -20,7 +20,7 @@ const DEVICE_DESCRIPTOR: [u8; 18] = [
 
 #[rustfmt::skip]
 const CONFIGURATION_DESCRIPTOR: [u8; 67] = [
-    9, 2, 67, 0, 2, 1, 0, 0x80, 50,       // two interfaces, bus powered, 100 mA
+    9, 2, 67, 0, 2, 1, 0, 0xc0, 10,       // two interfaces, self-powered, 20 mA
     9, 4, 0, 0, 1, 0x02, 0x02, 0, 0,      // interface 0: CDC-ACM
     5, 0x24, 0x00, 0x10, 0x01,            // header, CDC 1.10
     4, 0x24, 0x02, 0x00,                  // ACM
@@ -64,7 +64,8 @@ fn the_host_understands_them() {
         assert_eq!(found.device.product_id, PRODUCT_ID);
         assert_eq!(found.device.usb_release, 0x0200);
         assert_eq!(found.configuration.interfaces.len(), 2);
-        assert_eq!(found.configuration.max_power_ma, 100);
+        assert_eq!(found.configuration.max_power_ma, 20);
+        assert!(found.configuration.is_self_powered);
         assert_eq!(found.function.control_interface, 0);
         assert_eq!(found.function.bulk_in.address, 0x82);
         assert_eq!(found.function.bulk_out.address, 0x01);

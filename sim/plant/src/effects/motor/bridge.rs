@@ -14,6 +14,10 @@
 //! and the step cut there, as it is for the modes of a chain. The supply takes
 //! back what it gets: it is stiff.
 //!
+//! **A switch that is shorted** leaves a way on which a current meets one diode
+//! instead of the supply, in one sense: an open bridge then brakes a shaft that
+//! turns the other way.
+//!
 //! Ud is 0.8 V, an estimate: body diodes of MOSFETs at an ampere.
 
 use crate::actuator::Actuator;
@@ -54,6 +58,10 @@ enum Mode {
 pub struct Bridge {
     winding: Winding,
     supply_v: f64,
+    /// The sense of a current that a shorted switch lets through.
+    shorted: Option<Sense>,
+    /// A contact in the motor's line is open: no current at all.
+    line_is_open: bool,
     mode: Mode,
     /// In this step the diodes were found not to begin to conduct: at the edge
     /// they would switch endlessly.
@@ -69,6 +77,8 @@ impl Bridge {
         Self {
             winding: Winding::new(motor.winding, 0.0, usual_s),
             supply_v: motor.supply_v,
+            shorted: None,
+            line_is_open: false,
             mode: Mode::Blocked,
             refused: false,
             charge_c: 0.0,
@@ -79,10 +89,29 @@ impl Bridge {
 
     /// Switches the bridge. A voltage beyond the supply's is the supply's.
     pub fn set(&mut self, terminals: Terminals) {
+        if self.line_is_open {
+            return;
+        }
         self.mode = match terminals {
             Terminals::Driven(v) => Mode::Driven(v.clamp(-self.supply_v, self.supply_v)),
             Terminals::Open => Sense::of(self.current_a()).map_or(Mode::Blocked, Mode::Diodes),
         };
+    }
+
+    /// Shorts a switch, so that a current of this sense flows while the bridge is
+    /// open, or repairs it.
+    pub fn set_shorted(&mut self, shorted: Option<Sense>) {
+        self.shorted = shorted;
+    }
+
+    /// Opens or closes a contact in the motor's line. What the current had left
+    /// goes into the contact.
+    pub fn set_line(&mut self, is_open: bool) {
+        self.line_is_open = is_open;
+        if is_open {
+            self.diodes_j += self.winding.cut_off();
+            self.mode = Mode::Blocked;
+        }
     }
 
     /// The winding's current now, A; positive drives towards growing angle.
@@ -106,16 +135,26 @@ impl Bridge {
         self.supply_v
     }
 
-    /// Voltage of the diodes against a current, V.
-    fn against_v(&self) -> f64 {
-        self.supply_v + 2.0 * DIODE_V
+    /// What a current of this sense meets: the supply's voltage, and diodes, V.
+    fn against_v(&self, sense: Sense) -> (f64, f64) {
+        match self.shorted {
+            None => (self.supply_v, 2.0 * DIODE_V),
+            Some(free) if free == sense => (0.0, DIODE_V),
+            Some(_) => (self.supply_v, DIODE_V),
+        }
+    }
+
+    /// The sum of both, V.
+    fn all_against_v(&self, sense: Sense) -> f64 {
+        let (supply_v, diodes_v) = self.against_v(sense);
+        supply_v + diodes_v
     }
 
     /// The voltage at terminals through which a current flows, V.
     fn voltage_v(&self) -> Option<f64> {
         match self.mode {
             Mode::Driven(v) => Some(v),
-            Mode::Diodes(sense) => Some(-sense.of_signed(self.against_v())),
+            Mode::Diodes(sense) => Some(-sense.of_signed(self.all_against_v(sense))),
             Mode::Blocked => None,
         }
     }
@@ -154,16 +193,17 @@ impl Actuator for Bridge {
         match self.mode {
             Mode::Driven(_) => Verdict::Holds,
             Mode::Diodes(sense) => {
-                let voltage_v = -sense.of_signed(self.against_v());
+                let voltage_v = -sense.of_signed(self.all_against_v(sense));
                 let course = self.winding.course(voltage_v, mean_rad_s());
                 self.judge(sense, step, &course)
             }
             Mode::Blocked => {
                 let emf_v = self.winding.settings().constant * mean_rad_s();
-                if emf_v.abs() <= self.against_v() || self.refused {
+                let sense = sense_of(-emf_v);
+                if emf_v.abs() <= self.all_against_v(sense) || self.refused || self.line_is_open {
                     return Verdict::Holds;
                 }
-                self.mode = Mode::Diodes(sense_of(-emf_v));
+                self.mode = Mode::Diodes(sense);
                 Verdict::Again
             }
         }
@@ -188,7 +228,8 @@ impl Actuator for Bridge {
         self.charge_c += charge_c;
         self.supply_j += voltage_v * charge_c;
         if let Mode::Diodes(sense) = self.mode {
-            let diodes_j = 2.0 * DIODE_V * sense.of_signed(charge_c);
+            let (_, diodes_v) = self.against_v(sense);
+            let diodes_j = diodes_v * sense.of_signed(charge_c);
             self.supply_j += diodes_j;
             self.diodes_j += diodes_j;
             if sense.of_signed(self.current_a()) <= NEARLY * start_a.abs() {

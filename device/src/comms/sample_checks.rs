@@ -1,0 +1,279 @@
+//! Checks of the drive's samples by comms.
+//!
+//! The drive checks the same sooner, and more. These are for a drive that does
+//! not react and still sends, because its program or its memory is wrong. So the
+//! debounce of each is longer than the drive's.
+
+use crate::drive::plausibility::TRIP_A;
+use crepitus_model::Real;
+use crepitus_protocol::telemetry::{BLOCK_TICKS, Block, NO_CURRENT, Sample, SampleFlags};
+use crepitus_protocol::{DeviceSettings, Fault, LimitReason, State, TICK_S};
+
+/// Consecutive samples with too much current or torque: the drive takes two.
+const BEYOND_SAMPLES: u32 = 4;
+
+/// Consecutive samples whose current is not that of their torque: the drive takes
+/// a hundred.
+const BESIDE_SAMPLES: u32 = 120;
+
+/// Consecutive blocks that are too fast, and how much faster than the limit: the
+/// drive takes one, and its estimate lags.
+const FAST_BLOCKS: u32 = 3;
+const FAST_SHARE: f64 = 1.15;
+
+/// Largest deviation of the current from that of the torque, A.
+const CURRENT_SLACK_A: f32 = 0.25;
+
+/// Bounds that follow from parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The static torque: no model gives more, N·m.
+    model_torque_nm: f32,
+    /// Of the motor, N·m.
+    torque_nm: f32,
+    /// Counts of the encoder in a block.
+    counts: f32,
+    /// Current for a torque, A/(N·m).
+    amperes_per_nm: f32,
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounded to f32, once")]
+fn single(value: f64) -> f32 {
+    value as f32
+}
+
+impl Bounds {
+    /// Nothing is allowed.
+    pub const NONE: Self = Self {
+        model_torque_nm: 0.0,
+        torque_nm: 0.0,
+        counts: 0.0,
+        amperes_per_nm: 0.0,
+    };
+
+    /// Of settings.
+    pub fn of(settings: &DeviceSettings) -> Self {
+        /// For rounding.
+        const MARGIN: f64 = 1.001;
+        let static_nm =
+            (settings.crepitus.as_ref()).map_or(0.0, |joint| joint.parameters.static_torque_nm);
+        let rad_per_count = settings.encoder.rad_per_count();
+        let rad = FAST_SHARE * settings.limits.speed_rad_s * TICK_S * f64::from(BLOCK_TICKS);
+        Self {
+            model_torque_nm: single(static_nm * MARGIN),
+            torque_nm: single(settings.limits.torque_nm * MARGIN),
+            counts: single(rad / rad_per_count + 2.0),
+            amperes_per_nm: single(1.0 / settings.joint_constant()),
+        }
+    }
+
+    /// The wider of two bounds. The motor's constant changes only while disarmed.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            model_torque_nm: self.model_torque_nm.at_least(other.model_torque_nm),
+            torque_nm: self.torque_nm.at_least(other.torque_nm),
+            counts: self.counts.at_least(other.counts),
+            amperes_per_nm: other.amperes_per_nm,
+        }
+    }
+}
+
+/// The checks and their debounce counters.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SampleChecks {
+    overcurrent: u32,
+    beyond: u32,
+    beside: u32,
+    fast_blocks: u32,
+    /// The last count of the block before.
+    last: Option<i32>,
+}
+
+impl SampleChecks {
+    /// Checks a block that continues the one before, or follows a gap.
+    pub fn check(&mut self, block: &Block, bounds: &Bounds, is_next: bool) -> Option<Fault> {
+        let last = self.last.filter(|_| is_next);
+        self.last = block.samples.last().map(|sample| sample.count);
+        if !matches!(block.flags.state(), State::Arming | State::Armed) {
+            *self = Self {
+                last: self.last,
+                ..Self::default()
+            };
+            return None;
+        }
+        let fault = (block.samples.iter()).find_map(|sample| self.sample(sample, bounds));
+        fault.or_else(|| self.speed(last, block, bounds))
+    }
+
+    fn sample(&mut self, sample: &Sample, bounds: &Bounds) -> Option<Fault> {
+        let current_a =
+            (sample.current_ma != NO_CURRENT).then(|| f32::from(sample.current_ma) * 1e-3);
+        let is_over = current_a.is_some_and(|a| a.abs() > TRIP_A);
+        if held(&mut self.overcurrent, is_over) >= BEYOND_SAMPLES {
+            return Some(Fault::CommsOvercurrent);
+        }
+        // A NaN is beyond every bound.
+        let within = |value: f32, most: f32| value.abs() <= most;
+        let is_energised = sample.flags.has(SampleFlags::ENERGISED);
+        let is_beyond = is_energised
+            && !(within(sample.torque_nm, bounds.torque_nm)
+                && within(sample.model_torque_nm, bounds.model_torque_nm));
+        if held(&mut self.beyond, is_beyond) >= BEYOND_SAMPLES {
+            return Some(Fault::TorqueBeyondBounds);
+        }
+        let is_limited = matches!(
+            sample.flags.limit(),
+            LimitReason::Voltage | LimitReason::Current
+        );
+        let is_beside = current_a.is_some_and(|a| {
+            let off_a = a + sample.torque_nm * bounds.amperes_per_nm;
+            is_energised && !within(off_a, CURRENT_SLACK_A)
+        });
+        // A limited sample neither counts nor makes up for others.
+        if !is_limited && held(&mut self.beside, is_beside) >= BESIDE_SAMPLES {
+            return Some(Fault::CurrentBesideTorque);
+        }
+        None
+    }
+
+    fn speed(&mut self, last: Option<i32>, block: &Block, bounds: &Bounds) -> Option<Fault> {
+        let counts = last.zip(self.last).map(|(last, now)| {
+            #[expect(clippy::cast_precision_loss, reason = "some hundreds")]
+            let counts = now.wrapping_sub(last).unsigned_abs() as f32;
+            counts
+        });
+        // A count that was disturbed is the drive's to judge.
+        let is_sound = (block.samples.iter()).all(|sample| !sample.flags.has(SampleFlags::LOST));
+        let is_fast = is_sound && counts.is_some_and(|counts| counts > bounds.counts);
+        (held(&mut self.fast_blocks, is_fast) >= FAST_BLOCKS).then_some(Fault::CommsOverspeed)
+    }
+}
+
+/// Counts for how many times in a row a condition holds.
+fn held(count: &mut u32, condition: bool) -> u32 {
+    *count = if condition {
+        count.saturating_add(1)
+    } else {
+        0
+    };
+    *count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_protocol::Values;
+    use crepitus_protocol::telemetry::BlockFlags;
+
+    fn bounds() -> Bounds {
+        Bounds::of(&DeviceSettings::of(&Values::default()).unwrap())
+    }
+
+    /// Blocks of one sample until a fault.
+    fn blocks_until(sample: impl Fn(i32) -> Sample, state: State) -> Option<(Fault, usize)> {
+        let mut checks = SampleChecks::default();
+        (0..50).find_map(|n| {
+            let block = Block {
+                flags: BlockFlags::new(state, true, 1),
+                samples: core::array::from_fn(|k| sample(n * 20 + i32::try_from(k).unwrap())),
+                ..Block::default()
+            };
+            let fault = checks.check(&block, &bounds(), true)?;
+            Some((fault, usize::try_from(n).unwrap() + 1))
+        })
+    }
+
+    fn armed(sample: impl Fn(i32) -> Sample) -> Option<(Fault, usize)> {
+        assert_eq!(blocks_until(&sample, State::Disarmed), None);
+        blocks_until(sample, State::Armed)
+    }
+
+    fn energised(torque_nm: f32) -> Sample {
+        Sample {
+            torque_nm,
+            #[expect(clippy::cast_possible_truncation, reason = "a small number")]
+            current_ma: (-torque_nm / (0.0389 * 86.0) * 1e3) as i16,
+            flags: SampleFlags(SampleFlags::ENERGISED),
+            ..Sample::default()
+        }
+    }
+
+    #[test]
+    fn what_parameters_allow_is_no_fault() {
+        for torque_nm in [-4.5, -0.4, 0.0, 4.5] {
+            let model_torque_nm = 0.4_f32.copysign(torque_nm);
+            let sample = |n| Sample {
+                count: i32::MAX.wrapping_add(n * 10),
+                model_torque_nm,
+                ..energised(torque_nm)
+            };
+            assert_eq!(armed(sample), None);
+        }
+    }
+
+    #[test]
+    fn too_much_of_anything_is_a_fault() {
+        let over = |_| Sample {
+            current_ma: -1_960,
+            ..Sample::default()
+        };
+        assert_eq!(armed(over), Some((Fault::CommsOvercurrent, 1)));
+        let beyond = Some((Fault::TorqueBeyondBounds, 1));
+        assert_eq!(armed(|_| energised(4.51)), beyond);
+        assert_eq!(armed(|_| energised(f32::NAN)), beyond);
+        let model = |_| Sample {
+            model_torque_nm: -0.41,
+            ..energised(0.1)
+        };
+        assert_eq!(armed(model), beyond);
+        let beside = |_| Sample {
+            current_ma: 300,
+            ..energised(0.0)
+        };
+        assert_eq!(armed(beside), Some((Fault::CurrentBesideTorque, 6)));
+        // 7.33 rad/s are 10.3 counts a tick.
+        let fast = |n: i32| Sample {
+            count: n * 12,
+            ..energised(0.0)
+        };
+        assert_eq!(armed(fast), Some((Fault::CommsOverspeed, 4)));
+    }
+
+    #[test]
+    fn what_the_drive_stops_by_itself_is_no_fault_of_comms() {
+        // Three samples, and then it has reacted.
+        let over = |n: i32| Sample {
+            current_ma: if n % 20 < 3 { 2_400 } else { 0 },
+            ..Sample::default()
+        };
+        assert_eq!(armed(over), None);
+        let fast = |n: i32| Sample {
+            count: n.min(60) * 12,
+            ..energised(0.0)
+        };
+        assert_eq!(armed(fast), None);
+    }
+
+    #[test]
+    fn limited_samples_and_gaps_excuse() {
+        let limited = |_| Sample {
+            current_ma: 300,
+            flags: energised(0.0).flags.with_limit(LimitReason::Voltage),
+            ..energised(0.0)
+        };
+        assert_eq!(armed(limited), None);
+        let mut checks = SampleChecks::default();
+        for n in 0..50 {
+            let block = Block {
+                flags: BlockFlags::new(State::Armed, true, 1),
+                samples: [Sample {
+                    count: n * 100_000,
+                    ..Sample::default()
+                }; 20],
+                ..Block::default()
+            };
+            assert_eq!(checks.check(&block, &bounds(), false), None);
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! Two faults of sensors at once, of parts that are independent: who notices,
+//! when, and the most that the hand can feel until then.
+
+use crate::page;
+use crate::support::{Host, examination};
+use crepitus_board::leg::CurrentPath::{Monitor, Sensor};
+use crepitus_board::leg::CurrentSensor::{Gain, StuckAt};
+use crepitus_board::leg::EncoderWiring::{Swapped, Unplugged};
+use crepitus_board::{Board, Start};
+use crepitus_protocol::fault::FAULTS;
+use crepitus_protocol::{Fault, State};
+
+/// A part, and what is wrong with it.
+type Breakage = (&'static str, &'static str, fn(&mut Board));
+
+/// The faults of the sensors.
+const BREAKAGES: [Breakage; 11] = [
+    ("sensor", "shows nothing", |board| {
+        board.leg_mut().set_current_sensor(Sensor, StuckAt(0.0));
+    }),
+    ("sensor", "is stuck at 1 A", |board| {
+        board.leg_mut().set_current_sensor(Sensor, StuckAt(1.0));
+    }),
+    ("sensor", "shows half", |board| {
+        board.leg_mut().set_current_sensor(Sensor, Gain(0.5));
+    }),
+    ("sensor", "has the wrong sign", |board| {
+        board.leg_mut().set_current_sensor(Sensor, Gain(-1.0));
+    }),
+    ("monitor", "shows nothing", |board| {
+        board.leg_mut().set_current_sensor(Monitor, StuckAt(0.0));
+    }),
+    ("monitor", "is stuck at 1 A", |board| {
+        board.leg_mut().set_current_sensor(Monitor, StuckAt(1.0));
+    }),
+    ("monitor", "shows half", |board| {
+        board.leg_mut().set_current_sensor(Monitor, Gain(0.5));
+    }),
+    ("monitor", "has the wrong sign", |board| {
+        board.leg_mut().set_current_sensor(Monitor, Gain(-1.0));
+    }),
+    ("comparator", "is blind", |board| board.set_trip(false)),
+    ("encoder", "is unplugged", |board| {
+        board.leg_mut().set_encoder_wiring(Unplugged);
+    }),
+    ("encoder", "is swapped", |board| {
+        board.leg_mut().set_encoder_wiring(Swapped);
+    }),
+];
+
+/// Joints, by their static torque, N·m.
+const JOINTS: [(f64, &[(&str, f64)]); 3] = [
+    (0.4, &[]),
+    (
+        1.5,
+        &[
+            ("crepitus.inertia_kg_m2", 0.03),
+            ("crepitus.static_torque_nm", 1.5),
+            ("crepitus.kinetic_torque_nm", 1.3),
+        ],
+    ),
+    (
+        4.0,
+        &[
+            ("crepitus.inertia_kg_m2", 0.1),
+            ("crepitus.static_torque_nm", 4.0),
+            ("crepitus.kinetic_torque_nm", 3.5),
+        ],
+    ),
+];
+
+/// For how long the hand goes on, ticks: 400 ms.
+const TICKS: u64 = 8_000;
+
+/// What came of a pair.
+#[derive(Clone, Copy, Debug, Default)]
+struct Outcome {
+    fault: Option<Fault>,
+    /// Ticks until the bridge floated.
+    ticks: u64,
+    most_nm: f64,
+}
+
+fn outcome(values: &[(&str, f64)], pair: [&Breakage; 2]) -> Outcome {
+    let mut host = Host::new(&examination(), &Start::default());
+    host.run(400);
+    for (name, value) in values {
+        host.set(name, *value);
+    }
+    host.arm();
+    while host.device.board().leg().shaft().omega_rad_s < 0.9 {
+        host.tick();
+    }
+    assert_eq!(host.device.board().drive().state(), State::Armed);
+    for (_, _, breaks) in pair {
+        breaks(host.device.board_mut());
+    }
+    let mut outcome = Outcome::default();
+    for tick in 0..TICKS {
+        host.tick();
+        let board = host.device.board();
+        outcome.most_nm = outcome.most_nm.max(board.leg().motor_nm().abs());
+        if board.is_driven() {
+            outcome.ticks = tick + 1;
+        }
+        outcome.fault = outcome.fault.or(board.drive().fault());
+    }
+    outcome
+}
+
+/// The gear's short-time torque, N·m: no pair goes beyond it but two current
+/// sensors that are wrong in the same way.
+const GEAR_NM: f64 = 6.5;
+
+/// And those not beyond this.
+const MOST_NM: f64 = 11.0;
+
+/// In the sensors that see the current both ways, the same is wrong.
+fn agree(first: &Breakage, second: &Breakage) -> bool {
+    (first.0, second.0) == ("sensor", "monitor") && first.1 == second.1
+}
+
+#[test]
+fn pairs_of_independent_sensor_faults_are_bounded() {
+    let mut wrong = Vec::new();
+    let mut rows = vec![
+        "| two faults | joint, N·m | noticed as | floats after, ticks | most N·m |".into(),
+        "|---|---|---|---|---|".into(),
+    ];
+    for (n, first) in BREAKAGES.iter().enumerate() {
+        for second in BREAKAGES[n + 1..].iter().filter(|part| part.0 != first.0) {
+            for (static_nm, values) in JOINTS {
+                let got = outcome(values, [first, second]);
+                let name = format!("{} {}, {} {}", first.0, first.1, second.0, second.1);
+                let noticed = got.fault.and_then(|fault| {
+                    let spec = FAULTS.iter().find(|spec| spec.fault == fault);
+                    spec.map(|spec| spec.name)
+                });
+                rows.push(format!(
+                    "| {name} | {static_nm} | {} | {} | {:.1} |",
+                    noticed.unwrap_or("nothing"),
+                    noticed.map_or(String::new(), |_| got.ticks.to_string()),
+                    got.most_nm
+                ));
+                let may_nm = if agree(first, second) {
+                    MOST_NM
+                } else {
+                    GEAR_NM
+                };
+                if got.most_nm > may_nm {
+                    wrong.push(format!("{name}, {static_nm} N·m: {:.1} N·m", got.most_nm));
+                }
+                // What nothing notices does not exceed what the joint gives.
+                if got.fault.is_none() && got.most_nm > 2.0 * static_nm + 0.1 {
+                    wrong.push(format!("{name}, {static_nm} N·m: not noticed"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    page::hold("pairs", &rows);
+}
