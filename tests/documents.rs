@@ -1,8 +1,9 @@
 //! The documents keep their promises: links lead somewhere, the README's
-//! commands are where the gate looks for them.
+//! commands are where the gate looks for them, every risk names tests that exist.
 
 mod support;
 
+use crepitus_protocol::fault::FAULTS;
 use pulldown_cmark::{Event, Options, Parser, Tag};
 use std::collections::BTreeSet;
 use std::fs;
@@ -112,5 +113,101 @@ fn every_dependency_has_its_reason() {
             name.starts_with("crepitus-") || reasons.contains(&format!("`{name}`")),
             "{name} has no line in docs/dependencies.md"
         );
+    }
+}
+
+/// The folder of a package of the workspace.
+fn folder_of(package: &str) -> Option<PathBuf> {
+    let root = repository();
+    let manifest = fs::read_to_string(root.join("Cargo.toml")).unwrap();
+    let (_, members) = manifest.split_once("members = [").unwrap();
+    let (members, _) = members.split_once(']').unwrap();
+    let name = format!("name = \"{package}\"");
+    (members.split('"').skip(1).step_by(2))
+        .map(|member| root.join(member))
+        .find(|folder| {
+            let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+            manifest.lines().any(|line| line == name)
+        })
+}
+
+/// All sources below a folder or of a file.
+fn sources(path: &Path, all: &mut String) {
+    if path.is_dir() {
+        for entry in fs::read_dir(path).unwrap() {
+            sources(&entry.unwrap().path(), all);
+        }
+    } else if path.extension().is_some_and(|e| e == "rs") {
+        all.push_str(&path.to_string_lossy());
+        all.push_str(&fs::read_to_string(path).unwrap());
+    }
+}
+
+/// Why `cargo test -p PACKAGE [--lib | --test NAME] [FILTER]` would run nothing.
+fn runs_nothing(command: &str) -> Option<String> {
+    let mut words = command.strip_prefix("cargo test -p ")?.split(' ');
+    let Some(folder) = words.next().and_then(folder_of) else {
+        return Some(format!("{command}: no such package"));
+    };
+    // The tool's tests lie at the root.
+    let tests = if command.contains("crepitus-tool") {
+        repository().join("tests")
+    } else {
+        folder.join("tests")
+    };
+    let (mut code, mut filter) = (String::new(), None);
+    while let Some(word) = words.next() {
+        match word {
+            "--lib" => sources(&folder.join("src"), &mut code),
+            "--test" => {
+                let name = words.next().unwrap_or_default();
+                sources(&tests.join(format!("{name}.rs")), &mut code);
+                if tests.join(name).is_dir() {
+                    sources(&tests.join(name), &mut code);
+                }
+            }
+            other => filter = Some(other.trim_end_matches("::")),
+        }
+    }
+    if code.is_empty() {
+        return Some(format!("{command}: no such tests"));
+    }
+    let filter = filter.filter(|filter| !code.contains(filter));
+    filter.map(|filter| format!("{command}: no {filter}"))
+}
+
+#[test]
+fn every_risk_names_tests_that_exist_or_says_that_it_is_open() {
+    let page = fs::read_to_string(repository().join("docs/risks.md")).unwrap();
+    let mut risks = 0;
+    for row in page.lines().filter(|line| line.starts_with("| **R")) {
+        risks += 1;
+        assert!(row.starts_with(&format!("| **R{risks}** ")), "{row}");
+        let cells: Vec<_> = row.split('|').map(str::trim).collect();
+        let [_, _, before, measures, shown_by, after, _] = cells[..] else {
+            panic!("{row}");
+        };
+        // Nothing is left that is not acceptable, unless the risk is open.
+        let is_open = measures.contains("**Open**");
+        assert!(is_open || !["3c", "3d", "4b", "4c", "4d"].contains(&after));
+        assert!(after <= before, "{row}");
+        let is_by_hand = shown_by.contains("by hand");
+        let commands: Vec<_> = (shown_by.split('`').skip(1).step_by(2)).collect();
+        assert!(is_open || is_by_hand || !commands.is_empty(), "{row}");
+        for command in commands {
+            assert_eq!(runs_nothing(command), None);
+        }
+    }
+    assert!(risks >= 20, "{risks}");
+    for fault in &FAULTS {
+        let name = format!("`{}`", fault.name);
+        assert!(page.contains(&name), "{name} answers no risk");
+    }
+    for wrong in [
+        "cargo test -p crepitus-nobody",
+        "cargo test -p crepitus-board --test nothing",
+        "cargo test -p crepitus-board --test fault_table nothing_of_the_kind",
+    ] {
+        assert!(runs_nothing(wrong).is_some(), "{wrong}");
     }
 }

@@ -262,12 +262,13 @@ mod tests {
             DeviceSettings::of(&values),
             Err(ValueError::KineticAboveStatic)
         );
-        values.set(id::STATIC_TORQUE, 5.0);
+        values.set(id::STATIC_TORQUE, 3.0);
+        values.set(id::TORQUE_LIMIT, 2.9);
         assert_eq!(
             DeviceSettings::of(&values),
             Err(ValueError::StaticAboveLimit)
         );
-        values.set(id::TORQUE_LIMIT, 6.0);
+        values.set(id::TORQUE_LIMIT, 4.5);
         assert!(DeviceSettings::of(&values).is_ok());
     }
 

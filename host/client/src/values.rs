@@ -84,7 +84,7 @@ pub fn full_name(parameter: &Parameter) -> String {
     format!("{}.{}", parameter.group, parameter.key())
 }
 
-/// The valid values: "between 0 and 6.5 N·m", "`off` or `on`".
+/// The valid values: "between 0 and 4.5 N·m", "`off` or `on`".
 pub fn allowed_text(parameter: &Parameter) -> String {
     match parameter.kind {
         Kind::Number(spec) => {

@@ -83,12 +83,12 @@ settings! {
             default: 24.0,
             meaning: "supply voltage of the bridge, in either direction",
         },
-        // The hardware trips at the largest.
+        // The gear's short-time torque is the largest; the hardware trips at 1.95 A.
         current_limit_a {
             id: 24 disarmed,
             symbol: "I",
             unit: "A",
-            range: 0.01..=1.95,
+            range: 0.01..=1.37,
             default: 1.37,
             meaning: "largest current setpoint: 6.5 N·m at the joint of a hand that back-drives the gear",
         },

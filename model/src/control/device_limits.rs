@@ -2,7 +2,8 @@
 //!
 //! Sources: gear torque 4.5 N·m continuous and 6.5 N·m short, input speed
 //! 6000 rpm, which is 420 deg/s at the joint (GP 32 A data sheet); slew is an
-//! engineering estimate; torque constant of the maxon RE35, 30 V winding.
+//! engineering estimate; torque constant of the maxon RE35, 30 V winding. What the
+//! motor gives, a back-driving hand feels as 1/0.70 of it: 4.5 N·m are the gear's 6.5.
 
 use crate::parameters::settings;
 
@@ -13,9 +14,9 @@ settings! {
             id: 26 always,
             symbol: "Tmax",
             unit: "N·m",
-            range: 0.0..=6.5,
+            range: 0.0..=4.5,
             default: 4.5,
-            meaning: "largest torque at the joint: 4.5 continuous, 6.5 for a short time",
+            meaning: "largest torque of the motor at the joint; a hand that back-drives the gear feels up to 6.5",
         },
         slew_nm_per_s {
             id: 27 always,

@@ -61,7 +61,7 @@ fn invalid_values_are_rejected_with_the_valid_ones() {
         (
             &[(id::TORQUE_LIMIT, 9.0)][..],
             ValueError::OutOfRange { id: 26 },
-            "invalid value limits.torque_nm = 9: must be between 0 and 6.5 N·m; nothing was changed",
+            "invalid value limits.torque_nm = 9: must be between 0 and 4.5 N·m; nothing was changed",
         ),
         (
             &[(id::STATIC_TORQUE, f64::NAN)],
@@ -94,7 +94,7 @@ fn invalid_values_are_rejected_with_the_valid_ones() {
             &[(id::STATIC_TORQUE, 5.0)],
             ValueError::StaticAboveLimit,
             "crepitus.static_torque_nm = 5 is above limits.torque_nm = 4.5: lower the first or \
-             raise the second, which is between 0 and 6.5 N·m; nothing was changed",
+             raise the second, which is between 0 and 4.5 N·m; nothing was changed",
         ),
     ] {
         let failed = client.set(changes).unwrap_err();

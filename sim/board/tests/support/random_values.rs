@@ -24,7 +24,7 @@ pub(crate) fn allowed(rng: &mut Rng, base: &Values) -> Values {
         ("friction-compensation.share", 0.9 * rng.f64()),
         ("bone-shaping.render", switch(rng)),
         ("bone-shaping.gain", between(rng, 0.0, 2.0)),
-        ("limits.torque_nm", between(rng, static_nm, 6.5)),
+        ("limits.torque_nm", between(rng, static_nm, 4.5)),
         ("limits.slew_nm_per_s", between(rng, 50.0, 100.0)),
     ];
     for (name, value) in numbers {
