@@ -137,7 +137,7 @@ fn sources(path: &Path, all: &mut String) {
         for entry in fs::read_dir(path).unwrap() {
             sources(&entry.unwrap().path(), all);
         }
-    } else if path.extension().is_some_and(|e| e == "rs") {
+    } else if path.is_file() && path.extension().is_some_and(|e| e == "rs") {
         all.push_str(&path.to_string_lossy());
         all.push_str(&fs::read_to_string(path).unwrap());
     }

@@ -415,6 +415,14 @@ impl Board {
             && self.comms_line.is_on()
     }
 
+    /// Whether the enable line of a controller is on, at its gate.
+    pub fn line_is_on(&self, controller: Controller) -> bool {
+        match controller {
+            Controller::Drive => self.drive_line.is_on(),
+            Controller::Comms => self.comms_line.is_on(),
+        }
+    }
+
     /// Whether comms runs.
     pub fn comms_runs(&self) -> bool {
         self.comms_health == Health::Runs

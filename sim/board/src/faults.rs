@@ -2,6 +2,7 @@
 
 use crepitus_protocol::frame::{FRAME_BYTES, Frame};
 use fastrand::Rng;
+use std::collections::BTreeMap;
 
 /// Faults of a wire. Shares are of frames, 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,11 +22,26 @@ pub struct Faults {
     pub is_cut: bool,
 }
 
+/// Fault of one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Fate {
+    /// It vanishes.
+    Lost,
+    /// It arrives, and so many ticks later again.
+    Again(u64),
+    /// It arrives so many ticks later, and may be overtaken.
+    Late(u64),
+}
+
 /// Puts faults into a wire.
 #[derive(Clone, Debug)]
 pub struct FaultInjector {
     /// Current faults.
     pub faults: Faults,
+    /// Faults of single frames, by [`Self::passed`] before them; in place of the
+    /// others.
+    pub fates: BTreeMap<u64, Fate>,
+    passed: u64,
     rng: Rng,
 }
 
@@ -34,12 +50,30 @@ impl FaultInjector {
     pub fn new(seed: u64) -> Self {
         Self {
             faults: Faults::default(),
+            fates: BTreeMap::new(),
+            passed: 0,
             rng: Rng::with_seed(seed),
         }
     }
 
+    /// Frames so far.
+    pub fn passed(&self) -> u64 {
+        self.passed
+    }
+
     /// Passes a frame; `arrives` gets delay, ticks, and bytes of each arrival.
     pub fn pass(&mut self, frame: &Frame, mut arrives: impl FnMut(u64, &[u8])) {
+        let fate = self.fates.get(&self.passed).copied();
+        self.passed += 1;
+        match fate {
+            None => {}
+            Some(Fate::Lost) => return,
+            Some(Fate::Late(ticks)) => return arrives(ticks, frame),
+            Some(Fate::Again(ticks)) => {
+                arrives(0, frame);
+                return arrives(ticks, frame);
+            }
+        }
         let faults = self.faults;
         if faults.is_cut || self.happens(faults.loss) {
             return;
@@ -133,6 +167,31 @@ mod tests {
         });
         assert!((0..=9).all(|ticks| late.iter().any(|(l, _)| *l == ticks)));
         assert!(half(Faults { is_cut: true, ..d }).is_empty());
+    }
+
+    #[test]
+    fn a_frame_has_its_fate_and_the_next_one_has_not() {
+        let mut injector = FaultInjector::new(7);
+        injector.fates = [(1, Fate::Lost), (2, Fate::Again(5)), (4, Fate::Late(9))].into();
+        let arrived: Vec<_> = (0..6)
+            .map(|n| {
+                let frame = Frame::from_slice(&[n; 3]).unwrap();
+                let mut arrived = Vec::new();
+                injector.pass(&frame, |late, bytes| arrived.push((late, bytes.to_vec())));
+                arrived
+            })
+            .collect();
+        let at = |late, n| (late, vec![n; 3]);
+        let expected = [
+            vec![at(0, 0)],
+            vec![],
+            vec![at(0, 2), at(5, 2)],
+            vec![at(0, 3)],
+            vec![at(9, 4)],
+            vec![at(0, 5)],
+        ];
+        assert_eq!(arrived, expected);
+        assert_eq!(injector.passed(), 6);
     }
 
     #[test]
