@@ -37,7 +37,7 @@ const START_UP_TICKS: [u64; 2] = [2, 240];
 
 /// Ticks between two instants at which a controller restarts: no multiple of a
 /// millisecond's 20.
-const RESTART_EVERY: u64 = 7;
+const RESTART_EVERY: usize = 7;
 
 /// One of the two wires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -297,7 +297,7 @@ fn either_controller_may_restart_at_any_time() {
     let (mut played, mut armed_before) = (0, 0);
     for controller in [Controller::Drive, Controller::Comms] {
         for start_up_ticks in START_UP_TICKS {
-            for at in (0..ticks).step_by(RESTART_EVERY as usize) {
+            for at in (0..ticks).step_by(RESTART_EVERY) {
                 let case = format!("{controller:?} restarts {at} ticks after the request");
                 armed_before += u32::from(restart(controller, at, start_up_ticks, &case));
                 played += 1;
