@@ -88,7 +88,7 @@ impl Conditions {
 struct Excess(f32);
 
 impl Excess {
-    /// Whether the sum has reached `most`.
+    /// Adds an excess; true once the sum has reached `most`.
     fn trips(&mut self, excess: f32, most: f32) -> bool {
         self.0 = (self.0 + excess).at_least(0.0);
         // A NaN trips.
@@ -237,7 +237,7 @@ mod tests {
             if check.ticks > 1 {
                 assert_eq!(run([false; CHECKS]), None);
                 for _ in 1..check.ticks {
-                    assert_eq!(run(holds), None, "{n} begins anew");
+                    assert_eq!(run(holds), None, "{n} starts over");
                 }
             }
             assert_eq!(run(holds), Some(check.fault));

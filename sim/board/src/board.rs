@@ -415,7 +415,7 @@ impl Board {
             && self.comms_line.is_on()
     }
 
-    /// Whether the enable line of a controller is on, at its gate.
+    /// Level of the enable line of a controller at its gate: true for on.
     pub fn line_is_on(&self, controller: Controller) -> bool {
         match controller {
             Controller::Drive => self.drive_line.is_on(),

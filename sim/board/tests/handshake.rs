@@ -1,6 +1,6 @@
 //! Arming, lease and commit, model-checked: both controllers' own code through every
-//! run in which the link or a controller fails once, and through runs in which the
-//! link fails twice.
+//! run in which one frame fails in one of six ways, through restarts and disarms at
+//! instants of every phase, and through runs in which two frames fail.
 //!
 //! A run is a host that arms, commits, and disarms. Nothing in it is random, so a
 //! run is given by what fails: which frame, on which wire, is lost, comes late or
@@ -32,7 +32,7 @@ const FATES: [Fate; 6] = [
     Fate::Again(1_200),
 ];
 
-/// Ticks of the drive's own, and of a slow start-up of a controller.
+/// Start-up times of a controller: within a heartbeat, and slow, ticks.
 const START_UP_TICKS: [u64; 2] = [2, 240];
 
 /// Ticks between two instants at which a controller restarts: no multiple of a
