@@ -49,7 +49,7 @@ fn the_doctor_finds_nothing_wrong() {
 #[test]
 fn parameters_are_listed_read_and_set() {
     let list: Value = serde_json::from_str(&stdout(&run(&["params", "list", "--json"]))).unwrap();
-    assert_eq!(list.as_array().unwrap().len(), 29);
+    assert_eq!(list.as_array().unwrap().len(), 32);
     assert_eq!(list[4]["name"], "crepitus.static_torque_nm");
     let got = json(&[
         "params",
@@ -162,14 +162,14 @@ fn control_does_what_it_says() {
     assert_eq!(done(&["stop"]), "stopped\n");
     assert_eq!(done(&["clear-fault"]), "faults cleared\n");
     assert_eq!(
-        done(&["arm", "--for", "1s"]),
+        done(&["arm", "--zero", "--for", "1s"]),
         "disarmed: the duration has elapsed\n"
     );
 }
 
 #[test]
 fn samples_are_streamed_at_the_requested_rate() {
-    let text = done(&["stream", "--for", "2s", "--rate", "100", "--arm"]);
+    let text = done(&["stream", "--for", "2s", "--rate", "100", "--arm", "--zero"]);
     let lines: Vec<_> = text.lines().collect();
     assert!((200..=205).contains(&(lines.len() - 1)), "{}", lines.len());
     assert!(lines[0].starts_with("tick,t_s,count,angle_rad"));
@@ -200,6 +200,7 @@ fn a_recording_is_reported() {
         "--for",
         "2s",
         "--arm",
+        "--zero",
         "--title",
         "First try",
     ]);

@@ -20,7 +20,7 @@ fn record(folder: &Path, name: &str) -> Output {
     crepitus()
         .current_dir(folder)
         .args([
-            "record", "--device", "sim", "--for", "500ms", "--arm", "--", name,
+            "record", "--device", "sim", "--for", "500ms", "--arm", "--zero", "--", name,
         ])
         .output()
         .unwrap()
@@ -92,6 +92,7 @@ fn a_refused_recording_leaves_nothing() {
         "--device",
         "none-of-this-name",
         "--arm",
+        "--zero",
     ]);
     assert!(!output.status.success());
     assert_eq!(names(home.path()), [""; 0]);
@@ -413,6 +414,7 @@ fn memory_does_not_grow_with_the_recording() {
             "--device",
             "sim",
             "--arm",
+            "--zero",
             "--for",
             duration,
         ])];

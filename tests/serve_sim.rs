@@ -70,7 +70,7 @@ fn ctrl_c_disarms_first() {
     let served = Served::new();
     let file = served.home.path().join("a.csv");
     let child = served
-        .command(&["record", file.to_str().unwrap(), "--arm"])
+        .command(&["record", file.to_str().unwrap(), "--arm", "--zero"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -93,7 +93,7 @@ fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
     let served = Served::new();
     let file = served.home.path().join("a.csv");
     let mut child = served
-        .command(&["record", file.to_str().unwrap(), "--arm"])
+        .command(&["record", file.to_str().unwrap(), "--arm", "--zero"])
         .stdout(Stdio::null())
         .spawn()
         .unwrap();
@@ -111,7 +111,12 @@ fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
     );
     // It continues without a restart.
     assert!(served.run(&["clear-fault"]).status.success());
-    assert!(served.run(&["arm", "--for", "200ms"]).status.success());
+    assert!(
+        served
+            .run(&["arm", "--zero", "--for", "200ms"])
+            .status
+            .success()
+    );
     // The file on disk is a valid recording.
     let output = served.run(&["report", file.to_str().unwrap()]);
     assert!(output.status.success(), "{}", stderr(&output));
@@ -168,7 +173,7 @@ fn a_full_disk_ends_a_recording_that_can_still_be_reported() {
     let served = Served::new();
     let file = served.home.path().join("a.csv");
     let script = format!(
-        "trap '' XFSZ; ulimit -f 400; exec '{}' record '{}' --arm",
+        "trap '' XFSZ; ulimit -f 400; exec '{}' record '{}' --arm --zero",
         env!("CARGO_BIN_EXE_crepitus"),
         file.display()
     );

@@ -48,7 +48,7 @@ fn check_books(file: &Path) -> [u64; 3] {
 #[test]
 fn everything_works_while_another_program_is_armed() {
     let served = Served::new();
-    let arm = start(&served, &["arm", "--for", "60s"]);
+    let arm = start(&served, &["arm", "--zero", "--for", "60s"]);
     until_armed(&served);
 
     // Another terminal changes parameters, looks, streams and records.
@@ -68,12 +68,12 @@ fn everything_works_while_another_program_is_armed() {
 
     // Recording with torque is refused, and leaves nothing.
     let refused = file(&served, "refused");
-    let output = served.run(&["record", refused.to_str().unwrap(), "--arm"]);
+    let output = served.run(&["record", refused.to_str().unwrap(), "--arm", "--zero"]);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(!refused.exists());
 
     // What concerns the torque is for the one that has armed, who is named.
-    let process = format!("`crepitus arm --for 60s`, process {},", arm.id());
+    let process = format!("`crepitus arm --zero --for 60s`, process {},", arm.id());
     for verb in ["disarm", "arm", "zero", "clear-fault"] {
         let refused = served.run(&[verb]);
         assert_eq!(refused.status.code(), Some(1), "{verb}");
@@ -98,7 +98,7 @@ fn everything_works_while_another_program_is_armed() {
 #[test]
 fn disarming_by_force_is_for_everybody() {
     let served = Served::new();
-    let mut arm = start(&served, &["arm", "--for", "60s"]);
+    let mut arm = start(&served, &["arm", "--zero", "--for", "60s"]);
     until_armed(&served);
     let forced = served.run(&["disarm", "--force"]);
     assert!(forced.status.success(), "{}", stderr(&forced));
@@ -123,7 +123,7 @@ fn the_others_go_on_when_the_first_program_ends() {
         child
     };
     let mut serving = record(&first, &[]);
-    let armed = record(&second, &["--arm"]);
+    let armed = record(&second, &["--arm", "--zero"]);
     let other = record(&third, &[]);
     until_armed(&served);
     signal(&serving, "-KILL");
@@ -159,7 +159,7 @@ fn the_one_that_serves_disarms_for_a_program_that_is_killed() {
         fs::read_dir(served.home.path().join("crepitus/shared"))
             .is_ok_and(|entries| entries.count() == 2)
     });
-    let mut armed = start(&served, &["arm"]);
+    let mut armed = start(&served, &["arm", "--zero"]);
     until_armed(&served);
     signal(&armed, "-KILL");
     armed.wait().unwrap();
@@ -178,7 +178,10 @@ fn the_one_that_serves_disarms_for_a_program_that_is_killed() {
 fn a_program_that_serves_and_hangs_is_named() {
     let served = Served::new();
     let path = file(&served, "a.csv");
-    let mut serving = start(&served, &["record", path.to_str().unwrap(), "--arm"]);
+    let mut serving = start(
+        &served,
+        &["record", path.to_str().unwrap(), "--arm", "--zero"],
+    );
     until("half a second is recorded", || {
         fs::metadata(&path).is_ok_and(|data| data.len() > HALF_A_SECOND)
     });
@@ -202,7 +205,10 @@ fn signals_end_a_command_in_order() {
     for name in ending_signals() {
         let served = Served::new();
         let path = file(&served, "a.csv");
-        let child = start(&served, &["record", path.to_str().unwrap(), "--arm"]);
+        let child = start(
+            &served,
+            &["record", path.to_str().unwrap(), "--arm", "--zero"],
+        );
         // Armed, and nobody else has had the port open.
         until("half a second is recorded", || {
             fs::metadata(&path).is_ok_and(|data| data.len() > HALF_A_SECOND)
@@ -241,11 +247,11 @@ fn many_programs_are_killed_at_random() {
             let file = path.to_str().unwrap().to_owned();
             let arguments = match rng.u8(0..10) {
                 0..=3 => vec!["record", &file],
-                4 => vec!["record", &file, "--arm"],
+                4 => vec!["record", &file, "--arm", "--zero"],
                 5 | 6 => vec!["stream", "--rate", "100"],
-                7 => vec!["arm"],
+                7 => vec!["arm", "--zero"],
                 8 => vec!["params", "set", "crepitus.static_torque_nm=0.42"],
-                _ => vec!["stream", "--rate", "10", "--arm"],
+                _ => vec!["stream", "--rate", "10", "--arm", "--zero"],
             };
             if arguments[0] == "record" {
                 files.push(path.clone());
@@ -309,7 +315,7 @@ fn record_is_killed_at_any_instant() {
     let (mut absent, mut cut, mut complete, mut samples, mut expired) = (0, 0, 0, 0, 0);
     for n in 0..kills {
         let path = bench.home.path().join(format!("recording {n}.json"));
-        let mut child = bench.spawn(&["record", path.to_str().unwrap(), "--arm"]);
+        let mut child = bench.spawn(&["record", path.to_str().unwrap(), "--arm", "--zero"]);
         // As often while it begins as when torque is on.
         let ms = if rng.bool() {
             rng.u64(0..80)

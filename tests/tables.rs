@@ -62,7 +62,7 @@ fn samples_are_the_same_in_both() {
     let stream = |arguments: &[&str]| {
         let output = run(&[
             &[
-                "stream", "--device", "sim", "--for", "100ms", "--rate", "1000", "--arm",
+                "stream", "--device", "sim", "--for", "100ms", "--rate", "1000", "--arm", "--zero",
             ],
             arguments,
         ]

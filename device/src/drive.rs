@@ -30,6 +30,7 @@ pub mod motor;
 pub mod outgoing;
 pub mod plausibility;
 pub mod prepare;
+pub mod range;
 pub mod rendering;
 pub mod safety;
 pub mod sampler;

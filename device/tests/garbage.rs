@@ -130,6 +130,7 @@ fn garbage_before_the_first_frame_is_discarded() {
             Ok(Answer::Status(_))
         ));
         bench.settle();
+        assert_eq!(bench.ask(Operation::Zero), Ok(Answer::Done));
         assert_eq!(bench.ask(Operation::Arm), Ok(Answer::Done));
         assert_eq!(bench.ask(Operation::Disarm), Ok(Answer::Done));
     }

@@ -5,7 +5,7 @@
 #
 # It says hello, opens a session, sets crepitus.static_torque_nm to 0.45, receives
 # 200 blocks of samples, and checks that each sample was received or is reported as
-# dropped. With --arm the device is armed meanwhile.
+# dropped. With --arm the device is armed meanwhile, with the angle's zero here.
 import itertools, os, select, struct, sys, tty, zlib
 
 # --- Framing ---
@@ -69,7 +69,7 @@ base, values = unvarint(parameters), [value for value, in struct.iter_unpack("<d
 values[4] = 0.45
 request(b"\x04" + varint(base) + struct.pack(f"<{len(values)}d", *values))
 
-arms = "--arm" in sys.argv and request(b"\x07") is not None
+arms = "--arm" in sys.argv and [request(b"\x06"), request(b"\x07")] is not None
 first_tick, dropped_before = (unvarint(answer) for answer in [request(b"\x0a")] * 2)
 for number in range(1, 201):
     arms and number % 50 == 1 and send(b"Q" + tag + session + nonce + b"\0\0")  # Renews the lease.

@@ -30,6 +30,7 @@ pub enum Fault {
     TickIrregular = 20,
     CommsLineOff = 21,
     CurrentWhileFloating = 22,
+    OutsideRange = 23,
     DriveSilent = 32,
     DriveRestarted = 33,
     CommsEnableStuckOn = 34,
@@ -43,6 +44,7 @@ pub enum Fault {
     TorqueBeyondBounds = 42,
     CurrentBesideTorque = 43,
     CommsOverspeed = 44,
+    TorqueOutsideRange = 45,
 }
 
 /// Controller that detects a fault.
@@ -93,7 +95,7 @@ const CLEAR: &str = "clear-fault";
 const REPAIR: &str = "repair, then clear-fault";
 
 /// All faults, in the order of their codes.
-pub const FAULTS: [FaultSpec; 35] = [
+pub const FAULTS: [FaultSpec; 37] = [
     FaultSpec {
         fault: Fault::CommsSilent,
         name: "comms-silent",
@@ -322,6 +324,17 @@ pub const FAULTS: [FaultSpec; 35] = [
         clear: REPAIR,
     },
     FaultSpec {
+        fault: Fault::OutsideRange,
+        name: "outside-range",
+        cause: "the leg is beyond its range of motion, or the angle's zero was set in a wrong place",
+        detector: Detector::Drive,
+        detection: "the angle is beyond an end of the range by more than range.fade_deg for 20 ticks (1 ms) while armed; \
+                    from the end on there was no torque",
+        reaction: FLOAT,
+        within_ticks: Some(21),
+        clear: CLEAR,
+    },
+    FaultSpec {
         fault: Fault::DriveSilent,
         name: "drive-silent",
         cause: "the link is cut or too noisy, or the drive hangs, is reset or has no power",
@@ -452,12 +465,31 @@ pub const FAULTS: [FaultSpec; 35] = [
         within_ticks: Some(160),
         clear: CLEAR,
     },
+    FaultSpec {
+        fault: Fault::TorqueOutsideRange,
+        name: "torque-outside-range",
+        cause: "the drive does not follow its range of motion",
+        detector: Detector::Comms,
+        detection: "4 consecutive samples with torque, outside the range of motion or without a zero of the angle",
+        reaction: LINE_OFF,
+        within_ticks: Some(100),
+        clear: REPAIR,
+    },
 ];
 
 impl Fault {
     /// Code on the wire.
     pub const fn code(self) -> u8 {
         self as u8
+    }
+
+    /// Whether the encoder's counts may be wrong after it, and the angle's zero with
+    /// them.
+    pub const fn doubts_angle(self) -> bool {
+        matches!(
+            self,
+            Self::EncoderLost | Self::EncoderPolarity | Self::SpeedMismatch
+        )
     }
 
     /// Description of a fault by its code.

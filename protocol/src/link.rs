@@ -154,6 +154,10 @@ pub enum DriveRefusal {
     NoEncoder,
     /// Arming was aborted by comms or the host.
     Aborted,
+    /// The angle's zero was not set since the drive's start.
+    NotZeroed,
+    /// The leg is outside the range of motion.
+    OutsideRange,
 }
 
 #[cfg(test)]

@@ -8,13 +8,14 @@
 use crate::settings::ValueError;
 use crepitus_model::Parameters;
 use crepitus_model::control::current_loop::CurrentLoopSettings;
-use crepitus_model::control::device_limits::{LimitSettings, MotorSettings};
+use crepitus_model::control::device_limits::{LimitSettings, MotorSettings, RangeSettings};
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::{Source, Tabled};
 use crepitus_model::render::effects;
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
+use serde_big_array::BigArray;
 
 pub use crepitus_model::parameters::{Choice, Kind, Parameter, When};
 
@@ -27,6 +28,7 @@ const DECLARED: [&[&[Parameter]]; 2] = [
         CurrentLoopSettings::DEVICE,
         MotorSettings::DEVICE,
         LimitSettings::DEVICE,
+        RangeSettings::DEVICE,
     ],
     effects::DEVICE,
 ];
@@ -118,6 +120,12 @@ pub mod id {
     pub const GEAR_RATIO: u8 = named("encoder", "gear_ratio");
     /// `limits.torque_nm`.
     pub const TORQUE_LIMIT: u8 = named("limits", "torque_nm");
+    /// `range.least_deg`.
+    pub const RANGE_LEAST: u8 = named("range", "least_deg");
+    /// `range.most_deg`.
+    pub const RANGE_MOST: u8 = named("range", "most_deg");
+    /// `range.fade_deg`.
+    pub const RANGE_FADE: u8 = named("range", "fade_deg");
 
     /// The id of a parameter.
     #[expect(clippy::panic, reason = "at compile time: it ends the build")]
@@ -135,7 +143,7 @@ pub mod id {
 
 /// A value for each of [`PARAMETERS`]. A choice is the index of its name.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
-pub struct Values(pub [f64; PARAMETER_COUNT]);
+pub struct Values(#[serde(with = "BigArray")] pub [f64; PARAMETER_COUNT]);
 
 impl Default for Values {
     fn default() -> Self {

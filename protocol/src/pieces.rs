@@ -11,13 +11,13 @@ use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// Values in a piece.
-pub const PIECE_VALUES: usize = 16;
+/// Values in a piece: the fewer, the less a piece takes of the drive's tick.
+pub const PIECE_VALUES: usize = 4;
 
 /// Some of the values of a commit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Piece {
-    /// Index of this piece; its first value has 16 times this index.
+    /// Index of this piece; its first value has 4 times this index.
     pub index: u8,
     /// The values; 0 beyond the last.
     pub values: [f64; PIECE_VALUES],
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hundred_values_are_seven_pieces() {
+    fn a_hundred_values_are_twenty_five_pieces() {
         let values: [f64; MANY] = {
             let mut next = 0.0;
             core::array::from_fn(|_| {
@@ -122,7 +122,7 @@ mod tests {
             })
         };
         let pieces = pieces(&values);
-        assert_eq!(pieces.len(), 7);
+        assert_eq!(pieces.len(), 25);
         let mut reassembly = Reassembly::<MANY>::new(checksum(&values));
         for piece in &pieces {
             assert_eq!(reassembly.values(), None);
@@ -132,15 +132,15 @@ mod tests {
     }
 
     #[test]
-    fn a_heartbeat_waits_behind_less_than_150_bytes() {
+    fn a_heartbeat_waits_behind_less_than_60_bytes() {
         let body = 2 + crate::link::ToDrive::POSTCARD_MAX_SIZE;
-        assert!(body + crate::frame::CRC_BYTES + 2 < 150, "{body}");
+        assert!(body + crate::frame::CRC_BYTES + 2 < 60, "{body}");
     }
 
     #[test]
     fn a_piece_with_an_invalid_index_is_ignored() {
         let mut reassembly = Reassembly::<MANY>::new(0);
-        for index in [7, 31, 32, 255] {
+        for index in [25, 31, 32, 255] {
             let before = reassembly;
             reassembly.add(&Piece {
                 index,
@@ -156,7 +156,7 @@ mod tests {
         #[test]
         fn reassembly_is_complete_or_fails(
             bits in prop::array::uniform32(any::<u64>()),
-            order in Just((0..2_u8).cycle().take(9).collect::<Vec<_>>()).prop_shuffle(),
+            order in Just((0..8_u8).cycle().take(20).collect::<Vec<_>>()).prop_shuffle(),
             (wrong, flip) in (0..32_usize, 0..64_u32),
         ) {
             let values = bits.map(f64::from_bits);
@@ -169,7 +169,7 @@ mod tests {
 
             let mut other = values;
             other[wrong] = f64::from_bits(bits[wrong] ^ 1 << flip);
-            let index = u8::from(wrong >= PIECE_VALUES);
+            let index = u8::try_from(wrong / PIECE_VALUES).unwrap();
             reassembly.add(&Piece::of(&other, index).unwrap());
             prop_assert!(reassembly.is_complete() && reassembly.values().is_none());
         }

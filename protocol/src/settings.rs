@@ -4,7 +4,7 @@
 use crate::parameters::{Kind, PARAMETERS, Parameter, Values, id, with_id};
 use crepitus_model::Parameters;
 use crepitus_model::control::current_loop::CurrentLoopSettings;
-use crepitus_model::control::device_limits::{LimitSettings, MotorSettings};
+use crepitus_model::control::device_limits::{LimitSettings, MotorSettings, RangeSettings};
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Source;
 use crepitus_model::render::effects::EffectSettings;
@@ -38,6 +38,8 @@ pub enum ValueError {
     },
     /// The model rejects values that the device's rules allow: a bug.
     Contradiction,
+    /// The range of motion is narrower than its two fades.
+    NarrowRange,
 }
 
 impl ValueError {
@@ -57,6 +59,7 @@ impl ValueError {
             Self::OutOfRange { id } | Self::NeedsDisarmed { id } => {
                 with_id(*id).map_or(&[], |parameter| core::slice::from_ref(&parameter.id))
             }
+            Self::NarrowRange => &[id::RANGE_MOST, id::RANGE_LEAST, id::RANGE_FADE],
             Self::Contradiction => &[],
         }
     }
@@ -92,10 +95,12 @@ pub struct DeviceSettings {
     pub effects: EffectSettings,
     /// The motor's current loop.
     pub current_loop: CurrentLoopSettings,
-    /// Torque of the motor for one ampere, N·m/A.
-    pub torque_constant_nm_per_a: f64,
+    /// The motor.
+    pub motor: MotorSettings,
     /// Safety limits.
     pub limits: LimitSettings,
+    /// Range of motion.
+    pub range: RangeSettings,
 }
 
 impl DeviceSettings {
@@ -114,21 +119,38 @@ impl DeviceSettings {
         if values.rad_per_count() > values.guarded_rad_per_count() {
             return Err(ValueError::Unguarded);
         }
-        let motor: MotorSettings = values.read();
+        let range: RangeSettings = values.read();
+        if range.most_deg - range.least_deg < 2.0 * range.fade_deg {
+            return Err(ValueError::NarrowRange);
+        }
         Ok(Self {
             crepitus: values.is_on(id::CREPITUS).then_some(joint),
             encoder: values.read(),
             effects: EffectSettings::read(values),
             current_loop: values.read(),
-            torque_constant_nm_per_a: motor.torque_constant_nm_per_a,
+            motor: values.read(),
             limits,
+            range,
         })
     }
 
     /// Torque at the joint for one ampere, N·m/A, and voltage of the back-EMF
     /// for one rad/s of the joint.
     pub fn joint_constant(&self) -> f64 {
-        self.torque_constant_nm_per_a * self.encoder.gear_ratio
+        self.motor.torque_constant_nm_per_a * self.encoder.gear_ratio
+    }
+
+    /// Counts of the two ends of the range of motion, from the angle's zero.
+    pub fn range_counts(&self) -> (i32, i32) {
+        let counts = |deg: f64| {
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "a cast from float saturates"
+            )]
+            let counts = (deg.to_radians() / self.encoder.rad_per_count()) as i32;
+            counts
+        };
+        (counts(self.range.least_deg), counts(self.range.most_deg))
     }
 }
 
@@ -182,6 +204,7 @@ mod tests {
         assert_eq!(settings.effects, EffectSettings::default());
         assert_eq!(settings.current_loop, CurrentLoopSettings::default());
         assert_eq!(settings.limits, LimitSettings::default());
+        assert_eq!(settings.range, RangeSettings::default());
     }
 
     #[test]
@@ -219,10 +242,10 @@ mod tests {
         assert_eq!(of("crepitus"), crepitus);
         assert_eq!(of("encoder"), s.encoder.values());
         assert_eq!(of("limits"), s.limits.values());
-        let torque_constant = [s.torque_constant_nm_per_a];
+        assert_eq!(of("range"), s.range.values());
         assert_eq!(
             of("motor"),
-            [s.current_loop.values().as_slice(), &torque_constant].concat()
+            [s.current_loop.values().as_slice(), &s.motor.values()].concat()
         );
         for spec in effects::SPECS {
             assert_eq!(of(spec.name).first(), Some(&1.0), "{}", spec.name);
@@ -240,7 +263,7 @@ mod tests {
     #[test]
     fn every_value_is_held_to_its_range_by_its_id() {
         for parameter in &PARAMETERS {
-            for bad in [f64::NAN, f64::INFINITY, -1.0, 1e300] {
+            for bad in [f64::NAN, f64::INFINITY, -1e5, 1e300] {
                 let mut values = Values::default();
                 values.set(parameter.id, bad);
                 let refused = DeviceSettings::of(&values);

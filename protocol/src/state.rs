@@ -65,11 +65,13 @@ pub enum LimitReason {
     Holding,
     /// Not armed.
     NotArmed,
+    /// End of the range of motion: the torque fades, or is off.
+    Range,
 }
 
 impl LimitReason {
     /// All values, in the order of their numbers.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::None,
         Self::Torque,
         Self::Slew,
@@ -78,6 +80,7 @@ impl LimitReason {
         Self::TurnedBack,
         Self::Holding,
         Self::NotArmed,
+        Self::Range,
     ];
 
     /// Name in recordings and for people.
@@ -91,6 +94,7 @@ impl LimitReason {
             Self::TurnedBack => "turned-back",
             Self::Holding => "holding",
             Self::NotArmed => "not-armed",
+            Self::Range => "range",
         }
     }
 
@@ -105,6 +109,7 @@ impl LimitReason {
             Self::TurnedBack => 5,
             Self::Holding => 6,
             Self::NotArmed => 7,
+            Self::Range => 8,
         }
     }
 }

@@ -5,8 +5,8 @@
 //! ```text
 //! sample = count i32 ‖ model torque f32 ‖ torque f32 ‖ current i16 ‖ flags u16     16 bytes, little endian
 //!
-//! flags    15 … 11   10     9      8       7 6 5     4          3      2         1 0
-//!             0      late   stick  break   limited   energised  lost   settling  phase
+//! flags    15 … 12   11     10     9       8 7 6 5   4          3      2         1 0
+//!          effects   late   stick  break   limited   energised  lost   settling  phase
 //! ```
 //!
 //! Angles and speeds follow from the counts: an encoder's count is
@@ -95,13 +95,13 @@ impl SampleFlags {
     /// Lowest bit of the [`LimitReason`].
     pub const LIMIT_SHIFT: u32 = 5;
     /// A stick broke in this tick.
-    pub const BREAK: u16 = 1 << 8;
+    pub const BREAK: u16 = 1 << 9;
     /// A slip ended in this tick.
-    pub const STICK: u16 = 1 << 9;
+    pub const STICK: u16 = 1 << 10;
     /// Rendering was late: the torque is that of the previous tick.
-    pub const LATE: u16 = 1 << 10;
+    pub const LATE: u16 = 1 << 11;
     /// Where the [`Phases`] of the device's effects begin.
-    pub const PHASES_SHIFT: u32 = 11;
+    pub const PHASES_SHIFT: u32 = 12;
 
     /// Returns the flags with these bits set or cleared.
     #[must_use]
@@ -149,13 +149,13 @@ impl SampleFlags {
     /// Returns the flags with this reason.
     #[must_use]
     pub fn with_limit(self, reason: LimitReason) -> Self {
-        let place = 0b111 << Self::LIMIT_SHIFT;
+        let place = 0b1111 << Self::LIMIT_SHIFT;
         Self(self.0 & !place | reason.number() << Self::LIMIT_SHIFT)
     }
 
     /// Reason why the torque differs from the model's.
     pub fn limit(self) -> LimitReason {
-        let number = self.0 >> Self::LIMIT_SHIFT & 0b111;
+        let number = self.0 >> Self::LIMIT_SHIFT & 0b1111;
         LimitReason::ALL
             .into_iter()
             .find(|reason| reason.number() == number)

@@ -82,12 +82,12 @@ impl Comms {
                 self.counters.count(CommsCounter::Requests);
                 match self.begin(request) {
                     Ok(Started::Replied(answer)) => {
-                        self.reply(request.session, request.number, Ok(answer));
+                        self.reply(request.session, request.number, &Ok(answer));
                     }
                     Ok(Started::Pending(state)) => {
                         self.job = Some(Job::new(request, self.now_ms, state));
                     }
-                    Err(refusal) => self.reply(request.session, request.number, Err(refusal)),
+                    Err(refusal) => self.reply(request.session, request.number, &Err(refusal)),
                 }
             }
         }
@@ -254,7 +254,7 @@ impl Comms {
             return;
         };
         if let Some(answer) = self.advance(&job) {
-            self.finish(&job, answer);
+            self.finish(&job, &answer);
         }
     }
 
@@ -332,7 +332,7 @@ impl Comms {
         }))
     }
 
-    fn finish(&mut self, job: &Job, answer: Result<Answer, Refusal>) {
+    fn finish(&mut self, job: &Job, answer: &Result<Answer, Refusal>) {
         self.job = None;
         let was_arming = matches!(
             job.state,
@@ -362,7 +362,7 @@ impl Comms {
         } else {
             Err(Refusal::Storage)
         };
-        self.finish(&job, answer);
+        self.finish(&job, &answer);
     }
 
     /// Turns torque off for any host. A pending arm request fails with
@@ -375,7 +375,7 @@ impl Comms {
         if let Some(job) = self.job.filter(|job| {
             job.state == JobState::ProveLine || matches!(job.command(), Some((_, Order::Arm)))
         }) {
-            self.finish(&job, Err(refusal));
+            self.finish(&job, &Err(refusal));
         }
     }
 
@@ -397,11 +397,11 @@ impl Comms {
         }
     }
 
-    fn reply(&mut self, session: Session, number: u16, answer: Result<Answer, Refusal>) {
+    fn reply(&mut self, session: Session, number: u16, answer: &Result<Answer, Refusal>) {
         let reply = Reply {
             session,
             number,
-            answer,
+            answer: *answer,
         };
         self.sessions.store_reply(&reply);
         self.send(&reply);

@@ -35,6 +35,8 @@ pub struct Bounds {
     counts: f32,
     /// Current for a torque, A/(N·m).
     amperes_per_nm: f32,
+    /// Ends of the range of motion, counts from the angle's zero.
+    range: (i32, i32),
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "rounded to f32, once")]
@@ -49,6 +51,7 @@ impl Bounds {
         torque_nm: 0.0,
         counts: 0.0,
         amperes_per_nm: 0.0,
+        range: (i32::MAX, i32::MIN),
     };
 
     /// Of settings.
@@ -64,6 +67,7 @@ impl Bounds {
             torque_nm: single(settings.limits.torque_nm * MARGIN),
             counts: single(rad / rad_per_count + 2.0),
             amperes_per_nm: single(1.0 / settings.joint_constant()),
+            range: settings.range_counts(),
         }
     }
 
@@ -75,6 +79,10 @@ impl Bounds {
             torque_nm: self.torque_nm.at_least(other.torque_nm),
             counts: self.counts.at_least(other.counts),
             amperes_per_nm: other.amperes_per_nm,
+            range: (
+                self.range.0.min(other.range.0),
+                self.range.1.max(other.range.1),
+            ),
         }
     }
 }
@@ -85,6 +93,7 @@ pub struct SampleChecks {
     overcurrent: u32,
     beyond: u32,
     beside: u32,
+    outside: u32,
     fast_blocks: u32,
     /// The last count of the block before.
     last: Option<i32>,
@@ -102,7 +111,11 @@ impl SampleChecks {
             };
             return None;
         }
-        let fault = (block.samples.iter()).find_map(|sample| self.sample(sample, bounds));
+        let range = (block.flags.is_zeroed()).then_some(bounds.range);
+        let fault = (block.samples.iter()).find_map(|sample| {
+            let fault = self.sample(sample, bounds);
+            fault.or_else(|| self.place(sample, range))
+        });
         fault.or_else(|| self.speed(last, block, bounds))
     }
 
@@ -135,6 +148,13 @@ impl SampleChecks {
             return Some(Fault::CurrentBesideTorque);
         }
         None
+    }
+
+    fn place(&mut self, sample: &Sample, range: Option<(i32, i32)>) -> Option<Fault> {
+        let is_inside = range.is_some_and(|(least, most)| (least..=most).contains(&sample.count));
+        let has_torque = sample.flags.has(SampleFlags::ENERGISED) && sample.torque_nm != 0.0;
+        let is_outside = has_torque && !is_inside;
+        (held(&mut self.outside, is_outside) >= BEYOND_SAMPLES).then_some(Fault::TorqueOutsideRange)
     }
 
     fn speed(&mut self, last: Option<i32>, block: &Block, bounds: &Bounds) -> Option<Fault> {
@@ -204,7 +224,7 @@ mod tests {
         for torque_nm in [-4.5, -0.4, 0.0, 4.5] {
             let model_torque_nm = 0.4_f32.copysign(torque_nm);
             let sample = |n| Sample {
-                count: i32::MAX.wrapping_add(n * 10),
+                count: n * 10,
                 model_torque_nm,
                 ..energised(torque_nm)
             };
@@ -238,6 +258,33 @@ mod tests {
             ..energised(0.0)
         };
         assert_eq!(armed(fast), Some((Fault::CommsOverspeed, 4)));
+    }
+
+    #[test]
+    fn torque_outside_the_range_or_without_a_zero_is_a_fault() {
+        // 61,155 counts are 125°, −2,446 are −5°.
+        let outside = Some((Fault::TorqueOutsideRange, 1));
+        for (count, torque_nm, expected) in [
+            (61_155, 0.1, None),
+            (61_156, 0.1, outside),
+            (61_156, 0.0, None),
+            (-2_446, -0.1, None),
+            (-2_447, -0.1, outside),
+            (i32::MIN, 0.1, outside),
+        ] {
+            let sample = |_| Sample {
+                count,
+                ..energised(torque_nm)
+            };
+            assert_eq!(armed(sample), expected, "{count}");
+        }
+        let block = Block {
+            flags: BlockFlags::new(State::Armed, false, 1),
+            samples: [energised(0.1); 20],
+            ..Block::default()
+        };
+        let fault = SampleChecks::default().check(&block, &bounds(), true);
+        assert_eq!(fault, Some(Fault::TorqueOutsideRange));
     }
 
     #[test]

@@ -9,7 +9,9 @@ use crate::drive::exchange::{Exchange, Rendered, Turn};
 use crate::drive::motor::{Bridge, Motor};
 use crate::drive::plausibility::{Observation, Plausibility};
 use crate::drive::prepare::{CommandPlan, MotorPlan};
+use crate::drive::range::Range;
 use crate::drive::safety::{Permit, Safety};
+use crate::drive::sampler::LOST_TICKS;
 use crepitus_model::Real;
 use crepitus_model::control::current_loop::Limit;
 
@@ -72,6 +74,7 @@ pub struct Command {
     /// Angle of one count, rad.
     rad_per_count: f32,
     speed_limit_rad_s: f32,
+    range: Range,
     /// The bridge was driven in the previous tick.
     was_driven: bool,
     /// Consecutive ticks with a current while the bridge floats.
@@ -104,6 +107,7 @@ impl Command {
             emf_check: EmfCheck::default(),
             rad_per_count: plan.rad_per_count,
             speed_limit_rad_s: plan.speed_limit_rad_s,
+            range: Range::new(&plan.range),
             was_driven: false,
             conducting_ticks: 0,
             without_comms_ticks: 0,
@@ -124,6 +128,7 @@ impl Command {
         }
         self.rad_per_count = plan.rad_per_count;
         self.speed_limit_rad_s = plan.speed_limit_rad_s;
+        self.range = Range::new(&plan.range);
         self.revision = plan.revision;
         counters.count(DriveCounter::Commits);
     }
@@ -164,7 +169,19 @@ impl Command {
         if self.revision == Revision::NONE {
             return Err(DriveRefusal::NoParameters);
         }
-        self.safety.arm(self.next_tick, self.lost_ticks)
+        let place = if !self.zeroed {
+            Err(DriveRefusal::NotZeroed)
+        } else if self.range.contains(self.count_from_zero()) {
+            Ok(())
+        } else {
+            Err(DriveRefusal::OutsideRange)
+        };
+        self.safety.arm(self.next_tick, self.lost_ticks, place)
+    }
+
+    /// The encoder's count from the angle's zero.
+    fn count_from_zero(&self) -> i32 {
+        self.count.wrapping_sub(self.zero)
     }
 
     /// Whether the angle's zero was set.
@@ -229,6 +246,7 @@ impl Command {
         self.line_is_on = inputs.enable_is_on;
         (self.count, self.lost_ticks) = (rendered.count, rendered.lost_ticks);
         let is_late = rendered.tick != low(now);
+        let fault_before = self.safety.fault();
         let mut permit = self.safety.tick(
             now,
             inputs.current_a.zip(inputs.monitor_a),
@@ -263,9 +281,21 @@ impl Command {
                 counters,
             );
         }
-        let outputs = self.drive(permit, rendered, current_a);
-        let is_energised = permit == Permit::Torque && outputs.bridge != Bridge::Float;
-        let sample = self.sample(is_energised, rendered, current_a, is_late, counters);
+        permit = self.within_range(permit, counters);
+        let share = self.range.share(self.count_from_zero());
+        let torque_nm = rendered.torque_nm * share;
+        let outputs = self.drive(permit, torque_nm, rendered.omega_rad_s, current_a);
+        let applied_nm =
+            (permit == Permit::Torque && outputs.bridge != Bridge::Float).then_some(torque_nm);
+        let sample = self.sample(
+            applied_nm,
+            share < 1.0,
+            rendered,
+            current_a,
+            is_late,
+            counters,
+        );
+        self.doubt_zero(fault_before);
         let flags = BlockFlags::new(self.safety.state(), self.zeroed, self.start);
         self.batch.push(sample, self.revision, flags, counters);
         outputs
@@ -286,6 +316,28 @@ impl Command {
         }
         self.safety.fail(Fault::CommsLineOff, counters);
         Permit::Nothing
+    }
+
+    /// Withdraws the permit outside the range of motion.
+    fn within_range(&mut self, permit: Permit, counters: &Counters) -> Permit {
+        if !self.safety.is_live() {
+            return permit;
+        }
+        match self.range.check(self.count_from_zero()) {
+            None => permit,
+            Some(fault) => {
+                self.safety.fail(fault, counters);
+                Permit::Nothing
+            }
+        }
+    }
+
+    /// The angle's zero is no longer known after counts that may be wrong.
+    fn doubt_zero(&mut self, fault_before: Option<Fault>) {
+        let fault = self.safety.fault().filter(|_| fault_before.is_none());
+        if fault.is_some_and(Fault::doubts_angle) || self.lost_ticks > LOST_TICKS {
+            self.zeroed = false;
+        }
     }
 
     /// Compares back-EMF with the counts; true if they contradict each other.
@@ -346,17 +398,23 @@ impl Command {
         }
     }
 
-    fn drive(&mut self, permit: Permit, rendered: &Rendered, current_a: Option<f32>) -> Outputs {
+    fn drive(
+        &mut self,
+        permit: Permit,
+        torque_nm: f32,
+        omega_rad_s: f32,
+        current_a: Option<f32>,
+    ) -> Outputs {
         let torque_nm = match permit {
             Permit::Nothing | Permit::Line => None,
             Permit::Push(amperes) => Some(-amperes * self.motor.joint_constant()),
-            Permit::Torque => Some(rendered.torque_nm),
+            Permit::Torque => Some(torque_nm),
         };
         let bridge = match torque_nm {
             None => self.motor.float(),
             Some(torque_nm) => {
                 if !self.was_driven {
-                    self.motor.start(rendered.omega_rad_s);
+                    self.motor.start(omega_rad_s);
                 }
                 self.motor.drive(torque_nm, current_a)
             }
@@ -371,12 +429,14 @@ impl Command {
 
     fn sample(
         &self,
-        is_energised: bool,
+        applied_nm: Option<f32>,
+        fades: bool,
         rendered: &Rendered,
         current_a: Option<f32>,
         is_late: bool,
         counters: &Counters,
     ) -> Sample {
+        let is_energised = applied_nm.is_some();
         let by_motor = match self.motor.limited_by() {
             Some(Limit::Current) => LimitReason::Current,
             Some(Limit::Voltage) => LimitReason::Voltage,
@@ -384,6 +444,7 @@ impl Command {
         };
         let limit = match (is_energised, rendered.flags.limit()) {
             (false, _) => LimitReason::NotArmed,
+            (true, LimitReason::None | LimitReason::NotArmed) if fades => LimitReason::Range,
             (true, LimitReason::None | LimitReason::NotArmed) => by_motor,
             (true, reason) => reason,
         };
@@ -401,13 +462,9 @@ impl Command {
             }
         }
         Sample {
-            count: rendered.count.wrapping_sub(self.zero),
+            count: self.count_from_zero(),
             model_torque_nm: rendered.model_torque_nm,
-            torque_nm: if is_energised {
-                rendered.torque_nm
-            } else {
-                0.0
-            },
+            torque_nm: applied_nm.unwrap_or(0.0),
             current_ma: current_a.map_or(NO_CURRENT, milliamperes),
             flags: rendered
                 .flags

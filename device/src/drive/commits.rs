@@ -19,7 +19,8 @@ pub struct Commits {
 }
 
 impl Commits {
-    /// Handles a piece of a commit; `active` is the current revision.
+    /// Handles a piece of a commit; `active` is the current revision. Returns whether
+    /// its outcome is decided already, so that comms should hear of it.
     pub fn receive(
         &mut self,
         revision: Revision,
@@ -27,12 +28,12 @@ impl Commits {
         piece: &Piece,
         active: Revision,
         counters: &Counters,
-    ) {
+    ) -> bool {
         let is_older = |latest: Revision| revision.0.wrapping_sub(latest.0).cast_signed() < 0;
         // Stale: a later commit has overtaken it. NONE is no valid revision.
         if revision == Revision::NONE || self.latest.is_some_and(is_older) {
             counters.count(DriveCounter::StaleCommands);
-            return;
+            return true;
         }
         self.latest = Some(revision);
         // Comms repeats a commit until its outcome is confirmed.
@@ -40,7 +41,7 @@ impl Commits {
             || self.prepared == Some(revision)
             || self.refused.is_some_and(|(refused, _)| refused == revision);
         if is_known {
-            return;
+            return true;
         }
         let is_begun = self.pending.as_ref().is_some_and(|(pending, reassembly)| {
             *pending == revision && reassembly.checksum() == checksum
@@ -51,6 +52,7 @@ impl Commits {
         if let Some((_, reassembly)) = &mut self.pending {
             reassembly.add(piece);
         }
+        false
     }
 
     /// Takes the pending commit once complete; see [`Self::verified`].
@@ -191,12 +193,15 @@ mod tests {
         wire.piece(6, &new, 1, 4);
         wire.piece(5, &old, 1, 4);
         assert_eq!(wire.take(), None);
-        wire.piece(6, &new, 0, 4);
+        wire.whole(6, &new, 4);
         assert_eq!(wire.take(), Some((Revision(6), new)));
         // The same number with other values, from before a restart of comms.
         let mut wire = Wire::new();
         wire.piece(5, &old, 0, 4);
-        wire.piece(5, &new, 1, 4);
+        let mut index = 1;
+        while wire.piece(5, &new, index, 4) {
+            index += 1;
+        }
         assert_eq!(wire.take(), None);
         wire.piece(5, &new, 0, 4);
         assert_eq!(wire.take(), Some((Revision(5), new)));

@@ -103,10 +103,12 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
                 piece,
             } => {
                 let active = shared.command(|command| command.revision());
-                shared.commits(|commits| {
-                    commits.receive(*revision, *checksum, piece, active, counters);
+                let is_decided = shared.commits(|commits| {
+                    commits.receive(*revision, *checksum, piece, active, counters)
                 });
-                self.link.request_status();
+                if is_decided {
+                    self.link.request_status();
+                }
             }
             ToDrive::Command {
                 seen_tick,

@@ -4,6 +4,7 @@
 //! need logarithms in f64 to compute. The idle loop does that; the tick applies
 //! a complete [`Prepared`] between two blocks of telemetry.
 
+use crate::drive::range::RangePlan;
 use crepitus_model::control::current_loop::{CurrentLoop, CurrentLoopSettings};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
@@ -125,6 +126,8 @@ pub struct CommandPlan {
     pub rad_per_count: f32,
     /// Overspeed threshold, rad/s.
     pub speed_limit_rad_s: f32,
+    /// Range of motion.
+    pub range: RangePlan,
 }
 
 /// Prepared parameters, for the tasks to apply.
@@ -261,6 +264,7 @@ impl Preparation {
                 },
                 rad_per_count: reader.rad_per_count,
                 speed_limit_rad_s: single(next.limits.speed_rad_s),
+                range: range(&next),
             },
         };
         (self.active, self.values, self.coefficients) = (next, *values, coefficients);
@@ -279,6 +283,16 @@ fn silent(settings: &Validated<Settings>) -> Result<StepCoefficients<f32>, Setti
     silent.parameters.kinetic_torque_nm = 0.0;
     silent.parameters.static_torque_nm = 0.0;
     StepCoefficients::new(&silent.validate()?, TICK_S)
+}
+
+fn range(settings: &DeviceSettings) -> RangePlan {
+    let (least, most) = settings.range_counts();
+    let fade_rad = settings.range.fade_deg.to_radians();
+    RangePlan {
+        least,
+        most,
+        share_per_count: single(settings.encoder.rad_per_count() / fade_rad),
+    }
 }
 
 fn motor(settings: &DeviceSettings) -> Result<MotorPlan, SettingsError> {

@@ -136,8 +136,13 @@ impl Safety {
     /// Starts arming; [`Self::take_outcome`] returns its result.
     ///
     /// # Errors
-    /// [`DriveRefusal`] if arming cannot start.
-    pub fn arm(&mut self, now: u64, lost_ticks: u32) -> Result<(), DriveRefusal> {
+    /// [`DriveRefusal`] if arming cannot start, or that of the leg's `place`.
+    pub fn arm(
+        &mut self,
+        now: u64,
+        lost_ticks: u32,
+        place: Result<(), DriveRefusal>,
+    ) -> Result<(), DriveRefusal> {
         match (self.state, self.fault) {
             (State::Faulted, Some(fault)) => {
                 return Err(DriveRefusal::Faulted { code: fault.code() });
@@ -151,6 +156,7 @@ impl Safety {
         if lost_ticks > 0 {
             return Err(DriveRefusal::NoEncoder);
         }
+        place?;
         self.arming = Arming::default();
         self.outcome = None;
         self.state = State::Arming;

@@ -147,6 +147,8 @@ impl Chain {
             4 => {
                 let place = usize::from(bytes.byte()) % SESSIONS.len();
                 self.run(10, Readings::GOOD);
+                self.ask(place, Operation::Zero);
+                self.run(4, Readings::GOOD);
                 self.ask(place, Operation::Arm);
                 self.run(40, Readings::GOOD);
             }

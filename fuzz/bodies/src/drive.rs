@@ -219,12 +219,14 @@ impl Bench {
                 self.heartbeat();
                 self.run(20, &Readings::good());
                 self.heartbeat();
-                self.number = self.number.wrapping_add(1);
-                self.send(&ToDrive::Command {
-                    seen_tick: self.drive.next_tick(),
-                    number: self.number,
-                    order: Order::Arm,
-                });
+                for order in [Order::Zero, Order::Arm] {
+                    self.number = self.number.wrapping_add(1);
+                    self.send(&ToDrive::Command {
+                        seen_tick: self.drive.next_tick(),
+                        number: self.number,
+                        order,
+                    });
+                }
             }
             // Heartbeats of a lease that is not renewed.
             _ => {

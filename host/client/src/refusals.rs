@@ -132,6 +132,13 @@ impl Refused {
                     write!(f, ", which is {}", allowed_text(limit))?;
                 }
             }
+            ValueError::NarrowRange => write!(
+                f,
+                "from {} to {} there is no room for a fade of {} at either end: widen the range or shorten the fade",
+                self.setting(id::RANGE_LEAST),
+                self.setting(id::RANGE_MOST),
+                self.setting(id::RANGE_FADE),
+            )?,
             ValueError::NeedsDisarmed { id } => write!(
                 f,
                 "{} can only change while disarmed: disarm first",
@@ -197,6 +204,18 @@ fn drive_text(
         DriveRefusal::Aborted => write!(
             f,
             "the drive has aborted `{request}` because of a stop, a disarm or a fault"
+        ),
+        DriveRefusal::NotZeroed => write!(
+            f,
+            "the drive rejects `{request}`: it does not know the angle's zero, without which there is no \
+             range of motion; hold the leg straight and set it with `crepitus zero`, or with `--zero` as you arm"
+        ),
+        DriveRefusal::OutsideRange => write!(
+            f,
+            "the drive rejects `{request}`: the leg is outside the range of motion, {} to {}; \
+             move it inside, or hold it straight and set the zero again",
+            name_of(id::RANGE_LEAST),
+            name_of(id::RANGE_MOST),
         ),
         _ => write!(
             f,

@@ -8,6 +8,7 @@ use crate::device_text;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::line::{Line, failure, failure_with};
+use clap::Args;
 use crepitus_client::{Begin, Client, Event, StateChange};
 use crepitus_protocol::State;
 use crepitus_protocol::telemetry::Block;
@@ -43,15 +44,38 @@ pub(crate) trait Follower {
     fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure>;
 }
 
+/// Whether to arm, for verbs that can do without.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct Arming {
+    /// Arm first, and disarm at the end.
+    #[arg(long)]
+    arm: bool,
+
+    /// Set the angle's zero before: hold the leg straight.
+    #[arg(long)]
+    zero: bool,
+}
+
+impl Arming {
+    /// Arm, and set the zero before or not.
+    pub(crate) fn armed(zero: bool) -> Self {
+        Self { arm: true, zero }
+    }
+}
+
 /// Runs until the duration has elapsed or a stop is requested; disarms at the
 /// end if it has armed, also after an error.
 pub(crate) fn follow(
     client: &mut Client<Line>,
     time: Option<Duration>,
-    arm: bool,
+    arming: Arming,
     follower: &mut impl Follower,
 ) -> Result<End, Failure> {
+    let Arming { arm, zero } = arming;
     interrupt::listen();
+    if zero {
+        client.zero().map_err(failure)?;
+    }
     if arm {
         client.arm().map_err(|error| failure_with(client, error))?;
     }
@@ -176,7 +200,7 @@ mod tests {
         let device = Simulated::of(&scene).expect("a device");
         let mut client = Client::connect(Line::Simulated(Box::new(device))).expect("a connection");
         let panicked = catch_unwind(AssertUnwindSafe(|| {
-            follow(&mut client, None, true, &mut Panics)
+            follow(&mut client, None, Arming::armed(true), &mut Panics)
         }));
         assert!(panicked.is_err());
         // The drive's own word takes some milliseconds.

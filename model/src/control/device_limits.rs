@@ -38,6 +38,40 @@ settings! {
 }
 
 settings! {
+    /// Range of motion, from the angle's zero: positive in flexion.
+    ///
+    /// Defaults: a knee from straight to 120° feels the whole torque. The stops of the
+    /// brace are 5° beyond either end. A bench without a leg may turn further.
+    pub struct RangeSettings, group "range" {} {
+        least_deg {
+            id: 29 disarmed,
+            symbol: "θmin",
+            unit: "deg",
+            range: -3600.0..=3600.0,
+            default: -5.0,
+            meaning: "end of the range in extension: from here on there is no torque",
+        },
+        most_deg {
+            id: 30 disarmed,
+            symbol: "θmax",
+            unit: "deg",
+            range: -3600.0..=3600.0,
+            default: 125.0,
+            meaning: "end of the range in flexion: from here on there is no torque",
+        },
+        fade_deg {
+            id: 31 disarmed,
+            symbol: "θfade",
+            unit: "deg",
+            range: 1.0..=30.0,
+            default: 5.0,
+            meaning: "before either end the torque fades over this angle; \
+                      as far beyond it the device disarms with a fault",
+        },
+    }
+}
+
+settings! {
     /// Torque constant of the motor.
     pub struct MotorSettings, group "motor" {} {
         torque_constant_nm_per_a {
@@ -58,6 +92,7 @@ mod tests {
     #[test]
     fn settings_are_their_table_and_are_held_to_it() {
         crate::parameters::tests::is_its_table_and_is_held_to_it::<3, LimitSettings>();
+        crate::parameters::tests::is_its_table_and_is_held_to_it::<3, RangeSettings>();
         crate::parameters::tests::is_its_table_and_is_held_to_it::<1, MotorSettings>();
     }
 }

@@ -260,6 +260,7 @@ fn refusals() -> Vec<(String, Refusal)> {
         ("kinetic-above-static", ValueError::KineticAboveStatic),
         ("unguarded", ValueError::Unguarded),
         ("static-above-limit", ValueError::StaticAboveLimit),
+        ("narrow-range", ValueError::NarrowRange),
         ("needs-disarmed", ValueError::NeedsDisarmed { id: 6 }),
         ("contradiction", ValueError::Contradiction),
     ] {
@@ -272,6 +273,8 @@ fn refusals() -> Vec<(String, Refusal)> {
         ("armed", DriveRefusal::Armed),
         ("no-encoder", DriveRefusal::NoEncoder),
         ("aborted", DriveRefusal::Aborted),
+        ("not-zeroed", DriveRefusal::NotZeroed),
+        ("outside-range", DriveRefusal::OutsideRange),
     ] {
         all.push((format!("drive.{name}"), Refusal::Drive(refusal)));
     }
@@ -292,7 +295,9 @@ fn blocks() -> Vec<Example> {
         flags: SampleFlags::default()
             .with_phase(if n % 2 == 0 { 0 } else { -1 })
             .with(SampleFlags::ENERGISED, true)
-            .with_limit(LimitReason::ALL[usize::try_from(n).expect("a place") % 8]),
+            .with_limit(
+                LimitReason::ALL[usize::try_from(n).expect("a place") % LimitReason::ALL.len()],
+            ),
     };
     let mut samples = [Sample::default(); BLOCK_SAMPLES];
     for (n, place) in (0..).zip(&mut samples) {

@@ -122,6 +122,7 @@ preset = "coarse"
         host.device.board_mut().leg_mut().set_encoder_wiring(wiring);
         for round in 0..60 {
             host.run(137);
+            assert_eq!(host.ask(Operation::Zero), Ok(Answer::Done));
             let answer = host.ask(Operation::Arm);
             let is_proven = host.status().polarity_proven;
             if wiring == EncoderWiring::Right {

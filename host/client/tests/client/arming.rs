@@ -52,6 +52,7 @@ fn arm_is_armed_and_stays_so_while_it_is_pumped() {
 #[test]
 fn without_pump_the_lease_expires() {
     let (shared, mut client) = connected();
+    client.zero().unwrap();
     client.arm().unwrap();
     client.transport_mut().wait(ms(300));
     assert_eq!(shared.borrow().drive.state(), State::Faulted);
@@ -70,6 +71,7 @@ fn without_pump_the_lease_expires() {
     assert_eq!(refusal::<()>(Err(error)), Refusal::Faulted { code: fault });
     client.clear_fault().unwrap();
     assert_eq!(client.status().unwrap().state, State::Disarmed);
+    client.zero().unwrap();
     client.arm().unwrap();
     assert_eq!(client.status().unwrap().state, State::Armed);
 }
@@ -77,6 +79,7 @@ fn without_pump_the_lease_expires() {
 #[test]
 fn a_lease_is_alive_for_a_quarter_of_a_second() {
     let (shared, mut client) = connected();
+    client.zero().unwrap();
     client.arm().unwrap();
     pump_for(&mut client, ms(200));
     // The last renewal is at most 50 ms old.
@@ -90,6 +93,7 @@ fn a_lease_is_alive_for_a_quarter_of_a_second() {
 fn any_host_can_stop() {
     let (shared, port) = device();
     let mut owner = client(port, 1);
+    owner.zero().unwrap();
     owner.arm().unwrap();
     pump_for(&mut owner, ms(10));
     let mut other = client(Port::new(&shared), 2);
@@ -106,6 +110,7 @@ fn any_host_can_stop() {
     );
     assert!(!owner.is_armed());
     // It is no fault, so there is nothing to clear.
+    owner.zero().unwrap();
     owner.arm().unwrap();
 }
 
@@ -114,6 +119,7 @@ fn one_host_has_the_lease_and_the_others_are_refused() {
     let (shared, port) = device();
     let mut first = client(port, 1);
     let mut second = client(Port::new(&shared), 0xfeed);
+    first.zero().unwrap();
     first.arm().unwrap();
     let error = second.arm().unwrap_err();
     assert_eq!(
@@ -137,6 +143,7 @@ fn one_host_has_the_lease_and_the_others_are_refused() {
     pump_for(&mut first, ms(100));
     assert!(first.is_armed());
     first.disarm().unwrap();
+    second.zero().unwrap();
     second.arm().unwrap();
     assert_eq!(second.status().unwrap().lease, Some(second.session()));
 }
@@ -144,6 +151,7 @@ fn one_host_has_the_lease_and_the_others_are_refused() {
 #[test]
 fn arming_twice_keeps_the_device_armed() {
     let (_, mut client) = connected();
+    client.zero().unwrap();
     client.arm().unwrap();
     assert_eq!(refusal(client.arm()), Refusal::Armed);
     pump_for(&mut client, ms(600));
@@ -159,6 +167,7 @@ fn arming_twice_keeps_the_device_armed() {
 #[test]
 fn a_silent_drive_ends_torque_with_a_fault() {
     let (shared, mut client) = connected();
+    client.zero().unwrap();
     client.arm().unwrap();
     pump_for(&mut client, ms(100));
     shared.borrow_mut().link_is_cut = true;
@@ -176,5 +185,6 @@ fn a_silent_drive_ends_torque_with_a_fault() {
     client.clear_fault().unwrap();
     let status = client.status().unwrap();
     assert_eq!((status.drive_fault, status.comms_fault), (0, 0));
+    client.zero().unwrap();
     client.arm().unwrap();
 }

@@ -98,6 +98,7 @@ fn a_schema_mismatch_is_reported_with_its_remedy() {
 fn a_device_with_another_schema_can_be_stopped() {
     let (shared, port) = device();
     let mut owner = client(port, 1);
+    owner.zero().unwrap();
     owner.arm().unwrap();
     assert_eq!(shared.borrow().comms.state(), State::Armed);
     // The same device, seen by a tool that finds another hash in its hello.

@@ -36,6 +36,7 @@ fn a_set_is_one_commit_and_leaves_the_others_alone() {
 #[test]
 fn a_set_works_while_armed() {
     let (shared, mut client) = connected();
+    client.zero().unwrap();
     client.arm().unwrap();
     for torque in [0.5, 1.0, 2.0, 0.4] {
         client.set(&[(id::STATIC_TORQUE, torque)]).unwrap();

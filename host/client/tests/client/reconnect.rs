@@ -8,6 +8,7 @@ use crepitus_protocol::{Fault, Revision, State};
 #[test]
 fn a_lost_connection_is_reported_once_and_resumes_its_subscription() {
     let (shared, mut client) = connected();
+    client.zero().unwrap();
     client.arm().unwrap();
     client.subscribe().unwrap();
     pump_for(&mut client, ms(200));
@@ -53,6 +54,7 @@ fn a_lost_connection_is_reported_once_and_resumes_its_subscription() {
 #[test]
 fn arming_does_not_come_back_even_if_the_lease_is_alive() {
     let (shared, mut client) = connected();
+    client.zero().unwrap();
     client.arm().unwrap();
     pump_for(&mut client, ms(100));
     shared.borrow_mut().unplug();

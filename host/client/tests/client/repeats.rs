@@ -35,6 +35,7 @@ fn a_lost_request_is_retried() {
     shared.borrow_mut().from_host.swallow = 5;
     client.zero().unwrap();
     shared.borrow_mut().from_host.swallow = 5;
+    client.zero().unwrap();
     client.arm().unwrap();
     shared.borrow_mut().from_host.swallow = 5;
     client.stop().unwrap();
@@ -156,6 +157,7 @@ fn a_line_that_spoils_a_byte_in_five_hundred_is_slow_and_right() {
 fn a_line_that_spoils_bytes_keeps_the_lease() {
     let (shared, mut client) = connected();
     spoil(&mut shared.borrow_mut(), 600);
+    client.zero().unwrap();
     client.arm().unwrap();
     pump_for(&mut client, ms(5_000));
     assert!(client.is_armed());

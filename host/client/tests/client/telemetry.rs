@@ -4,6 +4,7 @@ use crate::support::{Port, check_books, client, connected, device, ms, pump_for,
 use crepitus_client::{Client, Event, Transport, TransportError};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::management::ResetCause;
+use crepitus_protocol::parameters::id;
 use crepitus_protocol::telemetry::{Block, SampleFlags};
 use crepitus_protocol::{Fault, State, TICKS_PER_S};
 
@@ -21,6 +22,8 @@ fn blocks_for(client: &mut Client<Port>, time: std::time::Duration) -> Vec<Block
 #[test]
 fn ten_seconds_arrive_whole() {
     let (shared, mut client) = turning(|t| 0.3 * t);
+    client.set(&[(id::RANGE_MOST, 180.0)]).unwrap();
+    client.zero().unwrap();
     client.arm().unwrap();
     let first_tick = client.subscribe().unwrap().first_tick;
     let blocks = blocks_for(&mut client, ms(10_000));
@@ -133,6 +136,7 @@ fn the_link_between_the_controllers_may_lose_some_too() {
 #[test]
 fn a_restart_of_the_drive_is_reported_and_the_sums_continue() {
     let (shared, mut client) = connected();
+    client.zero().unwrap();
     client.arm().unwrap();
     client.subscribe().unwrap();
     pump_for(&mut client, ms(100));
@@ -153,6 +157,7 @@ fn a_restart_of_the_drive_is_reported_and_the_sums_continue() {
     assert!(produced > 3_900, "{produced}");
     assert_eq!(client.accounting().unwrap().restarts(), 1);
     client.clear_fault().unwrap();
+    client.zero().unwrap();
     client.arm().unwrap();
 }
 

@@ -29,6 +29,8 @@ fn every_refusal_has_a_remedy() {
         DriveRefusal::Armed,
         DriveRefusal::NoEncoder,
         DriveRefusal::Aborted,
+        DriveRefusal::NotZeroed,
+        DriveRefusal::OutsideRange,
     ];
     let values = [
         ValueError::OutOfRange { id: 2 },
@@ -36,6 +38,7 @@ fn every_refusal_has_a_remedy() {
         ValueError::OutOfRange { id: 200 },
         ValueError::KineticAboveStatic,
         ValueError::StaticAboveLimit,
+        ValueError::NarrowRange,
         ValueError::NeedsDisarmed { id: 6 },
     ];
     let others = [

@@ -3,7 +3,7 @@
 use crate::cli::{DeviceArguments, duration};
 use crate::device_command::print_done;
 use crate::failure::Failure;
-use crate::following::{End, Follower, follow};
+use crate::following::{Arming, End, Follower, follow};
 use crate::keys::Keys;
 use crate::line::{Line, connect};
 use clap::Args;
@@ -15,8 +15,12 @@ use std::time::Duration;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
+  crepitus arm --zero
   crepitus arm --for 60s
-  crepitus arm --device sim --for 2s
+  crepitus arm --device sim --zero --for 2s
+
+The drive needs the angle's zero, from which its range of motion counts: with the leg held straight, \
+--zero sets it, as does `crepitus zero`; it is kept until the drive restarts or its encoder is in doubt.
 
 Torque stays on while this command renews its lease. Any key or Ctrl-C disarms; if this program is \
 killed, the lease expires and the device disarms within 250 ms.")]
@@ -24,6 +28,10 @@ pub(crate) struct Arguments {
     /// Duration: 30s, 5m [default: until a key is pressed].
     #[arg(long = "for", value_name = "TIME", value_parser = duration)]
     for_s: Option<Duration>,
+
+    /// Set the angle's zero before: hold the leg straight.
+    #[arg(long)]
+    zero: bool,
 
     #[command(flatten)]
     device: DeviceArguments,
@@ -57,7 +65,12 @@ impl Follower for UntilKey {
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut client = connect(&arguments.device)?;
     let mut until_key = UntilKey { keys: None };
-    let end = follow(&mut client, arguments.for_s, true, &mut until_key);
+    let end = follow(
+        &mut client,
+        arguments.for_s,
+        Arming::armed(arguments.zero),
+        &mut until_key,
+    );
     // Restores the terminal before anything is printed.
     drop(until_key);
     let done = match end? {

@@ -3,7 +3,7 @@
 
 use super::report::{self, in_brief};
 use crate::failure::{Failure, print, print_json};
-use crate::following::{Follower, follow};
+use crate::following::{Arming, Follower, follow};
 use crate::line::{Line, failure};
 use crate::pictures::Pictures;
 use crate::progress::Progress;
@@ -80,8 +80,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     client
         .commit(base, &values.with_crepitus(&preset.parameters))
         .map_err(failure)?;
-    client.zero().map_err(failure)?;
-    narration.step("parameters", &format!("preset {PRESET} applied; zero set"))?;
+    narration.step("parameters", &format!("preset {PRESET} applied"))?;
 
     let recording = Recorded::begin(&mut client, &file, &scene.title)?;
     let mut examination = Examination {
@@ -94,7 +93,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         progress: Progress::new(scene.duration_s),
         made: Vec::new(),
     };
-    follow(&mut client, Some(duration), true, &mut examination)?;
+    follow(
+        &mut client,
+        Some(duration),
+        Arming::armed(true),
+        &mut examination,
+    )?;
     wait_until_disarmed(&mut client)?;
     let Examination {
         recording, made, ..

@@ -2,7 +2,7 @@
 
 use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print, print_json};
-use crate::following::follow;
+use crate::following::{Arming, follow};
 use crate::line::connect;
 use crate::recorded::{Recorded, print_ended};
 use clap::Args;
@@ -15,7 +15,7 @@ use std::time::Duration;
 #[command(after_help = "\
 Examples:
   crepitus record monday.parquet --for 60s --arm
-  crepitus record try --device sim --for 5s --arm --title \"First try\"
+  crepitus record try --device sim --for 5s --arm --zero --title \"First try\"
   crepitus report monday.parquet
   crepitus export monday.parquet --format csv
 
@@ -32,9 +32,8 @@ pub(crate) struct Arguments {
     #[arg(long = "for", value_name = "TIME", value_parser = duration)]
     for_s: Option<Duration>,
 
-    /// Arm first, and disarm at the end.
-    #[arg(long)]
-    arm: bool,
+    #[command(flatten)]
+    arming: Arming,
 
     /// Title of the recording.
     #[arg(long, default_value = "Recording of a device")]
@@ -49,7 +48,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let file = &arguments.file;
     let mut client = connect(&arguments.device)?;
     let mut recorded = Recorded::begin(&mut client, file, &arguments.title)?;
-    let end = follow(&mut client, arguments.for_s, arguments.arm, &mut recorded);
+    let end = follow(
+        &mut client,
+        arguments.for_s,
+        arguments.arming,
+        &mut recorded,
+    );
     // Finishes the file also after an error.
     let totals = recorded.finish()?;
     end?;

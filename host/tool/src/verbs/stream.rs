@@ -2,7 +2,7 @@
 
 use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print};
-use crate::following::{Follower, follow};
+use crate::following::{Arming, Follower, follow};
 use crate::line::{Line, connect, failure};
 use crate::status_line::StatusLine;
 use clap::{Args, ValueEnum};
@@ -26,7 +26,7 @@ enum SampleFormat {
 #[command(after_help = "\
 Examples:
   crepitus stream --rate 100
-  crepitus stream --device sim --for 2s --rate 20000 --arm > samples.csv
+  crepitus stream --device sim --for 2s --rate 20000 --arm --zero > samples.csv
   crepitus stream --format jsonl --rate 10 | head
 
 On a terminal a status line is shown on stderr. A rate below the drive's 20000 Hz takes every n-th \
@@ -44,9 +44,8 @@ pub(crate) struct Arguments {
     #[arg(long = "for", value_name = "TIME", value_parser = duration)]
     for_s: Option<Duration>,
 
-    /// Arm first, and disarm at the end.
-    #[arg(long)]
-    arm: bool,
+    #[command(flatten)]
+    arming: Arming,
 
     #[command(flatten)]
     device: DeviceArguments,
@@ -84,7 +83,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let header: Vec<_> = COLUMNS.iter().map(|(name, _)| *name).collect();
         print(&(header.join(",") + "\n"))?;
     }
-    follow(&mut client, arguments.for_s, arguments.arm, &mut printing)?;
+    follow(
+        &mut client,
+        arguments.for_s,
+        arguments.arming,
+        &mut printing,
+    )?;
     Ok(())
 }
 

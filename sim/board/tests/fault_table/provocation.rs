@@ -56,6 +56,7 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
         Fault::CommsLineOff => drive::line_of_comms_unseen(),
         Fault::TickIrregular => drive::tick_irregular(),
         Fault::CurrentWhileFloating => drive::current_while_floating(),
+        Fault::OutsideRange => vec![drive::outside_range()],
         Fault::NotANumber => {
             return Provocation::None(
                 "no count, current or parameter that is let in makes the torque other than finite",
@@ -94,6 +95,7 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
         Fault::CurrentBesideTorque => vec![comms::says("it says 0.5 A", |block| {
             comms::each(block, |sample| sample.current_ma = 500);
         })],
+        Fault::TorqueOutsideRange => comms::torque_outside_range(),
         Fault::CommsOverspeed => comms::comms_overspeed(),
         Fault::CommsWatchdog => comms::comms_watchdog(),
         Fault::CommsBrownOut => vec![

@@ -56,6 +56,7 @@ fn ready(case: &Case, phase: u64) -> Host {
     for (name, value) in case.values {
         host.set(name, *value);
     }
+    assert_eq!(host.ask_patiently(Operation::Zero), Ok(Answer::Done));
     if case.moment == Moment::Armed {
         host.arm();
         let settled = (0..40_000).any(|_| {

@@ -121,8 +121,7 @@ fn nothing_that_is_replayed_is_obeyed() {
 #[test]
 fn renewals_of_before_the_session_was_opened_again_are_none() {
     let mut host = connected();
-    host.renew_every = Some(1_000);
-    assert_eq!(host.ask(Operation::Arm), Ok(Answer::Done));
+    host.arm();
     let old = host.request_of(host.session, 0, Operation::Renew);
     host.open();
     host.run(2_000);

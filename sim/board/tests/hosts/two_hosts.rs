@@ -155,6 +155,7 @@ fn stopping_is_for_everybody_and_then_the_other_one_may_arm() {
 fn stopping_works_in_the_middle_of_the_others_arming() {
     for phase in 0..40 {
         let mut host = connected();
+        assert_eq!(host.ask_patiently(Operation::Zero), Ok(Answer::Done));
         let first = host.session;
         let request = host.request(Operation::Arm);
         host.renew_every = Some(1_000);

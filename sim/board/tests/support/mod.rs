@@ -9,6 +9,7 @@ use crepitus_board::{Start, VirtualDevice};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::frame;
 use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request, Status};
+use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::management::{self, Action, ManagementRequest};
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, Sample};
@@ -418,14 +419,21 @@ impl Host {
         self.device.board().comms().counters().get(counter)
     }
 
-    /// Waits until the drive has its parameters, then arms and keeps the lease.
+    /// Waits until the drive has its parameters, sets the angle's zero here if there
+    /// is none, then arms and keeps the lease.
     pub(crate) fn arm(&mut self) {
         self.renew_every = Some(1_000);
         let armed = (0..20).any(|_| {
             let answer = self.ask(Operation::Arm);
-            if answer != Ok(Answer::Done) {
-                assert_eq!(answer, Err(Refusal::Busy), "arming");
-                self.run(200);
+            match answer {
+                Ok(Answer::Done) => {}
+                Err(Refusal::Drive(DriveRefusal::NotZeroed)) => {
+                    assert_eq!(self.ask(Operation::Zero), Ok(Answer::Done));
+                }
+                _ => {
+                    assert_eq!(answer, Err(Refusal::Busy), "arming");
+                    self.run(200);
+                }
             }
             answer.is_ok()
         });

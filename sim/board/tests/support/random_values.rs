@@ -44,7 +44,7 @@ pub(crate) fn forbidden(rng: &mut Rng, base: &Values) -> Values {
     match rng.u8(0..4) {
         0 => {
             let id = PARAMETERS[rng.usize(0..PARAMETERS.len())].id;
-            let bad = [f64::NAN, f64::INFINITY, -1.0, 1e300];
+            let bad = [f64::NAN, f64::INFINITY, -1e5, 1e300];
             values.set(id, bad[rng.usize(0..bad.len())]);
         }
         1 => set(&mut values, "crepitus.kinetic_torque_nm", 2.5),

@@ -7,6 +7,7 @@ use crepitus_emulator::firmware::{Program, image_for_test};
 use crepitus_emulator::{DriveBoard, Image, Mcu, Time};
 use crepitus_protocol::frame;
 use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request};
+use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Lane, Nonce, Revision, Session};
 use crepitus_scene::{Overrides, Scene};
@@ -197,7 +198,8 @@ impl Host {
         self.say(self.number, operation);
     }
 
-    /// Takes the lease and arms, as soon as the drive has its parameters.
+    /// Takes the lease and arms as soon as the drive has its parameters; sets the
+    /// angle's zero here if it needs one.
     pub(crate) fn arm(&mut self) {
         match self.try_to_arm() {
             Ok(Answer::Done) => {}
@@ -212,6 +214,9 @@ impl Host {
         for _ in 0..100 {
             match self.ask(Operation::Arm) {
                 Err(Refusal::Busy | Refusal::DriveSilent) => self.run(200),
+                Err(Refusal::Drive(DriveRefusal::NotZeroed | DriveRefusal::OutsideRange)) => {
+                    assert_eq!(self.ask(Operation::Zero), Ok(Answer::Done));
+                }
                 answer => return answer,
             }
         }

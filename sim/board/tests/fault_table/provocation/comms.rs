@@ -9,7 +9,7 @@ use crate::case::{Case, case, is_disarmed};
 use crepitus_board::board::Controller::{Comms, Drive};
 use crepitus_protocol::management::ResetCause::{BrownOut, Power, Watchdog};
 use crepitus_protocol::schema;
-use crepitus_protocol::telemetry::{Block, Sample};
+use crepitus_protocol::telemetry::{Block, BlockFlags, Sample};
 
 pub(super) fn torque_beyond_bounds() -> Vec<Case> {
     vec![
@@ -30,11 +30,24 @@ pub(super) fn torque_beyond_bounds() -> Vec<Case> {
 
 pub(super) fn comms_overspeed() -> Vec<Case> {
     vec![says("its count runs away", |block| {
-        let ticks = i32::try_from(block.first_tick % 1_000_000).unwrap_or(0);
+        let ticks = i32::try_from(block.first_tick % 4_000).unwrap_or(0);
         for (sample, n) in block.samples.iter_mut().zip(0..) {
             sample.count = 12 * (ticks + n);
         }
     })]
+}
+
+pub(super) fn torque_outside_range() -> Vec<Case> {
+    vec![
+        says("its count is far outside", |block| {
+            each(block, |sample| {
+                sample.count = sample.count.wrapping_add(1 << 20);
+            });
+        }),
+        says("it knows no zero", |block| {
+            block.flags.0 &= !BlockFlags::ZEROED;
+        }),
+    ]
 }
 
 pub(super) fn comms_watchdog() -> Vec<Case> {

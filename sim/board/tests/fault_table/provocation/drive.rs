@@ -313,3 +313,19 @@ pub(super) fn current_while_floating() -> Vec<Case> {
         .when(Disarmed),
     ]
 }
+
+/// The hand bends the leg on, through the fade and beyond the end.
+pub(super) fn outside_range() -> Case {
+    Case {
+        values: &[("range.most_deg", 30.0)],
+        ..case(
+            "the leg is bent too far",
+            |_, _| {},
+            |host| host.set("range.most_deg", 125.0),
+        )
+    }
+    .onset(|host| {
+        // The zero was set at the examination's beginning, at 10°.
+        host.device.board().leg().shaft().angle_rad.to_degrees() > 45.0
+    })
+}

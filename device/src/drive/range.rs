@@ -1,0 +1,123 @@
+//! Range of motion: towards its ends the torque fades, beyond them there is none.
+//!
+//! ```text
+//! share 1         ╱‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾╲
+//!       0 ───────╱                   ╲───────
+//!        ╎fault  │ fade         fade │  fault╎
+//!        ╎  least_deg             most_deg   ╎
+//! ```
+
+use crepitus_model::Real;
+use crepitus_protocol::Fault;
+
+/// Ticks beyond the range, by more than a fade, until that is a fault.
+const OUTSIDE_TICKS: u32 = 20;
+
+/// Coefficients of the range of motion.
+#[derive(Clone, Copy, Debug)]
+pub struct RangePlan {
+    /// Its end in extension, counts from the angle's zero.
+    pub least: i32,
+    /// Its end in flexion.
+    pub most: i32,
+    /// Share of the torque for a count.
+    pub share_per_count: f32,
+}
+
+/// Follows the leg in its range.
+#[derive(Clone, Copy, Debug)]
+pub struct Range {
+    plan: RangePlan,
+    outside_ticks: u32,
+}
+
+impl Range {
+    /// A range with a leg somewhere.
+    pub fn new(plan: &RangePlan) -> Self {
+        Self {
+            plan: *plan,
+            outside_ticks: 0,
+        }
+    }
+
+    /// Fades to the nearer end; below zero beyond it.
+    fn fades_left(&self, count: i32) -> f32 {
+        let RangePlan { least, most, .. } = self.plan;
+        let counts = (count.saturating_sub(least)).min(most.saturating_sub(count));
+        #[expect(clippy::cast_precision_loss, reason = "exact where a fade is")]
+        let counts = counts as f32;
+        counts * self.plan.share_per_count
+    }
+
+    /// Whether a leg at this count from zero is within the range.
+    pub fn contains(&self, count: i32) -> bool {
+        self.fades_left(count) >= 0.0
+    }
+
+    /// Share of the torque at this count from zero, 0 to 1.
+    pub fn share(&self, count: i32) -> f32 {
+        self.fades_left(count).at_least(0.0).at_most(1.0)
+    }
+
+    /// Checks a tick of a device that is armed or arming.
+    pub fn check(&mut self, count: i32) -> Option<Fault> {
+        self.outside_ticks = if self.fades_left(count) < -1.0 {
+            self.outside_ticks.saturating_add(1)
+        } else {
+            0
+        };
+        (self.outside_ticks >= OUTSIDE_TICKS).then_some(Fault::OutsideRange)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// −100 to 400 counts, with a fade of 50.
+    fn range() -> Range {
+        Range::new(&RangePlan {
+            least: -100,
+            most: 400,
+            share_per_count: 0.02,
+        })
+    }
+
+    #[test]
+    fn the_torque_fades_to_nothing_at_both_ends() {
+        for (count, share) in [
+            (0, 1.0),
+            (-50, 1.0),
+            (350, 1.0),
+            (-75, 0.5),
+            (375, 0.5),
+            (-100, 0.0),
+            (400, 0.0),
+            (-101, 0.0),
+            (401, 0.0),
+            (i32::MIN, 0.0),
+            (i32::MAX, 0.0),
+        ] {
+            assert_eq!(range().share(count), share, "{count}");
+            assert_eq!(range().contains(count), (-100..=400).contains(&count));
+        }
+    }
+
+    #[test]
+    fn a_fade_beyond_an_end_is_a_fault_after_a_millisecond() {
+        for (count, faults) in [
+            (i32::MIN, true),
+            (-151, true),
+            (-150, false),
+            (450, false),
+            (451, true),
+            (i32::MAX, true),
+        ] {
+            let mut range = range();
+            let after = (1..100).find(|_| range.check(count).is_some());
+            assert_eq!(after, faults.then_some(OUTSIDE_TICKS), "{count}");
+        }
+        let mut range = range();
+        assert!((0..100).all(|n| range.check(if n % 20 == 19 { 0 } else { 1_000 }).is_none()));
+    }
+}

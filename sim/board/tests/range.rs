@@ -1,0 +1,146 @@
+//! The range of motion, with both controllers: the torque fades before its ends,
+//! there is none beyond them, and arming needs a zero and a leg inside.
+
+mod support;
+
+use crepitus_board::Start;
+use crepitus_board::leg::EncoderWiring;
+use crepitus_protocol::host::{Answer, Operation, Refusal};
+use crepitus_protocol::link::DriveRefusal;
+use crepitus_protocol::telemetry::{Sample, SampleFlags};
+use crepitus_protocol::{DeviceSettings, LimitReason, State, Values};
+use support::{Host, scene};
+
+/// A leg that is bent from 10° to 80° and back, far from its end at first.
+fn bending(peak_deg_s: f64) -> Host {
+    let text = format!(
+        r#"
+version = 1
+title = "Bent slowly"
+duration_s = 60.0
+[motion]
+kind = "strokes"
+from_deg = 10.0
+to_deg = 80.0
+peak_speed_deg_s = {peak_deg_s}
+pause_s = 0.1
+[solver]
+kind = "exact-events"
+step_s = 5e-5
+precision = "f32"
+[effects.crepitus]
+preset = "coarse"
+[effects.encoder]
+[effects.motor]
+[effects.drivetrain]
+[effects.cuff]
+[effects.limb]
+[effects.hand]
+"#
+    );
+    let mut host = Host::new(&scene(&text), &Start::default());
+    host.run(400);
+    host
+}
+
+fn refused(answer: Result<Answer, Refusal>) -> DriveRefusal {
+    match answer {
+        Err(Refusal::Drive(refusal)) => refusal,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Share of the torque at a count, by angles.
+fn share(count: i32, range_deg: [f64; 3]) -> f64 {
+    let settings = DeviceSettings::of(&Values::default()).expect("the defaults");
+    let [least, most, fade] = range_deg;
+    let deg = (f64::from(count) * settings.encoder.rad_per_count()).to_degrees();
+    ((deg - least).min(most - deg) / fade).clamp(0.0, 1.0)
+}
+
+#[test]
+fn the_torque_fades_before_an_end_and_there_is_none_beyond() {
+    let mut host = bending(60.0);
+    host.set("range.most_deg", 30.0);
+    host.set("range.fade_deg", 10.0);
+    host.subscribe();
+    host.samples = Some(Vec::new());
+    host.arm();
+    // The zero is at 10°: from 30° on it fades, from 40° on there is none, 50° are a
+    // fault.
+    while host.device.board().leg().shaft().angle_rad.to_degrees() < 48.0 {
+        host.tick();
+    }
+    assert_eq!(host.device.board().drive().state(), State::Armed);
+    let samples = host.samples.take().expect("samples");
+    let end = samples.last().expect("samples").count;
+    assert_eq!(share(end, [-5.0, 30.0, 10.0]), 0.0);
+    let mut seen = [0; 3];
+    let armed = |sample: &&Sample| sample.flags.has(SampleFlags::ENERGISED);
+    // Torque begins at zero, and grows to the model's.
+    for sample in samples.iter().filter(armed).skip(100) {
+        let share = share(sample.count, [-5.0, 30.0, 10.0]);
+        let expected_nm = f64::from(sample.model_torque_nm) * share;
+        let off_nm = f64::from(sample.torque_nm) - expected_nm;
+        let fades = sample.flags.limit() == LimitReason::Range;
+        if sample.flags.limit() == LimitReason::None || fades {
+            assert_eq!(fades, share < 1.0, "{sample:?}");
+        }
+        if fades {
+            assert!(off_nm.abs() < 1e-4, "{off_nm} N·m, {sample:?}");
+        }
+        seen[if share == 0.0 { 2 } else { usize::from(fades) }] += 1;
+    }
+    assert!(seen.iter().all(|&n| n > 1_000), "{seen:?}");
+}
+
+#[test]
+fn arming_needs_a_zero_and_a_leg_inside() {
+    let mut host = bending(60.0);
+    host.renew_every = Some(1_000);
+    let answer = host.ask_patiently(Operation::Arm);
+    assert_eq!(refused(answer), DriveRefusal::NotZeroed);
+    host.set("range.most_deg", 20.0);
+    assert_eq!(host.ask(Operation::Zero), Ok(Answer::Done));
+    while host.device.board().leg().shaft().angle_rad.to_degrees() < 31.0 {
+        host.tick();
+    }
+    let answer = host.ask_patiently(Operation::Arm);
+    assert_eq!(refused(answer), DriveRefusal::OutsideRange);
+    // Where it is now is inside, by another zero.
+    assert_eq!(host.ask(Operation::Zero), Ok(Answer::Done));
+    assert_eq!(host.ask_patiently(Operation::Arm), Ok(Answer::Done));
+}
+
+#[test]
+fn counts_in_doubt_end_the_zero() {
+    let mut host = bending(60.0);
+    host.arm();
+    assert!(host.status().zeroed);
+    let board = host.device.board_mut();
+    board.leg_mut().set_encoder_wiring(EncoderWiring::Unplugged);
+    while host.device.board().drive().state() == State::Armed {
+        host.tick();
+    }
+    let board = host.device.board_mut();
+    board.leg_mut().set_encoder_wiring(EncoderWiring::Right);
+    host.run(100);
+    assert!(!host.status().zeroed);
+    assert_eq!(host.ask_patiently(Operation::ClearFault), Ok(Answer::Done));
+    let answer = host.ask_patiently(Operation::Arm);
+    assert_eq!(refused(answer), DriveRefusal::NotZeroed);
+}
+
+/// While nobody looks, too: the counter jumps, and after a millisecond it is taken
+/// for the angle.
+#[test]
+fn a_counter_that_jumps_while_disarmed_ends_the_zero() {
+    let mut host = bending(60.0);
+    assert_eq!(host.ask_patiently(Operation::Zero), Ok(Answer::Done));
+    host.run(200);
+    assert!(host.status().zeroed);
+    let leg = host.device.board_mut().leg_mut();
+    leg.preset_count(leg.count().wrapping_add(5_000));
+    host.run(200);
+    assert!(!host.status().zeroed);
+}
