@@ -28,12 +28,14 @@ pub mod link;
 pub mod link_task;
 pub mod motor;
 pub mod outgoing;
+pub mod overload;
 pub mod plausibility;
 pub mod prepare;
 pub mod range;
 pub mod rendering;
 pub mod safety;
 pub mod sampler;
+pub mod slow_checks;
 
 use crate::counters::Counters;
 use command::{Command, Inputs, Outputs};

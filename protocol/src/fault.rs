@@ -31,6 +31,11 @@ pub enum Fault {
     CommsLineOff = 21,
     CurrentWhileFloating = 22,
     OutsideRange = 23,
+    SupplyLow = 24,
+    SupplyHigh = 25,
+    MotorHot = 26,
+    JointMismatch = 27,
+    Overload = 28,
     DriveSilent = 32,
     DriveRestarted = 33,
     CommsEnableStuckOn = 34,
@@ -95,7 +100,7 @@ const CLEAR: &str = "clear-fault";
 const REPAIR: &str = "repair, then clear-fault";
 
 /// All faults, in the order of their codes.
-pub const FAULTS: [FaultSpec; 37] = [
+pub const FAULTS: [FaultSpec; 42] = [
     FaultSpec {
         fault: Fault::CommsSilent,
         name: "comms-silent",
@@ -335,6 +340,58 @@ pub const FAULTS: [FaultSpec; 37] = [
         clear: CLEAR,
     },
     FaultSpec {
+        fault: Fault::SupplyLow,
+        name: "supply-low",
+        cause: "the motor's supply sags or is off, or the line that measures it is broken",
+        detector: Detector::Drive,
+        detection: "20 consecutive readings below 75 % of motor.supply_v while armed, 60 ticks; or none",
+        reaction: FLOAT,
+        within_ticks: Some(61),
+        clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::SupplyHigh,
+        name: "supply-high",
+        cause: "the clamp does not take what a leg that is moved puts into the supply, or the supply is wrong",
+        detector: Detector::Drive,
+        detection: "4 consecutive readings above 125 % of motor.supply_v, 12 ticks, armed or not",
+        reaction: FLOAT,
+        within_ticks: Some(13),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::MotorHot,
+        name: "motor-hot",
+        cause: "the motor is too hot, or its sensor is broken or unplugged",
+        detector: Detector::Drive,
+        detection: "667 consecutive readings that are not between -20 and 70 °C while armed, 2,000 ticks",
+        reaction: FLOAT,
+        within_ticks: Some(2_001),
+        clear: "let it cool, or repair its sensor, then clear-fault",
+    },
+    FaultSpec {
+        fault: Fault::JointMismatch,
+        name: "joint-mismatch",
+        cause: "the coupling between gear and brace slips, the encoder slips, or the joint's sensor is broken",
+        detector: Detector::Drive,
+        detection: "with a joint-sensor: 20 consecutive readings that are more than joint-sensor.tolerance_deg from \
+                    the encoder's angle while armed, 60 ticks",
+        reaction: FLOAT,
+        within_ticks: Some(61),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::Overload,
+        name: "overload",
+        cause: "more torque for longer than the gear bears",
+        detector: Detector::Drive,
+        detection: "the square of the current above that of motor.continuous_a sums up to what the largest current gives \
+                    in a second",
+        reaction: FLOAT,
+        within_ticks: Some(20_300),
+        clear: CLEAR,
+    },
+    FaultSpec {
         fault: Fault::DriveSilent,
         name: "drive-silent",
         cause: "the link is cut or too noisy, or the drive hangs, is reset or has no power",
@@ -488,7 +545,7 @@ impl Fault {
     pub const fn doubts_angle(self) -> bool {
         matches!(
             self,
-            Self::EncoderLost | Self::EncoderPolarity | Self::SpeedMismatch
+            Self::EncoderLost | Self::EncoderPolarity | Self::SpeedMismatch | Self::JointMismatch
         )
     }
 

@@ -9,6 +9,7 @@
 
 use crate::counters::{COMMS_COUNT, DRIVE_COUNT};
 use crate::link::DriveRefusal;
+use crate::measured::Measured;
 use crate::parameters::Values;
 use crate::revision::{Nonce, Revision, Session};
 use crate::settings::ValueError;
@@ -145,6 +146,8 @@ pub struct Status {
     /// Whether the push at arming has proven that encoder and motor turn the
     /// same way; with a leg that is held it proves nothing.
     pub polarity_proven: bool,
+    /// What the drive measures beside the motion.
+    pub measured: Measured,
 }
 
 /// Counters since boot, in the order of

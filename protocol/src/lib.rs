@@ -61,6 +61,7 @@ pub mod host;
 pub mod lane;
 pub mod link;
 pub mod management;
+pub mod measured;
 pub mod parameters;
 pub mod pieces;
 pub mod revision;

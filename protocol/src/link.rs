@@ -11,6 +11,7 @@
 //! comms retries a command until the outcome is confirmed.
 
 use crate::counters::DRIVE_COUNT;
+use crate::measured::Measured;
 use crate::pieces::Piece;
 use crate::revision::Revision;
 use crate::settings::ValueError;
@@ -93,7 +94,7 @@ impl DriveStatus {
         (
             (STATUS, self.tick, self.start, self.comms_start),
             (self.state, self.fault, self.revision, self.refused),
-            (self.last, self.zeroed, self.polarity_proven),
+            (self.last, self.zeroed, self.polarity_proven, self.measured),
         )
     }
 }
@@ -122,6 +123,8 @@ pub struct DriveStatus {
     pub zeroed: bool,
     /// Whether arming has proven that encoder and motor turn the same way.
     pub polarity_proven: bool,
+    /// What it measures beside the motion.
+    pub measured: Measured,
     /// The drive's counters.
     pub counters: [u32; DRIVE_COUNT],
 }
@@ -181,6 +184,11 @@ mod tests {
             }),
             zeroed: true,
             polarity_proven: true,
+            measured: Measured {
+                supply_cv: u16::MAX,
+                motor_c: i16::MIN,
+                joint_cdeg: Some(u16::MAX),
+            },
             counters: core::array::from_fn(|n| u32::MAX >> n),
         };
         for status in [status, DriveStatus::default()] {

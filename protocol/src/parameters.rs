@@ -8,7 +8,9 @@
 use crate::settings::ValueError;
 use crepitus_model::Parameters;
 use crepitus_model::control::current_loop::CurrentLoopSettings;
-use crepitus_model::control::device_limits::{LimitSettings, MotorSettings, RangeSettings};
+use crepitus_model::control::device_limits::{
+    JointSensorSettings, LimitSettings, MotorSettings, RangeSettings,
+};
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::{Source, Tabled};
 use crepitus_model::render::effects;
@@ -29,6 +31,7 @@ const DECLARED: [&[&[Parameter]]; 2] = [
         MotorSettings::DEVICE,
         LimitSettings::DEVICE,
         RangeSettings::DEVICE,
+        JointSensorSettings::DEVICE,
     ],
     effects::DEVICE,
 ];
@@ -126,6 +129,9 @@ pub mod id {
     pub const RANGE_MOST: u8 = named("range", "most_deg");
     /// `range.fade_deg`.
     pub const RANGE_FADE: u8 = named("range", "fade_deg");
+
+    /// `joint-sensor.fitted`.
+    pub const JOINT_SENSOR: u8 = named("joint-sensor", "fitted");
 
     /// The id of a parameter.
     #[expect(clippy::panic, reason = "at compile time: it ends the build")]

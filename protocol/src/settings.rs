@@ -4,7 +4,9 @@
 use crate::parameters::{Kind, PARAMETERS, Parameter, Values, id, with_id};
 use crepitus_model::Parameters;
 use crepitus_model::control::current_loop::CurrentLoopSettings;
-use crepitus_model::control::device_limits::{LimitSettings, MotorSettings, RangeSettings};
+use crepitus_model::control::device_limits::{
+    JointSensorSettings, LimitSettings, MotorSettings, RangeSettings,
+};
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Source;
 use crepitus_model::render::effects::EffectSettings;
@@ -95,12 +97,14 @@ pub struct DeviceSettings {
     pub effects: EffectSettings,
     /// The motor's current loop.
     pub current_loop: CurrentLoopSettings,
-    /// The motor.
+    /// The motor, and what it bears.
     pub motor: MotorSettings,
     /// Safety limits.
     pub limits: LimitSettings,
     /// Range of motion.
     pub range: RangeSettings,
+    /// The sensor of the joint's angle, if there is one.
+    pub joint_sensor: Option<JointSensorSettings>,
 }
 
 impl DeviceSettings {
@@ -131,6 +135,7 @@ impl DeviceSettings {
             motor: values.read(),
             limits,
             range,
+            joint_sensor: values.is_on(id::JOINT_SENSOR).then(|| values.read()),
         })
     }
 

@@ -394,6 +394,7 @@ impl Comms {
             lease: self.lease.holder(self.now_ms),
             zeroed: drive.zeroed,
             polarity_proven: drive.polarity_proven,
+            measured: drive.measured,
         }
     }
 

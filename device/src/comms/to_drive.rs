@@ -9,8 +9,8 @@ use crepitus_protocol::{Lane, Revision, Values};
 /// Retry interval of unconfirmed messages, ms.
 const RETRY_MS: u64 = 10;
 
-/// Pieces of a commit in a millisecond: with a heartbeat these are 140 bytes, and
-/// the drive reads 160.
+/// Pieces of a commit in a millisecond: with a heartbeat these are 145 bytes. The
+/// drive reads 100, and its ring has place for all pieces of a commit.
 const PIECES_PER_MS: u8 = 2;
 
 /// Retry interval of the hello request, ms.

@@ -7,11 +7,13 @@ use crate::drive::batch::Batch;
 use crate::drive::emf_check::{EmfCheck, Tick};
 use crate::drive::exchange::{Exchange, Rendered, Turn};
 use crate::drive::motor::{Bridge, Motor};
+use crate::drive::overload::Overload;
 use crate::drive::plausibility::{Observation, Plausibility};
 use crate::drive::prepare::{CommandPlan, MotorPlan};
-use crate::drive::range::Range;
+use crate::drive::range::{self, Range};
 use crate::drive::safety::{Permit, Safety};
 use crate::drive::sampler::LOST_TICKS;
+use crate::drive::slow_checks::{SlowChecks, SlowInput, SlowReadings};
 use crepitus_model::Real;
 use crepitus_model::control::current_loop::Limit;
 
@@ -47,6 +49,8 @@ pub struct Inputs {
     pub comms_enable_is_on: bool,
     /// The hardware's break input has tripped.
     pub has_tripped: bool,
+    /// One of the inputs that change slowly.
+    pub slow: SlowInput,
 }
 
 /// Outputs to the peripherals.
@@ -75,6 +79,8 @@ pub struct Command {
     rad_per_count: f32,
     speed_limit_rad_s: f32,
     range: Range,
+    slow_checks: SlowChecks,
+    overload: Overload,
     /// The bridge was driven in the previous tick.
     was_driven: bool,
     /// Consecutive ticks with a current while the bridge floats.
@@ -108,6 +114,8 @@ impl Command {
             rad_per_count: plan.rad_per_count,
             speed_limit_rad_s: plan.speed_limit_rad_s,
             range: Range::new(&plan.range),
+            slow_checks: SlowChecks::new(&plan.slow),
+            overload: Overload::new(&plan.overload),
             was_driven: false,
             conducting_ticks: 0,
             without_comms_ticks: 0,
@@ -129,6 +137,8 @@ impl Command {
         self.rad_per_count = plan.rad_per_count;
         self.speed_limit_rad_s = plan.speed_limit_rad_s;
         self.range = Range::new(&plan.range);
+        self.slow_checks.change(&plan.slow);
+        self.overload.change(&plan.overload);
         self.revision = plan.revision;
         counters.count(DriveCounter::Commits);
     }
@@ -158,6 +168,7 @@ impl Command {
         }
         self.zero = self.count;
         self.zeroed = true;
+        self.slow_checks.zero();
         Ok(())
     }
 
@@ -171,7 +182,7 @@ impl Command {
         }
         let place = if !self.zeroed {
             Err(DriveRefusal::NotZeroed)
-        } else if self.range.contains(self.count_from_zero()) {
+        } else if self.range.fades_left(self.count_from_zero()) >= 0.0 {
             Ok(())
         } else {
             Err(DriveRefusal::OutsideRange)
@@ -187,6 +198,11 @@ impl Command {
     /// Whether the angle's zero was set.
     pub fn is_zeroed(&self) -> bool {
         self.zeroed
+    }
+
+    /// What it measures beside the motion.
+    pub fn slow_readings(&self) -> SlowReadings {
+        self.slow_checks.readings()
     }
 
     /// The oldest block queued for the link.
@@ -281,8 +297,12 @@ impl Command {
                 counters,
             );
         }
-        permit = self.within_range(permit, counters);
-        let share = self.range.share(self.count_from_zero());
+        let count = self.count_from_zero();
+        let fades_left = self.range.fades_left(count);
+        let is_live = self.safety.is_live();
+        let slow = self.slow_checks.tick(inputs.slow, count, is_live);
+        permit = self.guarded(permit, slow, fades_left, current_a, counters);
+        let share = range::share(fades_left);
         let torque_nm = rendered.torque_nm * share;
         let outputs = self.drive(permit, torque_nm, rendered.omega_rad_s, current_a);
         let applied_nm =
@@ -318,12 +338,22 @@ impl Command {
         Permit::Nothing
     }
 
-    /// Withdraws the permit outside the range of motion.
-    fn within_range(&mut self, permit: Permit, counters: &Counters) -> Permit {
-        if !self.safety.is_live() {
-            return permit;
-        }
-        match self.range.check(self.count_from_zero()) {
+    /// Withdraws the permit outside the range of motion, and for what changes slowly.
+    fn guarded(
+        &mut self,
+        permit: Permit,
+        slow: Option<Fault>,
+        fades_left: f32,
+        current_a: Option<f32>,
+        counters: &Counters,
+    ) -> Permit {
+        let overload = self.overload.tick(current_a);
+        let live = if self.safety.is_live() {
+            self.range.check(fades_left).or(overload)
+        } else {
+            None
+        };
+        match slow.or(live) {
             None => permit,
             Some(fault) => {
                 self.safety.fail(fault, counters);

@@ -7,11 +7,13 @@ use crate::drive::commits::Commits;
 use crate::drive::heartbeat_monitor::Freshness;
 use crate::drive::link::Link;
 use crate::drive::outgoing::{Outgoing, PIECE_SAMPLES};
+use crate::drive::slow_checks::SlowReadings;
 use core::borrow::BorrowMut;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::frame::{EncodedFrame, FrameBuffer};
 use crepitus_protocol::link::{DriveRefusal, DriveStatus, Order, ToDrive};
 use crepitus_protocol::management::{Action, Identity, ManagementRequest};
+use crepitus_protocol::measured::Measured;
 use crepitus_protocol::{Decoder, Fault, Lane, Revision, State};
 
 /// Resources shared with the other tasks. The firmware holds a lock while
@@ -204,6 +206,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
 
     fn status(&self, shared: &mut impl Shared, counters: &Counters) -> DriveStatus {
         let refused = shared.commits(|commits| commits.refused());
+        let measured = measured(&shared.command(|command| command.slow_readings()));
         shared.command(|command| {
             let safety = command.safety();
             DriveStatus {
@@ -217,6 +220,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
                 last: self.link.last(),
                 zeroed: command.is_zeroed(),
                 polarity_proven: safety.polarity_proven(),
+                measured,
                 counters: counters.all(),
             }
         })
@@ -242,6 +246,20 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             }
         };
         self.link.answer(question, &self.identity, done);
+    }
+}
+
+/// As it is sent.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "rounded, for people; a cast from float saturates"
+)]
+fn measured(readings: &SlowReadings) -> Measured {
+    Measured {
+        supply_cv: (readings.supply_v * 100.0 + 0.5) as u16,
+        motor_c: readings.motor_c as i16,
+        joint_cdeg: (readings.joint_span).map(|turns| (turns * 36_000.0 + 0.5) as u16),
     }
 }
 

@@ -4,7 +4,9 @@
 //! need logarithms in f64 to compute. The idle loop does that; the tick applies
 //! a complete [`Prepared`] between two blocks of telemetry.
 
+use crate::drive::overload::OverloadPlan;
 use crate::drive::range::RangePlan;
+use crate::drive::slow_checks::{JointSensorPlan, SlowPlan};
 use crepitus_model::control::current_loop::{CurrentLoop, CurrentLoopSettings};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
@@ -128,6 +130,10 @@ pub struct CommandPlan {
     pub speed_limit_rad_s: f32,
     /// Range of motion.
     pub range: RangePlan,
+    /// What changes slowly.
+    pub slow: SlowPlan,
+    /// What gear and motor bear.
+    pub overload: OverloadPlan,
 }
 
 /// Prepared parameters, for the tasks to apply.
@@ -265,6 +271,8 @@ impl Preparation {
                 rad_per_count: reader.rad_per_count,
                 speed_limit_rad_s: single(next.limits.speed_rad_s),
                 range: range(&next),
+                slow: slow(&next),
+                overload: OverloadPlan::new(next.motor.continuous_a, TICK_S),
             },
         };
         (self.active, self.values, self.coefficients) = (next, *values, coefficients);
@@ -292,6 +300,17 @@ fn range(settings: &DeviceSettings) -> RangePlan {
         least,
         most,
         share_per_count: single(settings.encoder.rad_per_count() / fade_rad),
+    }
+}
+
+fn slow(settings: &DeviceSettings) -> SlowPlan {
+    let supply_v = settings.current_loop.supply_v;
+    SlowPlan {
+        supply_v: (single(0.75 * supply_v), single(1.25 * supply_v)),
+        joint: settings.joint_sensor.map(|sensor| JointSensorPlan {
+            turns_per_count: single(settings.encoder.rad_per_count() / core::f64::consts::TAU),
+            tolerance: single(sensor.tolerance_deg / 360.0),
+        }),
     }
 }
 

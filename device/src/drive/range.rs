@@ -40,8 +40,8 @@ impl Range {
         }
     }
 
-    /// Fades to the nearer end; below zero beyond it.
-    fn fades_left(&self, count: i32) -> f32 {
+    /// Fades to the nearer end from this count from zero; below 0 beyond it.
+    pub fn fades_left(&self, count: i32) -> f32 {
         let RangePlan { least, most, .. } = self.plan;
         let counts = (count.saturating_sub(least)).min(most.saturating_sub(count));
         #[expect(clippy::cast_precision_loss, reason = "exact where a fade is")]
@@ -49,25 +49,20 @@ impl Range {
         counts * self.plan.share_per_count
     }
 
-    /// Whether a leg at this count from zero is within the range.
-    pub fn contains(&self, count: i32) -> bool {
-        self.fades_left(count) >= 0.0
-    }
-
-    /// Share of the torque at this count from zero, 0 to 1.
-    pub fn share(&self, count: i32) -> f32 {
-        self.fades_left(count).at_least(0.0).at_most(1.0)
-    }
-
     /// Checks a tick of a device that is armed or arming.
-    pub fn check(&mut self, count: i32) -> Option<Fault> {
-        self.outside_ticks = if self.fades_left(count) < -1.0 {
+    pub fn check(&mut self, fades_left: f32) -> Option<Fault> {
+        self.outside_ticks = if fades_left < -1.0 {
             self.outside_ticks.saturating_add(1)
         } else {
             0
         };
         (self.outside_ticks >= OUTSIDE_TICKS).then_some(Fault::OutsideRange)
     }
+}
+
+/// Share of the torque, 0 to 1.
+pub fn share(fades_left: f32) -> f32 {
+    fades_left.at_least(0.0).at_most(1.0)
 }
 
 #[cfg(test)]
@@ -85,7 +80,7 @@ mod tests {
 
     #[test]
     fn the_torque_fades_to_nothing_at_both_ends() {
-        for (count, share) in [
+        for (count, expected) in [
             (0, 1.0),
             (-50, 1.0),
             (350, 1.0),
@@ -98,8 +93,9 @@ mod tests {
             (i32::MIN, 0.0),
             (i32::MAX, 0.0),
         ] {
-            assert_eq!(range().share(count), share, "{count}");
-            assert_eq!(range().contains(count), (-100..=400).contains(&count));
+            let left = range().fades_left(count);
+            assert_eq!(share(left), expected, "{count}");
+            assert_eq!(left >= 0.0, (-100..=400).contains(&count));
         }
     }
 
@@ -114,10 +110,11 @@ mod tests {
             (i32::MAX, true),
         ] {
             let mut range = range();
-            let after = (1..100).find(|_| range.check(count).is_some());
+            let left = range.fades_left(count);
+            let after = (1..100).find(|_| range.check(left).is_some());
             assert_eq!(after, faults.then_some(OUTSIDE_TICKS), "{count}");
         }
         let mut range = range();
-        assert!((0..100).all(|n| range.check(if n % 20 == 19 { 0 } else { 1_000 }).is_none()));
+        assert!((0..100).all(|n| range.check(if n % 20 == 19 { 1.0 } else { -5.0 }).is_none()));
     }
 }

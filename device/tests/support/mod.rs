@@ -8,6 +8,7 @@ mod motor;
 use crepitus_device::comms::{self, Comms};
 use crepitus_device::drive::exchange::Rendered;
 use crepitus_device::drive::motor::Bridge;
+use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_device::drive::{self, Drive};
 use crepitus_device::usb_port::HostBytes;
 use crepitus_protocol::frame::FRAME_BYTES;
@@ -133,6 +134,7 @@ impl Bench {
             enable_is_on: self.enable[0],
             comms_enable_is_on: self.enable[1],
             has_tripped: false,
+            slow: SlowInput::in_turn(self.drive.next_tick(), 24.0, 25.0, 0.0),
         });
         self.enable[0] = outputs.enable;
         let is_powered = self.enable == [true; 2];

@@ -1,12 +1,16 @@
-//! The motor's current, converted once a tick in step with the bridge: twice, on
-//! two ways that share nothing but the supply.
+//! Analog inputs, converted once a tick in step with the bridge: the motor's current
+//! twice, on two ways that share nothing but the supply, and what changes slowly in
+//! turn.
 //!
-//! | way | shunt | pin | converter | for |
+//! | way | of | pin | converter | for |
 //! |---|---|---|---|---|
-//! | sensor | between half A and the motor | PC0 | ADC1 | the current loop |
-//! | monitor | between half B and the motor | PC1 | ADC2 | checks; the comparator sees its amplifier, too |
+//! | sensor | a shunt between half A and the motor | PC0 | ADC1 | the current loop |
+//! | monitor | a shunt between half B and the motor | PC1 | ADC2 | checks; the comparator sees its amplifier, too |
+//! | supply | a divider by 16 | PC3 | ADC3 | checks |
+//! | temperature | MCP9700 on the motor: 0.5 V and 10 mV/°C | PA2 | ADC3 | checks |
+//! | joint | AS5600 on the hinge: its turn is the reference | PC2 | ADC3 | checks |
 //!
-//! Each has an amplifier of 20 V/V across 33 mΩ (INA240A1). Zero is half of the
+//! Each current has an amplifier of 20 V/V across 33 mΩ (INA240A1). Zero is half of the
 //! supply, which is also the converters' reference: 0.66 V/A, ±2.5 A, 1.22 mA a
 //! count, which is 4 mN·m at the joint. The offsets are measured at every arming.
 //!
@@ -14,9 +18,10 @@
 //! reference that moved both alike would make the two differ.
 
 use crate::raw;
-use stm32f4xx_hal::gpio::{PC0, PC1};
+use crepitus_device::drive::slow_checks::SlowInput;
+use stm32f4xx_hal::gpio::{PA2, PC0, PC1, PC2, PC3};
 use stm32f4xx_hal::pac::adc1::RegisterBlock as Registers;
-use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, ADC2};
+use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, ADC2, ADC3};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
 /// PC0.
@@ -24,6 +29,18 @@ const SENSOR: u8 = 10;
 
 /// PC1.
 const MONITOR: u8 = 11;
+
+/// PC3, PA2, PC2.
+const SUPPLY: u8 = 13;
+const MOTOR: u8 = 2;
+const JOINT: u8 = 12;
+
+/// Divider of the supply.
+const SUPPLY_SHARE: f32 = 16.0;
+
+/// Temperature sensor of the motor: V at 0 °C, and °C for a volt.
+const FREEZING_V: f32 = 0.5;
+const CELSIUS_PER_VOLT: f32 = 100.0;
 
 /// Supply and reference, V.
 const REFERENCE_V: f32 = 3.3;
@@ -34,39 +51,75 @@ const VOLTS_PER_AMPERE: f32 = 20.0 * 0.033;
 /// Counts of the whole range.
 const COUNTS: f32 = 4096.0;
 
-/// The two converters.
+/// The converters.
 pub struct Converters {
     sensor: ADC1,
     monitor: ADC2,
+    slow: ADC3,
+    /// Channel that the third one converts next.
+    channel: u8,
 }
 
 impl Converters {
     /// Converters that TIM3 triggers together.
     pub fn new(
-        (sensor, monitor): (ADC1, ADC2),
+        (sensor, monitor, slow): (ADC1, ADC2, ADC3),
         common: &ADC_COMMON,
         pins: (PC0, PC1),
+        slow_pins: (PC3, PA2, PC2),
         rcc: &mut Rcc,
     ) -> Self {
         ADC1::enable(rcc);
         ADC2::enable(rcc);
+        ADC3::enable(rcc);
         // One reset for all three.
         ADC1::reset(rcc);
         pins.0.into_analog();
         pins.1.into_analog();
+        slow_pins.0.into_analog();
+        slow_pins.1.into_analog();
+        slow_pins.2.into_analog();
         // 84 MHz / 4 = 21 MHz; 15 clocks to sample, 12 to convert.
         common.ccr().write(|w| w.adcpre().div4());
         sensor.smpr1().write(|w| w.smp10().cycles15());
         monitor.smpr1().write(|w| w.smp11().cycles15());
+        slow.smpr1()
+            .write(|w| w.smp12().cycles15().smp13().cycles15());
+        slow.smpr2().write(|w| w.smp2().cycles15());
+        raw::converter_channel(&slow, SUPPLY);
         raw::converter_channel(&sensor, SENSOR);
         raw::converter_channel(&monitor, MONITOR);
-        for converter in [&*sensor, &*monitor] {
+        for converter in [&*sensor, &*monitor, &*slow] {
             converter.cr2().write(|w| {
                 w.extsel().tim3trgo().exten().rising_edge();
                 w.adon().set_bit()
             });
         }
-        Self { sensor, monitor }
+        Self {
+            sensor,
+            monitor,
+            slow,
+            channel: SUPPLY,
+        }
+    }
+
+    /// Takes one of the inputs that change slowly, and turns to the next one.
+    pub fn take_slow(&mut self) -> SlowInput {
+        let Some(share) = take_share(&self.slow) else {
+            return SlowInput::None;
+        };
+        let volts = share * REFERENCE_V;
+        let (input, next) = match self.channel {
+            SUPPLY => (SlowInput::SupplyV(volts * SUPPLY_SHARE), MOTOR),
+            MOTOR => {
+                let celsius = (volts - FREEZING_V) * CELSIUS_PER_VOLT;
+                (SlowInput::MotorC(celsius), JOINT)
+            }
+            _ => (SlowInput::JointTurns(share), SUPPLY),
+        };
+        self.channel = next;
+        raw::converter_channel(&self.slow, next);
+        input
     }
 
     /// Takes the sensor's current, A, positive towards growing angle; `None`
@@ -82,10 +135,14 @@ impl Converters {
 }
 
 fn take(converter: &Registers) -> Option<f32> {
+    take_share(converter).map(|share| (share - 0.5) * (REFERENCE_V / VOLTS_PER_AMPERE))
+}
+
+/// Takes a new conversion as a share of the reference.
+fn take_share(converter: &Registers) -> Option<f32> {
     if !converter.sr().read().eoc().bit() {
         return None;
     }
     // Reading clears the flag.
-    let counts = f32::from(converter.dr().read().data().bits());
-    Some((counts - COUNTS / 2.0) * (REFERENCE_V / COUNTS / VOLTS_PER_AMPERE))
+    Some(f32::from(converter.dr().read().data().bits()) * (1.0 / COUNTS))
 }

@@ -25,7 +25,7 @@ pub struct DriveBoard {
     pub comms_line: OtherLine,
     /// PA8, PB13, PA9, PB14; break on PB12.
     pub bridge: Bridge,
-    /// PC0, PC1.
+    /// PC0, PC1; PC3, PA2, PC2.
     pub converters: Converters,
     /// PA0, PA1.
     pub encoder: Encoder,
@@ -66,9 +66,10 @@ impl DriveBoard {
             comms_line: OtherLine::new(b.pb10),
             bridge,
             converters: Converters::new(
-                (chip.ADC1, chip.ADC2),
+                (chip.ADC1, chip.ADC2, chip.ADC3),
                 &chip.ADC_COMMON,
                 (c.pc0, c.pc1),
+                (c.pc3, a.pa2, c.pc2),
                 &mut rcc,
             ),
             encoder: Encoder::new(chip.TIM5, a.pa0, a.pa1, &mut rcc),

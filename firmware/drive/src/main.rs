@@ -62,7 +62,8 @@ mod app {
     const TASKS: usize = 3;
 
     /// The most bytes that a run of `link` receives, every other tick: 100 in a
-    /// millisecond. Comms sends 25, and 300 in all with a commit.
+    /// millisecond. Comms sends 25, and while a commit is sent 145: what is left of
+    /// it waits in the ring.
     const RUN_BYTES: usize = 10;
 
     /// Timeout of `idle` in runs of `link`: at most 250 ms.
@@ -167,6 +168,7 @@ mod app {
         let inputs = Inputs {
             current_a: part.converters.take_sensor_a(),
             monitor_a: part.converters.take_monitor_a(),
+            slow: part.converters.take_slow(),
             interval_us: part.clock.interval_us(),
             enable_is_on: part.line.is_on(),
             comms_enable_is_on: part.comms_line.is_on(),

@@ -18,6 +18,7 @@ use crepitus_device::Drive;
 use crepitus_device::drive::Boot;
 use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
+use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::link::{FromDrive, Heartbeat, Order, STALE_TICKS, ToDrive};
 use crepitus_protocol::management::{Answer, Identity, ManagementRequest, ResetCause};
@@ -75,6 +76,7 @@ struct Readings {
     has_tripped: bool,
     is_late: bool,
     is_idle: bool,
+    is_slow_good: bool,
 }
 
 impl Readings {
@@ -88,6 +90,7 @@ impl Readings {
             has_tripped: false,
             is_late: false,
             is_idle: true,
+            is_slow_good: true,
         }
     }
 
@@ -101,6 +104,7 @@ impl Readings {
             has_tripped: how & 0x30 == 0x30,
             is_late: how & 0x40 != 0,
             is_idle: how & 0x80 == 0,
+            is_slow_good: how & 0x83 != 0x83,
         }
     }
 }
@@ -339,6 +343,11 @@ impl Bench {
             enable_is_on: readings.line.unwrap_or(self.line_is_on),
             comms_enable_is_on: true,
             has_tripped: readings.has_tripped,
+            slow: if readings.is_slow_good {
+                SlowInput::in_turn(tick, 24.0, 25.0, 0.0)
+            } else {
+                SlowInput::in_turn(tick, current_a, current_a, current_a)
+            },
         };
         let outputs = self.drive.command_motor(&inputs);
         if readings.is_idle {

@@ -67,5 +67,8 @@ pub(crate) fn status_json(status: &Status) -> Value {
         "lease": status.lease.map(|session| session.to_string()),
         "zeroed": status.zeroed,
         "polarity_proven": status.polarity_proven,
+        "supply_v": f64::from(status.measured.supply_cv) / 100.0,
+        "motor_c": status.measured.motor_c,
+        "joint_span_deg": status.measured.joint_cdeg.map(|cdeg| f64::from(cdeg) / 100.0),
     })
 }

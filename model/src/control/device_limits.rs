@@ -72,7 +72,28 @@ settings! {
 }
 
 settings! {
-    /// Torque constant of the motor.
+    /// A sensor of the joint's own angle, behind gear and coupling.
+    pub struct JointSensorSettings, group "joint-sensor" {
+        fitted {
+            id: 32 disarmed,
+            choice: ["no", "yes"],
+            default: 0,
+            meaning: "the joint has an angle sensor; without one a coupling that slips is not detected",
+        },
+    } {
+        tolerance_deg {
+            id: 33 disarmed,
+            symbol: "Δθ",
+            unit: "deg",
+            range: 2.0..=20.0,
+            default: 4.0,
+            meaning: "by how much sensor and encoder may differ: backlash, the sensor's error and its lag",
+        },
+    }
+}
+
+settings! {
+    /// Torque constant of the motor, and what gear and motor bear.
     pub struct MotorSettings, group "motor" {} {
         torque_constant_nm_per_a {
             id: 25 disarmed,
@@ -81,6 +102,15 @@ settings! {
             range: 1e-4..=10.0,
             default: 0.0389,
             meaning: "torque of the motor for one ampere, and its back-EMF for one rad/s",
+        },
+        continuous_a {
+            id: 34 disarmed,
+            symbol: "Ic",
+            unit: "A",
+            range: 0.01..=1.37,
+            default: 0.95,
+            meaning: "current that gear and motor bear for ever: 4.5 N·m at a hand that back-drives the gear; \
+                      the largest current for a second",
         },
     }
 }
@@ -93,6 +123,7 @@ mod tests {
     fn settings_are_their_table_and_are_held_to_it() {
         crate::parameters::tests::is_its_table_and_is_held_to_it::<3, LimitSettings>();
         crate::parameters::tests::is_its_table_and_is_held_to_it::<3, RangeSettings>();
-        crate::parameters::tests::is_its_table_and_is_held_to_it::<1, MotorSettings>();
+        crate::parameters::tests::is_its_table_and_is_held_to_it::<1, JointSensorSettings>();
+        crate::parameters::tests::is_its_table_and_is_held_to_it::<2, MotorSettings>();
     }
 }

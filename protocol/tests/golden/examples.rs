@@ -8,6 +8,7 @@ use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Reply, Reque
 use crepitus_protocol::link::{
     DriveRefusal, DriveStatus, FromDrive, Heartbeat, Order, Outcome, ToDrive,
 };
+use crepitus_protocol::measured::Measured;
 use crepitus_protocol::parameters::PARAMETERS;
 use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
@@ -177,6 +178,13 @@ fn answer_name(answer: &Answer) -> &'static str {
     }
 }
 
+/// What a drive with a joint's sensor measures.
+const MEASURED: Measured = Measured {
+    supply_cv: 2_397,
+    motor_c: -3,
+    joint_cdeg: Some(118),
+};
+
 fn replies() -> Vec<Example> {
     let reply = |answer| Reply {
         session: HOST,
@@ -196,6 +204,7 @@ fn replies() -> Vec<Example> {
         lease: Some(OTHER),
         zeroed: true,
         polarity_proven: true,
+        measured: MEASURED,
     };
     let answers = [
         Answer::Done,
@@ -387,6 +396,7 @@ fn from_drive() -> Vec<Example> {
         }),
         zeroed: true,
         polarity_proven: true,
+        measured: MEASURED,
         counters: counts(1_000_000),
     };
     let refused = DriveStatus {

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-const SOURCES: [&str; 9] = [
+const SOURCES: [&str; 10] = [
     include_str!("../../src/counters.rs"),
     include_str!("../../src/host.rs"),
     include_str!("../../src/link.rs"),
+    include_str!("../../src/measured.rs"),
     include_str!("../../src/parameters.rs"),
     include_str!("../../src/pieces.rs"),
     include_str!("../../src/revision.rs"),

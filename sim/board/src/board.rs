@@ -17,6 +17,7 @@ use crepitus_device::comms::{self, Comms};
 use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::plausibility::TRIP_A;
+use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_device::drive::{self, Drive};
 use crepitus_protocol::management::{Identity, ResetCause, Role};
 use crepitus_protocol::{Revision, TICK_US, ValueError, Values, schema};
@@ -110,6 +111,8 @@ pub struct Board {
     comparator_tripped: bool,
     /// The drive's converters work: that of the sensor, and of the monitor.
     converts: [bool; 2],
+    /// And that of the inputs that change slowly.
+    converts_slow: bool,
     /// The drive's rendering is ready in time.
     renders: bool,
     /// The drive's crystal has 12 MHz instead of 8.
@@ -182,6 +185,7 @@ impl Board {
             trips: true,
             comparator_tripped: false,
             converts: [true; 2],
+            converts_slow: true,
             renders: true,
             drive_is_fast: false,
             comms_line_reaches_drive: true,
@@ -231,6 +235,7 @@ impl Board {
             enable_is_on: self.drive_line.read,
             comms_enable_is_on: self.comms_line_reaches_drive && self.comms_line.is_on(),
             has_tripped: self.comparator_tripped,
+            slow: self.slow(),
         });
         self.execute(outputs);
     }
@@ -241,6 +246,20 @@ impl Board {
             self.drive.render_torque(self.leg.count().cast_unsigned());
             self.command();
         }
+    }
+
+    fn slow(&self) -> SlowInput {
+        if !self.converts_slow {
+            return SlowInput::None;
+        }
+        let slow = self.leg.slow_sensors();
+        let (supply_v, joint) = (self.leg.measured_supply_v(), self.leg.joint_turns());
+        SlowInput::in_turn(
+            self.tick,
+            single(supply_v),
+            single(slow.motor_c),
+            single(joint),
+        )
     }
 
     fn converted(&self, path: CurrentPath) -> Option<f32> {

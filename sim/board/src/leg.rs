@@ -26,7 +26,7 @@ mod sensors;
 mod tests;
 
 pub use crepitus_plant::effects::motor::bridge::Terminals;
-pub use sensors::{CurrentPath, CurrentSensor, EncoderWiring};
+pub use sensors::{CurrentPath, CurrentSensor, EncoderWiring, SlowSensors};
 
 use crepitus_model::Sense;
 use crepitus_plant::chain::Body;
@@ -40,6 +40,9 @@ use sensors::Counter;
 /// Tick of the drive, s.
 pub const TICK_S: f64 = 5e-5;
 
+/// Time constant of the supply's capacitors without a supply, s: 470 µF and 220 Ω.
+const DISCHARGE_S: f64 = 0.1;
+
 /// A leg with brace, gear and motor.
 pub struct Leg {
     plant: Plant<Bridge>,
@@ -48,6 +51,9 @@ pub struct Leg {
     counter: Counter,
     /// Of the loop, and of the monitor.
     current_sensors: [CurrentSensor; 2],
+    slow_sensors: SlowSensors,
+    /// Voltage of the supply's capacitors, V.
+    capacitors_v: f64,
     /// Command to the bridge.
     terminals: Terminals,
     is_supplied: bool,
@@ -74,6 +80,8 @@ impl Leg {
             walk: Walk::new(scene.endless_motion(), step_s),
             steps_per_half,
             current_sensors: [CurrentSensor::Right; 2],
+            slow_sensors: SlowSensors::default(),
+            capacitors_v: motor.supply_v,
             terminals: Terminals::Open,
             is_supplied: true,
             felt_nm: 0.0,
@@ -90,6 +98,11 @@ impl Leg {
     /// The second half of a tick.
     pub fn second_half(&mut self) {
         self.half();
+        self.capacitors_v = if self.is_supplied {
+            self.supply_v()
+        } else {
+            self.capacitors_v * (-TICK_S / DISCHARGE_S).exp()
+        };
         let (felt_nms, charge_c) = self.begun;
         let bridge = self.plant.actuator();
         let impulse_nms = bridge.winding().settings().constant * (bridge.charge_c() - charge_c);
@@ -148,6 +161,25 @@ impl Leg {
         }
     }
 
+    /// Voltage that the supply's sensor shows, V. Without a supply, capacitors
+    /// discharge.
+    pub fn measured_supply_v(&self) -> f64 {
+        self.slow_sensors.supply_v.unwrap_or(self.capacitors_v)
+    }
+
+    /// What the joint's own sensor shows, as a share of its turn. Its zero is not the
+    /// joint's.
+    pub fn joint_turns(&self) -> f64 {
+        let angle_rad = self.plant.shaft().angle_rad - self.slow_sensors.slipped_rad;
+        let turns = (angle_rad / std::f64::consts::TAU + 0.9).rem_euclid(1.0);
+        self.slow_sensors.joint_turns.unwrap_or(turns)
+    }
+
+    /// The sensors of what changes slowly.
+    pub fn slow_sensors(&self) -> &SlowSensors {
+        &self.slow_sensors
+    }
+
     /// Time since the start of the motion, s.
     pub fn time_s(&self) -> f64 {
         self.walk.time_s()
@@ -191,6 +223,11 @@ impl Leg {
     /// Breaks or repairs one of the two shunts with its amplifier.
     pub fn set_current_sensor(&mut self, path: CurrentPath, sensor: CurrentSensor) {
         self.current_sensors[path as usize] = sensor;
+    }
+
+    /// The sensors of what changes slowly, to break them.
+    pub fn slow_sensors_mut(&mut self) -> &mut SlowSensors {
+        &mut self.slow_sensors
     }
 
     /// Shorts a switch of the bridge, so that a current of this sense flows while

@@ -36,7 +36,7 @@ use crepitus_protocol::{Revision, Values, schema};
 use crepitus_scene::Scene;
 use encoder_edges::Edges;
 use link_wires::{Down, Up};
-use wiring::{BREAK, COMMS_LINE, LINE, LINE_BACK, MONITOR, SENSOR};
+use wiring::{BREAK, COMMS_LINE, JOINT, LINE, LINE_BACK, MONITOR, MOTOR, SENSOR, SUPPLY};
 
 pub use wiring::BoardError;
 
@@ -178,6 +178,7 @@ impl DriveBoard {
         self.mcu.set_analog(SENSOR, 0.5 + SHARE_PER_A * sensor_a);
         // Wired the other way round.
         self.mcu.set_analog(MONITOR, 0.5 - SHARE_PER_A * monitor_a);
+        self.show_slow_sensors();
         self.end = self.end.max(begin) + HALF;
         let start = self.end - HALF;
         for (at, channel, level) in self.edges.between(before, self.leg.count(), start) {
@@ -199,6 +200,14 @@ impl DriveBoard {
         }
         self.halves += 1;
         self.is_second = !self.is_second;
+    }
+
+    fn show_slow_sensors(&mut self) {
+        let supply_v = self.leg.measured_supply_v();
+        let motor_v = 0.5 + 0.01 * self.leg.slow_sensors().motor_c;
+        self.mcu.set_analog(SUPPLY, supply_v / 16.0 / 3.3);
+        self.mcu.set_analog(MOTOR, motor_v / 3.3);
+        self.mcu.set_analog(JOINT, self.leg.joint_turns());
     }
 
     /// Adds new mismatches of image and wiring to the errors.

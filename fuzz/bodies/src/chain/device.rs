@@ -8,6 +8,7 @@ use crate::winding::Winding;
 use crepitus_device::comms::{self, Comms};
 use crepitus_device::drive::command::Inputs;
 use crepitus_device::drive::motor::Bridge;
+use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_device::drive::{self, Drive};
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::management::{Identity, ResetCause, Role};
@@ -189,6 +190,7 @@ impl Device {
             enable_is_on: readings.line.unwrap_or(self.drive_line),
             comms_enable_is_on: self.comms_line,
             has_tripped: readings.has_tripped,
+            slow: SlowInput::in_turn(self.tick, 24.0, 25.0, 0.0),
         });
         (self.drive_line, self.bridge) = (outputs.enable, outputs.bridge);
         let is_driven = matches!(outputs.bridge, Bridge::Driven(_));

@@ -136,16 +136,21 @@ fn requests_are_retried_while_the_device_is_busy() {
 fn a_line_that_spoils_a_byte_in_five_hundred_is_slow_and_right() {
     let (shared, mut client) = connected();
     spoil(&mut shared.borrow_mut(), 1_500);
-    let mut torque = 0.4;
-    for revision in 2..30 {
+    let (mut torque, mut before, mut unknown) = (0.4, 1, 0);
+    for _ in 2..30 {
         torque += 0.01;
         let set = loop {
             match client.set(&[(id::STATIC_TORQUE, torque)]) {
-                Err(Error::NoAnswer { .. }) => {}
+                // It may have been executed, which the error says.
+                Err(Error::NoAnswer { .. }) => unknown += 1,
                 other => break other.unwrap(),
             }
         };
-        assert_eq!(set, Revision(revision));
+        assert!(
+            (before + 1..=before + 1 + unknown).contains(&set.0),
+            "{set}"
+        );
+        (before, unknown) = (set.0, 0);
     }
     assert!(client.tally().repeats > 3, "{:?}", client.tally());
     assert!(client.tally().discarded_frames > 0);

@@ -2,6 +2,7 @@
 
 use super::noise::Noise;
 use crepitus_device::drive::motor::Bridge;
+use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_device::usb_port::HostBytes;
 use crepitus_device::{Comms, Drive, comms, drive};
 use crepitus_model::control::encoder::EncoderSettings;
@@ -198,6 +199,7 @@ impl Device {
             enable_is_on: self.drive_line,
             comms_enable_is_on: self.comms_line,
             has_tripped: false,
+            slow: SlowInput::in_turn(self.drive.next_tick(), 24.0, 25.0, 0.0),
         });
         self.drive.prepare();
         self.drive_line = outputs.enable;

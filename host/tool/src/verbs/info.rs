@@ -115,6 +115,24 @@ fn status_text(status: &Status) -> String {
             "zero is not set: counts start where the device was switched on"
         }
     );
+    let measured = &status.measured;
+    let _ = writeln!(
+        text,
+        "motor   supply {:.1} V, {} °C",
+        f64::from(measured.supply_cv) / 100.0,
+        measured.motor_c
+    );
+    let _ = writeln!(
+        text,
+        "joint   {}",
+        measured.joint_cdeg.map_or(
+            "no sensor of its own, or no zero: a coupling that slips is not detected".to_owned(),
+            |cdeg| format!(
+                "sensor and encoder have differed by up to {:.2} deg since the zero, backlash in it",
+                f64::from(cdeg) / 100.0
+            )
+        )
+    );
     let lease = status.lease.map_or("none".to_owned(), |session| {
         format!("held by host {session}")
     });

@@ -54,6 +54,11 @@ impl Board {
         self.trips = works;
     }
 
+    /// Lets the converter of what changes slowly run, or not.
+    pub fn set_slow_converter(&mut self, converts: bool) {
+        self.converts_slow = converts;
+    }
+
     /// Sets whether one of the drive's converters works.
     pub fn set_converter(&mut self, path: CurrentPath, works: bool) {
         self.converts[path as usize] = works;

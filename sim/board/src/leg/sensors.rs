@@ -50,6 +50,30 @@ impl CurrentSensor {
     }
 }
 
+/// Sensors of what changes slowly, and their faults.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlowSensors {
+    /// What the supply's sensor shows in place of its voltage, V.
+    pub supply_v: Option<f64>,
+    /// Temperature of the motor, °C.
+    pub motor_c: f64,
+    /// By how much the coupling between gear and brace has slipped, rad.
+    pub slipped_rad: f64,
+    /// What the joint's sensor shows in place of its angle, turns.
+    pub joint_turns: Option<f64>,
+}
+
+impl Default for SlowSensors {
+    fn default() -> Self {
+        Self {
+            supply_v: None,
+            motor_c: 25.0,
+            slipped_rad: 0.0,
+            joint_turns: None,
+        }
+    }
+}
+
 /// The encoder and the timer that counts its edges.
 pub(super) struct Counter {
     encoder: Encoder,

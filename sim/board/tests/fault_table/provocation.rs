@@ -2,6 +2,7 @@
 
 mod comms;
 mod drive;
+mod slow;
 
 use crate::breakage::{
     board, comms_line_off, drive_line_off, mend_comms_line, mend_drive_line, mend_encoder, nothing,
@@ -56,6 +57,11 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
         Fault::CommsLineOff => drive::line_of_comms_unseen(),
         Fault::TickIrregular => drive::tick_irregular(),
         Fault::CurrentWhileFloating => drive::current_while_floating(),
+        Fault::SupplyLow => slow::supply_low(),
+        Fault::SupplyHigh => slow::supply_high(),
+        Fault::MotorHot => slow::motor_hot(),
+        Fault::JointMismatch => slow::joint_mismatch(),
+        Fault::Overload => vec![slow::overload()],
         Fault::OutsideRange => vec![drive::outside_range()],
         Fault::NotANumber => {
             return Provocation::None(

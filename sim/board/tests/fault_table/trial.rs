@@ -11,8 +11,9 @@ use crepitus_protocol::{Fault, State};
 /// Ticks for which the cause is watched after the fault: 100 ms.
 const AFTER_TICKS: u64 = 2_000;
 
-/// Ticks after which a fault that was not noticed is none.
-const MOST_TICKS: u64 = 20_000;
+/// Ticks after which a fault that was not noticed is none: an overload takes two
+/// seconds.
+const MOST_TICKS: u64 = 60_000;
 
 /// The push that shows at arming which way the shaft turns, ticks.
 pub(crate) const PUSH_TICKS: u64 = 321;

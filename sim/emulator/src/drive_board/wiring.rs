@@ -28,9 +28,20 @@ pub(super) const COMMS_LINE: Pin = Pin::new('B', 10);
 pub(super) const SENSOR: Pin = Pin::new('C', 0);
 pub(super) const MONITOR: Pin = Pin::new('C', 1);
 
+/// Supply, temperature of the motor, and the joint's own sensor.
+pub(super) const SUPPLY: Pin = Pin::new('C', 3);
+pub(super) const MOTOR: Pin = Pin::new('A', 2);
+pub(super) const JOINT: Pin = Pin::new('C', 2);
+
 /// The converters, from 1 on, and the pins that they convert in the middle of a
 /// tick.
-const CURRENTS: [(u32, Pin); 2] = [(1, SENSOR), (2, MONITOR)];
+const CONVERTED: [(u32, Pin); 5] = [
+    (1, SENSOR),
+    (2, MONITOR),
+    (3, SUPPLY),
+    (3, MOTOR),
+    (3, JOINT),
+];
 
 /// The encoder's counter.
 const COUNTER: u32 = 0x4000_0c24;
@@ -63,7 +74,7 @@ const fn wire(pin: Pin, to: &'static str, mode: Mode, pull: Option<Pull>) -> Wir
 }
 
 /// All wires, as docs/hardware.md has them.
-const WIRES: [Wire; 14] = {
+const WIRES: [Wire; 17] = {
     use Mode::{Alternate, Analog, Input, Output};
     const DOWN: Option<Pull> = Some(Pull::Down);
     const UP: Option<Pull> = Some(Pull::Up);
@@ -95,6 +106,9 @@ const WIRES: [Wire; 14] = {
         wire(BREAK, "break line, TIM1 BKIN", Alternate(1), DOWN),
         wire(SENSOR, "amplifier of the sensor, ADC1 IN10", Analog, None),
         wire(MONITOR, "amplifier of the monitor, ADC2 IN11", Analog, None),
+        wire(SUPPLY, "divider of the supply, ADC3 IN13", Analog, None),
+        wire(MOTOR, "temperature of the motor, ADC3 IN2", Analog, None),
+        wire(JOINT, "sensor of the joint, ADC3 IN12", Analog, None),
         wire(COMMS_LINE, "enable line of comms", Input, DOWN),
         wire(Pin::new('A', 0), "encoder A, TIM5 CH1", Alternate(2), UP),
         wire(Pin::new('A', 1), "encoder B, TIM5 CH2", Alternate(2), UP),
@@ -162,15 +176,15 @@ pub enum BoardError {
         /// As the timer is set.
         ns: u64,
     },
-    /// A converter samples another channel than that of its current.
-    #[error("ADC{converter} samples channel {channel}, to which its current is not wired")]
+    /// A converter samples another channel than one of its inputs.
+    #[error("ADC{converter} samples channel {channel}, to which none of its inputs is wired")]
     Channel {
         /// From 1 on.
         converter: u32,
         /// The channel.
         channel: u32,
     },
-    /// A converter does not sample its current in the middle of the tick.
+    /// A converter does not sample in the middle of the tick.
     #[error(
         "ADC{converter} samples {off_ns} ns off the middle of the tick; at most 250 ns are allowed"
     )]
@@ -180,7 +194,7 @@ pub enum BoardError {
         /// From the middle of the tick to the middle of the sampling.
         off_ns: u64,
     },
-    /// A switch opens or closes while a converter samples its current.
+    /// A switch opens or closes while a converter samples.
     #[error("a switch of the bridge switches while ADC{converter} samples")]
     SwitchingWhileSampling {
         /// From 1 on.
@@ -238,7 +252,7 @@ pub(super) fn check_samplings(
         let (converter, channel) = (sampling.converter, sampling.channel);
         let is_wired =
             |(number, pin): &(u32, Pin)| *number == converter && Some(*pin) == sampling.pin;
-        if !CURRENTS.iter().any(is_wired) {
+        if !CONVERTED.iter().any(is_wired) {
             report(BoardError::Channel { converter, channel });
             continue;
         }

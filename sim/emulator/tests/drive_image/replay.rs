@@ -9,6 +9,7 @@ use crate::host::{Host, examination, image};
 use crepitus_device::Drive;
 use crepitus_device::drive::Boot;
 use crepitus_device::drive::command::Inputs;
+use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_emulator::Mcu;
 use crepitus_emulator::mcu::Access;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
@@ -19,16 +20,20 @@ const ENCODER: u32 = 0x4000_0c24;
 const SENSOR_FLAGS: u32 = 0x4001_2000;
 const SENSOR_DATA: u32 = 0x4001_204c;
 const MONITOR_DATA: u32 = 0x4001_214c;
+const SLOW_SEQUENCE: u32 = 0x4001_2234;
+const SLOW_DATA: u32 = 0x4001_224c;
 const CLOCK: u32 = 0x4000_0024;
 const LINE: u32 = 0x4002_0410;
 const BREAK_FLAGS: u32 = 0x4001_0010;
 const LINK_CONTROL: u32 = 0x4001_140c;
 const RECEIVED_LEFT: u32 = 0x4002_642c;
-const REGISTERS: [u32; 9] = [
+const REGISTERS: [u32; 11] = [
     ENCODER,
     SENSOR_FLAGS,
     SENSOR_DATA,
     MONITOR_DATA,
+    SLOW_SEQUENCE,
+    SLOW_DATA,
     CLOCK,
     LINE,
     BREAK_FLAGS,
@@ -49,13 +54,26 @@ const TICKS: usize = 20_000;
 fn amperes(counts: u32) -> f32 {
     #[expect(clippy::cast_precision_loss, reason = "twelve bits")]
     let counts = counts as f32;
-    (counts - 4096.0 / 2.0) * (3.3 / 4096.0 / (20.0 * 0.033))
+    (counts * (1.0 / 4096.0) - 0.5) * (3.3 / (20.0 * 0.033))
+}
+
+/// As a channel's counts become what it measures, in the same arithmetic.
+fn slow(channel: u32, counts: u32) -> SlowInput {
+    #[expect(clippy::cast_precision_loss, reason = "twelve bits")]
+    let share = counts as f32 * (1.0 / 4096.0);
+    match channel {
+        13 => SlowInput::SupplyV(share * 3.3 * 16.0),
+        2 => SlowInput::MotorC((share * 3.3 - 0.5) * 100.0),
+        _ => SlowInput::JointTurns(share),
+    }
 }
 
 /// The native drive, led by what the image has read.
 struct Replay<'a> {
     drive: Drive,
     inputs: Inputs,
+    /// Channel of the third converter.
+    channel: u32,
     clock_us: u32,
     /// Bytes that the image's link has received.
     bytes: std::slice::Iter<'a, u8>,
@@ -71,6 +89,9 @@ struct Replay<'a> {
 impl Replay<'_> {
     fn access(&mut self, access: &Access) {
         if access.is_write {
+            if access.address == SLOW_SEQUENCE {
+                self.channel = access.value;
+            }
             return;
         }
         match access.address {
@@ -78,6 +99,7 @@ impl Replay<'_> {
             SENSOR_FLAGS => self.inputs = Inputs::default(),
             SENSOR_DATA => self.inputs.current_a = Some(amperes(access.value)),
             MONITOR_DATA => self.inputs.monitor_a = Some(-amperes(access.value)),
+            SLOW_DATA => self.inputs.slow = slow(self.channel, access.value),
             CLOCK => {
                 self.inputs.interval_us = access.value.wrapping_sub(self.clock_us);
                 self.clock_us = access.value;
@@ -168,6 +190,7 @@ fn twenty_thousand_ticks_are_those_of_the_native_drive_bit_for_bit() {
     let mut replay = Replay {
         drive: Drive::new(&boot).expect("a drive"),
         inputs: Inputs::default(),
+        channel: 13,
         clock_us: 0,
         bytes: bytes.iter(),
         next: 0,

@@ -67,7 +67,7 @@ fn a_task_gives_way_at_once_to_a_higher_one() {
     // interrupt has come: then the second of these has interrupted the first.
     for (from_ns, until_ns, below, above) in [
         (25_700, 52_000, RENDER, COMMAND),
-        (9_000, 25_400, LINK, RENDER),
+        (10_500, 25_400, LINK, RENDER),
     ] {
         let mut host = Host::new(&image, &examination());
         host.arm();

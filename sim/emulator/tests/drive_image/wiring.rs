@@ -87,7 +87,7 @@ const CHANGES: [Change; 16] = [
     (
         ADC1_SQR3,
         |_| 11,
-        "ADC1 samples channel 11, to which its current is not wired",
+        "ADC1 samples channel 11, to which none of its inputs is wired",
     ),
     (
         USART6_BRR,

@@ -1,0 +1,126 @@
+//! What gear and motor bear for a short time only: I²t.
+//!
+//! ```text
+//! s += (i² − Ic²)·h, s ≥ 0        fault at s = (Is² − Ic²)·1 s
+//! ```
+//!
+//! Ic is what they bear for ever, Is the gear's short-time torque at a hand that
+//! back-drives it. The motor's winding is warm after ten times as long.
+
+use crepitus_model::Real;
+use crepitus_protocol::Fault;
+
+/// Largest current for a second, A: 6.5 N·m at the hand.
+const SHORT_A: f64 = 1.37;
+
+/// Smallest sum that is a fault, A²·s, for a current that may flow for ever and is
+/// the largest.
+const LEAST_A2S: f64 = 0.1;
+
+/// Coefficients.
+#[derive(Clone, Copy, Debug)]
+pub struct OverloadPlan {
+    /// Square of the current that may flow for ever, A².
+    continuous_a2: f32,
+    /// Sum that is a fault, A² for a tick.
+    most: f32,
+}
+
+impl OverloadPlan {
+    /// Of the current that may flow for ever, A, and the length of a tick, s.
+    #[expect(clippy::cast_possible_truncation, reason = "rounded to f32, once")]
+    pub fn new(continuous_a: f64, tick_s: f64) -> Self {
+        let continuous_a2 = continuous_a * continuous_a;
+        let most_a2s = (SHORT_A * SHORT_A - continuous_a2).max(LEAST_A2S);
+        Self {
+            continuous_a2: continuous_a2 as f32,
+            most: (most_a2s / tick_s) as f32,
+        }
+    }
+}
+
+/// The sum.
+#[derive(Clone, Copy, Debug)]
+pub struct Overload {
+    plan: OverloadPlan,
+    sum: f32,
+}
+
+impl Overload {
+    /// A cold motor.
+    pub fn new(plan: &OverloadPlan) -> Self {
+        Self {
+            plan: *plan,
+            sum: 0.0,
+        }
+    }
+
+    /// Replaces the coefficients; what was summed stays.
+    pub fn change(&mut self, plan: &OverloadPlan) {
+        self.plan = *plan;
+    }
+
+    /// Runs one tick with the current, A; a missing one counts as none.
+    pub fn tick(&mut self, current_a: Option<f32>) -> Option<Fault> {
+        let current_a = current_a.filter(|a| a.is_finite()).unwrap_or(0.0);
+        let change = current_a * current_a - self.plan.continuous_a2;
+        // Not beyond, or a broken sensor would be remembered for long.
+        self.sum = (self.sum + change).at_least(0.0).at_most(self.plan.most);
+        (self.sum >= self.plan.most).then_some(Fault::Overload)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn until(continuous_a: f64, currents_a: impl IntoIterator<Item = f32>) -> Option<u32> {
+        let mut overload = Overload::new(&OverloadPlan::new(continuous_a, 5e-5));
+        (currents_a.into_iter().zip(1_u32..)).find_map(|(a, tick)| {
+            overload.tick(Some(a)).map(|fault| {
+                assert_eq!(fault, Fault::Overload);
+                tick
+            })
+        })
+    }
+
+    fn constant(a: f32) -> impl Iterator<Item = f32> {
+        std::iter::repeat_n(a, 400_000)
+    }
+
+    #[test]
+    fn the_short_time_torque_lasts_a_second() {
+        let ticks = until(0.95, constant(-1.37)).unwrap();
+        assert!(ticks.abs_diff(20_000) < 200, "{ticks}");
+        assert_eq!(until(0.95, constant(0.95)), None);
+        // 1.2 A: 0.974 A²s / 0.5375 A².
+        let ticks = until(0.95, constant(1.2)).unwrap();
+        assert!(ticks.abs_diff(36_200) < 400, "{ticks}");
+    }
+
+    #[test]
+    fn pauses_cool() {
+        let pulses =
+            |on: usize| (0..600_000).map(move |n| if n % 20_000 < on { 1.37 } else { 0.0 });
+        // As much above as below: 0.974 against 0.9025.
+        assert_eq!(until(0.95, pulses(9_000)), None);
+        assert!(until(0.95, pulses(12_000)).is_some());
+    }
+
+    #[test]
+    fn a_wrong_current_is_forgotten_within_a_millisecond() {
+        let mut overload = Overload::new(&OverloadPlan::new(0.95, 5e-5));
+        for _ in 0..1_000_000 {
+            let _ = overload.tick(Some(100.0));
+        }
+        assert!(overload.tick(Some(0.0)).is_none());
+        assert!((0..20).all(|_| overload.tick(Some(0.95)).is_none()));
+    }
+
+    #[test]
+    fn a_current_that_is_no_number_counts_as_none() {
+        assert_eq!(until(0.95, constant(f32::NAN)), None);
+        let ticks = until(1.37, constant(1.4)).unwrap();
+        assert!(ticks > 20_000, "{ticks}");
+    }
+}
