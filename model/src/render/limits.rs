@@ -62,6 +62,7 @@ impl<F: Real> Limits<F> for TorqueLimits<F> {
         }
         let most_nm = if self.allowance_nm > self.most_nm {
             // It was lowered, and is followed as torque is: no jolt.
+            shown.settling = true;
             (self.allowance_nm - self.slew_nm).at_least(self.most_nm)
         } else {
             (self.allowance_nm + self.slew_nm).at_most(self.most_nm)
@@ -136,6 +137,19 @@ mod tests {
         assert_eq!(after(&mut limits, 2.0), (0.5, Limit::Slew));
         assert_eq!(after(&mut limits, 2.0), (0.4, Limit::Torque));
         assert_eq!(after(&mut limits, 0.4), (0.4, Limit::None));
+    }
+
+    #[test]
+    fn until_a_lowered_limit_is_reached_parameters_settle() {
+        let mut limits = TorqueLimits::armed(1.0, 0.25);
+        limits.change(0.4, 0.25);
+        let mut settles = || {
+            let mut shown = shown(0.0);
+            limits.tick(&mut shown);
+            shown.settling
+        };
+        assert!(settles() && settles() && settles());
+        assert!(!settles());
     }
 
     #[test]

@@ -196,6 +196,8 @@ fn watch(seed: u64, changes: usize, mut next: impl FnMut(&mut Rng, &Values) -> V
         // Long enough to settle, and to slip.
         host.run(rng.u64(600..3_000));
     }
+    let status = host.status();
+    assert_eq!((status.drive_fault, status.comms_fault), (0, 0));
     watch.look(&blocks(&mut host));
     assert_eq!(host.accounting.expect("a subscription").dropped, 0);
     watch.worst
