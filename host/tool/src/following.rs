@@ -9,8 +9,8 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::line::{Line, failure, failure_with};
 use clap::Args;
-use crepitus_client::{Begin, Client, Event, StateChange};
-use crepitus_protocol::State;
+use crepitus_client::{Begin, Client, Event};
+use crepitus_protocol::host::Status;
 use crepitus_protocol::telemetry::Block;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::Duration;
@@ -111,7 +111,8 @@ fn run(
             timeout = Duration::ZERO;
             match event {
                 Event::Block(arrival) => follower.block(client, &arrival.block)?,
-                Event::State(change) => check_state(&change, arm)?,
+                // What ends an armed device is reported below.
+                Event::State(change) if !arm => warn(&change.now),
                 Event::DriveRestarted => eprintln!("warning: the drive has restarted"),
                 Event::Silent(silence) => eprintln!(
                     "warning: no samples for {} ms, but the connection is open",
@@ -131,7 +132,25 @@ fn run(
                 break;
             }
         }
+        if arm && client.is_connected() && !client.is_armed() {
+            return Err(disarmed(client));
+        }
     }
+}
+
+/// Why an armed device has disarmed by itself. The change of its state may have been
+/// too quick to be seen as one.
+fn disarmed(client: &mut Client<Line>) -> Failure {
+    let status = match client.status() {
+        Ok(status) => status,
+        Err(error) => return failure(error),
+    };
+    let faults = device_text::faults(&status);
+    Failure::Work(if faults.is_empty() {
+        "another program has disarmed the device".to_owned()
+    } else {
+        faults.join("\n")
+    })
 }
 
 fn reconnect(
@@ -154,20 +173,11 @@ fn reconnect(
     Ok(())
 }
 
-/// Prints new faults; an armed device that disarms by itself is a failure.
-fn check_state(change: &StateChange, arm: bool) -> Result<(), Failure> {
-    let faults = device_text::faults(&change.now);
-    if !arm || change.now.state == State::Armed || change.before.state != State::Armed {
-        for fault in faults {
-            eprintln!("warning: {fault}");
-        }
-        return Ok(());
+/// Prints the faults of a device that this program has not armed.
+fn warn(status: &Status) {
+    for fault in device_text::faults(status) {
+        eprintln!("warning: {fault}");
     }
-    Err(Failure::Work(if faults.is_empty() {
-        "another program has disarmed the device".to_owned()
-    } else {
-        faults.join("\n")
-    }))
 }
 
 #[cfg(test)]
@@ -176,6 +186,7 @@ mod tests {
     use crate::shipped;
     use crate::simulated::Simulated;
     use crepitus_client::Transport;
+    use crepitus_protocol::State;
     use crepitus_scene::Overrides;
     use std::path::Path;
 
