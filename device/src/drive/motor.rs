@@ -70,6 +70,15 @@ impl Motor {
         self.bridge
     }
 
+    /// Drives with this voltage beside the back-EMF, V, through gates that must not let
+    /// it pass.
+    pub fn prove(&mut self, volts: f32, omega_rad_s: f32) -> Bridge {
+        let volts = volts + self.plan.joint_constant * omega_rad_s;
+        self.bridge =
+            Bridge::Driven(volts.within(self.plan.floats_below_rad_s * self.plan.joint_constant));
+        self.bridge
+    }
+
     /// Starts the loop on a shaft that turns with `omega_rad_s`: without current,
     /// the voltage is the back-EMF.
     pub fn start(&mut self, omega_rad_s: f32) {
@@ -187,7 +196,7 @@ mod tests {
         }
         assert_eq!(motor.limited_by(), Some(Limit::Voltage));
         // Torque against growing angle needs a voltage against it.
-        let off = motor.duty(motor.bridge) + 1.0_f32.copysign(torque_nm);
+        let off = motor.duty(motor.bridge) + 0.9_f32.copysign(torque_nm);
         assert!(off.abs() < 1e-6);
         motor
     }

@@ -23,6 +23,10 @@ const FASTEST_RAD_S: f64 = 50.0;
 /// estimate of its speed lags.
 const FLOATS_SHARE: f64 = 0.7;
 
+/// Largest duty: the lower switches of both halves are closed for 1.25 µs on either
+/// side of the middle, where the currents are converted.
+const LARGEST_DUTY: f32 = 0.9;
+
 /// Delay of the torque: half a tick to a tick and a half, and a lag.
 const TIMING: Timing = Timing {
     step_s: TICK_S,
@@ -324,7 +328,8 @@ fn motor(settings: &DeviceSettings) -> Result<MotorPlan, SettingsError> {
     } = settings.current_loop;
     let constant = settings.joint_constant();
     Ok(MotorPlan {
-        current_loop: CurrentLoop::new(&settings.current_loop, TICK_S)?,
+        current_loop: CurrentLoop::new(&settings.current_loop, TICK_S)?
+            .with_largest_duty(LARGEST_DUTY),
         joint_constant: single(constant),
         amperes_per_nm: single(1.0 / constant),
         resistance_ohm: single(resistance_ohm),

@@ -124,7 +124,8 @@ pub struct CurrentLoop<F> {
     gain: F,
     /// 1 − a.
     share_per_tick: F,
-    supply_v: F,
+    /// Largest voltage, V.
+    most_v: F,
     current_limit_a: F,
     /// x: the voltage that current and back-EMF explain, V.
     explained_v: F,
@@ -150,12 +151,21 @@ impl<F: Real> CurrentLoop<F> {
         Ok(Self {
             gain: F::from_f64(reach * settings.resistance_ohm / winding),
             share_per_tick: F::from_f64(winding),
-            supply_v: F::from_f64(settings.supply_v),
+            most_v: F::from_f64(settings.supply_v),
             current_limit_a: F::from_f64(settings.current_limit_a),
             explained_v: F::ZERO,
             limited_by: None,
             missed: 0,
         })
+    }
+
+    /// The same loop with this share of the supply's voltage as its largest.
+    #[must_use]
+    pub fn with_largest_duty(self, share: F) -> Self {
+        Self {
+            most_v: self.most_v * share,
+            ..self
+        }
     }
 
     /// Runs one tick; returns the voltage, V, for the current setpoint and the one
@@ -174,7 +184,7 @@ impl<F: Real> CurrentLoop<F> {
         }
         let allowed_a = setpoint_a.within(self.current_limit_a);
         let unlimited_v = self.explained_v + self.gain * (allowed_a - measured_a);
-        let volts = unlimited_v.within(self.supply_v);
+        let volts = unlimited_v.within(self.most_v);
         self.limited_by = if volts != unlimited_v {
             Some(Limit::Voltage)
         } else if allowed_a != setpoint_a {
@@ -190,7 +200,7 @@ impl<F: Real> CurrentLoop<F> {
     /// Takes over from a voltage that current and back-EMF explain: a shaft
     /// that already turns is not jolted.
     pub fn start(&mut self, volts: F) {
-        self.explained_v = volts.within(self.supply_v);
+        self.explained_v = volts.within(self.most_v);
     }
 
     /// Resets the loop, for disarming. The counters are kept.
