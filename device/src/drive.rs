@@ -198,6 +198,11 @@ impl Drive {
         self.command.safety().fault()
     }
 
+    /// Whether arming has come to where it needs the enable line of comms.
+    pub fn awaits_comms(&self) -> bool {
+        self.command.safety().awaits_comms()
+    }
+
     /// Revision of the active parameters.
     pub fn revision(&self) -> Revision {
         self.command.revision()

@@ -36,6 +36,8 @@ pub enum Fault {
     MotorHot = 26,
     JointMismatch = 27,
     Overload = 28,
+    DriveGateStuck = 29,
+    CommsGateStuck = 30,
     DriveSilent = 32,
     DriveRestarted = 33,
     CommsEnableStuckOn = 34,
@@ -100,7 +102,7 @@ const CLEAR: &str = "clear-fault";
 const REPAIR: &str = "repair, then clear-fault";
 
 /// All faults, in the order of their codes.
-pub const FAULTS: [FaultSpec; 42] = [
+pub const FAULTS: [FaultSpec; 44] = [
     FaultSpec {
         fault: Fault::CommsSilent,
         name: "comms-silent",
@@ -312,7 +314,8 @@ pub const FAULTS: [FaultSpec; 42] = [
         name: "comms-line-off",
         cause: "the wire by which the drive reads the enable line of comms is broken",
         detector: Detector::Drive,
-        detection: "that line reads off for 120 ticks (6 ms) while comms permits torque; the bridge floats meanwhile",
+        detection: "that line reads off for 120 ticks (6 ms) while comms permits torque, or for 2,000 at arming; the bridge \
+                    floats meanwhile",
         reaction: FLOAT,
         within_ticks: Some(2),
         clear: REPAIR,
@@ -390,6 +393,27 @@ pub const FAULTS: [FaultSpec; 42] = [
         reaction: FLOAT,
         within_ticks: Some(20_300),
         clear: CLEAR,
+    },
+    FaultSpec {
+        fault: Fault::DriveGateStuck,
+        name: "drive-gate-stuck",
+        cause: "an output of the drive's gate does not follow its enable line",
+        detector: Detector::Drive,
+        detection: "a push of 0.6 V at arming, with the drive's line off and that of comms on, moves current: more than \
+                    0.15 A in 2 consecutive ticks",
+        reaction: "the push ends and the bridge floats; arming is refused",
+        within_ticks: Some(10),
+        clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::CommsGateStuck,
+        name: "comms-gate-stuck",
+        cause: "an output of the gate of comms does not follow its enable line",
+        detector: Detector::Drive,
+        detection: "the same with the line of comms off and the drive's on; or the line of comms reads on before it should",
+        reaction: "the push ends and the bridge floats; arming is refused",
+        within_ticks: Some(10),
+        clear: REPAIR,
     },
     FaultSpec {
         fault: Fault::DriveSilent,

@@ -94,7 +94,8 @@ impl DriveStatus {
         (
             (STATUS, self.tick, self.start, self.comms_start),
             (self.state, self.fault, self.revision, self.refused),
-            (self.last, self.zeroed, self.polarity_proven, self.measured),
+            (self.last, self.zeroed, self.polarity_proven),
+            (self.awaits_comms, self.measured),
         )
     }
 }
@@ -123,6 +124,8 @@ pub struct DriveStatus {
     pub zeroed: bool,
     /// Whether arming has proven that encoder and motor turn the same way.
     pub polarity_proven: bool,
+    /// Arming has come to where it needs the enable line of comms.
+    pub awaits_comms: bool,
     /// What it measures beside the motion.
     pub measured: Measured,
     /// The drive's counters.
@@ -184,6 +187,7 @@ mod tests {
             }),
             zeroed: true,
             polarity_proven: true,
+            awaits_comms: true,
             measured: Measured {
                 supply_cv: u16::MAX,
                 motor_c: i16::MIN,

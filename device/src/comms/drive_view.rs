@@ -123,6 +123,11 @@ impl DriveView {
         self.status.map_or(State::Disarmed, |status| status.state)
     }
 
+    /// Whether it arms and has come to where it needs the enable line of comms.
+    pub fn awaits_comms(&self) -> bool {
+        self.status.is_some_and(|status| status.awaits_comms)
+    }
+
     /// The active parameters, if the drive is present and has reported them.
     pub fn revision(&self, now_ms: u64) -> Option<Revision> {
         self.status

@@ -15,7 +15,9 @@ enum Step {
     FirstOn,
     /// Off again: waits for the read-back to fall.
     OffAgain,
-    /// On, the test passed.
+    /// Off, the test passed.
+    Tested,
+    /// On.
     On,
 }
 
@@ -23,14 +25,12 @@ enum Step {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EnableLine {
     step: Step,
-    /// The read-back was on in [`Step::On`].
-    proven: bool,
     /// Consecutive milliseconds in which the read-back differs from the output.
     mismatch_ms: u32,
 }
 
 impl EnableLine {
-    /// Starts the test: on, off, on.
+    /// Starts the test: on, and off.
     pub fn prove(&mut self) {
         if self.step == Step::Off {
             *self = Self {
@@ -47,9 +47,16 @@ impl EnableLine {
         }
     }
 
-    /// Whether the line passed its test and is on.
-    pub fn is_proven(&self) -> bool {
-        self.proven
+    /// Switches the line on, if it has passed its test.
+    pub fn raise(&mut self) {
+        if self.step == Step::Tested {
+            self.step = Step::On;
+        }
+    }
+
+    /// Whether the line has passed its test.
+    pub fn is_tested(&self) -> bool {
+        matches!(self.step, Step::Tested | Step::On)
     }
 
     /// The output level: true for on.
@@ -62,10 +69,9 @@ impl EnableLine {
         if is_on == self.level() {
             self.mismatch_ms = 0;
             match self.step {
-                Step::Off => {}
                 Step::FirstOn => self.step = Step::OffAgain,
-                Step::OffAgain => self.step = Step::On,
-                Step::On => self.proven = true,
+                Step::OffAgain => self.step = Step::Tested,
+                Step::Off | Step::Tested | Step::On => {}
             }
             return None;
         }
@@ -92,23 +98,26 @@ mod tests {
         line.prove();
         for ms in 1..20 {
             let fault = line.tick(is_on);
-            if fault.is_some() || line.is_proven() {
-                return (fault, line.is_proven(), ms);
+            if fault.is_some() || line.is_tested() {
+                return (fault, line.is_tested(), ms);
             }
             is_on = stuck.unwrap_or(line.level());
         }
-        panic!("neither proven nor stuck");
+        panic!("neither tested nor stuck");
     }
 
     #[test]
-    fn it_is_proven_on_off_and_on() {
-        let (fault, proven, ms) = prove(None);
-        assert_eq!((fault, proven), (None, true));
-        assert!(ms <= 8, "{ms}");
+    fn it_is_tested_on_and_off_and_then_raised() {
+        let (fault, is_tested, ms) = prove(None);
+        assert_eq!((fault, is_tested), (None, true));
+        assert!(ms <= 6, "{ms}");
+        let mut line = EnableLine::default();
+        line.raise();
+        assert!(!line.level(), "not tested");
     }
 
     #[test]
-    fn a_stuck_one_is_not_proven() {
+    fn a_stuck_one_is_not_tested() {
         assert_eq!(prove(Some(false)).0, Some(Fault::CommsEnableStuckOff));
         assert_eq!(prove(Some(true)).0, Some(Fault::CommsEnableStuckOn));
     }
@@ -125,7 +134,10 @@ mod tests {
         for _ in 0..6 {
             assert_eq!(line.tick(line.level()), None);
         }
-        assert!(line.is_proven());
+        assert!(line.is_tested() && !line.level());
+        line.raise();
+        assert!(line.level());
+        assert_eq!(line.tick(true), None);
         assert_eq!(line.tick(false), None, "a moment is no fault");
         assert_eq!(
             (0..3).find_map(|_| line.tick(false)),

@@ -276,7 +276,7 @@ impl Comms {
                 if let Some(fault) = self.supervision.fault() {
                     return Some(Err(Refusal::Faulted { code: fault.code() }));
                 }
-                if self.supervision.line_is_proven() {
+                if self.supervision.line_is_tested() {
                     let number = self.to_drive.next_number();
                     let order = Order::Arm;
                     self.job = Some(Job {

@@ -46,9 +46,9 @@ impl Supervision {
         self.fault
     }
 
-    /// Whether the enable line passed its test and is on.
-    pub fn line_is_proven(&self) -> bool {
-        self.line.is_proven()
+    /// Whether the enable line has passed its test.
+    pub fn line_is_tested(&self) -> bool {
+        self.line.is_tested()
     }
 
     /// Requests torque: starts the test of the enable line.
@@ -124,6 +124,8 @@ impl Supervision {
             }
             match drive.state() {
                 State::Armed => self.was_armed = true,
+                // It has proven that nothing moves current before.
+                State::Arming if drive.awaits_comms() => self.line.raise(),
                 // The drive has disarmed by itself; its status has the cause.
                 State::Faulted | State::Disarmed if self.was_armed => self.release(),
                 _ => {}

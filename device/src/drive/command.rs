@@ -3,6 +3,7 @@
 
 use crate::counters::Counters;
 use crate::drive::Boot;
+use crate::drive::arming::Seen;
 use crate::drive::batch::Batch;
 use crate::drive::emf_check::{EmfCheck, Tick};
 use crate::drive::exchange::{Exchange, Rendered, Turn};
@@ -265,9 +266,12 @@ impl Command {
         let fault_before = self.safety.fault();
         let mut permit = self.safety.tick(
             now,
-            inputs.current_a.zip(inputs.monitor_a),
-            inputs.enable_is_on,
-            rendered.count,
+            &Seen {
+                raw_a: inputs.current_a.zip(inputs.monitor_a),
+                line_is_on: inputs.enable_is_on,
+                comms_line_is_on: inputs.comms_enable_is_on,
+                count: rendered.count,
+            },
             counters,
         );
         if let Some((sensor_a, monitor_a)) = self.safety.offsets_a() {
@@ -435,8 +439,17 @@ impl Command {
         omega_rad_s: f32,
         current_a: Option<f32>,
     ) -> Outputs {
+        if let Permit::Proof(volts, enable) = permit {
+            self.was_driven = true;
+            let bridge = self.motor.prove(volts, omega_rad_s);
+            return Outputs {
+                enable,
+                bridge,
+                duty: self.motor.duty(bridge),
+            };
+        }
         let torque_nm = match permit {
-            Permit::Nothing | Permit::Line => None,
+            Permit::Nothing | Permit::Line | Permit::Proof(..) => None,
             Permit::Push(amperes) => Some(-amperes * self.motor.joint_constant()),
             Permit::Torque => Some(torque_nm),
         };

@@ -38,8 +38,11 @@ pub struct LinkTask<P> {
     /// Blocks to send before the next status: they precede the change that it
     /// reports.
     blocks_before_status: usize,
+    /// A status for the next frame: gathered in one run, encoded in the next, since
+    /// both take long.
+    gathered: Option<DriveStatus>,
     /// The state that was reported last.
-    reported: (State, Option<Fault>, Revision, bool),
+    reported: (State, Option<Fault>, Revision, bool, bool),
 }
 
 impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
@@ -53,7 +56,8 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             outgoing: Outgoing::default(),
             reboot_requested: false,
             blocks_before_status: 0,
-            reported: (State::Disarmed, None, Revision::NONE, false),
+            gathered: None,
+            reported: (State::Disarmed, None, Revision::NONE, false, false),
         }
     }
 
@@ -160,7 +164,14 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             let revision = command.revision();
             let queued = command.queued_blocks();
             let safety = command.safety_mut();
-            let current = (safety.state(), safety.fault(), revision, is_refused);
+            let awaits_comms = safety.awaits_comms();
+            let current = (
+                safety.state(),
+                safety.fault(),
+                revision,
+                is_refused,
+                awaits_comms,
+            );
             (safety.take_outcome(), current, queued)
         });
         if let Some(result) = outcome {
@@ -187,6 +198,11 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             let answer = self.link.take_answer()?;
             return self.outgoing.begin_answer(buffer, &answer).ok();
         }
+        if let Some(status) = &self.gathered {
+            let begun = self.outgoing.begin_status(spare()?, status).ok();
+            self.gathered = None;
+            return begun;
+        }
         let (now, has_block) =
             shared.command(|command| (command.next_tick(), command.block().is_some()));
         let is_status_due = self.link.is_status_due(now);
@@ -196,10 +212,8 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             return shared.command(|command| outgoing.begin_block(buffer, command.block()?).ok());
         }
         if is_status_due {
-            let buffer = spare()?;
             self.link.status_sent(now);
-            let status = self.status(shared, counters);
-            return self.outgoing.begin_status(buffer, &status).ok();
+            self.gathered = Some(self.status(shared, counters));
         }
         None
     }
@@ -220,6 +234,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
                 last: self.link.last(),
                 zeroed: command.is_zeroed(),
                 polarity_proven: safety.polarity_proven(),
+                awaits_comms: safety.awaits_comms(),
                 measured,
                 counters: counters.all(),
             }

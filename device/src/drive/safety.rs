@@ -14,7 +14,7 @@
 //! late can keep the torque on.
 
 use crate::counters::Counters;
-use crate::drive::arming::{Arming, ArmingOutput};
+use crate::drive::arming::{Arming, ArmingOutput, Seen};
 use crate::drive::heartbeat_monitor::{Freshness, HeartbeatMonitor};
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::link::{DriveRefusal, Heartbeat};
@@ -31,6 +31,9 @@ pub enum Permit {
     Nothing,
     /// The line on, the bridge floating.
     Line,
+    /// A voltage that must not move current, V, beside the back-EMF; the line on or
+    /// off.
+    Proof(f32, bool),
     /// The line on, this current, A.
     Push(f32),
     /// The line on, the torque that was rendered.
@@ -93,6 +96,11 @@ impl Safety {
     /// Whether arming has shown that encoder and motor turn the same way.
     pub fn polarity_proven(&self) -> bool {
         self.polarity_proven
+    }
+
+    /// Whether arming has come to where it needs the enable line of comms.
+    pub fn awaits_comms(&self) -> bool {
+        self.state == State::Arming && self.arming.awaits_comms()
     }
 
     /// Offsets of the current sensor and of the monitor, A, once arming has
@@ -206,14 +214,7 @@ impl Safety {
     }
 
     /// Runs first in every tick; returns the permitted output.
-    pub fn tick(
-        &mut self,
-        now: u64,
-        raw_a: Option<(f32, f32)>,
-        line_is_on: bool,
-        count: i32,
-        counters: &Counters,
-    ) -> Permit {
+    pub fn tick(&mut self, now: u64, seen: &Seen, counters: &Counters) -> Permit {
         if self.is_live()
             && let Some(fault) = self.heartbeat_monitor.timeout(now)
         {
@@ -221,9 +222,10 @@ impl Safety {
         }
         let permit = match self.state {
             State::Armed => Permit::Torque,
-            State::Arming => match self.arming.tick(raw_a, line_is_on, count) {
+            State::Arming => match self.arming.tick(seen) {
                 ArmingOutput::Off => Permit::Nothing,
                 ArmingOutput::Line => Permit::Line,
+                ArmingOutput::Proof(volts, line) => Permit::Proof(volts, line),
                 ArmingOutput::Push(amperes) => Permit::Push(amperes),
                 ArmingOutput::Armed => {
                     self.state = State::Armed;
@@ -239,7 +241,7 @@ impl Safety {
             },
             State::Disarmed | State::Faulted => Permit::Nothing,
         };
-        self.check_line(permit, line_is_on, counters);
+        self.check_line(permit, seen.line_is_on, counters);
         permit
     }
 

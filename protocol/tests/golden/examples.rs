@@ -396,6 +396,7 @@ fn from_drive() -> Vec<Example> {
         }),
         zeroed: true,
         polarity_proven: true,
+        awaits_comms: false,
         measured: MEASURED,
         counters: counts(1_000_000),
     };

@@ -37,11 +37,18 @@ struct EnableLine {
     read: bool,
     /// Stuck at this level.
     stuck: Option<bool>,
+    /// Its gate lets everything pass.
+    gate_is_stuck: bool,
 }
 
 impl EnableLine {
     fn is_on(self) -> bool {
         self.stuck.unwrap_or(self.driven)
+    }
+
+    /// Whether the gate passes what the timer puts out.
+    fn passes(self) -> bool {
+        self.is_on() || self.gate_is_stuck
     }
 }
 
@@ -280,7 +287,7 @@ impl Board {
         self.drive_line.driven = outputs.enable;
         self.bridge = outputs.bridge;
         // Floating is immediate; a voltage loads with the next period.
-        if self.bridge == Bridge::Float || !self.drive_line.is_on() {
+        if self.bridge == Bridge::Float || !self.drive_line.passes() {
             self.leg.set_terminals(Terminals::Open);
         }
     }
@@ -343,7 +350,7 @@ impl Board {
             self.reset(Controller::Comms, ResetCause::Requested);
         }
         // When comms disables its line, that is immediate.
-        if !self.comms_line.is_on() {
+        if !self.comms_line.passes() {
             self.leg.set_terminals(Terminals::Open);
         }
     }
@@ -430,8 +437,8 @@ impl Board {
     pub fn is_driven(&self) -> bool {
         matches!(self.bridge, Bridge::Driven(_))
             && !self.comparator_tripped
-            && self.drive_line.is_on()
-            && self.comms_line.is_on()
+            && self.drive_line.passes()
+            && self.comms_line.passes()
     }
 
     /// Level of the enable line of a controller at its gate: true for on.

@@ -66,6 +66,10 @@ pub struct Faults {
     pub trip_is_blind: bool,
     /// The drive's line is stuck at this level.
     pub line_is_stuck: Option<bool>,
+    /// The drive's gate lets all pass, whatever its line.
+    pub drive_gate_is_stuck: bool,
+    /// That of comms does.
+    pub comms_gate_is_stuck: bool,
 }
 
 /// The board.
@@ -258,7 +262,9 @@ impl DriveBoard {
         let line = self.line_is_on();
         self.mcu.drive_pin(LINE_BACK, line);
         self.mcu.drive_pin(COMMS_LINE, self.comms_line);
-        let terminals = if line && self.comms_line {
+        let is_open = (line || self.faults.drive_gate_is_stuck)
+            && (self.comms_line || self.faults.comms_gate_is_stuck);
+        let terminals = if is_open {
             half_bridges::terminals(&self.mcu, self.leg.supply_v())
         } else {
             Terminals::Open

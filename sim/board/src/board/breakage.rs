@@ -16,6 +16,15 @@ impl Board {
         self.switch();
     }
 
+    /// Lets the gate of a controller pass everything, or repairs it.
+    pub fn set_stuck_gate(&mut self, controller: Controller, is_stuck: bool) {
+        match controller {
+            Controller::Drive => self.drive_line.gate_is_stuck = is_stuck,
+            Controller::Comms => self.comms_line.gate_is_stuck = is_stuck,
+        }
+        self.switch();
+    }
+
     /// A controller hangs: its pins stay as they are.
     pub fn hang(&mut self, controller: Controller) {
         *self.health(controller) = Health::Hangs;

@@ -62,6 +62,8 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
         Fault::MotorHot => slow::motor_hot(),
         Fault::JointMismatch => slow::joint_mismatch(),
         Fault::Overload => vec![slow::overload()],
+        Fault::DriveGateStuck => vec![drive::gate_stuck(Drive)],
+        Fault::CommsGateStuck => vec![drive::gate_stuck(Comms)],
         Fault::OutsideRange => vec![drive::outside_range()],
         Fault::NotANumber => {
             return Provocation::None(

@@ -12,7 +12,7 @@ use crate::case::{
 };
 use crate::support::Host;
 use crepitus_board::Faults;
-use crepitus_board::board::Controller::{Comms, Drive};
+use crepitus_board::board::Controller::{self, Comms, Drive};
 use crepitus_board::leg::CurrentSensor::{Gain, Offset, StuckAt};
 use crepitus_model::Sense;
 use crepitus_protocol::TICK_US;
@@ -328,4 +328,21 @@ pub(super) fn outside_range() -> Case {
         // The zero was set at the examination's beginning, at 10°.
         host.device.board().leg().shaft().angle_rad.to_degrees() > 45.0
     })
+}
+
+/// All outputs of a gate follow the timer, whatever the line.
+pub(super) fn gate_stuck(controller: Controller) -> Case {
+    match controller {
+        Drive => case(
+            "the drive's gate lets all pass",
+            |host, _| board(host).set_stuck_gate(Drive, true),
+            |host| board(host).set_stuck_gate(Drive, false),
+        ),
+        Comms => case(
+            "the gate of comms lets all pass",
+            |host, _| board(host).set_stuck_gate(Comms, true),
+            |host| board(host).set_stuck_gate(Comms, false),
+        ),
+    }
+    .when(Arming)
 }
