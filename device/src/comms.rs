@@ -29,6 +29,7 @@ pub mod supervision;
 mod to_drive;
 
 use crate::counters::CommsCounters;
+use crate::seal::Seal;
 use crate::usb_port::HostBytes;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::frame::Frame;
@@ -53,6 +54,8 @@ use to_drive::ToDriveQueue;
 pub struct Boot {
     /// Identity of this controller.
     pub identity: Identity,
+    /// What the seal says of its image.
+    pub seal: Seal,
     /// Boot counter.
     pub start: u16,
     /// Random bits, or at least another number at each start.
@@ -129,7 +132,7 @@ impl Comms {
             counters,
             parameters: Parameters::new(boot.saved),
             lease: Lease::default(),
-            supervision: Supervision::new(boot.identity.reset),
+            supervision: Supervision::new(boot.identity.reset, boot.seal),
             line_is_on: false,
             drive: DriveView::default(),
             drive_clock: DriveClock::default(),

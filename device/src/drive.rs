@@ -38,6 +38,7 @@ pub mod sampler;
 pub mod slow_checks;
 
 use crate::counters::Counters;
+use crate::seal::Seal;
 use command::{Command, Inputs, Outputs};
 use commits::Commits;
 use crepitus_protocol::frame::{FRAME_BYTES, Frame, FrameBuffer};
@@ -53,6 +54,8 @@ use rendering::Rendering;
 pub struct Boot {
     /// Identity of this controller.
     pub identity: Identity,
+    /// What the seal says of its image.
+    pub seal: Seal,
     /// The encoder's counter.
     pub counter: u32,
     /// Boot counter.

@@ -38,6 +38,7 @@ pub enum Fault {
     Overload = 28,
     DriveGateStuck = 29,
     CommsGateStuck = 30,
+    DriveImageBroken = 31,
     DriveSilent = 32,
     DriveRestarted = 33,
     CommsEnableStuckOn = 34,
@@ -52,6 +53,7 @@ pub enum Fault {
     CurrentBesideTorque = 43,
     CommsOverspeed = 44,
     TorqueOutsideRange = 45,
+    CommsImageBroken = 46,
 }
 
 /// Controller that detects a fault.
@@ -102,7 +104,7 @@ const CLEAR: &str = "clear-fault";
 const REPAIR: &str = "repair, then clear-fault";
 
 /// All faults, in the order of their codes.
-pub const FAULTS: [FaultSpec; 44] = [
+pub const FAULTS: [FaultSpec; 46] = [
     FaultSpec {
         fault: Fault::CommsSilent,
         name: "comms-silent",
@@ -416,6 +418,16 @@ pub const FAULTS: [FaultSpec; 44] = [
         clear: REPAIR,
     },
     FaultSpec {
+        fault: Fault::DriveImageBroken,
+        name: "drive-image-broken",
+        cause: "the drive's flash does not hold the program that was sealed",
+        detector: Detector::Drive,
+        detection: "the seal in the vector table against the checksum of the flash, at every start",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: "flash the drive again",
+    },
+    FaultSpec {
         fault: Fault::DriveSilent,
         name: "drive-silent",
         cause: "the link is cut or too noisy, or the drive hangs, is reset or has no power",
@@ -555,6 +567,16 @@ pub const FAULTS: [FaultSpec; 44] = [
         reaction: LINE_OFF,
         within_ticks: Some(100),
         clear: REPAIR,
+    },
+    FaultSpec {
+        fault: Fault::CommsImageBroken,
+        name: "comms-image-broken",
+        cause: "the flash of comms does not hold the program that was sealed",
+        detector: Detector::Comms,
+        detection: "the seal in the vector table against the checksum of the flash, at every start",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: "flash comms again",
     },
 ];
 

@@ -3,6 +3,7 @@
 
 use crate::comms::drive_view::DriveView;
 use crate::comms::enable_line::EnableLine;
+use crate::seal::Seal;
 use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::{Fault, State, schema};
 
@@ -20,17 +21,18 @@ pub struct Supervision {
 }
 
 impl Supervision {
-    /// The state after boot: an unexpected reset is a fault.
-    pub fn new(reset: ResetCause) -> Self {
+    /// The state after boot: an unexpected reset is a fault, and so is a broken seal.
+    pub fn new(reset: ResetCause, seal: Seal) -> Self {
         Self {
             line: EnableLine::default(),
             enable_requested: false,
             was_armed: false,
-            fault: match reset {
-                ResetCause::Power | ResetCause::Requested => None,
-                ResetCause::Watchdog => Some(Fault::CommsWatchdog),
-                ResetCause::BrownOut => Some(Fault::CommsBrownOut),
-                ResetCause::Panic => Some(Fault::CommsPanic),
+            fault: match (seal, reset) {
+                (Seal::Broken, _) => Some(Fault::CommsImageBroken),
+                (_, ResetCause::Power | ResetCause::Requested) => None,
+                (_, ResetCause::Watchdog) => Some(Fault::CommsWatchdog),
+                (_, ResetCause::BrownOut) => Some(Fault::CommsBrownOut),
+                (_, ResetCause::Panic) => Some(Fault::CommsPanic),
             },
             schema_mismatch: false,
         }
@@ -95,6 +97,7 @@ impl Supervision {
     /// Clears the fault of comms; returns it if its cause persists.
     pub fn clear(&mut self, line_is_on: bool) -> Option<Fault> {
         let persists = match self.fault {
+            Some(Fault::CommsImageBroken) => true,
             Some(Fault::VersionMismatch) => self.schema_mismatch,
             Some(Fault::CommsEnableStuckOn) => line_is_on,
             _ => false,

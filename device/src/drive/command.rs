@@ -107,7 +107,7 @@ impl Command {
     pub fn new(motor: &MotorPlan, plan: &CommandPlan, boot: &Boot) -> Self {
         Self {
             next_tick: boot.tick,
-            safety: Safety::new(boot.identity.reset),
+            safety: Safety::new(boot.identity.reset, boot.seal),
             motor: Motor::new(motor),
             monitor_offset_a: 0.0,
             plausibility: Plausibility::default(),

@@ -16,6 +16,7 @@
 use crate::counters::Counters;
 use crate::drive::arming::{Arming, ArmingOutput, Seen};
 use crate::drive::heartbeat_monitor::{Freshness, HeartbeatMonitor};
+use crate::seal::Seal;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::link::{DriveRefusal, Heartbeat};
 use crepitus_protocol::management::ResetCause;
@@ -55,13 +56,14 @@ pub struct Safety {
 }
 
 impl Safety {
-    /// The state after boot: an unexpected reset is a fault.
-    pub fn new(reset: ResetCause) -> Self {
-        let fault = match reset {
-            ResetCause::Power | ResetCause::Requested => None,
-            ResetCause::Watchdog => Some(Fault::DriveWatchdog),
-            ResetCause::BrownOut => Some(Fault::DriveBrownOut),
-            ResetCause::Panic => Some(Fault::DrivePanic),
+    /// The state after boot: an unexpected reset is a fault, and so is a broken seal.
+    pub fn new(reset: ResetCause, seal: Seal) -> Self {
+        let fault = match (seal, reset) {
+            (Seal::Broken, _) => Some(Fault::DriveImageBroken),
+            (_, ResetCause::Power | ResetCause::Requested) => None,
+            (_, ResetCause::Watchdog) => Some(Fault::DriveWatchdog),
+            (_, ResetCause::BrownOut) => Some(Fault::DriveBrownOut),
+            (_, ResetCause::Panic) => Some(Fault::DrivePanic),
         };
         Self {
             state: if fault.is_some() {
@@ -191,6 +193,9 @@ impl Safety {
         }
         match self.fault {
             Some(fault @ Fault::EnableStuckOn) if line_is_on => {
+                Err(DriveRefusal::Faulted { code: fault.code() })
+            }
+            Some(fault @ Fault::DriveImageBroken) => {
                 Err(DriveRefusal::Faulted { code: fault.code() })
             }
             _ => {

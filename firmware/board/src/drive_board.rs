@@ -9,6 +9,7 @@ use crate::identity::identity;
 use crate::link::{BUFFERS, DmaBuffer, Link};
 use crate::start::{Start, start};
 use crate::ticks::{BeginOfTick, FreeClock, MiddleOfTick};
+use crepitus_device::seal::Seal;
 use crepitus_protocol::management::{Identity, Role};
 use stm32f4xx_hal::pac::{IWDG, Peripherals};
 use stm32f4xx_hal::prelude::*;
@@ -19,6 +20,8 @@ pub struct DriveBoard {
     pub start: Start,
     /// Identity for a hello.
     pub identity: Identity,
+    /// What the seal says of the image.
+    pub seal: Seal,
     /// PB0, read back on PB1.
     pub line: EnableLine,
     /// PB10: that of comms.
@@ -59,9 +62,11 @@ impl DriveBoard {
             b.pb12,
             &mut rcc,
         );
+        let (identity, seal) = identity(Role::Drive, &start);
         Self {
             start,
-            identity: identity(Role::Drive, &start),
+            identity,
+            seal,
             line,
             comms_line: OtherLine::new(b.pb10),
             bridge,

@@ -2,16 +2,32 @@
 
 use crate::raw;
 use crate::start::Start;
+use crepitus_device::seal::Seal;
 use crepitus_protocol::frame::CRC;
 use crepitus_protocol::management::{Identity, Role};
 use crepitus_protocol::schema;
 use stm32f4xx_hal::signature::Uid;
 
-/// The identity in a hello. The image's CRC-32 covers code, constants and
-/// initial values in flash, without the vector table: the output of
-/// `rust-objcopy -O binary --gap-fill 0xff -j .text -j .rodata -j .data`.
-/// Takes a few milliseconds.
-pub fn identity(role: Role, start: &Start) -> Identity {
+/// The place of the seal in the vector table: the eighth word, which ARMv7-M reserves.
+const SEAL_AT: usize = 0x1c;
+
+/// The identity in a hello, and what the image's seal says. The checksum covers the
+/// first 512 bytes of flash, with the seal as 0, then code, constants and initial
+/// values: that of `crepitus-image seal`. Takes a few milliseconds.
+pub fn identity(role: Role, start: &Start) -> (Identity, Seal) {
+    let vectors = raw::vectors();
+    let (head, rest) = vectors.split_at(SEAL_AT);
+    let (seal, tail) = rest.split_first_chunk().unwrap_or((&[0; 4], rest));
+    let mut digest = CRC.digest();
+    for part in [head, &[0; 4], tail, raw::image()] {
+        digest.update(part);
+    }
+    let image = digest.finalize();
+    let seal = Seal::of(u32::from_le_bytes(*seal), image);
+    (of(role, start, image), seal)
+}
+
+fn of(role: Role, start: &Start, image: u32) -> Identity {
     let part = |text: &str| text.parse().unwrap_or(0);
     Identity {
         role,
@@ -22,7 +38,7 @@ pub fn identity(role: Role, start: &Start) -> Identity {
         ],
         schema: schema::HASH,
         serial: serial_number(),
-        image: CRC.checksum(raw::image()),
+        image,
         reset: start.cause,
     }
 }

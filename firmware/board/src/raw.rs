@@ -39,11 +39,21 @@ pub(crate) fn store_record_words(words: [u32; WORDS]) {
     }
 }
 
+/// Bytes of flash that hold the vector table.
+const VECTOR_BYTES: usize = 512;
+
 unsafe extern "C" {
+    static __vector_table: u8;
     static __stext: u8;
     static __sidata: u8;
     static __sdata: u8;
     static __edata: u8;
+}
+
+/// The beginning of flash, with the vector table.
+pub(crate) fn vectors() -> &'static [u8; VECTOR_BYTES] {
+    // SAFETY: see the table.
+    unsafe { &*(&raw const __vector_table).cast() }
 }
 
 /// The program in flash: code, constants, and initial values.

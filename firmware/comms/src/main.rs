@@ -94,6 +94,7 @@ mod app {
         );
         let comms = cx.local.comms.write(Comms::new(&Boot {
             identity: board.identity,
+            seal: board.seal,
             start: start.number,
             entropy: start.entropy,
             saved: board.log.newest(),

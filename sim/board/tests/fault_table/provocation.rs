@@ -64,6 +64,12 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
         Fault::Overload => vec![slow::overload()],
         Fault::DriveGateStuck => vec![drive::gate_stuck(Drive)],
         Fault::CommsGateStuck => vec![drive::gate_stuck(Comms)],
+        Fault::DriveImageBroken | Fault::CommsImageBroken => {
+            return Provocation::None(
+                "programs are not in flash here: on the drive's image, \
+                 `cargo test -p crepitus-emulator --test drive_image seal`",
+            );
+        }
         Fault::OutsideRange => vec![drive::outside_range()],
         Fault::NotANumber => {
             return Provocation::None(

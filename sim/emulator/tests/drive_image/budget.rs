@@ -29,7 +29,7 @@ fn under_torque(scene: &Scene) -> Option<Cycles> {
 }
 
 /// Share of a tick that all tasks may take, and in a tick with a commit, percent.
-const SHARE: u64 = 44;
+const SHARE: u64 = 45;
 const COMMIT_SHARE: u64 = 55;
 
 #[test]

@@ -10,6 +10,7 @@ mod locks;
 mod outputs;
 mod registers;
 mod replay;
+mod seal;
 mod tasks;
 mod torque;
 mod wiring;

@@ -1,0 +1,55 @@
+//! What the image makes of its seal, and of flash that does not hold what was sealed.
+
+use crate::host::{Host, examination, image};
+use crepitus_emulator::Image;
+use crepitus_emulator::firmware::{Program, path};
+use crepitus_protocol::Fault;
+use crepitus_protocol::host::{Answer, Operation, Refusal};
+use crepitus_protocol::link::DriveRefusal;
+
+/// The drive's image, sealed as before it is flashed.
+fn sealed() -> Option<Image> {
+    image()?;
+    let path = path(Program::Drive).expect("it was read");
+    let mut elf = std::fs::read(path).expect("a file");
+    crepitus_image::seal::seal(&mut elf).expect("a seal");
+    Some(Image::of_elf(&elf).expect("an image"))
+}
+
+/// A device with this image, and its fault at the start.
+fn started(image: &Image) -> (Host, u8) {
+    let mut host = Host::new(image, &examination());
+    host.run(200);
+    match host.ask(Operation::Status) {
+        Ok(Answer::Status(status)) => (host, status.drive_fault),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_sealed_image_works() {
+    let Some(image) = sealed() else { return };
+    let (mut host, fault) = started(&image);
+    assert_eq!(fault, 0);
+    host.arm();
+}
+
+#[test]
+fn a_bit_of_flash_that_has_changed_is_a_fault_that_stays() {
+    let Some(image) = sealed() else { return };
+    let seal = 0x1c;
+    // A vector that is not used, the seal, and code that does not run by then.
+    let handler = image.symbol("HardFault").expect("a handler").address - 0x0800_0000;
+    for place in [0x180, seal, handler as usize + 2, image.flash.len() - 1] {
+        let mut broken = image.clone();
+        broken.flash[place] ^= 0x10;
+        let (mut host, fault) = started(&broken);
+        let code = Fault::DriveImageBroken.code();
+        assert_eq!(fault, code, "{place:#x}");
+        let refused = Err(Refusal::Faulted { code });
+        assert_eq!(host.try_to_arm(), refused, "{place:#x}");
+        let refused: Result<Answer, _> = Err(Refusal::Drive(DriveRefusal::Faulted { code }));
+        assert_eq!(host.ask(Operation::ClearFault), refused, "{place:#x}");
+        assert!(!host.board.is_driven());
+    }
+}
