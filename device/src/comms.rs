@@ -29,7 +29,7 @@ pub mod supervision;
 mod to_drive;
 
 use crate::counters::CommsCounters;
-use crate::seal::Seal;
+use crate::self_test::SelfTest;
 use crate::usb_port::HostBytes;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::frame::Frame;
@@ -54,8 +54,8 @@ use to_drive::ToDriveQueue;
 pub struct Boot {
     /// Identity of this controller.
     pub identity: Identity,
-    /// What the seal says of its image.
-    pub seal: Seal,
+    /// What it has found out about itself.
+    pub self_test: SelfTest,
     /// Boot counter.
     pub start: u16,
     /// Random bits, or at least another number at each start.
@@ -132,7 +132,7 @@ impl Comms {
             counters,
             parameters: Parameters::new(boot.saved),
             lease: Lease::default(),
-            supervision: Supervision::new(boot.identity.reset, boot.seal),
+            supervision: Supervision::new(boot.identity.reset, boot.self_test),
             line_is_on: false,
             drive: DriveView::default(),
             drive_clock: DriveClock::default(),

@@ -38,7 +38,7 @@ pub mod sampler;
 pub mod slow_checks;
 
 use crate::counters::Counters;
-use crate::seal::Seal;
+use crate::self_test::SelfTest;
 use command::{Command, Inputs, Outputs};
 use commits::Commits;
 use crepitus_protocol::frame::{FRAME_BYTES, Frame, FrameBuffer};
@@ -54,8 +54,8 @@ use rendering::Rendering;
 pub struct Boot {
     /// Identity of this controller.
     pub identity: Identity,
-    /// What the seal says of its image.
-    pub seal: Seal,
+    /// What it has found out about itself.
+    pub self_test: SelfTest,
     /// The encoder's counter.
     pub counter: u32,
     /// Boot counter.

@@ -47,7 +47,7 @@ extern crate std;
 pub mod comms;
 pub mod counters;
 pub mod drive;
-pub mod seal;
+pub mod self_test;
 pub mod usb_port;
 
 pub use comms::Comms;

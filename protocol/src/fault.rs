@@ -54,6 +54,8 @@ pub enum Fault {
     CommsOverspeed = 44,
     TorqueOutsideRange = 45,
     CommsImageBroken = 46,
+    DriveOptionBytes = 47,
+    CommsOptionBytes = 48,
 }
 
 /// Controller that detects a fault.
@@ -104,7 +106,7 @@ const CLEAR: &str = "clear-fault";
 const REPAIR: &str = "repair, then clear-fault";
 
 /// All faults, in the order of their codes.
-pub const FAULTS: [FaultSpec; 46] = [
+pub const FAULTS: [FaultSpec; 48] = [
     FaultSpec {
         fault: Fault::CommsSilent,
         name: "comms-silent",
@@ -577,6 +579,26 @@ pub const FAULTS: [FaultSpec; 46] = [
         reaction: STAYS,
         within_ticks: None,
         clear: "flash comms again",
+    },
+    FaultSpec {
+        fault: Fault::DriveOptionBytes,
+        name: "drive-option-bytes",
+        cause: "the option bytes of the drive are not those of this board",
+        detector: Detector::Drive,
+        detection: "at every start: brown-out level 3, and a watchdog that software starts",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: "program the option bytes, then switch off and on",
+    },
+    FaultSpec {
+        fault: Fault::CommsOptionBytes,
+        name: "comms-option-bytes",
+        cause: "the option bytes of comms are not those of this board",
+        detector: Detector::Comms,
+        detection: "at every start: brown-out level 3, and a watchdog that software starts",
+        reaction: STAYS,
+        within_ticks: None,
+        clear: "program the option bytes, then switch off and on",
     },
 ];
 

@@ -3,7 +3,7 @@
 
 use crate::comms::drive_view::DriveView;
 use crate::comms::enable_line::EnableLine;
-use crate::seal::Seal;
+use crate::self_test::SelfTest;
 use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::{Fault, State, schema};
 
@@ -21,14 +21,16 @@ pub struct Supervision {
 }
 
 impl Supervision {
-    /// The state after boot: an unexpected reset is a fault, and so is a broken seal.
-    pub fn new(reset: ResetCause, seal: Seal) -> Self {
+    /// The state after boot: an unexpected reset is a fault, and so is a self-test that
+    /// has failed.
+    pub fn new(reset: ResetCause, self_test: SelfTest) -> Self {
         Self {
             line: EnableLine::default(),
             enable_requested: false,
             was_armed: false,
-            fault: match (seal, reset) {
-                (Seal::Broken, _) => Some(Fault::CommsImageBroken),
+            fault: match (self_test, reset) {
+                (SelfTest::ImageBroken, _) => Some(Fault::CommsImageBroken),
+                (SelfTest::OptionBytesWrong, _) => Some(Fault::CommsOptionBytes),
                 (_, ResetCause::Power | ResetCause::Requested) => None,
                 (_, ResetCause::Watchdog) => Some(Fault::CommsWatchdog),
                 (_, ResetCause::BrownOut) => Some(Fault::CommsBrownOut),
@@ -97,7 +99,7 @@ impl Supervision {
     /// Clears the fault of comms; returns it if its cause persists.
     pub fn clear(&mut self, line_is_on: bool) -> Option<Fault> {
         let persists = match self.fault {
-            Some(Fault::CommsImageBroken) => true,
+            Some(Fault::CommsImageBroken | Fault::CommsOptionBytes) => true,
             Some(Fault::VersionMismatch) => self.schema_mismatch,
             Some(Fault::CommsEnableStuckOn) => line_is_on,
             _ => false,

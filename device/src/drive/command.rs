@@ -107,7 +107,7 @@ impl Command {
     pub fn new(motor: &MotorPlan, plan: &CommandPlan, boot: &Boot) -> Self {
         Self {
             next_tick: boot.tick,
-            safety: Safety::new(boot.identity.reset, boot.seal),
+            safety: Safety::new(boot.identity.reset, boot.self_test),
             motor: Motor::new(motor),
             monitor_offset_a: 0.0,
             plausibility: Plausibility::default(),
@@ -135,6 +135,8 @@ impl Command {
         if let Some(motor) = &plan.motor {
             self.motor = Motor::new(motor);
         }
+        // Counts from the zero would be another angle.
+        self.zeroed &= plan.rad_per_count == self.rad_per_count;
         self.rad_per_count = plan.rad_per_count;
         self.speed_limit_rad_s = plan.speed_limit_rad_s;
         self.range = Range::new(&plan.range);

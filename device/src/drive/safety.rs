@@ -16,7 +16,7 @@
 use crate::counters::Counters;
 use crate::drive::arming::{Arming, ArmingOutput, Seen};
 use crate::drive::heartbeat_monitor::{Freshness, HeartbeatMonitor};
-use crate::seal::Seal;
+use crate::self_test::SelfTest;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::link::{DriveRefusal, Heartbeat};
 use crepitus_protocol::management::ResetCause;
@@ -56,10 +56,12 @@ pub struct Safety {
 }
 
 impl Safety {
-    /// The state after boot: an unexpected reset is a fault, and so is a broken seal.
-    pub fn new(reset: ResetCause, seal: Seal) -> Self {
-        let fault = match (seal, reset) {
-            (Seal::Broken, _) => Some(Fault::DriveImageBroken),
+    /// The state after boot: an unexpected reset is a fault, and so is a self-test that
+    /// has failed.
+    pub fn new(reset: ResetCause, self_test: SelfTest) -> Self {
+        let fault = match (self_test, reset) {
+            (SelfTest::ImageBroken, _) => Some(Fault::DriveImageBroken),
+            (SelfTest::OptionBytesWrong, _) => Some(Fault::DriveOptionBytes),
             (_, ResetCause::Power | ResetCause::Requested) => None,
             (_, ResetCause::Watchdog) => Some(Fault::DriveWatchdog),
             (_, ResetCause::BrownOut) => Some(Fault::DriveBrownOut),
@@ -195,7 +197,7 @@ impl Safety {
             Some(fault @ Fault::EnableStuckOn) if line_is_on => {
                 Err(DriveRefusal::Faulted { code: fault.code() })
             }
-            Some(fault @ Fault::DriveImageBroken) => {
+            Some(fault @ (Fault::DriveImageBroken | Fault::DriveOptionBytes)) => {
                 Err(DriveRefusal::Faulted { code: fault.code() })
             }
             _ => {

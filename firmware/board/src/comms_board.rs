@@ -9,7 +9,7 @@ use crate::parameter_log::ParameterLog;
 use crate::start::{Start, start};
 use crate::ticks::Quarters;
 use crate::usb::{self, PACKET_WORDS, UsbBusType};
-use crepitus_device::seal::Seal;
+use crepitus_device::self_test::SelfTest;
 use crepitus_protocol::management::{Identity, Role};
 use stm32f4xx_hal::pac::{IWDG, Peripherals};
 use stm32f4xx_hal::prelude::*;
@@ -21,8 +21,8 @@ pub struct CommsBoard {
     pub start: Start,
     /// Identity for a hello.
     pub identity: Identity,
-    /// What the seal says of the image.
-    pub seal: Seal,
+    /// What it has found out about itself.
+    pub self_test: SelfTest,
     /// PB0, read back on PB1.
     pub line: EnableLine,
     /// PC6, PC7.
@@ -52,11 +52,12 @@ impl CommsBoard {
         let c = chip.GPIOC.split(&mut rcc);
         let line = EnableLine::new(b.pb0, b.pb1);
         let blocks = (chip.OTG_FS_GLOBAL, chip.OTG_FS_DEVICE, chip.OTG_FS_PWRCLK);
-        let (identity, seal) = identity(Role::Comms, &start);
+        let option_bytes = chip.FLASH.optcr().read().bits();
+        let (identity, self_test) = identity(Role::Comms, &start, option_bytes);
         Self {
             start,
             identity,
-            seal,
+            self_test,
             line,
             log: ParameterLog::open(ParameterSectors::new(chip.FLASH)),
             link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), buffers, &mut rcc),

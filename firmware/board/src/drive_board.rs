@@ -9,7 +9,7 @@ use crate::identity::identity;
 use crate::link::{BUFFERS, DmaBuffer, Link};
 use crate::start::{Start, start};
 use crate::ticks::{BeginOfTick, FreeClock, MiddleOfTick};
-use crepitus_device::seal::Seal;
+use crepitus_device::self_test::SelfTest;
 use crepitus_protocol::management::{Identity, Role};
 use stm32f4xx_hal::pac::{IWDG, Peripherals};
 use stm32f4xx_hal::prelude::*;
@@ -20,8 +20,8 @@ pub struct DriveBoard {
     pub start: Start,
     /// Identity for a hello.
     pub identity: Identity,
-    /// What the seal says of the image.
-    pub seal: Seal,
+    /// What it has found out about itself.
+    pub self_test: SelfTest,
     /// PB0, read back on PB1.
     pub line: EnableLine,
     /// PB10: that of comms.
@@ -62,11 +62,12 @@ impl DriveBoard {
             b.pb12,
             &mut rcc,
         );
-        let (identity, seal) = identity(Role::Drive, &start);
+        let option_bytes = chip.FLASH.optcr().read().bits();
+        let (identity, self_test) = identity(Role::Drive, &start, option_bytes);
         Self {
             start,
             identity,
-            seal,
+            self_test,
             line,
             comms_line: OtherLine::new(b.pb10),
             bridge,

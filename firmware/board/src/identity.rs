@@ -2,7 +2,7 @@
 
 use crate::raw;
 use crate::start::Start;
-use crepitus_device::seal::Seal;
+use crepitus_device::self_test::SelfTest;
 use crepitus_protocol::frame::CRC;
 use crepitus_protocol::management::{Identity, Role};
 use crepitus_protocol::schema;
@@ -11,10 +11,10 @@ use stm32f4xx_hal::signature::Uid;
 /// The place of the seal in the vector table: the eighth word, which ARMv7-M reserves.
 const SEAL_AT: usize = 0x1c;
 
-/// The identity in a hello, and what the image's seal says. The checksum covers the
+/// The identity in a hello, and the self-test. The checksum covers the
 /// first 512 bytes of flash, with the seal as 0, then code, constants and initial
 /// values: that of `crepitus-image seal`. Takes a few milliseconds.
-pub fn identity(role: Role, start: &Start) -> (Identity, Seal) {
+pub fn identity(role: Role, start: &Start, option_bytes: u32) -> (Identity, SelfTest) {
     let vectors = raw::vectors();
     let (head, rest) = vectors.split_at(SEAL_AT);
     let (seal, tail) = rest.split_first_chunk().unwrap_or((&[0; 4], rest));
@@ -23,8 +23,8 @@ pub fn identity(role: Role, start: &Start) -> (Identity, Seal) {
         digest.update(part);
     }
     let image = digest.finalize();
-    let seal = Seal::of(u32::from_le_bytes(*seal), image);
-    (of(role, start, image), seal)
+    let self_test = SelfTest::of(u32::from_le_bytes(*seal), image, option_bytes);
+    (of(role, start, image), self_test)
 }
 
 fn of(role: Role, start: &Start, image: u32) -> Identity {

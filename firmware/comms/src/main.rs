@@ -94,7 +94,7 @@ mod app {
         );
         let comms = cx.local.comms.write(Comms::new(&Boot {
             identity: board.identity,
-            seal: board.seal,
+            self_test: board.self_test,
             start: start.number,
             entropy: start.entropy,
             saved: board.log.newest(),

@@ -112,6 +112,7 @@ mod app {
         );
         let boot = Boot {
             identity: board.identity,
+            self_test: board.self_test,
             counter: board.encoder.count(),
             start: start.number,
             ..Boot::default()

@@ -24,7 +24,7 @@ use crate::link_inputs;
 use crate::sent::Sent;
 use crepitus_device::Comms;
 use crepitus_device::comms::{Boot, Inputs, Outputs};
-use crepitus_device::seal::Seal;
+use crepitus_device::self_test::SelfTest;
 use crepitus_device::usb_port::HostBytes;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::host::{Operation, Refusal, Reply, Request};
@@ -55,7 +55,7 @@ pub fn body(data: &[u8]) {
     let reset = bytes.choice(&ResetCause::ALL);
     let saved = bytes.byte();
     let boot = Boot {
-        seal: Seal::default(),
+        self_test: SelfTest::default(),
         identity: Identity {
             schema: schema::HASH,
             reset,

@@ -19,7 +19,7 @@ use crepitus_device::drive::Boot;
 use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::slow_checks::SlowInput;
-use crepitus_device::seal::Seal;
+use crepitus_device::self_test::SelfTest;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::link::{FromDrive, Heartbeat, Order, STALE_TICKS, ToDrive};
 use crepitus_protocol::management::{Answer, Identity, ManagementRequest, ResetCause};
@@ -46,7 +46,7 @@ const STATUS_RUNS: usize = 20;
 pub fn body(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     let boot = Boot {
-        seal: Seal::default(),
+        self_test: SelfTest::default(),
         identity: Identity {
             schema: schema::HASH,
             reset: bytes.choice(&ResetCause::ALL),

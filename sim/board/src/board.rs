@@ -19,7 +19,7 @@ use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::plausibility::TRIP_A;
 use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_device::drive::{self, Drive};
-use crepitus_device::seal::Seal;
+use crepitus_device::self_test::SelfTest;
 use crepitus_protocol::management::{Identity, ResetCause, Role};
 use crepitus_protocol::{Revision, TICK_US, ValueError, Values, schema};
 use crepitus_scene::Scene;
@@ -163,7 +163,7 @@ impl Board {
         let mut leg = Leg::new(scene);
         leg.preset_count(start.count);
         let drive = Drive::new(&drive::Boot {
-            seal: Seal::default(),
+            self_test: SelfTest::default(),
             identity: identity(Role::Drive, ResetCause::Power),
             start: 1,
             counter: start.count.cast_unsigned(),
@@ -171,7 +171,7 @@ impl Board {
             sequence: start.sequence,
         })?;
         let comms = Comms::new(&comms::Boot {
-            seal: Seal::default(),
+            self_test: SelfTest::default(),
             identity: identity(Role::Comms, ResetCause::Power),
             start: 1,
             entropy: start.seed,
@@ -383,7 +383,7 @@ impl Board {
         {
             self.storage.start();
             self.comms = Comms::new(&comms::Boot {
-                seal: Seal::default(),
+                self_test: SelfTest::default(),
                 identity: identity(Role::Comms, cause),
                 start: self.starts[1],
                 entropy: u64::from(self.starts[1]),

@@ -144,3 +144,15 @@ fn a_counter_that_jumps_while_disarmed_ends_the_zero() {
     host.run(200);
     assert!(!host.status().zeroed);
 }
+
+#[test]
+fn another_encoder_ends_the_zero() {
+    let mut host = bending(60.0);
+    assert_eq!(host.ask_patiently(Operation::Zero), Ok(Answer::Done));
+    host.set("crepitus.static_torque_nm", 0.5);
+    host.run(200);
+    assert!(host.status().zeroed);
+    host.set("encoder.lines", 500.0);
+    host.run(200);
+    assert!(!host.status().zeroed);
+}

@@ -85,7 +85,7 @@ fn timer(variant: &str, width: u32) -> Arc<Tim> {
 
 impl Chip {
     /// A chip around a core.
-    pub(crate) fn new(core: &ArmV7m) -> Self {
+    pub(crate) fn new(core: &ArmV7m, option_bytes: u32) -> Self {
         let nets = Nets::new(core);
         let now = Now::default();
         let frequencies = Frequencies::default();
@@ -96,7 +96,10 @@ impl Chip {
         ));
         let rates = Arc::new(Rates::new(rcc.clocks()));
         let dma = [(); 2].map(|()| Arc::new(Dma::with_variant(dma::Variant::Stream)));
-        let flash_props = Props::new().with("variant", "f4").with("size", 1_u64 << 20);
+        let flash_props = Props::new()
+            .with("variant", "f4")
+            .with("size", 1_u64 << 20)
+            .with("optr", u64::from(option_bytes));
         let flash = Arc::new(Flash::new(&flash_props).expect("a flash that there is"));
         let mut parts = vec![
             Part::of_library("RCC", 0x4002_3800, Clock::Crystal, None, rcc.clone()),

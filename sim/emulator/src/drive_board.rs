@@ -31,7 +31,7 @@ use crate::time::Time;
 use crepitus_board::leg::{CurrentPath, Leg, Terminals};
 use crepitus_device::comms::{Boot, Comms, Inputs};
 use crepitus_device::drive::plausibility::TRIP_A;
-use crepitus_device::seal::Seal;
+use crepitus_device::self_test::SelfTest;
 use crepitus_protocol::management::{Identity, ResetCause, Role};
 use crepitus_protocol::{Revision, Values, schema};
 use crepitus_scene::Scene;
@@ -116,7 +116,7 @@ impl DriveBoard {
     /// The board with an image and a scene's leg, just switched on.
     pub fn new(image: &Image, scene: &Scene, saved: Option<(Revision, Values)>) -> Self {
         let comms = Comms::new(&Boot {
-            seal: Seal::default(),
+            self_test: SelfTest::default(),
             identity: identity(),
             start: 1,
             entropy: 1,

@@ -47,11 +47,17 @@ pub struct Symbol {
     pub size: u32,
 }
 
+/// Option bytes of the board, as in `FLASH_OPTCR`: brown-out level 3, a watchdog that
+/// software starts, no protection.
+const OPTION_BYTES: u32 = 0x0fff_aae1;
+
 /// An image.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Image {
     /// What lies in flash, from its beginning.
     pub flash: Vec<u8>,
+    /// The option bytes of the chip that it is programmed into.
+    pub option_bytes: u32,
     symbols: BTreeMap<String, Symbol>,
 }
 
@@ -72,6 +78,7 @@ impl Image {
     pub fn of_flash(flash: &[u8]) -> Self {
         Self {
             flash: flash.to_vec(),
+            option_bytes: OPTION_BYTES,
             symbols: BTreeMap::new(),
         }
     }
@@ -85,7 +92,7 @@ impl Image {
         if elf.elf_header().e_machine(LittleEndian) != EM_ARM {
             return Err(ImageError::NotArm);
         }
-        let mut image = Self::default();
+        let mut image = Self::of_flash(&[]);
         for segment in elf.elf_program_headers() {
             if segment.p_type(LittleEndian) == PT_LOAD {
                 let content = segment.data(LittleEndian, bytes);

@@ -76,7 +76,7 @@ impl Stm32f405 {
     /// If the image is longer than flash.
     pub fn new(image: &Image) -> Self {
         let core = ArmV7m::new(Config::CORTEX_M4F.with_priority_bits(4));
-        let chip = Chip::new(&core);
+        let chip = Chip::new(&core, image.option_bytes);
         let loaded = chip.flash.load_image(0, &image.flash);
         loaded.expect("an image is not longer than flash");
         let memory = Memory::new(&chip);

@@ -10,7 +10,7 @@ use crepitus_device::drive::command::Inputs;
 use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_device::drive::{self, Drive};
-use crepitus_device::seal::Seal;
+use crepitus_device::self_test::SelfTest;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::management::{Identity, ResetCause, Role};
 use crepitus_protocol::telemetry::BLOCK_TICKS;
@@ -277,7 +277,7 @@ impl Device {
 
 fn new_comms(start: u16, reset: ResetCause, saved: Option<(Revision, Values)>) -> Comms {
     Comms::new(&comms::Boot {
-        seal: Seal::default(),
+        self_test: SelfTest::default(),
         identity: identity(Role::Comms, reset),
         start,
         entropy: start.into(),
@@ -288,7 +288,7 @@ fn new_comms(start: u16, reset: ResetCause, saved: Option<(Revision, Values)>) -
 
 fn new_drive(start: u16, reset: ResetCause, counter: u32) -> Drive {
     let boot = drive::Boot {
-        seal: Seal::default(),
+        self_test: SelfTest::default(),
         identity: identity(Role::Drive, reset),
         start,
         counter,

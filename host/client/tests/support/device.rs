@@ -3,7 +3,7 @@
 use super::noise::Noise;
 use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::slow_checks::SlowInput;
-use crepitus_device::seal::Seal;
+use crepitus_device::self_test::SelfTest;
 use crepitus_device::usb_port::HostBytes;
 use crepitus_device::{Comms, Drive, comms, drive};
 use crepitus_model::control::encoder::EncoderSettings;
@@ -93,7 +93,7 @@ impl Device {
         self.comms_identity.reset = reset;
         self.comms_line = false;
         self.comms = Comms::new(&comms::Boot {
-            seal: Seal::default(),
+            self_test: SelfTest::default(),
             identity: self.comms_identity,
             start: self.starts.0,
             entropy: u64::from(self.starts.0),
@@ -108,7 +108,7 @@ impl Device {
         self.drive_identity.reset = reset;
         (self.drive_line, self.bridge) = (false, Bridge::Float);
         self.drive = Drive::new(&drive::Boot {
-            seal: Seal::default(),
+            self_test: SelfTest::default(),
             identity: self.drive_identity,
             counter: self.counter(),
             start: self.starts.1,

@@ -8,12 +8,12 @@ use crate::breakage::{
     board, comms_line_off, drive_line_off, mend_comms_line, mend_drive_line, mend_encoder, nothing,
     once, swap_encoder,
 };
-use crate::case::Moment::{Arming, Disarmed};
+use crate::case::Moment::Arming;
 use crate::case::{Case, case};
 use crate::support::Host;
 use crepitus_board::board::Controller::{Comms, Drive};
 use crepitus_protocol::Fault;
-use crepitus_protocol::management::ResetCause::{BrownOut, Panic, Requested, Watchdog};
+use crepitus_protocol::management::ResetCause::{Requested, Watchdog};
 
 /// How a fault comes about.
 pub(crate) enum Provocation {
@@ -64,10 +64,13 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
         Fault::Overload => vec![slow::overload()],
         Fault::DriveGateStuck => vec![drive::gate_stuck(Drive)],
         Fault::CommsGateStuck => vec![drive::gate_stuck(Comms)],
-        Fault::DriveImageBroken | Fault::CommsImageBroken => {
+        Fault::DriveImageBroken
+        | Fault::CommsImageBroken
+        | Fault::DriveOptionBytes
+        | Fault::CommsOptionBytes => {
             return Provocation::None(
-                "programs are not in flash here: on the drive's image, \
-                 `cargo test -p crepitus-emulator --test drive_image seal`",
+                "there is no flash here: on the drive's image, \
+                 `cargo test -p crepitus-emulator --test drive_image self_test`",
             );
         }
         Fault::OutsideRange => vec![drive::outside_range()],
@@ -77,18 +80,8 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
             );
         }
         Fault::DriveWatchdog => drive::drive_watchdog(),
-        Fault::DriveBrownOut => vec![
-            reset("its supply falls", |host, since| {
-                once(since, host, |b| b.reset(Drive, BrownOut));
-            })
-            .when(Disarmed),
-        ],
-        Fault::DrivePanic => vec![
-            reset("it panics", |host, since| {
-                once(since, host, |b| b.reset(Drive, Panic));
-            })
-            .when(Disarmed),
-        ],
+        Fault::DriveBrownOut => vec![drive::brown_out()],
+        Fault::DrivePanic => vec![drive::panic()],
         Fault::DriveSilent => comms::drive_silent(),
         Fault::DriveRestarted => vec![reset(
             "the drive is reset, and back at once",
@@ -112,18 +105,8 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
         Fault::TorqueOutsideRange => comms::torque_outside_range(),
         Fault::CommsOverspeed => comms::comms_overspeed(),
         Fault::CommsWatchdog => comms::comms_watchdog(),
-        Fault::CommsBrownOut => vec![
-            reset("its supply falls", |host, since| {
-                once(since, host, |b| b.reset(Comms, BrownOut));
-            })
-            .when(Disarmed),
-        ],
-        Fault::CommsPanic => vec![
-            reset("it panics", |host, since| {
-                once(since, host, |b| b.reset(Comms, Panic));
-            })
-            .when(Disarmed),
-        ],
+        Fault::CommsBrownOut => vec![comms::brown_out()],
+        Fault::CommsPanic => vec![comms::panic()],
     })
 }
 

@@ -10,7 +10,7 @@ mod locks;
 mod outputs;
 mod registers;
 mod replay;
-mod seal;
+mod self_test;
 mod tasks;
 mod torque;
 mod wiring;

@@ -7,7 +7,7 @@ use crate::breakage::{
 use crate::case::Moment::Disarmed;
 use crate::case::{Case, case, is_disarmed};
 use crepitus_board::board::Controller::{Comms, Drive};
-use crepitus_protocol::management::ResetCause::{BrownOut, Power, Watchdog};
+use crepitus_protocol::management::ResetCause::{BrownOut, Panic, Power, Watchdog};
 use crepitus_protocol::schema;
 use crepitus_protocol::telemetry::{Block, BlockFlags, Sample};
 
@@ -133,5 +133,19 @@ pub(super) fn version_mismatch() -> Case {
             restart_drive(host);
         },
     )
+    .when(Disarmed)
+}
+
+pub(super) fn brown_out() -> Case {
+    reset("its supply falls", |host, since| {
+        once(since, host, |b| b.reset(Comms, BrownOut));
+    })
+    .when(Disarmed)
+}
+
+pub(super) fn panic() -> Case {
+    reset("it panics", |host, since| {
+        once(since, host, |b| b.reset(Comms, Panic));
+    })
     .when(Disarmed)
 }

@@ -16,7 +16,7 @@ use crepitus_board::board::Controller::{self, Comms, Drive};
 use crepitus_board::leg::CurrentSensor::{Gain, Offset, StuckAt};
 use crepitus_model::Sense;
 use crepitus_protocol::TICK_US;
-use crepitus_protocol::management::ResetCause::{Requested, Watchdog};
+use crepitus_protocol::management::ResetCause::{BrownOut, Panic, Requested, Watchdog};
 
 pub(super) fn comms_silent() -> Vec<Case> {
     vec![
@@ -345,4 +345,18 @@ pub(super) fn gate_stuck(controller: Controller) -> Case {
         ),
     }
     .when(Arming)
+}
+
+pub(super) fn brown_out() -> Case {
+    reset("its supply falls", |host, since| {
+        once(since, host, |b| b.reset(Drive, BrownOut));
+    })
+    .when(Disarmed)
+}
+
+pub(super) fn panic() -> Case {
+    reset("it panics", |host, since| {
+        once(since, host, |b| b.reset(Drive, Panic));
+    })
+    .when(Disarmed)
 }

@@ -1,4 +1,5 @@
-//! What the image makes of its seal, and of flash that does not hold what was sealed.
+//! What the image makes of its seal, of flash that does not hold what was sealed, and
+//! of option bytes.
 
 use crate::host::{Host, examination, image};
 use crepitus_emulator::Image;
@@ -19,9 +20,12 @@ fn sealed() -> Option<Image> {
 /// A device with this image, and its fault at the start.
 fn started(image: &Image) -> (Host, u8) {
     let mut host = Host::new(image, &examination());
-    host.run(200);
+    host.run(1_000);
     match host.ask(Operation::Status) {
-        Ok(Answer::Status(status)) => (host, status.drive_fault),
+        Ok(Answer::Status(status)) => {
+            assert!(status.drive_present, "it has not started");
+            (host, status.drive_fault)
+        }
         other => panic!("{other:?}"),
     }
 }
@@ -43,13 +47,27 @@ fn a_bit_of_flash_that_has_changed_is_a_fault_that_stays() {
     for place in [0x180, seal, handler as usize + 2, image.flash.len() - 1] {
         let mut broken = image.clone();
         broken.flash[place] ^= 0x10;
-        let (mut host, fault) = started(&broken);
-        let code = Fault::DriveImageBroken.code();
-        assert_eq!(fault, code, "{place:#x}");
-        let refused = Err(Refusal::Faulted { code });
-        assert_eq!(host.try_to_arm(), refused, "{place:#x}");
-        let refused: Result<Answer, _> = Err(Refusal::Drive(DriveRefusal::Faulted { code }));
-        assert_eq!(host.ask(Operation::ClearFault), refused, "{place:#x}");
-        assert!(!host.board.is_driven());
+        stays(&broken, Fault::DriveImageBroken);
     }
+}
+
+#[test]
+fn option_bytes_of_another_board_are_a_fault_that_stays() {
+    let Some(mut image) = sealed() else { return };
+    // As they come from the factory; and with a watchdog that hardware starts.
+    for option_bytes in [0x0fff_aaed, image.option_bytes & !(1 << 5)] {
+        image.option_bytes = option_bytes;
+        stays(&image, Fault::DriveOptionBytes);
+    }
+}
+
+/// An image whose start ends in a fault that cannot be cleared.
+fn stays(image: &Image, fault: Fault) {
+    let (mut host, found) = started(image);
+    let code = fault.code();
+    assert_eq!(found, code);
+    assert_eq!(host.try_to_arm(), Err(Refusal::Faulted { code }));
+    let refused: Result<Answer, _> = Err(Refusal::Drive(DriveRefusal::Faulted { code }));
+    assert_eq!(host.ask(Operation::ClearFault), refused);
+    assert!(!host.board.is_driven());
 }
