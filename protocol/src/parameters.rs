@@ -130,6 +130,8 @@ pub mod id {
     /// `range.fade_deg`.
     pub const RANGE_FADE: u8 = named("range", "fade_deg");
 
+    /// `motor.supply_v`.
+    pub const SUPPLY: u8 = named("motor", "supply_v");
     /// `joint-sensor.fitted`.
     pub const JOINT_SENSOR: u8 = named("joint-sensor", "fitted");
 

@@ -13,6 +13,7 @@ use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::effects::{EffectChanges, Timing};
 use crepitus_model::render::ramp::Ramp;
 use crepitus_model::{Settings, SettingsError, StepCoefficients, Validated};
+use crepitus_protocol::measured::SUPPLY_SHARES;
 use crepitus_protocol::{DeviceSettings, Revision, TICK_S, ValueError, Values};
 
 /// The fastest plausible shaft, rad/s: seven times what the motor can do.
@@ -310,7 +311,10 @@ fn range(settings: &DeviceSettings) -> RangePlan {
 fn slow(settings: &DeviceSettings) -> SlowPlan {
     let supply_v = settings.current_loop.supply_v;
     SlowPlan {
-        supply_v: (single(0.75 * supply_v), single(1.25 * supply_v)),
+        supply_v: (
+            single(SUPPLY_SHARES.0 * supply_v),
+            single(SUPPLY_SHARES.1 * supply_v),
+        ),
         joint: settings.joint_sensor.map(|sensor| JointSensorPlan {
             turns_per_count: single(settings.encoder.rad_per_count() / core::f64::consts::TAU),
             tolerance: single(sensor.tolerance_deg / 360.0),

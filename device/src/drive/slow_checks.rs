@@ -3,6 +3,7 @@
 
 use crepitus_model::Real;
 use crepitus_protocol::Fault;
+use crepitus_protocol::measured::MOTOR_C;
 
 /// Consecutive bad readings until the fault: 3 ms, 100 ms, 3 ms.
 const LOW_READINGS: u32 = 20;
@@ -14,12 +15,6 @@ const HIGH_READINGS: u32 = 4;
 
 /// Ticks without any reading until the fault.
 const MISSING_TICKS: u32 = 60;
-
-/// The hottest motor, °C: of its housing, 15 K below what its winding bears.
-const HOTTEST_C: f32 = 70.0;
-
-/// The coldest that a sensor may say, °C. A broken line reads −50 °C.
-const COLDEST_C: f32 = -20.0;
 
 /// A reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -146,7 +141,8 @@ impl SlowChecks {
             SlowInput::SupplyV(volts) => self.supply(volts, is_live),
             SlowInput::MotorC(celsius) => {
                 self.readings.motor_c = celsius;
-                let is_good = celsius > COLDEST_C && celsius < HOTTEST_C;
+                let (coldest_c, hottest_c) = MOTOR_C;
+                let is_good = celsius > coldest_c && celsius < hottest_c;
                 let is_fault = held(&mut self.hot, !is_good) >= HOT_READINGS;
                 (is_live && is_fault).then_some(Fault::MotorHot)
             }

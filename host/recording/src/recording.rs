@@ -35,7 +35,9 @@ pub enum ReadError {
     )]
     Foreign(PathBuf),
     /// The format is unknown, of a later version.
-    #[error("{path}: expected a recording of version {FORMAT}, got {found}: use a newer crepitus")]
+    #[error(
+        "{path}: expected a recording of version {FORMAT}, got {found}: read it with the crepitus that wrote it"
+    )]
     Format {
         /// The file.
         path: PathBuf,

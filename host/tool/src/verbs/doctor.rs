@@ -8,6 +8,9 @@ use clap::Args;
 use crepitus_client::{Client, Event, RequestKind};
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
+use crepitus_protocol::host::Status;
+use crepitus_protocol::measured::{MOTOR_C, SUPPLY_SHARES};
+use crepitus_protocol::parameters::id;
 use crepitus_protocol::telemetry::{NO_CURRENT, SampleFlags};
 use serde_json::json;
 use std::time::Duration;
@@ -142,9 +145,59 @@ fn check(client: &mut Client<Line>, checks: &mut Vec<Check>) -> Result<(), crepi
             ),
         )
     });
+    if status.drive_present {
+        motor(client, &status, checks)?;
+    }
     round_trips(client, checks)?;
     telemetry(client, checks)?;
     wires(client, checks)
+}
+
+/// What the drive measures beside the motion, and what arming needs.
+fn motor(
+    client: &mut Client<Line>,
+    status: &Status,
+    checks: &mut Vec<Check>,
+) -> Result<(), crepitus_client::Error> {
+    let (_, values) = client.parameters()?;
+    let measured = &status.measured;
+    let supply_v = f64::from(measured.supply_cv) / 100.0;
+    let expected_v = values.get(id::SUPPLY).unwrap_or_default();
+    let (least, most) = SUPPLY_SHARES;
+    let text = format!("{supply_v:.1} V, expected {expected_v:.1} V");
+    checks.push(
+        if (least * expected_v..=most * expected_v).contains(&supply_v) {
+            fine("supply", text)
+        } else {
+            wrong(
+                "supply",
+                format!(
+                    "{text}: is it on, is the hand-held stop released, is motor.supply_v right?"
+                ),
+            )
+        },
+    );
+    let text = format!("{} °C", measured.motor_c);
+    let (coldest, hottest) = MOTOR_C;
+    checks.push(
+        if (coldest..hottest).contains(&f32::from(measured.motor_c)) {
+            fine("motor", text)
+        } else {
+            wrong(
+                "motor",
+                format!("{text}: too hot, or its sensor is not there"),
+            )
+        },
+    );
+    checks.push(fine(
+        "angle",
+        if status.zeroed {
+            "zero is set"
+        } else {
+            "zero is not set, which arming needs: `crepitus zero` with the leg straight"
+        },
+    ));
+    Ok(())
 }
 
 fn round_trips(
