@@ -112,7 +112,7 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "comms-silent",
         cause: "the link is cut or too noisy, or comms hangs, is reset or has no power",
         detector: Detector::Drive,
-        detection: "no fresh heartbeat for 101 ticks while armed",
+        detection: "no fresh heartbeat for 94 ticks while armed; up to 7 pass before one that has arrived is read",
         reaction: FLOAT,
         within_ticks: Some(101),
         clear: CLEAR,

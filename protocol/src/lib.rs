@@ -90,7 +90,7 @@ pub const TICK_US: u32 = 50;
 pub const TICK_S: f64 = 5e-5;
 
 /// Timeout, ticks: without a fresh heartbeat for this long torque is off.
-pub const HEARTBEAT_TICKS: u64 = 101;
+pub const HEARTBEAT_TICKS: u64 = 94;
 
 /// Timeout, ticks: without a renewal of the lease for this long torque is off.
 pub const LEASE_TICKS: u64 = 5_001;

@@ -20,7 +20,12 @@ pub(super) const PARTS: &[Part] = &[
     part("TIM5", 0x4000_0c00, TIMER_32),
     part("ADC1", 0x4001_2000, CONVERTER),
     part("ADC2", 0x4001_2100, CONVERTER),
-    part("ADC3", 0x4001_2200, CONVERTER),
+    // Its sequence is no configuration: it turns from tick to tick.
+    part(
+        "ADC3",
+        0x4001_2200,
+        CONVERTER.split_at(CONVERTER.len() - 1).0,
+    ),
     part("ADC", 0x4001_2300, &[register("CCR", 0x04, COMMON)]),
     part("USART6", 0x4001_1400, USART),
     part("DMA1", 0x4002_6000, STREAMS),
