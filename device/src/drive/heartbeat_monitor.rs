@@ -104,8 +104,8 @@ mod tests {
                 monitor.receive(start, &heartbeat(start - 60, 5_000)),
                 Freshness::Fresh
             );
-            assert_eq!(monitor.timeout(start + 99), None);
-            assert_eq!(monitor.timeout(start + 100), Some(Fault::CommsSilent));
+            assert_eq!(monitor.timeout(start + 92), None);
+            assert_eq!(monitor.timeout(start + 93), Some(Fault::CommsSilent));
         }
     }
 
