@@ -404,6 +404,14 @@ mod tests {
     /// Arms with gates that let pass, with this line off, a share of what they should
     /// not, and a line of comms that is `on` from where it is awaited; what came of it.
     fn leaks(of_drive: f32, of_comms: f32, on: Option<bool>) -> ArmingOutput {
+        leaks_by(
+            |volts, is_on| volts * if is_on { of_comms } else { of_drive },
+            on,
+        )
+    }
+
+    /// The same, with what passes of a voltage, with the drive's line on or off.
+    fn leaks_by(passes: impl Fn(f32, bool) -> f32, on: Option<bool>) -> ArmingOutput {
         let mut arming = Arming::default();
         let (mut line, mut raw_a) = (false, 0.0);
         (0..5_000)
@@ -421,8 +429,7 @@ mod tests {
                     ArmingOutput::Line | ArmingOutput::Push(_) => line = true,
                     ArmingOutput::Proof(volts, is_on) => {
                         line = is_on;
-                        let passes = if is_on { of_comms } else { of_drive };
-                        raw_a = passes * volts / 1.23;
+                        raw_a = passes(volts, is_on) / 1.23;
                     }
                     _ => return Some(wish),
                 }
@@ -439,6 +446,13 @@ mod tests {
         assert_eq!(leaks(1.0, 0.0, None), failed(Fault::DriveGateStuck));
         assert_eq!(leaks(0.0, 1.0, None), failed(Fault::CommsGateStuck));
         assert_eq!(leaks(f32::NAN, 0.0, None), failed(Fault::DriveGateStuck));
+        // One of its outputs, so that current flows one way only.
+        for way in [f32::max, f32::min] {
+            let of_drive = |volts: f32, is_on| if is_on { 0.0 } else { way(volts, 0.0) };
+            assert_eq!(leaks_by(of_drive, None), failed(Fault::DriveGateStuck));
+            let of_comms = |volts: f32, is_on| if is_on { way(volts, 0.0) } else { 0.0 };
+            assert_eq!(leaks_by(of_comms, None), failed(Fault::CommsGateStuck));
+        }
         // Its line is on too early, or never.
         assert_eq!(leaks(0.0, 0.0, Some(true)), failed(Fault::CommsGateStuck));
         assert_eq!(leaks(0.0, 0.0, Some(false)), failed(Fault::CommsLineOff));

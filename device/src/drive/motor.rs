@@ -202,6 +202,17 @@ mod tests {
     }
 
     #[test]
+    fn a_push_through_a_closed_gate_is_beside_the_back_emf() {
+        let mut motor = Motor::new(&Preparation::new().unwrap().1.motor);
+        for (omega_rad_s, expected_v) in [(0.0, 0.6), (1.0, 3.9454), (-1.0, -2.7454), (9.0, 16.8)] {
+            let Bridge::Driven(volts) = motor.prove(0.6, omega_rad_s) else {
+                panic!("it floats");
+            };
+            assert!((volts - expected_v).abs() < 1e-4, "{volts}");
+        }
+    }
+
+    #[test]
     fn the_limit_of_the_voltage_excuses_what_it_explains() {
         for torque_nm in [-4.0_f32, 4.0] {
             let motor = at_the_limit(torque_nm);
