@@ -234,7 +234,7 @@ mod tests {
             let _ = checks.tick(input, 0, false);
         }
         let mut next = inputs.into_iter().cycle();
-        (1..10_000).find_map(|tick| Some((checks.tick(next.next()?, count, true)?, tick)))
+        (1..3_000).find_map(|tick| Some((checks.tick(next.next()?, count, true)?, tick)))
     }
 
     const SUPPLY: SlowInput = SlowInput::SupplyV(24.0);
