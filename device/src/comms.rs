@@ -54,7 +54,7 @@ use to_drive::ToDriveQueue;
 pub struct Boot {
     /// Identity of this controller.
     pub identity: Identity,
-    /// What it has found out about itself.
+    /// Result of the self-test.
     pub self_test: SelfTest,
     /// Boot counter.
     pub start: u16,

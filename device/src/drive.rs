@@ -54,7 +54,7 @@ use rendering::Rendering;
 pub struct Boot {
     /// Identity of this controller.
     pub identity: Identity,
-    /// What it has found out about itself.
+    /// Result of the self-test.
     pub self_test: SelfTest,
     /// The encoder's counter.
     pub counter: u32,
@@ -201,7 +201,7 @@ impl Drive {
         self.command.safety().fault()
     }
 
-    /// Whether arming has come to where it needs the enable line of comms.
+    /// Whether arming waits for the enable line of comms, or has it.
     pub fn awaits_comms(&self) -> bool {
         self.command.safety().awaits_comms()
     }

@@ -1,4 +1,4 @@
-//! What a controller finds out about itself at its start.
+//! Self-test of a controller at its start: image and option bytes.
 
 /// Brown-out level in the option bytes: 0 is level 3, the highest, 2.7 V.
 const BROWN_OUT_LEVEL: u32 = 0b11 << 2;

@@ -123,7 +123,7 @@ impl DriveView {
         self.status.map_or(State::Disarmed, |status| status.state)
     }
 
-    /// Whether it arms and has come to where it needs the enable line of comms.
+    /// Whether its arming waits for the enable line of comms, or has it.
     pub fn awaits_comms(&self) -> bool {
         self.status.is_some_and(|status| status.awaits_comms)
     }

@@ -81,7 +81,7 @@ enum Step {
     Push,
 }
 
-/// What arming sees in a tick.
+/// Inputs of arming in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
     /// Raw currents of sensor and monitor, A.
@@ -145,7 +145,7 @@ impl Arming {
         }
     }
 
-    /// Whether it has come to where it needs the enable line of comms.
+    /// Whether it waits for the enable line of comms, or has it.
     pub fn awaits_comms(&self) -> bool {
         matches!(
             self.step,

@@ -203,7 +203,7 @@ impl Command {
         self.zeroed
     }
 
-    /// What it measures beside the motion.
+    /// Last readings of supply, motor temperature and joint sensor.
     pub fn slow_readings(&self) -> SlowReadings {
         self.slow_checks.readings()
     }

@@ -1,4 +1,4 @@
-//! What gear and motor bear for a short time only: I²t.
+//! I²t: overload of gear and motor.
 //!
 //! ```text
 //! s += (i² − Ic²)·h, s ≥ 0        fault at s = (Is² − Ic²)·1 s

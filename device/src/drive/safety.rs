@@ -102,7 +102,7 @@ impl Safety {
         self.polarity_proven
     }
 
-    /// Whether arming has come to where it needs the enable line of comms.
+    /// Whether arming waits for the enable line of comms, or has it.
     pub fn awaits_comms(&self) -> bool {
         self.state == State::Arming && self.arming.awaits_comms()
     }

@@ -20,7 +20,7 @@ pub struct DriveBoard {
     pub start: Start,
     /// Identity for a hello.
     pub identity: Identity,
-    /// What it has found out about itself.
+    /// Result of the self-test.
     pub self_test: SelfTest,
     /// PB0, read back on PB1.
     pub line: EnableLine,

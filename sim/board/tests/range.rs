@@ -9,36 +9,11 @@ use crepitus_protocol::host::{Answer, Operation, Refusal};
 use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::telemetry::{Sample, SampleFlags};
 use crepitus_protocol::{DeviceSettings, LimitReason, State, Values};
-use support::{Host, scene};
+use support::{Host, examination};
 
-/// A leg that is bent from 10° to 80° and back, far from its end at first.
-fn bending(peak_deg_s: f64) -> Host {
-    let text = format!(
-        r#"
-version = 1
-title = "Bent slowly"
-duration_s = 60.0
-[motion]
-kind = "strokes"
-from_deg = 10.0
-to_deg = 80.0
-peak_speed_deg_s = {peak_deg_s}
-pause_s = 0.1
-[solver]
-kind = "exact-events"
-step_s = 5e-5
-precision = "f32"
-[effects.crepitus]
-preset = "coarse"
-[effects.encoder]
-[effects.motor]
-[effects.drivetrain]
-[effects.cuff]
-[effects.limb]
-[effects.hand]
-"#
-    );
-    let mut host = Host::new(&scene(&text), &Start::default());
+/// A leg that is bent from 10° to 80° and back.
+fn bending() -> Host {
+    let mut host = Host::new(&examination(), &Start::default());
     host.run(400);
     host
 }
@@ -60,7 +35,7 @@ fn share(count: i32, range_deg: [f64; 3]) -> f64 {
 
 #[test]
 fn the_torque_fades_before_an_end_and_there_is_none_beyond() {
-    let mut host = bending(60.0);
+    let mut host = bending();
     host.set("range.most_deg", 30.0);
     host.set("range.fade_deg", 10.0);
     host.subscribe();
@@ -96,7 +71,7 @@ fn the_torque_fades_before_an_end_and_there_is_none_beyond() {
 
 #[test]
 fn arming_needs_a_zero_and_a_leg_inside() {
-    let mut host = bending(60.0);
+    let mut host = bending();
     host.renew_every = Some(1_000);
     let answer = host.ask_patiently(Operation::Arm);
     assert_eq!(refused(answer), DriveRefusal::NotZeroed);
@@ -114,7 +89,7 @@ fn arming_needs_a_zero_and_a_leg_inside() {
 
 #[test]
 fn counts_in_doubt_end_the_zero() {
-    let mut host = bending(60.0);
+    let mut host = bending();
     host.arm();
     assert!(host.status().zeroed);
     let board = host.device.board_mut();
@@ -135,7 +110,7 @@ fn counts_in_doubt_end_the_zero() {
 /// for the angle.
 #[test]
 fn a_counter_that_jumps_while_disarmed_ends_the_zero() {
-    let mut host = bending(60.0);
+    let mut host = bending();
     assert_eq!(host.ask_patiently(Operation::Zero), Ok(Answer::Done));
     host.run(200);
     assert!(host.status().zeroed);
@@ -147,7 +122,7 @@ fn a_counter_that_jumps_while_disarmed_ends_the_zero() {
 
 #[test]
 fn another_encoder_ends_the_zero() {
-    let mut host = bending(60.0);
+    let mut host = bending();
     assert_eq!(host.ask_patiently(Operation::Zero), Ok(Answer::Done));
     host.set("crepitus.static_torque_nm", 0.5);
     host.run(200);
