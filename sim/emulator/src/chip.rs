@@ -2,7 +2,7 @@
 //!
 //! | part | from |
 //! |---|---|
-//! | RCC, PWR, FLASH, GPIO, TIM1 to TIM5, TIM8, DMA, IWDG, RNG, DBGMCU | the library |
+//! | RCC, PWR, FLASH, CRC, GPIO, TIM1 to TIM5, TIM8, DMA, IWDG, RNG, DBGMCU | the library |
 //! | the break of TIM1, ADC1 to ADC3, USART6 | [`crate::devices`] |
 //!
 //! Wired: interrupts, the requests of USART6 to DMA2, the trigger outputs of
@@ -28,6 +28,7 @@ use rsemu::core::device::Device;
 use rsemu::core::props::Props;
 use rsemu::core::wire::WireSource;
 use rsemu::cpu::arm::v7m::ArmV7m;
+use rsemu::dev::stm32::crc::{self, Crc};
 use rsemu::dev::stm32::dma::{self, Dma};
 use rsemu::dev::stm32::flash::Flash;
 use rsemu::dev::stm32::gpio::{Gpio, ResetValues};
@@ -122,6 +123,14 @@ impl Chip {
             Clock::Pll48,
             gate,
             rng,
+        ));
+        let crc = Arc::new(Crc::build(crc::Variant::F4));
+        parts.push(Part::of_library(
+            "CRC",
+            0x4002_3000,
+            Clock::Core,
+            Gate::ahb1(12),
+            crc,
         ));
         let watchdog_fired = Latch::new();
         let watchdog = Arc::new(Iwdg::with_window(false));

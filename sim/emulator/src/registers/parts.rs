@@ -128,6 +128,7 @@ const CLOCKS: &[Register] = &[
             bit("GPIOA", 0),
             bit("GPIOB", 1),
             bit("GPIOC", 2),
+            bit("CRC", 12),
             bit("CCM RAM", 20),
             bit("DMA1", 21),
             bit("DMA2", 22),
