@@ -41,7 +41,7 @@ use crate::counters::Counters;
 use crate::self_test::SelfTest;
 use command::{Command, Inputs, Outputs};
 use commits::Commits;
-use crepitus_protocol::frame::{FRAME_BYTES, Frame, FrameBuffer};
+use crepitus_protocol::frame::{FRAME_BYTES, Frame, FrameBuffer, SoftwareCrc};
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::{Fault, Revision, State, ValueError, Values};
 use exchange::{Exchange, Rendered};
@@ -125,8 +125,10 @@ impl Drive {
 
     /// `render_torque`, priority 3: with the counter as the tick begins.
     pub fn render_torque(&mut self, counter: u32) {
-        let plan = self.prepared.as_ref().map(|prepared| &prepared.rendering);
-        self.rendering.tick(counter, plan, &self.exchange);
+        if self.rendering.tick(counter, &self.exchange) {
+            let plan = self.prepared.as_ref().map(|prepared| &prepared.rendering);
+            self.rendering.take_over(plan, &self.exchange);
+        }
     }
 
     /// `command_motor`, priority 4: half a tick later.
@@ -169,7 +171,7 @@ impl Drive {
     pub fn link_to_send(&mut self, has_buffer: bool) -> Option<Frame> {
         let (link, mut parts, counters) = self.link();
         let buffer = || has_buffer.then_some([0; FRAME_BYTES]);
-        let made = link.next_frame(buffer, &mut parts, counters)?;
+        let made = link.next_frame(&mut SoftwareCrc, buffer, &mut parts, counters)?;
         Some(made.frame())
     }
 

@@ -12,7 +12,7 @@ use crate::lane::Lane;
 use crate::schema::LONGEST_MESSAGE;
 use core::borrow::BorrowMut;
 use core::fmt::{self, Debug, Formatter};
-use crc::{CRC_32_ISO_HDLC, Crc, Digest, Table};
+use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use postcard::ser_flavors::Flavor;
 use serde::Serialize;
 
@@ -40,22 +40,25 @@ pub type Frame = heapless::Vec<u8, FRAME_BYTES>;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLong;
 
-/// Incremental checksum.
-#[derive(Clone)]
-pub(crate) struct Checksum(Digest<'static, u32, Table<1>>);
+/// Incremental checksum: the register of the CRC, lowest bit first.
+#[derive(Clone, Copy)]
+pub(crate) struct Checksum(u32);
 
 impl Checksum {
     pub(crate) fn new() -> Self {
-        Self(CRC.digest())
+        Self(u32::MAX)
     }
 
     #[inline]
     pub(crate) fn update(&mut self, bytes: &[u8]) {
-        self.0.update(bytes);
+        // `Crc` takes the register highest bit first, and returns it inverted.
+        let mut digest = CRC.digest_with_initial(self.0.reverse_bits());
+        digest.update(bytes);
+        self.0 = !digest.finalize();
     }
 
-    pub(crate) fn value(&self) -> u32 {
-        self.0.clone().finalize()
+    pub(crate) fn value(self) -> u32 {
+        !self.0
     }
 }
 
@@ -64,6 +67,27 @@ impl Debug for Checksum {
         write!(f, "Checksum({:#010x})", self.value())
     }
 }
+
+/// Computes the checksum of whole words; a microcontroller has a unit for it.
+pub trait WordCrc {
+    /// Returns the register of the CRC, lowest bit first, after these words.
+    fn update(&mut self, register: u32, words: &[[u8; WORD]]) -> u32;
+}
+
+/// In software.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SoftwareCrc;
+
+impl WordCrc for SoftwareCrc {
+    fn update(&mut self, register: u32, words: &[[u8; WORD]]) -> u32 {
+        let mut checksum = Checksum(register);
+        checksum.update(words.as_flattened());
+        checksum.0
+    }
+}
+
+/// Bytes of a word.
+pub const WORD: usize = 4;
 
 /// The largest code of COBS: 254 bytes without a zero.
 const FULL: usize = 255;
@@ -122,8 +146,26 @@ impl<P: BorrowMut<FrameBuffer>> Encoder<P> {
     /// # Errors
     /// [`TooLong`] if there is no room for them.
     pub fn push(&mut self, bytes: &[u8]) -> Result<(), TooLong> {
-        self.checksum.update(bytes);
-        self.put(bytes)
+        self.push_by(&mut SoftwareCrc, bytes)
+    }
+
+    /// Appends bytes to the body, with the checksum of their whole words by a
+    /// unit. Words go fastest.
+    ///
+    /// # Errors
+    /// [`TooLong`] if there is no room for them.
+    #[inline]
+    pub fn push_by(&mut self, unit: &mut impl WordCrc, bytes: &[u8]) -> Result<(), TooLong> {
+        let (words, rest) = bytes.as_chunks();
+        if !words.is_empty() {
+            self.checksum.0 = unit.update(self.checksum.0, words);
+            self.put_words(words)?;
+        }
+        if !rest.is_empty() {
+            self.checksum.update(rest);
+            self.put(rest)?;
+        }
+        Ok(())
     }
 
     /// Appends checksum and delimiter.
@@ -142,31 +184,33 @@ impl<P: BorrowMut<FrameBuffer>> Encoder<P> {
         })
     }
 
-    /// Fast path: while no run can get full, each byte keeps its position and a
+    /// Fast path: while no run can get full, each word keeps its position and a
     /// zero becomes the next code.
-    fn put(&mut self, bytes: &[u8]) -> Result<(), TooLong> {
-        let (begin, mut code_at) = (self.length, self.code_at);
-        let end = begin.saturating_add(bytes.len());
-        if end.wrapping_sub(code_at) > FULL {
-            return bytes.iter().try_for_each(|byte| self.put_one(*byte));
+    fn put_words(&mut self, words: &[[u8; WORD]]) -> Result<(), TooLong> {
+        let (mut at, mut code_at) = (self.length, self.code_at);
+        let bytes = words.as_flattened();
+        if at.saturating_add(bytes.len()).wrapping_sub(code_at) > FULL {
+            return self.put(bytes);
         }
-        let (made, free) = self
-            .buffer
-            .borrow_mut()
-            .split_at_mut_checked(begin)
-            .ok_or(TooLong)?;
-        let mut code_place = made.get_mut(code_at).ok_or(TooLong)?;
-        let places = free.get_mut(..bytes.len()).ok_or(TooLong)?;
-        for (at, (place, byte)) in (begin..end).zip(places.iter_mut().zip(bytes)) {
-            if *byte == 0 {
-                *code_place = code(code_at, at);
-                (code_place, code_at) = (place, at);
-            } else {
-                *place = *byte;
+        let buffer = self.buffer.borrow_mut();
+        for word in words {
+            let place = buffer.get_mut(at..).and_then(<[u8]>::first_chunk_mut);
+            *place.ok_or(TooLong)? = *word;
+            let mut zeros = zero_bytes(*word);
+            while zeros != 0 {
+                let zero_at = at.wrapping_add((zeros.trailing_zeros() / u8::BITS) as usize);
+                set(buffer, code_at, code(code_at, zero_at))?;
+                code_at = zero_at;
+                zeros &= zeros.wrapping_sub(1);
             }
+            at = at.wrapping_add(WORD);
         }
-        (self.length, self.code_at) = (end, code_at);
+        (self.length, self.code_at) = (at, code_at);
         Ok(())
+    }
+
+    fn put(&mut self, bytes: &[u8]) -> Result<(), TooLong> {
+        bytes.iter().try_for_each(|byte| self.put_one(*byte))
     }
 
     fn put_one(&mut self, byte: u8) -> Result<(), TooLong> {
@@ -184,6 +228,14 @@ impl<P: BorrowMut<FrameBuffer>> Encoder<P> {
         self.length = self.length.wrapping_add(1);
         Ok(())
     }
+}
+
+/// The highest bit of each byte of a word that is zero.
+fn zero_bytes(word: [u8; WORD]) -> u32 {
+    const LOW: u32 = 0x7f7f_7f7f;
+    let word = u32::from_le_bytes(word);
+    // No carry reaches the next byte.
+    !((word & LOW).wrapping_add(LOW) | word | LOW)
 }
 
 /// The COBS code at `at` of a run that ends before `end`, at most 255 on.
@@ -232,15 +284,44 @@ impl Flavor for Message<'_> {
     }
 }
 
+/// Serialises a postcard message into a slice, byte by byte: most of its pieces
+/// are so short that a call of `memcpy`, as postcard's own makes it, takes three
+/// times as long.
+struct Bytes<'a> {
+    buffer: &'a mut [u8],
+    length: usize,
+}
+
+impl Flavor for Bytes<'_> {
+    type Output = usize;
+
+    #[inline]
+    fn try_push(&mut self, data: u8) -> postcard::Result<()> {
+        let place = self.buffer.get_mut(self.length);
+        *place.ok_or(postcard::Error::SerializeBufferFull)? = data;
+        self.length = self.length.wrapping_add(1);
+        Ok(())
+    }
+
+    // In one place, so that the firmware's gate has one loop to bound.
+    #[inline(never)]
+    fn try_extend(&mut self, data: &[u8]) -> postcard::Result<()> {
+        data.iter().try_for_each(|byte| self.try_push(*byte))
+    }
+
+    fn finalize(self) -> postcard::Result<usize> {
+        Ok(self.length)
+    }
+}
+
 /// Serialises a message into `buffer`, without a frame.
 ///
 /// # Errors
 /// [`TooLong`] if there is no room for them.
 pub fn write<'a>(message: &impl Serialize, buffer: &'a mut [u8]) -> Result<&'a [u8], TooLong> {
-    match postcard::to_slice(message, buffer) {
-        Ok(bytes) => Ok(bytes),
-        Err(_) => Err(TooLong),
-    }
+    let bytes = Bytes { buffer, length: 0 };
+    let length = postcard::serialize_with_flavor(message, bytes).map_err(|_| TooLong)?;
+    buffer.get(..length).ok_or(TooLong)
 }
 
 /// Encodes a message as a frame.

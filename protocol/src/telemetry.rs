@@ -219,12 +219,15 @@ pub struct Block {
     pub samples: [Sample; BLOCK_SAMPLES],
 }
 
+/// The fields of a block before its samples.
+pub type BlockHead = (u16, u64, Revision, u32, BlockFlags);
+
 impl Block {
     /// Bytes of [`Self::head`], at most.
-    pub const HEAD_BYTES: usize = Self::POSTCARD_MAX_SIZE - BLOCK_SAMPLES * SAMPLE_BYTES;
+    pub const HEAD_BYTES: usize = BlockHead::POSTCARD_MAX_SIZE;
 
     /// The fields before the samples, for an incremental encoder.
-    pub fn head(&self) -> impl Serialize + Copy + use<> {
+    pub fn head(&self) -> BlockHead {
         (
             self.sequence,
             self.first_tick,

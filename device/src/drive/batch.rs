@@ -82,6 +82,11 @@ impl Batch {
         self.filled == 0
     }
 
+    /// True if the next sample ends a block.
+    pub fn ends_block(&self) -> bool {
+        self.filled == BLOCK_SAMPLES - 1
+    }
+
     /// Number of queued blocks.
     pub fn queued(&self) -> usize {
         self.queued

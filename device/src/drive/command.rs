@@ -246,14 +246,15 @@ impl Command {
         let Some(rendered) = exchange.rendered() else {
             return Outputs::default();
         };
-        if let Some(plan) = plan.filter(|_| exchange.command_takes_plan()) {
+        let begins_block = self.batch.begins_block();
+        if let Some(plan) = plan.filter(|_| exchange.command_takes_plan(begins_block)) {
             self.apply(plan, counters);
             exchange.command_took_plan();
         }
         let outputs = self.command(inputs, &rendered, counters);
         exchange.announce(Turn {
             tick: low(self.next_tick),
-            begins_block: self.batch.begins_block(),
+            ends_block: self.batch.ends_block(),
             is_armed: self.safety.state() == State::Armed,
         });
         outputs

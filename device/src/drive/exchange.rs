@@ -12,8 +12,8 @@
 //! enough.
 //!
 //! A commit passes through, too: `idle` stores the two halves of a plan,
-//! `render_torque` applies its half as a block begins, `command_motor` applies
-//! the other in the same tick.
+//! `render_torque` applies its half after the last tick of a block, `command_motor`
+//! applies the other in the tick that follows, the first of the next block.
 
 use core::sync::atomic::Ordering::Relaxed;
 use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicUsize, Ordering, compiler_fence};
@@ -73,8 +73,8 @@ impl Rendered {
 pub struct Turn {
     /// Number of the tick, its lowest 32 bits.
     pub tick: u32,
-    /// It begins a block of telemetry: the time to apply parameters.
-    pub begins_block: bool,
+    /// It ends a block of telemetry: after it is the time to apply parameters.
+    pub ends_block: bool,
     /// Torque is applied.
     pub is_armed: bool,
 }
@@ -96,21 +96,21 @@ pub struct Exchange {
     /// The slot of the newest result.
     newest: AtomicUsize,
     tick: AtomicU32,
-    begins_block: AtomicBool,
+    ends_block: AtomicBool,
     is_armed: AtomicBool,
     plan: AtomicU8,
     is_settling: AtomicBool,
 }
 
 impl Exchange {
-    /// No result yet; the first tick has this number and begins a block.
+    /// No result yet; the first tick has this number.
     #[expect(clippy::cast_possible_truncation, reason = "the lowest bits")]
     pub const fn new(tick: u64) -> Self {
         Self {
             slots: [const { [const { AtomicU32::new(0) }; WORDS] }; 2],
             newest: AtomicUsize::new(NONE),
             tick: AtomicU32::new(tick as u32),
-            begins_block: AtomicBool::new(true),
+            ends_block: AtomicBool::new(false),
             is_armed: AtomicBool::new(false),
             plan: AtomicU8::new(NO_PLAN),
             is_settling: AtomicBool::new(false),
@@ -139,7 +139,7 @@ impl Exchange {
     /// `command_motor`: announces the next tick.
     pub fn announce(&self, turn: Turn) {
         self.tick.store(turn.tick, Relaxed);
-        self.begins_block.store(turn.begins_block, Relaxed);
+        self.ends_block.store(turn.ends_block, Relaxed);
         self.is_armed.store(turn.is_armed, Relaxed);
     }
 
@@ -147,7 +147,7 @@ impl Exchange {
     pub fn turn(&self) -> Turn {
         Turn {
             tick: self.tick.load(Relaxed),
-            begins_block: self.begins_block.load(Relaxed),
+            ends_block: self.ends_block.load(Relaxed),
             is_armed: self.is_armed.load(Relaxed),
         }
     }
@@ -178,7 +178,7 @@ impl Exchange {
 
     /// `render_torque`: true if its half is due.
     pub fn render_takes_plan(&self) -> bool {
-        self.begins_block.load(Relaxed) && self.plan.load(Relaxed) == STORED
+        self.ends_block.load(Relaxed) && self.plan.load(Relaxed) == STORED
     }
 
     /// `render_torque`: its half is applied.
@@ -186,9 +186,10 @@ impl Exchange {
         self.plan.store(HALF_APPLIED, Relaxed);
     }
 
-    /// `command_motor`: true if its half is due.
-    pub fn command_takes_plan(&self) -> bool {
-        self.plan.load(Relaxed) == HALF_APPLIED
+    /// `command_motor`: true if its half is due. Not in the tick in which the other
+    /// was applied, which belongs to the block before.
+    pub fn command_takes_plan(&self, begins_block: bool) -> bool {
+        begins_block && self.plan.load(Relaxed) == HALF_APPLIED
     }
 
     /// `command_motor`: its half is applied.
@@ -239,11 +240,11 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_is_applied_by_both_as_a_block_begins() {
+    fn a_plan_is_applied_by_both_between_two_blocks() {
         let exchange = Exchange::new(7);
-        let next = |begins_block| {
+        let next = |ends_block| {
             exchange.announce(Turn {
-                begins_block,
+                ends_block,
                 ..Turn::default()
             });
         };
@@ -252,9 +253,10 @@ mod tests {
         exchange.plan_stored();
         assert!(exchange.is_busy() && !exchange.render_takes_plan());
         next(true);
-        assert!(exchange.render_takes_plan() && !exchange.command_takes_plan());
+        assert!(exchange.render_takes_plan() && !exchange.command_takes_plan(true));
         exchange.render_took_plan();
-        assert!(!exchange.render_takes_plan() && exchange.command_takes_plan());
+        assert!(!exchange.render_takes_plan() && !exchange.command_takes_plan(false));
+        assert!(exchange.command_takes_plan(true));
         exchange.set_settling(true);
         exchange.command_took_plan();
         assert!(!exchange.has_plan() && exchange.is_busy());

@@ -10,10 +10,11 @@ use crate::drive::outgoing::{Outgoing, PIECE_SAMPLES};
 use crate::drive::slow_checks::SlowReadings;
 use core::borrow::BorrowMut;
 use crepitus_protocol::counters::DriveCounter;
-use crepitus_protocol::frame::{EncodedFrame, FrameBuffer};
+use crepitus_protocol::frame::{EncodedFrame, FrameBuffer, WordCrc};
 use crepitus_protocol::link::{DriveRefusal, DriveStatus, Order, ToDrive};
 use crepitus_protocol::management::{Action, Identity, ManagementRequest};
 use crepitus_protocol::measured::Measured;
+use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Fault, Lane, Revision, State};
 
 /// Resources shared with the other tasks. The firmware holds a lock while
@@ -135,6 +136,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
     /// frame in a buffer from `spare`. Returns a finished frame.
     pub fn next_frame(
         &mut self,
+        unit: &mut impl WordCrc,
         spare: impl FnOnce() -> Option<P>,
         shared: &mut impl Shared,
         counters: &Counters,
@@ -145,13 +147,13 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             return None;
         }
         let Some(next) = self.outgoing.next_sample() else {
-            return self.outgoing.piece();
+            return self.outgoing.piece(unit);
         };
         let piece = shared.command(|command| {
             let samples = command.block()?.samples.get(next..)?;
             samples.first_chunk::<PIECE_SAMPLES>().copied()
         })?;
-        let frame = self.outgoing.samples(&piece)?;
+        let frame = self.outgoing.samples(unit, &piece)?;
         shared.command(Command::pop_block);
         self.blocks_before_status = self.blocks_before_status.saturating_sub(1);
         Some(frame)
@@ -203,13 +205,13 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             self.gathered = None;
             return begun;
         }
-        let (now, has_block) =
-            shared.command(|command| (command.next_tick(), command.block().is_some()));
+        let (now, head) =
+            shared.command(|command| (command.next_tick(), command.block().map(Block::head)));
         let is_status_due = self.link.is_status_due(now);
-        if has_block && !(is_status_due && self.blocks_before_status == 0) {
-            let buffer = spare()?;
-            let outgoing = &mut self.outgoing;
-            return shared.command(|command| outgoing.begin_block(buffer, command.block()?).ok());
+        if let Some(head) = head
+            && !(is_status_due && self.blocks_before_status == 0)
+        {
+            return self.outgoing.begin_block(spare()?, &head).ok();
         }
         if is_status_due {
             self.link.status_sent(now);

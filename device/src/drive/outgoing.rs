@@ -4,17 +4,22 @@
 use core::borrow::BorrowMut;
 use crepitus_protocol::Lane;
 use crepitus_protocol::counters::DRIVE_COUNT;
-use crepitus_protocol::frame::{self, EncodedFrame, Encoder, FrameBuffer, TooLong};
+use crepitus_protocol::frame::{self, EncodedFrame, Encoder, FrameBuffer, TooLong, WordCrc};
 use crepitus_protocol::link::{COUNTER_BYTES, DriveStatus};
 use crepitus_protocol::management::{Answer, AnswerBytes};
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, SAMPLE_BYTES, Sample};
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, BlockHead, SAMPLE_BYTES, Sample};
 
 /// Samples per piece: with its head a block takes eleven of its twenty ticks.
 pub const PIECE_SAMPLES: usize = 2;
 const _: () = assert!(BLOCK_SAMPLES.is_multiple_of(PIECE_SAMPLES));
 
 /// Bytes per piece of a management reply.
-const PIECE_BYTES: usize = 32;
+const ANSWER_BYTES: usize = 32;
+
+/// Bytes of the longest other piece.
+const PIECE_BYTES: usize = DriveStatus::HEAD_BYTES;
+const _: () = assert!(Block::HEAD_BYTES <= PIECE_BYTES);
+const _: () = assert!(PIECE_COUNTERS * COUNTER_BYTES <= PIECE_BYTES);
 
 /// Counters per piece of a status.
 const PIECE_COUNTERS: usize = 5;
@@ -24,8 +29,10 @@ const PIECE_COUNTERS: usize = 5;
 enum Rest {
     /// A management reply, from this byte on.
     Answer(usize),
-    /// A status whose head has this many bytes.
-    Status(usize),
+    /// Both parts of the head of a status.
+    Status,
+    /// The second part of it.
+    StatusEnd,
     /// The counters of a status, from this one on.
     Counters(usize),
     /// The samples of a block, from this one on.
@@ -37,8 +44,10 @@ enum Rest {
 pub struct Outgoing<P> {
     current: Option<(Encoder<P>, Rest)>,
     answer: AnswerBytes,
-    head: [u8; DriveStatus::HEAD_BYTES],
-    counters: [u32; DRIVE_COUNT],
+    status: DriveStatus,
+    /// The bytes of a piece before they are framed. Kept, because clearing it for each
+    /// takes as long as filling it.
+    bytes: [u8; PIECE_BYTES],
 }
 
 impl<P> Default for Outgoing<P> {
@@ -46,8 +55,8 @@ impl<P> Default for Outgoing<P> {
         Self {
             current: None,
             answer: AnswerBytes::new(),
-            head: [0; DriveStatus::HEAD_BYTES],
-            counters: [0; DRIVE_COUNT],
+            status: DriveStatus::default(),
+            bytes: [0; PIECE_BYTES],
         }
     }
 }
@@ -74,10 +83,9 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
     /// # Errors
     /// [`TooLong`]; never, as a status fits.
     pub fn begin_status(&mut self, buffer: P, status: &DriveStatus) -> Result<(), TooLong> {
-        let length = frame::write(&status.head(), &mut self.head)?.len();
-        self.counters = status.counters;
+        self.status = *status;
         let encoder = Encoder::new(buffer, Lane::FromDrive)?;
-        self.current = Some((encoder, Rest::Status(length)));
+        self.current = Some((encoder, Rest::Status));
         Ok(())
     }
 
@@ -85,9 +93,9 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
     ///
     /// # Errors
     /// [`TooLong`]; never, as a block fits.
-    pub fn begin_block(&mut self, buffer: P, block: &Block) -> Result<(), TooLong> {
+    pub fn begin_block(&mut self, buffer: P, head: &BlockHead) -> Result<(), TooLong> {
         let mut encoder = Encoder::new(buffer, Lane::Telemetry)?;
-        encoder.push(frame::write(&block.head(), &mut [0; Block::HEAD_BYTES])?)?;
+        encoder.push(frame::write(head, &mut self.bytes)?)?;
         self.current = Some((encoder, Rest::Samples(0)));
         Ok(())
     }
@@ -101,7 +109,11 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
     }
 
     /// Encodes samples of the block; returns the finished frame after the last.
-    pub fn samples(&mut self, piece: &[Sample; PIECE_SAMPLES]) -> Option<EncodedFrame<P>> {
+    pub fn samples(
+        &mut self,
+        unit: &mut impl WordCrc,
+        piece: &[Sample; PIECE_SAMPLES],
+    ) -> Option<EncodedFrame<P>> {
         let (encoder, Rest::Samples(next)) = self.current.as_mut()? else {
             return None;
         };
@@ -109,7 +121,7 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
         for (bytes, sample) in bytes.as_chunks_mut().0.iter_mut().zip(piece) {
             *bytes = sample.bytes();
         }
-        encoder.push(&bytes).ok()?;
+        encoder.push_by(unit, &bytes).ok()?;
         *next = next.saturating_add(PIECE_SAMPLES);
         if *next < BLOCK_SAMPLES {
             return None;
@@ -119,29 +131,36 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
 
     /// Encodes the next piece of a reply or a status; returns the finished frame
     /// after the last.
-    pub fn piece(&mut self) -> Option<EncodedFrame<P>> {
+    pub fn piece(&mut self, unit: &mut impl WordCrc) -> Option<EncodedFrame<P>> {
         let (encoder, rest) = self.current.as_mut()?;
         let is_whole = match rest {
             Rest::Answer(next) => {
                 let left = self.answer.get(*next..)?;
-                let piece = left.get(..PIECE_BYTES).unwrap_or(left);
-                encoder.push(piece).ok()?;
-                *next = next.saturating_add(PIECE_BYTES);
+                let piece = left.get(..ANSWER_BYTES).unwrap_or(left);
+                encoder.push_by(unit, piece).ok()?;
+                *next = next.saturating_add(ANSWER_BYTES);
                 *next >= self.answer.len()
             }
-            Rest::Status(length) => {
-                encoder.push(self.head.get(..*length)?).ok()?;
+            Rest::Status => {
+                let begin = frame::write(&self.status.head().0, &mut self.bytes).ok()?;
+                encoder.push_by(unit, begin).ok()?;
+                *rest = Rest::StatusEnd;
+                false
+            }
+            Rest::StatusEnd => {
+                let end = frame::write(&self.status.head().1, &mut self.bytes).ok()?;
+                encoder.push_by(unit, end).ok()?;
                 *rest = Rest::Counters(0);
                 false
             }
             Rest::Counters(next) => {
-                let mut bytes = [0; PIECE_COUNTERS * COUNTER_BYTES];
+                let bytes = &mut self.bytes;
                 let mut length = 0_usize;
-                for counter in self.counters.iter().skip(*next).take(PIECE_COUNTERS) {
+                for counter in self.status.counters.iter().skip(*next).take(PIECE_COUNTERS) {
                     let written = frame::write(counter, bytes.get_mut(length..)?).ok()?;
                     length = length.saturating_add(written.len());
                 }
-                encoder.push(bytes.get(..length)?).ok()?;
+                encoder.push_by(unit, bytes.get(..length)?).ok()?;
                 *next = next.saturating_add(PIECE_COUNTERS);
                 *next >= DRIVE_COUNT
             }
@@ -159,7 +178,7 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_protocol::frame::{FRAME_BYTES, Frame};
+    use crepitus_protocol::frame::{FRAME_BYTES, Frame, SoftwareCrc};
     use crepitus_protocol::link::FromDrive;
     use crepitus_protocol::management::Identity;
 
@@ -171,9 +190,9 @@ mod tests {
             let made = match outgoing.next_sample() {
                 Some(next) => {
                     let piece = block.samples[next..].first_chunk().unwrap();
-                    outgoing.samples(piece)
+                    outgoing.samples(&mut SoftwareCrc, piece)
                 }
-                None => outgoing.piece(),
+                None => outgoing.piece(&mut SoftwareCrc),
             };
             if let Some(made) = made {
                 assert!(outgoing.is_idle());
@@ -208,8 +227,8 @@ mod tests {
         let (frame, runs) = run(&mut outgoing, &block);
         let whole = FromDrive::Status(status);
         assert_eq!(frame, frame::encode(Lane::FromDrive, &whole).unwrap());
-        assert!(runs <= 5, "{runs}");
-        outgoing.begin_block(buffer(), &block).unwrap();
+        assert!(runs <= 6, "{runs}");
+        outgoing.begin_block(buffer(), &block.head()).unwrap();
         let (frame, runs) = run(&mut outgoing, &block);
         assert_eq!(frame, frame::encode(Lane::Telemetry, &block).unwrap());
         assert_eq!(runs, BLOCK_SAMPLES / PIECE_SAMPLES);

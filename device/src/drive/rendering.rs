@@ -29,6 +29,8 @@ pub struct Rendering {
     /// The joint is removed once it has settled.
     is_removing: bool,
     is_settling: bool,
+    /// Speed of the last tick.
+    omega_rad_s: f32,
 }
 
 impl Rendering {
@@ -46,6 +48,7 @@ impl Rendering {
             ),
             is_removing: false,
             is_settling: false,
+            omega_rad_s: 0.0,
         };
         rendering.apply(plan, 0.0);
         rendering
@@ -73,22 +76,28 @@ impl Rendering {
         stages.limits.change(plan.torque_limit_nm, plan.slew_nm);
     }
 
-    /// Runs one tick with the encoder's counter as the tick begins, and with
-    /// the plan that is stored, which it applies when it is due.
-    pub fn tick(&mut self, counter: u32, plan: Option<&RenderingPlan>, exchange: &Exchange) {
+    /// Runs one tick with the encoder's counter as the tick begins. True if a plan
+    /// is due: then [`Self::take_over`] follows.
+    pub fn tick(&mut self, counter: u32, exchange: &Exchange) -> bool {
         let turn = exchange.turn();
-        let due = plan.filter(|_| exchange.render_takes_plan());
-        if let Some(reader) = due.and_then(|plan| plan.reader.as_ref()) {
-            self.sampler.replace(reader);
-        }
         let sampled = self.sampler.sample(counter);
-        if let Some(plan) = due {
-            self.apply(plan, sampled.omega_rad_s);
-            exchange.render_took_plan();
-        }
+        self.omega_rad_s = sampled.omega_rad_s;
         let rendered = self.render(turn.tick, &sampled, turn.is_armed);
         exchange.set_settling(self.is_settling);
         exchange.show(&rendered);
+        exchange.render_takes_plan()
+    }
+
+    /// Applies the plan that is stored, from the next tick on: in one tick with the
+    /// first step of a ramp, that would take longer than all else.
+    pub fn take_over(&mut self, plan: Option<&RenderingPlan>, exchange: &Exchange) {
+        let Some(plan) = plan else { return };
+        if let Some(reader) = &plan.reader {
+            self.sampler.replace(reader);
+        }
+        self.apply(plan, self.omega_rad_s);
+        exchange.set_settling(true);
+        exchange.render_took_plan();
     }
 
     fn render(&mut self, tick: u32, sampled: &Sampled, is_energised: bool) -> Rendered {

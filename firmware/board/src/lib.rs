@@ -15,6 +15,7 @@
 //! | timers of the tasks | both | [`ticks`] |
 //! | bridge: PWM with dead time and break | drive | [`bridge`] |
 //! | converter: the motor's current | drive | [`converter`] |
+//! | checksums of frames: CRC unit | drive | [`crc_unit`] |
 //! | encoder: 32-bit counter | drive | [`encoder`] |
 //! | USB | comms | [`usb`] |
 //! | parameters in flash | comms | [`parameter_log`], [`parameter_record`], [`flash`] |
@@ -36,6 +37,8 @@ pub mod clocks;
 pub mod comms_board;
 #[cfg(target_os = "none")]
 pub mod converter;
+#[cfg(target_os = "none")]
+pub mod crc_unit;
 #[cfg(target_os = "none")]
 pub mod drive_board;
 #[cfg(target_os = "none")]

@@ -13,7 +13,7 @@
 //! |---|---|---|
 //! | `command`: safety, motor, blocks | 4, 1, 0 | a status, two samples |
 //! | `exchange` | 4, 3, 0 | never: atomic |
-//! | `rendering_plan` | 3, 0 | storing it; a tick of `render_torque` |
+//! | `rendering_plan` | 3, 0 | storing it; applying it |
 //! | `command_plan` | 4, 0 | storing it |
 //! | `commits` | 1, 0 | handing over a commit |
 //!
@@ -32,6 +32,7 @@ mod app {
     use crate::shared::Parts;
     use board::bridge::Bridge;
     use board::converter::Converters;
+    use board::crc_unit::CrcUnit;
     use board::drive_board::DriveBoard;
     use board::enable_line::{EnableLine, OtherLine};
     use board::encoder::Encoder;
@@ -94,6 +95,7 @@ mod app {
         encoder: Encoder,
         rendering: Rendering,
         link: Link,
+        crc_unit: CrcUnit,
         link_task: LinkTask<DmaBuffer>,
         preparation: Preparation,
         watchdog: Watchdog,
@@ -142,6 +144,7 @@ mod app {
             encoder: board.encoder,
             rendering: Rendering::new(&first.reader, boot.counter, &first.prepared.rendering),
             link: board.link,
+            crc_unit: board.crc_unit,
             link_task: LinkTask::new(boot.identity, boot.start),
             preparation,
             watchdog: Watchdog::start(board.watchdog, IDLE_TIMEOUT_RUNS),
@@ -200,14 +203,16 @@ mod app {
         }
         let counter = cx.local.encoder.count();
         let (rendering, exchange) = (cx.local.rendering, cx.shared.exchange);
-        cx.shared
-            .rendering_plan
-            .lock(|plan| rendering.tick(counter, plan.as_ref(), exchange));
+        if rendering.tick(counter, exchange) {
+            cx.shared
+                .rendering_plan
+                .lock(|plan| rendering.take_over(plan.as_ref(), exchange));
+        }
     }
 
     #[task(
         binds = DMA2_STREAM6, priority = 1,
-        local = [link, link_task, watchdog, has_received: bool = false],
+        local = [link, crc_unit, link_task, watchdog, has_received: bool = false],
         shared = [command, commits, &is_link_due, &counters, &checkins]
     )]
     fn link(cx: link::Context) {
@@ -234,8 +239,12 @@ mod app {
                     task.received(byte, &mut parts, counters);
                 }
             }
-        } else if let Some(frame) = task.next_frame(|| link.spare(), &mut parts, counters) {
-            link.send(frame);
+        } else {
+            let unit = cx.local.crc_unit;
+            let made = task.next_frame(unit, || link.spare(), &mut parts, counters);
+            if let Some(frame) = made {
+                link.send(frame);
+            }
         }
         if task.take_reboot() {
             board::stop::reboot();
