@@ -56,6 +56,12 @@ pub struct Reassembly<const N: usize = PARAMETER_COUNT> {
     missing: u32,
 }
 
+impl<const N: usize> Default for Reassembly<N> {
+    fn default() -> Self {
+        Self::new(0)
+    }
+}
+
 impl<const N: usize> Reassembly<N> {
     const ALL: u32 = {
         let pieces = N.div_ceil(PIECE_VALUES);
@@ -70,6 +76,12 @@ impl<const N: usize> Reassembly<N> {
             values: [0.0; N],
             missing: Self::ALL,
         }
+    }
+
+    /// Starts again without pieces, for values with this checksum. Quick: a value
+    /// of before stays where it is until its piece arrives.
+    pub fn restart(&mut self, checksum: u32) {
+        (self.checksum, self.missing) = (checksum, Self::ALL);
     }
 
     /// The expected checksum of all values.
@@ -166,6 +178,15 @@ mod tests {
             }
             let whole = reassembly.values().map(|values| values.map(f64::to_bits));
             prop_assert_eq!(whole, Some(bits));
+
+            // The next commit takes nothing of this one.
+            reassembly.restart(checksum(&values));
+            for index in 0..7 {
+                reassembly.add(&Piece::of(&values, index).unwrap());
+                prop_assert_eq!(reassembly.values(), None);
+            }
+            reassembly.add(&Piece::of(&values, 7).unwrap());
+            prop_assert!(reassembly.values().is_some());
 
             let mut other = values;
             other[wrong] = f64::from_bits(bits[wrong] ^ 1 << flip);

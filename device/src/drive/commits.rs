@@ -8,8 +8,9 @@ use crepitus_protocol::{Revision, ValueError, Values};
 /// Received commits and their outcomes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Commits {
-    /// The latest commit, until its preparation begins.
-    pending: Option<(Revision, Reassembly)>,
+    /// The latest commit, until its preparation begins, and its pieces.
+    pending: Option<Revision>,
+    reassembly: Reassembly,
     /// The latest revision received since this boot of comms.
     latest: Option<Revision>,
     /// The revision prepared last; it takes effect with a block.
@@ -43,22 +44,18 @@ impl Commits {
         if is_known {
             return true;
         }
-        let is_begun = self.pending.as_ref().is_some_and(|(pending, reassembly)| {
-            *pending == revision && reassembly.checksum() == checksum
-        });
-        if !is_begun {
-            self.pending = Some((revision, Reassembly::new(checksum)));
+        if self.pending != Some(revision) || self.reassembly.checksum() != checksum {
+            self.pending = Some(revision);
+            self.reassembly.restart(checksum);
         }
-        if let Some((_, reassembly)) = &mut self.pending {
-            reassembly.add(piece);
-        }
+        self.reassembly.add(piece);
         false
     }
 
     /// Takes the pending commit once complete; see [`Self::verified`].
     pub fn take(&mut self) -> Option<(Revision, Reassembly)> {
-        self.pending
-            .take_if(|(_, reassembly)| reassembly.is_complete())
+        let complete = self.pending.take_if(|_| self.reassembly.is_complete())?;
+        Some((complete, self.reassembly))
     }
 
     /// Returns the values of a commit if its checksum is valid; comms repeats an

@@ -100,9 +100,9 @@ impl EmfCheck {
         let encoder_rad_s = counts as f32 * rad_per_count * (SHARE / TICK_S as f32);
         let resistive_v = motor.resistance_ohm * SHARE * self.current_sum_a;
         let inductive_v = motor.inductance_per_tick_ohm * SHARE * (last.current_a - self.first_a);
-        let share = 1.0 / motor.joint_constant;
-        let emf_rad_s = (mean_v - resistive_v - inductive_v) * share;
-        let slack_rad_s = SLACK_RAD_S + SLACK_SHARE * mean_v.abs() * share;
+        let rad_s_per_volt = motor.per_joint_constant;
+        let emf_rad_s = (mean_v - resistive_v - inductive_v) * rad_s_per_volt;
+        let slack_rad_s = SLACK_RAD_S + SLACK_SHARE * mean_v.abs() * rad_s_per_volt;
         let off_rad_s = emf_rad_s - encoder_rad_s;
         if off_rad_s > slack_rad_s {
             1

@@ -93,7 +93,7 @@ impl Motor {
     /// Runs one tick with a torque setpoint at the joint, N·m, T > 0 opposing
     /// growing angle. Without a measurement the bridge floats for this tick.
     pub fn drive(&mut self, torque_nm: f32, current_a: Option<f32>) -> Bridge {
-        let setpoint_a = -torque_nm * self.plan.amperes_per_nm;
+        let setpoint_a = -torque_nm * self.plan.per_joint_constant;
         self.before = self.bridge;
         self.bridge = match current_a {
             Some(measured_a) if measured_a.is_finite() && setpoint_a.is_finite() => {
@@ -117,7 +117,7 @@ impl Motor {
         let emf_v = volts
             - self.plan.resistance_ohm * mean_a
             - self.plan.inductance_per_tick_ohm * (measured_a - self.measured_a);
-        let measured_rad_s = emf_v / self.plan.joint_constant;
+        let measured_rad_s = emf_v * self.plan.per_joint_constant;
         self.emf_rad_s += EMF_SHARE * (measured_rad_s - self.emf_rad_s);
     }
 

@@ -91,8 +91,8 @@ pub struct MotorPlan {
     pub current_loop: CurrentLoop<f32>,
     /// Torque at the joint for one ampere, N·m/A, and V·s/rad.
     pub joint_constant: f32,
-    /// 1/`joint_constant`.
-    pub amperes_per_nm: f32,
+    /// Its reciprocal, A/N·m and rad/(V·s).
+    pub per_joint_constant: f32,
     /// Assumed resistance of the winding, Ω.
     pub resistance_ohm: f32,
     /// Inductance over a tick, Ω: voltage for a change of 1 A per tick.
@@ -335,7 +335,7 @@ fn motor(settings: &DeviceSettings) -> Result<MotorPlan, SettingsError> {
         current_loop: CurrentLoop::new(&settings.current_loop, TICK_S)?
             .with_largest_duty(LARGEST_DUTY),
         joint_constant: single(constant),
-        amperes_per_nm: single(1.0 / constant),
+        per_joint_constant: single(1.0 / constant),
         resistance_ohm: single(resistance_ohm),
         inductance_per_tick_ohm: single(inductance_h / TICK_S),
         duty_per_volt: single(1.0 / supply_v),
