@@ -40,7 +40,7 @@ const LOOK_UNITS: u64 = 3_360;
 
 /// The library counts the eight words of a frame as separate loads and stores,
 /// in addition to the 12 and 10 cycles that include them: this number of
-/// cycles too many at every entry and every return. `tests/timing.rs` has the
+/// cycles too many at every entry and every return. `tests/timing` has the
 /// known answer. Its own cycle counter, DWT, is not corrected.
 const FRAME_CYCLES: u64 = 8;
 

@@ -1,0 +1,4 @@
+//! Timing of tiny programs.
+
+mod assembler;
+mod core;
