@@ -11,6 +11,7 @@
 //! read with its value at the start of the instruction.
 
 mod as_mcu;
+mod exception_state;
 
 use crate::chip::Chip;
 use crate::chip::clocks::Clock;
@@ -57,6 +58,8 @@ pub struct Stm32f405 {
     /// Number of active exceptions.
     active: u32,
     is_hung: bool,
+    /// See [`Self::correct_exceptions`].
+    corrects_exceptions: bool,
     /// At the pins of the encoder's channels.
     encoder: [bool; 2],
     resets: Vec<(Time, Reset)>,
@@ -89,6 +92,7 @@ impl Stm32f405 {
             cycles: 0,
             active: 0,
             is_hung: false,
+            corrects_exceptions: false,
             encoder: [false; 2],
             resets: Vec::new(),
         };
@@ -122,6 +126,13 @@ impl Stm32f405 {
     /// [`Watch::ram_access`] from now on, while it is watched.
     pub fn observe_ram(&mut self, ranges: &[Range<u32>]) {
         self.memory.observe(ranges);
+    }
+
+    /// Keeps `ITSTATE` and `FPSCR` over exceptions from now on, which the
+    /// library loses: an interrupt within an `IT` block, or between `VCMP` and
+    /// `VMRS`, changes what the interrupted code does.
+    pub fn correct_exceptions(&mut self) {
+        self.corrects_exceptions = true;
     }
 
     /// Changes words of flash, as if another image had been flashed.
@@ -204,8 +215,20 @@ impl Stm32f405 {
         }
     }
 
-    /// One step of the core, and its cycles.
+    /// One step of the core, and its cycles; its exceptions corrected, if that is
+    /// asked for.
     fn step(&mut self) -> u64 {
+        if !self.corrects_exceptions {
+            return self.step_as_it_is();
+        }
+        let before = self.keep_exception_state();
+        let cycles = self.step_as_it_is();
+        self.restore_exception_state(&before);
+        cycles
+    }
+
+    /// One step as the library does it, with frames counted once.
+    fn step_as_it_is(&mut self) -> u64 {
         let cycles = self.core.step();
         if cycles < ENTRY_OR_RETURN {
             return cycles;
