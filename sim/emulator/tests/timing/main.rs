@@ -1,5 +1,9 @@
-//! Timing of tiny programs, and what a core keeps over an exception.
+//! Timing of tiny programs, and of the flash interface alone.
 
 mod assembler;
 mod core;
 mod exceptions;
+mod flash;
+mod reference;
+mod reference_flash;
+mod registers;
