@@ -8,8 +8,8 @@
 //! ```
 //!
 //! The contents are elsewhere: this is only when they are there. Cycles are those of the core's
-//! clock, counted from anywhere. [Decision 92](../../../../docs/decisions.md) has the assumptions
-//! that go beyond the manual.
+//! clock, counted from anywhere. Decision 92 in docs/decisions.md has the
+//! assumptions that go beyond the manual.
 
 mod line_cache;
 

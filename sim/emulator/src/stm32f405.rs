@@ -141,9 +141,8 @@ impl Stm32f405 {
     }
 
     /// Models the waits for flash and for registers from now on: an estimate
-    /// from the reference manual, see [`crate::flash_interface`] and
-    /// [Decision 92](../../../../docs/decisions.md). Without it the core
-    /// never waits. Includes [`Self::correct_exceptions`].
+    /// from the reference manual, see [`crate::flash_interface`] and decision 92
+    /// in docs/decisions.md. Without it the core never waits. Includes [`Self::correct_exceptions`].
     pub fn model_flash(&mut self) {
         self.correct_exceptions();
         let waits = &self.chip.bus.waits;
