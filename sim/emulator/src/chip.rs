@@ -10,10 +10,13 @@
 //! to the reset. Not wired: timers to each other, pins to EXTI.
 
 pub(crate) mod bus;
+mod bus_waits;
 pub(crate) mod clocks;
 pub(crate) mod memory;
 pub(crate) mod part;
 pub(crate) mod state_hash;
+mod timed_flash;
+mod waits;
 pub(crate) mod wires;
 
 use crate::devices::adc::{self, Adc, Adcs, Analog};

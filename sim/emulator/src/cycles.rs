@@ -5,6 +5,10 @@
 //! taken three, entry into an exception 12, the return 10, from one straight to
 //! the next 6. A core on silicon is faster where it overlaps loads, and slower
 //! where flash makes it wait.
+//!
+//! Modelled flash: the same, and the waits of
+//! [`model_flash`](crate::Stm32f405::model_flash), which [`Cost::waits`] counts
+//! separately too.
 
 use crate::mcu::{Step, Watch};
 use crate::time::Time;
@@ -17,6 +21,8 @@ pub struct Cost {
     pub calls: u64,
     /// All cycles.
     pub cycles: u64,
+    /// Cycles of them in which the core waited for flash or a register.
+    pub waits: u64,
     /// Cycles of the worst run.
     pub worst_cycles: u64,
     /// All instructions.
@@ -33,6 +39,12 @@ impl Cost {
     pub fn mean_cycles(&self) -> f64 {
         self.cycles as f64 / self.calls.max(1) as f64
     }
+
+    /// Mean cycles of a run in which the core waited.
+    #[expect(clippy::cast_precision_loss, reason = "for people")]
+    pub fn mean_waits(&self) -> f64 {
+        self.waits as f64 / self.calls.max(1) as f64
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +52,7 @@ struct Run {
     exception: u16,
     begin: Time,
     cycles: u64,
+    waits: u64,
     instructions: u64,
 }
 
@@ -112,14 +125,15 @@ impl Cycles {
             let pair = (below.exception, step.exception);
             *self.preemptions.entry(pair).or_default() += 1;
         }
-        self.begin_run(step, u64::from(step.cycles));
+        self.begin_run(step, u64::from(step.cycles), u64::from(step.waits));
     }
 
-    fn begin_run(&mut self, step: &Step, cycles: u64) {
+    fn begin_run(&mut self, step: &Step, cycles: u64, waits: u64) {
         self.runs.push(Run {
             exception: step.exception,
             begin: step.at,
             cycles,
+            waits,
             instructions: 0,
         });
     }
@@ -129,6 +143,7 @@ impl Cycles {
         let cost = self.costs.entry(run.exception).or_default();
         cost.calls += 1;
         cost.cycles += run.cycles;
+        cost.waits += run.waits;
         cost.worst_cycles = cost.worst_cycles.max(run.cycles);
         cost.instructions += run.instructions;
         cost.worst_instructions = cost.worst_instructions.max(run.instructions);
@@ -146,6 +161,7 @@ impl Watch for Cycles {
         }
         if let Some(run) = self.runs.last_mut() {
             run.cycles += u64::from(step.cycles);
+            run.waits += u64::from(step.waits);
             run.instructions += 1;
         }
         while depth < self.runs.len() {
@@ -155,7 +171,7 @@ impl Watch for Cycles {
         if top.is_some_and(|run| run.exception != step.exception) {
             // Tail-chaining, charged to the first.
             self.end(step.at);
-            self.begin_run(step, 0);
+            self.begin_run(step, 0, 0);
         }
     }
 }

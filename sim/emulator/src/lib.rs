@@ -11,6 +11,7 @@
 //! | configuration registers as a table | [`registers`] |
 //! | setup of pins | [`pins`] |
 //! | cycles of a task | [`cycles`] |
+//! | wait states and caches of flash | [`flash_interface`] |
 //! | cost of a step of each solver | [`ladder`] |
 //! | building and reading images | [`firmware`], [`image`] |
 //! | the ladder as an optional feature | [`on_target`] |
@@ -19,9 +20,14 @@
 //! to the last bit of memory.
 //!
 //! # What is not modelled
-//! Wait states of flash and its cache, contention on the bus, time that DMA
-//! takes: cycles are *modelled, 0 wait states*, never measured. Start-up of
-//! crystal and PLL is shortened. [`mcu::Mcu::not_modelled`] lists features
+//! By default, wait states of flash and registers: cycles are then *modelled,
+//! 0 wait states*. [`Stm32f405::model_flash`] adds them: *modelled flash*, an
+//! estimate from the reference manual, not measured on hardware. In both,
+//! contention with the DMA, the write buffer and the core's own fetches ahead
+//! are left out. Start-up of crystal and PLL is shortened.
+//!
+//! The library loses `ITSTATE` and `FPSCR` when an exception is taken;
+//! [`Stm32f405::correct_exceptions`] keeps them. [`mcu::Mcu::not_modelled`] lists features
 //! that a program has used although they are not modelled.
 #![forbid(unsafe_code)]
 
@@ -35,6 +41,8 @@ mod devices;
 pub mod drive_board;
 #[cfg(feature = "core")]
 pub mod firmware;
+#[cfg(feature = "core")]
+pub mod flash_interface;
 #[cfg(feature = "core")]
 pub mod image;
 #[cfg(feature = "core")]

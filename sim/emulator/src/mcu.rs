@@ -95,6 +95,9 @@ pub struct Step {
     pub active: u32,
     /// Cycles that it took.
     pub cycles: u32,
+    /// Cycles of them in which the core waited for flash or a register; 0 unless
+    /// they are modelled.
+    pub waits: u32,
     /// When it began.
     pub at: Time,
 }

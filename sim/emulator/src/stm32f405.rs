@@ -11,10 +11,13 @@
 //! read with its value at the start of the instruction.
 
 mod as_mcu;
+mod exception_state;
 
 use crate::chip::Chip;
+use crate::chip::bus::FLASH_ACR;
 use crate::chip::clocks::Clock;
 use crate::chip::memory::Memory;
+use crate::flash_interface::FlashRead;
 use crate::image::Image;
 use crate::mcu::{Mcu, Pin, RamAccess, Reset, Step, Watch};
 use crate::pins::Mode;
@@ -40,7 +43,7 @@ const LOOK_UNITS: u64 = 3_360;
 
 /// The library counts the eight words of a frame as separate loads and stores,
 /// in addition to the 12 and 10 cycles that include them: this number of
-/// cycles too many at every entry and every return. `tests/timing.rs` has the
+/// cycles too many at every entry and every return. `tests/timing` has the
 /// known answer. Its own cycle counter, DWT, is not corrected.
 const FRAME_CYCLES: u64 = 8;
 
@@ -54,9 +57,13 @@ pub struct Stm32f405 {
     memory: Memory,
     now: u64,
     cycles: u64,
+    /// Cycles of the core's clock, those in which it sleeps too.
+    clock: u64,
     /// Number of active exceptions.
     active: u32,
     is_hung: bool,
+    /// See [`Self::correct_exceptions`].
+    corrects_exceptions: bool,
     /// At the pins of the encoder's channels.
     encoder: [bool; 2],
     resets: Vec<(Time, Reset)>,
@@ -87,8 +94,10 @@ impl Stm32f405 {
             memory,
             now: 0,
             cycles: 0,
+            clock: 0,
             active: 0,
             is_hung: false,
+            corrects_exceptions: false,
             encoder: [false; 2],
             resets: Vec::new(),
         };
@@ -122,6 +131,42 @@ impl Stm32f405 {
     /// [`Watch::ram_access`] from now on, while it is watched.
     pub fn observe_ram(&mut self, ranges: &[Range<u32>]) {
         self.memory.observe(ranges);
+    }
+
+    /// Keeps `ITSTATE` and `FPSCR` over exceptions from now on, which the
+    /// library loses: an interrupt within an `IT` block, or between `VCMP` and
+    /// `VMRS`, changes what the interrupted code does.
+    pub fn correct_exceptions(&mut self) {
+        self.corrects_exceptions = true;
+    }
+
+    /// Models the waits for flash and for registers from now on: an estimate
+    /// from the reference manual, see [`crate::flash_interface`] and decision 92
+    /// in docs/decisions.md. Without it the core never waits. Includes [`Self::correct_exceptions`].
+    pub fn model_flash(&mut self) {
+        self.correct_exceptions();
+        let waits = &self.chip.bus.waits;
+        if !waits.is_on() {
+            waits.switch_on();
+            self.memory.time_flash(&self.chip);
+            let register = self.peek(FLASH_ACR).unwrap_or(0);
+            self.chip.bus.waits.set_register(register);
+        }
+    }
+
+    /// Empties the caches of flash.
+    pub fn clear_flash_caches(&mut self) {
+        self.chip.bus.waits.clear();
+    }
+
+    /// Records the core's reads of flash from now on, if they are modelled.
+    pub fn record_flash_reads(&mut self) {
+        self.chip.bus.waits.record();
+    }
+
+    /// Takes the reads of flash since the last call.
+    pub fn take_flash_reads(&mut self) -> Vec<FlashRead> {
+        self.chip.bus.waits.take_reads()
     }
 
     /// Changes words of flash, as if another image had been flashed.
@@ -204,8 +249,30 @@ impl Stm32f405 {
         }
     }
 
-    /// One step of the core, and its cycles.
-    fn step(&mut self) -> u64 {
+    /// One step of the core: its cycles, and those of them in which it waited.
+    fn step(&mut self) -> (u64, u64) {
+        if !self.chip.bus.waits.is_on() {
+            return (self.correct_step(), 0);
+        }
+        self.chip.bus.waits.begin(self.clock);
+        let cycles = self.correct_step();
+        let waits = self.chip.bus.waits.end();
+        (cycles + waits, waits)
+    }
+
+    /// One step with its exceptions corrected, if that is asked for.
+    fn correct_step(&mut self) -> u64 {
+        if !self.corrects_exceptions {
+            return self.step_without_waits();
+        }
+        let before = self.keep_exception_state();
+        let cycles = self.step_without_waits();
+        self.restore_exception_state(&before);
+        cycles
+    }
+
+    /// One step as the library does it, with frames counted once.
+    fn step_without_waits(&mut self) -> u64 {
         let cycles = self.core.step();
         if cycles < ENTRY_OR_RETURN {
             return cycles;
@@ -229,7 +296,7 @@ impl Stm32f405 {
             self.chip.bus.now.store(self.now, Relaxed);
             let before = WATCHED.then(|| self.before());
             let pc = before.map_or(0, |before| before.pc);
-            let cycles = self.step();
+            let (cycles, waits) = self.step();
             if let Some(before) = before {
                 for (address, is_write) in self.memory.take_accesses() {
                     watch.ram_access(&RamAccess {
@@ -243,6 +310,7 @@ impl Stm32f405 {
                     exception: self.core.current_exception().0,
                     active: self.active,
                     cycles: u32::try_from(cycles).unwrap_or(u32::MAX),
+                    waits: u32::try_from(waits).unwrap_or(u32::MAX),
                     at: Time::from_units(self.now),
                 });
             }
@@ -250,9 +318,11 @@ impl Stm32f405 {
                 // Whole cycles, so that the core keeps its phase.
                 let asleep = (stop - self.now).div_ceil(units).max(1);
                 self.now += asleep * units;
+                self.clock += asleep;
                 break;
             }
             self.cycles += cycles;
+            self.clock += cycles;
             self.now += cycles * units;
             if self.chip.bus.is_touched() {
                 self.settle();

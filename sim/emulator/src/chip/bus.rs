@@ -1,11 +1,14 @@
 //! The peripheral bus: finds the part at an address, brings it up to date,
 //! and detects what the access has changed.
 
+use super::bus_waits;
 use super::clocks::Rates;
 use super::part::{Part, lock};
+use super::waits::Waits;
 use crate::mcu::Access;
 use crate::time::Time;
 use rsemu::core::space::{MemAttrs, MemOps, MemResult};
+use rsemu::cpu::arm::v7m::Config;
 use rsemu::dev::stm32::dma::Dma;
 use rsemu::dev::stm32::rcc::Rcc;
 use std::collections::BTreeSet;
@@ -18,7 +21,10 @@ const PAGE: u32 = 0x400;
 
 /// From here on parts are on the AHB. Below, on an APB, there are only words:
 /// the bridge repeats half a word, or a byte, over all of it (RM0090 2.1).
-const AHB: u32 = 0x4002_0000;
+pub(super) const AHB: u32 = 0x4002_0000;
+
+/// `FLASH_ACR`, which decides how long the core waits for flash.
+pub(crate) const FLASH_ACR: u32 = 0x4002_3c00;
 
 /// Registers of the ports that decide what a pin is connected to: all but those
 /// of levels.
@@ -42,6 +48,7 @@ pub(crate) struct Bus {
     rcc: Arc<Rcc>,
     rcc_place: usize,
     dma: [Arc<Dma>; 2],
+    pub(crate) waits: Arc<Waits>,
     /// A part has been accessed: deadlines and requests may have changed.
     is_touched: AtomicBool,
     /// The setup of a pin may have changed.
@@ -72,6 +79,7 @@ impl Bus {
             now,
             rcc,
             dma,
+            waits: Arc::default(),
             is_touched: AtomicBool::new(true),
             pins_changed: AtomicBool::new(false),
             touched: Mutex::default(),
@@ -242,6 +250,14 @@ impl Bus {
         });
     }
 
+    /// Counts the waits of an access, if it is one of the core.
+    fn wait(&self, address: u32, attrs: MemAttrs) {
+        let is_core = attrs.requester == Config::CORTEX_M4F.requester;
+        if self.waits.is_on() && is_core && !attrs.debug {
+            self.waits.register(bus_waits::waits(address, &self.rates));
+        }
+    }
+
     fn stray(&self, address: u32) {
         lock(&self.strays).insert(address);
     }
@@ -268,6 +284,7 @@ impl Window {
 impl MemOps for Window {
     fn read(&self, offset: u64, into: &mut [u8], attrs: MemAttrs) -> MemResult {
         let (bus, address) = (&self.bus, self.address(offset));
+        bus.wait(address, attrs);
         let Some(place) = bus.place_of(address) else {
             if !attrs.debug {
                 bus.stray(address);
@@ -307,6 +324,7 @@ impl MemOps for Window {
 
     fn write(&self, offset: u64, from: &[u8], attrs: MemAttrs) -> MemResult {
         let (bus, address) = (&self.bus, self.address(offset));
+        bus.wait(address, attrs);
         let place = bus.place_of(address);
         let is_clocked = |place: &usize| bus.parts[*place].is_clocked.load(Relaxed);
         let Some(place) = place.filter(is_clocked) else {
@@ -332,6 +350,11 @@ impl MemOps for Window {
         };
         if place == bus.rcc_place {
             bus.look_at_gates();
+        }
+        if address & !3 == FLASH_ACR && bus.waits.is_on() {
+            let mut word = [0; 4];
+            part.registers.read(0, &mut word, MemAttrs::DEBUG)?;
+            bus.waits.set_register(u32::from_le_bytes(word));
         }
         result
     }

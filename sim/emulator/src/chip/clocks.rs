@@ -10,6 +10,8 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 pub(crate) enum Clock {
     /// The core, its memory and the DMA.
     Core,
+    /// APB1.
+    Apb1,
     /// APB2.
     Apb2,
     /// Timers of APB1.
@@ -26,8 +28,9 @@ pub(crate) enum Clock {
     Time,
 }
 
-const CLOCKS: [Clock; 8] = [
+const CLOCKS: [Clock; 9] = [
     Clock::Core,
+    Clock::Apb1,
     Clock::Apb2,
     Clock::Timers1,
     Clock::Timers2,
@@ -83,6 +86,7 @@ impl Rates {
         }
         for (clock, output) in [
             (Clock::Core, ClockOutput::HCLK),
+            (Clock::Apb1, ClockOutput::PCLK1),
             (Clock::Apb2, ClockOutput::PCLK2),
             (Clock::Timers1, ClockOutput::TIMCLK1),
             (Clock::Timers2, ClockOutput::TIMCLK2),

@@ -11,12 +11,15 @@
 
 use super::Chip;
 use super::bus::Window;
+use super::timed_flash::TimedFlash;
+use crate::image::FLASH;
 use crate::observed_ram::ObservedRam;
 use rsemu::core::device::Device;
 use rsemu::core::space::{AddressSpace, Mapping, RamStore, Region, RegionRef, RequesterId};
 use std::ops::Range;
 use std::sync::Arc;
 
+const FLASH_BYTES: u64 = 1 << 20;
 const RAM: u32 = 0x2000_0000;
 const RAM_BYTES: u64 = 128 << 10;
 const CCM_BYTES: u64 = 64 << 10;
@@ -98,6 +101,18 @@ impl Memory {
         observed.map_or_else(Vec::new, |observed| observed.take())
     }
 
+    /// Counts waits of the core for flash from now on.
+    pub(crate) fn time_flash(&self, chip: &Chip) {
+        let flash = chip.flash.region("array").expect("flash has an array");
+        let timed = Arc::new(TimedFlash::new(&flash, chip.bus.waits.clone()));
+        for base in [0, u64::from(FLASH)] {
+            let region = Region::io("timed flash", FLASH_BYTES, timed.clone());
+            let mapping = Mapping::new(region, base).with_priority(1);
+            let mapped = self.space.topology().map_with(mapping);
+            mapped.expect("a mapping of higher priority may overlap");
+        }
+    }
+
     /// Makes the content undefined, as after power was off.
     pub(crate) fn forget(&self) {
         let noise = |size: u64| -> Vec<u8> {
@@ -117,7 +132,7 @@ fn window(chip: &Chip, base: u32, bytes: u64) -> RegionRef {
     Arc::new(Region::io("peripherals", bytes, Arc::new(window)))
 }
 
-fn map(space: &AddressSpace, region: &RegionRef, base: u64) {
+pub(super) fn map(space: &AddressSpace, region: &RegionRef, base: u64) {
     let mapped = space.topology().map(region.clone(), base);
     mapped.expect("regions do not overlap");
 }

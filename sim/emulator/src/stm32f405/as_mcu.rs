@@ -119,6 +119,8 @@ impl Mcu for Stm32f405 {
         self.is_hung = false;
         self.active = 0;
         self.chip.bus.reset();
+        self.chip.bus.waits.clear();
+        self.chip.bus.waits.set_register(0);
         self.core.reset(ResetKind::Cold);
         for name in match reset {
             Reset::PowerOn => &["porrst", "borrst", "pinrst"][..],

@@ -13,6 +13,27 @@ use crepitus_protocol::{Decoder, Lane, Nonce, Revision, Session};
 use crepitus_scene::{Overrides, Scene};
 use std::path::Path;
 
+/// Timing of flash and of registers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Flash {
+    /// The core never waits.
+    ZeroWaitStates,
+    /// It waits as the reference manual says.
+    Modelled,
+}
+
+impl Flash {
+    pub(crate) const BOTH: [Self; 2] = [Self::ZeroWaitStates, Self::Modelled];
+
+    /// What figures are.
+    pub(crate) fn label(self) -> &'static str {
+        match self {
+            Self::ZeroWaitStates => "modelled, 0 wait states",
+            Self::Modelled => "modelled flash",
+        }
+    }
+}
+
 /// Ticks between two renewals of the lease: 50 ms.
 const RENEWAL_TICKS: u64 = 1_000;
 
@@ -58,12 +79,20 @@ impl Host {
         Self::listening(image, scene, &[])
     }
 
+    /// As [`Self::listening`], with this timing from the first instruction on.
+    pub(crate) fn timed(image: &Image, scene: &Scene, registers: &[u32], flash: Flash) -> Self {
+        let mut host = Self::switched_on(image, scene, registers);
+        if flash == Flash::Modelled {
+            host.board.mcu_mut().model_flash();
+        }
+        host.boot();
+        host
+    }
+
     /// With accesses to these registers written down from the first
     /// instruction on.
     pub(crate) fn listening(image: &Image, scene: &Scene, registers: &[u32]) -> Self {
-        let mut host = Self::switched_on(image, scene, registers);
-        host.boot();
-        host
+        Self::timed(image, scene, registers, Flash::ZeroWaitStates)
     }
 
     /// As [`Self::new`], with `locks` checked from the first instruction on.

@@ -4,10 +4,13 @@ mod boot;
 mod budget;
 mod commits;
 mod faults;
+mod flash;
 mod host;
 mod killed;
 mod locks;
 mod outputs;
+#[path = "../timing/reference_flash.rs"]
+mod reference_flash;
 mod registers;
 mod replay;
 mod self_test;

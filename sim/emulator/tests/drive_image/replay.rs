@@ -5,7 +5,7 @@
 //! the DMA has come. The native drive is given just that, at the same places
 //! of its program, and has to send the same blocks.
 
-use crate::host::{Host, examination, image};
+use crate::host::{Flash, Host, examination, image};
 use crepitus_device::Drive;
 use crepitus_device::drive::Boot;
 use crepitus_device::drive::command::Inputs;
@@ -155,8 +155,17 @@ impl Replay<'_> {
 
 #[test]
 fn twenty_thousand_ticks_are_those_of_the_native_drive_bit_for_bit() {
+    check(Flash::ZeroWaitStates);
+}
+
+#[test]
+fn with_the_modelled_flash_too() {
+    check(Flash::Modelled);
+}
+
+fn check(flash: Flash) {
     let Some(image) = image() else { return };
-    let mut host = Host::listening(&image, &examination(), &REGISTERS);
+    let mut host = Host::timed(&image, &examination(), &REGISTERS, flash);
     host.arm();
     host.run(TICKS as u64 + 500);
     let accesses = host.board.mcu_mut().take_accesses();

@@ -1,75 +1,17 @@
 //! Timing whose answer is known: what the architecture's manual says of a
 //! Cortex-M4 without wait states.
 
+use crate::assembler::{Assembler, RAM, UNITS, image};
 use crepitus_emulator::cycles::Cycles;
 use crepitus_emulator::{Image, Mcu, Stm32f405, Time};
 use std::collections::BTreeSet;
 
-const TIM2: u32 = 0x4000_0000;
-const RAM: u32 = 0x2000_0000;
-
-/// The internal oscillator of 16 MHz, with which the chip starts: units of
-/// time in a cycle.
-const UNITS: u64 = 21;
-
-/// A program, half a word at a time.
-#[derive(Default)]
-struct Assembler(Vec<u16>);
-
-impl Assembler {
-    /// `movw`, `movt`.
-    fn load(&mut self, register: u16, value: u32) -> &mut Self {
-        for (operation, half) in [(0xf240, value & 0xffff), (0xf2c0, value >> 16)] {
-            let half = u16::try_from(half).unwrap();
-            let (top, i) = (half >> 12, half >> 11 & 1);
-            self.0.push(operation | i << 10 | top);
-            self.0
-                .push((half >> 8 & 7) << 12 | register << 8 | half & 0xff);
-        }
-        self
-    }
-
-    /// `str value, [base, #offset]`
-    fn store(&mut self, value: u16, base: u16, offset: u16) -> &mut Self {
-        self.raw(0x6000 | ((offset / 4) << 6) | (base << 3) | value)
-    }
-
-    /// `ldr value, [base, #offset]`
-    fn fetch(&mut self, value: u16, base: u16, offset: u16) -> &mut Self {
-        self.raw(0x6800 | ((offset / 4) << 6) | (base << 3) | value)
-    }
-
-    fn raw(&mut self, instruction: u16) -> &mut Self {
-        self.0.push(instruction);
-        self
-    }
-}
-
-/// Where the program and the handler of TIM2 begin.
-const PROGRAM: usize = 0x200;
-const HANDLER: usize = 0x300;
-
-fn image(program: &Assembler, handler: &Assembler) -> Image {
-    let mut flash = vec![0xff; 0x400];
-    let mut vector = |number: usize, value: usize| {
-        let value = u32::try_from(value).unwrap().to_le_bytes();
-        flash[4 * number..4 * number + 4].copy_from_slice(&value);
-    };
-    vector(0, 0x2000_8000);
-    vector(1, 0x0800_0001 + PROGRAM);
-    vector(16 + 28, 0x0800_0001 + HANDLER);
-    for (begin, code) in [(PROGRAM, program), (HANDLER, handler)] {
-        for (place, half) in flash[begin..].chunks_mut(2).zip(&code.0) {
-            place.copy_from_slice(&half.to_le_bytes());
-        }
-    }
-    Image::of_flash(&flash)
-}
+pub(crate) const TIM2: u32 = 0x4000_0000;
 
 /// TIM2 overflows every `period` clocks of the core; what then goes on for
 /// ever is `rest`. The handler writes what the counter says, as its first
 /// instruction reads it, to RAM.
-fn latency_image(period: u32, rest: &[u16]) -> Image {
+pub(crate) fn latency_image(period: u32, rest: &[u16]) -> Image {
     let mut program = Assembler::default();
     // Clock of TIM2 on.
     program.load(0, 0x4002_3840).load(1, 1).store(1, 0, 0);

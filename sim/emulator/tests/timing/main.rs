@@ -1,0 +1,9 @@
+//! Timing of tiny programs, and of the flash interface alone.
+
+mod assembler;
+mod core;
+mod exceptions;
+mod flash;
+mod reference;
+mod reference_flash;
+mod registers;
