@@ -18,7 +18,7 @@
 //! | `commits` | 1, 0 | handing over a commit |
 //!
 //! Parameters go from `link` by `commits` to `idle`, which computes step
-//! coefficients from them; as a block begins the two tasks apply their halves.
+//! coefficients from them; between two blocks the two tasks apply their halves.
 //! Only `idle` logs, and nothing blocks.
 #![no_std]
 #![no_main]

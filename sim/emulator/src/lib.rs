@@ -26,9 +26,8 @@
 //! contention with the DMA, the write buffer and the core's own fetches ahead
 //! are left out. Start-up of crystal and PLL is shortened.
 //!
-//! The library loses `ITSTATE` and `FPSCR` when an exception is taken;
-//! [`Stm32f405::correct_exceptions`] keeps them. [`mcu::Mcu::not_modelled`] lists features
-//! that a program has used although they are not modelled.
+//! [`mcu::Mcu::not_modelled`] lists features that a program has used although they
+//! are not modelled.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "core")]

@@ -22,6 +22,7 @@ use crate::image::Image;
 use crate::mcu::{Mcu, Pin, RamAccess, Reset, Step, Watch};
 use crate::pins::Mode;
 use crate::time::Time;
+use exception_state::Before;
 use rsemu::core::wire::Level;
 use rsemu::cpu::arm::v7m::{ArmV7m, Config};
 use std::ops::Range;
@@ -47,8 +48,8 @@ const LOOK_UNITS: u64 = 3_360;
 /// known answer. Its own cycle counter, DWT, is not corrected.
 const FRAME_CYCLES: u64 = 8;
 
-/// No entry and no return takes less, counted like that.
-const ENTRY_OR_RETURN: u64 = 18;
+/// No change of the exception takes less: that from one straight to the next.
+const CHAINING: u64 = 6;
 
 /// The microcontroller.
 pub struct Stm32f405 {
@@ -62,8 +63,6 @@ pub struct Stm32f405 {
     /// Number of active exceptions.
     active: u32,
     is_hung: bool,
-    /// See [`Self::correct_exceptions`].
-    corrects_exceptions: bool,
     /// At the pins of the encoder's channels.
     encoder: [bool; 2],
     resets: Vec<(Time, Reset)>,
@@ -97,7 +96,6 @@ impl Stm32f405 {
             clock: 0,
             active: 0,
             is_hung: false,
-            corrects_exceptions: false,
             encoder: [false; 2],
             resets: Vec::new(),
         };
@@ -133,18 +131,10 @@ impl Stm32f405 {
         self.memory.observe(ranges);
     }
 
-    /// Keeps `ITSTATE` and `FPSCR` over exceptions from now on, which the
-    /// library loses: an interrupt within an `IT` block, or between `VCMP` and
-    /// `VMRS`, changes what the interrupted code does.
-    pub fn correct_exceptions(&mut self) {
-        self.corrects_exceptions = true;
-    }
-
     /// Models the waits for flash and for registers from now on: an estimate
     /// from the reference manual, see [`crate::flash_interface`] and decision 92
-    /// in docs/decisions.md. Without it the core never waits. Includes [`Self::correct_exceptions`].
+    /// in docs/decisions.md. Without it the core never waits.
     pub fn model_flash(&mut self) {
-        self.correct_exceptions();
         let waits = &self.chip.bus.waits;
         if !waits.is_on() {
             waits.switch_on();
@@ -252,36 +242,34 @@ impl Stm32f405 {
     /// One step of the core: its cycles, and those of them in which it waited.
     fn step(&mut self) -> (u64, u64) {
         if !self.chip.bus.waits.is_on() {
-            return (self.correct_step(), 0);
+            return (self.step_without_waits(), 0);
         }
         self.chip.bus.waits.begin(self.clock);
-        let cycles = self.correct_step();
+        let cycles = self.step_without_waits();
         let waits = self.chip.bus.waits.end();
         (cycles + waits, waits)
     }
 
-    /// One step with its exceptions corrected, if that is asked for.
-    fn correct_step(&mut self) -> u64 {
-        if !self.corrects_exceptions {
-            return self.step_without_waits();
-        }
-        let before = self.keep_exception_state();
-        let cycles = self.step_without_waits();
-        self.restore_exception_state(&before);
-        cycles
-    }
-
-    /// One step as the library does it, with frames counted once.
+    /// One step as the library does it, with frames counted once, and with the
+    /// state of what an exception interrupts.
     fn step_without_waits(&mut self) -> u64 {
+        let before = Before::step(&self.core);
         let cycles = self.core.step();
-        if cycles < ENTRY_OR_RETURN {
+        if cycles < CHAINING || before.is_same_exception(&self.core) {
             return cycles;
         }
         let active = self.core.with_sys(|sys| sys.active_count());
-        if std::mem::replace(&mut self.active, active) == active {
+        let was_active = std::mem::replace(&mut self.active, active);
+        if active >= was_active {
+            self.keep_flags(&before);
+        }
+        if active > was_active {
+            self.keep_it_block(&before);
+        }
+        if active == was_active {
             cycles
         } else {
-            cycles - FRAME_CYCLES
+            cycles.saturating_sub(FRAME_CYCLES)
         }
     }
 

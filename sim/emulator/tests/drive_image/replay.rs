@@ -129,8 +129,9 @@ impl Replay<'_> {
     }
 
     fn sample(&mut self, counter: u32) {
-        // The block that the next command puts its sample into.
-        let block = self.pushed / BLOCK_SAMPLES as u64 * BLOCK_SAMPLES as u64;
+        // The block of the sample after the next one: a plan is taken over before
+        // the first tick of its block.
+        let block = (self.pushed + 1) / BLOCK_SAMPLES as u64 * BLOCK_SAMPLES as u64;
         let in_force = self.revisions.get(&block);
         // When the idle loop was done with a commit shows in the blocks.
         if in_force.is_some_and(|revision| *revision != self.drive.revision()) {

@@ -6,21 +6,11 @@ use crepitus_emulator::cycles::Cycles;
 use crepitus_emulator::{Image, Mcu, Stm32f405, Time};
 use std::collections::BTreeSet;
 
-pub(crate) const TIM2: u32 = 0x4000_0000;
-
 /// TIM2 overflows every `period` clocks of the core; what then goes on for
 /// ever is `rest`. The handler writes what the counter says, as its first
 /// instruction reads it, to RAM.
 pub(crate) fn latency_image(period: u32, rest: &[u16]) -> Image {
-    let mut program = Assembler::default();
-    // Clock of TIM2 on.
-    program.load(0, 0x4002_3840).load(1, 1).store(1, 0, 0);
-    program.load(4, TIM2).load(6, RAM);
-    program.load(2, period - 1).store(2, 4, 0x2c);
-    // Interrupts of TIM2, there and in the core.
-    program.store(1, 4, 0x0c);
-    program.load(0, 0xe000_e100).load(2, 1 << 28).store(2, 0, 0);
-    program.store(1, 4, 0x00);
+    let mut program = Assembler::interrupted(period, 1);
     program.0.extend(rest);
     let mut handler = Assembler::default();
     handler.fetch(5, 4, 0x24);
