@@ -49,7 +49,6 @@ pub struct StepCoefficients<F> {
 /// The numbers that all others of an [`StepCoefficients`] follow from.
 struct Given<F> {
     step_s: F,
-    per_step: F,
     stiffness: F,
     inertia: F,
     damping: F,
@@ -62,7 +61,6 @@ impl<F: Real> Given<F> {
     fn coefficients(self) -> StepCoefficients<F> {
         let Self {
             step_s,
-            per_step,
             stiffness,
             inertia,
             damping,
@@ -70,28 +68,24 @@ impl<F: Real> Given<F> {
             static_nm,
             restart_nm,
         } = self;
-        // Reciprocals: a division takes as long as fourteen products, and a ramp
-        // comes here in every tick.
-        let compliance = F::ONE / stiffness;
-        let oscillator = Oscillator::new(stiffness, inertia, damping);
-        let ticks_per_radian = per_step / oscillator.omega_n();
+        let radians_per_step = (stiffness / inertia).sqrt() * step_s;
         StepCoefficients {
             step_s,
-            per_step,
+            per_step: F::ONE / step_s,
             stiffness,
             inertia,
             damping,
             kinetic_nm,
             static_nm,
             restart_nm,
-            kinetic_angle_rad: kinetic_nm * compliance,
-            static_angle_rad: static_nm * compliance,
-            restart_angle_rad: restart_nm * compliance,
+            kinetic_angle_rad: kinetic_nm / stiffness,
+            static_angle_rad: static_nm / stiffness,
+            restart_angle_rad: restart_nm / stiffness,
             drop_nm: static_nm - kinetic_nm,
-            impedance: inertia * oscillator.omega_n(),
-            ticks_per_half_radian: F::TWO * ticks_per_radian,
-            period: Ticks::new(F::from_f64(core::f64::consts::TAU) * ticks_per_radian),
-            oscillator,
+            impedance: (inertia * stiffness).sqrt(),
+            ticks_per_half_radian: F::TWO / radians_per_step,
+            period: Ticks::new(F::from_f64(core::f64::consts::TAU) / radians_per_step),
+            oscillator: Oscillator::new(stiffness, inertia, damping),
         }
     }
 }
@@ -109,7 +103,6 @@ impl<F: Real> StepCoefficients<F> {
         let p = &settings.parameters;
         let exact = Given {
             step_s,
-            per_step: 1.0 / step_s,
             stiffness: p.stiffness_nm_per_rad,
             inertia: p.inertia_kg_m2,
             damping: p.damping_nms_per_rad,
@@ -158,7 +151,6 @@ impl<F: Real> StepCoefficients<F> {
         let static_nm = between(self.static_nm, next.static_nm);
         Given {
             step_s: self.step_s,
-            per_step: self.per_step,
             stiffness: self.stiffness * stiffness_factor,
             inertia: self.inertia * inertia_factor,
             damping: between(self.damping, next.damping),

@@ -55,9 +55,8 @@ const SERIES_ANGLE_SQUARED: f64 = 0.3;
 impl<F: Real> Oscillator<F> {
     /// From kr, J and c.
     pub fn new(stiffness: F, inertia: F, damping: F) -> Self {
-        let per_inertia = F::ONE / inertia;
-        let omega_n_squared = stiffness * per_inertia;
-        let decay = F::HALF * damping * per_inertia;
+        let omega_n_squared = stiffness / inertia;
+        let decay = F::HALF * damping / inertia;
         // (ωn − a)(ωn + a): no cancellation near critical damping.
         let omega_n = omega_n_squared.sqrt();
         let discriminant = (omega_n - decay) * (omega_n + decay);
@@ -87,12 +86,6 @@ impl<F: Real> Oscillator<F> {
             root: F::from_f64(exact.root),
             jerk_factor: F::from_f64(exact.jerk_factor),
         }
-    }
-
-    /// ωn, rad/s.
-    #[inline]
-    pub(crate) fn omega_n(&self) -> F {
-        self.omega_n
     }
 
     /// The motion over `time_s` ≥ 0.
