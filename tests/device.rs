@@ -40,6 +40,14 @@ fn info_reports_identity_and_status() {
 }
 
 #[test]
+fn a_device_that_never_crashed_has_no_record() {
+    let records = json(&["info", "--crash"]);
+    assert_eq!(records, serde_json::json!({ "comms": null, "drive": null }));
+    let text = done(&["info", "--crash"]);
+    assert!(text.contains("drive   no crash since power-on"), "{text}");
+}
+
+#[test]
 fn the_doctor_finds_nothing_wrong() {
     let report = json(&["doctor"]);
     assert_eq!(report["fine"], true, "{report:#}");

@@ -32,6 +32,7 @@ use crate::counters::CommsCounters;
 use crate::self_test::SelfTest;
 use crate::usb_port::HostBytes;
 use crepitus_protocol::counters::CommsCounter;
+use crepitus_protocol::crash::Head;
 use crepitus_protocol::frame::Frame;
 use crepitus_protocol::link::FromDrive;
 use crepitus_protocol::management::{Answer, Identity};
@@ -47,7 +48,7 @@ use sample_checks::SampleChecks;
 use sessions::Sessions;
 use stream::Stream;
 use supervision::Supervision;
-use to_drive::ToDriveQueue;
+use to_drive::{ToDriveQueue, Wanted};
 
 /// Boot-time inputs of comms.
 #[derive(Clone, Copy, Debug, Default)]
@@ -64,6 +65,8 @@ pub struct Boot {
     pub saved: Option<(Revision, Values)>,
     /// Initial value of all counters: 0, except in a test of their wrap.
     pub counters: u32,
+    /// How the last program ended.
+    pub crash: Option<Head>,
 }
 
 /// Inputs from the peripherals.
@@ -116,6 +119,8 @@ pub struct Comms {
     stream: Stream,
     outbox: Outbox,
     save: Option<(Revision, Values)>,
+    /// How the last program ended.
+    crash: Option<Head>,
     /// Time of the requested reboot, ms.
     reboot_ms: Option<u64>,
 }
@@ -145,6 +150,7 @@ impl Comms {
             stream: Stream::default(),
             outbox: Outbox::default(),
             save: None,
+            crash: boot.crash,
             reboot_ms: None,
         }
     }
@@ -205,6 +211,7 @@ impl Comms {
                 // Replies that depend on it go out before the blocks that follow.
                 self.poll_job();
             }
+            Some(DriveMessage::Message(FromDrive::CrashPart(part))) => self.crash_part(&part),
             Some(DriveMessage::Management(Answer::Hello { own, .. })) => {
                 self.drive.set_identity(&own);
                 self.supervision.check_schema(own.schema);
@@ -226,10 +233,13 @@ impl Comms {
             .parameters
             .to_send(self.drive.revision(self.now_ms))
             .filter(|_| self.drive.is_present(self.now_ms));
-        let command = self.job.as_ref().and_then(Job::command);
-        let wants_hello = self.drive.identity().is_none();
-        self.to_drive
-            .next_frame(heartbeat, commit, command, wants_hello)
+        let wanted = Wanted {
+            commit,
+            command: self.job.as_ref().and_then(Job::command),
+            crash_part: self.job.as_ref().and_then(Job::crash_part),
+            hello: self.drive.identity().is_none(),
+        };
+        self.to_drive.next_frame(heartbeat, &wanted)
     }
 
     /// State of the device.

@@ -41,6 +41,7 @@ use crate::counters::Counters;
 use crate::self_test::SelfTest;
 use command::{Command, Inputs, Outputs};
 use commits::Commits;
+use crepitus_protocol::crash::{Head, NO_TICK_WORDS, Part, Ring, TICKS, Tick};
 use crepitus_protocol::frame::{FRAME_BYTES, Frame, FrameBuffer, SoftwareCrc};
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::{Fault, Revision, State, ValueError, Values};
@@ -64,6 +65,8 @@ pub struct Boot {
     pub tick: u64,
     /// Sequence number of the first block: 0, except in a test of the wrap.
     pub sequence: u16,
+    /// The post-mortem record.
+    pub crash: Option<Crash>,
 }
 
 /// The whole drive controller.
@@ -80,6 +83,30 @@ pub struct Drive {
     commits: Commits,
     prepared: Option<Prepared>,
     exchange: Exchange,
+    /// The last ticks.
+    last_ticks: Ring,
+    /// The post-mortem record.
+    crash: Option<Crash>,
+}
+
+/// A post-mortem record.
+#[derive(Clone, Copy, Debug)]
+pub struct Crash {
+    /// How the last program ended.
+    pub head: Head,
+    /// Its last ticks.
+    pub ticks: Ring,
+}
+
+impl Crash {
+    /// The word at a place of the record.
+    fn word(&self, place: usize) -> Option<u32> {
+        let words = self.head.words();
+        let ticks = self.ticks.as_flattened();
+        let word = words.get(place);
+        word.or_else(|| ticks.get(place.checked_sub(words.len())?))
+            .copied()
+    }
 }
 
 /// The link task's shared resources; here the tasks never run concurrently.
@@ -120,6 +147,8 @@ impl Drive {
             commits: Commits::default(),
             prepared: None,
             exchange: Exchange::new(boot.tick),
+            last_ticks: [NO_TICK_WORDS; TICKS],
+            crash: boot.crash,
         })
     }
 
@@ -134,8 +163,20 @@ impl Drive {
     /// `command_motor`, priority 4: half a tick later.
     pub fn command_motor(&mut self, inputs: &Inputs) -> Outputs {
         let plan = self.prepared.as_ref().map(|prepared| &prepared.command);
+        let ring = &mut self.last_ticks;
+        let keep = |tick: &Tick| {
+            if let Some(slot) = ring.get_mut(tick.slot()) {
+                *slot = tick.words();
+            }
+        };
         self.command
-            .tick(inputs, plan, &self.exchange, &self.counters)
+            .tick(inputs, plan, &self.exchange, &self.counters, keep)
+    }
+
+    /// The post-mortem record of a program that ends like this now.
+    pub fn ends(&self, head: Head) -> Crash {
+        let ticks = self.last_ticks;
+        Crash { head, ticks }
     }
 
     /// `idle`: prepares a pending commit once the previous one has settled.
@@ -162,16 +203,18 @@ impl Drive {
     /// `link`, priority 1: a byte from comms.
     pub fn link_received(&mut self, byte: u8) {
         let (link, mut parts, counters) = self.link();
-        link.received(byte, &mut parts, counters);
+        link.received(&mut SoftwareCrc, byte, &mut parts, counters);
     }
 
     /// The transmit half of `link`: encodes one piece of the current frame for
     /// comms, or starts the next one if it `has_buffer`. Returns a finished
     /// frame.
     pub fn link_to_send(&mut self, has_buffer: bool) -> Option<Frame> {
+        let crash = self.crash;
         let (link, mut parts, counters) = self.link();
         let buffer = || has_buffer.then_some([0; FRAME_BYTES]);
-        let made = link.next_frame(&mut SoftwareCrc, buffer, &mut parts, counters)?;
+        let part = |number| Part::of(number, |place| crash.as_ref()?.word(place));
+        let made = link.next_frame(&mut SoftwareCrc, part, buffer, &mut parts, counters)?;
         Some(made.frame())
     }
 

@@ -168,7 +168,9 @@ fn status(drive: &mut Drive) -> DriveStatus {
             if let Some(Ok(body)) = decoder.push(byte)
                 && body.lane() == Some(Lane::FromDrive)
             {
-                let FromDrive::Status(status) = body.message().unwrap();
+                let Some(FromDrive::Status(status)) = body.message() else {
+                    panic!("no status");
+                };
                 last = Some(status);
             }
         }

@@ -3,7 +3,7 @@
 //! The first complete frame after a delimiter is always received: the decoder
 //! discards and counts invalid bytes and resynchronises at the next zero byte.
 
-use crate::frame::{BODY_BYTES, CRC_BYTES, Checksum, DELIMITER, FRAME_BYTES};
+use crate::frame::{BODY_BYTES, CRC_BYTES, Checksum, DELIMITER, FRAME_BYTES, SoftwareCrc, WordCrc};
 use crate::lane::Lane;
 use crc::CRC_32_ISO_HDLC;
 use serde::Deserialize;
@@ -113,6 +113,15 @@ impl Decoder {
     /// Decodes the next byte; at a delimiter returns the frame or the error.
     /// Empty frames are ignored.
     pub fn push(&mut self, byte: u8) -> Option<Result<Body<'_>, FrameError>> {
+        self.push_by(&mut SoftwareCrc, byte)
+    }
+
+    /// The same, with most of the checksum by a unit.
+    pub fn push_by(
+        &mut self,
+        unit: &mut impl WordCrc,
+        byte: u8,
+    ) -> Option<Result<Body<'_>, FrameError>> {
         if byte != DELIMITER {
             if self.length == 0 {
                 self.reset();
@@ -120,10 +129,10 @@ impl Decoder {
             self.length = self.length.saturating_add(1);
             if self.left > 0 {
                 self.left = self.left.wrapping_sub(1);
-                self.add(byte);
+                self.add(unit, byte);
             } else {
                 if self.is_zero_due {
-                    self.add(0);
+                    self.add(unit, 0);
                 }
                 // Code 255: 254 bytes without a zero after them.
                 self.is_zero_due = byte != u8::MAX;
@@ -135,7 +144,7 @@ impl Decoder {
         if length == 0 {
             return None;
         }
-        self.update_checksum();
+        self.update_checksum(unit);
         let count = &mut self.discarded;
         // `FRAME_BYTES` includes the delimiter.
         if length >= FRAME_BYTES {
@@ -173,16 +182,16 @@ impl Decoder {
     /// Adds a byte of the body. Surplus bytes are dropped; the length shows
     /// that the frame is overlong.
     #[inline]
-    fn add(&mut self, byte: u8) {
+    fn add(&mut self, unit: &mut impl WordCrc, byte: u8) {
         if self.plain.push(byte).is_ok() && self.plain.len().wrapping_sub(self.summed) >= CHUNK {
-            self.update_checksum();
+            self.update_checksum(unit);
         }
     }
 
     /// Adds the received bytes to the checksum.
-    fn update_checksum(&mut self) {
+    fn update_checksum(&mut self, unit: &mut impl WordCrc) {
         if let Some(new) = self.plain.get(self.summed..) {
-            self.checksum.update(new);
+            self.checksum.update_by(unit, new);
             self.summed = self.plain.len();
         }
     }

@@ -57,6 +57,18 @@ impl Checksum {
         self.0 = !digest.finalize();
     }
 
+    /// With whole words by a unit.
+    #[inline]
+    pub(crate) fn update_by(&mut self, unit: &mut impl WordCrc, bytes: &[u8]) {
+        let (words, rest) = bytes.as_chunks();
+        if !words.is_empty() {
+            self.0 = unit.update(self.0, words);
+        }
+        if !rest.is_empty() {
+            self.update(rest);
+        }
+    }
+
     pub(crate) fn value(self) -> u32 {
         !self.0
     }
@@ -156,16 +168,10 @@ impl<P: BorrowMut<FrameBuffer>> Encoder<P> {
     /// [`TooLong`] if there is no room for them.
     #[inline]
     pub fn push_by(&mut self, unit: &mut impl WordCrc, bytes: &[u8]) -> Result<(), TooLong> {
+        self.checksum.update_by(unit, bytes);
         let (words, rest) = bytes.as_chunks();
-        if !words.is_empty() {
-            self.checksum.0 = unit.update(self.checksum.0, words);
-            self.put_words(words)?;
-        }
-        if !rest.is_empty() {
-            self.checksum.update(rest);
-            self.put(rest)?;
-        }
-        Ok(())
+        self.put_words(words)?;
+        self.put(rest)
     }
 
     /// Appends checksum and delimiter.

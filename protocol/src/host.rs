@@ -8,6 +8,7 @@
 //! and is not executed again, so a host may always retry after a timeout.
 
 use crate::counters::{COMMS_COUNT, DRIVE_COUNT};
+use crate::crash::{Controller, Part};
 use crate::link::DriveRefusal;
 use crate::measured::Measured;
 use crate::parameters::Values;
@@ -68,6 +69,14 @@ pub enum Operation {
     Unsubscribe,
     /// Opens the session, or gives it another nonce. → [`Answer::Opened`]
     Open,
+    /// Reads a part of a controller's post-mortem record, of the drive while it is not
+    /// armed. → [`Answer::CrashPart`]
+    ReadCrash {
+        /// Whose.
+        controller: Controller,
+        /// Which part, from 0 on.
+        part: u8,
+    },
 }
 
 /// Reply of comms.
@@ -116,6 +125,8 @@ pub enum Answer {
         /// To be repeated in each request.
         nonce: Nonce,
     },
+    /// A part of a post-mortem record.
+    CrashPart(Part),
 }
 
 /// Status of the device.

@@ -30,6 +30,7 @@
 //! | parameters: id, name, unit, range, default, meaning | [`parameters`] |
 //! | faults: code, cause, detector, reaction, time, how to clear | [`fault`] |
 //! | counters | [`counters`] |
+//! | post-mortem record | [`crash`] |
 //! | USB ids, to discover a device | [`usb`] |
 #![no_std]
 #![forbid(unsafe_code)]
@@ -54,6 +55,7 @@
 extern crate std;
 
 pub mod counters;
+pub mod crash;
 pub mod decoder;
 pub mod fault;
 pub mod frame;

@@ -11,6 +11,7 @@
 //! comms retries a command until the outcome is confirmed.
 
 use crate::counters::DRIVE_COUNT;
+use crate::crash;
 use crate::measured::Measured;
 use crate::pieces::Piece;
 use crate::revision::Revision;
@@ -47,6 +48,12 @@ pub enum ToDrive {
         /// The order.
         order: Order,
     },
+    /// Asks a drive that is not armed for a part of its post-mortem record, which
+    /// [`FromDrive::CrashPart`] answers.
+    ReadCrash {
+        /// Which part.
+        part: u8,
+    },
 }
 
 /// Heartbeat of comms.
@@ -78,6 +85,8 @@ pub enum Order {
 pub enum FromDrive {
     /// Status, sent every 5 ms and at every change.
     Status(DriveStatus),
+    /// A part of the post-mortem record.
+    CrashPart(crash::Part),
 }
 
 /// Bytes of a counter, at most.

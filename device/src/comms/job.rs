@@ -26,6 +26,8 @@ pub enum JobState {
     },
     /// Parameters are being saved.
     Save,
+    /// The drive has to send a part of its post-mortem record.
+    CrashPart(u8),
 }
 
 /// A request that is being carried out.
@@ -56,6 +58,14 @@ impl Job {
     pub fn command(&self) -> Option<(u16, Order)> {
         match self.state {
             JobState::Command { number, order } => Some((number, order)),
+            _ => None,
+        }
+    }
+
+    /// The part of its post-mortem record that the drive has to send.
+    pub fn crash_part(&self) -> Option<u8> {
+        match self.state {
+            JobState::CrashPart(part) => Some(part),
             _ => None,
         }
     }

@@ -4,6 +4,7 @@ use crate::comms::Comms;
 use crate::comms::job::{Job, JobState};
 use crate::comms::sessions::RequestClass;
 use crepitus_protocol::counters::CommsCounter;
+use crepitus_protocol::crash::{Controller, Part};
 use crepitus_protocol::frame::{self, Frame};
 use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Reply, Request, Status};
 use crepitus_protocol::link::Order;
@@ -140,6 +141,7 @@ impl Comms {
             }
             Operation::Commit { base, values } => self.commit(*base, values),
             Operation::Save => self.save(request),
+            Operation::ReadCrash { controller, part } => self.read_crash(*controller, *part),
             Operation::Zero => self.command(request, Order::Zero),
             Operation::ClearFault => self.clear_fault(request),
             Operation::Arm => self.arm(request),
@@ -176,6 +178,34 @@ impl Comms {
         }
         self.save = Some((self.parameters.revision(), *self.parameters.values()));
         Ok(Started::Pending(JobState::Save))
+    }
+
+    /// Reading changes nothing, so it needs no lease.
+    fn read_crash(&self, controller: Controller, part: u8) -> StartResult {
+        if controller == Controller::Comms {
+            let words = self.crash.map(|head| head.words());
+            let part = Part::of(part, |place| words?.get(place).copied());
+            return Ok(Started::Replied(Answer::CrashPart(part)));
+        }
+        if self.supervision.is_enable_requested() {
+            return Err(Refusal::Armed);
+        }
+        if self.job.is_some() {
+            return Err(Refusal::Busy);
+        }
+        if !self.drive.is_present(self.now_ms) {
+            return Err(Refusal::DriveSilent);
+        }
+        Ok(Started::Pending(JobState::CrashPart(part)))
+    }
+
+    /// Ends the job of a part that the drive has sent.
+    pub(super) fn crash_part(&mut self, part: &Part) {
+        if let Some(job) = self.job
+            && job.crash_part() == Some(part.number)
+        {
+            self.finish(&job, &Ok(Answer::CrashPart(*part)));
+        }
     }
 
     /// Sends an order to the drive.
@@ -320,7 +350,7 @@ impl Comms {
                 }
                 return None;
             }
-            JobState::Save => {}
+            JobState::Save | JobState::CrashPart(_) => {}
         }
         if self.now_ms < job.end_ms {
             return None;

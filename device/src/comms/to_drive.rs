@@ -13,8 +13,8 @@ const RETRY_MS: u64 = 10;
 /// drive reads 100, and its ring has place for all pieces of a commit.
 const PIECES_PER_MS: u8 = 2;
 
-/// Retry interval of the hello request, ms.
-const HELLO_RETRY_MS: u64 = 10;
+/// Retry interval of questions: a hello, a part of the post-mortem record, ms.
+const ASK_RETRY_MS: u64 = 10;
 
 /// Pending frames to the drive.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,8 +24,18 @@ pub(super) struct ToDriveQueue {
     management: Option<ManagementRequest>,
     commit: CommitProgress,
     command_ms: Option<(u16, u64)>,
-    hello_ms: u64,
+    /// When it may be asked again for this.
+    again_ms: u64,
     last_number: u16,
+}
+
+/// What comms wants the drive to get, besides heartbeats.
+pub(super) struct Wanted<'a> {
+    pub(super) commit: Option<(Revision, &'a Values)>,
+    pub(super) command: Option<(u16, Order)>,
+    /// A part of its post-mortem record.
+    pub(super) crash_part: Option<u8>,
+    pub(super) hello: bool,
 }
 
 /// Progress of the commit that is being sent.
@@ -87,9 +97,7 @@ impl ToDriveQueue {
     pub(super) fn next_frame(
         &mut self,
         heartbeat: Heartbeat,
-        commit: Option<(Revision, &Values)>,
-        command: Option<(u16, Order)>,
-        hello_due: bool,
+        wanted: &Wanted<'_>,
     ) -> Option<Frame> {
         if core::mem::take(&mut self.heartbeat_due) {
             return message(&ToDrive::Heartbeat(heartbeat));
@@ -97,7 +105,7 @@ impl ToDriveQueue {
         if let Some(question) = self.management.take() {
             return frame::encode_bytes(Lane::Management, &question.bytes()).ok();
         }
-        if let Some((number, order)) = command
+        if let Some((number, order)) = wanted.command
             && self.command_ms.is_none_or(|(sent, sent_ms)| {
                 sent != number || self.now_ms >= sent_ms.saturating_add(RETRY_MS)
             })
@@ -109,7 +117,7 @@ impl ToDriveQueue {
                 order,
             });
         }
-        if let Some((revision, values)) = commit
+        if let Some((revision, values)) = wanted.commit
             && let Some(piece) = self.commit.next_piece(self.now_ms, revision, values)
         {
             return message(&ToDrive::Commit {
@@ -118,8 +126,15 @@ impl ToDriveQueue {
                 piece,
             });
         }
-        if hello_due && self.now_ms >= self.hello_ms {
-            self.hello_ms = self.now_ms.saturating_add(HELLO_RETRY_MS);
+        if self.now_ms < self.again_ms {
+            return None;
+        }
+        if let Some(part) = wanted.crash_part {
+            self.again_ms = self.now_ms.saturating_add(ASK_RETRY_MS);
+            return message(&ToDrive::ReadCrash { part });
+        }
+        if wanted.hello {
+            self.again_ms = self.now_ms.saturating_add(ASK_RETRY_MS);
             let question = ManagementRequest {
                 action: Action::Hello,
                 token: 0,

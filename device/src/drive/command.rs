@@ -5,7 +5,7 @@ use crate::counters::Counters;
 use crate::drive::Boot;
 use crate::drive::arming::Seen;
 use crate::drive::batch::Batch;
-use crate::drive::emf_check::{EmfCheck, Tick};
+use crate::drive::emf_check::{self, EmfCheck};
 use crate::drive::exchange::{Exchange, Rendered, Turn};
 use crate::drive::motor::{Bridge, Motor};
 use crate::drive::overload::Overload;
@@ -19,6 +19,7 @@ use crepitus_model::Real;
 use crepitus_model::control::current_loop::Limit;
 
 use crepitus_protocol::counters::DriveCounter;
+use crepitus_protocol::crash::Tick;
 use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::telemetry::{Block, BlockFlags, NO_CURRENT, Sample, SampleFlags};
 use crepitus_protocol::{Fault, LimitReason, Revision, State};
@@ -234,14 +235,15 @@ impl Command {
     }
 
     /// Runs one tick with the newest result of `render_torque`, and with the plan
-    /// that is stored, which it applies when it is due. Before the first result
-    /// there is no tick.
+    /// that is stored, which it applies when it is due. `keep` stores the tick for the
+    /// post-mortem record. Before the first result there is no tick.
     pub fn tick(
         &mut self,
         inputs: &Inputs,
         plan: Option<&CommandPlan>,
         exchange: &Exchange,
         counters: &Counters,
+        keep: impl FnOnce(&Tick),
     ) -> Outputs {
         let Some(rendered) = exchange.rendered() else {
             return Outputs::default();
@@ -251,7 +253,7 @@ impl Command {
             self.apply(plan, counters);
             exchange.command_took_plan();
         }
-        let outputs = self.command(inputs, &rendered, counters);
+        let outputs = self.command(inputs, &rendered, counters, keep);
         exchange.announce(Turn {
             tick: low(self.next_tick),
             ends_block: self.batch.ends_block(),
@@ -260,7 +262,13 @@ impl Command {
         outputs
     }
 
-    fn command(&mut self, inputs: &Inputs, rendered: &Rendered, counters: &Counters) -> Outputs {
+    fn command(
+        &mut self,
+        inputs: &Inputs,
+        rendered: &Rendered,
+        counters: &Counters,
+        keep: impl FnOnce(&Tick),
+    ) -> Outputs {
         let now = self.next_tick;
         self.next_tick = now.wrapping_add(1);
         self.line_is_on = inputs.enable_is_on;
@@ -325,6 +333,10 @@ impl Command {
         self.doubt_zero(fault_before);
         let flags = BlockFlags::new(self.safety.state(), self.zeroed, self.start);
         self.batch.push(sample, self.revision, flags, counters);
+        keep(&Tick {
+            number: low(now),
+            sample,
+        });
         outputs
     }
 
@@ -382,7 +394,7 @@ impl Command {
         let is_sound = !is_late && rendered.lost_ticks == 0;
         let tick = (self.motor.mean_v().zip(current_a))
             .filter(|_| is_sound)
-            .map(|(volts, current_a)| Tick {
+            .map(|(volts, current_a)| emf_check::Tick {
                 volts,
                 current_a,
                 count: rendered.count,

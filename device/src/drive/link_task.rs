@@ -10,6 +10,7 @@ use crate::drive::outgoing::{Outgoing, PIECE_SAMPLES};
 use crate::drive::slow_checks::SlowReadings;
 use core::borrow::BorrowMut;
 use crepitus_protocol::counters::DriveCounter;
+use crepitus_protocol::crash::Part;
 use crepitus_protocol::frame::{EncodedFrame, FrameBuffer, WordCrc};
 use crepitus_protocol::link::{DriveRefusal, DriveStatus, Order, ToDrive};
 use crepitus_protocol::management::{Action, Identity, ManagementRequest};
@@ -36,6 +37,8 @@ pub struct LinkTask<P> {
     link: Link,
     outgoing: Outgoing<P>,
     reboot_requested: bool,
+    /// The part of the post-mortem record that comms has asked for.
+    crash_part: Option<u8>,
     /// Blocks to send before the next status: they precede the change that it
     /// reports.
     blocks_before_status: usize,
@@ -56,6 +59,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             link: Link::default(),
             outgoing: Outgoing::default(),
             reboot_requested: false,
+            crash_part: None,
             blocks_before_status: 0,
             gathered: None,
             reported: (State::Disarmed, None, Revision::NONE, false, false),
@@ -63,8 +67,14 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
     }
 
     /// Receives a byte from comms.
-    pub fn received(&mut self, byte: u8, shared: &mut impl Shared, counters: &Counters) {
-        let Some(frame) = self.decoder.push(byte) else {
+    pub fn received(
+        &mut self,
+        unit: &mut impl WordCrc,
+        byte: u8,
+        shared: &mut impl Shared,
+        counters: &Counters,
+    ) {
+        let Some(frame) = self.decoder.push_by(unit, byte) else {
             return;
         };
         let Ok(body) = frame else {
@@ -129,21 +139,28 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
                     self.link.finish(result);
                 }
             }
+            // Not under torque: its ticks have enough to do.
+            ToDrive::ReadCrash { part } => {
+                let is_live = shared.command(|command| command.safety().is_live());
+                self.crash_part = (!is_live).then_some(*part);
+            }
         }
     }
 
     /// Encodes one piece of the current frame for comms, or starts the next
-    /// frame in a buffer from `spare`. Returns a finished frame.
+    /// frame in a buffer from `spare`. `crash` reads a part of the post-mortem record.
+    /// Returns a finished frame.
     pub fn next_frame(
         &mut self,
         unit: &mut impl WordCrc,
+        crash: impl FnOnce(u8) -> Part,
         spare: impl FnOnce() -> Option<P>,
         shared: &mut impl Shared,
         counters: &Counters,
     ) -> Option<EncodedFrame<P>> {
         self.poll_changes(shared);
         if self.outgoing.is_idle() {
-            self.start_frame(spare, shared, counters);
+            self.start_frame(crash, spare, shared, counters);
             return None;
         }
         let Some(next) = self.outgoing.next_sample() else {
@@ -191,6 +208,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
     /// a new revision appears only in blocks after its status.
     fn start_frame(
         &mut self,
+        crash: impl FnOnce(u8) -> Part,
         spare: impl FnOnce() -> Option<P>,
         shared: &mut impl Shared,
         counters: &Counters,
@@ -199,6 +217,12 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             let buffer = spare()?;
             let answer = self.link.take_answer()?;
             return self.outgoing.begin_answer(buffer, &answer).ok();
+        }
+        if let Some(number) = self.crash_part {
+            let buffer = spare()?;
+            let begun = self.outgoing.begin_crash_part(buffer, &crash(number)).ok();
+            self.crash_part = None;
+            return begun;
         }
         if let Some(status) = &self.gathered {
             let begun = self.outgoing.begin_status(spare()?, status).ok();

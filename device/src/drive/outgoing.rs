@@ -4,6 +4,7 @@
 use core::borrow::BorrowMut;
 use crepitus_protocol::Lane;
 use crepitus_protocol::counters::DRIVE_COUNT;
+use crepitus_protocol::crash::{PART_WORDS, Part};
 use crepitus_protocol::frame::{self, EncodedFrame, Encoder, FrameBuffer, TooLong, WordCrc};
 use crepitus_protocol::link::{COUNTER_BYTES, DriveStatus};
 use crepitus_protocol::management::{Answer, AnswerBytes};
@@ -19,10 +20,10 @@ const ANSWER_BYTES: usize = 32;
 /// Bytes of the longest other piece.
 const PIECE_BYTES: usize = DriveStatus::HEAD_BYTES;
 const _: () = assert!(Block::HEAD_BYTES <= PIECE_BYTES);
-const _: () = assert!(PIECE_COUNTERS * COUNTER_BYTES <= PIECE_BYTES);
+const _: () = assert!(PIECE_WORDS * COUNTER_BYTES <= PIECE_BYTES);
 
-/// Counters per piece of a status.
-const PIECE_COUNTERS: usize = 5;
+/// Words per piece of a status's counters, or of the post-mortem record.
+const PIECE_WORDS: usize = 5;
 
 /// The part of a frame that is still to be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +36,8 @@ enum Rest {
     StatusEnd,
     /// The counters of a status, from this one on.
     Counters(usize),
+    /// The words of a part of the post-mortem record, from this one on.
+    CrashPart(usize),
     /// The samples of a block, from this one on.
     Samples(usize),
 }
@@ -45,6 +48,7 @@ pub struct Outgoing<P> {
     current: Option<(Encoder<P>, Rest)>,
     answer: AnswerBytes,
     status: DriveStatus,
+    crash_part: [u32; PART_WORDS],
     /// The bytes of a piece before they are framed. Kept, because clearing it for each
     /// takes as long as filling it.
     bytes: [u8; PIECE_BYTES],
@@ -56,6 +60,7 @@ impl<P> Default for Outgoing<P> {
             current: None,
             answer: AnswerBytes::new(),
             status: DriveStatus::default(),
+            crash_part: [0; PART_WORDS],
             bytes: [0; PIECE_BYTES],
         }
     }
@@ -86,6 +91,23 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
         self.status = *status;
         let encoder = Encoder::new(buffer, Lane::FromDrive)?;
         self.current = Some((encoder, Rest::Status));
+        Ok(())
+    }
+
+    /// Starts the frame of a part of the post-mortem record.
+    ///
+    /// # Errors
+    /// [`TooLong`]; never, as a part fits.
+    pub fn begin_crash_part(&mut self, buffer: P, part: &Part) -> Result<(), TooLong> {
+        let mut encoder = Encoder::new(buffer, Lane::FromDrive)?;
+        encoder.push(frame::write(&part.head(), &mut self.bytes)?)?;
+        let left = if let Some(words) = part.words {
+            self.crash_part = words;
+            0
+        } else {
+            PART_WORDS
+        };
+        self.current = Some((encoder, Rest::CrashPart(left)));
         Ok(())
     }
 
@@ -154,15 +176,16 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
                 false
             }
             Rest::Counters(next) => {
-                let bytes = &mut self.bytes;
-                let mut length = 0_usize;
-                for counter in self.status.counters.iter().skip(*next).take(PIECE_COUNTERS) {
-                    let written = frame::write(counter, bytes.get_mut(length..)?).ok()?;
-                    length = length.saturating_add(written.len());
-                }
-                encoder.push_by(unit, bytes.get(..length)?).ok()?;
-                *next = next.saturating_add(PIECE_COUNTERS);
+                let left = self.status.counters.get(*next..)?;
+                push_words(encoder, unit, &mut self.bytes, left)?;
+                *next = next.saturating_add(PIECE_WORDS);
                 *next >= DRIVE_COUNT
+            }
+            Rest::CrashPart(next) => {
+                let left = self.crash_part.get(*next..)?;
+                push_words(encoder, unit, &mut self.bytes, left)?;
+                *next = next.saturating_add(PIECE_WORDS);
+                *next >= PART_WORDS
             }
             Rest::Samples(_) => false,
         };
@@ -173,6 +196,21 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
         let (encoder, _) = self.current.take()?;
         encoder.finish().ok()
     }
+}
+
+/// Encodes the first of these words.
+fn push_words<P: BorrowMut<FrameBuffer>>(
+    encoder: &mut Encoder<P>,
+    unit: &mut impl WordCrc,
+    bytes: &mut [u8; PIECE_BYTES],
+    words: &[u32],
+) -> Option<()> {
+    let mut length = 0_usize;
+    for word in words.iter().take(PIECE_WORDS) {
+        let written = frame::write(word, bytes.get_mut(length..)?).ok()?;
+        length = length.saturating_add(written.len());
+    }
+    encoder.push_by(unit, bytes.get(..length)?).ok()
 }
 
 #[cfg(test)]
@@ -228,6 +266,14 @@ mod tests {
         let whole = FromDrive::Status(status);
         assert_eq!(frame, frame::encode(Lane::FromDrive, &whole).unwrap());
         assert!(runs <= 6, "{runs}");
+        for words in [None, Some(core::array::from_fn(|n| u32::MAX >> (2 * n)))] {
+            let part = Part { number: 3, words };
+            outgoing.begin_crash_part(buffer(), &part).unwrap();
+            let (frame, runs) = run(&mut outgoing, &block);
+            let whole = FromDrive::CrashPart(part);
+            assert_eq!(frame, frame::encode(Lane::FromDrive, &whole).unwrap());
+            assert!(runs <= 4, "{runs}");
+        }
         outgoing.begin_block(buffer(), &block.head()).unwrap();
         let (frame, runs) = run(&mut outgoing, &block);
         assert_eq!(frame, frame::encode(Lane::Telemetry, &block).unwrap());

@@ -3,6 +3,7 @@
 use crate::bridge::Bridge;
 use crate::clocks;
 use crate::converter::Converters;
+use crate::crash::BlackBox;
 use crate::crc_unit::CrcUnit;
 use crate::enable_line::{EnableLine, OtherLine};
 use crate::encoder::Encoder;
@@ -37,6 +38,8 @@ pub struct DriveBoard {
     pub link: Link,
     /// Checksums of frames.
     pub crc_unit: CrcUnit,
+    /// Stores the last ticks.
+    pub black_box: BlackBox,
     /// Starts `render_torque`.
     pub begin: BeginOfTick,
     /// Starts `command_motor`.
@@ -84,6 +87,7 @@ impl DriveBoard {
             encoder: Encoder::new(chip.TIM5, a.pa0, a.pa1, &mut rcc),
             link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), buffers, &mut rcc),
             crc_unit: CrcUnit::new(chip.CRC, &mut rcc),
+            black_box: BlackBox::new(),
             begin: BeginOfTick::new(chip.TIM4, &mut rcc),
             middle: MiddleOfTick::new(chip.TIM3, &mut rcc),
             clock: FreeClock::start(chip.TIM2, &mut rcc),

@@ -7,6 +7,7 @@
 //! |---|---|---|
 //! | 168 MHz from the crystal, 48 MHz for USB | both | [`clocks`] |
 //! | reset cause and start counter | both | [`start`], [`reset_cause`], [`reset_record`] |
+//! | post-mortem record | both | [`crash`] |
 //! | identity | both | [`identity`] |
 //! | fatal errors: outputs off, then reset | both | [`stop`] |
 //! | enable line, with read-back | both | [`enable_line`] |
@@ -37,6 +38,8 @@ pub mod clocks;
 pub mod comms_board;
 #[cfg(target_os = "none")]
 pub mod converter;
+#[cfg(target_os = "none")]
+pub mod crash;
 #[cfg(target_os = "none")]
 pub mod crc_unit;
 #[cfg(target_os = "none")]

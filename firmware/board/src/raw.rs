@@ -3,41 +3,57 @@
 //! | what | why it is sound |
 //! |---|---|
 //! | [`record_words`], [`store_record_words`] | words that the start-up code leaves alone; any bits are a `u32`; accessed as a whole, by `init` before there are tasks, or by a function that never returns |
+//! | [`CRASH`], [`LAST_TICKS`] | words that the start-up code leaves alone; atomic, so that any bits are a `u32`; what they say is checked by a checksum |
 //! | [`image`] | symbols of the linker script around the program in flash, which is not written while it runs |
 //! | [`outputs_off`] | called when nothing else runs any more; only switches off |
 //! | [`dma_register`], [`dma_destination`] | the stream writes a `'static` buffer of atomic bytes in RAM that DMA reaches, within the length that `link.rs` sets |
 //! | [`dma_source`] | the stream reads a buffer that `link.rs` owns and keeps until the stream is done, in RAM that DMA reaches, within its length |
 //! | [`converter_channel`] | a channel that the converter has |
 //! | `HardFault` | the stack may be unusable, so its pointer is reset; never returns |
+//! | [`stack`], [`fault_registers`] | words of the stack's RAM, and registers whose reading has no effect |
 #![allow(unsafe_code)]
 
+use crate::crash::{EMPTY_RING, Kept, Ring};
 use crate::enable_line;
 use crate::link::DmaBuffer;
-use crate::reset_record::{Reason, WORDS};
-use crate::stop::stop;
+use crate::reset_record;
+use crate::stop::{Ended, stop};
 use core::mem::MaybeUninit;
 use core::sync::atomic::AtomicU8;
+use cortex_m::peripheral::SCB;
 use stm32f4xx_hal::pac;
 
 /// The reset record, in a section that is neither cleared nor loaded.
 #[unsafe(link_section = ".uninit.kept")]
-static mut RECORD: MaybeUninit<[u32; WORDS]> = MaybeUninit::uninit();
+static mut RECORD: MaybeUninit<[u32; reset_record::WORDS]> = MaybeUninit::uninit();
 
 /// Reads the words that survive a reset; undefined after power was off.
-pub(crate) fn record_words() -> [u32; WORDS] {
+pub(crate) fn record_words() -> [u32; reset_record::WORDS] {
     // SAFETY: see the table.
-    unsafe { (&raw const RECORD).cast::<[u32; WORDS]>().read_volatile() }
+    unsafe {
+        (&raw const RECORD)
+            .cast::<[u32; reset_record::WORDS]>()
+            .read_volatile()
+    }
 }
 
 /// Stores words for the next start.
-pub(crate) fn store_record_words(words: [u32; WORDS]) {
+pub(crate) fn store_record_words(words: [u32; reset_record::WORDS]) {
     // SAFETY: see the table.
     unsafe {
         (&raw mut RECORD)
-            .cast::<[u32; WORDS]>()
+            .cast::<[u32; reset_record::WORDS]>()
             .write_volatile(words);
     }
 }
+
+/// The post-mortem record.
+#[unsafe(link_section = ".uninit.crash")]
+pub(crate) static CRASH: Kept = Kept::EMPTY;
+
+/// The last ticks.
+#[unsafe(link_section = ".uninit.ticks")]
+pub(crate) static LAST_TICKS: Ring = EMPTY_RING;
 
 /// Bytes of flash that hold the vector table.
 const VECTOR_BYTES: usize = 512;
@@ -129,17 +145,39 @@ const CCM: core::ops::Range<usize> = 0x1000_0000..0x1001_0000;
 
 extern "C" fn fault(frame: *const u32) -> ! {
     outputs_off();
-    let program_counter = frame.wrapping_add(6);
-    let detail = if CCM.contains(&program_counter.addr()) && program_counter.is_aligned() {
-        // SAFETY: within the stack's RAM; any bits are a `u32`.
-        unsafe { program_counter.read_volatile() }
-    } else {
-        0
-    };
-    stop(Reason::Fault, detail)
+    let address = u32::try_from(frame.addr()).unwrap_or_default();
+    stop(Ended::by_fault(address))
 }
 
 #[cortex_m_rt::exception]
 unsafe fn DefaultHandler(number: i16) -> ! {
-    stop(Reason::Unhandled, u32::from(number.unsigned_abs()))
+    outputs_off();
+    stop(Ended::unhandled(number.unsigned_abs()))
+}
+
+/// The stack's words from an address up; 0 where there is no stack.
+pub(crate) fn stack<const N: usize>(begin: u32) -> [u32; N] {
+    let mut address = begin as usize;
+    [(); N].map(|()| {
+        let place = core::ptr::with_exposed_provenance::<u32>(address);
+        address = address.wrapping_add(size_of::<u32>());
+        if CCM.contains(&place.addr()) && place.is_aligned() {
+            // SAFETY: within the stack's RAM; any bits are a `u32`.
+            unsafe { place.read_volatile() }
+        } else {
+            0
+        }
+    })
+}
+
+/// CFSR, HFSR, MMFAR, BFAR.
+pub(crate) fn fault_registers() -> [u32; 4] {
+    // SAFETY: see the table.
+    let block = unsafe { &*SCB::PTR };
+    [
+        block.cfsr.read(),
+        block.hfsr.read(),
+        block.mmfar.read(),
+        block.bfar.read(),
+    ]
 }

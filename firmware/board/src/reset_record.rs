@@ -93,7 +93,7 @@ impl ResetRecord {
     }
 }
 
-fn checksum(words: &[u32]) -> u32 {
+pub(crate) fn checksum(words: &[u32]) -> u32 {
     let mut digest = CRC.digest();
     for word in words {
         digest.update(&word.to_le_bytes());

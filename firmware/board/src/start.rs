@@ -1,5 +1,6 @@
 //! Reset cause and start counter.
 
+use crate::crash;
 use crate::raw;
 use crate::reset_cause::{Flags, reset_cause};
 use crate::reset_record::{Reason, ResetRecord};
@@ -49,8 +50,10 @@ pub fn start(rcc: &mut Rcc, generator: &RNG) -> Start {
     }
     .words();
     raw::store_record_words(words);
+    let cause = reset_cause(flags, record.as_ref());
+    crash::complete(cause, record.as_ref());
     Start {
-        cause: reset_cause(flags, record.as_ref()),
+        cause,
         number,
         entropy: (u64::from(high) << 32 | u64::from(low)) ^ u64::from(number),
         before: record.unwrap_or_default(),

@@ -99,6 +99,7 @@ mod app {
             entropy: start.entropy,
             saved: board.log.newest(),
             counters: 0,
+            crash: board::crash::head(),
         }));
         let usb_identity = identity(&board.identity.serial, cx.local.digits);
         let Ok(port) = UsbPort::new(cx.local.bus.write(board.bus), &usb_identity) else {

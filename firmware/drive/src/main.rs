@@ -32,6 +32,7 @@ mod app {
     use crate::shared::Parts;
     use board::bridge::Bridge;
     use board::converter::Converters;
+    use board::crash::BlackBox;
     use board::crc_unit::CrcUnit;
     use board::drive_board::DriveBoard;
     use board::enable_line::{EnableLine, OtherLine};
@@ -50,6 +51,7 @@ mod app {
     use crepitus_device::drive::prepare::{CommandPlan, Preparation, RenderingPlan};
     use crepitus_device::drive::rendering::Rendering;
     use crepitus_protocol::Fault;
+    use crepitus_protocol::crash::Tick;
     use crepitus_protocol::frame::FrameBuffer;
     use stm32f4xx_hal::pac::Interrupt;
 
@@ -91,6 +93,7 @@ mod app {
         line: EnableLine,
         comms_line: OtherLine,
         bridge: Bridge,
+        black_box: BlackBox,
         begin: BeginOfTick,
         encoder: Encoder,
         rendering: Rendering,
@@ -140,6 +143,7 @@ mod app {
             line: board.line,
             comms_line: board.comms_line,
             bridge: board.bridge,
+            black_box: board.black_box,
             begin: board.begin,
             encoder: board.encoder,
             rendering: Rendering::new(&first.reader, boot.counter, &first.prepared.rendering),
@@ -156,7 +160,9 @@ mod app {
 
     #[task(
         binds = TIM3, priority = 4,
-        local = [middle, converters, clock, line, comms_line, bridge, middles: u8 = 0],
+        local = [
+            middle, converters, clock, line, comms_line, bridge, black_box, middles: u8 = 0
+        ],
         shared = [command, command_plan, &exchange, &is_running, &is_link_due, &counters, &checkins]
     )]
     fn command_motor(cx: command_motor::Context) {
@@ -179,8 +185,9 @@ mod app {
             has_tripped: part.bridge.break_has_fired(),
         };
         let (exchange, counters) = (cx.shared.exchange, cx.shared.counters);
+        let keep = |tick: &Tick| part.black_box.record(tick);
         let outputs = (cx.shared.command, cx.shared.command_plan)
-            .lock(|command, plan| command.tick(&inputs, plan.as_ref(), exchange, counters));
+            .lock(|command, plan| command.tick(&inputs, plan.as_ref(), exchange, counters, keep));
         part.line.set(outputs.enable);
         match outputs.bridge {
             motor::Bridge::Float => part.bridge.float(),
@@ -220,7 +227,7 @@ mod app {
         link.acknowledge();
         cx.shared.checkins.check_in(LINKED);
         cx.local.watchdog.feed(cx.shared.checkins);
-        let counters = cx.shared.counters;
+        let (counters, unit) = (cx.shared.counters, cx.local.crc_unit);
         let mut parts = Parts {
             command: cx.shared.command,
             commits: cx.shared.commits,
@@ -236,12 +243,12 @@ mod app {
         if receives {
             for _ in 0..received {
                 if let Some(byte) = link.take_byte() {
-                    task.received(byte, &mut parts, counters);
+                    task.received(unit, byte, &mut parts, counters);
                 }
             }
         } else {
-            let unit = cx.local.crc_unit;
-            let made = task.next_frame(unit, || link.spare(), &mut parts, counters);
+            let spare = || link.spare();
+            let made = task.next_frame(unit, board::crash::part, spare, &mut parts, counters);
             if let Some(frame) = made {
                 link.send(frame);
             }

@@ -68,6 +68,7 @@ pub fn body(data: &[u8]) {
             (Revision(revision), link_inputs::values(&mut bytes))
         }),
         counters: bytes.choice(&[0, u32::MAX - 2]),
+        crash: None,
     };
     let mut bench = Bench::new(&boot);
     while !bytes.is_empty() && bench.now_ms < MOST_MS {
@@ -468,6 +469,7 @@ impl Bench {
             ToDrive::Command { order, .. } => {
                 assert!(*order != Order::Arm || self.lease.is_wanted());
             }
+            ToDrive::ReadCrash { .. } => {}
         }
     }
 

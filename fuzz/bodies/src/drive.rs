@@ -56,6 +56,7 @@ pub fn body(data: &[u8]) {
         start: u16::from(bytes.byte()),
         tick: bytes.choice(&[0, 1, (1 << 32) - 50, 1 << 40]),
         sequence: bytes.choice(&[0, u16::MAX - 1]),
+        crash: None,
     };
     let mut bench = Bench::new(&boot);
     while !bytes.is_empty() && bench.ticks < MOST_TICKS {
@@ -442,11 +443,13 @@ impl Bench {
             let body = body.expect("a frame in order");
             found += 1;
             match body.lane() {
-                Some(Lane::FromDrive) => {
-                    let FromDrive::Status(status) = body.message().expect("a status");
-                    let told = (status.tick, status.state, status.revision);
-                    assert!(self.states.contains(&told), "{told:?} was never so");
-                }
+                Some(Lane::FromDrive) => match body.message().expect("a message") {
+                    FromDrive::Status(status) => {
+                        let told = (status.tick, status.state, status.revision);
+                        assert!(self.states.contains(&told), "{told:?} was never so");
+                    }
+                    FromDrive::CrashPart(part) => assert_eq!(part.words, None),
+                },
                 Some(Lane::ManagementAnswer) => {
                     assert!(Answer::of(body.payload).is_some());
                 }

@@ -4,6 +4,7 @@
 use crate::block_frames;
 use crate::bytes::Bytes;
 use crate::link_inputs;
+use crepitus_protocol::crash;
 use crepitus_protocol::frame::{self, Frame};
 use crepitus_protocol::link::{
     DriveRefusal, DriveStatus, FromDrive, Heartbeat, Order, Outcome, ToDrive,
@@ -43,6 +44,8 @@ pub(crate) struct DriveModel {
     /// The latest tick that it has reported since.
     latest_tick: u64,
     reassembly: (Revision, Reassembly),
+    /// The part of its post-mortem record that it was asked for.
+    crash_part: Option<u8>,
 }
 
 impl DriveModel {
@@ -64,6 +67,7 @@ impl DriveModel {
             has_restarted: false,
             latest_tick: 0,
             reassembly: (Revision::NONE, Reassembly::new(0)),
+            crash_part: None,
         }
     }
 
@@ -123,6 +127,7 @@ impl DriveModel {
                     result: Ok(()),
                 });
             }
+            ToDrive::ReadCrash { part } => self.crash_part = Some(part),
         }
     }
 
@@ -143,7 +148,8 @@ impl DriveModel {
         let status = (is_due || self.reported != self.status).then(|| self.status());
         let is_first = !std::mem::replace(&mut self.has_sent_hello, true);
         let hello = is_first.then(|| hello(schema::HASH));
-        [block, status, hello].into_iter().flatten()
+        let crash_part = self.crash_part.take().map(crash_part);
+        [block, status, hello, crash_part].into_iter().flatten()
     }
 
     /// A block, unless the last one was sent less than [`BLOCK_MS`] ago.
@@ -278,4 +284,11 @@ fn hello(schema: u64) -> Frame {
         drive: own,
     };
     frame::encode_bytes(Lane::ManagementAnswer, &answer.bytes()).expect("a short frame")
+}
+
+/// A part of a record whose words all are the part's number.
+fn crash_part(number: u8) -> Frame {
+    let words = (number < 23).then_some([number.into(); crash::PART_WORDS]);
+    let message = FromDrive::CrashPart(crash::Part { number, words });
+    frame::encode(Lane::FromDrive, &message).expect("a part fits")
 }

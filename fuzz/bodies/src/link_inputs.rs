@@ -1,6 +1,7 @@
 //! Messages made of bytes, mostly plausible.
 
 use crate::bytes::Bytes;
+use crepitus_protocol::crash::Controller;
 use crepitus_protocol::host::Operation;
 use crepitus_protocol::management::Action;
 use crepitus_protocol::parameters::{Kind, PARAMETERS};
@@ -57,7 +58,11 @@ pub(crate) fn operation(bytes: &mut Bytes<'_>, revision: Revision) -> Operation 
         12 => Operation::Disarm,
         13 => Operation::ClearFault,
         14 => Operation::Subscribe,
-        _ => Operation::Unsubscribe,
+        _ if bytes.byte() < 128 => Operation::Unsubscribe,
+        _ => Operation::ReadCrash {
+            controller: bytes.choice(&[Controller::Drive, Controller::Comms]),
+            part: bytes.byte() % 32,
+        },
     }
 }
 

@@ -81,6 +81,7 @@ pub use management::Management;
 pub use reconnect::{Reconnected, Resubscribed};
 pub use refusals::Refused;
 pub use request_kind::RequestKind;
+pub use requests::Crash;
 pub use round_trips::{RoundTrip, RoundTrips};
 pub use serial::{Serial, holder_of};
 pub use session::Options;

@@ -27,6 +27,7 @@ pub enum RequestKind {
     ClearFault,
     Subscribe,
     Unsubscribe,
+    ReadCrash,
 }
 
 /// Timeouts of a request, in the transport's time.
@@ -40,7 +41,7 @@ pub(crate) struct Timing {
 
 impl RequestKind {
     /// All kinds.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Hello,
         Self::Stop,
         Self::Reboot,
@@ -56,6 +57,7 @@ impl RequestKind {
         Self::ClearFault,
         Self::Subscribe,
         Self::Unsubscribe,
+        Self::ReadCrash,
     ];
 
     /// Name for people.
@@ -76,6 +78,7 @@ impl RequestKind {
             Self::ClearFault => "clear-fault",
             Self::Subscribe => "subscribe",
             Self::Unsubscribe => "unsubscribe",
+            Self::ReadCrash => "read-crash",
         }
     }
 
@@ -99,6 +102,7 @@ impl RequestKind {
             Operation::ClearFault => Self::ClearFault,
             Operation::Subscribe => Self::Subscribe,
             Operation::Unsubscribe => Self::Unsubscribe,
+            Operation::ReadCrash { .. } => Self::ReadCrash,
         }
     }
 
@@ -115,7 +119,7 @@ impl RequestKind {
     pub(crate) fn is_job(self) -> bool {
         matches!(
             self,
-            Self::Commit | Self::Save | Self::Zero | Self::Arm | Self::ClearFault
+            Self::Commit | Self::Save | Self::Zero | Self::Arm | Self::ClearFault | Self::ReadCrash
         )
     }
 

@@ -8,6 +8,7 @@ use crate::handshake::Handshake;
 use crate::refusals::Refused;
 use crate::request_kind::RequestKind;
 use crate::transport::Transport;
+use crepitus_protocol::crash::{self, Controller, Head, Tick};
 use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Status};
 use crepitus_protocol::management::{self, Action, Role};
 use crepitus_protocol::{Revision, Values};
@@ -16,6 +17,15 @@ use std::time::Duration;
 /// Time that comms needs after boot to identify the drive.
 const HANDSHAKE_TIMEOUT: Duration = Duration::from_millis(300);
 const HANDSHAKE_RETRY: Duration = Duration::from_millis(50);
+
+/// A post-mortem record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Crash {
+    /// How the program ended.
+    pub head: Head,
+    /// Its last ticks, the oldest first; of the drive only.
+    pub ticks: Vec<Tick>,
+}
 
 /// Tries of a set if another host commits at the same time.
 const SET_TRIES: usize = 4;
@@ -103,6 +113,32 @@ impl<T: Transport> Client<T> {
     /// See above.
     pub fn counters(&mut self) -> Result<Counters, Error> {
         answer!(self, Operation::Counters, Answer::Counters(counters) => counters)
+    }
+
+    /// Reads a controller's post-mortem record; `None` if it has none.
+    ///
+    /// # Errors
+    /// See above; [`Refusal::Armed`] for the drive's while it is armed, and
+    /// [`Error::Unexpected`] if the record is damaged.
+    pub fn crash(&mut self, controller: Controller) -> Result<Option<Crash>, Error> {
+        let mut words = Vec::with_capacity(crash::WORDS);
+        for part in 0.. {
+            let operation = Operation::ReadCrash { controller, part };
+            let part = answer!(self, operation, Answer::CrashPart(part) => part)?;
+            // A device that goes on for ever is no device of ours.
+            match part.words {
+                Some(part) if words.len() < crash::WORDS => words.extend(part),
+                _ => break,
+            }
+        }
+        if words.is_empty() {
+            return Ok(None);
+        }
+        let head = Head::of(&words).ok_or(Error::Unexpected {
+            request: RequestKind::ReadCrash,
+        })?;
+        let ticks = crash::ticks(&words).collect();
+        Ok(Some(Crash { head, ticks }))
     }
 
     /// Reads the parameters committed last, and their revision.

@@ -57,8 +57,40 @@ struct Given<F> {
     restart_nm: F,
 }
 
+/// What divides many: exactly, or as a product with the reciprocal.
+trait Divisor<F> {
+    fn new(divisor: F) -> Self;
+    fn of(&self, dividend: F) -> F;
+}
+
+/// Rounded once.
+struct Exact<F>(F);
+
+/// Rounded twice, in one cycle instead of fourteen.
+struct Reciprocal<F>(F);
+
+impl<F: Real> Divisor<F> for Exact<F> {
+    fn new(divisor: F) -> Self {
+        Self(divisor)
+    }
+
+    fn of(&self, dividend: F) -> F {
+        dividend / self.0
+    }
+}
+
+impl<F: Real> Divisor<F> for Reciprocal<F> {
+    fn new(divisor: F) -> Self {
+        Self(F::ONE / divisor)
+    }
+
+    fn of(&self, dividend: F) -> F {
+        dividend * self.0
+    }
+}
+
 impl<F: Real> Given<F> {
-    fn coefficients(self) -> StepCoefficients<F> {
+    fn coefficients<D: Divisor<F>>(self, per_step: F) -> StepCoefficients<F> {
         let Self {
             step_s,
             stiffness,
@@ -68,23 +100,24 @@ impl<F: Real> Given<F> {
             static_nm,
             restart_nm,
         } = self;
-        let radians_per_step = (stiffness / inertia).sqrt() * step_s;
+        let per_stiffness = D::new(stiffness);
+        let per_radians = D::new((stiffness / inertia).sqrt() * step_s);
         StepCoefficients {
             step_s,
-            per_step: F::ONE / step_s,
+            per_step,
             stiffness,
             inertia,
             damping,
             kinetic_nm,
             static_nm,
             restart_nm,
-            kinetic_angle_rad: kinetic_nm / stiffness,
-            static_angle_rad: static_nm / stiffness,
-            restart_angle_rad: restart_nm / stiffness,
+            kinetic_angle_rad: per_stiffness.of(kinetic_nm),
+            static_angle_rad: per_stiffness.of(static_nm),
+            restart_angle_rad: per_stiffness.of(restart_nm),
             drop_nm: static_nm - kinetic_nm,
             impedance: (inertia * stiffness).sqrt(),
-            ticks_per_half_radian: F::TWO / radians_per_step,
-            period: Ticks::new(F::from_f64(core::f64::consts::TAU) / radians_per_step),
+            ticks_per_half_radian: per_radians.of(F::TWO),
+            period: Ticks::new(per_radians.of(F::from_f64(core::f64::consts::TAU))),
             oscillator: Oscillator::new(stiffness, inertia, damping),
         }
     }
@@ -113,7 +146,7 @@ impl<F: Real> StepCoefficients<F> {
                 Restart::FromKinetic => p.kinetic_torque_nm,
             },
         }
-        .coefficients();
+        .coefficients::<Exact<f64>>(1.0 / step_s);
         let f = F::from_f64;
         Ok(Self {
             step_s: f(exact.step_s),
@@ -159,7 +192,7 @@ impl<F: Real> StepCoefficients<F> {
             static_nm,
             restart_nm: between(self.restart_nm, next.restart_nm),
         }
-        .coefficients()
+        .coefficients::<Reciprocal<F>>(self.per_step)
     }
 
     /// Duration of a frozen slip that begins while the shaft moves with

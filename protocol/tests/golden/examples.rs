@@ -4,6 +4,7 @@
 use crate::hex::hex;
 use crate::management;
 use crepitus_protocol::counters::{COMMS_COUNT, DRIVE_COUNT};
+use crepitus_protocol::crash::{Controller, Part};
 use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Reply, Request, Status};
 use crepitus_protocol::link::{
     DriveRefusal, DriveStatus, FromDrive, Heartbeat, Order, Outcome, ToDrive,
@@ -120,6 +121,10 @@ fn operation_name(operation: &Operation) -> &'static str {
         Operation::Subscribe => "subscribe",
         Operation::Unsubscribe => "unsubscribe",
         Operation::Open => "open",
+        Operation::ReadCrash { controller, .. } => match controller {
+            Controller::Drive => "read-crash.drive",
+            Controller::Comms => "read-crash.comms",
+        },
     }
 }
 
@@ -142,6 +147,14 @@ fn requests() -> Vec<Example> {
         Operation::Subscribe,
         Operation::Unsubscribe,
         Operation::Open,
+        Operation::ReadCrash {
+            controller: Controller::Drive,
+            part: 22,
+        },
+        Operation::ReadCrash {
+            controller: Controller::Comms,
+            part: 2,
+        },
     ];
     (0x1fe..)
         .zip(asks)
@@ -175,8 +188,33 @@ fn answer_name(answer: &Answer) -> &'static str {
         Answer::Committed { .. } => "committed",
         Answer::Subscribed { .. } => "subscribed",
         Answer::Opened { .. } => "opened",
+        Answer::CrashPart(Part { words: None, .. }) => "no-crash-part",
+        Answer::CrashPart(_) => "crash-part",
     }
 }
+
+/// A part of a post-mortem record.
+const PART: Part = Part {
+    number: 2,
+    words: Some([
+        0,
+        1,
+        127,
+        128,
+        0xffff,
+        0x1_0000,
+        0x00ff_ffff,
+        0x8000_0000,
+        u32::MAX,
+        0,
+        0,
+        0,
+        0,
+        0,
+        0,
+        0,
+    ]),
+};
 
 /// What a drive with a joint's sensor measures.
 const MEASURED: Measured = Measured {
@@ -227,6 +265,11 @@ fn replies() -> Vec<Example> {
             start: 5,
         },
         Answer::Opened { nonce: NONCE },
+        Answer::CrashPart(PART),
+        Answer::CrashPart(Part {
+            words: None,
+            ..PART
+        }),
     ];
     let mut examples: Vec<_> = answers
         .iter()
@@ -345,6 +388,7 @@ fn to_drive_name(message: &ToDrive) -> &'static str {
             Order::Zero => "command.zero",
             Order::ClearFault => "command.clear-fault",
         },
+        ToDrive::ReadCrash { .. } => "read-crash",
     }
 }
 
@@ -369,6 +413,7 @@ fn to_drive() -> Vec<Example> {
         command(Order::Arm),
         command(Order::Zero),
         command(Order::ClearFault),
+        ToDrive::ReadCrash { part: 22 },
     ];
     messages
         .iter()
@@ -409,16 +454,19 @@ fn from_drive() -> Vec<Example> {
         ..DriveStatus::default()
     };
     [
-        ("at-start", DriveStatus::default()),
-        ("full", full),
-        ("command-refused", refused),
+        ("at-start", FromDrive::Status(DriveStatus::default())),
+        ("full", FromDrive::Status(full)),
+        ("command-refused", FromDrive::Status(refused)),
+        ("of-a-record", FromDrive::CrashPart(PART)),
     ]
     .into_iter()
-    .map(|(name, status)| {
-        let message = FromDrive::Status(status);
-        // A second kind of message does not compile until it is an example.
-        let FromDrive::Status(_) = message;
-        let name = format!("from-drive.status.{name}");
+    .map(|(name, message)| {
+        // Another kind of message does not compile until it is an example.
+        let kind = match message {
+            FromDrive::Status(_) => "status",
+            FromDrive::CrashPart(_) => "crash-part",
+        };
+        let name = format!("from-drive.{kind}.{name}");
         example(Lane::FromDrive, &name, &message, None)
     })
     .collect()

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-const SOURCES: [&str; 10] = [
+const SOURCES: [&str; 11] = [
     include_str!("../../src/counters.rs"),
+    include_str!("../../src/crash.rs"),
     include_str!("../../src/host.rs"),
     include_str!("../../src/link.rs"),
     include_str!("../../src/measured.rs"),

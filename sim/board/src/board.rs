@@ -20,6 +20,7 @@ use crepitus_device::drive::plausibility::TRIP_A;
 use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_device::drive::{self, Drive};
 use crepitus_device::self_test::SelfTest;
+use crepitus_protocol::crash::{End, Head};
 use crepitus_protocol::management::{Identity, ResetCause, Role};
 use crepitus_protocol::{Revision, TICK_US, ValueError, Values, schema};
 use crepitus_scene::Scene;
@@ -108,6 +109,9 @@ pub struct Board {
     comms_health: Health,
     /// Start counter of each.
     starts: [u16; 2],
+    /// Their post-mortem records.
+    drive_crash: Option<drive::Crash>,
+    comms_crash: Option<Head>,
     /// Last command to the bridge.
     bridge: Bridge,
     /// Parameters that comms stores over a restart.
@@ -169,6 +173,7 @@ impl Board {
             counter: start.count.cast_unsigned(),
             tick: start.tick,
             sequence: start.sequence,
+            crash: None,
         })?;
         let comms = Comms::new(&comms::Boot {
             self_test: SelfTest::default(),
@@ -177,6 +182,7 @@ impl Board {
             entropy: start.seed,
             saved: start.saved,
             counters: start.counters,
+            crash: None,
         });
         Ok(Self {
             drive,
@@ -189,6 +195,8 @@ impl Board {
             drive_health: Health::Runs,
             comms_health: Health::Runs,
             starts: [2; 2],
+            drive_crash: None,
+            comms_crash: None,
             bridge: Bridge::Float,
             storage: Storage::new(start.saved),
             comms_has_restarted: false,
@@ -362,6 +370,10 @@ impl Board {
         if let Health::StartsAt(tick, cause) = self.drive_health
             && tick <= self.tick
         {
+            if let Some(end) = end(cause) {
+                let start = self.starts[0].wrapping_sub(1);
+                self.drive_crash = Some(self.drive.ends(Head::new(start, end, 0)));
+            }
             let boot = drive::Boot {
                 identity: Identity {
                     schema: self.drive_schema,
@@ -369,6 +381,7 @@ impl Board {
                 },
                 start: self.starts[0],
                 counter: self.leg.count().cast_unsigned(),
+                crash: self.drive_crash,
                 ..drive::Boot::default()
             };
             // Its defaults were valid at the first start.
@@ -382,6 +395,10 @@ impl Board {
             && tick <= self.tick
         {
             self.storage.start();
+            if let Some(end) = end(cause) {
+                let start = self.starts[1].wrapping_sub(1);
+                self.comms_crash = Some(Head::new(start, end, 0));
+            }
             self.comms = Comms::new(&comms::Boot {
                 self_test: SelfTest::default(),
                 identity: identity(Role::Comms, cause),
@@ -389,6 +406,7 @@ impl Board {
                 entropy: u64::from(self.starts[1]),
                 saved: self.storage.newest(),
                 counters: 0,
+                crash: self.comms_crash,
             });
             self.comms_health = Health::Runs;
             self.starts[1] = self.starts[1].wrapping_add(1);
@@ -468,4 +486,13 @@ impl Board {
 #[expect(clippy::cast_possible_truncation, reason = "what a converter shows")]
 fn single(value: f64) -> f32 {
     value as f32
+}
+
+/// How a program ended that was reset like this, if that is a crash.
+fn end(cause: ResetCause) -> Option<End> {
+    match cause {
+        ResetCause::Watchdog => Some(End::Watchdog),
+        ResetCause::Panic => Some(End::Panic),
+        ResetCause::Power | ResetCause::Requested | ResetCause::BrownOut => None,
+    }
 }

@@ -122,6 +122,7 @@ impl DriveBoard {
             entropy: 1,
             saved,
             counters: 0,
+            crash: None,
         });
         let mut mcu = Stm32f405::new(image);
         mcu.drive_pin(BREAK, true);

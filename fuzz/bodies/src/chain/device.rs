@@ -283,6 +283,7 @@ fn new_comms(start: u16, reset: ResetCause, saved: Option<(Revision, Values)>) -
         entropy: start.into(),
         saved,
         counters: 0,
+        crash: None,
     })
 }
 

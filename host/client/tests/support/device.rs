@@ -99,6 +99,7 @@ impl Device {
             entropy: u64::from(self.starts.0),
             saved: self.saved,
             counters: 0,
+            crash: None,
         });
     }
 
@@ -114,6 +115,7 @@ impl Device {
             start: self.starts.1,
             tick: 0,
             sequence: 0,
+            crash: None,
         })
         .unwrap();
     }

@@ -1,12 +1,14 @@
 //! `crepitus info`: identity, status and counters of a device.
 
 use crate::cli::DeviceArguments;
+use crate::crash_text;
 use crate::device_text;
 use crate::failure::{Failure, print, print_json};
 use crate::line::{Line, failure, manage};
 use clap::Args;
 use crepitus_client::{Client, Error, Handshake};
 use crepitus_protocol::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
+use crepitus_protocol::crash::Controller;
 use crepitus_protocol::host::{Counters, Status};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
@@ -16,10 +18,15 @@ use std::fmt::Write as _;
 #[command(after_help = "\
 Examples:
   crepitus info
+  crepitus info --crash
   crepitus info --device sim --json")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     device: DeviceArguments,
+
+    /// Show how a program of the device crashed last: registers, stack, last ticks
+    #[arg(long)]
+    crash: bool,
 }
 
 /// Prints them.
@@ -27,6 +34,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut management = manage(&arguments.device)?;
     let handshake = management.identify().map_err(failure)?;
     match management.into_client(handshake) {
+        Ok(mut client) if arguments.crash => print_crash(&mut client, as_json),
         Ok(mut client) => print_all(&mut client, &handshake, as_json),
         Err(Error::Mismatch(mismatch)) => {
             // The identity is known for any version.
@@ -54,6 +62,23 @@ fn identity_text(handshake: &Handshake) -> String {
         "comms   {}\ndrive   {drive}\n",
         device_text::identity(&handshake.comms)
     )
+}
+
+/// Prints the post-mortem record of each controller.
+fn print_crash(client: &mut Client<Line>, as_json: bool) -> Result<(), Failure> {
+    let comms = client.crash(Controller::Comms).map_err(failure)?;
+    let drive = client.crash(Controller::Drive).map_err(failure)?;
+    if as_json {
+        return print_json(&json!({
+            "comms": crash_text::json(comms.as_ref()),
+            "drive": crash_text::json(drive.as_ref()),
+        }));
+    }
+    print(&format!(
+        "{}{}",
+        crash_text::text("comms", comms.as_ref()),
+        crash_text::text("drive", drive.as_ref())
+    ))
 }
 
 fn print_all(

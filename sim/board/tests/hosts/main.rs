@@ -5,6 +5,7 @@
 mod support;
 
 mod cable;
+mod crash;
 mod nonsense;
 mod reboot;
 mod replay;

@@ -3,6 +3,7 @@
 mod boot;
 mod budget;
 mod commits;
+mod crash;
 mod faults;
 mod flash;
 mod host;
