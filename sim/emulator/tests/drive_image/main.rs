@@ -2,12 +2,14 @@
 
 mod boot;
 mod budget;
+mod code;
 mod commits;
 mod faults;
 mod flash;
 mod host;
 mod killed;
 mod locks;
+mod mpu;
 mod outputs;
 #[path = "../timing/reference_flash.rs"]
 mod reference_flash;
