@@ -10,6 +10,7 @@
 //! | post-mortem record | both | [`crash`] |
 //! | identity | both | [`identity`] |
 //! | fatal errors: outputs off, then reset | both | [`stop`] |
+//! | memory protection: map, and write access to the outputs | both | [`mpu`] |
 //! | enable line, with read-back | both | [`enable_line`] |
 //! | link: UART with DMA both ways | both | [`link`] |
 //! | watchdog, fed when every task has run | both | [`watchdog`] |
@@ -54,6 +55,8 @@ pub mod flash;
 pub mod identity;
 #[cfg(target_os = "none")]
 pub mod link;
+#[cfg(target_os = "none")]
+pub mod mpu;
 #[cfg(target_os = "none")]
 mod raw;
 #[cfg(target_os = "none")]

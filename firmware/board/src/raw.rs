@@ -5,7 +5,8 @@
 //! | [`record_words`], [`store_record_words`] | words that the start-up code leaves alone; any bits are a `u32`; accessed as a whole, by `init` before there are tasks, or by a function that never returns |
 //! | [`CRASH`], [`LAST_TICKS`] | words that the start-up code leaves alone; atomic, so that any bits are a `u32`; what they say is checked by a checksum |
 //! | [`image`] | symbols of the linker script around the program in flash, which is not written while it runs |
-//! | [`outputs_off`] | called when nothing else runs any more; only switches off |
+//! | [`outputs_off`] | called when nothing else runs any more; only switches off outputs, and the MPU that protects them |
+//! | [`mpu_region`], [`mpu_attributes`], [`mpu_control`] | change no memory; an access that is forbidden faults, and never returns |
 //! | [`dma_register`], [`dma_destination`] | the stream writes a `'static` buffer of atomic bytes in RAM that DMA reaches, within the length that `link.rs` sets |
 //! | [`dma_source`] | the stream reads a buffer that `link.rs` owns and keeps until the stream is done, in RAM that DMA reaches, within its length |
 //! | [`converter_channel`] | a channel that the converter has |
@@ -20,7 +21,7 @@ use crate::reset_record;
 use crate::stop::{Ended, stop};
 use core::mem::MaybeUninit;
 use core::sync::atomic::AtomicU8;
-use cortex_m::peripheral::SCB;
+use cortex_m::peripheral::{MPU, SCB};
 use stm32f4xx_hal::pac;
 
 /// The reset record, in a section that is neither cleared nor loaded.
@@ -88,9 +89,37 @@ pub(crate) fn image() -> &'static [u8] {
 /// has no effect.
 pub(crate) fn outputs_off() {
     // SAFETY: see the table.
-    let (gpio, timer) = unsafe { (pac::GPIOB::steal(), pac::TIM1::steal()) };
+    let (gpio, timer, mpu) = unsafe {
+        let core = cortex_m::Peripherals::steal();
+        (pac::GPIOB::steal(), pac::TIM1::steal(), core.MPU)
+    };
+    mpu_control(&mpu, 0);
     gpio.bsrr().write(|w| w.br(enable_line::PIN).set_bit());
     timer.bdtr().modify(|_, w| w.moe().clear_bit());
+}
+
+/// Sets a region of the MPU, and selects it.
+pub(crate) fn mpu_region(mpu: &MPU, address: u32, attributes: u32) {
+    // SAFETY: see the table.
+    unsafe { mpu.rbar.write(address) };
+    mpu_attributes(mpu, attributes);
+}
+
+/// Sets the attributes of the selected region of the MPU, for all accesses that
+/// follow.
+pub(crate) fn mpu_attributes(mpu: &MPU, attributes: u32) {
+    // SAFETY: see the table.
+    unsafe { mpu.rasr.write(attributes) };
+    cortex_m::asm::dsb();
+    cortex_m::asm::isb();
+}
+
+/// Switches the MPU on or off, for all accesses that follow.
+pub(crate) fn mpu_control(mpu: &MPU, control: u32) {
+    // SAFETY: see the table.
+    unsafe { mpu.ctrl.write(control) };
+    cortex_m::asm::dsb();
+    cortex_m::asm::isb();
 }
 
 /// Sets the register that a DMA stream serves.

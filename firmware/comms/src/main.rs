@@ -83,6 +83,7 @@ mod app {
         digits: [u8; DIGITS] = [0; DIGITS]
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
+        board::mpu::protect_comms(&cx.core.MPU);
         let board = CommsBoard::new(cx.device, cx.local.packets, cx.local.buffers.each_mut());
         let start = board.start;
         defmt::info!(

@@ -4,7 +4,7 @@
 //!
 //! | priority | task | interrupt | when | resources of its own |
 //! |---|---|---|---|---|
-//! | 4 | `command_motor` | TIM3 | in the middle of the tick, when the current is converted | bridge, lines, converters, clock |
+//! | 4 | `command_motor` | TIM3 | in the middle of the tick, when the current is converted | bridge, lines, write access to them, converters, clock |
 //! | 3 | `render_torque` | TIM4 | every 50 µs | encoder, the model |
 //! | 1 | `link` | DMA2_STREAM6, pended | after each tick, and after each sent frame | the link, watchdog |
 //! | 0 | `idle` | | always | preparation, log |
@@ -38,6 +38,7 @@ mod app {
     use board::enable_line::{EnableLine, OtherLine};
     use board::encoder::Encoder;
     use board::link::{BUFFERS, DmaBuffer, EMPTY_BUFFER, Link};
+    use board::mpu::OutputAccess;
     use board::ticks::{self, BeginOfTick, FreeClock, MiddleOfTick};
     use board::watchdog::{TaskCheckins, Watchdog};
     use core::sync::atomic::{AtomicBool, Ordering};
@@ -94,6 +95,7 @@ mod app {
         comms_line: OtherLine,
         bridge: Bridge,
         black_box: BlackBox,
+        output_access: OutputAccess,
         begin: BeginOfTick,
         encoder: Encoder,
         rendering: Rendering,
@@ -136,7 +138,7 @@ mod app {
             counters: Counters::new(),
             checkins: TaskCheckins::new(),
         };
-        let local = Local {
+        let mut local = Local {
             middle: board.middle,
             converters: board.converters,
             clock: board.clock,
@@ -144,6 +146,7 @@ mod app {
             comms_line: board.comms_line,
             bridge: board.bridge,
             black_box: board.black_box,
+            output_access: OutputAccess::protect(cx.core.MPU),
             begin: board.begin,
             encoder: board.encoder,
             rendering: Rendering::new(&first.reader, boot.counter, &first.prepared.rendering),
@@ -154,14 +157,17 @@ mod app {
             watchdog: Watchdog::start(board.watchdog, IDLE_TIMEOUT_RUNS),
         };
         // Last, so that the first tick is like the others.
-        ticks::start(&local.bridge, &local.middle, &local.begin);
+        local
+            .output_access
+            .write(|| ticks::start(&local.bridge, &local.middle, &local.begin));
         (shared, local)
     }
 
     #[task(
         binds = TIM3, priority = 4,
         local = [
-            middle, converters, clock, line, comms_line, bridge, black_box, middles: u8 = 0
+            middle, converters, clock, line, comms_line, bridge, output_access, black_box,
+            middles: u8 = 0,
         ],
         shared = [command, command_plan, &exchange, &is_running, &is_link_due, &counters, &checkins]
     )]
@@ -188,11 +194,13 @@ mod app {
         let keep = |tick: &Tick| part.black_box.record(tick);
         let outputs = (cx.shared.command, cx.shared.command_plan)
             .lock(|command, plan| command.tick(&inputs, plan.as_ref(), exchange, counters, keep));
-        part.line.set(outputs.enable);
-        match outputs.bridge {
-            motor::Bridge::Float => part.bridge.float(),
-            motor::Bridge::Driven(_) => part.bridge.drive(outputs.duty),
-        }
+        part.output_access.write(|| {
+            part.line.set(outputs.enable);
+            match outputs.bridge {
+                motor::Bridge::Float => part.bridge.float(),
+                motor::Bridge::Driven(_) => part.bridge.drive(outputs.duty),
+            }
+        });
         cx.shared.is_link_due.store(true, Ordering::Relaxed);
         rtic::pend(LINK);
     }

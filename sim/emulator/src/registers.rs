@@ -6,6 +6,7 @@
 
 mod fields;
 mod parts;
+mod regions;
 mod timers;
 
 use crate::mcu::{Mcu, Pin};
@@ -42,12 +43,13 @@ const DEBUG_PINS: [Pin; 5] = [
     Pin::new('B', 4),
 ];
 
-/// The tables of an image: core and stack, interrupts, pins, parts.
+/// The tables of an image: core and stack, interrupts, pins, protected memory, parts.
 pub fn tables(mcu: &Stm32f405) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = interrupts(mcu, &mut text);
     let _ = pins(mcu, &mut text);
+    let _ = regions::table(mcu, &mut text);
     let _ = registers(mcu, &mut text);
     text
 }

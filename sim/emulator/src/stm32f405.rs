@@ -200,6 +200,12 @@ impl Stm32f405 {
         self.core.reg(number)
     }
 
+    /// Base address (RBAR) and attributes (RASR) of each region of the MPU.
+    pub fn mpu_regions(&self) -> [(u32, u32); 8] {
+        let (bases, attributes) = self.core.with_sys(|sys| (sys.mpu_rbar, sys.mpu_rasr));
+        std::array::from_fn(|number| (bases[number], attributes[number]))
+    }
+
     /// The exception being handled; 0 if none.
     pub fn exception(&self) -> u16 {
         self.core.current_exception().0

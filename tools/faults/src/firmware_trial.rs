@@ -12,12 +12,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-/// Tests that look at registers, locks, outputs and tasks.
-const FIRST: [&str; 5] = [
+/// Tests that look at registers, locks, outputs, tasks and protected memory.
+const FIRST: [&str; 6] = [
     "registers::",
     "locks::",
     "outputs::",
     "killed::",
+    "mpu::",
     "commits::",
 ];
 

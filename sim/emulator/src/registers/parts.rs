@@ -8,6 +8,7 @@ use super::timers::{TIMER, TIMER_32};
 pub(super) const PARTS: &[Part] = &[
     part("VECTORS", 0x0800_0000, &[register("STACK", 0, &[])]),
     part("SCB", 0xe000_ed00, CORE),
+    part("MPU", 0xe000_ed90, &[register("CTRL", 0x04, PROTECTION)]),
     part("STK", 0xe000_e010, &[register("CTRL", 0, TICK)]),
     part("RCC", 0x4002_3800, CLOCKS),
     part("FLASH", 0x4002_3c00, &[register("ACR", 0, FLASH)]),
@@ -74,6 +75,8 @@ const FPU: &[&str] = &[
     "",
     "on",
 ];
+
+const PROTECTION: &[Field] = &[bit("ENABLE", 0), bit("HFNMIENA", 1), bit("PRIVDEFENA", 2)];
 
 const TICK: &[Field] = &[bit("ENABLE", 0), bit("TICKINT", 1), bit("CLKSOURCE", 2)];
 

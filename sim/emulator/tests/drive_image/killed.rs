@@ -1,6 +1,7 @@
 //! Each task killed in turn ends in a watchdog reset: its handler is replaced
 //! by one that returns at once, acknowledging its interrupt or not.
 
+use crate::code::{FOREVER, RETURN, bytes, store};
 use crate::host::{Host, examination, image};
 use crepitus_emulator::Reset;
 
@@ -26,34 +27,9 @@ const SLOWEST_WATCHDOG: u64 = 1_516;
 /// a tick at least.
 const IDLE_TIMEOUT: u64 = 2 * 5_000;
 
-/// `bx lr`
-const RETURN: [u8; 2] = [0x70, 0x47];
-
-/// `b .`
-const FOREVER: [u8; 2] = [0xfe, 0xe7];
-
-/// `movw register, #low` and `movt register, #high`
-fn load(register: u16, value: u32) -> [u16; 4] {
-    let immediate = |operation: u16, half: u32| {
-        let half = u16::try_from(half & 0xffff).expect("16 bits");
-        [
-            operation | (half >> 11 & 1) << 10 | half >> 12,
-            (half >> 8 & 7) << 12 | register << 8 | half & 0xff,
-        ]
-    };
-    let [a, b] = immediate(0xf240, value);
-    let [c, d] = immediate(0xf2c0, value >> 16);
-    [a, b, c, d]
-}
-
 /// A handler that only writes `value` to `register`.
 fn acknowledging((register, value): Acknowledge) -> Vec<u8> {
-    // `str r1, [r0]`
-    let halves = load(0, register)
-        .into_iter()
-        .chain(load(1, value))
-        .chain([0x6001]);
-    halves.flat_map(u16::to_le_bytes).chain(RETURN).collect()
+    bytes(&[&store(register, value)[..], &[RETURN]].concat())
 }
 
 fn armed() -> Option<Host> {
@@ -81,7 +57,7 @@ fn halves_until_reset(host: &mut Host, at_most: u64) -> u64 {
 fn each_task_that_returns_at_once_is_reset_by_the_watchdog() {
     for (name, exception, acknowledge) in TASKS {
         let handlers = [
-            ("unacknowledged", RETURN.to_vec()),
+            ("unacknowledged", bytes(&[RETURN])),
             ("acknowledged", acknowledging(acknowledge)),
         ];
         for (kind, handler) in handlers {
@@ -99,7 +75,7 @@ fn each_task_that_returns_at_once_is_reset_by_the_watchdog() {
 fn an_idle_loop_that_hangs_is_reset_by_the_watchdog() {
     let Some(mut host) = armed() else { return };
     let idle = host.idle_pc();
-    host.board.mcu_mut().patch_flash(idle, &FOREVER);
+    host.board.mcu_mut().patch_flash(idle, &bytes(&[FOREVER]));
     let halves = halves_until_reset(&mut host, IDLE_TIMEOUT + SLOWEST_WATCHDOG + 2);
     println!("idle: reset after {halves} half ticks");
 }

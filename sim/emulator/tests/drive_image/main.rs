@@ -2,6 +2,7 @@
 
 mod boot;
 mod budget;
+mod code;
 mod commits;
 mod crash;
 mod faults;
@@ -9,6 +10,7 @@ mod flash;
 mod host;
 mod killed;
 mod locks;
+mod mpu;
 mod outputs;
 #[path = "../timing/reference_flash.rs"]
 mod reference_flash;

@@ -78,6 +78,8 @@ struct Replay<'a> {
     /// Bytes that the image's link has received.
     bytes: std::slice::Iter<'a, u8>,
     next: u32,
+    /// The last run of the link's task took bytes.
+    has_received: bool,
     /// Samples that were put into blocks.
     pushed: u64,
     /// The parameters in force, block by block, in the image.
@@ -118,11 +120,17 @@ impl Replay<'_> {
                 let end = (RING - access.value) % RING;
                 let come = (end + RING - self.next) % RING;
                 let run = come.min(RUN);
+                // Receives or sends, as the task does: bytes are never taken by two
+                // runs one after the other.
+                self.has_received = run > 0 && !self.has_received;
+                if !self.has_received {
+                    self.send();
+                    return;
+                }
                 for byte in self.bytes.by_ref().take(run as usize) {
                     self.drive.link_received(*byte);
                 }
                 self.next = (self.next + run) % RING;
-                self.send();
             }
             _ => {}
         }
@@ -204,6 +212,7 @@ fn check(flash: Flash) {
         clock_us: 0,
         bytes: bytes.iter(),
         next: 0,
+        has_received: false,
         pushed: 0,
         revisions: host.blocks.iter().map(revision).collect(),
         decoder: Decoder::new(),
