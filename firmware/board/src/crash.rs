@@ -28,11 +28,14 @@ pub(crate) struct Kept {
 }
 
 impl Kept {
-    pub(crate) const EMPTY: Self = Self {
-        head: [const { Word::new(0) }; HEAD_WORDS],
-        ticks: EMPTY_RING,
-        checksum: Word::new(0),
-    };
+    /// What the compiler wants; a reset leaves what was there.
+    pub(crate) const fn empty() -> Self {
+        Self {
+            head: [const { Word::new(0) }; HEAD_WORDS],
+            ticks: empty_ring(),
+            checksum: Word::new(0),
+        }
+    }
 
     fn words(&self) -> impl Iterator<Item = u32> {
         let ticks = self.ticks.as_flattened();
@@ -60,8 +63,10 @@ impl Kept {
     }
 }
 
-/// What the linker's file says of the ring; nothing is stored there.
-pub(crate) const EMPTY_RING: Ring = [const { [const { Word::new(0) }; TICK_WORDS] }; TICKS];
+/// As [`Kept::empty`].
+pub(crate) const fn empty_ring() -> Ring {
+    [const { [const { Word::new(0) }; TICK_WORDS] }; TICKS]
+}
 
 /// Stores the last ticks.
 pub struct BlackBox(());

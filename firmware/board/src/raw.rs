@@ -14,7 +14,7 @@
 //! | [`stack`], [`fault_registers`] | words of the stack's RAM, and registers whose reading has no effect |
 #![allow(unsafe_code)]
 
-use crate::crash::{EMPTY_RING, Kept, Ring};
+use crate::crash::{Kept, Ring, empty_ring};
 use crate::enable_line;
 use crate::link::DmaBuffer;
 use crate::reset_record;
@@ -50,11 +50,11 @@ pub(crate) fn store_record_words(words: [u32; reset_record::WORDS]) {
 
 /// The post-mortem record.
 #[unsafe(link_section = ".uninit.crash")]
-pub(crate) static CRASH: Kept = Kept::EMPTY;
+pub(crate) static CRASH: Kept = Kept::empty();
 
 /// The last ticks.
 #[unsafe(link_section = ".uninit.ticks")]
-pub(crate) static LAST_TICKS: Ring = EMPTY_RING;
+pub(crate) static LAST_TICKS: Ring = empty_ring();
 
 /// Bytes of flash that hold the vector table.
 const VECTOR_BYTES: usize = 512;
@@ -175,13 +175,13 @@ const CCM: core::ops::Range<usize> = 0x1000_0000..0x1001_0000;
 extern "C" fn fault(frame: *const u32) -> ! {
     outputs_off();
     let address = u32::try_from(frame.addr()).unwrap_or_default();
-    stop(Ended::by_fault(address))
+    stop(&Ended::by_fault(address))
 }
 
 #[cortex_m_rt::exception]
 unsafe fn DefaultHandler(number: i16) -> ! {
     outputs_off();
-    stop(Ended::unhandled(number.unsigned_abs()))
+    stop(&Ended::unhandled(number.unsigned_abs()))
 }
 
 /// The stack's words from an address up; 0 where there is no stack.

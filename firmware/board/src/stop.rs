@@ -67,7 +67,7 @@ fn here(end: End, detail: u32) -> Head {
 }
 
 /// Turns outputs off, stores how the program ended and resets the processor.
-pub(crate) fn stop(ended: Ended) -> ! {
+pub(crate) fn stop(ended: &Ended) -> ! {
     raw::outputs_off();
     cortex_m::interrupt::disable();
     let record = ResetRecord::of(raw::record_words()).unwrap_or_default();
@@ -78,10 +78,10 @@ pub(crate) fn stop(ended: Ended) -> ! {
     }
     .words();
     raw::store_record_words(words);
-    if let Some(head) = ended.crash {
+    if let Some(head) = &ended.crash {
         crash::keep(&Head {
             start: record.start,
-            ..head
+            ..*head
         });
     }
     SCB::sys_reset()
@@ -89,7 +89,7 @@ pub(crate) fn stop(ended: Ended) -> ! {
 
 /// Resets the processor at the host's request.
 pub fn reboot() -> ! {
-    stop(Ended {
+    stop(&Ended {
         reason: Reason::Asked,
         crash: None,
     })
@@ -98,5 +98,5 @@ pub fn reboot() -> ! {
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
     raw::outputs_off();
-    stop(Ended::by_panic(info))
+    stop(&Ended::by_panic(info))
 }

@@ -23,8 +23,11 @@ pub(crate) fn text(name: &str, crash: Option<&Crash>) -> String {
         }
         text.push_str("  stack, from SP up\n");
         for line in head.stack.chunks(STACK_LINE) {
-            let words: String = line.iter().map(|word| format!(" {word:08x}")).collect();
-            let _ = writeln!(text, "   {words}");
+            text.push_str("   ");
+            for word in line {
+                let _ = write!(text, " {word:08x}");
+            }
+            text.push('\n');
         }
     }
     if !ticks.is_empty() {
