@@ -1,11 +1,14 @@
 //! `command_motor`: the bridge's output for the next tick, and the telemetry
 //! sample of this one.
 
+mod guards;
+mod samples;
+
 use crate::counters::Counters;
 use crate::drive::Boot;
 use crate::drive::arming::Seen;
 use crate::drive::batch::Batch;
-use crate::drive::emf_check::{self, EmfCheck};
+use crate::drive::emf_check::EmfCheck;
 use crate::drive::exchange::{Exchange, Rendered, Turn};
 use crate::drive::motor::{Bridge, Motor};
 use crate::drive::overload::Overload;
@@ -13,26 +16,12 @@ use crate::drive::plausibility::{Observation, Plausibility};
 use crate::drive::prepare::{CommandPlan, MotorPlan};
 use crate::drive::range::{self, Range};
 use crate::drive::safety::{Permit, Safety};
-use crate::drive::sampler::LOST_TICKS;
 use crate::drive::slow_checks::{SlowChecks, SlowInput, SlowReadings};
-use crepitus_model::Real;
-use crepitus_model::control::current_loop::Limit;
-
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::crash::Tick;
 use crepitus_protocol::link::DriveRefusal;
-use crepitus_protocol::telemetry::{Block, BlockFlags, NO_CURRENT, Sample, SampleFlags};
-use crepitus_protocol::{Fault, LimitReason, Revision, State};
-
-/// Ticks for which the enable line of comms may be off though comms permits torque:
-/// more than the timeout of heartbeats, which says what is the matter.
-const COMMS_LINE_TICKS: u32 = 120;
-
-/// Largest current of a floating bridge, A: twice the largest offset.
-const FLOATING_A: f32 = 0.2;
-
-/// For how long it may be larger, ticks: the current dies away within one.
-const FLOATING_TICKS: u32 = 20;
+use crepitus_protocol::telemetry::{Block, BlockFlags};
+use crepitus_protocol::{Revision, State};
 
 /// Inputs from the peripherals in the middle of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -340,113 +329,6 @@ impl Command {
         outputs
     }
 
-    /// Lets the bridge float while the enable line of comms is off, so that the
-    /// checks do not take an open bridge for a broken sensor. The reason follows on
-    /// the link; without one, the wire is broken.
-    fn with_comms(&mut self, permit: Permit, is_on: bool, counters: &Counters) -> Permit {
-        let is_driving = matches!(permit, Permit::Torque | Permit::Push(_));
-        if is_on || !is_driving {
-            self.without_comms_ticks = 0;
-            return permit;
-        }
-        self.without_comms_ticks = self.without_comms_ticks.saturating_add(1);
-        if self.without_comms_ticks < COMMS_LINE_TICKS {
-            return Permit::Line;
-        }
-        self.safety.fail(Fault::CommsLineOff, counters);
-        Permit::Nothing
-    }
-
-    /// Withdraws the permit outside the range of motion, and for what changes slowly.
-    fn guarded(
-        &mut self,
-        permit: Permit,
-        slow: Option<Fault>,
-        fades_left: f32,
-        current_a: Option<f32>,
-        counters: &Counters,
-    ) -> Permit {
-        let overload = self.overload.tick(current_a);
-        let live = if self.safety.is_live() {
-            self.range.check(fades_left).or(overload)
-        } else {
-            None
-        };
-        match slow.or(live) {
-            None => permit,
-            Some(fault) => {
-                self.safety.fail(fault, counters);
-                Permit::Nothing
-            }
-        }
-    }
-
-    /// The angle's zero is no longer known after counts that may be wrong.
-    fn doubt_zero(&mut self, fault_before: Option<Fault>) {
-        let fault = self.safety.fault().filter(|_| fault_before.is_none());
-        if fault.is_some_and(Fault::doubts_angle) || self.lost_ticks > LOST_TICKS {
-            self.zeroed = false;
-        }
-    }
-
-    /// Compares back-EMF with the counts; true if they contradict each other.
-    fn check_emf(&mut self, rendered: &Rendered, current_a: Option<f32>, is_late: bool) -> bool {
-        let is_sound = !is_late && rendered.lost_ticks == 0;
-        let tick = (self.motor.mean_v().zip(current_a))
-            .filter(|_| is_sound)
-            .map(|(volts, current_a)| emf_check::Tick {
-                volts,
-                current_a,
-                count: rendered.count,
-            });
-        self.emf_check
-            .contradicts(tick, self.motor.plan(), self.rad_per_count)
-    }
-
-    /// Checks that a floating bridge has no current: a shorted switch and a diode
-    /// would brake. Both sensors have to agree.
-    fn check_floating(
-        &mut self,
-        currents_a: Option<(f32, f32)>,
-        omega_rad_s: f32,
-        counters: &Counters,
-    ) {
-        let conducts = currents_a.is_some_and(|(sensor_a, monitor_a)| {
-            sensor_a.abs() > FLOATING_A && monitor_a.abs() > FLOATING_A
-        });
-        let is_slow = omega_rad_s.abs() < self.motor.plan().floats_below_rad_s;
-        self.conducting_ticks = if conducts && is_slow && !self.was_driven {
-            self.conducting_ticks.saturating_add(1)
-        } else {
-            0
-        };
-        if self.conducting_ticks >= FLOATING_TICKS {
-            self.safety.fail(Fault::CurrentWhileFloating, counters);
-        }
-    }
-
-    /// Withdraws the permit if a plausibility check fails.
-    fn checked(
-        &mut self,
-        permit: Permit,
-        observation: &Observation,
-        counters: &Counters,
-    ) -> Permit {
-        if !self.was_driven {
-            self.plausibility = Plausibility::default();
-        }
-        let fault = self
-            .plausibility
-            .check(observation, &self.motor, self.speed_limit_rad_s);
-        match fault {
-            None => permit,
-            Some(fault) => {
-                self.safety.fail(fault, counters);
-                Permit::Nothing
-            }
-        }
-    }
-
     fn drive(
         &mut self,
         permit: Permit,
@@ -484,70 +366,10 @@ impl Command {
             duty: self.motor.duty(bridge),
         }
     }
-
-    fn sample(
-        &self,
-        applied_nm: Option<f32>,
-        fades: bool,
-        rendered: &Rendered,
-        current_a: Option<f32>,
-        is_late: bool,
-        counters: &Counters,
-    ) -> Sample {
-        let is_energised = applied_nm.is_some();
-        let by_motor = match self.motor.limited_by() {
-            Some(Limit::Current) => LimitReason::Current,
-            Some(Limit::Voltage) => LimitReason::Voltage,
-            None => LimitReason::None,
-        };
-        let limit = match (is_energised, rendered.flags.limit()) {
-            (false, _) => LimitReason::NotArmed,
-            (true, LimitReason::None | LimitReason::NotArmed) if fades => LimitReason::Range,
-            (true, LimitReason::None | LimitReason::NotArmed) => by_motor,
-            (true, reason) => reason,
-        };
-        for (counter, is_active) in [
-            (DriveCounter::LostSamples, rendered.lost_ticks > 0),
-            (DriveCounter::LateTicks, is_late),
-            (DriveCounter::MissedCurrents, current_a.is_none()),
-            (
-                DriveCounter::LimitedTicks,
-                is_energised && limit != LimitReason::None,
-            ),
-        ] {
-            if is_active {
-                counters.count(counter);
-            }
-        }
-        Sample {
-            count: self.count_from_zero(),
-            model_torque_nm: rendered.model_torque_nm,
-            torque_nm: applied_nm.unwrap_or(0.0),
-            current_ma: current_a.map_or(NO_CURRENT, milliamperes),
-            flags: rendered
-                .flags
-                .with_limit(limit)
-                .with(SampleFlags::ENERGISED, is_energised)
-                .with(SampleFlags::LATE, is_late),
-        }
-    }
 }
 
 /// The lowest 32 bits.
 #[expect(clippy::cast_possible_truncation, reason = "the lowest bits")]
 fn low(tick: u64) -> u32 {
     tick as u32
-}
-
-/// Rounds and clamps to the range of i16, never [`NO_CURRENT`].
-fn milliamperes(current_a: f32) -> i16 {
-    let most = f32::from(i16::MAX);
-    let scaled = current_a * 1e3;
-    let rounded = (scaled + 0.5_f32.copysign(scaled)).within(most);
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "a cast from float saturates"
-    )]
-    let milliamperes = rounded as i16;
-    milliamperes
 }

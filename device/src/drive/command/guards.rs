@@ -1,0 +1,139 @@
+//! What withdraws the permit of a tick.
+
+use crate::counters::Counters;
+use crate::drive::command::Command;
+use crate::drive::emf_check;
+use crate::drive::exchange::Rendered;
+use crate::drive::plausibility::{Observation, Plausibility};
+use crate::drive::safety::Permit;
+use crate::drive::sampler::LOST_TICKS;
+use crepitus_protocol::Fault;
+
+/// Ticks for which the enable line of comms may be off though comms permits torque:
+/// more than the timeout of heartbeats, which says what is the matter.
+const COMMS_LINE_TICKS: u32 = 120;
+
+/// Largest current of a floating bridge, A: twice the largest offset.
+const FLOATING_A: f32 = 0.2;
+
+/// For how long it may be larger, ticks: the current dies away within one.
+const FLOATING_TICKS: u32 = 20;
+
+impl Command {
+    /// Lets the bridge float while the enable line of comms is off, so that the
+    /// checks do not take an open bridge for a broken sensor. The reason follows on
+    /// the link; without one, the wire is broken.
+    pub(super) fn with_comms(
+        &mut self,
+        permit: Permit,
+        is_on: bool,
+        counters: &Counters,
+    ) -> Permit {
+        let is_driving = matches!(permit, Permit::Torque | Permit::Push(_));
+        if is_on || !is_driving {
+            self.without_comms_ticks = 0;
+            return permit;
+        }
+        self.without_comms_ticks = self.without_comms_ticks.saturating_add(1);
+        if self.without_comms_ticks < COMMS_LINE_TICKS {
+            return Permit::Line;
+        }
+        self.safety.fail(Fault::CommsLineOff, counters);
+        Permit::Nothing
+    }
+
+    /// Withdraws the permit outside the range of motion, and for what changes slowly.
+    pub(super) fn guarded(
+        &mut self,
+        permit: Permit,
+        slow: Option<Fault>,
+        fades_left: f32,
+        current_a: Option<f32>,
+        counters: &Counters,
+    ) -> Permit {
+        let overload = self.overload.tick(current_a);
+        let live = if self.safety.is_live() {
+            self.range.check(fades_left).or(overload)
+        } else {
+            None
+        };
+        match slow.or(live) {
+            None => permit,
+            Some(fault) => {
+                self.safety.fail(fault, counters);
+                Permit::Nothing
+            }
+        }
+    }
+
+    /// The angle's zero is no longer known after counts that may be wrong.
+    pub(super) fn doubt_zero(&mut self, fault_before: Option<Fault>) {
+        let fault = self.safety.fault().filter(|_| fault_before.is_none());
+        if fault.is_some_and(Fault::doubts_angle) || self.lost_ticks > LOST_TICKS {
+            self.zeroed = false;
+        }
+    }
+
+    /// Compares back-EMF with the counts; true if they contradict each other.
+    pub(super) fn check_emf(
+        &mut self,
+        rendered: &Rendered,
+        current_a: Option<f32>,
+        is_late: bool,
+    ) -> bool {
+        let is_sound = !is_late && rendered.lost_ticks == 0;
+        let tick = (self.motor.mean_v().zip(current_a))
+            .filter(|_| is_sound)
+            .map(|(volts, current_a)| emf_check::Tick {
+                volts,
+                current_a,
+                count: rendered.count,
+            });
+        self.emf_check
+            .contradicts(tick, self.motor.plan(), self.rad_per_count)
+    }
+
+    /// Checks that a floating bridge has no current: a shorted switch and a diode
+    /// would brake. Both sensors have to agree.
+    pub(super) fn check_floating(
+        &mut self,
+        currents_a: Option<(f32, f32)>,
+        omega_rad_s: f32,
+        counters: &Counters,
+    ) {
+        let conducts = currents_a.is_some_and(|(sensor_a, monitor_a)| {
+            sensor_a.abs() > FLOATING_A && monitor_a.abs() > FLOATING_A
+        });
+        let is_slow = omega_rad_s.abs() < self.motor.plan().floats_below_rad_s;
+        self.conducting_ticks = if conducts && is_slow && !self.was_driven {
+            self.conducting_ticks.saturating_add(1)
+        } else {
+            0
+        };
+        if self.conducting_ticks >= FLOATING_TICKS {
+            self.safety.fail(Fault::CurrentWhileFloating, counters);
+        }
+    }
+
+    /// Withdraws the permit if a plausibility check fails.
+    pub(super) fn checked(
+        &mut self,
+        permit: Permit,
+        observation: &Observation,
+        counters: &Counters,
+    ) -> Permit {
+        if !self.was_driven {
+            self.plausibility = Plausibility::default();
+        }
+        let fault = self
+            .plausibility
+            .check(observation, &self.motor, self.speed_limit_rad_s);
+        match fault {
+            None => permit,
+            Some(fault) => {
+                self.safety.fail(fault, counters);
+                Permit::Nothing
+            }
+        }
+    }
+}
