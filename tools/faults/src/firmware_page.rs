@@ -34,7 +34,8 @@ pub fn page(outcomes: &[(FirmwareFault, FirmwareOutcome)]) -> String {
         "# Planted faults of the firmware\n\n\
          Made by `cargo run -p crepitus-faults -- --firmware --page docs/planted-firmware-faults.md`, which builds one fault at\n\
          a time into a copy of the drive's sources and runs the emulator's tests on the image: modelled silicon, not hardware.\n\
-         Tests that look at [registers](registers.md), locks, outputs, tasks, protected memory and commits run first;\n\
+         Tests that look at [registers](registers.md), locks, outputs, tasks, protected memory, the post-mortem record and\n\
+         commits run first;\n\
          the others only on what those do not notice.\n\n",
     );
     // Writing to a String cannot fail.

@@ -12,13 +12,15 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-/// Tests that look at registers, locks, outputs, tasks and protected memory.
-const FIRST: [&str; 6] = [
+/// Tests that look at registers, locks, outputs, tasks, protected memory and the
+/// post-mortem record.
+const FIRST: [&str; 7] = [
     "registers::",
     "locks::",
     "outputs::",
     "killed::",
     "mpu::",
+    "crash::",
     "commits::",
 ];
 
