@@ -8,6 +8,7 @@
 
 pub mod coefficients;
 pub mod compensated;
+mod divisor;
 mod event;
 pub mod oscillator;
 mod parameters;

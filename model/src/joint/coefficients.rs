@@ -1,6 +1,7 @@
 //! Coefficients of a step, computed from [`Settings`] outside the tick.
 
 use crate::joint::LONGEST_STEP_S;
+use crate::joint::divisor::{Divisor, Exact, Reciprocal};
 use crate::joint::oscillator::Oscillator;
 use crate::joint::ticks::Ticks;
 use crate::joint::{Restart, Settings, SettingsError, Validated};
@@ -57,38 +58,6 @@ struct Given<F> {
     restart_nm: F,
 }
 
-/// What divides many: exactly, or as a product with the reciprocal.
-trait Divisor<F> {
-    fn new(divisor: F) -> Self;
-    fn of(&self, dividend: F) -> F;
-}
-
-/// Rounded once.
-struct Exact<F>(F);
-
-/// Rounded twice, in one cycle instead of fourteen.
-struct Reciprocal<F>(F);
-
-impl<F: Real> Divisor<F> for Exact<F> {
-    fn new(divisor: F) -> Self {
-        Self(divisor)
-    }
-
-    fn of(&self, dividend: F) -> F {
-        dividend / self.0
-    }
-}
-
-impl<F: Real> Divisor<F> for Reciprocal<F> {
-    fn new(divisor: F) -> Self {
-        Self(F::ONE / divisor)
-    }
-
-    fn of(&self, dividend: F) -> F {
-        dividend * self.0
-    }
-}
-
 impl<F: Real> Given<F> {
     fn coefficients<D: Divisor<F>>(self, per_step: F) -> StepCoefficients<F> {
         let Self {
@@ -100,8 +69,9 @@ impl<F: Real> Given<F> {
             static_nm,
             restart_nm,
         } = self;
+        let oscillator = Oscillator::new::<D>(stiffness, inertia, damping);
         let per_stiffness = D::new(stiffness);
-        let per_radians = D::new((stiffness / inertia).sqrt() * step_s);
+        let per_radians = D::new(oscillator.omega_n() * step_s);
         StepCoefficients {
             step_s,
             per_step,
@@ -115,10 +85,14 @@ impl<F: Real> Given<F> {
             static_angle_rad: per_stiffness.of(static_nm),
             restart_angle_rad: per_stiffness.of(restart_nm),
             drop_nm: static_nm - kinetic_nm,
-            impedance: (inertia * stiffness).sqrt(),
+            impedance: if D::IS_EXACT {
+                (inertia * stiffness).sqrt()
+            } else {
+                inertia * oscillator.omega_n()
+            },
             ticks_per_half_radian: per_radians.of(F::TWO),
             period: Ticks::new(per_radians.of(F::from_f64(core::f64::consts::TAU))),
-            oscillator: Oscillator::new(stiffness, inertia, damping),
+            oscillator,
         }
     }
 }

@@ -19,6 +19,7 @@
 //! away most of its digits, and an f32 swing would gain or lose energy.
 
 use crate::joint::Parameters;
+use crate::joint::divisor::{Divisor, Exact};
 use crate::real::Real;
 
 /// The free motion of an object with given J, c, kr.
@@ -54,9 +55,10 @@ const SERIES_ANGLE_SQUARED: f64 = 0.3;
 
 impl<F: Real> Oscillator<F> {
     /// From kr, J and c.
-    pub fn new(stiffness: F, inertia: F, damping: F) -> Self {
-        let omega_n_squared = stiffness / inertia;
-        let decay = F::HALF * damping / inertia;
+    pub(crate) fn new<D: Divisor<F>>(stiffness: F, inertia: F, damping: F) -> Self {
+        let per_inertia = D::new(inertia);
+        let omega_n_squared = per_inertia.of(stiffness);
+        let decay = per_inertia.of(F::HALF * damping);
         // (ωn − a)(ωn + a): no cancellation near critical damping.
         let omega_n = omega_n_squared.sqrt();
         let discriminant = (omega_n - decay) * (omega_n + decay);
@@ -73,7 +75,7 @@ impl<F: Real> Oscillator<F> {
 
     /// From parameters; computed in f64 and rounded once.
     pub fn of(parameters: &Parameters) -> Self {
-        let exact = Oscillator::<f64>::new(
+        let exact = Oscillator::<f64>::new::<Exact<f64>>(
             parameters.stiffness_nm_per_rad,
             parameters.inertia_kg_m2,
             parameters.damping_nms_per_rad,
@@ -86,6 +88,12 @@ impl<F: Real> Oscillator<F> {
             root: F::from_f64(exact.root),
             jerk_factor: F::from_f64(exact.jerk_factor),
         }
+    }
+
+    /// ωn, rad/s.
+    #[inline]
+    pub(crate) fn omega_n(&self) -> F {
+        self.omega_n
     }
 
     /// The motion over `time_s` ≥ 0.
