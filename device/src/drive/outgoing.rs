@@ -23,18 +23,16 @@ const _: () = assert!(Block::HEAD_BYTES <= PIECE_BYTES);
 const _: () = assert!(PIECE_WORDS * COUNTER_BYTES <= PIECE_BYTES);
 
 /// Words per piece of a status's counters, or of the post-mortem record.
-const PIECE_WORDS: usize = 3;
+const PIECE_WORDS: usize = 4;
 
 /// The part of a frame that is still to be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Rest {
     /// A management reply, from this byte on.
     Answer(usize),
-    /// The head of a status.
+    /// Both parts of the head of a status.
     Status,
-    /// Its second part.
-    StatusMiddle,
-    /// Its third.
+    /// The second part of it.
     StatusEnd,
     /// The counters of a status, from this one on.
     Counters(usize),
@@ -168,17 +166,11 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
             Rest::Status => {
                 let begin = frame::write(&self.status.head().0, &mut self.bytes).ok()?;
                 encoder.push_by(unit, begin).ok()?;
-                *rest = Rest::StatusMiddle;
-                false
-            }
-            Rest::StatusMiddle => {
-                let middle = frame::write(&self.status.head().1, &mut self.bytes).ok()?;
-                encoder.push_by(unit, middle).ok()?;
                 *rest = Rest::StatusEnd;
                 false
             }
             Rest::StatusEnd => {
-                let end = frame::write(&self.status.head().2, &mut self.bytes).ok()?;
+                let end = frame::write(&self.status.head().1, &mut self.bytes).ok()?;
                 encoder.push_by(unit, end).ok()?;
                 *rest = Rest::Counters(0);
                 false
@@ -273,14 +265,14 @@ mod tests {
         let (frame, runs) = run(&mut outgoing, &block);
         let whole = FromDrive::Status(status);
         assert_eq!(frame, frame::encode(Lane::FromDrive, &whole).unwrap());
-        assert!(runs <= 10, "{runs}");
+        assert!(runs <= 7, "{runs}");
         for words in [None, Some(core::array::from_fn(|n| u32::MAX >> (2 * n)))] {
             let part = Part { number: 3, words };
             outgoing.begin_crash_part(buffer(), &part).unwrap();
             let (frame, runs) = run(&mut outgoing, &block);
             let whole = FromDrive::CrashPart(part);
             assert_eq!(frame, frame::encode(Lane::FromDrive, &whole).unwrap());
-            assert!(runs <= 6, "{runs}");
+            assert!(runs <= 4, "{runs}");
         }
         outgoing.begin_block(buffer(), &block.head()).unwrap();
         let (frame, runs) = run(&mut outgoing, &block);
