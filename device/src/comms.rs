@@ -65,7 +65,7 @@ pub struct Boot {
     pub saved: Option<(Revision, Values)>,
     /// Initial value of all counters: 0, except in a test of their wrap.
     pub counters: u32,
-    /// How the last program ended.
+    /// Post-mortem record of the last crash.
     pub crash: Option<Head>,
 }
 
@@ -119,7 +119,7 @@ pub struct Comms {
     stream: Stream,
     outbox: Outbox,
     save: Option<(Revision, Values)>,
-    /// How the last program ended.
+    /// Post-mortem record of the last crash.
     crash: Option<Head>,
     /// Time of the requested reboot, ms.
     reboot_ms: Option<u64>,

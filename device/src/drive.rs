@@ -92,7 +92,7 @@ pub struct Drive {
 /// A post-mortem record.
 #[derive(Clone, Copy, Debug)]
 pub struct Crash {
-    /// How the last program ended.
+    /// Cause, registers and stack.
     pub head: Head,
     /// Its last ticks.
     pub ticks: Ring,

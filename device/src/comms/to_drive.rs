@@ -29,7 +29,7 @@ pub(super) struct ToDriveQueue {
     last_number: u16,
 }
 
-/// What comms wants the drive to get, besides heartbeats.
+/// Pending messages to the drive, besides heartbeats.
 pub(super) struct Wanted<'a> {
     pub(super) commit: Option<(Revision, &'a Values)>,
     pub(super) command: Option<(u16, Order)>,

@@ -28,7 +28,7 @@ pub(crate) struct Kept {
 }
 
 impl Kept {
-    /// What the compiler wants; a reset leaves what was there.
+    /// Initial value in the source; the section is not initialised at start.
     pub(crate) const fn empty() -> Self {
         Self {
             head: [const { Word::new(0) }; HEAD_WORDS],
@@ -116,7 +116,7 @@ pub(crate) fn complete(cause: ResetCause, record: Option<&ResetRecord>) {
 /// No head has these words.
 const NO_HEAD: [u32; HEAD_WORDS] = [u32::MAX; HEAD_WORDS];
 
-/// How the last program ended.
+/// Post-mortem record of the last crash, without its ticks.
 pub fn head() -> Option<Head> {
     let mut words = NO_HEAD;
     for (to, word) in words.iter_mut().zip(&raw::CRASH.head) {

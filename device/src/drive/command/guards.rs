@@ -1,4 +1,4 @@
-//! What withdraws the permit of a tick.
+//! Checks that withdraw the permit of a tick.
 
 use crate::counters::Counters;
 use crate::drive::command::Command;
