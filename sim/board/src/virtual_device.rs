@@ -113,12 +113,7 @@ impl VirtualDevice {
     /// Pulls the plug.
     pub fn unplug(&mut self) {
         if let Some(host) = self.usb.host.take() {
-            let traffic = host.traffic();
-            self.earlier.frames += traffic.frames;
-            self.earlier.packets_in += traffic.packets_in;
-            self.earlier.packets_out += traffic.packets_out;
-            self.earlier.bytes_in += traffic.bytes_in;
-            self.earlier.bytes_out += traffic.bytes_out;
+            self.earlier.add(host.traffic());
         }
         self.usb.cable.unplug();
     }
@@ -167,18 +162,9 @@ impl VirtualDevice {
 
     /// Traffic of the bus, over all connections.
     pub fn traffic(&self) -> Traffic {
-        let now = self
-            .usb
-            .host
-            .as_ref()
-            .map(CdcHost::traffic)
-            .unwrap_or_default();
         let mut sum = self.earlier;
-        sum.frames += now.frames;
-        sum.packets_in += now.packets_in;
-        sum.packets_out += now.packets_out;
-        sum.bytes_in += now.bytes_in;
-        sum.bytes_out += now.bytes_out;
+        let host = self.usb.host.as_ref();
+        sum.add(host.map(CdcHost::traffic).unwrap_or_default());
         sum
     }
 }

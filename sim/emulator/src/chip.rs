@@ -2,8 +2,8 @@
 //!
 //! | part | from |
 //! |---|---|
-//! | RCC, PWR, FLASH, CRC, GPIO, TIM1 to TIM5, TIM8, DMA, IWDG, RNG, DBGMCU | the library |
-//! | the break of TIM1, ADC1 to ADC3, USART6 | [`crate::devices`] |
+//! | RCC, PWR, CRC, GPIO, TIM1 to TIM5, TIM8, DMA, IWDG, RNG, DBGMCU | the library |
+//! | FLASH, the break of TIM1, ADC1 to ADC3, USART6, OTG_FS | [`crate::devices`] |
 //!
 //! Wired: interrupts, the requests of USART6 to DMA2, the trigger outputs of
 //! TIM2, TIM3 and TIM8 to the converters, the encoder's channels to TIM5, the watchdog
@@ -14,15 +14,17 @@ mod bus_waits;
 pub(crate) mod clocks;
 pub(crate) mod memory;
 pub(crate) mod part;
-pub(crate) mod state_hash;
 mod timed_flash;
 mod waits;
 pub(crate) mod wires;
 
 use crate::devices::adc::{self, Adc, Adcs, Analog};
 use crate::devices::brake::Brake;
+use crate::devices::flash::Flash;
+use crate::devices::otg::{self, Otg};
 use crate::devices::registers::AsRegisters;
 use crate::devices::usart::Usart;
+use crate::image::Image;
 use crate::pins::Pins;
 use bus::{Bus, Now};
 use clocks::{Clock, Rates};
@@ -33,7 +35,6 @@ use rsemu::core::wire::WireSource;
 use rsemu::cpu::arm::v7m::ArmV7m;
 use rsemu::dev::stm32::crc::{self, Crc};
 use rsemu::dev::stm32::dma::{self, Dma};
-use rsemu::dev::stm32::flash::Flash;
 use rsemu::dev::stm32::gpio::{Gpio, ResetValues};
 use rsemu::dev::stm32::iwdg::Iwdg;
 use rsemu::dev::stm32::pwr::{self, Pwr};
@@ -68,6 +69,7 @@ pub(crate) struct Chip {
     pub(crate) analog: Arc<Analog>,
     pub(crate) pins: Arc<Pins>,
     pub(crate) usart: Arc<Usart>,
+    pub(crate) otg: Arc<Otg>,
     pub(crate) dma: [Arc<Dma>; 2],
     /// Channels A and B of the encoder.
     pub(crate) quadrature: [WireSource; 2],
@@ -89,7 +91,7 @@ fn timer(variant: &str, width: u32) -> Arc<Tim> {
 
 impl Chip {
     /// A chip around a core.
-    pub(crate) fn new(core: &ArmV7m, option_bytes: u32) -> Self {
+    pub(crate) fn new(core: &ArmV7m, image: &Image) -> Self {
         let nets = Nets::new(core);
         let now = Now::default();
         let frequencies = Frequencies::default();
@@ -100,14 +102,18 @@ impl Chip {
         ));
         let rates = Arc::new(Rates::new(rcc.clocks()));
         let dma = [(); 2].map(|()| Arc::new(Dma::with_variant(dma::Variant::Stream)));
-        let flash_props = Props::new()
-            .with("variant", "f4")
-            .with("size", 1_u64 << 20)
-            .with("optr", u64::from(option_bytes));
-        let flash = Arc::new(Flash::new(&flash_props).expect("a flash that there is"));
+        let flash = Flash::new(&image.flash, image.option_bytes, now.clone());
+        let flash_registers = Arc::new(AsRegisters(flash.clone()));
         let mut parts = vec![
             Part::of_library("RCC", 0x4002_3800, Clock::Crystal, None, rcc.clone()),
-            Part::of_library("FLASH", 0x4002_3c00, Clock::Core, None, flash.clone()),
+            Part::new(
+                "FLASH",
+                0x4002_3c00,
+                Clock::Time,
+                None,
+                flash_registers,
+                flash.clone(),
+            ),
         ];
         let apb2_reset = Gate::apb1(28);
         let pwr = Arc::new(Pwr::with_config(pwr::Variant::F4, 0));
@@ -155,6 +161,7 @@ impl Chip {
         let brake = Self::add_bridge_timer(&mut parts, &nets, &pins);
         let quadrature = Self::add_timers(&mut parts, &nets, &adcs);
         let usart = Self::add_usart(&mut parts, &nets, &rates, &now, &dma[1]);
+        let otg = Self::add_otg(&mut parts, &nets, &rates, &now, &pins);
         let causes = wires::Causes::new(&nets, &rcc);
         Self {
             bus: Arc::new(Bus::new(parts, rates, now, rcc.clone(), dma.clone())),
@@ -166,6 +173,7 @@ impl Chip {
             analog,
             pins,
             usart,
+            otg,
             dma,
             quadrature,
             watchdog_fired: watchdog_fired.flag(),
@@ -323,5 +331,22 @@ impl Chip {
             usart.clone(),
         ));
         usart
+    }
+
+    fn add_otg(
+        parts: &mut Vec<Part>,
+        nets: &Nets<'_>,
+        rates: &Arc<Rates>,
+        now: &Now,
+        pins: &Arc<Pins>,
+    ) -> Arc<Otg> {
+        let interrupt = nets.interrupt(67);
+        let otg = Arc::new(Otg::new(rates.clone(), now.clone(), pins.clone(), interrupt));
+        let registers = Arc::new(AsRegisters(otg.clone()));
+        let (clock, gate) = (Clock::Time, Gate::ahb2(7));
+        let mut part = Part::new("OTG_FS", 0x5000_0000, clock, gate, registers, otg.clone());
+        part.bytes = otg::BYTES;
+        parts.push(part);
+        otg
     }
 }

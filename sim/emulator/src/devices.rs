@@ -5,8 +5,12 @@
 //! | [`adc`] | a converter that a timer starts |
 //! | [`usart`] | a USART with DMA requests and the time of every character |
 //! | [`brake`] | the break input of an advanced timer |
+//! | [`flash`] | flash that is programmed and erased, and takes its time |
+//! | [`otg`] | the USB controller, as a device |
 
 pub(crate) mod adc;
 pub(crate) mod brake;
+pub(crate) mod flash;
+pub(crate) mod otg;
 pub(crate) mod registers;
 pub(crate) mod usart;

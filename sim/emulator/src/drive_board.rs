@@ -1,4 +1,5 @@
-//! The drive's image on its board: leg, link, enable lines, and a native comms.
+//! The drive's image on its board: leg, link, enable lines, and comms: native, or
+//! the image of comms on a board of its own ([`crate::comms_board`]).
 //!
 //! ```text
 //!   native Comms ── 4.2 Mbaud ──> USART6 ┌───────────┐ TIM5 <── edges ─────┐
@@ -19,9 +20,11 @@
 //! that samples at the wrong time, and the rest of [`BoardError`].
 
 mod access;
+mod comms_side;
 mod encoder_edges;
 mod half_bridges;
 mod link_wires;
+mod native_comms;
 mod wiring;
 
 use crate::image::Image;
@@ -29,23 +32,17 @@ use crate::mcu::{Mcu, Reset, Watch};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
 use crepitus_board::leg::{CurrentPath, Leg, Terminals};
-use crepitus_device::comms::{Boot, Comms, Inputs};
 use crepitus_device::drive::plausibility::TRIP_A;
-use crepitus_device::self_test::SelfTest;
-use crepitus_protocol::management::{Identity, ResetCause, Role};
-use crepitus_protocol::{Revision, Values, schema};
 use crepitus_scene::Scene;
 use encoder_edges::Edges;
-use link_wires::{Down, Up};
 use wiring::{BREAK, COMMS_LINE, JOINT, LINE, LINE_BACK, MONITOR, MOTOR, SENSOR, SUPPLY};
 
+pub use comms_side::CommsSide;
+pub use native_comms::NativeComms;
 pub use wiring::BoardError;
 
 /// Half a tick.
 pub const HALF: Time = Time::from_us(25);
-
-/// Halves in a millisecond, the tick of comms.
-const COMMS_HALVES: u64 = 40;
 
 /// Share of the converters' reference per ampere: 33 mΩ, 20 V/V, of 3.3 V.
 const SHARE_PER_A: f64 = 20.0 * 0.033 / 3.3;
@@ -61,8 +58,6 @@ pub struct Faults {
     pub down_is_cut: bool,
     /// Nothing from the drive arrives.
     pub up_is_cut: bool,
-    /// Comms hangs; its line stays as it is.
-    pub comms_hangs: bool,
     /// The comparator behind the monitor's amplifier never trips.
     pub trip_is_blind: bool,
     /// The drive's line is stuck at this level.
@@ -73,19 +68,14 @@ pub struct Faults {
     pub comms_gate_is_stuck: bool,
 }
 
-/// The board.
-pub struct DriveBoard {
+/// The board, with comms at the other end of its link.
+pub struct DriveBoard<C = NativeComms> {
     mcu: Stm32f405,
     leg: Leg,
-    comms: Comms,
+    comms: C,
     /// Current faults.
     pub faults: Faults,
-    comms_line: bool,
-    down: Down,
-    up: Up,
     edges: Edges,
-    /// Halves since the board was switched on.
-    halves: u64,
     is_second: bool,
     /// End of the next half.
     end: Time,
@@ -96,34 +86,9 @@ pub struct DriveBoard {
     quiet: Time,
 }
 
-fn identity() -> Identity {
-    let part = |text: &str| text.parse().unwrap_or(0);
-    Identity {
-        role: Role::Comms,
-        version: [
-            part(env!("CARGO_PKG_VERSION_MAJOR")),
-            part(env!("CARGO_PKG_VERSION_MINOR")),
-            part(env!("CARGO_PKG_VERSION_PATCH")),
-        ],
-        schema: schema::HASH,
-        serial: *b"EMU-COMMS-01",
-        image: 0,
-        reset: ResetCause::Power,
-    }
-}
-
-impl DriveBoard {
+impl<C: CommsSide> DriveBoard<C> {
     /// The board with an image and a scene's leg, just switched on.
-    pub fn new(image: &Image, scene: &Scene, saved: Option<(Revision, Values)>) -> Self {
-        let comms = Comms::new(&Boot {
-            self_test: SelfTest::default(),
-            identity: identity(),
-            start: 1,
-            entropy: 1,
-            saved,
-            counters: 0,
-            crash: None,
-        });
+    pub fn new(image: &Image, scene: &Scene, comms: C) -> Self {
         let mut mcu = Stm32f405::new(image);
         mcu.drive_pin(BREAK, true);
         Self {
@@ -131,11 +96,7 @@ impl DriveBoard {
             leg: Leg::new(scene),
             comms,
             faults: Faults::default(),
-            comms_line: false,
-            down: Down::default(),
-            up: Up::default(),
             edges: Edges::default(),
-            halves: 0,
             is_second: false,
             end: Time::ZERO,
             is_synchronised: false,
@@ -202,10 +163,6 @@ impl DriveBoard {
             let turned = self.leg.count().wrapping_sub(before);
             self.check_wiring(turned, counter);
         }
-        if self.halves.is_multiple_of(COMMS_HALVES) && !self.faults.comms_hangs {
-            self.comms_millisecond();
-        }
-        self.halves += 1;
         self.is_second = !self.is_second;
     }
 
@@ -264,9 +221,9 @@ impl DriveBoard {
     fn connect(&mut self) {
         let line = self.line_is_on();
         self.mcu.drive_pin(LINE_BACK, line);
-        self.mcu.drive_pin(COMMS_LINE, self.comms_line);
+        self.mcu.drive_pin(COMMS_LINE, self.comms.line_is_on());
         let is_open = (line || self.faults.drive_gate_is_stuck)
-            && (self.comms_line || self.faults.comms_gate_is_stuck);
+            && (self.comms.line_is_on() || self.faults.comms_gate_is_stuck);
         let terminals = if is_open {
             half_bridges::terminals(&self.mcu, self.leg.supply_v())
         } else {
@@ -282,36 +239,18 @@ impl DriveBoard {
             .drive_pin(BREAK, !is_over || self.faults.trip_is_blind);
     }
 
-    /// Transfers bytes over the link.
+    /// Lets comms run, with what goes over the link.
     fn carry(&mut self) {
-        let Self {
-            mcu, comms, faults, ..
-        } = self;
-        let arrived = self.up.carry(mcu.link_take(), mcu.now());
-        if !faults.comms_hangs && !faults.up_is_cut {
-            for byte in arrived {
-                comms.link_received(byte);
+        let mut sent = self.mcu.link_take();
+        if self.faults.up_is_cut {
+            sent.clear();
+        }
+        let answered = self.comms.run(sent, self.end, self.mcu.now());
+        if !self.faults.down_is_cut {
+            for character in answered {
+                self.mcu.link_feed(character);
             }
         }
-        let begin = self.end;
-        let next = || {
-            (!faults.comms_hangs)
-                .then(|| comms.link_to_send())
-                .flatten()
-        };
-        let characters = self.down.carry(begin, begin + HALF, next);
-        if !faults.down_is_cut {
-            for character in characters {
-                mcu.link_feed(character);
-            }
-        }
-    }
-
-    fn comms_millisecond(&mut self) {
-        let inputs = Inputs {
-            enable_is_on: self.comms_line,
-        };
-        self.comms_line = self.comms.tick(&inputs).enable;
     }
 
     /// Whether the drive's enable line is on.
@@ -323,7 +262,7 @@ impl DriveBoard {
 
     /// Whether the enable line of comms is on.
     pub fn comms_line_is_on(&self) -> bool {
-        self.comms_line
+        self.comms.line_is_on()
     }
 
     /// Whether the drive itself drives the motor: its bridge switches and its
@@ -335,7 +274,7 @@ impl DriveBoard {
 
     /// Whether the motor is driven: by the drive, and enabled by comms.
     pub fn is_driven(&self) -> bool {
-        self.drive_is_on() && self.comms_line
+        self.drive_is_on() && self.comms.line_is_on()
     }
 
     /// Simulates a brief drop of the supply.

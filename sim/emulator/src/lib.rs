@@ -6,6 +6,8 @@
 //! | to find | look in |
 //! |---|---|
 //! | the drive with leg, link and comms | [`drive_board`] |
+//! | comms with link and USB | [`comms_board`] |
+//! | both, at a host's USB cable | [`pair`] |
 //! | the interface of a microcontroller | [`mcu`] |
 //! | its implementation | [`stm32f405`] |
 //! | configuration registers as a table | [`registers`] |
@@ -33,6 +35,8 @@
 #[cfg(feature = "core")]
 mod chip;
 #[cfg(feature = "core")]
+pub mod comms_board;
+#[cfg(feature = "core")]
 pub mod cycles;
 #[cfg(feature = "core")]
 mod devices;
@@ -52,14 +56,20 @@ pub mod mcu;
 mod observed_ram;
 pub mod on_target;
 #[cfg(feature = "core")]
+pub mod pair;
+#[cfg(feature = "core")]
 pub mod pins;
 #[cfg(feature = "core")]
 pub mod registers;
+#[cfg(feature = "core")]
+mod state_hash;
 #[cfg(feature = "core")]
 pub mod stm32f405;
 #[cfg(feature = "core")]
 pub mod time;
 
+#[cfg(feature = "core")]
+pub use comms_board::CommsBoard;
 #[cfg(feature = "core")]
 pub use devices::usart::Character;
 #[cfg(feature = "core")]
@@ -68,6 +78,8 @@ pub use drive_board::DriveBoard;
 pub use image::Image;
 #[cfg(feature = "core")]
 pub use mcu::{Mcu, Pin, Reset};
+#[cfg(feature = "core")]
+pub use pair::Pair;
 #[cfg(feature = "core")]
 pub use stm32f405::Stm32f405;
 #[cfg(feature = "core")]

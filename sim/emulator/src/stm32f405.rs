@@ -12,6 +12,7 @@
 
 mod as_mcu;
 mod exception_state;
+mod usb;
 
 use crate::chip::Chip;
 use crate::chip::bus::FLASH_ACR;
@@ -82,9 +83,7 @@ impl Stm32f405 {
     /// If the image is longer than flash.
     pub fn new(image: &Image) -> Self {
         let core = ArmV7m::new(Config::CORTEX_M4F.with_priority_bits(4));
-        let chip = Chip::new(&core, image.option_bytes);
-        let loaded = chip.flash.load_image(0, &image.flash);
-        loaded.expect("an image is not longer than flash");
+        let chip = Chip::new(&core, image);
         let memory = Memory::new(&chip);
         core.attach_space(memory.space.clone());
         let mut mcu = Self {
@@ -164,9 +163,8 @@ impl Stm32f405 {
     /// # Panics
     /// If the address is outside of flash.
     pub fn patch_flash(&mut self, address: u32, bytes: &[u8]) {
-        let offset = u64::from(address.wrapping_sub(crate::image::FLASH));
-        let stored = self.chip.flash.load_image(offset, bytes);
-        stored.expect("an address in flash");
+        let offset = address.wrapping_sub(crate::image::FLASH);
+        self.chip.flash.put(offset as usize, bytes);
     }
 
     /// Sets whether a converter, counted from 0, never ends a conversion.
@@ -285,6 +283,14 @@ impl Stm32f405 {
         while self.now < stop {
             if self.is_hung {
                 self.now = stop;
+                break;
+            }
+            let busy_until = self.chip.flash.busy_until();
+            if busy_until > self.now {
+                // Not an instruction can be fetched. A store does not tell the bus.
+                self.chip.bus.touch("FLASH");
+                self.settle();
+                self.now = stop.min(busy_until);
                 break;
             }
             self.chip.bus.now.store(self.now, Relaxed);

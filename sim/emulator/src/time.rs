@@ -43,6 +43,11 @@ impl Time {
         self.0 / 2
     }
 
+    /// Whole milliseconds.
+    pub const fn milliseconds(self) -> u64 {
+        self.0 / (UNITS_PER_S / 1_000)
+    }
+
     /// Seconds, for display.
     #[expect(clippy::cast_precision_loss, reason = "for people")]
     pub fn as_s(self) -> f64 {

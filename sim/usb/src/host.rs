@@ -51,6 +51,19 @@ pub struct Traffic {
     pub naks_in: u64,
 }
 
+impl Traffic {
+    /// Adds the traffic of another connection.
+    pub fn add(&mut self, other: Self) {
+        self.frames += other.frames;
+        self.packets_out += other.packets_out;
+        self.packets_in += other.packets_in;
+        self.bytes_out += other.bytes_out;
+        self.bytes_in += other.bytes_in;
+        self.naks_out += other.naks_out;
+        self.naks_in += other.naks_in;
+    }
+}
+
 /// A host with one serial port open.
 ///
 /// When the device is disconnected ([`TransferError::Detached`]) the value is useless: enumerate

@@ -3,7 +3,7 @@
 
 use super::bus_waits;
 use super::clocks::Rates;
-use super::part::{Part, lock};
+use super::part::{PAGE, Part, lock};
 use super::waits::Waits;
 use crate::mcu::Access;
 use crate::time::Time;
@@ -15,9 +15,6 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
-
-/// A part has its kilobyte.
-const PAGE: u32 = 0x400;
 
 /// From here on parts are on the AHB. Below, on an APB, there are only words:
 /// the bridge repeats half a word, or a byte, over all of it (RM0090 2.1).
@@ -97,9 +94,13 @@ impl Bus {
         self.now.load(Relaxed)
     }
 
+    /// Sets the time, before something happens from outside.
+    pub(crate) fn set_now(&self, now: u64) {
+        self.now.store(now, Relaxed);
+    }
+
     fn place_of(&self, address: u32) -> Option<usize> {
-        let page = address & !(PAGE - 1);
-        self.parts.iter().position(|part| part.base == page)
+        self.parts.iter().position(|part| part.has(address))
     }
 
     /// Brings a part up to date, before it is accessed from outside.

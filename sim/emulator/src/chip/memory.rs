@@ -14,7 +14,6 @@ use super::bus::Window;
 use super::timed_flash::TimedFlash;
 use crate::image::FLASH;
 use crate::observed_ram::ObservedRam;
-use rsemu::core::device::Device;
 use rsemu::core::space::{AddressSpace, Mapping, RamStore, Region, RegionRef, RequesterId};
 use std::ops::Range;
 use std::sync::Arc;
@@ -44,7 +43,7 @@ impl Memory {
     pub(crate) fn new(chip: &Chip) -> Self {
         let ram = Arc::new(RamStore::new(RAM_BYTES));
         let ccm = Arc::new(RamStore::new(CCM_BYTES));
-        let flash = chip.flash.region("array").expect("flash has an array");
+        let flash = chip.flash.region();
         let ram_region: RegionRef = Arc::new(Region::ram("RAM", ram.clone()));
         let peripherals = window(chip, 0x4000_0000, 0x8_0000);
         let space = Arc::new(AddressSpace::new("core", 32));
@@ -103,7 +102,7 @@ impl Memory {
 
     /// Counts waits of the core for flash from now on.
     pub(crate) fn time_flash(&self, chip: &Chip) {
-        let flash = chip.flash.region("array").expect("flash has an array");
+        let flash = chip.flash.region();
         let timed = Arc::new(TimedFlash::new(&flash, chip.bus.waits.clone()));
         for base in [0, u64::from(FLASH)] {
             let region = Region::io("timed flash", FLASH_BYTES, timed.clone());

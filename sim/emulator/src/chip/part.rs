@@ -6,6 +6,9 @@ use rsemu::core::space::{MemOps, RegionKind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+/// A part has its kilobyte, unless it has more.
+pub(crate) const PAGE: u32 = 0x400;
+
 /// Behaviour of a part besides its registers.
 pub(crate) trait Peripheral: Send + Sync {
     /// Advances its clock to this tick, counted from its first.
@@ -93,6 +96,8 @@ struct Phase {
 pub(crate) struct Part {
     pub(crate) name: &'static str,
     pub(crate) base: u32,
+    /// Of its registers.
+    pub(crate) bytes: u32,
     pub(crate) registers: Arc<dyn MemOps>,
     pub(crate) peripheral: Arc<dyn Peripheral>,
     pub(crate) clock: Clock,
@@ -121,6 +126,7 @@ impl Part {
         Self {
             name,
             base,
+            bytes: PAGE,
             registers,
             peripheral,
             clock,
@@ -141,6 +147,11 @@ impl Part {
     ) -> Self {
         let ops = registers(&*device);
         Self::new(name, base, clock, gate, ops, Arc::new(Library(device)))
+    }
+
+    /// Whether an address is one of its registers.
+    pub(crate) fn has(&self, address: u32) -> bool {
+        address.wrapping_sub(self.base) < self.bytes
     }
 
     /// Brings it to `now`; without a clock it stays as it is.

@@ -1,14 +1,12 @@
 //! Access to the parts of the board, for tests and faults.
 
-use super::{BoardError, DriveBoard};
-use crate::devices::usart::Character;
+use super::{BoardError, CommsSide, DriveBoard};
 use crate::mcu::Reset;
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
 use crepitus_board::leg::Leg;
-use crepitus_device::comms::Comms;
 
-impl DriveBoard {
+impl<C: CommsSide> DriveBoard<C> {
     /// Resets of the chip since the board was switched on.
     pub fn resets(&self) -> &[(Time, Reset)] {
         &self.resets
@@ -41,30 +39,13 @@ impl DriveBoard {
     }
 
     /// Comms.
-    pub fn comms(&self) -> &Comms {
+    pub fn comms(&self) -> &C {
         &self.comms
     }
 
-    /// Comms, for what comes and goes by USB.
-    pub fn comms_mut(&mut self) -> &mut Comms {
+    /// Comms, to break it, and for what comes and goes by USB.
+    pub fn comms_mut(&mut self) -> &mut C {
         &mut self.comms
-    }
-
-    /// Records the bytes of the link from now on, for [`Self::to_drive`] and
-    /// [`Self::from_drive`].
-    pub fn record_bytes(&mut self) {
-        self.down.keeps = true;
-        self.up.keeps = true;
-    }
-
-    /// Bytes to the drive, each with the end of its stop bit.
-    pub fn to_drive(&self) -> &[Character] {
-        &self.down.kept
-    }
-
-    /// Bytes from the drive.
-    pub fn from_drive(&self) -> &[u8] {
-        &self.up.kept
     }
 
     /// Whether halves are synchronised with the bridge's timer: the image runs.

@@ -1,7 +1,7 @@
 //! The chip as a microcontroller.
 
 use super::{LINK_FUNCTION, LINK_RECEIVES, LINK_SENDS, Stm32f405};
-use crate::chip::state_hash::Hash;
+use crate::state_hash::Hash;
 use crate::devices::brake;
 use crate::devices::usart::Character;
 use crate::mcu::{Access, Mcu, Pin, Reset, Sampling, Watch};
@@ -183,6 +183,8 @@ impl Mcu for Stm32f405 {
                     .any(|adc| adc.uses_unmodelled_features()),
             ),
             ("TIM1", self.chip.brake.uses_unmodelled_features()),
+            ("FLASH", self.chip.flash.uses_unmodelled_features()),
+            ("OTG_FS", self.chip.otg.uses_unmodelled_features()),
         ];
         let asked = asked.iter().filter(|(_, is_asked)| *is_asked);
         strays

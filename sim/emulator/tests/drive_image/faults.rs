@@ -3,6 +3,7 @@
 
 use crate::host::{Host, examination, image};
 use crepitus_board::leg::{CurrentPath, CurrentSensor, EncoderWiring};
+use crepitus_emulator::drive_board::CommsSide;
 use crepitus_emulator::mcu::{Step, Watch};
 use crepitus_emulator::{Mcu, Reset, Time};
 use crepitus_protocol::fault::{FAULTS, Fault};
@@ -55,7 +56,7 @@ fn comms_that_hangs() {
     let Some(mut host) = under_torque() else {
         return;
     };
-    host.board.faults.comms_hangs = true;
+    host.board.comms_mut().set_hung(true);
     let halves = host.halves_until_off(limit(Fault::CommsSilent));
     println!("comms hangs: off after {halves} half ticks");
     // Its own line stays as it was: the drive's is the one that fell.

@@ -39,7 +39,7 @@ fn it_arms_and_no_sample_is_late_lost_or_dropped() {
     host.blocks.clear();
     host.run(10_000);
     assert!(host.board.is_driven());
-    assert_eq!(host.board.comms().state(), State::Armed);
+    assert_eq!(host.board.comms().comms().state(), State::Armed);
     assert!(host.blocks.len() * BLOCK_SAMPLES >= 9_900);
     for pair in host.blocks.windows(2) {
         let ticks = pair[1].first_tick - pair[0].first_tick;

@@ -3,6 +3,7 @@
 use crate::locks::LockCheck;
 use crepitus_board::values::values;
 use crepitus_device::usb_port::HostBytes;
+use crepitus_emulator::drive_board::NativeComms;
 use crepitus_emulator::firmware::{Program, image_for_test};
 use crepitus_emulator::{DriveBoard, Image, Mcu, Time};
 use crepitus_protocol::frame;
@@ -106,8 +107,12 @@ impl Host {
 
     fn switched_on(image: &Image, scene: &Scene, registers: &[u32]) -> Self {
         let values = values(scene).expect("a scene for the device");
-        let mut board = DriveBoard::new(image, scene, Some((Revision(1), values)));
-        board.record_bytes();
+        let mut board = DriveBoard::new(
+            image,
+            scene,
+            NativeComms::new(Some((Revision(1), values))),
+        );
+        board.comms_mut().record_bytes();
         board.mcu_mut().listen(registers);
         Self {
             board,
@@ -173,11 +178,11 @@ impl Host {
             operation,
         };
         let frame = frame::encode(Lane::Request, &request).expect("a frame");
-        self.board.comms_mut().received(&frame);
+        self.board.comms_mut().comms_mut().received(&frame);
     }
 
     fn listen(&mut self) {
-        let comms = self.board.comms_mut();
+        let comms = self.board.comms_mut().comms_mut();
         let bytes = comms.to_send().to_vec();
         comms.sent(bytes.len());
         for byte in bytes {
@@ -187,7 +192,7 @@ impl Host {
                 self.replies.extend(body.message::<Reply>());
             }
         }
-        let sent = self.board.from_drive();
+        let sent = self.board.comms().from_drive();
         for byte in &sent[self.decoded..] {
             if let Some(Ok(body)) = self.from_drive.push(*byte)
                 && body.lane() == Some(Lane::Telemetry)

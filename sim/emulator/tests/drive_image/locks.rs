@@ -267,7 +267,7 @@ fn a_core_that_stalls_at_any_phase_breaks_no_lock_and_no_tick() {
             mcu.run_until(after(phase + stall));
             mcu.set_hung(false);
             host.run(3);
-            let state = host.board.comms().state();
+            let state = host.board.comms().comms().state();
             assert!(host.board.resets().is_empty(), "{stall} ns at {phase} ns");
             assert_eq!(state, State::Armed, "{stall} ns at {phase} ns");
         }

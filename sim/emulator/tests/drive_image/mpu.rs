@@ -129,7 +129,7 @@ fn a_reboot_that_was_asked_for_is_no_fault() {
         token: 1,
     };
     let frame = frame::encode_bytes(Lane::Management, &request.bytes()).expect("a frame");
-    host.board.comms_mut().received(&frame);
+    host.board.comms_mut().comms_mut().received(&frame);
     host.run(3_000);
     let reset = host.board.resets().first().map(|(_, cause)| *cause);
     assert_eq!(reset, Some(Reset::Software));

@@ -184,6 +184,7 @@ fn check(flash: Flash) {
         .expect("the link is switched on");
     let bytes: Vec<u8> = host
         .board
+        .comms()
         .to_drive()
         .iter()
         .filter(|character| character.at > listens.at.units())

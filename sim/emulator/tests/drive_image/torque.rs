@@ -10,7 +10,7 @@ fn it_arms_the_hand_feels_the_joint_and_it_stops() {
     let mut host = Host::new(&image, &examination());
     assert!(!host.board.drive_is_on());
     host.arm();
-    assert_eq!(host.board.comms().state(), State::Armed);
+    assert_eq!(host.board.comms().comms().state(), State::Armed);
     assert!(host.board.is_driven());
     host.run_until_torque();
     host.blocks.clear();
@@ -30,5 +30,5 @@ fn it_arms_the_hand_feels_the_joint_and_it_stops() {
     host.run(25);
     assert!(!host.board.drive_is_on());
     assert!(!host.board.line_is_on());
-    assert_eq!(host.board.comms().state(), State::Disarmed);
+    assert_eq!(host.board.comms().comms().state(), State::Disarmed);
 }

@@ -1,0 +1,169 @@
+//! Both images on their boards, at the end of a USB cable, for a host's program.
+//!
+//! ```text
+//! program ── bytes ── CdcHost ══ packets ══ OTG_FS │ comms │ USART6 ── USART6 │ drive │ TIM1 ── leg
+//! ```
+//!
+//! Time advances only by [`Pair::tick`]: 50 µs of everything, including one
+//! packet each way on the bus. The two chips have one clock and run one after the
+//! other, half a tick each; a run is the same each time, to the last bit.
+
+use crate::comms_board::CommsBoard;
+use crate::drive_board::DriveBoard;
+use crate::image::Image;
+use crate::mcu::Mcu;
+use crate::state_hash::Hash;
+use crepitus_scene::Scene;
+use crepitus_usb::enumeration::EnumerationError;
+use crepitus_usb::host::{CdcHost, Traffic};
+use crepitus_usb::wire::{Handshake, Token, UsbWire};
+
+/// Turns of the bus in a frame.
+const FRAME_TICKS: u64 = 20;
+
+/// Ticks that the device gets to show itself after it is plugged in: comms may
+/// be starting, and erase a sector of flash, which takes it at most 0.8 s.
+const PLUG_IN_TICKS: u64 = 30_000;
+
+/// Why the device cannot be reached.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlugInError {
+    /// Comms does not switch its pull-up on.
+    #[error("no device shows on the bus: the image of comms does not run")]
+    NotConnected,
+    /// The host could not enumerate it.
+    #[error("the emulated device cannot be enumerated")]
+    Enumeration(#[from] EnumerationError),
+}
+
+/// The two boards.
+pub type Boards = DriveBoard<CommsBoard>;
+
+/// Both boards and a host.
+pub struct Pair {
+    boards: Boards,
+    host: Option<CdcHost>,
+    ticks: u64,
+    /// Traffic of earlier connections.
+    earlier: Traffic,
+}
+
+impl Pair {
+    /// Both just switched on, not plugged in.
+    pub fn new(drive: &Image, comms: &Image, scene: &Scene) -> Self {
+        Self {
+            boards: DriveBoard::new(drive, scene, CommsBoard::new(comms)),
+            host: None,
+            ticks: 0,
+            earlier: Traffic::default(),
+        }
+    }
+
+    /// Plugs the cable in, and enumerates the device.
+    ///
+    /// # Errors
+    /// [`PlugInError`] if that fails: comms hangs, or cannot start.
+    pub fn plug_in(&mut self) -> Result<(), PlugInError> {
+        self.unplug();
+        let Self { boards, ticks, .. } = self;
+        boards.comms_mut().mcu_mut().plug_in();
+        let mut run = |boards: &mut Boards| {
+            *ticks += 1;
+            boards.run(1);
+        };
+        let end = PLUG_IN_TICKS;
+        if !(0..end).any(|_| {
+            run(boards);
+            boards.comms().mcu().is_connected()
+        }) {
+            return Err(PlugInError::NotConnected);
+        }
+        self.host = Some(CdcHost::enumerate(boards, &mut run)?);
+        Ok(())
+    }
+
+    /// Pulls the cable.
+    pub fn unplug(&mut self) {
+        if let Some(host) = self.host.take() {
+            self.earlier.add(host.traffic());
+        }
+        self.boards.comms_mut().mcu_mut().unplug();
+    }
+
+    /// Whether the host has it.
+    pub fn is_plugged_in(&self) -> bool {
+        self.host.is_some()
+    }
+
+    /// 50 µs of everything. A device that does not answer is disconnected until
+    /// it is plugged in again.
+    pub fn tick(&mut self) {
+        self.boards.run(1);
+        self.ticks += 1;
+        if let Some(host) = &mut self.host {
+            if self.ticks.is_multiple_of(FRAME_TICKS) {
+                host.start_frame();
+            }
+            if host.poll(&mut self.boards).is_err() {
+                self.unplug();
+            }
+        }
+    }
+
+    /// Ticks since it was switched on.
+    pub fn now(&self) -> u64 {
+        self.ticks
+    }
+
+    /// The boards.
+    pub fn boards(&self) -> &Boards {
+        &self.boards
+    }
+
+    /// The boards, to break them.
+    pub fn boards_mut(&mut self) -> &mut Boards {
+        &mut self.boards
+    }
+
+    /// The host's end of the cable, if the device is plugged in.
+    pub fn host(&mut self) -> Option<&mut CdcHost> {
+        self.host.as_mut()
+    }
+
+    /// Traffic of the bus, over all connections.
+    pub fn traffic(&self) -> Traffic {
+        let mut sum = self.earlier;
+        sum.add(self.host.as_ref().map(CdcHost::traffic).unwrap_or_default());
+        sum
+    }
+
+    /// A hash of both chips, for comparing two runs.
+    pub fn state_hash(&self) -> u64 {
+        let mut hash = Hash::default();
+        for mcu in [self.boards.mcu(), self.boards.comms().mcu()] {
+            hash.bytes(&mcu.state_hash().to_le_bytes());
+        }
+        hash.value()
+    }
+}
+
+/// The cable ends at comms.
+impl UsbWire for Boards {
+    fn bus_reset(&mut self) {
+        self.comms_mut().mcu_mut().bus_reset();
+    }
+
+    fn setup_transaction(&mut self, token: Token, request: [u8; 8]) -> Handshake {
+        let mcu = self.comms_mut().mcu_mut();
+        mcu.setup_transaction(token, request)
+    }
+
+    fn out_transaction(&mut self, token: Token, data: &[u8]) -> Handshake {
+        self.comms_mut().mcu_mut().out_transaction(token, data)
+    }
+
+    fn in_transaction(&mut self, token: Token) -> Handshake {
+        self.comms_mut().mcu_mut().in_transaction(token)
+    }
+}

@@ -1,0 +1,26 @@
+//! Both images together, over USB.
+
+use crepitus_emulator::firmware::{Program, image_for_test};
+use crepitus_emulator::{Mcu, Pair};
+use crepitus_scene::{Overrides, Scene};
+use std::path::Path;
+
+#[test]
+fn enumerates() {
+    let drive = image_for_test(Program::Drive).unwrap();
+    let comms = image_for_test(Program::Comms).unwrap();
+    let text = include_str!("../drive_image/examination.toml");
+    let scene = Scene::parse(Path::new("x.toml"), text, &Overrides::default()).expect("a scene");
+    let mut pair = Pair::new(&drive, &comms, &scene);
+    let begin = std::time::Instant::now();
+    let r = pair.plug_in();
+    println!("{:?} at {} {:?}", r, pair.now(), begin.elapsed());
+    println!("{:?}", pair.boards().comms().mcu().not_modelled());
+    println!("{:x?} {:x?}", pair.boards().comms().mcu().program_counter(), pair.boards().comms().resets());
+    r.unwrap();
+    println!("{:?}", pair.host().unwrap().device());
+    let begin = std::time::Instant::now();
+    for _ in 0..20_000 { pair.tick(); }
+    println!("a second took {:?}; traffic {:?}", begin.elapsed(), pair.traffic());
+    println!("{:?} {:?}", pair.boards().errors(), pair.boards().resets());
+}
