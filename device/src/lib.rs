@@ -17,6 +17,7 @@
 //! | the drive's tick: sample, render, command | [`drive`] |
 //! | host requests, the lease, supervision of the drive | [`comms`] |
 //! | the USB port of comms | [`usb_port`] |
+//! | stored parameters | [`parameter_log`] |
 //!
 //! No code here allocates, panics, blocks or loops without a bound.
 #![no_std]
@@ -47,6 +48,7 @@ extern crate std;
 pub mod comms;
 pub mod counters;
 pub mod drive;
+pub mod parameter_log;
 pub mod self_test;
 pub mod usb_port;
 

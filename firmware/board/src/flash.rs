@@ -1,6 +1,6 @@
 //! Sectors 2 and 3 of flash, for parameters.
 
-use crate::parameter_log::{LOG_BYTES, SECTOR_BYTES, Sectors};
+use crepitus_device::parameter_log::{LOG_BYTES, SECTOR_BYTES, Sectors};
 use stm32f4xx_hal::flash::FlashExt;
 use stm32f4xx_hal::pac::FLASH;
 

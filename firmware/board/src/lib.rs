@@ -20,14 +20,12 @@
 //! | checksums of frames: CRC unit | drive | [`crc_unit`] |
 //! | encoder: 32-bit counter | drive | [`encoder`] |
 //! | USB | comms | [`usb`] |
-//! | parameters in flash | comms | [`parameter_log`], [`parameter_record`], [`flash`] |
+//! | parameters in flash | comms | [`flash`] |
 //!
 //! All `unsafe` code is in `raw.rs`, one short file.
 //! Every wait is bounded, except before the first task.
 #![cfg_attr(not(test), no_std)]
 
-pub mod parameter_log;
-pub mod parameter_record;
 pub mod reset_cause;
 pub mod reset_record;
 

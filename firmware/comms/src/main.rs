@@ -28,12 +28,12 @@ mod app {
     use board::enable_line::EnableLine;
     use board::flash::ParameterSectors;
     use board::link::{BUFFERS, EMPTY_BUFFER, Link};
-    use board::parameter_log::ParameterLog;
     use board::ticks::Quarters;
     use board::usb::{DIGITS, PACKET_WORDS, UsbBusAllocator, UsbBusType, identity};
     use board::watchdog::{TaskCheckins, Watchdog};
     use core::mem::MaybeUninit;
     use crepitus_device::comms::{Boot, Comms, Inputs};
+    use crepitus_device::parameter_log::ParameterLog;
     use crepitus_device::usb_port::{HostBytes, UsbPort};
     use crepitus_protocol::frame::FrameBuffer;
     use crepitus_protocol::{Fault, Revision, Values};

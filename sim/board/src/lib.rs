@@ -11,6 +11,7 @@
 //! | the link, and its faults | [`wire`], [`faults`] |
 //! | the device at the end of a USB cable | [`virtual_device`] |
 //! | the parameters of a scene | [`values`] |
+//! | flash whose power fails | [`nor_flash`] |
 //!
 //! Real: every line of `device`, `protocol` and `model`, and the USB stack.
 //! Virtual: silicon, bus, leg and time, which advances only tick by tick.
@@ -19,6 +20,7 @@
 pub mod board;
 pub mod faults;
 pub mod leg;
+pub mod nor_flash;
 mod storage;
 pub mod values;
 pub mod virtual_device;

@@ -10,23 +10,18 @@
 //! read, so the core stops at its next instruction in it
 //! ([`Flash::busy_until`]); timers, DMA and watchdog run on.
 //!
-//! A reset ends an operation in the middle. Of a byte, some bits are
-//! programmed. A sector is first programmed to zero, then its bits turn to one
-//! in no order; one that was cut off near its end reads as erased, and no longer
-//! does at the next reset: its cells are marginal until it is erased whole.
-//! How far it has come decides, and nothing random.
+//! A reset ends an operation in the middle, and leaves what
+//! [`crepitus_board::nor_flash`] says.
 //!
 //! Not modelled: read-out and write protection, option bytes that are changed,
 //! mass erase, the interrupt; [`Flash::uses_unmodelled_features`] reports their use.
-
-mod cut;
 
 use super::registers::Words;
 use crate::chip::bus::Now;
 use crate::chip::part::{Peripheral, lock};
 use crate::image::FLASH_BYTES;
 use crate::time::Time;
-use cut::Cut;
+use crepitus_board::nor_flash::{Cut, Marginal};
 use rsemu::core::error::BusError;
 use rsemu::core::space::{
     AccessConstraints, Mapping, MemAttrs, MemOps, MemResult, Perms, RamStore, Region, RegionRef,
@@ -83,7 +78,7 @@ struct State {
     is_barred: bool,
     running: Option<Running>,
     /// Sectors whose erasure was cut off.
-    marginal: Vec<Range<usize>>,
+    marginal: Vec<(Range<usize>, Marginal)>,
 }
 
 /// The memory and its controller.
@@ -190,7 +185,7 @@ impl Flash {
             }
             Operation::Erase { range } => {
                 self.put(range.start, &vec![0xff; range.len()]);
-                state.marginal.retain(|marginal| *marginal != range);
+                state.marginal.retain(|(marginal, _)| *marginal != range);
             }
         }
         state.sr &= !BSY;
@@ -211,7 +206,8 @@ impl Flash {
                 let mut bytes = self.content(range.clone());
                 cut.erase(range.start, &mut bytes);
                 self.put(range.start, &bytes);
-                state.marginal.push(range);
+                state.marginal.retain(|(marginal, _)| *marginal != range);
+                state.marginal.push((range, Marginal::after(Some(cut))));
             }
         }
     }
@@ -282,15 +278,15 @@ impl Peripheral for Flash {
 
     fn reset(&self) {
         let mut state = lock(&self.state);
-        for range in state.marginal.clone() {
-            let mut bytes = self.content(range.clone());
-            cut::read_again(range.start, &mut bytes);
-            self.put(range.start, &bytes);
-        }
         if let Some(running) = state.running.take() {
             self.cut(&mut state, running);
         }
         self.busy_until.store(0, Relaxed);
+        for (range, marginal) in &mut state.marginal {
+            let mut bytes = self.content(range.clone());
+            marginal.start(range.start, &mut bytes);
+            self.put(range.start, &bytes);
+        }
         *state = State {
             cr: LOCK,
             marginal: std::mem::take(&mut state.marginal),

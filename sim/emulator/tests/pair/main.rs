@@ -17,10 +17,11 @@ fn enumerates() {
     println!("{:?} at {} {:?}", r, pair.now(), begin.elapsed());
     println!("{:?}", pair.boards().comms().mcu().not_modelled());
     println!("{:x?} {:x?}", pair.boards().comms().mcu().program_counter(), pair.boards().comms().resets());
+    println!("{:x?}", [0x0800_8000, 0x0800_c000, 0x4002_3c0c, 0x4002_3c10].map(|a| pair.boards().comms().mcu().peek(a)));
     r.unwrap();
     println!("{:?}", pair.host().unwrap().device());
     let begin = std::time::Instant::now();
-    for _ in 0..20_000 { pair.tick(); }
+    for _ in 0..1000 { pair.tick(); }
     println!("a second took {:?}; traffic {:?}", begin.elapsed(), pair.traffic());
     println!("{:?} {:?}", pair.boards().errors(), pair.boards().resets());
 }

@@ -65,7 +65,7 @@ impl Record {
         let count = usize::try_from(u32::from_le_bytes(*count)).ok()?;
         let value_bytes = count.checked_mul(VALUE_BYTES)?;
         let sum = rest.get(value_bytes..)?.first_chunk::<SUM_BYTES>()?;
-        let body = slot.get(..HEAD_BYTES + value_bytes)?;
+        let body = slot.get(..HEAD_BYTES.checked_add(value_bytes)?)?;
         if *magic != MAGIC || CRC.checksum(body) != u32::from_le_bytes(*sum) {
             return None;
         }

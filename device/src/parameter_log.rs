@@ -1,8 +1,8 @@
 //! Parameters in two sectors of flash, as an append-only log.
 //!
 //! ```text
-//! sector 2  | record 1 | record 2 | ... | record 16 |       16 KB each, 1 KB a slot
-//! sector 3  | record 17 | free | free | ...
+//! sector 0  | seal | record 1 | record 2 | ... | record 15 |       16 KB each, 1 KB a slot
+//! sector 1  | seal | record 16 | free | free | ...
 //! ```
 //!
 //! Writing takes a few milliseconds; erasing a sector stops the core for
@@ -10,9 +10,16 @@
 //! without the newest one is erased at the next start, before the watchdog
 //! runs. A record cut off by a power failure is invalid; the one before it
 //! then is the newest.
+//!
+//! An erasure that was cut off may read as blank and yet lose what is written
+//! there. So a sector is sealed once its erasure is complete, and only a sealed
+//! one is written to. Records are read wherever they are valid.
 
-use crate::parameter_record::{Record, SLOT_BYTES};
+mod record;
+
+use core::ops::Range;
 use crepitus_protocol::{Revision, Values};
+pub use record::{RECORD_BYTES, Record, SLOT_BYTES};
 
 /// Bytes of a sector.
 pub const SECTOR_BYTES: usize = 16 * 1024;
@@ -20,15 +27,21 @@ pub const SECTOR_BYTES: usize = 16 * 1024;
 /// Bytes of the log.
 pub const LOG_BYTES: usize = 2 * SECTOR_BYTES;
 
+/// Records that a sector has room for.
+pub const RECORDS_PER_SECTOR: usize = SLOTS_PER_SECTOR - 1;
+
 const SLOTS_PER_SECTOR: usize = SECTOR_BYTES / SLOT_BYTES;
 const SLOTS: usize = 2 * SLOTS_PER_SECTOR;
+
+/// In the first slot of a sector whose erasure was completed.
+const SEAL: [u8; 8] = *b"CRPerase";
 
 /// The two sectors.
 pub trait Sectors {
     /// The content of both, [`LOG_BYTES`].
     fn bytes(&self) -> &[u8];
 
-    /// Writes erased bytes; returns whether it succeeded.
+    /// Writes erased bytes, or clears bits; returns whether it succeeded.
     fn write(&mut self, offset: usize, bytes: &[u8]) -> bool;
 
     /// Erases the first (0) or the second (1); returns whether it succeeded.
@@ -45,14 +58,14 @@ pub struct ParameterLog<S> {
 }
 
 impl<S: Sectors> ParameterLog<S> {
-    /// Reads the log and erases the sector not in use, which takes long: call
-    /// it before the watchdog runs.
+    /// Reads the log and erases the sector not in use, unless it is ready. That
+    /// takes long: call it before the watchdog runs.
     pub fn open(mut sectors: S) -> Self {
         let (place, newest) = newest(sectors.bytes());
         let in_use = place.map(|slot| slot / SLOTS_PER_SECTOR);
         for sector in 0..2 {
-            if in_use != Some(sector) && !is_blank(sectors.bytes(), sector_range(sector)) {
-                sectors.erase(sector);
+            if in_use != Some(sector) && !is_ready(sectors.bytes(), sector) {
+                erase(&mut sectors, sector);
             }
         }
         let free = next_free(sectors.bytes(), in_use);
@@ -81,9 +94,9 @@ impl<S: Sectors> ParameterLog<S> {
             revision,
             values: *values,
         };
-        let begin = slot * SLOT_BYTES;
+        let begin = slot_begin(slot);
         let is_good = self.sectors.write(begin, &record.bytes());
-        let written = self.sectors.bytes().get(begin..begin + SLOT_BYTES);
+        let written = slot_bytes(self.sectors.bytes(), slot);
         let is_stored = is_good && written.and_then(Record::of) == Some(record);
         if is_stored {
             self.newest = Some(record);
@@ -91,21 +104,50 @@ impl<S: Sectors> ParameterLog<S> {
         self.free = next_free(self.sectors.bytes(), Some(slot / SLOTS_PER_SECTOR));
         is_stored
     }
+
+    /// The sectors.
+    pub fn sectors(&self) -> &S {
+        &self.sectors
+    }
 }
 
-fn sector_range(sector: usize) -> core::ops::Range<usize> {
-    sector * SLOTS_PER_SECTOR..(sector + 1) * SLOTS_PER_SECTOR
+/// Erases a sector and seals it. Without success it stays unsealed.
+fn erase(sectors: &mut impl Sectors, sector: usize) {
+    let _ = sectors.erase(sector) && sectors.write(slot_begin(first_slot(sector)), &SEAL);
+}
+
+#[expect(clippy::arithmetic_side_effects, reason = "a slot of the log")]
+const fn slot_begin(slot: usize) -> usize {
+    slot * SLOT_BYTES
+}
+
+/// The slot of a sector's seal.
+#[expect(clippy::arithmetic_side_effects, reason = "one of two sectors")]
+const fn first_slot(sector: usize) -> usize {
+    sector * SLOTS_PER_SECTOR
+}
+
+/// The slots of a sector for records.
+fn records_of(sector: usize) -> Range<usize> {
+    let first = first_slot(sector);
+    first.saturating_add(1)..first.saturating_add(SLOTS_PER_SECTOR)
 }
 
 fn slot_bytes(bytes: &[u8], slot: usize) -> Option<&[u8]> {
-    bytes.get(slot * SLOT_BYTES..(slot + 1) * SLOT_BYTES)
+    bytes.get(slot_begin(slot)..)?.get(..SLOT_BYTES)
 }
 
-fn is_blank(bytes: &[u8], slots: core::ops::Range<usize>) -> bool {
-    let range = slots.start * SLOT_BYTES..slots.end * SLOT_BYTES;
-    bytes
-        .get(range)
-        .is_some_and(|bytes| bytes.iter().all(|byte| *byte == 0xff))
+fn is_blank(bytes: &[u8], slot: usize) -> bool {
+    slot_bytes(bytes, slot).is_some_and(|slot| slot.iter().all(|byte| *byte == 0xff))
+}
+
+fn is_sealed(bytes: &[u8], sector: usize) -> bool {
+    slot_bytes(bytes, first_slot(sector)).is_some_and(|slot| slot.starts_with(&SEAL))
+}
+
+/// Erased, sealed, and without records.
+fn is_ready(bytes: &[u8], sector: usize) -> bool {
+    is_sealed(bytes, sector) && records_of(sector).all(|slot| is_blank(bytes, slot))
 }
 
 /// The newest record and its slot.
@@ -127,30 +169,29 @@ fn newest(bytes: &[u8]) -> (Option<usize>, Option<Record>) {
 }
 
 /// The slot after the last written one of the sector in use; if that is full,
-/// the first one of the other sector, if blank.
+/// or not sealed, the first one of the other sector, if that is ready.
 fn next_free(bytes: &[u8], in_use: Option<usize>) -> Option<usize> {
     let sector = in_use.unwrap_or(0);
-    let range = sector_range(sector);
-    let end = range.end;
-    let used = range.rev().find(|slot| !is_blank(bytes, *slot..slot + 1));
-    let next = used.map_or(sector_range(sector).start, |slot| slot + 1);
-    if next < end {
+    let slots = records_of(sector);
+    let used = slots.clone().rfind(|slot| !is_blank(bytes, *slot));
+    let next = used.map_or(slots.start, |slot| slot.saturating_add(1));
+    if is_sealed(bytes, sector) && next < slots.end {
         return Some(next);
     }
-    let other = sector_range(1 - sector);
-    is_blank(bytes, other.clone()).then_some(other.start)
+    let other = 1_usize.saturating_sub(sector);
+    is_ready(bytes, other).then_some(records_of(other).start)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::vec;
     use std::vec::Vec;
 
-    /// Flash: writing only clears bits; power may fail after some bytes.
+    /// Flash in which writing only clears bits. `sim/board` has one whose power fails.
     #[derive(Debug)]
     struct Ram<'a> {
         bytes: &'a mut Vec<u8>,
-        power_for: usize,
         erased: usize,
     }
 
@@ -161,11 +202,7 @@ mod tests {
 
         fn write(&mut self, offset: usize, bytes: &[u8]) -> bool {
             for (place, byte) in self.bytes[offset..].iter_mut().zip(bytes) {
-                if self.power_for == 0 {
-                    return false;
-                }
-                self.power_for -= 1;
-                assert_eq!(*place, 0xff, "written twice");
+                assert_eq!(*place & byte, *byte, "a bit is set by writing");
                 *place &= byte;
             }
             true
@@ -179,11 +216,7 @@ mod tests {
     }
 
     fn open(bytes: &mut Vec<u8>) -> ParameterLog<Ram<'_>> {
-        ParameterLog::open(Ram {
-            bytes,
-            power_for: usize::MAX,
-            erased: 0,
-        })
+        ParameterLog::open(Ram { bytes, erased: 0 })
     }
 
     fn values(n: u32) -> Values {
@@ -203,37 +236,35 @@ mod tests {
     }
 
     #[test]
-    fn without_a_start_in_between_there_is_room_for_32_and_then_it_says_so() {
+    fn without_a_start_in_between_there_is_room_for_30_and_then_it_says_so() {
         let mut bytes = vec![0xff; LOG_BYTES];
         let mut log = open(&mut bytes);
+        assert_eq!(log.sectors.erased, 2, "neither is sealed");
         let kept = (1..=100).take_while(|n| log.store(Revision(*n), &values(*n)));
-        assert_eq!(kept.count(), SLOTS);
-        assert_eq!(log.sectors.erased, 0);
+        assert_eq!(kept.count(), 2 * RECORDS_PER_SECTOR);
         let mut log = open(&mut bytes);
-        assert_eq!(log.newest(), Some((Revision(32), values(32))));
+        assert_eq!(log.newest(), Some((Revision(30), values(30))));
         assert_eq!(log.sectors.erased, 1);
-        assert!(log.store(Revision(33), &values(33)));
+        assert!(log.store(Revision(31), &values(31)));
+        // The other one is full, and no longer in use.
+        assert_eq!(open(&mut bytes).sectors.erased, 1);
+        assert_eq!(open(&mut bytes).sectors.erased, 0);
     }
 
     #[test]
-    fn a_power_failure_at_any_byte_leaves_the_old_or_the_new() {
-        let length = crate::parameter_record::RECORD_BYTES;
-        for power_for in 0..=length {
-            for before in [1, 15, 16, 17] {
-                let mut bytes = vec![0xff; LOG_BYTES];
-                for n in 1..=before {
-                    assert!(open(&mut bytes).store(Revision(n), &values(n)));
-                }
-                let mut log = open(&mut bytes);
-                log.sectors.power_for = power_for;
-                let done = log.store(Revision(99), &values(99));
-                assert_eq!(done, power_for == length);
-                let expected = if done { 99 } else { before };
-                let mut log = open(&mut bytes);
-                assert_eq!(log.newest(), Some((Revision(expected), values(expected))));
-                assert!(log.store(Revision(100), &values(100)));
-            }
-        }
+    fn a_sector_without_a_seal_is_read_and_not_written_to() {
+        let mut bytes = vec![0xff; LOG_BYTES];
+        assert!(open(&mut bytes).store(Revision(1), &values(1)));
+        bytes[..SEAL.len()].fill(0xff);
+        let mut log = open(&mut bytes);
+        assert_eq!(log.newest(), Some((Revision(1), values(1))));
+        assert!(log.store(Revision(2), &values(2)));
+        assert_eq!(log.free, Some(first_slot(1) + 2));
+        // The first one is erased, and sealed again.
+        let mut log = open(&mut bytes);
+        assert_eq!(log.sectors.erased, 1);
+        assert!(log.store(Revision(3), &values(3)));
+        assert_eq!(open(&mut bytes).newest(), Some((Revision(3), values(3))));
     }
 
     #[test]
