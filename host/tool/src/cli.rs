@@ -34,12 +34,13 @@ pub(crate) struct Cli {
 // Which device. No doc comment: it would replace the text of the verb.
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct DeviceArguments {
-    /// The device: a port (/dev/ttyACM0), the name of a simulated one from `serve-sim`, or `sim`, a
-    /// simulated one for this command only [default: the one that is attached].
+    /// The device: a port (/dev/ttyACM0), the name of a simulated one from `serve-sim`, or, for this
+    /// command only, `sim`, a simulated one, or `emulated`, the firmware's own images on emulated
+    /// controllers, some ten times slower than real time [default: the one that is attached].
     #[arg(long, value_name = "DEVICE", global = true)]
     pub(crate) device: Option<String>,
 
-    /// With --device sim: the scene that sets its leg and parameters.
+    /// With --device sim or emulated: the scene that sets its leg and parameters.
     #[arg(
         long,
         value_name = "SCENE",

@@ -13,8 +13,9 @@ use crepitus_sharing::{Program, Shared};
 use std::path::Path;
 use std::time::Duration;
 
-/// The name of the simulated device for one command.
+/// The names of a simulated, and of an emulated device for one command.
 const SIMULATED: &str = "sim";
+const EMULATED: &str = "emulated";
 
 /// A device at a serial port, shared with other programs, or a simulated one in
 /// this process.
@@ -54,6 +55,11 @@ pub(crate) fn open(arguments: &DeviceArguments) -> Result<Line, Failure> {
         Some(SIMULATED) => {
             let scene = shipped::scene(&arguments.scene, &Overrides::default())?;
             let device = Simulated::of(&scene).map_err(Failure::input)?;
+            Ok(Line::Simulated(Box::new(device)))
+        }
+        Some(EMULATED) => {
+            let scene = shipped::scene(&arguments.scene, &Overrides::default())?;
+            let device = Simulated::emulated(&scene).map_err(Failure::input)?;
             Ok(Line::Simulated(Box::new(device)))
         }
         Some(name) => serial(&port(name)?),
@@ -155,7 +161,7 @@ fn port(name: &str) -> Result<String, Failure> {
         .find(|device| matches!(&device.kind, DeviceKind::Simulated { name: its } if its == name));
     found.map(|device| device.port).ok_or_else(|| {
         Failure::Input(format!(
-            "unknown device {name:?}: expected a port, `sim`, or a name from `crepitus devices`; \
+            "unknown device {name:?}: expected a port, `sim`, `emulated`, or a name from `crepitus devices`; \
              `crepitus serve-sim --name {name}` starts a simulated device of this name"
         ))
     })

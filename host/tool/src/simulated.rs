@@ -1,18 +1,20 @@
-//! A simulated device in this process, as a transport. Its time advances only
-//! while the host waits.
+//! A simulated device in this process, or an emulated one, as a transport. Its
+//! time advances only while the host waits.
 
 use crepitus_board::{Start, VirtualDevice};
 use crepitus_client::{Transport, TransportError};
 use crepitus_protocol::TICKS_PER_S;
+use crepitus_emulator::on_target::{self, NoTarget};
 use crepitus_scene::Scene;
+use crepitus_usb::cabled::CabledDevice;
 use std::time::Duration;
 
 /// Timeout of a write that the device does not accept, ticks.
 const TIMEOUT_TICKS: u64 = 10_000;
 
-/// A simulated device at the end of a virtual USB cable.
+/// A device at the end of a virtual USB cable.
 pub(crate) struct Simulated {
-    device: VirtualDevice,
+    device: Box<dyn CabledDevice>,
     name: String,
     /// The last write was incomplete: send a delimiter first.
     torn: bool,
@@ -22,8 +24,19 @@ impl Simulated {
     /// The device of a scene.
     pub(crate) fn of(scene: &Scene) -> Result<Self, crepitus_board::VirtualError> {
         Ok(Self {
-            device: VirtualDevice::of(scene, &Start::default())?,
+            device: Box::new(VirtualDevice::of(scene, &Start::default())?),
             name: "a simulated device".to_owned(),
+            torn: false,
+        })
+    }
+
+    /// The device of a scene, as the firmware's own images on emulated
+    /// controllers.
+    pub(crate) fn emulated(scene: &Scene) -> Result<Self, NoTarget> {
+        let on_build = || eprintln!("building firmware, if it is not up to date");
+        Ok(Self {
+            device: on_target::device(scene, on_build)?,
+            name: "an emulated device".to_owned(),
             torn: false,
         })
     }
@@ -89,7 +102,7 @@ impl Transport for Simulated {
 
     fn now(&self) -> Duration {
         let per_tick = u64::from(1_000_000_000 / TICKS_PER_S);
-        Duration::from_nanos(self.device.board().now().saturating_mul(per_tick))
+        Duration::from_nanos(self.device.now().saturating_mul(per_tick))
     }
 
     fn wait(&mut self, time: Duration) {

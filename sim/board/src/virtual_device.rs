@@ -14,8 +14,10 @@ use crepitus_protocol::{Revision, ValueError};
 use crepitus_scene::Scene;
 use crepitus_usb::bus::SoftBus;
 use crepitus_usb::cable::SoftCable;
+use crepitus_usb::cabled::CabledDevice;
 use crepitus_usb::enumeration::EnumerationError;
 use crepitus_usb::host::{CdcHost, Traffic};
+use std::error::Error;
 use usb_device::bus::UsbBusAllocator;
 
 /// Turns of the bus in a frame.
@@ -166,6 +168,24 @@ impl VirtualDevice {
         let host = self.usb.host.as_ref();
         sum.add(host.map(CdcHost::traffic).unwrap_or_default());
         sum
+    }
+}
+
+impl CabledDevice for VirtualDevice {
+    fn tick(&mut self) {
+        Self::tick(self);
+    }
+
+    fn now(&self) -> u64 {
+        self.board.now()
+    }
+
+    fn plug_in(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
+        Ok(Self::plug_in(self)?)
+    }
+
+    fn host(&mut self) -> Option<&mut CdcHost> {
+        Self::host(self)
     }
 }
 

@@ -109,14 +109,18 @@ impl Image {
             return Ok(());
         }
         let begin = address.checked_sub(FLASH).map(|begin| begin as usize);
-        let range = begin.map(|begin| begin..begin + content.len());
-        let range = range.filter(|range| range.end <= FLASH_BYTES);
-        let range = range.ok_or(ImageError::OutsideFlash(address))?;
-        if self.flash.len() < range.end {
-            self.flash.resize(range.end, 0xff);
-        }
-        self.flash[range].copy_from_slice(content);
+        let begin = begin.filter(|begin| begin + content.len() <= FLASH_BYTES);
+        self.put(begin.ok_or(ImageError::OutsideFlash(address))?, content);
         Ok(())
+    }
+
+    /// Puts bytes at an offset in flash.
+    pub(crate) fn put(&mut self, begin: usize, content: &[u8]) {
+        let end = begin + content.len();
+        if self.flash.len() < end {
+            self.flash.resize(end, 0xff);
+        }
+        self.flash[begin..end].copy_from_slice(content);
     }
 
     /// The symbol of that name.

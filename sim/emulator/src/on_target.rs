@@ -1,8 +1,10 @@
-//! Steps of the ladder on the target, as an optional feature: the core is a
-//! large part of a program's build, behind the feature `core`.
+//! The emulator as an optional feature: the core is a large part of a program's
+//! build, behind the feature `core`.
 
 use crepitus_ladder::exchange::Input;
 use crepitus_ladder::{Call, Plan};
+use crepitus_scene::Scene;
+use crepitus_usb::cabled::CabledDevice;
 
 /// Runs the steps of a plan, compares every output with the host's, and returns
 /// the cost of each; or the reason of a failure.
@@ -14,12 +16,15 @@ pub enum NoTarget {
     /// The program was built without the core.
     #[error(
         "this program was built without the emulator; build it with `--features emulator`, as in \
-         `cargo run --release --features emulator -- accuracy --target`"
+         `cargo run --release --features emulator -- info --device emulated`"
     )]
     NoCore,
     /// There is no image.
     #[error("{0}")]
     NoImage(String),
+    /// The device cannot be used.
+    #[error("{0}")]
+    NoDevice(String),
 }
 
 /// The ladder on an emulated core; `on_build` is called if its image has to be
@@ -43,11 +48,41 @@ pub fn ladder(on_build: impl FnOnce()) -> Result<OnTarget, NoTarget> {
     }))
 }
 
+/// Both images with a scene's leg and parameters, plugged in; `on_build` is called
+/// if they have to be built first.
+///
+/// # Errors
+/// [`NoTarget`].
+#[cfg(feature = "core")]
+pub fn device(scene: &Scene, on_build: impl FnOnce()) -> Result<Box<dyn CabledDevice>, NoTarget> {
+    use crate::Pair;
+    use crate::firmware::{self, Program};
+    if firmware::is_to_be_built() {
+        on_build();
+    }
+    let image = |program| firmware::image(program).map_err(|e| NoTarget::NoImage(e.to_string()));
+    let (drive, comms) = (image(Program::Drive)?, image(Program::Comms)?);
+    let pair = Pair::of(&drive, &comms, scene);
+    let mut pair = pair.map_err(|error| NoTarget::NoDevice(error.to_string()))?;
+    let plugged = pair.plug_in();
+    plugged.map_err(|error| NoTarget::NoDevice(error.to_string()))?;
+    Ok(Box::new(pair))
+}
+
 /// Fails: the program was built without the core.
 ///
 /// # Errors
 /// Always [`NoTarget::NoCore`].
 #[cfg(not(feature = "core"))]
 pub fn ladder(_: impl FnOnce()) -> Result<OnTarget, NoTarget> {
+    Err(NoTarget::NoCore)
+}
+
+/// Fails: the program was built without the core.
+///
+/// # Errors
+/// Always [`NoTarget::NoCore`].
+#[cfg(not(feature = "core"))]
+pub fn device(_: &Scene, _: impl FnOnce()) -> Result<Box<dyn CabledDevice>, NoTarget> {
     Err(NoTarget::NoCore)
 }

@@ -13,10 +13,16 @@ use crate::drive_board::DriveBoard;
 use crate::image::Image;
 use crate::mcu::Mcu;
 use crate::state_hash::Hash;
+use crepitus_board::nor_flash::NorFlash;
+use crepitus_board::values::{NotRendered, values};
+use crepitus_device::parameter_log::{ParameterLog, Sectors as _};
+use crepitus_protocol::{Revision, Values};
 use crepitus_scene::Scene;
+use crepitus_usb::cabled::CabledDevice;
 use crepitus_usb::enumeration::EnumerationError;
 use crepitus_usb::host::{CdcHost, Traffic};
 use crepitus_usb::wire::{Handshake, Token, UsbWire};
+use std::error::Error;
 
 /// Turns of the bus in a frame.
 const FRAME_TICKS: u64 = 20;
@@ -24,6 +30,9 @@ const FRAME_TICKS: u64 = 20;
 /// Ticks that the device gets to show itself after it is plugged in: comms may
 /// be starting, and erase a sector of flash, which takes it at most 0.8 s.
 const PLUG_IN_TICKS: u64 = 30_000;
+
+/// Where the parameters of comms are in flash: sectors 2 and 3.
+const PARAMETERS: usize = 0x8000;
 
 /// Why the device cannot be reached.
 #[derive(Debug, thiserror::Error)]
@@ -50,7 +59,8 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Both just switched on, not plugged in.
+    /// Both just switched on, not plugged in. Flash is as from the factory: comms
+    /// begins by preparing it, which takes 0.8 s.
     pub fn new(drive: &Image, comms: &Image, scene: &Scene) -> Self {
         Self {
             boards: DriveBoard::new(drive, scene, CommsBoard::new(comms)),
@@ -58,6 +68,15 @@ impl Pair {
             ticks: 0,
             earlier: Traffic::default(),
         }
+    }
+
+    /// As [`Self::new`], with the scene's parameters stored.
+    ///
+    /// # Errors
+    /// [`NotRendered`] if no device can render the scene.
+    pub fn of(drive: &Image, comms: &Image, scene: &Scene) -> Result<Self, NotRendered> {
+        let comms = with_parameters(comms, &values(scene)?);
+        Ok(Self::new(drive, &comms, scene))
     }
 
     /// Plugs the cable in, and enumerates the device.
@@ -145,6 +164,33 @@ impl Pair {
             hash.bytes(&mcu.state_hash().to_le_bytes());
         }
         hash.value()
+    }
+}
+
+/// An image of comms with parameters stored.
+fn with_parameters(image: &Image, values: &Values) -> Image {
+    let mut log = ParameterLog::open(NorFlash::default());
+    log.store(Revision(1), values);
+    let mut image = image.clone();
+    image.put(PARAMETERS, log.sectors().bytes());
+    image
+}
+
+impl CabledDevice for Pair {
+    fn tick(&mut self) {
+        Self::tick(self);
+    }
+
+    fn now(&self) -> u64 {
+        self.ticks
+    }
+
+    fn plug_in(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
+        Ok(Self::plug_in(self)?)
+    }
+
+    fn host(&mut self) -> Option<&mut CdcHost> {
+        Self::host(self)
     }
 }
 

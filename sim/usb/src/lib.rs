@@ -55,6 +55,7 @@
 
 pub mod bus;
 pub mod cable;
+pub mod cabled;
 pub mod configuration;
 pub mod control;
 pub mod descriptors;

@@ -44,11 +44,11 @@ const MOST_LAG: Duration = Duration::from_millis(200);
 /// Serves until Ctrl-C.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let is_plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-    let is_reserved = ["", "sim", "shared"].contains(&&*arguments.name);
+    let is_reserved = ["", "sim", "emulated", "shared"].contains(&&*arguments.name);
     if is_reserved || !arguments.name.chars().all(is_plain) {
         return Err(Failure::Input(format!(
-            "--name {:?}: expected letters, digits, `-` and `_`, and not `sim` or `shared`, which are \
-             reserved",
+            "--name {:?}: expected letters, digits, `-` and `_`, and not `sim`, `emulated` or `shared`, \
+             which are reserved",
             arguments.name
         )));
     }
