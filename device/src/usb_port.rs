@@ -122,7 +122,7 @@ impl<'b, B: UsbBus> UsbPort<'b, B> {
             .serial_number(identity.serial_number);
         // The interfaces and endpoints must exist before the device freezes the allocator.
         let serial = SerialPort::new_with_store(allocator, [0; MAX_PACKET], [0; TRANSMIT_STORE]);
-        let device = UsbDeviceBuilder::new(allocator, UsbVidPid(VENDOR_ID, PRODUCT_ID))
+        let mut device = UsbDeviceBuilder::new(allocator, UsbVidPid(VENDOR_ID, PRODUCT_ID))
             .device_class(USB_CLASS_CDC)
             // 2.0, not the default 2.1: a 2.1 device owes the host capability descriptors.
             .usb_rev(UsbRev::Usb200)
@@ -134,6 +134,8 @@ impl<'b, B: UsbBus> UsbPort<'b, B> {
             .and_then(|builder| builder.strings(&[strings]))
             .map_err(UsbPortError::Description)?
             .build();
+        // The builder's is for the descriptor, this one for GET_STATUS.
+        device.set_self_powered(true);
         Ok(Self {
             device,
             serial,

@@ -3,8 +3,8 @@
 
 use crepitus_board::{Start, VirtualDevice};
 use crepitus_client::{Transport, TransportError};
-use crepitus_protocol::TICKS_PER_S;
 use crepitus_emulator::on_target::{self, NoTarget};
+use crepitus_protocol::TICKS_PER_S;
 use crepitus_scene::Scene;
 use crepitus_usb::cabled::CabledDevice;
 use std::time::Duration;

@@ -43,7 +43,10 @@ fn kept(log: &ParameterLog<NorFlash>) -> u32 {
         assert_eq!(log.newest(), Some((newest, values(newest.0))));
     }
     for n in 1_000..1_000 + STARTS {
-        assert!(log.store(Revision(n), &values(n)), "a save after the failure");
+        assert!(
+            log.store(Revision(n), &values(n)),
+            "a save after the failure"
+        );
         log = restarted(&log);
         assert_eq!(log.newest(), Some((Revision(n), values(n))));
     }
@@ -84,7 +87,10 @@ fn a_failure_at_any_moment_of_a_save_leaves_the_old_or_the_new() {
             let is_stored = log.store(Revision(99), &values(99));
             let kept = kept(&log);
             assert!(kept == before || kept == 99, "{before}, {moment}: {kept}");
-            assert!(!is_stored || kept == 99, "{before}, {moment}: it was stored");
+            assert!(
+                !is_stored || kept == 99,
+                "{before}, {moment}: it was stored"
+            );
             seen[usize::from(is_stored)] = true;
         }
         assert!(seen[0], "no failure came in time");

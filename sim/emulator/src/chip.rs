@@ -341,7 +341,12 @@ impl Chip {
         pins: &Arc<Pins>,
     ) -> Arc<Otg> {
         let interrupt = nets.interrupt(67);
-        let otg = Arc::new(Otg::new(rates.clone(), now.clone(), pins.clone(), interrupt));
+        let otg = Arc::new(Otg::new(
+            rates.clone(),
+            now.clone(),
+            pins.clone(),
+            interrupt,
+        ));
         let registers = Arc::new(AsRegisters(otg.clone()));
         let (clock, gate) = (Clock::Time, Gate::ahb2(7));
         let mut part = Part::new("OTG_FS", 0x5000_0000, clock, gate, registers, otg.clone());

@@ -48,6 +48,12 @@ impl CommsBoard {
         &mut self.mcu
     }
 
+    /// Resets the chip.
+    pub fn reset(&mut self, reset: Reset) {
+        self.resets.push((self.mcu.now(), reset));
+        self.mcu.reset(reset);
+    }
+
     /// Resets of the chip since the board was switched on.
     pub fn resets(&self) -> &[(Time, Reset)] {
         &self.resets

@@ -279,8 +279,13 @@ impl<C: CommsSide> DriveBoard<C> {
 
     /// Simulates a brief drop of the supply.
     pub fn brown_out(&mut self) {
-        self.resets.push((self.mcu.now(), Reset::BrownOut));
-        self.mcu.reset(Reset::BrownOut);
+        self.reset(Reset::BrownOut);
+    }
+
+    /// Resets the chip.
+    pub fn reset(&mut self, reset: Reset) {
+        self.resets.push((self.mcu.now(), reset));
+        self.mcu.reset(reset);
         self.is_synchronised = false;
     }
 }

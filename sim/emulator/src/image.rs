@@ -115,7 +115,10 @@ impl Image {
     }
 
     /// Puts bytes at an offset in flash.
-    pub(crate) fn put(&mut self, begin: usize, content: &[u8]) {
+    ///
+    /// # Panics
+    /// If the chip cannot be loaded with so many.
+    pub fn put(&mut self, begin: usize, content: &[u8]) {
         let end = begin + content.len();
         if self.flash.len() < end {
             self.flash.resize(end, 0xff);

@@ -11,7 +11,7 @@
 use crate::comms_board::CommsBoard;
 use crate::drive_board::DriveBoard;
 use crate::image::Image;
-use crate::mcu::Mcu;
+use crate::mcu::{Mcu, Reset};
 use crate::state_hash::Hash;
 use crepitus_board::nor_flash::NorFlash;
 use crepitus_board::values::{NotRendered, values};
@@ -31,8 +31,8 @@ const FRAME_TICKS: u64 = 20;
 /// be starting, and erase a sector of flash, which takes it at most 0.8 s.
 const PLUG_IN_TICKS: u64 = 30_000;
 
-/// Where the parameters of comms are in flash: sectors 2 and 3.
-const PARAMETERS: usize = 0x8000;
+/// Offset of the parameters in the flash of comms: sectors 2 and 3.
+pub const PARAMETERS: usize = 0x8000;
 
 /// Why the device cannot be reached.
 #[derive(Debug, thiserror::Error)]
@@ -113,6 +113,14 @@ impl Pair {
     /// Whether the host has it.
     pub fn is_plugged_in(&self) -> bool {
         self.host.is_some()
+    }
+
+    /// Switches both boards off and on again: memory is lost, flash is not. The
+    /// device is disconnected.
+    pub fn power_cycle(&mut self) {
+        self.unplug();
+        self.boards.reset(Reset::PowerOn);
+        self.boards.comms_mut().reset(Reset::PowerOn);
     }
 
     /// 50 µs of everything. A device that does not answer is disconnected until

@@ -273,7 +273,10 @@ impl Peripheral for Flash {
     }
 
     fn next_event(&self) -> Option<u64> {
-        lock(&self.state).running.as_ref().map(|running| running.end)
+        lock(&self.state)
+            .running
+            .as_ref()
+            .map(|running| running.end)
     }
 
     fn reset(&self) {

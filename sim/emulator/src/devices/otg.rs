@@ -284,12 +284,7 @@ pub(crate) struct Otg {
 }
 
 impl Otg {
-    pub(crate) fn new(
-        rates: Arc<Rates>,
-        now: Now,
-        pins: Arc<Pins>,
-        interrupt: WireSource,
-    ) -> Self {
+    pub(crate) fn new(rates: Arc<Rates>, now: Now, pins: Arc<Pins>, interrupt: WireSource) -> Self {
         Self {
             state: Mutex::new(State::reset()),
             line: Mutex::default(),

@@ -1,7 +1,7 @@
 //! Comms as the simulator runs it: native, without wires of its own.
 
-use super::HALF;
 use super::CommsSide;
+use super::HALF;
 use super::link_wires::{Down, Up};
 use crate::devices::usart::Character;
 use crate::time::Time;

@@ -1,11 +1,11 @@
 //! The chip as a microcontroller.
 
 use super::{LINK_FUNCTION, LINK_RECEIVES, LINK_SENDS, Stm32f405};
-use crate::state_hash::Hash;
 use crate::devices::brake;
 use crate::devices::usart::Character;
 use crate::mcu::{Access, Mcu, Pin, Reset, Sampling, Watch};
 use crate::pins::PinSetup;
+use crate::state_hash::Hash;
 use crate::time::Time;
 use rsemu::core::device::{Device, ResetKind};
 use rsemu::core::space::MemAttrs;

@@ -107,11 +107,8 @@ impl Host {
 
     fn switched_on(image: &Image, scene: &Scene, registers: &[u32]) -> Self {
         let values = values(scene).expect("a scene for the device");
-        let mut board = DriveBoard::new(
-            image,
-            scene,
-            NativeComms::new(Some((Revision(1), values))),
-        );
+        let mut board =
+            DriveBoard::new(image, scene, NativeComms::new(Some((Revision(1), values))));
         board.comms_mut().record_bytes();
         board.mcu_mut().listen(registers);
         Self {

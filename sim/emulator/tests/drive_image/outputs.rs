@@ -54,7 +54,11 @@ fn a_line_that_stays_low_is_noticed_by_its_read_back() {
     };
     let asked = host.try_to_arm();
     host.run(2_000);
-    assert_ne!(host.board.comms().comms().state(), State::Armed, "{asked:?}");
+    assert_ne!(
+        host.board.comms().comms().state(),
+        State::Armed,
+        "{asked:?}"
+    );
     assert_eq!(drive_fault(&mut host), Fault::EnableStuckOff.code());
 }
 
