@@ -133,10 +133,13 @@ fn records_of(sector: usize) -> Range<usize> {
     first.saturating_add(1)..first.saturating_add(SLOTS_PER_SECTOR)
 }
 
+// Not inlined: the compiler would do so for each slot, in 20 KB.
+#[inline(never)]
 fn slot_bytes(bytes: &[u8], slot: usize) -> Option<&[u8]> {
     bytes.get(slot_begin(slot)..)?.get(..SLOT_BYTES)
 }
 
+#[inline(never)]
 fn is_blank(bytes: &[u8], slot: usize) -> bool {
     slot_bytes(bytes, slot).is_some_and(|slot| slot.iter().all(|byte| *byte == 0xff))
 }
