@@ -8,6 +8,7 @@ mod fields;
 mod parts;
 mod regions;
 mod timers;
+mod usb;
 
 use crate::mcu::{Mcu, Pin};
 use crate::pins::{Mode, Pull};

@@ -24,10 +24,15 @@ use crate::mcu::{Mcu, Pin, RamAccess, Reset, Step, Watch};
 use crate::pins::Mode;
 use crate::time::Time;
 use exception_state::Before;
+use rsemu::core::space::MemAttrs;
+use rsemu::core::value::Width;
 use rsemu::core::wire::Level;
 use rsemu::cpu::arm::v7m::{ArmV7m, Config};
 use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
+
+/// From here on registers are the core's own.
+const CORE: u32 = 0xe000_0000;
 
 /// SysTick is enabled.
 const SYSTICK_ENABLE: u32 = 1;
@@ -165,6 +170,18 @@ impl Stm32f405 {
     pub fn patch_flash(&mut self, address: u32, bytes: &[u8]) {
         let offset = address.wrapping_sub(crate::image::FLASH);
         self.chip.flash.put(offset as usize, bytes);
+    }
+
+    /// Reads a word as the program does, with the side effects of a register;
+    /// `None` at an unmapped address.
+    pub fn load(&mut self, address: u32) -> Option<u32> {
+        if address >= CORE {
+            return self.peek(address);
+        }
+        let space = &self.memory.space;
+        let word = space.read(u64::from(address), Width::U32, MemAttrs::DEFAULT);
+        self.settle();
+        word.ok().and_then(|word| u32::try_from(word).ok())
     }
 
     /// Sets whether a converter, counted from 0, never ends a conversion.

@@ -3,6 +3,7 @@
 
 use super::fields::{Field, Part, Register, bit, choice, number, part, register};
 use super::timers::{TIMER, TIMER_32};
+use super::usb::OTG;
 
 /// All parts. The ports are shown pin by pin, the interrupts by themselves.
 pub(super) const PARTS: &[Part] = &[
@@ -31,6 +32,7 @@ pub(super) const PARTS: &[Part] = &[
     part("USART6", 0x4001_1400, USART),
     part("DMA1", 0x4002_6000, STREAMS),
     part("DMA2", 0x4002_6400, STREAMS),
+    part("OTG_FS", 0x5000_0000, OTG),
 ];
 
 const CORE: &[Register] = &[

@@ -1,6 +1,6 @@
 //! The chip as a microcontroller.
 
-use super::{LINK_FUNCTION, LINK_RECEIVES, LINK_SENDS, Stm32f405};
+use super::{CORE, LINK_FUNCTION, LINK_RECEIVES, LINK_SENDS, Stm32f405};
 use crate::devices::brake;
 use crate::devices::usart::Character;
 use crate::mcu::{Access, Mcu, Pin, Reset, Sampling, Watch};
@@ -29,8 +29,6 @@ impl Mcu for Stm32f405 {
     }
 
     fn peek(&self, address: u32) -> Option<u32> {
-        /// From here on registers are the core's own.
-        const CORE: u32 = 0xe000_0000;
         if address >= CORE {
             return self.core.with_sys(|sys| sys.read_word(address, true));
         }
@@ -49,6 +47,9 @@ impl Mcu for Stm32f405 {
             .memory
             .space
             .write(address, Width::U32, value, MemAttrs::DEFAULT);
+        if self.chip.flash.busy_until() > self.now {
+            self.chip.bus.touch("FLASH");
+        }
         self.settle();
     }
 

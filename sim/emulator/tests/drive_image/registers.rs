@@ -4,15 +4,16 @@ use crate::host::image;
 use crepitus_emulator::firmware::{Program, image_for_test};
 use crepitus_emulator::registers::tables;
 use crepitus_emulator::{Image, Mcu, Stm32f405, Time};
+use crepitus_usb::host::CdcHost;
 use std::fmt::Write as _;
 use std::path::Path;
 
 const BLESS: &str =
     "CREPITUS_BLESS=1 cargo test -p crepitus-emulator --test drive_image registers::";
 
-/// Time after which the drive's `init` is over, and that of comms waits for its
-/// USB controller.
+/// Time after which `init` is over; that of comms begins with two erasures.
 const STARTED: Time = Time::from_us(50_000);
+const COMMS_STARTED: Time = Time::from_us(900_000);
 
 const HEAD: &str = "\
 # Registers
@@ -29,32 +30,28 @@ value after a reset, and so have the fields that are not named. Names are those 
 
 ";
 
-/// What is missing of comms, and why.
-const COMMS_HEAD: &str = "\
-## Comms
-
-As far as its `init` runs here: it waits for AHBIDL in OTG_FS_GRSTCTL, as the emulator has no USB controller yet. Up to
-there it has set up clocks, pins, link, timer and the priorities of its interrupts; the registers of the USB controller,
-and the watchdog, which is started last, are missing.
-
-";
-
 /// A chip without a board around it, so that the registers show whatever a
 /// board says.
-fn started(image: &Image) -> Stm32f405 {
+fn started(image: &Image, after: Time) -> Stm32f405 {
     let mut mcu = Stm32f405::new(image);
-    mcu.run_until(STARTED);
+    mcu.run_until(after);
     assert!(!mcu.is_locked_up());
-    // A part whose clock is off, or an address where nothing is, but for the USB
-    // controller that the emulator lacks.
-    let is_usb = |what: &String| what.starts_with("0x500");
-    let unknown: Vec<String> = mcu
-        .not_modelled()
-        .into_iter()
-        .filter(|what| !is_usb(what))
-        .collect();
-    assert!(unknown.is_empty(), "{unknown:?}");
     mcu
+}
+
+/// Comms, enumerated by a host.
+fn enumerated(image: &Image) -> Stm32f405 {
+    let mut mcu = started(image, COMMS_STARTED);
+    mcu.plug_in();
+    let mut turn = |mcu: &mut Stm32f405| mcu.run_until(mcu.now() + Time::from_us(50));
+    CdcHost::enumerate(&mut mcu, &mut turn).expect("a device");
+    mcu
+}
+
+/// Neither a part whose clock is off, nor an address where nothing is.
+fn tables_of(mcu: &Stm32f405) -> String {
+    assert_eq!(mcu.not_modelled(), Vec::<String>::new());
+    tables(mcu)
 }
 
 #[test]
@@ -65,8 +62,12 @@ fn the_registers_are_those_of_the_page() {
     };
     let mut page = HEAD.to_owned();
     // Writing to a String cannot fail.
-    let _ = writeln!(page, "## Drive\n\n{}", tables(&started(&image)));
-    let _ = write!(page, "{COMMS_HEAD}{}", tables(&started(&comms)));
+    let _ = writeln!(page, "## Drive\n\n{}", tables_of(&started(&image, STARTED)));
+    let _ = write!(
+        page,
+        "## Comms\n\nWith a host that has enumerated it.\n\n{}",
+        tables_of(&enumerated(&comms))
+    );
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/registers.md");
     if std::env::var_os("CREPITUS_BLESS").is_some_and(|value| value != "0") {
         std::fs::write(&path, &page).expect("the page can be written");

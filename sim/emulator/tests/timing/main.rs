@@ -4,6 +4,7 @@ mod assembler;
 mod core;
 mod exceptions;
 mod flash;
+mod flash_writes;
 mod reference;
 mod reference_flash;
 mod registers;

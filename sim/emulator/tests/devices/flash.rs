@@ -1,0 +1,143 @@
+//! Flash and its controller (RM0090 3.6, 3.9).
+
+use crate::bench::Bench;
+use crepitus_emulator::{Mcu, Reset};
+
+const FLASH: u32 = 0x4002_3c00;
+const KEYR: u32 = FLASH + 0x04;
+const SR: u32 = FLASH + 0x0c;
+const CR: u32 = FLASH + 0x10;
+
+const PG: u32 = 1;
+const SER: u32 = 1 << 1;
+const WORDS: u32 = 2 << 8;
+const STRT: u32 = 1 << 16;
+const LOCK: u32 = 1 << 31;
+
+const BSY: u32 = 1 << 16;
+const PGSERR: u32 = 1 << 7;
+const PGPERR: u32 = 1 << 6;
+
+/// In sector 2, whose number is 2.
+const PLACE: u32 = 0x0800_8000;
+const SECTOR: u32 = 2 << 3;
+
+fn unlocked() -> Bench {
+    let mut bench = Bench::new();
+    bench.write(KEYR, 0x4567_0123);
+    bench.write(KEYR, 0xcdef_89ab);
+    assert_eq!(bench.read(CR) & LOCK, 0);
+    bench
+}
+
+fn erase(bench: &mut Bench) {
+    bench.write(CR, SER | SECTOR | STRT);
+}
+
+#[test]
+fn a_word_takes_sixteen_microseconds_and_only_clears_bits() {
+    let mut bench = unlocked();
+    bench.write(CR, PG | WORDS);
+    bench.write(PLACE, 0xffff_0f0f);
+    assert_eq!(bench.read(SR), BSY);
+    bench.run_us(15);
+    assert_eq!(bench.read(SR), BSY);
+    bench.run_us(2);
+    assert_eq!(bench.read(SR), 0);
+    assert_eq!(bench.read(PLACE), 0xffff_0f0f);
+    bench.write(PLACE, 0xf0f0_ffff);
+    bench.run_us(20);
+    assert_eq!(bench.read(PLACE), 0xf0f0_0f0f);
+}
+
+#[test]
+fn a_sector_takes_four_tenths_of_a_second_and_its_neighbours_stay() {
+    let mut bench = unlocked();
+    for place in [PLACE - 4, PLACE, PLACE + 0x3ffc, PLACE + 0x4000] {
+        bench.0.patch_flash(place, &[0; 4]);
+    }
+    erase(&mut bench);
+    bench.run_us(399_000);
+    assert_eq!(bench.read(SR), BSY);
+    bench.run_us(2_000);
+    assert_eq!(bench.read(SR), 0);
+    let words = [PLACE - 4, PLACE, PLACE + 0x3ffc, PLACE + 0x4000];
+    assert_eq!(
+        words.map(|place| bench.read(place)),
+        [0, u32::MAX, u32::MAX, 0]
+    );
+}
+
+#[test]
+fn without_keys_or_with_wrong_ones_nothing_is_written() {
+    let mut bench = Bench::new();
+    bench.write(CR, PG | WORDS);
+    assert_eq!(bench.read(CR), LOCK);
+    bench.write(PLACE, 0);
+    assert_eq!(bench.read(SR), PGSERR);
+    bench.write(SR, PGSERR);
+    assert_eq!(bench.read(SR), 0);
+    bench.write(KEYR, 1);
+    bench.write(KEYR, 0x4567_0123);
+    bench.write(KEYR, 0xcdef_89ab);
+    assert_eq!(bench.read(CR), LOCK, "until the next reset");
+    bench.0.reset(Reset::Pin);
+    bench.0.set_hung(true);
+    bench.write(KEYR, 0x4567_0123);
+    bench.write(KEYR, 0xcdef_89ab);
+    assert_eq!(bench.read(CR), 0);
+    bench.write(CR, LOCK);
+    bench.write(CR, PG | WORDS);
+    assert_eq!(bench.read(CR), LOCK);
+    bench.run_us(20);
+    assert_eq!(bench.read(PLACE), u32::MAX);
+}
+
+#[test]
+fn what_is_set_up_wrongly_is_an_error() {
+    let mut bench = unlocked();
+    // A byte at a time, and a word is written.
+    bench.write(CR, PG);
+    bench.write(PLACE, 0);
+    assert_eq!(bench.read(SR), PGPERR);
+    bench.write(SR, PGPERR);
+    // Started without a sector, or one that is not there.
+    bench.write(CR, STRT);
+    assert_eq!(bench.read(SR), PGSERR);
+    bench.write(SR, PGSERR);
+    bench.write(CR, SER | 12 << 3 | STRT);
+    assert_eq!(bench.read(SR), PGSERR);
+    assert_eq!(bench.0.not_modelled(), [""; 0]);
+    // Mass erase.
+    bench.write(CR, 1 << 2 | STRT);
+    assert_eq!(bench.0.not_modelled(), ["FLASH"]);
+}
+
+#[test]
+fn an_erasure_that_is_cut_off_near_its_end_does_not_last() {
+    let mut bench = unlocked();
+    bench.0.patch_flash(PLACE, &[0x5a; 0x4000]);
+    erase(&mut bench);
+    bench.run_us(390_000);
+    let blank = |bench: &mut Bench| {
+        let mut words = (PLACE..PLACE + 0x4000).step_by(4);
+        words.all(|place| bench.read(place) == u32::MAX)
+    };
+    bench.0.reset(Reset::PowerOn);
+    bench.0.set_hung(true);
+    assert_eq!(bench.read(SR), 0);
+    assert!(blank(&mut bench), "at first");
+    bench.0.reset(Reset::Pin);
+    bench.0.set_hung(true);
+    assert!(!blank(&mut bench));
+    // Erased whole, it is blank for good.
+    bench.write(KEYR, 0x4567_0123);
+    bench.write(KEYR, 0xcdef_89ab);
+    erase(&mut bench);
+    bench.run_us(401_000);
+    for _ in 0..3 {
+        bench.0.reset(Reset::PowerOn);
+        bench.0.set_hung(true);
+        assert!(blank(&mut bench));
+    }
+}

@@ -1,0 +1,6 @@
+//! Devices of the chip by themselves: the test is the program, and writes their
+//! registers as one would.
+
+mod bench;
+mod flash;
+mod otg;
