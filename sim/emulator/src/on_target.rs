@@ -10,6 +10,10 @@ use crepitus_usb::cabled::CabledDevice;
 /// the cost of each; or the reason of a failure.
 pub type OnTarget = Box<dyn FnMut(&Plan, &[Input]) -> Result<Vec<Call>, String>>;
 
+/// Ticks until the drive has the parameters that comms has stored: 30 ms.
+#[cfg(feature = "core")]
+const PREPARED_TICKS: u64 = 600;
+
 /// Why there is no target.
 #[derive(Debug, thiserror::Error)]
 pub enum NoTarget {
@@ -48,8 +52,9 @@ pub fn ladder(on_build: impl FnOnce()) -> Result<OnTarget, NoTarget> {
     }))
 }
 
-/// Both images with a scene's leg and parameters, plugged in; `on_build` is called
-/// if they have to be built first.
+/// Both images with a scene's leg and parameters, plugged in and running for as
+/// long as it takes the drive to get its parameters; `on_build` is called if they
+/// have to be built first.
 ///
 /// # Errors
 /// [`NoTarget`].
@@ -66,6 +71,9 @@ pub fn device(scene: &Scene, on_build: impl FnOnce()) -> Result<Box<dyn CabledDe
     let mut pair = pair.map_err(|error| NoTarget::NoDevice(error.to_string()))?;
     let plugged = pair.plug_in();
     plugged.map_err(|error| NoTarget::NoDevice(error.to_string()))?;
+    for _ in 0..PREPARED_TICKS {
+        pair.tick();
+    }
     Ok(Box::new(pair))
 }
 
