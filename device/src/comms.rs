@@ -13,6 +13,7 @@
 //! between. Nothing blocks: bytes that the host does not read are dropped and
 //! counted.
 
+mod byte_ring;
 pub mod drive_clock;
 pub mod drive_view;
 pub mod enable_line;
@@ -33,7 +34,7 @@ use crate::self_test::SelfTest;
 use crate::usb_port::HostBytes;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::crash::Head;
-use crepitus_protocol::frame::Frame;
+use crepitus_protocol::frame::{Frame, SoftwareCrc, WordCrc};
 use crepitus_protocol::link::FromDrive;
 use crepitus_protocol::management::{Answer, Identity};
 use crepitus_protocol::telemetry::{BLOCK_TICKS, Block};
@@ -85,14 +86,6 @@ pub struct Outputs {
     pub save: Option<(Revision, Values)>,
     /// Request to reboot.
     pub reboot: bool,
-}
-
-/// A decoded frame from the drive.
-#[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
-enum DriveMessage {
-    Block(Block),
-    Message(FromDrive),
-    Management(Answer),
 }
 
 /// The comms controller.
@@ -187,35 +180,64 @@ impl Comms {
 
     /// Receives a byte from the drive.
     pub fn link_received(&mut self, byte: u8) {
-        let known = match self.from_drive.push(byte) {
-            None => return,
-            Some(Err(_)) => return self.counters.count(CommsCounter::FromDriveDiscarded),
-            Some(Ok(body)) => match body.lane() {
-                Some(Lane::Telemetry) => body.message().map(DriveMessage::Block),
-                Some(Lane::FromDrive) => body.message().map(DriveMessage::Message),
-                Some(Lane::ManagementAnswer) => {
-                    Answer::of(body.payload).map(DriveMessage::Management)
-                }
-                _ => None,
-            },
-        };
-        self.counters.count(match &known {
+        self.link_received_all(&mut SoftwareCrc, &[byte]);
+    }
+
+    /// Receives bytes from the drive, with most of the checksum by a unit.
+    pub fn link_received_all(&mut self, unit: &mut impl WordCrc, bytes: &[u8]) {
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            let (taken, frame) = self.from_drive.extend_by(unit, rest);
+            match frame {
+                None => {}
+                Some(Err(_)) => self.counters.count(CommsCounter::FromDriveDiscarded),
+                // A message is decoded where it is handled: it is large.
+                Some(Ok(body)) => match body.lane() {
+                    Some(Lane::Telemetry) => {
+                        let block = body.message();
+                        self.known(block.as_ref(), Self::block);
+                    }
+                    Some(Lane::FromDrive) => {
+                        let message = body.message();
+                        self.known(message.as_ref(), Self::drive_message);
+                    }
+                    Some(Lane::ManagementAnswer) => {
+                        let answer = Answer::of(body.payload);
+                        self.known(answer.as_ref(), Self::drive_answer);
+                    }
+                    _ => self.counters.count(CommsCounter::Foreign),
+                },
+            }
+            rest = rest.get(taken..).unwrap_or_default();
+        }
+    }
+
+    /// Counts a message, and handles it if it is one.
+    fn known<T>(&mut self, message: Option<&T>, handle: impl FnOnce(&mut Self, &T)) {
+        self.counters.count(match message {
             Some(_) => CommsCounter::FromDrive,
             None => CommsCounter::Foreign,
         });
-        match known {
-            None | Some(DriveMessage::Management(Answer::Stop { .. } | Answer::Reboot { .. })) => {}
-            Some(DriveMessage::Block(block)) => self.block(&block),
-            Some(DriveMessage::Message(FromDrive::Status(status))) => {
-                self.drive.receive_status(&status);
+        if let Some(message) = message {
+            handle(self, message);
+        }
+    }
+
+    fn drive_message(&mut self, message: &FromDrive) {
+        match message {
+            FromDrive::Status(status) => {
+                self.drive.receive_status(status);
                 // Replies that depend on it go out before the blocks that follow.
                 self.poll_job();
             }
-            Some(DriveMessage::Message(FromDrive::CrashPart(part))) => self.crash_part(&part),
-            Some(DriveMessage::Management(Answer::Hello { own, .. })) => {
-                self.drive.set_identity(&own);
-                self.supervision.check_schema(own.schema);
-            }
+            FromDrive::CrashPart(part) => self.crash_part(part),
+        }
+    }
+
+    fn drive_answer(&mut self, answer: &Answer) {
+        if let Answer::Hello { own, .. } = answer {
+            self.drive.set_identity(own);
+            self.supervision.check_schema(own.schema);
         }
     }
 

@@ -3,7 +3,9 @@
 //! The first complete frame after a delimiter is always received: the decoder
 //! discards and counts invalid bytes and resynchronises at the next zero byte.
 
-use crate::frame::{BODY_BYTES, CRC_BYTES, Checksum, DELIMITER, FRAME_BYTES, SoftwareCrc, WordCrc};
+use crate::frame::{
+    BODY_BYTES, CRC_BYTES, Checksum, DELIMITER, FRAME_BYTES, SoftwareCrc, WORD, WordCrc,
+};
 use crate::lane::Lane;
 use crc::CRC_32_ISO_HDLC;
 use serde::Deserialize;
@@ -123,28 +125,84 @@ impl Decoder {
         byte: u8,
     ) -> Option<Result<Body<'_>, FrameError>> {
         if byte != DELIMITER {
-            if self.length == 0 {
-                self.reset();
-            }
+            self.begin();
             self.length = self.length.saturating_add(1);
             if self.left > 0 {
                 self.left = self.left.wrapping_sub(1);
                 self.add(unit, byte);
             } else {
-                if self.is_zero_due {
-                    self.add(unit, 0);
-                }
-                // Code 255: 254 bytes without a zero after them.
-                self.is_zero_due = byte != u8::MAX;
-                self.left = byte.wrapping_sub(1);
+                self.code(unit, byte);
             }
             return None;
         }
+        self.end(unit)
+    }
+
+    /// Decodes bytes up to the first delimiter among them: how many, and the
+    /// frame or the error that ends there. A run between two codes is copied at once.
+    pub fn extend(&mut self, bytes: &[u8]) -> (usize, Option<Result<Body<'_>, FrameError>>) {
+        self.extend_by(&mut SoftwareCrc, bytes)
+    }
+
+    /// The same, with most of the checksum by a unit.
+    pub fn extend_by(
+        &mut self,
+        unit: &mut impl WordCrc,
+        bytes: &[u8],
+    ) -> (usize, Option<Result<Body<'_>, FrameError>>) {
+        let end = bytes.iter().position(|byte| *byte == DELIMITER);
+        let mut rest = bytes.get(..end.unwrap_or(bytes.len())).unwrap_or_default();
+        if !rest.is_empty() {
+            self.begin();
+            self.length = self.length.saturating_add(rest.len());
+        }
+        while let Some((code, behind)) = rest.split_first() {
+            if self.left == 0 {
+                self.code(unit, *code);
+                rest = behind;
+                continue;
+            }
+            let length = rest.len().min(usize::from(self.left));
+            let (run, behind) = rest.split_at(length);
+            self.left = self
+                .left
+                .wrapping_sub(u8::try_from(length).unwrap_or(u8::MAX));
+            self.add_run(unit, run);
+            rest = behind;
+        }
+        match end {
+            Some(end) => (end.saturating_add(1), self.end(unit)),
+            None => (bytes.len(), None),
+        }
+    }
+
+    /// Before the first byte of a frame.
+    #[inline(always)]
+    fn begin(&mut self) {
+        if self.length == 0 {
+            self.reset();
+        }
+    }
+
+    /// A COBS code.
+    #[inline(always)]
+    fn code(&mut self, unit: &mut impl WordCrc, code: u8) {
+        if self.is_zero_due {
+            self.add(unit, 0);
+        }
+        // Code 255: 254 bytes without a zero after them.
+        self.is_zero_due = code != u8::MAX;
+        self.left = code.wrapping_sub(1);
+    }
+
+    /// A delimiter: the frame or the error, unless there were no bytes.
+    #[inline(always)]
+    fn end(&mut self, unit: &mut impl WordCrc) -> Option<Result<Body<'_>, FrameError>> {
         let length = core::mem::take(&mut self.length);
         if length == 0 {
             return None;
         }
-        self.update_checksum(unit);
+        self.sum_up(unit);
         let count = &mut self.discarded;
         // `FRAME_BYTES` includes the delimiter.
         if length >= FRAME_BYTES {
@@ -184,16 +242,36 @@ impl Decoder {
     #[inline]
     fn add(&mut self, unit: &mut impl WordCrc, byte: u8) {
         if self.plain.push(byte).is_ok() && self.plain.len().wrapping_sub(self.summed) >= CHUNK {
-            self.update_checksum(unit);
+            self.sum_words(unit);
         }
     }
 
-    /// Adds the received bytes to the checksum.
-    fn update_checksum(&mut self, unit: &mut impl WordCrc) {
-        if let Some(new) = self.plain.get(self.summed..) {
-            self.checksum.update_by(unit, new);
-            self.summed = self.plain.len();
+    /// Adds bytes of the body, as [`Self::add`] does.
+    fn add_run(&mut self, unit: &mut impl WordCrc, run: &[u8]) {
+        let room = self.plain.capacity().saturating_sub(self.plain.len());
+        // It fits.
+        let _ = self.plain.extend_from_slice(run.get(..room).unwrap_or(run));
+        if self.plain.len().wrapping_sub(self.summed) >= CHUNK {
+            self.sum_words(unit);
         }
+    }
+
+    /// Adds the whole words that were received to the checksum.
+    #[inline]
+    fn sum_words(&mut self, unit: &mut impl WordCrc) {
+        let new = self.plain.get(self.summed..).unwrap_or_default();
+        let whole = new.len() & !(WORD - 1);
+        self.checksum
+            .update_by(unit, new.get(..whole).unwrap_or_default());
+        self.summed = self.summed.saturating_add(whole);
+    }
+
+    /// Adds the received bytes to the checksum, up to the end.
+    #[inline(always)]
+    fn sum_up(&mut self, unit: &mut impl WordCrc) {
+        let new = self.plain.get(self.summed..).unwrap_or_default();
+        self.checksum.update_by(unit, new);
+        self.summed = self.plain.len();
     }
 
     /// Counters of discarded frames.
@@ -324,6 +402,47 @@ mod tests {
             frame.push(0);
             let (bodies, _) = decode(&mut Decoder::new(), &frame);
             prop_assert_eq!(bodies.first(), expected.as_ref());
+        }
+
+        /// Bytes in pieces of any lengths give what they give one by one.
+        #[test]
+        fn pieces_are_as_bytes(
+            noise: Vec<u8>,
+            lengths in prop::collection::vec(2_usize..=BODY_BYTES, 1..4),
+            cuts in prop::collection::vec(1_usize..700, 1..8),
+        ) {
+            let mut bytes = noise;
+            for length in lengths {
+                bytes.push(0);
+                bytes.extend(encode_body(&body(length)).unwrap());
+            }
+            let mut decoder = Decoder::new();
+            let expected = decode(&mut decoder, &bytes);
+            let mut others = Decoder::new();
+            let (mut bodies, mut errors) = (Vec::new(), 0);
+            let mut rest = &bytes[..];
+            for cut in cuts.iter().cycle() {
+                let (mut piece, behind) = rest.split_at((*cut).min(rest.len()));
+                while !piece.is_empty() {
+                    let (taken, found) = others.extend(piece);
+                    match found {
+                        Some(Ok(body)) => {
+                            let mut all = std::vec![body.lane, body.tag];
+                            all.extend(body.payload);
+                            bodies.push(all);
+                        }
+                        Some(Err(_)) => errors += 1,
+                        None => {}
+                    }
+                    piece = &piece[taken..];
+                }
+                rest = behind;
+                if rest.is_empty() {
+                    break;
+                }
+            }
+            prop_assert_eq!((bodies, errors), expected);
+            prop_assert_eq!(others.discarded(), decoder.discarded());
         }
 
         /// One flipped bit: never another message.

@@ -270,9 +270,9 @@ impl<P: BorrowMut<FrameBuffer>> EncodedFrame<P> {
 }
 
 /// Serialises a postcard message into a frame.
-struct Message<'a>(&'a mut Encoder<FrameBuffer>);
+struct Message<'a, 'b>(&'a mut Encoder<&'b mut FrameBuffer>);
 
-impl Flavor for Message<'_> {
+impl Flavor for Message<'_, '_> {
     type Output = ();
 
     fn try_extend(&mut self, data: &[u8]) -> postcard::Result<()> {
@@ -330,14 +330,29 @@ pub fn write<'a>(message: &impl Serialize, buffer: &'a mut [u8]) -> Result<&'a [
     buffer.get(..length).ok_or(TooLong)
 }
 
+/// Encodes a message as a frame, in a buffer.
+///
+/// # Errors
+/// [`TooLong`] if the message does not fit.
+pub fn encode_in<'a>(
+    buffer: &'a mut FrameBuffer,
+    lane: Lane,
+    message: &impl Serialize,
+) -> Result<&'a [u8], TooLong> {
+    let mut encoder = Encoder::new(&mut *buffer, lane)?;
+    postcard::serialize_with_flavor(message, Message(&mut encoder)).map_err(|_| TooLong)?;
+    let length = encoder.finish()?.length;
+    buffer.get(..length).ok_or(TooLong)
+}
+
 /// Encodes a message as a frame.
 ///
 /// # Errors
 /// [`TooLong`] if the message does not fit.
 pub fn encode(lane: Lane, message: &impl Serialize) -> Result<Frame, TooLong> {
-    let mut encoder = Encoder::new([0; FRAME_BYTES], lane)?;
-    postcard::serialize_with_flavor(message, Message(&mut encoder)).map_err(|_| TooLong)?;
-    Ok(encoder.finish()?.frame())
+    let mut buffer = [0; FRAME_BYTES];
+    let frame = encode_in(&mut buffer, lane, message)?;
+    Frame::from_slice(frame).map_err(|_| TooLong)
 }
 
 /// Encodes bytes that are no postcard message as a frame: the management lane.

@@ -3,7 +3,8 @@
 //! A frame is queued whole or dropped. Some room is reserved for replies, so a
 //! host that reads slowly still gets them.
 
-use crepitus_protocol::frame::{DELIMITER, FRAME_BYTES, Frame};
+use crate::comms::byte_ring::ByteRing;
+use crepitus_protocol::frame::{DELIMITER, FRAME_BYTES};
 
 /// Capacity in bytes: 48 ms of telemetry.
 pub const OUTBOX_BYTES: usize = 16_384;
@@ -11,10 +12,10 @@ pub const OUTBOX_BYTES: usize = 16_384;
 /// Bytes reserved for replies.
 const REPLY_BYTES: usize = 2 * FRAME_BYTES;
 
-/// A ring buffer of bytes.
+/// The queue.
 #[derive(Debug)]
 pub struct Outbox {
-    bytes: heapless::Deque<u8, OUTBOX_BYTES>,
+    bytes: ByteRing<OUTBOX_BYTES>,
 }
 
 impl Default for Outbox {
@@ -22,7 +23,7 @@ impl Default for Outbox {
     /// resynchronises.
     fn default() -> Self {
         let mut outbox = Self {
-            bytes: heapless::Deque::new(),
+            bytes: ByteRing::new(),
         };
         outbox.clear();
         outbox
@@ -33,44 +34,35 @@ impl Outbox {
     /// Clears the queue: the host is gone.
     pub fn clear(&mut self) {
         self.bytes.clear();
-        // Cannot fail: the queue is empty.
-        let _ = self.bytes.push_back(DELIMITER);
+        // There is room: the queue is empty.
+        let _ = self.bytes.push(&[DELIMITER]);
     }
 
     /// Queues a reply; false if there is no room.
-    pub fn reply(&mut self, frame: &Frame) -> bool {
+    pub fn reply(&mut self, frame: &[u8]) -> bool {
         self.push(frame, 0)
     }
 
     /// Queues telemetry; false if only the room for replies is left.
-    pub fn telemetry(&mut self, frame: &Frame) -> bool {
+    pub fn telemetry(&mut self, frame: &[u8]) -> bool {
         self.push(frame, REPLY_BYTES)
     }
 
-    fn push(&mut self, frame: &Frame, reserved: usize) -> bool {
+    fn push(&mut self, frame: &[u8], reserved: usize) -> bool {
         let room = OUTBOX_BYTES
             .saturating_sub(self.bytes.len())
             .saturating_sub(reserved);
-        let fits = frame.len() <= room;
-        if fits {
-            for byte in frame {
-                // Checked above; unlike `extend`, `push_back` does not panic.
-                let _ = self.bytes.push_back(*byte);
-            }
-        }
-        fits
+        frame.len() <= room && self.bytes.push(frame)
     }
 
     /// The next bytes to send, contiguous.
     pub fn to_send(&self) -> &[u8] {
-        self.bytes.as_slices().0
+        self.bytes.front()
     }
 
     /// Removes the first `count` bytes: they were sent.
     pub fn sent(&mut self, count: usize) {
-        for _ in 0..count {
-            self.bytes.pop_front();
-        }
+        self.bytes.drop_front(count);
     }
 }
 
@@ -82,7 +74,7 @@ mod tests {
     fn telemetry_leaves_room_for_replies() {
         let mut outbox = Outbox::default();
         assert_eq!(outbox.to_send(), [0]);
-        let frame = Frame::from_slice(&[7; 340]).unwrap();
+        let frame = [7; 340];
         let mut queued = 0;
         while outbox.telemetry(&frame) {
             queued += 1;

@@ -3,7 +3,7 @@
 
 use crate::comms::outbox::Outbox;
 use crepitus_protocol::Lane;
-use crepitus_protocol::frame;
+use crepitus_protocol::frame::{self, FRAME_BYTES};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 
 /// The stream of blocks to the host.
@@ -38,8 +38,9 @@ impl Stream {
             dropped: self.dropped_before(block.first_tick),
             ..*block
         };
-        let queued =
-            frame::encode(Lane::Telemetry, &block).is_ok_and(|frame| outbox.telemetry(&frame));
+        let mut buffer = [0; FRAME_BYTES];
+        let frame = frame::encode_in(&mut buffer, Lane::Telemetry, &block);
+        let queued = frame.is_ok_and(|frame| outbox.telemetry(frame));
         if queued {
             self.forwarded = self.forwarded.saturating_add(BLOCK_SAMPLES as u64);
         }

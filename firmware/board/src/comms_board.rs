@@ -1,6 +1,7 @@
 //! The board of comms: which part is on which pin.
 
 use crate::clocks;
+use crate::crc_unit::CrcUnit;
 use crate::enable_line::EnableLine;
 use crate::flash::ParameterSectors;
 use crate::identity::identity;
@@ -27,6 +28,8 @@ pub struct CommsBoard {
     pub line: EnableLine,
     /// PC6, PC7.
     pub link: Link,
+    /// Checksums of what the link receives.
+    pub crc_unit: CrcUnit,
     /// PA11, PA12.
     pub bus: UsbBusAllocator<UsbBusType>,
     /// Sectors 2 and 3 of flash.
@@ -61,6 +64,7 @@ impl CommsBoard {
             line,
             log: ParameterLog::open(ParameterSectors::new(chip.FLASH)),
             link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), buffers, &mut rcc),
+            crc_unit: CrcUnit::new(chip.CRC, &mut rcc),
             bus: usb::bus(blocks, a.pa11, a.pa12, packets, &rcc),
             quarters: Quarters::start(chip.TIM2, &mut rcc),
             watchdog: chip.IWDG,

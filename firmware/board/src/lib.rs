@@ -17,7 +17,7 @@
 //! | timers of the tasks | both | [`ticks`] |
 //! | bridge: PWM with dead time and break | drive | [`bridge`] |
 //! | converter: the motor's current | drive | [`converter`] |
-//! | checksums of frames: CRC unit | drive | [`crc_unit`] |
+//! | checksums of frames: CRC unit | both | [`crc_unit`] |
 //! | encoder: 32-bit counter | drive | [`encoder`] |
 //! | USB | comms | [`usb`] |
 //! | parameters in flash | comms | [`flash`] |

@@ -1,7 +1,7 @@
 //! The link between the controllers: USART6 at 4.2 Mbaud, DMA both ways.
 //!
 //! ```text
-//! PC7 ─> USART6 ─> DMA2 stream 1 ─> ring of 2 KB (4.9 ms)        ─> Link::take_byte
+//! PC7 ─> USART6 ─> DMA2 stream 1 ─> ring of 2 KB (4.9 ms)        ─> Link::take
 //! PC6 <─ USART6 <─ DMA2 stream 6 <─ a frame, and the one after it <─ Link::send
 //! ```
 //!
@@ -124,6 +124,15 @@ impl Link {
         let byte = RING.get(self.next)?.load(Ordering::Relaxed);
         self.next = (self.next + 1) % RING_BYTES;
         Some(byte)
+    }
+
+    /// Takes the oldest received bytes, as many as there is room for; returns those.
+    pub fn take<'a>(&mut self, into: &'a mut [u8]) -> &'a [u8] {
+        let count = self.received().min(into.len());
+        for place in into.iter_mut().take(count) {
+            *place = self.take_byte().unwrap_or_default();
+        }
+        into.get(..count).unwrap_or_default()
     }
 
     /// Takes a free buffer, if there is one.

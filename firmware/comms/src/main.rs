@@ -12,7 +12,7 @@
 //!
 //! | shared | between | locked for |
 //! |---|---|---|
-//! | `comms` | 3, 2, 1, 0 | a tick, an event of the bus, a byte, a frame |
+//! | `comms` | 3, 2, 1, 0 | a tick, an event of the bus, some bytes of the link, a frame |
 //! | `save` | 3, 0 | handing over parameters to store |
 //!
 //! Only `idle` logs, and nothing blocks: a host that does not read loses
@@ -25,6 +25,7 @@ use defmt_rtt as _;
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
     use board::comms_board::CommsBoard;
+    use board::crc_unit::CrcUnit;
     use board::enable_line::EnableLine;
     use board::flash::ParameterSectors;
     use board::link::{BUFFERS, EMPTY_BUFFER, Link};
@@ -48,6 +49,9 @@ mod app {
     /// Delay of a reboot, ms, to send the answer and forward it to the drive.
     const REBOOT_DELAY_MS: u8 = 20;
 
+    /// Bytes of the link that are taken in at a time.
+    const RUN_BYTES: usize = 32;
+
     /// Tasks that check in with the watchdog.
     const TICKED: usize = 0;
     const USB_POLLED: usize = 1;
@@ -70,6 +74,7 @@ mod app {
         line: EnableLine,
         port: UsbPort<'static, UsbBusType>,
         link: Link,
+        crc_unit: CrcUnit,
         log: ParameterLog<ParameterSectors>,
         watchdog: Watchdog,
     }
@@ -117,6 +122,7 @@ mod app {
                 line: board.line,
                 port,
                 link: board.link,
+                crc_unit: board.crc_unit,
                 log: board.log,
                 watchdog: Watchdog::start(board.watchdog, IDLE_TIMEOUT_RUNS),
             },
@@ -162,16 +168,16 @@ mod app {
         cx.shared.comms.lock(|comms| port.poll(*comms));
     }
 
-    #[task(binds = DMA2_STREAM6, priority = 1, local = [link, watchdog], shared = [comms, &checkins])]
+    #[task(binds = DMA2_STREAM6, priority = 1, local = [link, crc_unit, watchdog], shared = [comms, &checkins])]
     fn link(mut cx: link::Context) {
-        let link = cx.local.link;
+        let (link, unit) = (cx.local.link, cx.local.crc_unit);
         link.acknowledge();
         cx.shared.checkins.check_in(LINKED);
         cx.local.watchdog.feed(cx.shared.checkins);
-        for _ in 0..link.received() {
-            if let Some(byte) = link.take_byte() {
-                cx.shared.comms.lock(|comms| comms.link_received(byte));
-            }
+        let mut run = [0; RUN_BYTES];
+        for _ in 0..=link.received() / RUN_BYTES {
+            let bytes = link.take(&mut run);
+            cx.shared.comms.lock(|comms| comms.link_received_all(unit, bytes));
         }
         if link.can_send()
             && let Some(frame) = cx.shared.comms.lock(|comms| comms.link_to_send())

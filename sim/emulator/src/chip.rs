@@ -77,6 +77,8 @@ pub(crate) struct Chip {
     pub(crate) watchdog_fired: Arc<AtomicBool>,
     /// The inputs of the reset flags.
     pub(crate) causes: wires::Causes,
+    /// The interrupt lines that are high.
+    pub(crate) raised: Arc<wires::Raised>,
 }
 
 /// A timer of the library.
@@ -178,6 +180,7 @@ impl Chip {
             quadrature,
             watchdog_fired: watchdog_fired.flag(),
             causes,
+            raised: nets.raised(),
         }
     }
 

@@ -68,6 +68,10 @@ pub struct Stm32f405 {
     clock: u64,
     /// Number of active exceptions.
     active: u32,
+    /// The exception being handled.
+    exception: u16,
+    /// An exception is pending, besides those of lines that are high.
+    is_pending: bool,
     is_hung: bool,
     /// At the pins of the encoder's channels.
     encoder: [bool; 2],
@@ -99,6 +103,8 @@ impl Stm32f405 {
             cycles: 0,
             clock: 0,
             active: 0,
+            exception: 0,
+            is_pending: false,
             is_hung: false,
             encoder: [false; 2],
             resets: Vec::new(),
@@ -274,18 +280,29 @@ impl Stm32f405 {
     /// One step as the library does it, with frames counted once, and with the
     /// state of what an exception interrupts.
     fn step_without_waits(&mut self) -> u64 {
-        let before = Before::step(&self.core);
+        let may_interrupt = self.is_pending || self.chip.raised.any();
+        let before = may_interrupt.then(|| Before::step(&self.core));
         let cycles = self.core.step();
-        if cycles < CHAINING || before.is_same_exception(&self.core) {
+        // Only a store, or an exception, makes one pending.
+        if cycles > 1 {
+            self.is_pending = self.core.with_sys(|sys| sys.highest_pending().is_some());
+        }
+        if cycles < CHAINING {
+            return cycles;
+        }
+        let exception = self.core.current_exception().0;
+        if std::mem::replace(&mut self.exception, exception) == exception {
             return cycles;
         }
         let active = self.core.with_sys(|sys| sys.active_count());
         let was_active = std::mem::replace(&mut self.active, active);
-        if active >= was_active {
-            self.keep_flags(&before);
-        }
-        if active > was_active {
-            self.keep_it_block(&before);
+        if let Some(before) = before {
+            if active >= was_active {
+                self.keep_flags(&before);
+            }
+            if active > was_active {
+                self.keep_it_block(&before);
+            }
         }
         if active == was_active {
             cycles
@@ -331,7 +348,9 @@ impl Stm32f405 {
                     at: Time::from_units(self.now),
                 });
             }
-            if cycles == 1 && self.sleeps_soundly() && !self.chip.bus.is_touched() {
+            // In a handler no program of ours sleeps.
+            let may_sleep = cycles == 1 && self.active == 0;
+            if may_sleep && self.sleeps_soundly() && !self.chip.bus.is_touched() {
                 // Whole cycles, so that the core keeps its phase.
                 let asleep = (stop - self.now).div_ceil(units).max(1);
                 self.now += asleep * units;

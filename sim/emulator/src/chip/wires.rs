@@ -4,13 +4,37 @@ use rsemu::core::device::Device;
 use rsemu::core::wire::{Level, Wire, WireId, WireIdAllocator, WireSink, WireSource};
 use rsemu::cpu::arm::v7m::ArmV7m;
 use rsemu::dev::stm32::rcc::Rcc;
+use std::cell::Cell;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
 /// Makes wires to a core and to devices.
 pub(crate) struct Nets<'a> {
     core: &'a ArmV7m,
     ids: WireIdAllocator,
+    raised: Arc<Raised>,
+    interrupts: Cell<u32>,
+}
+
+/// The interrupt lines that are high, one bit each.
+#[derive(Debug, Default)]
+pub(crate) struct Raised(AtomicU32);
+
+impl Raised {
+    /// Whether one is.
+    pub(crate) fn any(&self) -> bool {
+        self.0.load(Relaxed) != 0
+    }
+}
+
+impl WireSink for Raised {
+    fn set_level(&self, _: WireId, line: u32, level: Level) {
+        if level.is_high() {
+            self.0.fetch_or(1 << line, Relaxed);
+        } else {
+            self.0.fetch_and(!(1 << line), Relaxed);
+        }
+    }
 }
 
 impl<'a> Nets<'a> {
@@ -18,12 +42,30 @@ impl<'a> Nets<'a> {
         Self {
             core,
             ids: WireIdAllocator::new(),
+            raised: Arc::default(),
+            interrupts: Cell::new(0),
         }
+    }
+
+    /// The interrupt lines that are high.
+    pub(crate) fn raised(&self) -> Arc<Raised> {
+        self.raised.clone()
     }
 
     /// A wire to an interrupt of the core.
     pub(crate) fn interrupt(&self, number: u16) -> WireSource {
-        self.to_device(self.core, &format!("irq{number}"))
+        let id = self.ids.alloc();
+        let pin = self.core.sink(&format!("irq{number}"), &[id]);
+        let pin = pin.expect("the core has this interrupt");
+        let place = self.interrupts.get();
+        assert!(place < u32::BITS, "a bit for each line");
+        self.interrupts.set(place + 1);
+        let wire = Wire::builder()
+            .source(id)
+            .sink(pin.sink, pin.line)
+            .sink(self.raised.clone(), place)
+            .build();
+        WireSource::new(Arc::new(wire), id)
     }
 
     /// A wire to a pin of a device of the library.

@@ -118,7 +118,7 @@ impl Mcu for Stm32f405 {
             self.chip.rcc.reset(ResetKind::Cold);
         }
         self.is_hung = false;
-        self.active = 0;
+        (self.active, self.exception, self.is_pending) = (0, 0, false);
         self.chip.bus.reset();
         self.chip.bus.waits.clear();
         self.chip.bus.waits.set_register(0);

@@ -14,7 +14,7 @@ use rsemu::cpu::arm::v7m::{ArmV7m, xpsr};
 /// Offset of xPSR in a frame, which is on the only stack that we use.
 const XPSR: u32 = 28;
 
-/// State of the core before a step.
+/// State of the core before a step that may begin with an interrupt.
 pub(super) struct Before {
     xpsr: u32,
     fpscr: u32,
@@ -26,11 +26,6 @@ impl Before {
             xpsr: core.xpsr(),
             fpscr: core.fpscr(),
         }
-    }
-
-    /// Whether the core is in the same exception as before.
-    pub(super) fn is_same_exception(&self, core: &ArmV7m) -> bool {
-        (core.xpsr() ^ self.xpsr) & xpsr::EXCEPTION == 0
     }
 }
 

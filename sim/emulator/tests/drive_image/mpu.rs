@@ -156,10 +156,11 @@ fn command_motor_writes_to_the_outputs_only_where_it_sets_them() {
 #[test]
 fn comms_can_program_its_parameter_sectors_and_nothing_else() {
     const FLASH_KEYR: u32 = 0x4002_3c04;
-    const FLASH_SR: u32 = 0x4002_3c0c;
     const FLASH_CR: u32 = 0x4002_3c10;
     const PROGRAM_WORDS: u32 = 0x201;
-    const BUSY: u32 = 1 << 16;
+    const VALUE: u32 = 0x1234_5678;
+    // After two erasures.
+    const STARTED: Time = Time::from_us(900_000);
     let Some(image) = image_for_test(Program::Comms) else {
         return;
     };
@@ -170,19 +171,19 @@ fn comms_can_program_its_parameter_sectors_and_nothing_else() {
         (FREE_FLASH, false),
     ] {
         let mut mcu = Stm32f405::new(&image);
-        mcu.run_until(Time::from_us(50_000));
+        mcu.run_until(STARTED);
+        let before = mcu.peek(address).expect("flash");
         let stores = [
             store(FLASH_KEYR, 0x4567_0123),
             store(FLASH_KEYR, 0xcdef_89ab),
             store(FLASH_CR, PROGRAM_WORDS),
-            store(address, 0x1234_5678),
+            store(address, VALUE),
             vec![FOREVER],
         ];
         let at = mcu.program_counter();
         mcu.patch_flash(at, &bytes(&stores.concat()));
-        mcu.run_until(Time::from_us(50_200));
-        // Begun: how long it takes is not modelled.
-        let is_done = mcu.peek(FLASH_SR) == Some(BUSY);
+        mcu.run_until(STARTED + Time::from_us(200));
+        let is_done = mcu.peek(address) == Some(before & VALUE) && before & VALUE != before;
         let was_reset = !mcu.take_resets().is_empty();
         assert_eq!(
             (is_done, was_reset),

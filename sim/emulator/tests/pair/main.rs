@@ -3,6 +3,7 @@
 
 mod faults;
 mod host;
+mod load;
 mod power;
 mod replay;
 mod same;

@@ -3,9 +3,10 @@
 use crate::host::{arm, connected, run};
 use crepitus_client::Event;
 use crepitus_protocol::parameters::id::STATIC_TORQUE;
+use std::time::{Duration, Instant};
 
-/// Hash of both chips, of every block, and of the traffic.
-fn session() -> Option<(u64, Vec<u64>, String)> {
+/// Hash of both chips, every block, the traffic, and the device's time.
+fn session() -> Option<(u64, Vec<u64>, String, Duration)> {
     let mut host = connected()?;
     host.subscribe().expect("a subscription");
     host.set(&[(STATIC_TORQUE, 0.5)]).expect("a commit");
@@ -18,13 +19,21 @@ fn session() -> Option<(u64, Vec<u64>, String)> {
         }
     }
     host.disarm().expect("disarmed");
+    let now = host.now();
     let pair = &mut host.transport_mut().pair;
-    Some((pair.state_hash(), ticks, format!("{:?}", pair.traffic())))
+    let traffic = format!("{:?}", pair.traffic());
+    Some((pair.state_hash(), ticks, traffic, now))
 }
 
 #[test]
 fn two_runs_are_one() {
+    let begin = Instant::now();
     let Some(first) = session() else { return };
+    let (wall, device) = (begin.elapsed(), first.3);
+    println!(
+        "{:.1} s of wall time for a second of both images, leg and host",
+        wall.as_secs_f64() / device.as_secs_f64()
+    );
     assert!(first.1.len() >= 50, "{}", first.1.len());
     assert_eq!(Some(first), session());
 }
