@@ -1,4 +1,4 @@
-//! Faults of the drive's firmware: `firmware.toml`, and how they are planted.
+//! Faults of the firmware: `firmware.toml`, and how they are planted.
 //!
 //! Each is built into an image of its own: what it changes are registers,
 //! locks and the linker script, which no switch can choose at run time.
@@ -13,6 +13,30 @@ const LIST: &str = include_str!("../firmware.toml");
 /// Marks of the text that an edit replaces.
 const MARKS: [char; 2] = ['«', '»'];
 
+/// A program of the firmware.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Hash, PartialEq, Eq, PartialOrd, Ord)]
+#[serde(rename_all = "lowercase")]
+pub enum Program {
+    /// That of the drive.
+    #[default]
+    Drive,
+    /// That of comms.
+    Comms,
+}
+
+impl Program {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Drive, Self::Comms];
+
+    /// Name of its image.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Drive => "drive",
+            Self::Comms => "comms",
+        }
+    }
+}
+
 /// A fault of the firmware.
 #[derive(Clone, Debug, Deserialize, Hash)]
 #[serde(deny_unknown_fields)]
@@ -21,6 +45,9 @@ pub struct FirmwareFault {
     pub name: String,
     /// What is wrong, in one line.
     pub what: String,
+    /// Whose image it is built into.
+    #[serde(default)]
+    pub program: Program,
     /// Edits of the sources.
     #[serde(default)]
     pub edit: Vec<Edit>,
@@ -200,6 +227,7 @@ mod tests {
 
     fn fault(edit: Vec<Edit>, image: Option<ImageEdit>) -> FirmwareFault {
         FirmwareFault {
+            program: Program::Drive,
             name: "priority".to_owned(),
             what: "a priority".to_owned(),
             edit,

@@ -1,6 +1,8 @@
 //! Results of all faults of the firmware, as a page of the book.
 
 use crate::firmware::FirmwareFault;
+#[cfg(test)]
+use crate::firmware::Program;
 use crate::firmware_trial::FirmwareOutcome;
 use std::fmt::Write;
 
@@ -33,10 +35,9 @@ pub fn page(outcomes: &[(FirmwareFault, FirmwareOutcome)]) -> String {
     let mut text = String::from(
         "# Planted faults of the firmware\n\n\
          Made by `cargo run -p crepitus-faults -- --firmware --page docs/planted-firmware-faults.md`, which builds one fault at\n\
-         a time into a copy of the drive's sources and runs the emulator's tests on the image: modelled silicon, not hardware.\n\
-         Tests that look at [registers](registers.md), locks, outputs, tasks, protected memory, the post-mortem record and\n\
-         commits run first;\n\
-         the others only on what those do not notice.\n\n",
+         a time into a copy of the sources and runs the emulator's tests on the image: modelled silicon, not hardware. Of the drive\n\
+         those that look at [registers](registers.md), locks, outputs, tasks, protected memory, the post-mortem record and\n\
+         commits run first; of comms those of its registers; the others only on what those do not notice.\n\n",
     );
     // Writing to a String cannot fail.
     let _ = writeln!(text, "{}\n", totals(outcomes));
@@ -80,6 +81,7 @@ mod tests {
     fn a_page_says_what_noticed_and_why_not() {
         let tried = |name: &str, tests: &[&str]| {
             let fault = FirmwareFault {
+                program: Program::Drive,
                 name: name.to_owned(),
                 what: "a pin".to_owned(),
                 edit: Vec::new(),

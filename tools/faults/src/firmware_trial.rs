@@ -1,19 +1,19 @@
 //! An image with a fault in it, and the emulator's tests run on it.
 
-use crate::firmware::{FirmwareError, FirmwareFault};
+use crate::firmware::{FirmwareError, FirmwareFault, Program};
 use crate::process::{End, run};
 use crate::tree::{copy, write_if_changed};
 use crate::trial::{Builder, TrialError, io};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-/// Tests that look at registers, locks, outputs, tasks, protected memory and the
-/// post-mortem record.
+/// Tests of the drive's image that look at registers, locks, outputs, tasks, protected
+/// memory and the post-mortem record.
 const FIRST: [&str; 7] = [
     "registers::",
     "locks::",
@@ -23,6 +23,39 @@ const FIRST: [&str; 7] = [
     "crash::",
     "commits::",
 ];
+
+/// Some tests of a test program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Suite {
+    test: &'static str,
+    /// Those that are run; all, if empty.
+    only: &'static [&'static str],
+    /// Those that are not.
+    not: &'static [&'static str],
+}
+
+const fn suite(
+    test: &'static str,
+    only: &'static [&'static str],
+    not: &'static [&'static str],
+) -> Suite {
+    Suite { test, only, not }
+}
+
+/// What is run on an image with a fault; a later suite only if those before notice
+/// nothing.
+fn suites(program: Program) -> [Suite; 2] {
+    match program {
+        Program::Drive => [
+            suite("drive_image", &FIRST, &[]),
+            suite("drive_image", &[], &FIRST),
+        ],
+        Program::Comms => [
+            suite("drive_image", &["registers::", "mpu::comms"], &[]),
+            suite("pair", &[], &[]),
+        ],
+    }
+}
 
 /// Timeout of a run of tests: many times that of the slowest on a slow machine.
 const TESTS: Duration = Duration::from_mins(15);
@@ -80,19 +113,17 @@ pub struct FirmwareWorkshop {
     tree: PathBuf,
     scratch: PathBuf,
     cargo: String,
-    tests: PathBuf,
-    /// The image without a fault, and whether the tests of the second run hold
-    /// on it.
-    sound: Vec<u8>,
-    rest_is_sound: bool,
+    /// The images without a fault.
+    sound: BTreeMap<Program, Vec<u8>>,
+    /// Suites that hold on them.
+    holds: BTreeSet<Suite>,
 }
 
 impl FirmwareWorkshop {
-    /// Copies the sources in `root`, builds the tests and both images, and makes
-    /// sure that the tests that look at registers, locks and outputs hold on them.
+    /// Copies the sources in `root`, and builds the tests and both images.
     ///
     /// # Errors
-    /// [`TrialError`] if something does not build or a test fails.
+    /// [`TrialError`] if something does not build.
     pub fn open(root: &Path, scratch: &Path, cargo: &str) -> Result<Self, TrialError> {
         let tree = scratch.join("firmware-tree");
         copy(root, &tree, &BTreeMap::new()).map_err(io(&tree))?;
@@ -103,50 +134,48 @@ impl FirmwareWorkshop {
             cargo,
             has_faults: false,
         };
-        let arguments = [
-            "test",
-            "-p",
-            "crepitus-emulator",
-            "--test",
-            "drive_image",
-            "--no-run",
-        ];
-        let built = builder.build(&arguments)?;
-        let tests = built
-            .into_iter()
-            .find(|program| program.name == "drive_image");
-        let tests = tests.ok_or_else(|| TrialError::Build(scratch.join("build.txt")))?;
-        // A copy, which no other build replaces meanwhile.
-        let own = std::path::absolute(scratch.join("drive_image")).map_err(io(scratch))?;
-        fs::copy(&tests.path, &own).map_err(io(&own))?;
+        for test in ["drive_image", "pair"] {
+            let arguments = ["test", "-p", "crepitus-emulator", "--test", test, "--no-run"];
+            let built = builder.build(&arguments)?;
+            let program = built.into_iter().find(|program| program.name == test);
+            let program = program.ok_or_else(|| TrialError::Build(scratch.join("build.txt")))?;
+            // A copy, which no other build replaces meanwhile.
+            let own = scratch.join(test);
+            fs::copy(&program.path, &own).map_err(io(&own))?;
+        }
         let mut workshop = Self {
             root: root.to_owned(),
             tree,
             scratch: scratch.to_owned(),
             cargo: cargo.to_owned(),
-            tests: own,
-            sound: Vec::new(),
-            rest_is_sound: false,
+            sound: BTreeMap::new(),
+            holds: BTreeSet::new(),
         };
         let images = workshop.images();
         fs::create_dir_all(&images).map_err(io(&images))?;
-        let comms = workshop.build_image("comms")?;
-        fs::write(images.join("comms"), comms).map_err(io(&images))?;
-        workshop.sound = workshop.build_image("drive")?;
-        workshop.place_image(&workshop.sound)?;
-        workshop.baseline(&FIRST)?;
+        for program in Program::ALL {
+            let image = workshop.build_image(program)?;
+            workshop.place_image(program, &image)?;
+            workshop.sound.insert(program, image);
+        }
         Ok(workshop)
     }
 
-    /// Fails if a test fails without a fault.
-    fn baseline(&self, filters: &[&str]) -> Result<(), TrialError> {
-        let (failed, board) = self.run_tests(filters)?;
-        let failed = failed.into_iter().next().or(board);
-        failed.map_or(Ok(()), |test| Err(TrialError::Baseline(test)))
+    /// Fails if a test fails without a fault; no fault must be in place.
+    fn baseline(&mut self, suite: Suite) -> Result<(), TrialError> {
+        if self.holds.contains(&suite) {
+            return Ok(());
+        }
+        let (failed, board) = self.run_tests(suite)?;
+        if let Some(test) = failed.into_iter().next().or(board) {
+            return Err(TrialError::Baseline(test));
+        }
+        self.holds.insert(suite);
+        Ok(())
     }
 
-    fn place_image(&self, image: &[u8]) -> Result<(), TrialError> {
-        let place = self.images().join("drive");
+    fn place_image(&self, program: Program, image: &[u8]) -> Result<(), TrialError> {
+        let place = self.images().join(program.name());
         fs::write(&place, image).map_err(io(&place))
     }
 
@@ -154,42 +183,28 @@ impl FirmwareWorkshop {
         self.scratch.join("images")
     }
 
-    /// Builds the drive's image with a fault, and runs the tests that look at
-    /// registers, locks and outputs on it; if none of them fails, all others.
+    /// Builds an image with a fault, and runs tests on it until one suite notices it.
     ///
     /// # Errors
-    /// [`TrialError`] if the fault does not apply or does not build.
+    /// [`TrialError`] if the fault does not apply or does not build, or if a test
+    /// fails without it.
     pub fn try_fault(
         &mut self,
         fault: &FirmwareFault,
         fingerprint: u64,
     ) -> Result<FirmwareOutcome, TrialError> {
-        let sources = fault.sources(&self.root).map_err(|error| planted(&error))?;
-        for (file, text) in &sources {
-            let path = self.tree.join(file);
-            write_if_changed(&path, text.as_bytes()).map_err(io(&path))?;
-        }
-        let built = self.build_image("drive");
-        for file in sources.keys() {
-            let (from, to) = (self.root.join(file), self.tree.join(file));
-            let text = fs::read(&from).map_err(io(&from))?;
-            write_if_changed(&to, &text).map_err(io(&to))?;
-        }
-        let mut image = built?;
-        fault
-            .edit_image(&mut image)
-            .map_err(|error| planted(&error))?;
-        self.place_image(&image)?;
-        let (mut tests, mut board) = self.run_tests(&FIRST)?;
-        if tests.is_empty() && board.is_none() {
-            let rest: Vec<&str> = FIRST.iter().flat_map(|name| ["--skip", name]).collect();
-            if !self.rest_is_sound {
-                self.place_image(&self.sound)?;
-                self.baseline(&rest)?;
-                self.rest_is_sound = true;
-                self.place_image(&image)?;
+        let image = self.planted(fault)?;
+        let (mut tests, mut board) = (Vec::new(), None);
+        for suite in suites(fault.program) {
+            self.baseline(suite)?;
+            self.place_image(fault.program, &image)?;
+            let noticed = self.run_tests(suite);
+            let sound = self.sound.get(&fault.program).map_or(&[][..], Vec::as_slice);
+            self.place_image(fault.program, sound)?;
+            (tests, board) = noticed?;
+            if !tests.is_empty() || board.is_some() {
+                break;
             }
-            (tests, board) = self.run_tests(&rest)?;
         }
         Ok(FirmwareOutcome {
             name: fault.name.clone(),
@@ -199,8 +214,28 @@ impl FirmwareWorkshop {
         })
     }
 
+    /// The image with a fault.
+    fn planted(&self, fault: &FirmwareFault) -> Result<Vec<u8>, TrialError> {
+        let sources = fault.sources(&self.root).map_err(|error| planted(&error))?;
+        for (file, text) in &sources {
+            let path = self.tree.join(file);
+            write_if_changed(&path, text.as_bytes()).map_err(io(&path))?;
+        }
+        let built = self.build_image(fault.program);
+        for file in sources.keys() {
+            let (from, to) = (self.root.join(file), self.tree.join(file));
+            let text = fs::read(&from).map_err(io(&from))?;
+            write_if_changed(&to, &text).map_err(io(&to))?;
+        }
+        let mut image = built?;
+        let edited = fault.edit_image(&mut image);
+        edited.map_err(|error| planted(&error))?;
+        Ok(image)
+    }
+
     /// The bytes of a program's file.
-    fn build_image(&self, program: &str) -> Result<Vec<u8>, TrialError> {
+    fn build_image(&self, program: Program) -> Result<Vec<u8>, TrialError> {
+        let program = program.name();
         let log = self.scratch.join("image.txt");
         let target = std::path::absolute(self.scratch.join("firmware-target")).map_err(io(&log))?;
         let package = format!("crepitus-firmware-{program}");
@@ -219,12 +254,14 @@ impl FirmwareWorkshop {
     }
 
     /// The tests that fail by themselves, and what the board says.
-    fn run_tests(&self, filters: &[&str]) -> Result<(Vec<String>, Option<String>), TrialError> {
+    fn run_tests(&self, suite: Suite) -> Result<(Vec<String>, Option<String>), TrialError> {
         let log = self.scratch.join("tests.txt");
         let images = std::path::absolute(self.images()).map_err(io(&log))?;
-        let mut command = Command::new(&self.tests);
+        let program = std::path::absolute(self.scratch.join(suite.test)).map_err(io(&log))?;
+        let mut command = Command::new(program);
         command
-            .args(filters)
+            .args(suite.only)
+            .args(suite.not.iter().flat_map(|name| ["--skip", name]))
             .current_dir(self.root.join("sim/emulator"))
             .env("CREPITUS_IMAGES", images)
             .env_remove("CREPITUS_BLESS");
