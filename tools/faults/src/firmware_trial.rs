@@ -135,7 +135,14 @@ impl FirmwareWorkshop {
             has_faults: false,
         };
         for test in ["drive_image", "pair"] {
-            let arguments = ["test", "-p", "crepitus-emulator", "--test", test, "--no-run"];
+            let arguments = [
+                "test",
+                "-p",
+                "crepitus-emulator",
+                "--test",
+                test,
+                "--no-run",
+            ];
             let built = builder.build(&arguments)?;
             let program = built.into_iter().find(|program| program.name == test);
             let program = program.ok_or_else(|| TrialError::Build(scratch.join("build.txt")))?;
@@ -199,7 +206,10 @@ impl FirmwareWorkshop {
             self.baseline(suite)?;
             self.place_image(fault.program, &image)?;
             let noticed = self.run_tests(suite);
-            let sound = self.sound.get(&fault.program).map_or(&[][..], Vec::as_slice);
+            let sound = self
+                .sound
+                .get(&fault.program)
+                .map_or(&[][..], Vec::as_slice);
             self.place_image(fault.program, sound)?;
             (tests, board) = noticed?;
             if !tests.is_empty() || board.is_some() {

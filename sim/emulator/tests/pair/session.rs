@@ -39,6 +39,8 @@ fn the_handshake_names_both_controllers_and_the_scene_s_parameters_apply() {
 #[test]
 fn parameters_change_while_samples_stream_and_none_is_lost() {
     let Some(mut host) = connected() else { return };
+    // Until the drive has its parameters.
+    run(&mut host, 30);
     host.subscribe().expect("a subscription");
     let mut revisions = Vec::new();
     for n in 1..=4_u8 {
