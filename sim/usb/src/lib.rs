@@ -61,6 +61,7 @@ pub mod control;
 pub mod descriptors;
 mod endpoint;
 pub mod enumeration;
+mod frame_time;
 pub mod host;
 mod peripheral;
 pub mod pty;
