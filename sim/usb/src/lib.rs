@@ -65,4 +65,5 @@ mod frame_time;
 pub mod host;
 mod peripheral;
 pub mod pty;
+pub mod usbip;
 pub mod wire;
