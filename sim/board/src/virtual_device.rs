@@ -147,6 +147,39 @@ impl VirtualDevice {
         }
     }
 
+    /// Lends the cable to a host that is not [`host`](Self::host), which gives it up. The host gets the
+    /// cable and what lets the device run for 50 µs.
+    ///
+    /// A restart of comms shows as a device that is disconnected, until the next call.
+    pub fn lend_cable<R>(
+        &mut self,
+        host: impl FnOnce(&mut SoftCable, &mut dyn FnMut(&mut SoftCable)) -> R,
+    ) -> R {
+        if self.is_plugged_in() {
+            self.unplug();
+            self.usb.cable.plug_in();
+        }
+        let Self { board, usb, .. } = self;
+        let Usb { port, cable, .. } = usb;
+        let mut has_restarted = false;
+        let result = host(cable, &mut |cable| {
+            if has_restarted {
+                board.tick();
+                return;
+            }
+            turn(board, port);
+            has_restarted = board.take_comms_restart();
+            if has_restarted {
+                cable.unplug();
+            }
+        });
+        // The descriptors are the same as before.
+        if has_restarted && let Ok(usb) = Usb::new() {
+            self.usb = usb;
+        }
+        result
+    }
+
     /// The board.
     pub fn board(&self) -> &Board {
         &self.board
