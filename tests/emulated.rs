@@ -114,6 +114,9 @@ fn a_scene_that_no_device_renders_is_refused_with_its_reason() {
     assert_eq!(output.status.code(), Some(2));
     let sim = run(&["info", "--device", "sim", "--scene", "knee-pass-physical"]);
     let reason = stderr(&output);
-    assert!(reason.contains("a device renders the convention"), "{reason}");
+    assert!(
+        reason.contains("a device renders the convention"),
+        "{reason}"
+    );
     assert_eq!(reason.lines().last(), stderr(&sim).lines().last());
 }

@@ -30,6 +30,8 @@ pub(crate) struct Tap {
     pub(crate) seen: Vec<Seen>,
     /// Answers to IN transactions of the bulk endpoint, instead of the device's.
     pub(crate) forged: VecDeque<Handshake>,
+    /// IN transactions of the notifications' endpoint, answered or not.
+    pub(crate) notifications: usize,
     pub(crate) resets: usize,
     pub(crate) is_suspended: bool,
 }
@@ -63,6 +65,7 @@ impl UsbWire for Tap {
 
     fn in_transaction(&mut self, token: Token) -> Handshake {
         assert!(!self.is_suspended, "a transaction on an idle bus");
+        self.notifications += usize::from(u32::from(token.endpoint) == NOTIFICATIONS);
         let is_bulk = u32::from(token.endpoint) == BULK_IN;
         let forged = is_bulk.then(|| self.forged.pop_front()).flatten();
         let answer = forged.unwrap_or_else(|| self.cable.in_transaction(token));
@@ -106,6 +109,7 @@ pub(crate) fn with_bench<E: HostBytes>(end: E, test: impl FnOnce(&mut Bench<'_, 
             cable,
             seen: Vec::new(),
             forged: VecDeque::new(),
+            notifications: 0,
             resets: 0,
             is_suspended: false,
         },

@@ -9,7 +9,8 @@ fn a_notification_stays_pending_and_is_asked_for_once_in_its_interval() {
     with_bench(Echo::default(), |bench| {
         let mut client = bench.configured();
         let sequence = client.submit_in(NOTIFICATIONS, 8, 0);
-        bench.silence(&mut client, 1_000);
+        bench.silence(&mut client, 1_020);
+        assert_eq!(bench.tap.notifications, 4, "bInterval is 255 frames");
         // The rest goes on meanwhile.
         client.submit_out(BULK_OUT, b"x", 0);
         client.submit_in(BULK_IN, 64, 0);
