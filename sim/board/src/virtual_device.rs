@@ -17,6 +17,7 @@ use crepitus_usb::cable::SoftCable;
 use crepitus_usb::cabled::CabledDevice;
 use crepitus_usb::enumeration::EnumerationError;
 use crepitus_usb::host::{CdcHost, Traffic};
+use crepitus_usb::usbip::{Event, Server};
 use std::error::Error;
 use usb_device::bus::UsbBusAllocator;
 
@@ -219,6 +220,10 @@ impl CabledDevice for VirtualDevice {
 
     fn host(&mut self) -> Option<&mut CdcHost> {
         Self::host(self)
+    }
+
+    fn serve(&mut self, server: &mut Server) -> Vec<Event> {
+        self.lend_cable(|cable, mut run| server.frame(cable, &mut run))
     }
 }
 

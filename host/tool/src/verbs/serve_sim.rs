@@ -6,11 +6,22 @@ mod usbip;
 
 use crate::failure::Failure;
 use crate::shipped;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use crepitus_board::{Start, VirtualDevice};
+use crepitus_emulator::on_target;
 use crepitus_scene::Overrides;
+use crepitus_usb::cabled::CabledDevice;
 use std::net::SocketAddr;
 use std::path::PathBuf;
+
+/// What is at the end of the cable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// The device's code, compiled for this computer.
+    Sim,
+    /// The firmware's own images on emulated controllers, some ten times slower than real time.
+    Emulated,
+}
 
 /// Serve a simulated device as a serial port or a USB device.
 #[derive(Debug, Args)]
@@ -21,6 +32,7 @@ Examples:
   crepitus info --device bench
   crepitus serve-sim --usbip
   modprobe vhci-hcd && usbip attach -r 127.0.0.1 -b 1-1
+  crepitus serve-sim --usbip --device emulated
 
 A simulated device as a serial port that any program can open, in real time, until Ctrl-C. \
 `crepitus devices` lists it.
@@ -32,7 +44,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SCENE", default_value = "passive-examination")]
     scene: PathBuf,
 
-    /// Its name, for --device.
+    /// What is served.
+    #[arg(long, value_name = "KIND", default_value = "sim")]
+    device: Kind,
+
+    /// Its name, for --device of the other commands.
     #[arg(long, value_name = "NAME", default_value = "sim-1")]
     name: String,
 
@@ -54,13 +70,21 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         port::check(&arguments.name)?;
     }
     let scene = shipped::scene(&arguments.scene, &Overrides::default())?;
-    let mut device = VirtualDevice::of(&scene, &Start::default()).map_err(Failure::input)?;
+    let mut device: Box<dyn CabledDevice> = match arguments.device {
+        Kind::Sim => {
+            Box::new(VirtualDevice::of(&scene, &Start::default()).map_err(Failure::input)?)
+        }
+        Kind::Emulated => {
+            let on_build = || eprintln!("building firmware, if it is not up to date");
+            on_target::device(&scene, on_build).map_err(Failure::input)?
+        }
+    };
     match arguments.usbip {
         Some(address) => usbip::serve(&scene.title, address, as_json, |server| {
-            let before = device.board().now();
-            let events = device.lend_cable(|cable, mut run| server.frame(cable, &mut run));
-            (events, device.board().now() - before)
+            let before = device.now();
+            let events = device.serve(server);
+            (events, device.now() - before)
         }),
-        None => port::serve(device, &scene.title, &arguments.name, as_json),
+        None => port::serve(&mut *device, &scene.title, &arguments.name, as_json),
     }
 }

@@ -8,12 +8,17 @@ use crepitus_usb::cable::SoftCable;
 use crepitus_usb::usbip::{Event, Server};
 use crepitus_usb::wire::{Handshake, Token, UsbWire};
 use std::collections::VecDeque;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 use usb_device::bus::UsbBusAllocator;
 
 /// The endpoints of the device.
 pub(crate) const BULK_OUT: u32 = 1;
 pub(crate) const BULK_IN: u32 = 2;
 pub(crate) const NOTIFICATIONS: u32 = 1;
+
+/// How long anything may take that a computer under load does late.
+const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A transaction that the device acknowledged or stalled.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -152,21 +157,50 @@ impl<E: HostBytes> Bench<'_, E> {
         }
     }
 
+    /// Lets time pass until there is a value. Frames are quick: the system may deliver what the other end
+    /// did some of them later, so a pause comes after many.
+    pub(crate) fn wait<T>(&mut self, mut what: impl FnMut(&mut Self) -> Option<T>) -> T {
+        let begun = Instant::now();
+        for round in 0.. {
+            if let Some(value) = what(self) {
+                return value;
+            }
+            if round > 100 {
+                sleep(Duration::from_micros(100));
+            }
+            assert!(begun.elapsed() < PATIENCE, "nothing happens");
+            self.frame();
+        }
+        unreachable!("it counts for ever")
+    }
+
     /// Lets time pass until the client has what it waits for.
     pub(crate) fn until<T>(
         &mut self,
         client: &mut Client,
         mut what: impl FnMut(&mut Client) -> Option<T>,
     ) -> T {
-        for _ in 0..2_000 {
+        self.wait(|_| {
             client.exchange();
-            if let Some(value) = what(client) {
-                return value;
-            }
-            assert!(!client.is_closed, "the server closed the connection");
-            self.frame();
-        }
-        panic!("nothing for two seconds");
+            let value = what(client);
+            assert!(
+                value.is_some() || !client.is_closed,
+                "the server closed the connection"
+            );
+            value
+        })
+    }
+
+    /// Lets time pass until so much has happened in all.
+    pub(crate) fn until_events(&mut self, count: usize) {
+        self.wait(|bench| (bench.events.len() >= count).then_some(()));
+    }
+
+    /// The client goes, and the server notices.
+    pub(crate) fn leave(&mut self, client: Client) {
+        let count = self.events.len();
+        drop(client);
+        self.until_events(count + 1);
     }
 
     pub(crate) fn reply(&mut self, client: &mut Client) -> Reply {
@@ -186,14 +220,10 @@ impl<E: HostBytes> Bench<'_, E> {
 
     /// Lets time pass until the server has closed the connection.
     pub(crate) fn until_closed(&mut self, client: &mut Client) {
-        for _ in 0..10_000 {
+        self.wait(|_| {
             client.exchange();
-            if client.is_closed {
-                return;
-            }
-            self.frame();
-        }
-        panic!("the connection is still open");
+            client.is_closed.then_some(())
+        });
     }
 
     /// A client that has the device.

@@ -19,8 +19,7 @@ fn assert_serves(bench: &mut Bench<'_, Echo>) {
     client.submit_in(BULK_IN, 64, 0);
     assert_eq!(bench.reply(&mut client).actual, 12);
     assert_eq!(bench.reply(&mut client).data, b"still there?");
-    drop(client);
-    bench.frames(2);
+    bench.leave(client);
 }
 
 #[test]
@@ -126,8 +125,7 @@ fn a_client_killed_within_a_message_is_reported() {
             client.submit_in(BULK_IN, 64, 0);
             client.send(&whole[..length]);
             client.write();
-            drop(client);
-            bench.frames(3);
+            bench.leave(client);
             let expected =
                 format!("released: the client closed the connection after {length} bytes");
             assert!(
@@ -147,15 +145,16 @@ fn a_client_that_says_nothing_is_sent_away_after_five_seconds() {
         let mut silent: Vec<Client> = (0..8).map(|_| bench.connect()).collect();
         silent[3].send(&[0x01, 0x11]);
         silent.iter_mut().for_each(Client::exchange);
-        bench.frame();
+        bench.frames(10);
         // The places are taken; who comes now waits.
         let mut late = bench.connect();
         late.request_list();
         late.exchange();
-        bench.frames(4_998);
+        bench.frames(4_980);
         late.exchange();
         assert_eq!(late.unread(), b"");
         assert!(bench.events.is_empty(), "{:?}", bench.events);
+        bench.until_events(8);
         let devices = bench.until(&mut late, Client::list);
         assert_eq!(devices.len(), 1);
         assert_eq!(bench.events.len(), 8);
@@ -190,16 +189,17 @@ fn too_much_at_once_is_refused_and_the_rest_is_done() {
             client.write();
             bench.hang(1);
         }
-        bench.hang(5);
-        client.exchange();
+        while client.unread().len() < 48 {
+            bench.hang(1);
+            client.exchange();
+        }
         let reply = client.reply().expect("an answer");
         assert_eq!(
             (reply.sequence, reply.status, reply.actual),
             (numbers[4], -12, 0)
         );
         assert_eq!(client.reply(), None);
-        drop(client);
-        bench.frames(2);
+        bench.leave(client);
         assert_serves(bench);
     });
 }
@@ -319,7 +319,7 @@ proptest! {
                 }
             }
             drop(client);
-            bench.frames(5);
+            bench.wait(|bench| bench.server.importer().is_none().then_some(()));
             assert_serves(bench);
         });
     }

@@ -1,5 +1,6 @@
 //! The USB/IP server with the genuine USB port of the comms controller, and a client of its own over
-//! the loopback interface. Nothing sleeps: both ends take turns in one thread.
+//! the loopback interface. Both ends take turns in one thread; nothing depends on how
+//! long the system takes between them.
 
 mod bench;
 mod capture;

@@ -3,8 +3,8 @@
 use super::clock::Clock;
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
-use crepitus_board::VirtualDevice;
 use crepitus_client::discovery::{ServedName, user_folder};
+use crepitus_usb::cabled::CabledDevice;
 use crepitus_usb::pty::Pty;
 use serde_json::json;
 use std::io::ErrorKind;
@@ -29,7 +29,7 @@ pub(super) fn check(name: &str) -> Result<(), Failure> {
 
 /// Serves the device under this name until Ctrl-C.
 pub(super) fn serve(
-    mut device: VirtualDevice,
+    device: &mut dyn CabledDevice,
     title: &str,
     name: &str,
     as_json: bool,
@@ -53,11 +53,13 @@ pub(super) fn serve(
     }
     let mut clock = Clock::new();
     while !interrupt::requested() {
-        for _ in 0..clock.due_ticks() {
+        let end = device.now() + clock.due_ticks();
+        while device.now() < end && !interrupt::requested() {
             device.tick();
-            if device.board().now().is_multiple_of(EXCHANGE_TICKS) {
-                // After a restart of comms the cable is still connected.
-                if device.host().is_none() && device.board().comms_runs() {
+            if device.now().is_multiple_of(EXCHANGE_TICKS) {
+                // After a restart of comms the cable is still connected. Until it answers, each try takes
+                // some 10 ms of device time.
+                if device.host().is_none() {
                     let _ = device.plug_in();
                 }
                 if let Some(host) = device.host() {
