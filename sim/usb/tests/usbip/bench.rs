@@ -157,6 +157,16 @@ impl<E: HostBytes> Bench<'_, E> {
         }
     }
 
+    /// Time in which the device does nothing, until the client has this many bytes.
+    pub(crate) fn hang_until(&mut self, client: &mut Client, count: usize) {
+        let begun = Instant::now();
+        while client.unread().len() < count {
+            assert!(begun.elapsed() < PATIENCE, "no answer");
+            self.hang(1);
+            client.exchange();
+        }
+    }
+
     /// Lets time pass until there is a value. Frames are quick: the system may deliver what the other end
     /// did some of them later, so a pause comes after many.
     pub(crate) fn wait<T>(&mut self, mut what: impl FnMut(&mut Self) -> Option<T>) -> T {

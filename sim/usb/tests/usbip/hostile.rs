@@ -189,10 +189,7 @@ fn too_much_at_once_is_refused_and_the_rest_is_done() {
             client.write();
             bench.hang(1);
         }
-        while client.unread().len() < 48 {
-            bench.hang(1);
-            client.exchange();
-        }
+        bench.hang_until(&mut client, 48);
         let reply = client.reply().expect("an answer");
         assert_eq!(
             (reply.sequence, reply.status, reply.actual),

@@ -185,10 +185,7 @@ fn a_device_that_hangs_is_not_offered() {
         let mut client = bench.connect();
         client.request_list();
         client.exchange();
-        while client.unread().is_empty() {
-            bench.hang(1);
-            client.exchange();
-        }
+        bench.hang_until(&mut client, 12);
         assert_eq!(client.list(), Some(vec![]));
     });
 }

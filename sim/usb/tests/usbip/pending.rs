@@ -1,6 +1,6 @@
 //! Several transfers at once: pending, withdrawn, in order, at the speed of the bus.
 
-use crate::bench::{BULK_IN, BULK_OUT, Bench, NOTIFICATIONS, with_bench};
+use crate::bench::{BULK_IN, BULK_OUT, Bench, NOTIFICATIONS, Seen, with_bench};
 use crate::client::{Client, Reply, setup};
 use crate::rig::{Echo, Source, pattern_bytes};
 
@@ -154,6 +154,33 @@ fn the_speed_is_that_of_the_bus() {
         // At most 19 full packets in a frame: 1,216 bytes. Usually 256 frames, and more where the system
         // delivers late.
         assert!((247..=400).contains(&frames), "{frames} frames");
+    });
+}
+
+#[test]
+fn the_last_packet_of_a_frame_is_not_always_for_the_same_direction() {
+    const FRAMES: usize = 60;
+    with_bench(Source::new(200_000), |bench| {
+        let mut client = bench.configured();
+        for _ in 0..200 {
+            client.submit_in(BULK_IN, 1_024, 0);
+        }
+        client.submit_out(BULK_OUT, &pattern_bytes(200_000), 0);
+        let is_out = |seen: &Seen| matches!(seen, Seen::Out(1, _));
+        bench.wait(|bench| {
+            client.exchange();
+            bench.tap.seen.iter().any(is_out).then_some(())
+        });
+        bench.tap.seen.clear();
+        bench.frames(FRAMES);
+        let outs = bench.tap.seen.iter().filter(|seen| is_out(seen)).count();
+        let ins = bench.tap.seen.len() - outs;
+        // 19 packets in a frame: nine for each, and one more.
+        assert_eq!(outs + ins, 19 * FRAMES);
+        assert!(
+            outs > 9 * FRAMES && ins > 9 * FRAMES,
+            "{outs} out, {ins} in"
+        );
     });
 }
 
