@@ -17,6 +17,7 @@ use crepitus_usb::cable::SoftCable;
 use crepitus_usb::cabled::CabledDevice;
 use crepitus_usb::enumeration::EnumerationError;
 use crepitus_usb::host::{CdcHost, Traffic};
+use crepitus_usb::usbip::{Event, Server};
 use std::error::Error;
 use usb_device::bus::UsbBusAllocator;
 
@@ -147,6 +148,39 @@ impl VirtualDevice {
         }
     }
 
+    /// Lends the cable to a host that is not [`host`](Self::host), which gives it up. The host gets the
+    /// cable and what lets the device run for 50 µs.
+    ///
+    /// A restart of comms shows as a device that is disconnected, until the next call.
+    pub fn lend_cable<R>(
+        &mut self,
+        host: impl FnOnce(&mut SoftCable, &mut dyn FnMut(&mut SoftCable)) -> R,
+    ) -> R {
+        if self.is_plugged_in() {
+            self.unplug();
+            self.usb.cable.plug_in();
+        }
+        let Self { board, usb, .. } = self;
+        let Usb { port, cable, .. } = usb;
+        let mut has_restarted = false;
+        let result = host(cable, &mut |cable| {
+            if has_restarted {
+                board.tick();
+                return;
+            }
+            turn(board, port);
+            has_restarted = board.take_comms_restart();
+            if has_restarted {
+                cable.unplug();
+            }
+        });
+        // The descriptors are the same as before.
+        if has_restarted && let Ok(usb) = Usb::new() {
+            self.usb = usb;
+        }
+        result
+    }
+
     /// The board.
     pub fn board(&self) -> &Board {
         &self.board
@@ -186,6 +220,10 @@ impl CabledDevice for VirtualDevice {
 
     fn host(&mut self) -> Option<&mut CdcHost> {
         Self::host(self)
+    }
+
+    fn serve(&mut self, server: &mut Server) -> Vec<Event> {
+        self.lend_cable(|cable, mut run| server.frame(cable, &mut run))
     }
 }
 

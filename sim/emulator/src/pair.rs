@@ -21,6 +21,7 @@ use crepitus_scene::Scene;
 use crepitus_usb::cabled::CabledDevice;
 use crepitus_usb::enumeration::EnumerationError;
 use crepitus_usb::host::{CdcHost, Traffic};
+use crepitus_usb::usbip::{Event, Server};
 use crepitus_usb::wire::{Handshake, Token, UsbWire};
 use std::error::Error;
 
@@ -143,6 +144,23 @@ impl Pair {
         self.ticks
     }
 
+    /// Lends the cable to a host that is not [`host`](Self::host), which gives it up. The host gets the
+    /// boards, whose comms is at the cable's end, and what lets them run for 50 µs.
+    pub fn lend_cable<R>(
+        &mut self,
+        host: impl FnOnce(&mut Boards, &mut dyn FnMut(&mut Boards)) -> R,
+    ) -> R {
+        if self.is_plugged_in() {
+            self.unplug();
+            self.boards.comms_mut().mcu_mut().plug_in();
+        }
+        let Self { boards, ticks, .. } = self;
+        host(boards, &mut |boards| {
+            *ticks += 1;
+            boards.run(1);
+        })
+    }
+
     /// The boards.
     pub fn boards(&self) -> &Boards {
         &self.boards
@@ -200,6 +218,10 @@ impl CabledDevice for Pair {
     fn host(&mut self) -> Option<&mut CdcHost> {
         Self::host(self)
     }
+
+    fn serve(&mut self, server: &mut Server) -> Vec<Event> {
+        self.lend_cable(|boards, mut run| server.frame(boards, &mut run))
+    }
 }
 
 /// The cable ends at comms.
@@ -219,5 +241,13 @@ impl UsbWire for Boards {
 
     fn in_transaction(&mut self, token: Token) -> Handshake {
         self.comms_mut().mcu_mut().in_transaction(token)
+    }
+
+    fn suspend(&mut self) {
+        self.comms_mut().mcu_mut().suspend_bus();
+    }
+
+    fn is_connected(&self) -> bool {
+        self.comms().mcu().is_connected()
     }
 }

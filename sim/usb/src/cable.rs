@@ -28,11 +28,6 @@ impl SoftCable {
         peripheral.suspend();
     }
 
-    /// The host stops the frames on this port, as when it goes to sleep.
-    pub fn suspend(&mut self) {
-        lock(&self.peripheral).suspend();
-    }
-
     /// The host starts the frames again.
     pub fn resume(&mut self) {
         let mut peripheral = lock(&self.peripheral);
@@ -40,11 +35,6 @@ impl SoftCable {
             peripheral.suspended = false;
             peripheral.line_event = Some(LineEvent::Resume);
         }
-    }
-
-    /// Whether a hub would report a device on this port.
-    pub fn is_connected(&self) -> bool {
-        lock(&self.peripheral).is_connected()
     }
 
     /// Whether the peripheral's interrupt line is active: the device has something to poll for.
@@ -107,5 +97,13 @@ impl UsbWire for SoftCable {
             None => Handshake::Absent,
             Some(endpoint) => endpoint.transact(),
         }
+    }
+
+    fn suspend(&mut self) {
+        lock(&self.peripheral).suspend();
+    }
+
+    fn is_connected(&self) -> bool {
+        lock(&self.peripheral).is_connected()
     }
 }

@@ -1,6 +1,7 @@
 //! A device at the end of a host's cable, in virtual time.
 
 use crate::host::CdcHost;
+use crate::usbip::{Event, Server};
 use std::error::Error;
 
 /// A simulated or emulated device with its leg, and the host's end of its cable.
@@ -20,4 +21,8 @@ pub trait CabledDevice: Send {
 
     /// The host's end of the cable, if the device is plugged in.
     fn host(&mut self) -> Option<&mut CdcHost>;
+
+    /// Lets a server have the cable for a frame, instead of [`host`](Self::host), which gives it up;
+    /// returns what has happened.
+    fn serve(&mut self, server: &mut Server) -> Vec<Event>;
 }

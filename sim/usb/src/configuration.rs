@@ -31,6 +31,8 @@ pub struct InterfaceDescriptor {
     pub class: u8,
     /// `bInterfaceSubClass`.
     pub subclass: u8,
+    /// `bInterfaceProtocol`.
+    pub protocol: u8,
     /// Its endpoints.
     pub endpoints: Vec<EndpointDescriptor>,
 }
@@ -53,7 +55,12 @@ impl EndpointDescriptor {
         self.attributes & 0b11 == 2 && (1..=64).contains(&self.max_packet)
     }
 
-    fn is_in(self) -> bool {
+    /// Whether its packets come periodically: `bInterval` is how often.
+    pub(crate) fn is_interrupt(self) -> bool {
+        self.attributes & 0b11 == 3
+    }
+
+    pub(crate) fn is_in(self) -> bool {
         self.address & 0x80 != 0
     }
 
@@ -86,13 +93,14 @@ impl ConfigurationDescriptor {
             let descriptor = descriptor_at(bytes, at)?;
             match descriptor.get(1) {
                 Some(&descriptor_type::INTERFACE) => {
-                    let [_, _, number, alternate, _, class, subclass, ..]: [u8; 9] =
+                    let [_, _, number, alternate, _, class, subclass, protocol, _]: [u8; 9] =
                         *first(descriptor, descriptor_type::INTERFACE)?;
                     interfaces.push(InterfaceDescriptor {
                         number,
                         alternate,
                         class,
                         subclass,
+                        protocol,
                         endpoints: Vec::new(),
                     });
                 }

@@ -72,6 +72,10 @@ pub struct DeviceDescriptor {
     pub usb_release: u16,
     /// `bDeviceClass`.
     pub class: u8,
+    /// `bDeviceSubClass`.
+    pub subclass: u8,
+    /// `bDeviceProtocol`.
+    pub protocol: u8,
     /// `bMaxPacketSize0`: 8, 16, 32 or 64 bytes.
     pub max_packet_0: u8,
     /// `idVendor`.
@@ -86,6 +90,8 @@ pub struct DeviceDescriptor {
     pub product: u8,
     /// `iSerialNumber`, 0 for none.
     pub serial_number: u8,
+    /// `bNumConfigurations`.
+    pub configurations: u8,
 }
 
 impl DeviceDescriptor {
@@ -100,8 +106,8 @@ impl DeviceDescriptor {
             usb0,
             usb1,
             class,
-            _,
-            _,
+            subclass,
+            protocol,
             max_packet_0,
             vendor0,
             vendor1,
@@ -112,11 +118,13 @@ impl DeviceDescriptor {
             manufacturer,
             product,
             serial_number,
-            _,
+            configurations,
         ] = *first(bytes, descriptor_type::DEVICE)?;
         Ok(Self {
             usb_release: u16::from_le_bytes([usb0, usb1]),
             class,
+            subclass,
+            protocol,
             max_packet_0: control_packet_size(max_packet_0)?,
             vendor_id: u16::from_le_bytes([vendor0, vendor1]),
             product_id: u16::from_le_bytes([product0, product1]),
@@ -124,6 +132,7 @@ impl DeviceDescriptor {
             manufacturer,
             product,
             serial_number,
+            configurations,
         })
     }
 

@@ -10,7 +10,7 @@ use crate::descriptors::{
 use crate::wire::UsbWire;
 
 /// The address this host gives: it has one port, so one device.
-const ADDRESS: u8 = 5;
+pub(crate) const ADDRESS: u8 = 5;
 
 /// A device may need 10 ms after a bus reset (USB 2.0, 7.1.7.5).
 const RESET_RECOVERY: u32 = 10 * TURNS_PER_FRAME;
@@ -103,27 +103,19 @@ pub enum EnumerationError {
     },
 }
 
-/// A configured serial port with its descriptors.
+/// A device with an address and its descriptors, not configured yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CdcDevice {
+pub struct AddressedDevice {
     /// Its control endpoint, for further requests.
     pub control: ControlPipe,
     /// The device descriptor.
     pub device: DeviceDescriptor,
-    /// The configuration in force.
+    /// The first configuration.
     pub configuration: ConfigurationDescriptor,
-    /// Where the serial port is.
-    pub function: SerialFunction,
-    /// Manufacturer.
-    pub manufacturer: Option<String>,
-    /// Product.
-    pub product: Option<String>,
-    /// Serial number.
-    pub serial_number: Option<String>,
 }
 
-impl CdcDevice {
-    /// Resets the bus and configures the device on it.
+impl AddressedDevice {
+    /// Resets the bus, gives the device an address and reads its descriptors.
     ///
     /// `run` lets the device run for one turn of 50 µs; recovery times and time-outs of the
     /// standard are counted in turns.
@@ -131,7 +123,7 @@ impl CdcDevice {
     /// # Errors
     ///
     /// The first request that fails, and how.
-    pub fn enumerate<W: UsbWire>(
+    pub fn find<W: UsbWire>(
         wire: &mut W,
         run: &mut impl FnMut(&mut W),
     ) -> Result<Self, EnumerationError> {
@@ -165,7 +157,57 @@ impl CdcDevice {
         let step = Step::GetConfiguration;
         let bytes = asking.descriptor(step, descriptor_type::CONFIGURATION, 0, 0, total)?;
         let configuration = understand(step, ConfigurationDescriptor::parse(&bytes))?;
-        let function = understand(step, configuration.serial_function())?;
+
+        Ok(Self {
+            control: asking.pipe,
+            device,
+            configuration,
+        })
+    }
+}
+
+/// A configured serial port with its descriptors.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CdcDevice {
+    /// Its control endpoint, for further requests.
+    pub control: ControlPipe,
+    /// The device descriptor.
+    pub device: DeviceDescriptor,
+    /// The configuration in force.
+    pub configuration: ConfigurationDescriptor,
+    /// Where the serial port is.
+    pub function: SerialFunction,
+    /// Manufacturer.
+    pub manufacturer: Option<String>,
+    /// Product.
+    pub product: Option<String>,
+    /// Serial number.
+    pub serial_number: Option<String>,
+}
+
+impl CdcDevice {
+    /// Resets the bus and configures the device on it.
+    ///
+    /// `run` lets the device run for one turn of 50 µs, as in [`AddressedDevice::find`].
+    ///
+    /// # Errors
+    ///
+    /// The first request that fails, and how.
+    pub fn enumerate<W: UsbWire>(
+        wire: &mut W,
+        run: &mut impl FnMut(&mut W),
+    ) -> Result<Self, EnumerationError> {
+        let AddressedDevice {
+            control,
+            device,
+            configuration,
+        } = AddressedDevice::find(wire, run)?;
+        let function = understand(Step::GetConfiguration, configuration.serial_function())?;
+        let mut asking = Enumerator {
+            wire,
+            run,
+            pipe: control,
+        };
 
         let [manufacturer, product, serial_number] =
             asking.strings([device.manufacturer, device.product, device.serial_number])?;
@@ -174,7 +216,7 @@ impl CdcDevice {
         asking.set_up_line(function.control_interface)?;
 
         Ok(Self {
-            control: asking.pipe,
+            control,
             device,
             configuration,
             function,

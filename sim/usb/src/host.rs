@@ -18,12 +18,9 @@ use std::collections::VecDeque;
 use crate::configuration::EndpointDescriptor;
 use crate::control::{TURNS_PER_FRAME, TransferError};
 use crate::enumeration::{CdcDevice, EnumerationError};
+use crate::frame_time::FrameTime;
 use crate::wire::{Handshake, MAX_PACKET, Packet, Token, UsbWire};
 
-/// A frame of a full-speed bus, bytes: 12 Mbit/s for 1 ms.
-const FRAME_BYTES: usize = 1_500;
-/// What a bulk transaction takes besides its data, bytes (USB 2.0, table 5-9).
-const TRANSACTION_OVERHEAD: usize = 13;
 /// The buffer of one IN transfer, bytes. Drivers use 128 to some thousands; a large one is the
 /// harder test for a device.
 const TRANSFER_BYTES: usize = 4_096;
@@ -75,7 +72,7 @@ pub struct CdcHost {
     transfer: Vec<u8>,
     incoming: VecDeque<u8>,
     fetching: bool,
-    frame_bytes_left: usize,
+    frame_time: FrameTime,
     in_first: bool,
     traffic: Traffic,
 }
@@ -92,7 +89,7 @@ impl CdcHost {
             transfer: Vec::new(),
             incoming: VecDeque::new(),
             fetching: true,
-            frame_bytes_left: 0,
+            frame_time: FrameTime::default(),
             in_first: false,
             traffic: Traffic::default(),
         })
@@ -171,7 +168,7 @@ impl CdcHost {
     /// Starts a new frame with its bus time. For simulations that interleave
     /// [`poll`](Self::poll) with the device themselves.
     pub fn start_frame(&mut self) {
-        self.frame_bytes_left = FRAME_BYTES;
+        self.frame_time.start();
         self.traffic.frames += 1;
         // 19 packets are an odd number: each direction gets the last one in turn.
         self.in_first = !self.in_first;
@@ -202,7 +199,7 @@ impl CdcHost {
             *byte = *queued;
             count += 1;
         }
-        if count == 0 || !self.frame_has_time_for(count) {
+        if count == 0 || !self.frame_time.has_room_for(count) {
             return Ok(());
         }
         let answer = wire.out_transaction(self.token(pipe), &data[..count]);
@@ -211,7 +208,7 @@ impl CdcHost {
             return Ok(());
         }
         self.outgoing.drain(..count);
-        self.spend(count);
+        self.frame_time.spend(count);
         self.traffic.packets_out += 1;
         self.traffic.bytes_out += count as u64;
         Ok(())
@@ -222,7 +219,7 @@ impl CdcHost {
         let waiting = self.incoming.len() + self.transfer.len();
         if !self.fetching
             || waiting + MAX_PACKET > INCOMING_BYTES
-            || !self.frame_has_time_for(usize::from(pipe.max_packet))
+            || !self.frame_time.has_room_for(usize::from(pipe.max_packet))
         {
             return Ok(());
         }
@@ -236,19 +233,10 @@ impl CdcHost {
         if is_short || self.transfer.len() >= TRANSFER_BYTES {
             self.incoming.extend(self.transfer.drain(..));
         }
-        self.spend(packet.len());
+        self.frame_time.spend(packet.len());
         self.traffic.packets_in += 1;
         self.traffic.bytes_in += packet.len() as u64;
         Ok(())
-    }
-
-    fn frame_has_time_for(&self, data: usize) -> bool {
-        data + TRANSACTION_OVERHEAD <= self.frame_bytes_left
-    }
-
-    fn spend(&mut self, data: usize) {
-        let bytes = data + TRANSACTION_OVERHEAD;
-        self.frame_bytes_left = self.frame_bytes_left.saturating_sub(bytes);
     }
 
     fn token(&self, pipe: EndpointDescriptor) -> Token {

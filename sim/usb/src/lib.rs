@@ -1,11 +1,12 @@
 //! A software USB bus: the genuine device stack below, a host that enumerates it above.
 //!
 //! ```text
-//!   any serial program                     this program's own client
-//!        │ /dev/pts/N                              │
-//!     [`pty`]                                      │
-//!        └────────────────┬────────────────────────┘
-//!                  [`host`]  bytes ⇄ packets, frames of 1 ms
+//!   any serial program      this program's own client      a driver of Linux
+//!        │ /dev/pts/N                 │                       ║ TCP
+//!     [`pty`]                         │                       ║
+//!        └───────────┬────────────────┘                       ║
+//!             [`host`]  bytes ⇄ packets, frames of 1 ms    [`usbip`]  URBs
+//!                    │                                        │
 //!   [`enumeration`] · [`control`] · [`descriptors`] · [`configuration`]
 //!                         │
 //! ── [`wire`] ────────────┼──────── one call = one transaction ─────────
@@ -22,11 +23,13 @@
 //!
 //! **Virtual**: the peripheral and its registers, the host's driver, and time. The device makes
 //! progress only when the caller lets it run, in turns of 50 µs; nothing here blocks, sleeps or
-//! reads a clock, so a run is deterministic, as fast as the machine can.
+//! reads a clock, so a run is deterministic, as fast as the machine can. (What a program at a pty or a
+//! client over TCP does when is not.)
 //!
 //! **Not modelled**: bit errors with their retries and data toggles, the bus time of a NAK,
-//! hubs and a second device, high speed, isochronous and interrupt transfers (the serial
-//! class has nothing to notify), remote wake-up. A pty carries bytes, not line coding or DTR.
+//! hubs and a second device, high speed, isochronous transfers, remote wake-up. The host here does
+//! not poll the interrupt endpoint (the serial class has nothing to notify), a driver over USB/IP does.
+//! A pty carries bytes, not line coding or DTR.
 //!
 //! ```
 //! use crepitus_device::usb_port::{HostBytes, UsbIdentity, UsbPort};
@@ -61,7 +64,9 @@ pub mod control;
 pub mod descriptors;
 mod endpoint;
 pub mod enumeration;
+mod frame_time;
 pub mod host;
 mod peripheral;
 pub mod pty;
+pub mod usbip;
 pub mod wire;

@@ -97,4 +97,19 @@ pub trait UsbWire {
 
     /// An IN transaction: one packet from the device to the host.
     fn in_transaction(&mut self, token: Token) -> Handshake;
+
+    /// The host stops the frames on this port, as when it goes to sleep or lets the device go. A
+    /// device sees an idle bus, which is a suspend, until the next [`bus_reset`](Self::bus_reset).
+    ///
+    /// On a wire that does not model frames this does nothing.
+    fn suspend(&mut self) {}
+
+    /// Whether a hub reports a device on this port: the cable is plugged in and the device has
+    /// its pull-up on.
+    ///
+    /// On a wire that does not model the pull-up a device is always there; one that is gone
+    /// answers [`Handshake::Absent`].
+    fn is_connected(&self) -> bool {
+        true
+    }
 }

@@ -6,6 +6,7 @@ mod support;
 
 mod cable;
 mod crash;
+mod lent_cable;
 mod nonsense;
 mod reboot;
 mod replay;

@@ -56,4 +56,12 @@ impl UsbWire for Stm32f405 {
     fn in_transaction(&mut self, token: Token) -> Handshake {
         self.on_the_line(|chip| (&*chip.otg).in_transaction(token))
     }
+
+    fn suspend(&mut self) {
+        self.suspend_bus();
+    }
+
+    fn is_connected(&self) -> bool {
+        Self::is_connected(self)
+    }
 }

@@ -1,6 +1,9 @@
 //! Both images together, over USB: what a host's program sees of the firmware
 //! that is flashed.
 
+#[path = "../../../usb/tests/usbip/client.rs"]
+#[allow(dead_code)] // Shared with the server's own tests.
+mod client;
 mod faults;
 mod host;
 mod load;
@@ -9,3 +12,4 @@ mod replay;
 mod same;
 mod session;
 mod usb;
+mod usbip;

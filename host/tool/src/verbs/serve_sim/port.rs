@@ -1,0 +1,74 @@
+//! The device as a serial port: a pty with a name.
+
+use super::clock::Clock;
+use crate::failure::{Failure, print, print_json};
+use crate::interrupt;
+use crepitus_client::discovery::{ServedName, user_folder};
+use crepitus_usb::cabled::CabledDevice;
+use crepitus_usb::pty::Pty;
+use serde_json::json;
+use std::io::ErrorKind;
+use std::thread::sleep;
+use std::time::Duration;
+
+/// Ticks between two exchanges with the port.
+const EXCHANGE_TICKS: u64 = 20;
+
+/// Rejects a name that cannot be one of a device.
+pub(super) fn check(name: &str) -> Result<(), Failure> {
+    let is_plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    let is_reserved = ["", "sim", "emulated", "shared"].contains(&name);
+    if is_reserved || !name.chars().all(is_plain) {
+        return Err(Failure::Input(format!(
+            "--name {name:?}: expected letters, digits, `-` and `_`, and not `sim`, `emulated` or `shared`, \
+             which are reserved"
+        )));
+    }
+    Ok(())
+}
+
+/// Serves the device under this name until Ctrl-C.
+pub(super) fn serve(
+    device: &mut dyn CabledDevice,
+    title: &str,
+    name: &str,
+    as_json: bool,
+) -> Result<(), Failure> {
+    let served = ServedName::take(name).map_err(|e| match e.kind() {
+        ErrorKind::AddrInUse => Failure::Input(format!(
+            "--name {name:?}: another program serves a device of this name; choose another one"
+        )),
+        _ => Failure::at(&user_folder(), "the folder of simulated devices", &e),
+    })?;
+    let link = served.link();
+    let mut pty = Pty::new(Some(link)).map_err(|e| Failure::at(link, "cannot be created", &e))?;
+    interrupt::listen();
+    if as_json {
+        print_json(&json!({ "port": link, "name": name, "scene": title }))?;
+    } else {
+        print(&format!(
+            "{title} is served as {}\ntry `crepitus info --device {name}`; Ctrl-C stops it\n",
+            link.display(),
+        ))?;
+    }
+    let mut clock = Clock::new();
+    while !interrupt::requested() {
+        let end = device.now() + clock.due_ticks();
+        while device.now() < end && !interrupt::requested() {
+            device.tick();
+            if device.now().is_multiple_of(EXCHANGE_TICKS) {
+                // After a restart of comms the cable is still connected. Until it answers, each try takes
+                // some 10 ms of device time.
+                if device.host().is_none() {
+                    let _ = device.plug_in();
+                }
+                if let Some(host) = device.host() {
+                    pty.exchange(host)
+                        .map_err(|e| Failure::at(link, "the port failed", &e))?;
+                }
+            }
+        }
+        sleep(Duration::from_millis(1));
+    }
+    Ok(())
+}
