@@ -3,6 +3,7 @@
 
 mod faults;
 mod host;
+mod hostile;
 mod load;
 mod power;
 mod replay;
