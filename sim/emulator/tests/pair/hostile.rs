@@ -11,7 +11,7 @@ const TOKEN: Token = Token {
     endpoint: 0,
 };
 
-/// A request of the vendor's with data to the device; `usb-device` keeps 128 bytes.
+/// A request of the vendor's with data to the device; `usb-device` keeps 256 bytes.
 fn vendor(length: u16) -> [u8; 8] {
     let [low, high] = length.to_le_bytes();
     [0x40, 99, 0, 0, 0, 0, low, high]
@@ -20,6 +20,7 @@ fn vendor(length: u16) -> [u8; 8] {
 /// The first 64 bytes of the configuration: a second packet would follow.
 const GET_CONFIGURATION: [u8; 8] = [0x80, 6, 0, 2, 0, 0, 255, 0];
 
+#[derive(Clone, Copy)]
 enum Step {
     Setup([u8; 8]),
     Out(usize),
@@ -60,12 +61,21 @@ fn survives(steps: &[Step]) {
 
 #[test]
 fn more_data_than_the_control_buffer_has_room_for() {
-    survives(&[Setup(vendor(200)), Out(64), Out(64), Out(64), Out(8)]);
+    survives(&[
+        Setup(vendor(300)),
+        Out(64),
+        Out(64),
+        Out(64),
+        Out(64),
+        Out(44),
+    ]);
 }
 
 #[test]
 fn more_data_than_the_request_announced() {
-    survives(&[Setup(vendor(120)), Out(64), Out(32), Out(64)]);
+    let before_the_end = [Setup(vendor(250)), Out(64), Out(64), Out(32), Out(64)];
+    survives(&before_the_end);
+    survives(&[&before_the_end[..], &[Out(64)]].concat());
     survives(&[Setup(vendor(1)), Out(64), Out(64)]);
 }
 
@@ -98,13 +108,15 @@ fn a_request_in_the_middle_of_another() {
 #[test]
 fn requests_without_sense() {
     let Some(mut pair) = plugged_in() else { return };
-    for request_type in 0..=255 {
+    let recipients = 0..=4;
+    let kinds = (0..8).flat_map(|kind| recipients.clone().map(move |to| kind << 5 | to));
+    for request_type in kinds {
         for number in (0..16).chain([0x20, 0x21, 0x22, 0xff]) {
+            // An address of its own would end the conversation.
+            if (request_type, number) == (0, 5) {
+                continue;
+            }
             for (value, index) in [(0, 0), (0x0100, 0x8f), (0x02ff, 0x00ff), (0xffff, 0xffff)] {
-                // An address of its own would end the conversation.
-                if (request_type & 0x7f, number) == (0, 5) {
-                    continue;
-                }
                 let [v, i] = [value, index].map(u16::to_le_bytes);
                 let bytes = [request_type, number, v[0], v[1], i[0], i[1], 64, 0];
                 let boards = pair.boards_mut();
