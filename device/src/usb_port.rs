@@ -17,6 +17,8 @@
 //!   host sees every byte promptly without a further write, at any length.
 //! - Only a bus reset clears its stores. A host that unconfigures or suspends the device does
 //!   not, so this port does that itself.
+//! - The control endpoint's data is read only where a request expects it and there is room for it:
+//!   see [`UsbPort::drop_control_leftover`].
 //! - `write` reports an endpoint's error after it has stored the bytes; see [`UsbPort::poll`].
 //! - DTR is ignored; the lease proves that the host is alive.
 //!
@@ -27,6 +29,7 @@ pub use crepitus_protocol::usb::{PRODUCT_ID, VENDOR_ID};
 use usb_device::bus::{UsbBus, UsbBusAllocator};
 use usb_device::class_prelude::UsbClass;
 use usb_device::device::UsbRev;
+use usb_device::endpoint::EndpointAddress;
 use usb_device::prelude::{
     BuilderError, StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDeviceState, UsbError,
     UsbVidPid,
@@ -42,6 +45,8 @@ const MAX_PACKET: usize = 64;
 const TRANSMIT_STORE: usize = 8 * MAX_PACKET;
 /// `usb-device` writes a string's descriptor length into one byte without a check: 2 + 2·126.
 const MAX_STRING_UNITS: usize = 126;
+/// The control endpoint, from the host.
+const CONTROL_OUT: u8 = 0;
 /// A ring buffer offers its content in two contiguous runs.
 const RUNS_PER_POLL: usize = 2;
 
@@ -163,6 +168,22 @@ impl<'b, B: UsbBus> UsbPort<'b, B> {
         if configured {
             self.send(end);
         }
+    }
+
+    /// Drops a packet that the device stack has left in the control endpoint: data that no request
+    /// announced, or more than it announced, or more than the stack's buffer holds.
+    ///
+    /// For a bus that keeps such a packet and then has no room for the next request, as that of
+    /// OTG_FS does; without this any host can stop the device. To be called after each
+    /// [`poll`](Self::poll), and only for a bus that receives packets nowhere else than there, so
+    /// that none is dropped that the stack has not seen.
+    pub fn drop_control_leftover(&mut self) {
+        let mut packet = [0; MAX_PACKET];
+        // Mostly there is none.
+        let _dropped = self
+            .device
+            .bus()
+            .read(EndpointAddress::from(CONTROL_OUT), &mut packet);
     }
 
     /// Whether a host has configured the device, so that bytes can move.

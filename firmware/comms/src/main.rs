@@ -166,6 +166,7 @@ mod app {
         cx.shared.checkins.check_in(USB_POLLED);
         let port = cx.local.port;
         cx.shared.comms.lock(|comms| port.poll(*comms));
+        port.drop_control_leftover();
     }
 
     #[task(binds = DMA2_STREAM6, priority = 1, local = [link, crc_unit, watchdog], shared = [comms, &checkins])]

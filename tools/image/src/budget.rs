@@ -3,6 +3,11 @@
 //! ```toml
 //! tolerance_percent = 2.0                # what a recorded size may grow by
 //!
+//! [[loops]]                              # bounds for every image; some image needs each
+//! function = "crepitus_protocol::frame::parse"
+//! bounds = [64, 8]                       # most rounds of each, in the order of lines
+//! reason = "a frame has at most 64 bytes of 8 bits"
+//!
 //! [images.drive]
 //! elf = "target/thumbv7em-none-eabihf/release/drive"   # from the budget file
 //! memory = "drive/memory.x"
@@ -24,15 +29,20 @@
 //! priority = 3                           # RTIC's: higher preempts lower
 //! gated = true                           # no panic, no unknown call, no unbounded loop
 //!
-//! [[images.drive.loops]]                 # loops that a gated interrupt reaches
-//! function = "crepitus_device::link::parse"
-//! bounds = [64, 8]                       # most rounds of each, in the order of lines
-//! reason = "a frame has at most 64 bytes of 8 bits"
+//! [[images.drive.loops]]                 # loops that a gated interrupt of it reaches
+//! function = "drive::app::link"
+//! bounds = [10]
+//! reason = "RUN_BYTES in a run"
 //!
 //! [[images.drive.loops]]                 # of a library, however many it has
 //! function = "__aeabi_mem*"              # a last `*`: whatever begins like this
 //! at_most = 512
 //! reason = "bytes; nothing longer is copied"
+//!
+//! [[images.drive.panics]]                # calls of panics that a library contains
+//! library = "usb-device"                 # its package
+//! at_most = 3                            # so many instructions; one more fails
+//! reason = "for each: what a host sends cannot lead there"
 //!
 //! [[images.drive.ends]]                  # control goes in and does not come back
 //! function = "board::stop::stop"
@@ -64,6 +74,9 @@ pub struct Budget {
     /// How much a recorded size may grow, in percent.
     #[serde(default = "two")]
     pub tolerance_percent: f64,
+    /// Loops that end, and why, for all images.
+    #[serde(default)]
+    pub loops: Vec<BoundedLoops>,
     /// Budgets by the image's name.
     pub images: BTreeMap<String, ImageBudget>,
 }
@@ -90,6 +103,9 @@ pub struct ImageBudget {
     /// Loops that end, and why.
     #[serde(default)]
     pub loops: Vec<BoundedLoops>,
+    /// Panics that libraries contain, and why nothing gets there.
+    #[serde(default)]
+    pub panics: Vec<LibraryPanics>,
     /// Functions that end an interrupt for good.
     #[serde(default)]
     pub ends: Vec<End>,
@@ -167,6 +183,19 @@ pub struct BoundedLoops {
     pub reason: String,
 }
 
+/// Calls of panics inside a library: in its own lines, or in a function of the
+/// compiler's library that was inlined into them.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LibraryPanics {
+    /// The library's package.
+    pub library: String,
+    /// The most instructions that call a panic.
+    pub at_most: usize,
+    /// Why control gets to none of them, or what happens if it does.
+    pub reason: String,
+}
+
 /// Calls through pointers in a function.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -225,6 +254,8 @@ impl Budget {
         if !(0.0..=100.0).contains(&budget.tolerance_percent) {
             return Err(error("tolerance_percent is not in 0..=100".to_owned()));
         }
+        check_entries(budget.loops.iter().map(BoundedLoops::vouched)).map_err(error)?;
+        check_bounds(&budget.loops).map_err(error)?;
         for (name, image) in &budget.images {
             if let Some(reserved) = image.reserved.iter().find(|r| r.from >= r.to) {
                 let what = &reserved.what;
@@ -233,7 +264,7 @@ impl Budget {
                 )));
             }
             image
-                .reasons()
+                .check(&budget.loops)
                 .map_err(|what| error(format!("{name}: {what}")))?;
         }
         Ok(budget)
@@ -258,41 +289,63 @@ impl BoundedLoops {
         };
         self.at_most.or(listed.copied())
     }
+
+    fn vouched(&self) -> (&'static str, &str, &str) {
+        ("loops", &self.function, &self.reason)
+    }
 }
 
 impl ImageBudget {
-    /// All allowances: the kind, the function, the reason.
+    /// All allowances: the kind, the function or library, the reason.
     pub fn vouched(&self) -> impl Iterator<Item = (&'static str, &str, &str)> {
-        let loops = self.loops.iter().map(|e| ("loops", &e.function, &e.reason));
-        let ends = self.ends.iter().map(|e| ("ends", &e.function, &e.reason));
+        let loops = self.loops.iter().map(BoundedLoops::vouched);
+        let panics = self.panics.iter();
+        let panics = panics.map(|e| ("panics", e.library.as_str(), e.reason.as_str()));
+        let ends = self.ends.iter();
+        let ends = ends.map(|e| ("ends", e.function.as_str(), e.reason.as_str()));
         let indirect = self.indirect.iter();
-        let indirect = indirect.map(|e| ("indirect", &e.function, &e.reason));
+        let indirect = indirect.map(|e| ("indirect", e.function.as_str(), e.reason.as_str()));
         let stack = self.dynamic_stack.iter();
-        let stack = stack.map(|e| ("dynamic_stack", &e.function, &e.reason));
-        let all = loops.chain(ends).chain(indirect).chain(stack);
-        all.map(|(kind, function, reason)| (kind, function.as_str(), reason.as_str()))
+        let stack = stack.map(|e| ("dynamic_stack", e.function.as_str(), e.reason.as_str()));
+        loops.chain(panics).chain(ends).chain(indirect).chain(stack)
     }
 
-    /// One entry a function, each with a reason.
-    fn reasons(&self) -> Result<(), String> {
-        let mut seen = BTreeSet::new();
-        for (kind, function, reason) in self.vouched() {
-            if reason.trim().is_empty() {
-                return Err(format!("{function} is in {kind} without a reason"));
-            }
-            if !seen.insert((kind, function)) {
-                return Err(format!("{function} is in {kind} twice"));
-            }
+    /// One entry a function, each with a reason; the loops of all images count.
+    fn check(&self, shared: &[BoundedLoops]) -> Result<(), String> {
+        let shared = shared.iter().map(BoundedLoops::vouched);
+        check_entries(shared.chain(self.vouched()))?;
+        if let Some(entry) = self.panics.iter().find(|entry| entry.at_most == 0) {
+            let library = &entry.library;
+            return Err(format!(
+                "{library} is in panics with `at_most = 0`: remove the entry"
+            ));
         }
-        for entry in &self.loops {
-            if entry.at_most.is_some() != entry.bounds.is_empty() {
-                let function = &entry.function;
-                return Err(format!(
-                    "{function} needs either `bounds` or `at_most` in loops"
-                ));
-            }
+        check_bounds(&self.loops)
+    }
+}
+
+fn check_entries<'a>(
+    entries: impl Iterator<Item = (&'static str, &'a str, &'a str)>,
+) -> Result<(), String> {
+    let mut seen = BTreeSet::new();
+    for (kind, what, reason) in entries {
+        if reason.trim().is_empty() {
+            return Err(format!("{what} is in {kind} without a reason"));
         }
-        Ok(())
+        if !seen.insert((kind, what)) {
+            return Err(format!("{what} is in {kind} twice"));
+        }
+    }
+    Ok(())
+}
+
+fn check_bounds(loops: &[BoundedLoops]) -> Result<(), String> {
+    let wrong = |entry: &&BoundedLoops| entry.at_most.is_some() != entry.bounds.is_empty();
+    match loops.iter().find(wrong) {
+        Some(BoundedLoops { function, .. }) => Err(format!(
+            "{function} needs either `bounds` or `at_most` in loops"
+        )),
+        None => Ok(()),
     }
 }
 

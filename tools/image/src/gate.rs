@@ -4,11 +4,13 @@ mod bounds;
 mod code;
 mod layout;
 mod loops;
+mod panics;
+mod shared;
 mod sizes;
 mod stacks;
 mod vouched;
 
-use crate::budget::ImageBudget;
+use crate::budget::{BoundedLoops, ImageBudget};
 use crate::elf::Image;
 use crate::error::ImageError;
 use crate::lines::Lines;
@@ -16,8 +18,10 @@ use crate::memory::Region;
 use crate::program::{Function, Program};
 use crate::report::{Finding, Report};
 use crate::vectors::Vectors;
+use std::collections::BTreeSet;
 use vouched::Vouched;
 
+pub use shared::needless_loops;
 pub(crate) use sizes::change_percent;
 pub(crate) use vouched::unknown_calls;
 
@@ -45,6 +49,8 @@ pub struct Subject<'a> {
     pub memory: &'a [Region],
     /// Its budget.
     pub budget: &'a ImageBudget,
+    /// Bounds of loops for all images.
+    pub shared_loops: &'a [BoundedLoops],
     /// Allowed growth of recorded sizes.
     pub tolerance_percent: f64,
 }
@@ -66,7 +72,7 @@ pub fn examine(name: &str, subject: Subject<'_>) -> Result<Report, ImageError> {
         memory: subject.memory,
         budget: subject.budget,
         tolerance_percent: subject.tolerance_percent,
-        vouched: Vouched::new(&program, subject.budget),
+        vouched: Vouched::new(&program, subject.budget, subject.shared_loops),
     };
     let mut report = Report {
         image: name.to_owned(),
@@ -74,6 +80,8 @@ pub fn examine(name: &str, subject: Subject<'_>) -> Result<Report, ImageError> {
         levels: Vec::new(),
         interrupts: Vec::new(),
         loops: Vec::new(),
+        shared_loops: BTreeSet::new(),
+        panics: Vec::new(),
         failures: Vec::new(),
         hints: Vec::new(),
     };

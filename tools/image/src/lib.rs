@@ -61,5 +61,5 @@ pub mod vectors;
 pub use budget::Budget;
 pub use elf::Image;
 pub use error::ImageError;
-pub use gate::{Subject, examine};
+pub use gate::{Subject, examine, needless_loops};
 pub use report::Report;

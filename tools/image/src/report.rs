@@ -1,6 +1,7 @@
 //! Results of the check of an image, as data.
 
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// The check of sizes against the record.
 pub(crate) const RECORD: &str = "record";
@@ -18,6 +19,10 @@ pub struct Report {
     pub interrupts: Vec<InterruptRow>,
     /// Loops that gated interrupts reach, with their bounds.
     pub loops: Vec<LoopRow>,
+    /// Functions of the bounds for all images that this one needed.
+    pub shared_loops: BTreeSet<String>,
+    /// Calls of panics inside libraries that gated interrupts reach.
+    pub panics: Vec<PanicRow>,
     /// Failures.
     pub failures: Vec<Finding>,
     /// Hints.
@@ -109,6 +114,19 @@ pub struct LoopRow {
     pub bound: Option<u64>,
     /// The reason of the bound.
     pub reason: Option<String>,
+}
+
+/// Calls of panics inside a library.
+#[derive(Debug, Clone, Serialize)]
+pub struct PanicRow {
+    /// The library's package.
+    pub library: String,
+    /// Number of instructions that call a panic.
+    pub calls: usize,
+    /// The number that the budget allows.
+    pub at_most: usize,
+    /// The reason of the allowance.
+    pub reason: String,
 }
 
 /// A failure or a hint.

@@ -4,7 +4,7 @@ use crate::{CheckArguments, LookArguments};
 use crepitus_image::budget::{Budget, ImageBudget, bless};
 use crepitus_image::lines::Lines;
 use crepitus_image::report::Report;
-use crepitus_image::{Image, ImageError, Subject, examine, look, memory, text};
+use crepitus_image::{Image, ImageError, Subject, examine, look, memory, needless_loops, text};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -37,6 +37,13 @@ pub(crate) fn check(arguments: &CheckArguments, json: bool) -> Result<bool, Stri
             changes.push((record, size.used));
         }
         reports.push(report);
+    }
+    if arguments.images.is_empty() {
+        // Known only after the last image.
+        let needless = needless_loops(&budget.loops, &reports);
+        if let Some(last) = reports.last_mut() {
+            last.failures.extend(needless);
+        }
     }
     if arguments.bless {
         let blessed = bless(&source, &changes);
@@ -74,6 +81,7 @@ fn examined(
         lines: &Lines::of(&elf),
         memory: &memory,
         budget: image,
+        shared_loops: &budget.loops,
         tolerance_percent: budget.tolerance_percent,
     };
     examine(name, subject).map_err(|e| format!("{}: {e}", elf.display()))

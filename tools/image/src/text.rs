@@ -51,6 +51,7 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
     write_interrupts(out, report)?;
     write_stack(out, report)?;
     write_loops(out, report)?;
+    write_panics(out, report)?;
     for (title, findings) in [("hint", &report.hints), ("FAIL", &report.failures)] {
         for finding in findings {
             write_finding(out, title, finding)?;
@@ -129,6 +130,21 @@ fn write_loops(out: &mut String, report: &Report) -> std::fmt::Result {
             out,
             "    {bound:>6}  {}, {}{copies}: {reason}",
             l.function, l.place
+        )?;
+    }
+    Ok(())
+}
+
+fn write_panics(out: &mut String, report: &Report) -> std::fmt::Result {
+    if report.panics.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\n  calls of panics inside libraries")?;
+    for panics in &report.panics {
+        writeln!(
+            out,
+            "    {:>6}  {}, {} allowed: {}",
+            panics.calls, panics.library, panics.at_most, panics.reason
         )?;
     }
     Ok(())

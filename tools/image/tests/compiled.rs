@@ -1,28 +1,10 @@
 //! An image from the real compiler, with a panic planted in an interrupt.
-//!
-//! Needs the target `thumbv7em-none-eabihf`; without it the test says so and
-//! passes, unless `CREPITUS_NEEDS_TARGET` is set.
 
-use crepitus_image::budget::Budget;
+mod compiler;
+
+use compiler::compile;
+use crepitus_image::Report;
 use crepitus_image::lines::Lines;
-use crepitus_image::{Image, Report, Subject, examine, memory};
-use std::path::Path;
-use std::process::Command;
-
-const TARGET: &str = "thumbv7em-none-eabihf";
-
-const MEMORY: &str = "MEMORY { FLASH : ORIGIN = 0x08000000, LENGTH = 64K
-                               RAM : ORIGIN = 0x20000000, LENGTH = 16K }";
-
-const SECTIONS: &str = "
-SECTIONS {
-  .vector_table ORIGIN(FLASH) : { KEEP(*(.vector_table)) } > FLASH
-  .text : { *(.text .text.*) } > FLASH
-  .rodata : { *(.rodata .rodata.*) } > FLASH
-  .data : { *(.data .data.*) } > RAM AT > FLASH
-  .bss (NOLOAD) : { *(.bss .bss.*) } > RAM
-  /DISCARD/ : { *(.ARM.exidx .ARM.exidx.*) }
-}";
 
 const PROGRAM: &str = r#"
 #![no_std]
@@ -140,70 +122,14 @@ irq = 3
 priority = 1
 "#;
 
-/// Compiles the program; nothing if the target is not installed.
-fn compile(folder: &Path) -> Option<Vec<u8>> {
-    let at = |name: &str| folder.join(name);
-    std::fs::write(at("it.rs"), PROGRAM).unwrap();
-    std::fs::write(at("it.x"), format!("{MEMORY}{SECTIONS}")).unwrap();
-    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let output = Command::new(rustc)
-        .args([
-            "--edition",
-            "2024",
-            "--target",
-            TARGET,
-            "--crate-name",
-            "it",
-        ])
-        .args([
-            "-C",
-            "opt-level=2",
-            "-C",
-            "debuginfo=1",
-            "-C",
-            "panic=abort",
-        ])
-        .args([
-            "-C",
-            "link-arg=-Tit.x",
-            "-C",
-            "link-arg=--nmagic",
-            "-o",
-            "it.elf",
-            "it.rs",
-        ])
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    if said.contains("target may not be installed") {
-        assert!(
-            std::env::var_os("CREPITUS_NEEDS_TARGET").is_none(),
-            "the target {TARGET} is not installed"
-        );
-        println!("left out: the target {TARGET} is not installed");
-        return None;
-    }
-    assert!(output.status.success(), "{said}");
-    Some(std::fs::read(at("it.elf")).unwrap())
-}
-
 fn report(bytes: &[u8], lines: &Lines, more: &str) -> Report {
-    let budget = Budget::parse(Path::new("budget.toml"), &format!("{BUDGET}{more}")).unwrap();
-    let subject = Subject {
-        image: &Image::parse(bytes).unwrap(),
-        lines,
-        memory: &memory::parse(MEMORY).unwrap(),
-        budget: &budget.images["it"],
-        tolerance_percent: 2.0,
-    };
-    examine("it", subject).unwrap()
+    compiler::report(bytes, lines, &format!("{BUDGET}{more}"))
 }
 
 #[test]
 fn a_planted_unwrap_is_found_and_nothing_else() {
     let folder = tempfile::tempdir().unwrap();
-    let Some(bytes) = compile(folder.path()) else {
+    let Some(bytes) = compile(folder.path(), PROGRAM) else {
         return;
     };
     let lines = Lines::of(&folder.path().join("it.elf"));
@@ -238,7 +164,7 @@ reason = \"bits\"";
 #[test]
 fn a_bound_outlives_the_mood_of_the_compiler() {
     let folder = tempfile::tempdir().unwrap();
-    let Some(bytes) = compile(folder.path()) else {
+    let Some(bytes) = compile(folder.path(), PROGRAM) else {
         return;
     };
     let lines = Lines::of(&folder.path().join("it.elf"));
@@ -266,7 +192,7 @@ fn a_bound_outlives_the_mood_of_the_compiler() {
 #[test]
 fn it_is_found_without_debug_information_too() {
     let folder = tempfile::tempdir().unwrap();
-    let Some(bytes) = compile(folder.path()) else {
+    let Some(bytes) = compile(folder.path(), PROGRAM) else {
         return;
     };
     let report = report(&bytes, &Lines::default(), "");

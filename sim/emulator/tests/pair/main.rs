@@ -6,6 +6,7 @@
 mod client;
 mod faults;
 mod host;
+mod hostile;
 mod load;
 mod power;
 mod replay;

@@ -10,12 +10,12 @@ use std::time::Duration;
 const STALLED: TransferError = TransferError::Stalled { endpoint: 0 };
 
 /// The control pipe of a device that is enumerated.
-const PIPE: ControlPipe = ControlPipe {
+pub(crate) const PIPE: ControlPipe = ControlPipe {
     address: 5,
     max_packet: 64,
 };
 
-const fn request(request_type: u8, request: u8, value: u16) -> ControlRequest {
+pub(crate) const fn request(request_type: u8, request: u8, value: u16) -> ControlRequest {
     ControlRequest {
         request_type,
         request,
@@ -24,30 +24,38 @@ const fn request(request_type: u8, request: u8, value: u16) -> ControlRequest {
     }
 }
 
-const GET_LINE_CODING: ControlRequest = request(0xa1, 0x21, 0);
-const SET_LINE_CODING: ControlRequest = request(0x21, 0x20, 0);
+pub(crate) const GET_LINE_CODING: ControlRequest = request(0xa1, 0x21, 0);
+pub(crate) const SET_LINE_CODING: ControlRequest = request(0x21, 0x20, 0);
 const GET_STATUS: ControlRequest = request(0x80, 0, 0);
 
 /// A descriptor of this kind and number.
-const fn descriptor(kind: u8, number: u8) -> ControlRequest {
+pub(crate) const fn descriptor(kind: u8, number: u8) -> ControlRequest {
     request(0x80, 6, u16::from_be_bytes([kind, number]))
 }
 
-fn plugged_in() -> Option<Pair> {
+pub(crate) fn plugged_in() -> Option<Pair> {
     let mut pair = pair()?;
     pair.plug_in().expect("a device");
     Some(pair)
 }
 
-fn read(pair: &mut Pair, asked: ControlRequest, most: u16) -> Result<Vec<u8>, TransferError> {
+pub(crate) fn read(
+    pair: &mut Pair,
+    asked: ControlRequest,
+    most: u16,
+) -> Result<Vec<u8>, TransferError> {
     PIPE.read(pair.boards_mut(), &mut turn, asked, most)
 }
 
-fn write(pair: &mut Pair, asked: ControlRequest, data: &[u8]) -> Result<(), TransferError> {
+pub(crate) fn write(
+    pair: &mut Pair,
+    asked: ControlRequest,
+    data: &[u8],
+) -> Result<(), TransferError> {
     PIPE.write(pair.boards_mut(), &mut turn, asked, data)
 }
 
-fn turn(boards: &mut Boards) {
+pub(crate) fn turn(boards: &mut Boards) {
     boards.run(1);
 }
 

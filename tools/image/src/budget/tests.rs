@@ -57,6 +57,30 @@ fn says_what_is_wrong() {
             "[[images.a.reserved]]\nfrom = 2\nto = 2\nwhat = \"w\"\n",
             "behind its end",
         ),
+        (
+            "[[loops]]\nfunction = \"f\"\nbounds = [1]\nreason = \"\"\n",
+            "f is in loops without a reason",
+        ),
+        (
+            "[[loops]]\nfunction = \"f\"\nreason = \"r\"\n",
+            "either `bounds` or `at_most`",
+        ),
+        (
+            "[[images.a.panics]]\nlibrary = \"l\"\nat_most = 0\nreason = \"r\"\n",
+            "a: l is in panics with `at_most = 0`",
+        ),
+        (
+            "[[images.a.panics]]\nlibrary = \"l\"\nat_most = 1\nreason = \"\"\n",
+            "l is in panics without a reason",
+        ),
+        (
+            "[[images.a.panics]]\nlibrary = \"l\"\nreason = \"r\"\n",
+            "missing field `at_most`",
+        ),
+        (
+            "[[images.a.panics]]\nfunction = \"f\"\nat_most = 1\nreason = \"r\"\n",
+            "unknown field `function`, expected one of `library`",
+        ),
         ("[[images.a.interrupts]]\nhandler = \"X\"\n", "irq"),
     ] {
         let error = parse(&format!("{TEXT}{more}")).unwrap_err();

@@ -2,6 +2,7 @@
 
 use super::layout::Root;
 use super::loops::Catalogue;
+use super::panics::Sites;
 use super::vouched::unknown_calls;
 use super::{Gate, finding};
 use crate::body::{Leave, Step, Target};
@@ -16,6 +17,7 @@ use std::collections::BTreeSet;
 pub(super) struct Found<'r> {
     pub(super) report: &'r mut Report,
     pub(super) loops: Catalogue,
+    pub(super) panics: Sites,
     seen: BTreeSet<(&'static str, u32, usize)>,
 }
 
@@ -24,7 +26,12 @@ impl Found<'_> {
         self.seen.insert((check, address, detail))
     }
 
-    fn fail(&mut self, address: u32, finding: impl FnOnce() -> Finding, check: &'static str) {
+    pub(super) fn fail(
+        &mut self,
+        address: u32,
+        finding: impl FnOnce() -> Finding,
+        check: &'static str,
+    ) {
         if self.is_new(check, address, 0) {
             self.report.failures.push(finding());
         }
@@ -43,6 +50,7 @@ impl Gate<'_> {
         let mut found = Found {
             report,
             loops: Catalogue::new(),
+            panics: Sites::new(),
             seen: BTreeSet::new(),
         };
         let mut reached = BTreeSet::new();
@@ -59,10 +67,12 @@ impl Gate<'_> {
             }
             self.check_recursion(root, &reach, &mut found);
         }
+        self.check_panics(&mut found);
         self.check_bounds(&mut found);
         self.note_dissolved(&reached, &mut found);
         self.check_ends(&mut found);
         found.report.failures.extend(self.vouched.stale());
+        found.report.shared_loops = self.vouched.shared_loops();
     }
 
     fn check_function(
@@ -77,17 +87,7 @@ impl Gate<'_> {
         for (site, callee) in self.program.calls(function) {
             let callee = callee.and_then(|callee| self.program.functions.get(&callee));
             if let Some(callee) = callee.filter(|f| panics(f)) {
-                let what = || {
-                    let mut at = path(site);
-                    at.push(format!("panics in {}", callee.name()));
-                    finding(
-                        "panic",
-                        format!("{handler} can reach {}", callee.name()),
-                        at,
-                        "make the failing case impossible or handle it without a panic",
-                    )
-                };
-                found.fail(site, what, "panic");
+                self.note_panic(handler, callee, site, &path, found);
             }
         }
         for step in function.body.live() {

@@ -11,13 +11,18 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The allowances, and which of them were needed.
 pub(super) struct Vouched<'a> {
     budget: &'a ImageBudget,
+    shared: &'a [BoundedLoops],
     targets: BTreeMap<&'a str, Vec<u32>>,
     missing: Vec<Finding>,
     used: RefCell<BTreeSet<(&'static str, &'a str)>>,
 }
 
 impl<'a> Vouched<'a> {
-    pub(super) fn new(program: &Program, budget: &'a ImageBudget) -> Self {
+    pub(super) fn new(
+        program: &Program,
+        budget: &'a ImageBudget,
+        shared: &'a [BoundedLoops],
+    ) -> Self {
         let mut targets: BTreeMap<&str, Vec<u32>> = BTreeMap::new();
         let mut missing = Vec::new();
         for entry in &budget.indirect {
@@ -41,6 +46,7 @@ impl<'a> Vouched<'a> {
         }
         Self {
             budget,
+            shared,
             targets,
             missing,
             used: RefCell::default(),
@@ -64,11 +70,25 @@ impl<'a> Vouched<'a> {
 
     /// The entry for the loops of a function of the source.
     pub(super) fn loops(&self, function: &str) -> Option<&'a BoundedLoops> {
-        let loops = &self.budget.loops;
-        let exact = loops.iter().find(|e| e.function == function);
-        let entry = exact.or_else(|| loops.iter().find(|e| e.is_for(function)))?;
-        self.used.borrow_mut().insert(("loops", &entry.function));
+        let exact = self.all_loops().find(|e| e.function == function);
+        let entry = exact.or_else(|| self.all_loops().find(|e| e.is_for(function)))?;
+        self.keep(entry);
         Some(entry)
+    }
+
+    /// Bounds of this image and of all images; a function is in one of both.
+    fn all_loops(&self) -> impl Iterator<Item = &'a BoundedLoops> {
+        self.budget.loops.iter().chain(self.shared)
+    }
+
+    /// Whether there is an entry for the panics of a library.
+    pub(super) fn panics(&self, library: &str) -> bool {
+        let mut entries = self.budget.panics.iter();
+        let entry = entries.find(|e| e.library == library);
+        if let Some(entry) = entry {
+            self.used.borrow_mut().insert(("panics", &entry.library));
+        }
+        entry.is_some()
     }
 
     /// The entry for a function that computes its stack pointer.
@@ -112,9 +132,18 @@ impl<'a> Vouched<'a> {
     /// Functions whose loops are bounded, but were not found.
     pub(super) fn without_loops(&self) -> Vec<&'a BoundedLoops> {
         let used = self.used.borrow();
-        let loops = self.budget.loops.iter();
-        loops
+        self.all_loops()
             .filter(|e| !used.contains(&("loops", &e.function)))
+            .collect()
+    }
+
+    /// Functions of the bounds for all images that this image needed.
+    pub(super) fn shared_loops(&self) -> BTreeSet<String> {
+        let used = self.used.borrow();
+        let shared = self.shared.iter().map(|e| &e.function);
+        shared
+            .filter(|function| used.contains(&("loops", function)))
+            .cloned()
             .collect()
     }
 

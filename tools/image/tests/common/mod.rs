@@ -169,6 +169,7 @@ pub(crate) fn examined(image: &Image, budget: &str) -> Report {
         lines: &Lines::default(),
         memory: &memory::parse(MEMORY).unwrap(),
         budget: &budget.images["it"],
+        shared_loops: &budget.loops,
         tolerance_percent: budget.tolerance_percent,
     };
     examine("it", subject).unwrap()
