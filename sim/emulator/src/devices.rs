@@ -2,11 +2,12 @@
 //!
 //! | device | for |
 //! |---|---|
-//! | [`adc`] | a converter that a timer starts |
+//! | [`adc`] | a converter that a timer starts, with [`noise`] |
 //! | [`usart`] | a USART with DMA requests and the time of every character |
 //! | [`brake`] | the break input of an advanced timer |
 
 pub(crate) mod adc;
 pub(crate) mod brake;
+pub(crate) mod noise;
 pub(crate) mod registers;
 pub(crate) mod usart;

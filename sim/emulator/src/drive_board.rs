@@ -25,7 +25,7 @@ mod link_wires;
 mod wiring;
 
 use crate::image::Image;
-use crate::mcu::{Mcu, Reset, Watch};
+use crate::mcu::{Mcu, Reset, Sampling, Watch};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
 use crepitus_board::leg::{CurrentPath, Leg, Terminals};
@@ -36,6 +36,7 @@ use crepitus_protocol::management::{Identity, ResetCause, Role};
 use crepitus_protocol::{Revision, Values, schema};
 use crepitus_scene::Scene;
 use encoder_edges::Edges;
+use half_bridges::Quiet;
 use link_wires::{Down, Up};
 use wiring::{BREAK, COMMS_LINE, JOINT, LINE, LINE_BACK, MONITOR, MOTOR, SENSOR, SUPPLY};
 
@@ -92,8 +93,11 @@ pub struct DriveBoard {
     is_synchronised: bool,
     resets: Vec<(Time, Reset)>,
     errors: Vec<(Time, BoardError)>,
-    /// Time without switching on both sides of the middle of the last tick.
-    quiet: Time,
+    /// Samplings of the converters that are not checked yet.
+    samplings: Vec<Sampling>,
+    /// Time without switching around the middle of this tick, if all of it was
+    /// synchronised.
+    quiet: Option<Quiet>,
 }
 
 fn identity() -> Identity {
@@ -141,7 +145,8 @@ impl DriveBoard {
             is_synchronised: false,
             resets: Vec::new(),
             errors: Vec::new(),
-            quiet: HALF,
+            samplings: Vec::new(),
+            quiet: None,
         }
     }
 
@@ -196,7 +201,9 @@ impl DriveBoard {
         self.check_comparator();
         self.carry();
         let resets = self.mcu.take_resets();
-        self.is_synchronised &= resets.is_empty();
+        if !resets.is_empty() {
+            (self.is_synchronised, self.quiet) = (false, None);
+        }
         self.resets.extend(resets);
         if was_synchronised && self.is_synchronised {
             let turned = self.leg.count().wrapping_sub(before);
@@ -219,11 +226,17 @@ impl DriveBoard {
 
     /// Adds new mismatches of image and wiring to the errors.
     fn check_wiring(&mut self, turned: i32, counter: i32) {
-        let samplings = self.mcu.take_samplings();
+        let quiet = self.quiet.take();
         if !self.is_second {
-            self.quiet = half_bridges::quiet(&self.mcu);
+            self.quiet = Some(half_bridges::quiet(&self.mcu));
         }
-        let Self { mcu, errors, .. } = self;
+        let middle = self.end - HALF;
+        let Self {
+            mcu,
+            errors,
+            samplings,
+            ..
+        } = self;
         let now = mcu.now();
         let mut report = |error| {
             if !errors.iter().any(|(_, known)| *known == error) {
@@ -231,12 +244,15 @@ impl DriveBoard {
             }
         };
         wiring::check(mcu, &mut report);
-        let middle = if self.is_second {
-            self.end - HALF
-        } else {
-            self.end
-        };
-        wiring::check_samplings(&samplings, (middle, self.quiet), &mut report);
+        if self.is_second {
+            // The core may have run ahead of the board.
+            samplings.extend(mcu.take_samplings());
+            let is_past = |sampling: &mut Sampling| sampling.begin < middle + HALF;
+            let samplings: Vec<Sampling> = samplings.extract_if(.., is_past).collect();
+            if let Some(quiet) = quiet {
+                wiring::check_samplings(&samplings, middle, quiet, &mut report);
+            }
+        }
         let counted = wiring::counter(mcu).wrapping_sub(counter);
         if counted != turned {
             report(BoardError::Encoder { counted, turned });
@@ -342,7 +358,7 @@ impl DriveBoard {
     pub fn brown_out(&mut self) {
         self.resets.push((self.mcu.now(), Reset::BrownOut));
         self.mcu.reset(Reset::BrownOut);
-        self.is_synchronised = false;
+        (self.is_synchronised, self.quiet) = (false, None);
     }
 }
 

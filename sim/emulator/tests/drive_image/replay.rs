@@ -18,8 +18,9 @@ use std::collections::BTreeMap;
 
 const ENCODER: u32 = 0x4000_0c24;
 const SENSOR_FLAGS: u32 = 0x4001_2000;
-const SENSOR_DATA: u32 = 0x4001_204c;
-const MONITOR_DATA: u32 = 0x4001_214c;
+/// The regular conversion and the injected ones, in the order in which they are read.
+const SENSOR_DATA: [u32; 4] = [0x4001_204c, 0x4001_203c, 0x4001_2040, 0x4001_2044];
+const MONITOR_DATA: [u32; 4] = [0x4001_214c, 0x4001_213c, 0x4001_2140, 0x4001_2144];
 const SLOW_SEQUENCE: u32 = 0x4001_2234;
 const SLOW_DATA: u32 = 0x4001_224c;
 const CLOCK: u32 = 0x4000_0024;
@@ -27,11 +28,17 @@ const LINE: u32 = 0x4002_0410;
 const BREAK_FLAGS: u32 = 0x4001_0010;
 const LINK_CONTROL: u32 = 0x4001_140c;
 const RECEIVED_LEFT: u32 = 0x4002_642c;
-const REGISTERS: [u32; 11] = [
+const REGISTERS: [u32; 17] = [
     ENCODER,
     SENSOR_FLAGS,
-    SENSOR_DATA,
-    MONITOR_DATA,
+    SENSOR_DATA[0],
+    SENSOR_DATA[1],
+    SENSOR_DATA[2],
+    SENSOR_DATA[3],
+    MONITOR_DATA[0],
+    MONITOR_DATA[1],
+    MONITOR_DATA[2],
+    MONITOR_DATA[3],
     SLOW_SEQUENCE,
     SLOW_DATA,
     CLOCK,
@@ -50,11 +57,11 @@ const RUN: u32 = 10;
 /// Ticks that are compared, at least.
 const TICKS: usize = 20_000;
 
-/// As the converter's counts become amperes, in the same arithmetic.
-fn amperes(counts: u32) -> f32 {
-    #[expect(clippy::cast_precision_loss, reason = "twelve bits")]
-    let counts = counts as f32;
-    (counts * (1.0 / 4096.0) - 0.5) * (3.3 / (20.0 * 0.033))
+/// As the sum of a converter's four counts becomes amperes, in the same arithmetic.
+fn amperes(sum: u32) -> f32 {
+    #[expect(clippy::cast_precision_loss, reason = "fourteen bits")]
+    let sum = sum as f32;
+    (sum * (1.0 / (4.0 * 4096.0)) - 0.5) * (3.3 / (20.0 * 0.033))
 }
 
 /// As a channel's counts become what it measures, in the same arithmetic.
@@ -72,6 +79,8 @@ fn slow(channel: u32, counts: u32) -> SlowInput {
 struct Replay<'a> {
     drive: Drive,
     inputs: Inputs,
+    /// Of the counts of a current that were read.
+    sum: u32,
     /// Channel of the third converter.
     channel: u32,
     clock_us: u32,
@@ -99,8 +108,14 @@ impl Replay<'_> {
         match access.address {
             ENCODER => self.sample(access.value),
             SENSOR_FLAGS => self.inputs = Inputs::default(),
-            SENSOR_DATA => self.inputs.current_a = Some(amperes(access.value)),
-            MONITOR_DATA => self.inputs.monitor_a = Some(-amperes(access.value)),
+            address if SENSOR_DATA.contains(&address) => {
+                let all = self.add(address, access.value, &SENSOR_DATA);
+                self.inputs.current_a = all.map(amperes).or(self.inputs.current_a);
+            }
+            address if MONITOR_DATA.contains(&address) => {
+                let all = self.add(address, access.value, &MONITOR_DATA);
+                self.inputs.monitor_a = all.map(|sum| -amperes(sum)).or(self.inputs.monitor_a);
+            }
             SLOW_DATA => self.inputs.slow = slow(self.channel, access.value),
             CLOCK => {
                 self.inputs.interval_us = access.value.wrapping_sub(self.clock_us);
@@ -134,6 +149,15 @@ impl Replay<'_> {
             }
             _ => {}
         }
+    }
+
+    /// Adds counts of a current; returns the sum of all once the last has been read.
+    fn add(&mut self, address: u32, counts: u32, registers: &[u32; 4]) -> Option<u32> {
+        if address == registers[0] {
+            self.sum = 0;
+        }
+        self.sum += counts;
+        (address == registers[3]).then_some(self.sum)
     }
 
     fn sample(&mut self, counter: u32) {
@@ -208,6 +232,7 @@ fn check(flash: Flash) {
     let mut replay = Replay {
         drive: Drive::new(&boot).expect("a drive"),
         inputs: Inputs::default(),
+        sum: 0,
         channel: 13,
         clock_us: 0,
         bytes: bytes.iter(),
