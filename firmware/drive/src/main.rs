@@ -311,7 +311,7 @@ mod app {
                 );
             }
             cx.shared.checkins.idle_checks_in();
-            cortex_m::asm::wfi();
+            board::sleep();
         }
     }
 }
