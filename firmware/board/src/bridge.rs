@@ -154,6 +154,7 @@ fn counts(share: f32) -> u16 {
         clippy::cast_sign_loss,
         reason = "a cast from float saturates; within 0 and TOP anyway"
     )]
-    let counts = share as u16;
-    counts
+    // To 32 bits it is one instruction.
+    let counts = share as u32;
+    u16::try_from(counts).unwrap_or(TOP)
 }
