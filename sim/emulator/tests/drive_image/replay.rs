@@ -12,6 +12,7 @@ use crepitus_device::drive::command::Inputs;
 use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_emulator::Mcu;
 use crepitus_emulator::mcu::Access;
+use crepitus_protocol::frame::DELIMITER;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 use crepitus_protocol::{Decoder, Lane, Revision, State};
 use std::collections::BTreeMap;
@@ -52,7 +53,7 @@ const REGISTERS: [u32; 17] = [
 const RING: u32 = 2_048;
 
 /// The most that a run of the task takes of them.
-const RUN: u32 = 10;
+const RUN: u32 = 12;
 
 /// Ticks that are compared, at least.
 const TICKS: usize = 20_000;
@@ -87,8 +88,9 @@ struct Replay<'a> {
     /// Bytes that the image's link has received.
     bytes: std::slice::Iter<'a, u8>,
     next: u32,
-    /// The last run of the link's task took bytes.
+    /// The last run of the link's task took bytes, and the end of a frame.
     has_received: bool,
+    has_ended: bool,
     /// Samples that were put into blocks.
     pushed: u64,
     /// The parameters in force, block by block, in the image.
@@ -135,17 +137,7 @@ impl Replay<'_> {
                 let end = (RING - access.value) % RING;
                 let come = (end + RING - self.next) % RING;
                 let run = come.min(RUN);
-                // Receives or sends, as the task does: bytes are never taken by two
-                // runs one after the other.
-                self.has_received = run > 0 && !self.has_received;
-                if !self.has_received {
-                    self.send();
-                    return;
-                }
-                for byte in self.bytes.by_ref().take(run as usize) {
-                    self.drive.link_received(*byte);
-                }
-                self.next = (self.next + run) % RING;
+                self.link(run);
             }
             _ => {}
         }
@@ -170,6 +162,31 @@ impl Replay<'_> {
             self.drive.prepare();
         }
         self.drive.render_torque(counter);
+    }
+
+    /// Receives or sends, as the task does.
+    fn link(&mut self, run: u32) {
+        let is_end = run > 0 && self.is_end();
+        let may_receive = !self.has_received || is_end && !self.has_ended;
+        self.has_received = run > 0 && may_receive;
+        self.has_ended = self.has_received && is_end;
+        if !self.has_received {
+            self.send();
+            return;
+        }
+        for _ in 0..if is_end { 1 } else { run } {
+            let byte = self.bytes.next().expect("it has been received");
+            self.drive.link_received(*byte);
+            self.next = (self.next + 1) % RING;
+            if self.is_end() {
+                break;
+            }
+        }
+    }
+
+    /// Whether the next byte ends a frame.
+    fn is_end(&self) -> bool {
+        self.bytes.as_slice().first() == Some(&DELIMITER)
     }
 
     fn send(&mut self) {
@@ -238,6 +255,7 @@ fn check(flash: Flash) {
         bytes: bytes.iter(),
         next: 0,
         has_received: false,
+        has_ended: false,
         pushed: 0,
         revisions: host.blocks.iter().map(revision).collect(),
         decoder: Decoder::new(),
