@@ -251,7 +251,7 @@ fn code(at: usize, end: usize) -> u8 {
 }
 
 #[inline]
-fn set(buffer: &mut FrameBuffer, at: usize, byte: u8) -> Result<(), TooLong> {
+fn set(buffer: &mut [u8], at: usize, byte: u8) -> Result<(), TooLong> {
     *buffer.get_mut(at).ok_or(TooLong)? = byte;
     Ok(())
 }
@@ -318,6 +318,31 @@ impl Flavor for Bytes<'_> {
     fn finalize(self) -> postcard::Result<usize> {
         Ok(self.length)
     }
+}
+
+/// Bytes of a word at most, 7 bits in each.
+const WORD_DIGITS: usize = 5;
+
+/// Serialises words into `buffer` as postcard does, in a fraction of its time.
+///
+/// # Errors
+/// [`TooLong`] if there is no room for them.
+pub fn write_words<'a>(words: &[u32], buffer: &'a mut [u8]) -> Result<&'a [u8], TooLong> {
+    const MORE: u32 = 0x80;
+    let mut length = 0_usize;
+    for word in words {
+        let mut rest = *word;
+        for _ in 0..WORD_DIGITS {
+            let [digit, ..] = (if rest < MORE { rest } else { rest | MORE }).to_le_bytes();
+            set(buffer, length, digit)?;
+            length = length.wrapping_add(1);
+            rest >>= 7;
+            if rest == 0 {
+                break;
+            }
+        }
+    }
+    buffer.get(..length).ok_or(TooLong)
 }
 
 /// Serialises a message into `buffer`, without a frame.

@@ -96,19 +96,23 @@ impl DriveStatus {
     /// Bytes of [`Self::head`], at most.
     pub const HEAD_BYTES: usize = FromDrive::POSTCARD_MAX_SIZE - DRIVE_COUNT * COUNTER_BYTES;
 
-    /// The message [`FromDrive::Status`] up to the counters, in two parts, for an
+    /// The message [`FromDrive::Status`] up to the counters, in three parts, for an
     /// incremental encoder, which appends them one by one.
-    pub fn head(&self) -> (impl Serialize + use<>, impl Serialize + use<>) {
+    pub fn head(
+        &self,
+    ) -> (
+        impl Serialize + use<>,
+        impl Serialize + use<>,
+        impl Serialize + use<>,
+    ) {
         const STATUS: u8 = 0;
-        let begin = (
-            (STATUS, self.tick, self.start, self.comms_start),
-            (self.state, self.fault, self.revision),
-        );
+        let begin = (STATUS, self.tick, self.start, self.comms_start);
+        let middle = (self.state, self.fault, self.revision, self.refused);
         let end = (
-            (self.refused, self.last, self.zeroed),
-            (self.polarity_proven, self.awaits_comms, self.measured),
+            (self.last, self.zeroed, self.polarity_proven),
+            (self.awaits_comms, self.measured),
         );
-        (begin, end)
+        (begin, middle, end)
     }
 }
 
@@ -210,11 +214,11 @@ mod tests {
         for status in [status, DriveStatus::default()] {
             let (mut whole, mut part) = ([0; 256], [0; 256]);
             let whole = write(&FromDrive::Status(status), &mut whole).unwrap();
-            let (begin, end) = status.head();
-            let begin = write(&begin, &mut part[..DriveStatus::HEAD_BYTES]).unwrap();
-            let mut pieces = begin.to_vec();
-            let end = write(&end, &mut part[..DriveStatus::HEAD_BYTES]).unwrap();
-            pieces.extend(end);
+            let (begin, middle, end) = status.head();
+            let part = &mut part[..DriveStatus::HEAD_BYTES];
+            let mut pieces = write(&begin, part).unwrap().to_vec();
+            pieces.extend(write(&middle, part).unwrap());
+            pieces.extend(write(&end, part).unwrap());
             for counter in &status.counters {
                 let mut bytes = [0; COUNTER_BYTES];
                 pieces.extend(write(counter, &mut bytes).unwrap());

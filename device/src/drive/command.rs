@@ -55,8 +55,10 @@ pub struct Outputs {
     pub duty: f32,
 }
 
-/// Commands the motor, once a tick.
+/// Commands the motor, once a tick. In the order of its fields, the blocks last: what is
+/// within the first kilobyte a load reaches directly.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Command {
     /// Number of the next tick: the clock of every timeout.
     next_tick: u64,
@@ -82,7 +84,6 @@ pub struct Command {
     revision: Revision,
     /// The line, as read back.
     line_is_on: bool,
-    batch: Batch,
     /// The encoder's last count, and that of the angle's zero.
     count: i32,
     zero: i32,
@@ -90,6 +91,7 @@ pub struct Command {
     zeroed: bool,
     /// Boot counter of the drive.
     start: u16,
+    batch: Batch,
 }
 
 impl Command {

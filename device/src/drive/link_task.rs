@@ -160,7 +160,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
     ) -> Option<EncodedFrame<P>> {
         self.poll_changes(shared);
         if self.outgoing.is_idle() {
-            self.start_frame(crash, spare, shared, counters);
+            self.start_frame(unit, crash, spare, shared, counters);
             return None;
         }
         let Some(next) = self.outgoing.next_sample() else {
@@ -208,6 +208,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
     /// a new revision appears only in blocks after its status.
     fn start_frame(
         &mut self,
+        unit: &mut impl WordCrc,
         crash: impl FnOnce(u8) -> Part,
         spare: impl FnOnce() -> Option<P>,
         shared: &mut impl Shared,
@@ -235,7 +236,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
         if let Some(head) = head
             && !(is_status_due && self.blocks_before_status == 0)
         {
-            return self.outgoing.begin_block(spare()?, &head).ok();
+            return self.outgoing.begin_block(unit, spare()?, &head).ok();
         }
         if is_status_due {
             self.link.status_sent(now);

@@ -185,7 +185,7 @@ impl Motor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drive::prepare::Preparation;
+    use crate::drive::prepare::{LARGEST_DUTY, Preparation};
 
     /// A motor whose sensor shows nothing, until its voltage is at the limit.
     fn at_the_limit(torque_nm: f32) -> Motor {
@@ -196,7 +196,7 @@ mod tests {
         }
         assert_eq!(motor.limited_by(), Some(Limit::Voltage));
         // Torque against growing angle needs a voltage against it.
-        let off = motor.duty(motor.bridge) + 0.9_f32.copysign(torque_nm);
+        let off = motor.duty(motor.bridge) + LARGEST_DUTY.copysign(torque_nm);
         assert!(off.abs() < 1e-6);
         motor
     }

@@ -24,9 +24,9 @@ const FASTEST_RAD_S: f64 = 50.0;
 /// estimate of its speed lags.
 const FLOATS_SHARE: f64 = 0.7;
 
-/// Largest duty: the lower switches of both halves are closed for 1.25 µs on either
-/// side of the middle, where the currents are converted.
-const LARGEST_DUTY: f32 = 0.9;
+/// Largest duty: the lower switches of both halves are closed for 2 µs on either side of
+/// the middle, where the currents are converted.
+pub const LARGEST_DUTY: f32 = 0.84;
 
 /// Delay of the torque: half a tick to a tick and a half, and a lag.
 const TIMING: Timing = Timing {

@@ -16,6 +16,7 @@
 //! and idle levels are locked until the next reset.
 
 use crate::clocks::APB2_TIMER_HZ;
+use crepitus_device::drive::prepare::LARGEST_DUTY;
 use crepitus_model::Real;
 use stm32f4xx_hal::gpio::{Alternate, PA8, PA9, PB12, PB13, PB14, Pin, Pull, Speed};
 use stm32f4xx_hal::pac::TIM1;
@@ -27,6 +28,18 @@ const _: () = assert!(2 * TOP as u32 * 20_000 == APB2_TIMER_HZ);
 
 /// Dead time: 50 clocks of 168 MHz, 0.3 µs.
 const DEAD_CLOCKS: u8 = 50;
+
+/// Clocks without switching before and after the middle of a tick, at the largest
+/// duty. Before it, the last edge is late by the dead time.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "within 0 and TOP"
+)]
+pub(crate) const QUIET_CLOCKS: (u16, u16) = {
+    let after = ((1.0 - LARGEST_DUTY) * (TOP / 2) as f32) as u16;
+    (after - DEAD_CLOCKS as u16, after)
+};
 
 /// The bridge.
 pub struct Bridge {
@@ -141,6 +154,7 @@ fn counts(share: f32) -> u16 {
         clippy::cast_sign_loss,
         reason = "a cast from float saturates; within 0 and TOP anyway"
     )]
-    let counts = share as u16;
-    counts
+    // To 32 bits it is one instruction.
+    let counts = share as u32;
+    u16::try_from(counts).unwrap_or(TOP)
 }

@@ -1,4 +1,4 @@
-//! Analog inputs, converted once a tick in step with the bridge: the motor's current
+//! Analog inputs, converted in every tick in step with the bridge: the motor's current
 //! twice, on two ways that share nothing but the supply, and what changes slowly in
 //! turn.
 //!
@@ -16,7 +16,22 @@
 //!
 //! The monitor's amplifier is wired the other way round: a shift of the
 //! reference that moved both alike would make the two differ.
+//!
+//! A current is the mean of four conversions in a row, which halves the converter's
+//! noise: a regular one, which the timer starts, and the three of the injected group
+//! (JAUTO), whose results have registers of their own.
+//!
+//! ```text
+//!             1.14 µs          middle of the tick             1.71 µs
+//! trigger ──> ▓▓──────────── ▓▓──────────── ▓▓──────────── ▓▓──────────── JEOC
+//!             3 clocks of sampling, 12 of conversion
+//! ```
+//!
+//! Three clocks are enough, as a converter has one channel only: its capacitor still
+//! holds the current of the last conversion. Decision 97 in docs/decisions.md has the
+//! figures.
 
+use crate::bridge::QUIET_CLOCKS;
 use crate::raw;
 use crepitus_device::drive::slow_checks::SlowInput;
 use stm32f4xx_hal::gpio::{PA2, PC0, PC1, PC2, PC3};
@@ -51,6 +66,29 @@ const VOLTS_PER_AMPERE: f32 = 20.0 * 0.033;
 /// Counts of the whole range.
 const COUNTS: f32 = 4096.0;
 
+/// Conversions of a current in a tick.
+pub(crate) const SAMPLES: u8 = 4;
+
+/// Clocks of the core in one of the converters: 168 MHz / 21 MHz.
+const CONVERTER_CLOCK: u16 = 8;
+
+/// Clocks of the core to sample a current, and to sample and convert it.
+const SAMPLING: u16 = 3 * CONVERTER_CLOCK;
+const CONVERSION: u16 = SAMPLING + 12 * CONVERTER_CLOCK;
+
+/// From the first sampling to the end of the last conversion, and to the middle of all
+/// samplings, in clocks of the core.
+pub(crate) const TO_END: u16 = SAMPLES as u16 * CONVERSION;
+pub(crate) const TO_MIDDLE: u16 = u16::midpoint(0, TO_END - CONVERSION + SAMPLING);
+
+/// The most that the trigger is late: three clocks of the converters, and the start
+/// of one timer after another, a store to APB1.
+const LATE: u16 = 3 * CONVERTER_CLOCK + 16;
+
+// Nothing switches while they convert.
+const _: () = assert!(TO_MIDDLE <= QUIET_CLOCKS.0);
+const _: () = assert!(TO_END - TO_MIDDLE + LATE <= QUIET_CLOCKS.1);
+
 /// The converters.
 pub struct Converters {
     sensor: ADC1,
@@ -79,16 +117,22 @@ impl Converters {
         slow_pins.0.into_analog();
         slow_pins.1.into_analog();
         slow_pins.2.into_analog();
-        // 84 MHz / 4 = 21 MHz; 15 clocks to sample, 12 to convert.
+        // 84 MHz / 4 = 21 MHz.
         common.ccr().write(|w| w.adcpre().div4());
-        sensor.smpr1().write(|w| w.smp10().cycles15());
-        monitor.smpr1().write(|w| w.smp11().cycles15());
+        sensor.smpr1().write(|w| w.smp10().cycles3());
+        monitor.smpr1().write(|w| w.smp11().cycles3());
         slow.smpr1()
             .write(|w| w.smp12().cycles15().smp13().cycles15());
         slow.smpr2().write(|w| w.smp2().cycles15());
         raw::converter_channel(&slow, SUPPLY);
         raw::converter_channel(&sensor, SENSOR);
         raw::converter_channel(&monitor, MONITOR);
+        for (converter, channel) in [(&*sensor, SENSOR), (&*monitor, MONITOR)] {
+            raw::injected_channel(converter, channel, SAMPLES - 1);
+            converter
+                .cr1()
+                .write(|w| w.scan().set_bit().jauto().set_bit());
+        }
         for converter in [&*sensor, &*monitor, &*slow] {
             converter.cr2().write(|w| {
                 w.extsel().tim3trgo().exten().rising_edge();
@@ -123,19 +167,30 @@ impl Converters {
     }
 
     /// Takes the sensor's current, A, positive towards growing angle; `None`
-    /// without a new conversion.
+    /// without new conversions.
     pub fn take_sensor_a(&mut self) -> Option<f32> {
-        take(&self.sensor)
+        take_current_a(&self.sensor)
     }
 
     /// Takes the monitor's current, A.
     pub fn take_monitor_a(&mut self) -> Option<f32> {
-        take(&self.monitor).map(|a| -a)
+        take_current_a(&self.monitor).map(|a| -a)
     }
 }
 
-fn take(converter: &Registers) -> Option<f32> {
-    take_share(converter).map(|share| (share - 0.5) * (REFERENCE_V / VOLTS_PER_AMPERE))
+/// Takes the mean of a tick's conversions of a current, A.
+fn take_current_a(converter: &Registers) -> Option<f32> {
+    if !converter.sr().read().jeoc().bit() {
+        return None;
+    }
+    converter.sr().write(|w| w.jeoc().clear());
+    let sum = converter.dr().read().data().bits()
+        + converter.jdr1().read().jdata().bits()
+        + converter.jdr2().read().jdata().bits()
+        + converter.jdr3().read().jdata().bits();
+    // Exact, and so are equal conversions that of one.
+    let share = f32::from(sum) * (1.0 / (COUNTS * f32::from(SAMPLES)));
+    Some((share - 0.5) * (REFERENCE_V / VOLTS_PER_AMPERE))
 }
 
 /// Takes a new conversion as a share of the reference.

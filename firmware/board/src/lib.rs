@@ -58,6 +58,8 @@ pub mod mpu;
 #[cfg(target_os = "none")]
 mod raw;
 #[cfg(target_os = "none")]
+pub use raw::sleep;
+#[cfg(target_os = "none")]
 pub mod start;
 #[cfg(target_os = "none")]
 pub mod stop;

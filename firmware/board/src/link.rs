@@ -119,9 +119,14 @@ impl Link {
         end.wrapping_sub(self.next) % RING_BYTES
     }
 
+    /// The byte that [`Self::take_byte`] takes next, if it has been received.
+    pub fn next_byte(&self) -> Option<u8> {
+        Some(RING.get(self.next)?.load(Ordering::Relaxed))
+    }
+
     /// Takes the oldest received byte.
     pub fn take_byte(&mut self) -> Option<u8> {
-        let byte = RING.get(self.next)?.load(Ordering::Relaxed);
+        let byte = self.next_byte()?;
         self.next = (self.next + 1) % RING_BYTES;
         Some(byte)
     }

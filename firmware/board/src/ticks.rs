@@ -5,7 +5,7 @@
 //!       ╱  ╲
 //! TIM4  |          render_torque, at the bottom
 //! TIM3     |       the converters, in the middle of the top: no switching near
-//!           |      command_motor, 2 µs later: the currents are converted
+//!           |      command_motor, 3.2 µs later: the currents are converted
 //! TIM2  ...        µs, for the time between two ticks
 //! ```
 //!
@@ -14,6 +14,7 @@
 
 use crate::bridge::Bridge;
 use crate::clocks::APB1_TIMER_HZ;
+use crate::converter;
 use stm32f4xx_hal::pac::{TIM2, TIM3, TIM4};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
@@ -21,13 +22,16 @@ use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 const COUNTS: u16 = 4_200;
 const _: () = assert!(COUNTS as u32 * 20_000 == APB1_TIMER_HZ);
 
-/// The converters sample for 15 of their clocks, 0.71 µs: they begin 0.36 µs
-/// before the middle of the tick.
-const CONVERTER_EARLY: u16 = 30;
+/// Clocks of the core in a count.
+const COUNT_CLOCKS: u16 = 2;
 
-/// From the converters' start to `command_motor`: 2 µs. A conversion takes 27
-/// clocks of 21 MHz, 1.29 µs.
-const CONVERSION: u16 = 168;
+/// The samples of a current are centred on the middle of the tick: the converters
+/// begin 1.14 µs before it.
+const CONVERTER_EARLY: u16 = converter::TO_MIDDLE / COUNT_CLOCKS;
+
+/// From the converters' start to `command_motor`: 3.2 µs. All conversions take 2.86.
+const CONVERSION: u16 = 269;
+const _: () = assert!(CONVERSION * COUNT_CLOCKS > converter::TO_END + 48);
 
 /// Clocks of TIM2 in a microsecond.
 const MICROSECOND: u16 = 84;
@@ -77,12 +81,12 @@ impl BeginOfTick {
     }
 }
 
-/// Starts the three timers within some clocks of the core.
+/// Starts the three timers within some clocks of the core: one store after another.
 pub fn start(bridge: &Bridge, middle: &MiddleOfTick, begin: &BeginOfTick) {
     cortex_m::interrupt::free(|_| {
         bridge.timer().cr1().modify(|_, w| w.cen().set_bit());
-        middle.0.cr1().modify(|_, w| w.cen().set_bit());
-        begin.0.cr1().modify(|_, w| w.cen().set_bit());
+        middle.0.cr1().write(|w| w.cen().set_bit());
+        begin.0.cr1().write(|w| w.cen().set_bit());
     });
 }
 

@@ -178,7 +178,9 @@ mod app {
         let mut run = [0; RUN_BYTES];
         for _ in 0..=link.received() / RUN_BYTES {
             let bytes = link.take(&mut run);
-            cx.shared.comms.lock(|comms| comms.link_received_all(unit, bytes));
+            cx.shared
+                .comms
+                .lock(|comms| comms.link_received_all(unit, bytes));
         }
         if link.can_send()
             && let Some(frame) = cx.shared.comms.lock(|comms| comms.link_to_send())

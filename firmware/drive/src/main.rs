@@ -53,7 +53,7 @@ mod app {
     use crepitus_device::drive::rendering::Rendering;
     use crepitus_protocol::Fault;
     use crepitus_protocol::crash::Tick;
-    use crepitus_protocol::frame::FrameBuffer;
+    use crepitus_protocol::frame::{DELIMITER, FrameBuffer};
     use stm32f4xx_hal::pac::Interrupt;
 
     /// Starts `link`, as the end of a sent frame does.
@@ -65,10 +65,10 @@ mod app {
     const LINKED: usize = 2;
     const TASKS: usize = 3;
 
-    /// The most bytes that a run of `link` receives, every other tick: 100 in a
+    /// The most bytes that a run of `link` receives, every other tick: 120 in a
     /// millisecond. Comms sends 25, and while a commit is sent 145: what is left of
     /// it waits in the ring.
-    const RUN_BYTES: usize = 10;
+    const RUN_BYTES: usize = 12;
 
     /// Timeout of `idle` in runs of `link`: at most 250 ms.
     const IDLE_TIMEOUT_RUNS: u32 = 5_000;
@@ -227,7 +227,11 @@ mod app {
 
     #[task(
         binds = DMA2_STREAM6, priority = 1,
-        local = [link, crc_unit, link_task, watchdog, has_received: bool = false],
+        local = [
+            link, crc_unit, link_task, watchdog,
+            has_received: bool = false,
+            has_ended: bool = false,
+        ],
         shared = [command, commits, &is_link_due, &counters, &checkins]
     )]
     fn link(cx: link::Context) {
@@ -241,17 +245,24 @@ mod app {
             commits: cx.shared.commits,
         };
         // Once a tick, and either received bytes or a piece of a frame to send,
-        // so that no tick has much to do. If both are pending they alternate.
+        // so that no tick has much to do. If both are pending they alternate. The end
+        // of a frame, whose message is handled at once, has a run of its own, which
+        // may follow the one before.
         if !cx.shared.is_link_due.swap(false, Ordering::Relaxed) {
             return;
         }
         let received = link.received().min(RUN_BYTES);
-        let receives = received > 0 && !*cx.local.has_received;
-        *cx.local.has_received = receives;
+        let is_end = received > 0 && link.next_byte() == Some(DELIMITER);
+        let may_receive = !*cx.local.has_received || is_end && !*cx.local.has_ended;
+        let receives = received > 0 && may_receive;
+        (*cx.local.has_received, *cx.local.has_ended) = (receives, receives && is_end);
         if receives {
-            for _ in 0..received {
+            for _ in 0..if is_end { 1 } else { received } {
                 if let Some(byte) = link.take_byte() {
                     task.received(unit, byte, &mut parts, counters);
+                }
+                if link.next_byte() == Some(DELIMITER) {
+                    break;
                 }
             }
         } else {
@@ -311,7 +322,7 @@ mod app {
                 );
             }
             cx.shared.checkins.idle_checks_in();
-            cortex_m::asm::wfi();
+            board::sleep();
         }
     }
 }

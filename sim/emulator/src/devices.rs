@@ -2,7 +2,7 @@
 //!
 //! | device | for |
 //! |---|---|
-//! | [`adc`] | a converter that a timer starts |
+//! | [`adc`] | a converter that a timer starts, with [`noise`] |
 //! | [`usart`] | a USART with DMA requests and the time of every character |
 //! | [`brake`] | the break input of an advanced timer |
 //! | [`flash`] | flash that is programmed and erased, and takes its time |
@@ -11,6 +11,7 @@
 pub(crate) mod adc;
 pub(crate) mod brake;
 pub(crate) mod flash;
+pub(crate) mod noise;
 pub(crate) mod otg;
 pub(crate) mod registers;
 pub(crate) mod usart;

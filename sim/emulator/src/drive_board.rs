@@ -28,13 +28,14 @@ mod native_comms;
 mod wiring;
 
 use crate::image::Image;
-use crate::mcu::{Mcu, Reset, Watch};
+use crate::mcu::{Mcu, Reset, Sampling, Watch};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
 use crepitus_board::leg::{CurrentPath, Leg, Terminals};
 use crepitus_device::drive::plausibility::TRIP_A;
 use crepitus_scene::Scene;
 use encoder_edges::Edges;
+use half_bridges::Quiet;
 use wiring::{BREAK, COMMS_LINE, JOINT, LINE, LINE_BACK, MONITOR, MOTOR, SENSOR, SUPPLY};
 
 pub use comms_side::CommsSide;
@@ -82,8 +83,11 @@ pub struct DriveBoard<C = NativeComms> {
     is_synchronised: bool,
     resets: Vec<(Time, Reset)>,
     errors: Vec<(Time, BoardError)>,
-    /// Time without switching on both sides of the middle of the last tick.
-    quiet: Time,
+    /// Samplings of the converters that are not checked yet.
+    samplings: Vec<Sampling>,
+    /// Time without switching around the middle of this tick, if all of it was
+    /// synchronised.
+    quiet: Option<Quiet>,
 }
 
 impl<C: CommsSide> DriveBoard<C> {
@@ -102,7 +106,8 @@ impl<C: CommsSide> DriveBoard<C> {
             is_synchronised: false,
             resets: Vec::new(),
             errors: Vec::new(),
-            quiet: HALF,
+            samplings: Vec::new(),
+            quiet: None,
         }
     }
 
@@ -157,7 +162,9 @@ impl<C: CommsSide> DriveBoard<C> {
         self.check_comparator();
         self.carry();
         let resets = self.mcu.take_resets();
-        self.is_synchronised &= resets.is_empty();
+        if !resets.is_empty() {
+            (self.is_synchronised, self.quiet) = (false, None);
+        }
         self.resets.extend(resets);
         if was_synchronised && self.is_synchronised {
             let turned = self.leg.count().wrapping_sub(before);
@@ -176,11 +183,17 @@ impl<C: CommsSide> DriveBoard<C> {
 
     /// Adds new mismatches of image and wiring to the errors.
     fn check_wiring(&mut self, turned: i32, counter: i32) {
-        let samplings = self.mcu.take_samplings();
+        let quiet = self.quiet.take();
         if !self.is_second {
-            self.quiet = half_bridges::quiet(&self.mcu);
+            self.quiet = Some(half_bridges::quiet(&self.mcu));
         }
-        let Self { mcu, errors, .. } = self;
+        let middle = self.end - HALF;
+        let Self {
+            mcu,
+            errors,
+            samplings,
+            ..
+        } = self;
         let now = mcu.now();
         let mut report = |error| {
             if !errors.iter().any(|(_, known)| *known == error) {
@@ -188,12 +201,15 @@ impl<C: CommsSide> DriveBoard<C> {
             }
         };
         wiring::check(mcu, &mut report);
-        let middle = if self.is_second {
-            self.end - HALF
-        } else {
-            self.end
-        };
-        wiring::check_samplings(&samplings, (middle, self.quiet), &mut report);
+        if self.is_second {
+            // The core may have run ahead of the board.
+            samplings.extend(mcu.take_samplings());
+            let is_past = |sampling: &mut Sampling| sampling.begin < middle + HALF;
+            let samplings: Vec<Sampling> = samplings.extract_if(.., is_past).collect();
+            if let Some(quiet) = quiet {
+                wiring::check_samplings(&samplings, middle, quiet, &mut report);
+            }
+        }
         let counted = wiring::counter(mcu).wrapping_sub(counter);
         if counted != turned {
             report(BoardError::Encoder { counted, turned });
@@ -286,7 +302,7 @@ impl<C: CommsSide> DriveBoard<C> {
     pub fn reset(&mut self, reset: Reset) {
         self.resets.push((self.mcu.now(), reset));
         self.mcu.reset(reset);
-        self.is_synchronised = false;
+        (self.is_synchronised, self.quiet) = (false, None);
     }
 }
 

@@ -128,6 +128,8 @@ pub struct Sampling {
     pub begin: Time,
     /// End.
     pub end: Time,
+    /// End of the conversion that follows.
+    pub converted: Time,
 }
 
 /// A microcontroller.

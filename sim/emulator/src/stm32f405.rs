@@ -190,11 +190,17 @@ impl Stm32f405 {
         word.ok().and_then(|word| u32::try_from(word).ok())
     }
 
-    /// Sets whether a converter, counted from 0, never ends a conversion.
+    /// Sets whether a converter, counted from 0, starts no conversion any more.
     pub fn set_converter_dead(&mut self, converter: usize, is_dead: bool) {
         if let Some(adc) = self.chip.adcs.0.get(converter) {
             adc.set_dead(is_dead);
         }
+    }
+
+    /// Adds noise of this standard deviation, in counts, to every sample of the
+    /// converters from now on: the same in every run.
+    pub fn set_converter_noise(&mut self, counts: f64) {
+        self.chip.analog.set_noise(counts);
     }
 
     /// Triggers that the converters have missed because they were converting.

@@ -67,6 +67,7 @@ fn milliamperes(current_a: f32) -> i16 {
         clippy::cast_possible_truncation,
         reason = "a cast from float saturates"
     )]
-    let milliamperes = rounded as i16;
-    milliamperes
+    // To 32 bits it is one instruction.
+    let milliamperes = rounded as i32;
+    i16::try_from(milliamperes).unwrap_or(0)
 }

@@ -1,16 +1,19 @@
 //! The three converters, which a timer starts.
 //!
 //! ```text
-//! trigger ── sampling ── 12 clocks ──> DR, EOC
+//! trigger ── sampling ── 12 clocks ──> DR, EOC ── sampling ── 12 clocks ──> JDR1 … JEOC
+//!            regular group                        injected group, with JAUTO
 //! ```
 //!
 //! Modelled: regular conversions of a sequence of
 //! any length, started by software or on an edge of a timer's trigger output;
-//! sampling times, prescaler, 12 bits right-aligned; EOC, OVR, STRT and the
-//! interrupts of EOC and OVR. The voltage is that at the end of
-//! sampling, of the pin of the channel, and 0 unless that pin is analog. The
-//! three share pins and prescaler. Not modelled: injected conversions, DMA, the
-//! analog watchdog, other
+//! injected ones that follow by themselves (JAUTO); of either group the first only
+//! without SCAN; sampling times, prescaler, 12 bits right-aligned; EOC, JEOC, OVR, STRT,
+//! JSTRT and the interrupts of EOC and OVR. The voltage is that at the end of
+//! sampling, of the pin of the channel, and 0 unless that pin is analog, with the
+//! converters' [`Noise`] if it is on. The
+//! three share pins and prescaler. Not modelled: injected conversions with triggers or
+//! offsets of their own, DMA, the analog watchdog, other
 //! resolutions and triggers, continuous mode; [`Adc::uses_unmodelled_features`]
 //! reports their use.
 
@@ -18,6 +21,7 @@ use super::registers::Words;
 use crate::chip::bus::Now;
 use crate::chip::clocks::{Clock, Rates};
 use crate::chip::part::{Peripheral, lock};
+use crate::devices::noise::Noise;
 use crate::mcu::{Pin, Sampling};
 use crate::pins::{Mode, Pins};
 use crate::time::Time;
@@ -27,13 +31,20 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
 const EOC: u32 = 1 << 1;
+const JEOC: u32 = 1 << 2;
+const JSTRT: u32 = 1 << 3;
 const STRT: u32 = 1 << 4;
 const OVR: u32 = 1 << 5;
 
 const EOCIE: u32 = 1 << 5;
 const OVRIE: u32 = 1 << 26;
-/// SCAN and the interrupts that are modelled; all else of CR1 is not.
-const KNOWN_1: u32 = EOCIE | OVRIE | 1 << 8;
+const SCAN: u32 = 1 << 8;
+const JAUTO: u32 = 1 << 10;
+/// What of CR1 is modelled.
+const KNOWN_1: u32 = EOCIE | OVRIE | SCAN | JAUTO;
+
+/// Injected conversions at most.
+const INJECTED: u32 = 4;
 
 const ADON: u32 = 1;
 const EOCS: u32 = 1 << 10;
@@ -73,6 +84,7 @@ fn pin(channel: u32) -> Option<Pin> {
 pub(crate) struct Analog {
     pins: Arc<Pins>,
     shares: Mutex<BTreeMap<Pin, f64>>,
+    noise: Mutex<Option<Noise>>,
 }
 
 impl Analog {
@@ -80,7 +92,13 @@ impl Analog {
         Self {
             pins,
             shares: Mutex::default(),
+            noise: Mutex::default(),
         }
+    }
+
+    /// Adds noise of this standard deviation, in counts, to every sample from now on.
+    pub(crate) fn set_noise(&self, counts: f64) {
+        *lock(&self.noise) = Some(Noise::new(counts / (TOP + 1.0)));
     }
 
     /// Sets the voltage at a pin.
@@ -92,8 +110,16 @@ impl Analog {
     fn channel(&self, channel: u32) -> f64 {
         let pin = pin(channel).filter(|pin| self.pins.mode(*pin) == Mode::Analog);
         let share = pin.and_then(|pin| lock(&self.shares).get(&pin).copied());
-        share.unwrap_or(0.0)
+        let noise = lock(&self.noise).as_mut().map_or(0.0, Noise::next);
+        share.unwrap_or(0.0) + noise
     }
+}
+
+/// A conversion's place in its group.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    Regular(u32),
+    Injected(u32),
 }
 
 #[derive(Debug, Default)]
@@ -103,10 +129,12 @@ struct State {
     cr2: u32,
     smpr: [u32; 2],
     sqr: [u32; 3],
+    jsqr: u32,
     dr: u32,
+    jdr: [u32; INJECTED as usize],
     ccr: u32,
-    /// Index in the sequence of the current conversion, and its end.
-    converting: Option<(u32, u64)>,
+    /// Place of the current conversion, and its end.
+    converting: Option<(Place, u64)>,
     /// Its sampling, if it has not ended.
     sampling: Option<Sampling>,
     samplings: Vec<Sampling>,
@@ -152,7 +180,7 @@ impl Adc {
         self.asked_too_much.load(Relaxed)
     }
 
-    /// Sets whether it never ends a conversion.
+    /// Sets whether it starts no conversion any more.
     pub(crate) fn set_dead(&self, is_dead: bool) {
         lock(&self.state).is_dead = is_dead;
     }
@@ -172,12 +200,32 @@ impl Adc {
         prescaler * self.rates.units(Clock::Apb2)
     }
 
-    fn channel(state: &State, place: u32) -> u32 {
-        let word = state.sqr[2 - (place / 6) as usize % 3];
-        word >> (place % 6 * 5) & 31
+    /// The last index of a group. Without SCAN only the first is converted.
+    fn last(state: &State, length: u32) -> u32 {
+        if state.cr1 & SCAN == 0 { 0 } else { length }
     }
 
-    fn start(&self, state: &mut State, place: u32, at: u64) {
+    fn last_regular(state: &State) -> u32 {
+        Self::last(state, state.sqr[0] >> 20 & 15)
+    }
+
+    fn last_injected(state: &State) -> u32 {
+        Self::last(state, state.jsqr >> 20 & 3)
+    }
+
+    fn channel(state: &State, place: Place) -> u32 {
+        let (word, slot) = match place {
+            Place::Regular(n) => (state.sqr[2 - (n / 6) as usize % 3], n % 6),
+            // A short group is the end of its list.
+            Place::Injected(n) => {
+                let first = INJECTED - 1 - (state.jsqr >> 20 & 3);
+                (state.jsqr, first + n)
+            }
+        };
+        word >> (slot * 5) & 31
+    }
+
+    fn start(&self, state: &mut State, place: Place, at: u64) {
         let channel = Self::channel(state, place);
         let word = state.smpr[usize::from(channel < 10)];
         let sampling = SAMPLING[(word >> (channel % 10 * 3) & 7) as usize];
@@ -189,9 +237,13 @@ impl Adc {
             pin: pin(channel),
             begin: Time::from_units(at),
             end: Time::from_units(end),
+            converted: Time::from_units(end + CONVERSION * units),
         });
         state.converting = Some((place, end + CONVERSION * units));
-        state.sr |= STRT;
+        state.sr |= match place {
+            Place::Regular(_) => STRT,
+            Place::Injected(_) => JSTRT,
+        };
     }
 
     fn trigger(&self, state: &mut State) {
@@ -203,7 +255,7 @@ impl Adc {
             return;
         }
         let now = self.now.load(Relaxed);
-        self.start(state, 0, now);
+        self.start(state, Place::Regular(0), now);
     }
 
     fn happen(&self, state: &mut State, at: u64) {
@@ -217,25 +269,48 @@ impl Adc {
         let Some((place, end)) = state.converting.filter(|(_, end)| *end == at) else {
             return;
         };
-        // Without DMA an overrun is detected only with EOCS.
-        if state.sr & EOC != 0 && state.cr2 & EOCS != 0 {
-            state.sr |= OVR;
-        }
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "within the range of the converter"
         )]
         let counts = (state.sampled * (TOP + 1.0)).floor().clamp(0.0, TOP) as u32;
+        state.converting = None;
+        let next = match place {
+            Place::Regular(n) => Self::end_regular(state, n, counts),
+            Place::Injected(n) => Self::end_injected(state, n, counts),
+        };
+        if let Some(next) = next {
+            self.start(state, next, end);
+        }
+    }
+
+    /// Stores a result; returns what is converted next.
+    fn end_regular(state: &mut State, n: u32, counts: u32) -> Option<Place> {
+        // Without DMA an overrun is detected only with EOCS.
+        if state.sr & EOC != 0 && state.cr2 & EOCS != 0 {
+            state.sr |= OVR;
+        }
         state.dr = counts;
-        let last = state.sqr[0] >> 20 & 15;
-        if place >= last || state.cr2 & EOCS != 0 {
+        let last = Self::last_regular(state);
+        if n >= last || state.cr2 & EOCS != 0 {
             state.sr |= EOC;
         }
-        state.converting = None;
-        if place < last {
-            self.start(state, place + 1, end);
+        if n < last {
+            Some(Place::Regular(n + 1))
+        } else {
+            (state.cr1 & JAUTO != 0).then_some(Place::Injected(0))
         }
+    }
+
+    /// As [`Self::end_regular`].
+    fn end_injected(state: &mut State, n: u32, counts: u32) -> Option<Place> {
+        state.jdr[n as usize] = counts;
+        if n < Self::last_injected(state) {
+            return Some(Place::Injected(n + 1));
+        }
+        state.sr |= JEOC;
+        None
     }
 
     fn next(state: &State) -> Option<u64> {
@@ -313,6 +388,8 @@ impl Words for Adc {
                 0x2c => state.sqr[0],
                 0x30 => state.sqr[1],
                 0x34 => state.sqr[2],
+                0x38 => state.jsqr,
+                0x3c..0x4c => state.jdr[(offset - 0x3c) as usize / 4],
                 0x4c => {
                     if !is_debugger {
                         state.sr &= !EOC;
@@ -354,6 +431,9 @@ impl Words for Adc {
                 0x2c => state.sqr[0] = value,
                 0x30 => state.sqr[1] = value,
                 0x34 => state.sqr[2] = value,
+                0x38 => state.jsqr = value,
+                // Offsets of the injected conversions.
+                0x14..0x24 if value != 0 => self.asked_too_much.store(true, Relaxed),
                 0x304 => state.ccr = value,
                 _ => {}
             }

@@ -57,6 +57,13 @@ const UPPER: Switches = [Some(true), Some(false)];
 const LOWER: Switches = [Some(false), Some(true)];
 const BOTH: Switches = [Some(true); 2];
 
+/// Time without switching around the middle of a tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quiet {
+    pub(super) before: Time,
+    pub(super) after: Time,
+}
+
 /// TIM1's registers.
 struct Timer<'a> {
     mcu: &'a Stm32f405,
@@ -230,12 +237,15 @@ pub(super) fn check(mcu: &Stm32f405, mut report: impl FnMut(BoardError)) {
     }
 }
 
-/// Time between the top of TIM1 and the nearest switching, dead time included.
-pub(super) fn quiet(mcu: &Stm32f405) -> Time {
+/// Time without switching before and after the top of TIM1. Before it, the last edge
+/// is late by the dead time.
+pub(super) fn quiet(mcu: &Stm32f405) -> Quiet {
     let timer = Timer::new(mcu);
     let [a, b] = timer.compare.map(|compare| compare.min(timer.top));
-    let clocks = (timer.top - a.max(b)).saturating_sub(timer.dead_clocks());
-    Time::from_units(u64::from(clocks) * UNITS)
+    let after = timer.top - a.max(b);
+    let before = after.saturating_sub(timer.dead_clocks());
+    let [before, after] = [before, after].map(|clocks| Time::from_units(u64::from(clocks) * UNITS));
+    Quiet { before, after }
 }
 
 /// Time since TIM1 was at its bottom, if it runs.

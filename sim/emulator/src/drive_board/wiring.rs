@@ -4,7 +4,7 @@
 //! that the board names every mismatch, from the time on at which the
 //! bridge's timer runs: that is the last that the image starts.
 
-use super::{HALF, half_bridges};
+use super::half_bridges::{self, Quiet};
 use crate::mcu::{Mcu, Pin, Sampling};
 use crate::pins::{Mode, PinSetup, Pull};
 use crate::stm32f405::Stm32f405;
@@ -33,7 +33,7 @@ pub(super) const SUPPLY: Pin = Pin::new('C', 3);
 pub(super) const MOTOR: Pin = Pin::new('A', 2);
 pub(super) const JOINT: Pin = Pin::new('C', 2);
 
-/// The converters, from 1 on, and the pins that they convert in the middle of a
+/// The converters, from 1 on, and the pins that they convert around the middle of a
 /// tick.
 const CONVERTED: [(u32, Pin); 5] = [
     (1, SENSOR),
@@ -43,6 +43,9 @@ const CONVERTED: [(u32, Pin); 5] = [
     (3, JOINT),
 ];
 
+/// Those of the currents.
+const CURRENTS: [u32; 2] = [1, 2];
+
 /// The encoder's counter.
 const COUNTER: u32 = 0x4000_0c24;
 
@@ -51,8 +54,9 @@ const COUNTER: u32 = 0x4000_0c24;
 const CHARACTER_UNITS: u64 = 800;
 const MOST_OFF_UNITS: u64 = 16;
 
-/// Time between the middle of a tick and the middle of a sampling, at most.
-const MOST_OFF_MIDDLE: Time = Time::from_units(336 / 4);
+/// Time between the middle of a tick and that of all samplings of a current, at most:
+/// 0.1 µs.
+const MOST_OFF_MIDDLE: Time = Time::from_units(336 / 10);
 
 /// A wire between a pin and a part of the board.
 struct Wire {
@@ -184,18 +188,18 @@ pub enum BoardError {
         /// The channel.
         channel: u32,
     },
-    /// A converter does not sample in the middle of the tick.
+    /// The samples of a current are not centred on the middle of the tick.
     #[error(
-        "ADC{converter} samples {off_ns} ns off the middle of the tick; at most 250 ns are allowed"
+        "ADC{converter} samples {off_ns} ns off the middle of the tick; at most 100 ns are allowed"
     )]
     SamplingTime {
         /// From 1 on.
         converter: u32,
-        /// From the middle of the tick to the middle of the sampling.
+        /// From the middle of the tick to the middle of its samplings.
         off_ns: u64,
     },
-    /// A switch opens or closes while a converter samples.
-    #[error("a switch of the bridge switches while ADC{converter} samples")]
+    /// A switch opens or closes while a converter samples or converts.
+    #[error("a switch of the bridge switches while ADC{converter} samples or converts")]
     SwitchingWhileSampling {
         /// From 1 on.
         converter: u32,
@@ -241,11 +245,12 @@ pub(super) fn check(mcu: &Stm32f405, mut report: impl FnMut(BoardError)) {
     }
 }
 
-/// Reports samplings of a wrong channel, not in the middle of a tick, one of
-/// which was at `middle`, or not within `quiet` from it.
+/// Reports samplings of a tick that are of a wrong channel, that are not within `quiet`
+/// around its `middle`, conversion included, or, of a current, not centred on it.
 pub(super) fn check_samplings(
     samplings: &[Sampling],
-    (middle, quiet): (Time, Time),
+    middle: Time,
+    quiet: Quiet,
     mut report: impl FnMut(BoardError),
 ) {
     for sampling in samplings {
@@ -256,18 +261,26 @@ pub(super) fn check_samplings(
             report(BoardError::Channel { converter, channel });
             continue;
         }
-        let center = u64::midpoint(sampling.begin.units(), sampling.end.units());
-        // From the nearest middle: the core may have run ahead of the board.
-        let tick = 2 * HALF.units();
-        let off = center.abs_diff(middle.units()) % tick;
-        let off = off.min(tick - off);
+        let is_quiet =
+            sampling.begin + quiet.before >= middle && sampling.converted <= middle + quiet.after;
+        if !is_quiet {
+            report(BoardError::SwitchingWhileSampling { converter });
+        }
+    }
+    for converter in CURRENTS {
+        let own = samplings.iter().filter(|it| it.converter == converter);
+        let (count, sum) = own.fold((0, 0), |(count, sum), sampling| {
+            let center = u64::midpoint(sampling.begin.units(), sampling.end.units());
+            (count + 1, sum + center)
+        });
+        // None where a converter is broken: the program's to notice.
+        let Some(center) = u64::checked_div(sum, count) else {
+            continue;
+        };
+        let off = center.abs_diff(middle.units());
         if off > MOST_OFF_MIDDLE.units() {
             let off_ns = off * 1_000 / 336;
             report(BoardError::SamplingTime { converter, off_ns });
-        }
-        let half_length = (sampling.end - sampling.begin).units() / 2;
-        if off + half_length > quiet.units() {
-            report(BoardError::SwitchingWhileSampling { converter });
         }
     }
 }

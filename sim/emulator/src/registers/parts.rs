@@ -26,7 +26,7 @@ pub(super) const PARTS: &[Part] = &[
     part(
         "ADC3",
         0x4001_2200,
-        CONVERTER.split_at(CONVERTER.len() - 1).0,
+        CONVERTER.split_at(CONVERTER.len() - 2).0,
     ),
     part("ADC", 0x4001_2300, &[register("CCR", 0x04, COMMON)]),
     part("USART6", 0x4001_1400, USART),
@@ -229,7 +229,13 @@ const CONVERTER: &[Register] = &[
     register(
         "CR1",
         0x04,
-        &[bit("EOCIE", 5), bit("SCAN", 8), bit("OVRIE", 26)],
+        &[
+            bit("EOCIE", 5),
+            bit("JEOCIE", 7),
+            bit("SCAN", 8),
+            bit("JAUTO", 10),
+            bit("OVRIE", 26),
+        ],
     ),
     register(
         "CR2",
@@ -268,6 +274,17 @@ const CONVERTER: &[Register] = &[
             number("SQ1", 0, 5),
             number("SQ2", 5, 5),
             number("SQ3", 10, 5),
+        ],
+    ),
+    register(
+        "JSQR",
+        0x38,
+        &[
+            number("JSQ1", 0, 5),
+            number("JSQ2", 5, 5),
+            number("JSQ3", 10, 5),
+            number("JSQ4", 15, 5),
+            number("JL", 20, 2),
         ],
     ),
 ];

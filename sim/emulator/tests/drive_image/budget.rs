@@ -38,18 +38,18 @@ struct Limits {
 const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::ZeroWaitStates,
-        share: 40,
-        commit_share: 45,
-        cold_share: 40,
-        render_cycles: 900,
+        share: 39,
+        commit_share: 44,
+        cold_share: 38,
+        render_cycles: 880,
     },
     // About 3 % above what was measured.
     Limits {
         flash: Flash::Modelled,
-        share: 57,
-        commit_share: 65,
-        cold_share: 57,
-        render_cycles: 1_220,
+        share: 53,
+        commit_share: 61,
+        cold_share: 50,
+        render_cycles: 1_200,
     },
 ];
 

@@ -11,6 +11,7 @@ mod host;
 mod killed;
 mod locks;
 mod mpu;
+mod noise;
 mod outputs;
 #[path = "../timing/reference_flash.rs"]
 mod reference_flash;

@@ -12,14 +12,16 @@ use crepitus_device::drive::command::Inputs;
 use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_emulator::Mcu;
 use crepitus_emulator::mcu::Access;
+use crepitus_protocol::frame::DELIMITER;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 use crepitus_protocol::{Decoder, Lane, Revision, State};
 use std::collections::BTreeMap;
 
 const ENCODER: u32 = 0x4000_0c24;
 const SENSOR_FLAGS: u32 = 0x4001_2000;
-const SENSOR_DATA: u32 = 0x4001_204c;
-const MONITOR_DATA: u32 = 0x4001_214c;
+/// The regular conversion and the injected ones, in the order in which they are read.
+const SENSOR_DATA: [u32; 4] = [0x4001_204c, 0x4001_203c, 0x4001_2040, 0x4001_2044];
+const MONITOR_DATA: [u32; 4] = [0x4001_214c, 0x4001_213c, 0x4001_2140, 0x4001_2144];
 const SLOW_SEQUENCE: u32 = 0x4001_2234;
 const SLOW_DATA: u32 = 0x4001_224c;
 const CLOCK: u32 = 0x4000_0024;
@@ -27,11 +29,17 @@ const LINE: u32 = 0x4002_0410;
 const BREAK_FLAGS: u32 = 0x4001_0010;
 const LINK_CONTROL: u32 = 0x4001_140c;
 const RECEIVED_LEFT: u32 = 0x4002_642c;
-const REGISTERS: [u32; 11] = [
+const REGISTERS: [u32; 17] = [
     ENCODER,
     SENSOR_FLAGS,
-    SENSOR_DATA,
-    MONITOR_DATA,
+    SENSOR_DATA[0],
+    SENSOR_DATA[1],
+    SENSOR_DATA[2],
+    SENSOR_DATA[3],
+    MONITOR_DATA[0],
+    MONITOR_DATA[1],
+    MONITOR_DATA[2],
+    MONITOR_DATA[3],
     SLOW_SEQUENCE,
     SLOW_DATA,
     CLOCK,
@@ -45,16 +53,16 @@ const REGISTERS: [u32; 11] = [
 const RING: u32 = 2_048;
 
 /// The most that a run of the task takes of them.
-const RUN: u32 = 10;
+const RUN: u32 = 12;
 
 /// Ticks that are compared, at least.
 const TICKS: usize = 20_000;
 
-/// As the converter's counts become amperes, in the same arithmetic.
-fn amperes(counts: u32) -> f32 {
-    #[expect(clippy::cast_precision_loss, reason = "twelve bits")]
-    let counts = counts as f32;
-    (counts * (1.0 / 4096.0) - 0.5) * (3.3 / (20.0 * 0.033))
+/// As the sum of a converter's four counts becomes amperes, in the same arithmetic.
+fn amperes(sum: u32) -> f32 {
+    #[expect(clippy::cast_precision_loss, reason = "fourteen bits")]
+    let sum = sum as f32;
+    (sum * (1.0 / (4.0 * 4096.0)) - 0.5) * (3.3 / (20.0 * 0.033))
 }
 
 /// As a channel's counts become what it measures, in the same arithmetic.
@@ -72,14 +80,17 @@ fn slow(channel: u32, counts: u32) -> SlowInput {
 struct Replay<'a> {
     drive: Drive,
     inputs: Inputs,
+    /// Of the counts of a current that were read.
+    sum: u32,
     /// Channel of the third converter.
     channel: u32,
     clock_us: u32,
     /// Bytes that the image's link has received.
     bytes: std::slice::Iter<'a, u8>,
     next: u32,
-    /// The last run of the link's task took bytes.
+    /// The last run of the link's task took bytes, and the end of a frame.
     has_received: bool,
+    has_ended: bool,
     /// Samples that were put into blocks.
     pushed: u64,
     /// The parameters in force, block by block, in the image.
@@ -99,8 +110,14 @@ impl Replay<'_> {
         match access.address {
             ENCODER => self.sample(access.value),
             SENSOR_FLAGS => self.inputs = Inputs::default(),
-            SENSOR_DATA => self.inputs.current_a = Some(amperes(access.value)),
-            MONITOR_DATA => self.inputs.monitor_a = Some(-amperes(access.value)),
+            address if SENSOR_DATA.contains(&address) => {
+                let all = self.add(address, access.value, &SENSOR_DATA);
+                self.inputs.current_a = all.map(amperes).or(self.inputs.current_a);
+            }
+            address if MONITOR_DATA.contains(&address) => {
+                let all = self.add(address, access.value, &MONITOR_DATA);
+                self.inputs.monitor_a = all.map(|sum| -amperes(sum)).or(self.inputs.monitor_a);
+            }
             SLOW_DATA => self.inputs.slow = slow(self.channel, access.value),
             CLOCK => {
                 self.inputs.interval_us = access.value.wrapping_sub(self.clock_us);
@@ -120,20 +137,19 @@ impl Replay<'_> {
                 let end = (RING - access.value) % RING;
                 let come = (end + RING - self.next) % RING;
                 let run = come.min(RUN);
-                // Receives or sends, as the task does: bytes are never taken by two
-                // runs one after the other.
-                self.has_received = run > 0 && !self.has_received;
-                if !self.has_received {
-                    self.send();
-                    return;
-                }
-                for byte in self.bytes.by_ref().take(run as usize) {
-                    self.drive.link_received(*byte);
-                }
-                self.next = (self.next + run) % RING;
+                self.link(run);
             }
             _ => {}
         }
+    }
+
+    /// Adds counts of a current; returns the sum of all once the last has been read.
+    fn add(&mut self, address: u32, counts: u32, registers: &[u32; 4]) -> Option<u32> {
+        if address == registers[0] {
+            self.sum = 0;
+        }
+        self.sum += counts;
+        (address == registers[3]).then_some(self.sum)
     }
 
     fn sample(&mut self, counter: u32) {
@@ -146,6 +162,31 @@ impl Replay<'_> {
             self.drive.prepare();
         }
         self.drive.render_torque(counter);
+    }
+
+    /// Receives or sends, as the task does.
+    fn link(&mut self, run: u32) {
+        let is_end = run > 0 && self.is_end();
+        let may_receive = !self.has_received || is_end && !self.has_ended;
+        self.has_received = run > 0 && may_receive;
+        self.has_ended = self.has_received && is_end;
+        if !self.has_received {
+            self.send();
+            return;
+        }
+        for _ in 0..if is_end { 1 } else { run } {
+            let byte = self.bytes.next().expect("it has been received");
+            self.drive.link_received(*byte);
+            self.next = (self.next + 1) % RING;
+            if self.is_end() {
+                break;
+            }
+        }
+    }
+
+    /// Whether the next byte ends a frame.
+    fn is_end(&self) -> bool {
+        self.bytes.as_slice().first() == Some(&DELIMITER)
     }
 
     fn send(&mut self) {
@@ -209,11 +250,13 @@ fn check(flash: Flash) {
     let mut replay = Replay {
         drive: Drive::new(&boot).expect("a drive"),
         inputs: Inputs::default(),
+        sum: 0,
         channel: 13,
         clock_us: 0,
         bytes: bytes.iter(),
         next: 0,
         has_received: false,
+        has_ended: false,
         pushed: 0,
         revisions: host.blocks.iter().map(revision).collect(),
         decoder: Decoder::new(),

@@ -96,7 +96,7 @@ const CHANGES: [Change; 16] = [
     ),
     (TIM5_CCER, |was| was | 1 << 1, "TIM5 has counted "),
     // Last, as it is not undone: the counter goes on.
-    (TIM3_CNT, |was| (was + 100) % 4_200, "ADC1 samples "),
+    (TIM3_CNT, |was| (was + 1_000) % 4_200, "ADC1 samples "),
 ];
 
 #[test]
