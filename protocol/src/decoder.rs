@@ -177,7 +177,7 @@ impl Decoder {
     }
 
     /// Before the first byte of a frame.
-    #[inline(always)]
+    #[inline]
     fn begin(&mut self) {
         if self.length == 0 {
             self.reset();
@@ -185,7 +185,7 @@ impl Decoder {
     }
 
     /// A COBS code.
-    #[inline(always)]
+    #[inline]
     fn code(&mut self, unit: &mut impl WordCrc, code: u8) {
         if self.is_zero_due {
             self.add(unit, 0);
@@ -196,7 +196,7 @@ impl Decoder {
     }
 
     /// A delimiter: the frame or the error, unless there were no bytes.
-    #[inline(always)]
+    #[inline]
     fn end(&mut self, unit: &mut impl WordCrc) -> Option<Result<Body<'_>, FrameError>> {
         let length = core::mem::take(&mut self.length);
         if length == 0 {
@@ -267,7 +267,7 @@ impl Decoder {
     }
 
     /// Adds the received bytes to the checksum, up to the end.
-    #[inline(always)]
+    #[inline]
     fn sum_up(&mut self, unit: &mut impl WordCrc) {
         let new = self.plain.get(self.summed..).unwrap_or_default();
         self.checksum.update_by(unit, new);
