@@ -211,3 +211,34 @@ fn every_risk_names_tests_that_exist_or_says_that_it_is_open() {
         assert!(runs_nothing(wrong).is_some(), "{wrong}");
     }
 }
+
+#[test]
+fn what_runs_where_names_tests_that_exist() {
+    let page = fs::read_to_string(repository().join("docs/where.md")).unwrap();
+    let claims: Vec<_> = (page.lines())
+        .skip_while(|line| !line.starts_with("| claim |"))
+        .skip(2)
+        .take_while(|line| line.starts_with('|'))
+        .collect();
+    assert!(claims.len() >= 20, "{}", claims.len());
+    for claim in claims {
+        let cells: Vec<_> = claim.split('|').map(str::trim).collect();
+        let [_, _, _, _, _, linux, board, commands, _] = cells[..] else {
+            panic!("{claim}");
+        };
+        // No board exists.
+        assert_eq!(board, "–", "{claim}");
+        let commands: Vec<_> = (commands.split('`').skip(1).step_by(2)).collect();
+        assert!(!commands.is_empty(), "{claim}");
+        let has_guest = commands
+            .iter()
+            .any(|c| c.starts_with("tools/linux-guest/run"));
+        assert!(
+            linux == "–" || has_guest || claim.contains("tshark"),
+            "{claim}"
+        );
+        for command in commands.iter().filter(|c| c.starts_with("cargo ")) {
+            assert_eq!(runs_nothing(command), None);
+        }
+    }
+}

@@ -46,9 +46,6 @@ mod app {
     /// Starts `link`, as the end of a sent frame does.
     const LINK: Interrupt = Interrupt::DMA2_STREAM6;
 
-    /// Delay of a reboot, ms, to send the answer and forward it to the drive.
-    const REBOOT_DELAY_MS: u8 = 20;
-
     /// Bytes of the link that are taken in at a time.
     const RUN_BYTES: usize = 32;
 
@@ -131,7 +128,7 @@ mod app {
 
     #[task(
         binds = TIM2, priority = 3,
-        local = [quarters, line, quarter: u8 = 0, reboot_in_ms: Option<u8> = None],
+        local = [quarters, line, quarter: u8 = 0],
         shared = [comms, save, &checkins],
     )]
     fn tick(mut cx: tick::Context) {
@@ -151,12 +148,7 @@ mod app {
             cx.shared.save.lock(|save| *save = outputs.save);
         }
         if outputs.reboot {
-            *cx.local.reboot_in_ms = Some(REBOOT_DELAY_MS);
-        }
-        match cx.local.reboot_in_ms {
-            Some(0) => board::stop::reboot(),
-            Some(left) => *left -= 1,
-            None => {}
+            board::stop::reboot();
         }
         rtic::pend(USB);
     }

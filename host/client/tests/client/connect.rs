@@ -1,6 +1,7 @@
 //! Discovery, handshake and compatibility.
 
 use crate::support::{Port, client, device, golden, ms, options, pump_for};
+use crepitus_client::Transport as _;
 use crepitus_client::{Client, Error, Management, RequestKind};
 use crepitus_protocol::management::{ResetCause, Role};
 use crepitus_protocol::{State, schema};
@@ -114,6 +115,8 @@ fn a_device_with_another_schema_can_be_stopped() {
         }
     );
     stranger.stop().unwrap();
+    // Until the drive has said so.
+    stranger.transport_mut().wait(ms(5));
     assert_eq!(shared.borrow().comms.state(), State::Disarmed);
     stranger.reboot().unwrap();
     assert!(matches!(

@@ -7,6 +7,7 @@ mod client;
 mod faults;
 mod host;
 mod hostile;
+mod killed;
 mod load;
 mod power;
 mod replay;

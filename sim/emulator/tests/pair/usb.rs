@@ -211,10 +211,14 @@ fn frames_of_every_length_around_a_packet_arrive() {
     let bytes = after.bytes_in - before.bytes_in;
     println!("{packets} packets, {bytes} bytes in 60 ms");
     assert!(packets * 64 >= bytes);
+    let mut worst = Duration::ZERO;
     for _ in 0..20 {
         let begin = host.now();
         host.parameters().expect("parameters");
         let took = host.now().saturating_sub(begin);
-        assert!(took < Duration::from_millis(5), "{took:?}");
+        // Sent as it is made, not with the next tick of comms.
+        assert!(took < Duration::from_micros(1_200), "{took:?}");
+        worst = worst.max(took);
     }
+    println!("parameters: at worst after {worst:?}");
 }
