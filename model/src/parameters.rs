@@ -53,7 +53,7 @@ pub struct Choice {
     /// The names of the options, in the order of their values.
     pub names: &'static [&'static str],
     /// Place of the default.
-    pub default: f64,
+    pub default: u8,
     /// Description.
     pub meaning: &'static str,
 }
@@ -80,7 +80,7 @@ impl Parameter {
     pub const fn default(&self) -> f64 {
         match self.kind {
             Kind::Number(spec) => spec.default,
-            Kind::Choice(choice) => choice.default,
+            Kind::Choice(choice) => choice.default as f64,
         }
     }
 
@@ -119,7 +119,8 @@ pub struct OutOfRange {
     pub value: f64,
 }
 
-/// Settings that are the numbers of one table; `settings!` makes them.
+/// Settings that are the numbers of one table, and choices; `settings!` makes
+/// them.
 pub trait Tabled<const N: usize>: Copy {
     /// One entry a number: key with unit, range, default, meaning.
     const TABLE: &'static [ParameterSpec; N];
@@ -133,8 +134,21 @@ pub trait Tabled<const N: usize>: Copy {
     /// The numbers, to be changed, in the order of the table.
     fn values_mut(&mut self) -> [&mut f64; N];
 
-    /// From numbers in the order of the table; not checked.
+    /// From numbers in the order of the table, with choices at their defaults;
+    /// not checked.
     fn of(values: [f64; N]) -> Self;
+
+    /// The choices among the settings.
+    const CHOICES: &'static [Choice];
+
+    /// The wire's number of each.
+    const CHOICE_IDS: &'static [u8];
+
+    /// The place of the option that is chosen, of each choice.
+    fn chosen(&self) -> impl Iterator<Item = u8>;
+
+    /// Chooses an option of the choice at `index`; ignores what there is not.
+    fn choose(&mut self, index: usize, option: u8);
 
     /// The table's defaults.
     fn defaults() -> Self {
@@ -164,11 +178,23 @@ pub trait Source {
     fn read<const N: usize, T: Tabled<N>>(&self) -> T;
 }
 
-/// Settings from numbers in the order of the table; the rest at its defaults.
-pub fn filled<const N: usize, T: Tabled<N>>(numbers: &[f64]) -> T {
+/// Numbers and choices of an effect, in the order of its tables.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Chosen<'a> {
+    /// Numbers.
+    pub numbers: &'a [f64],
+    /// Places of the options that are chosen.
+    pub options: &'a [u8],
+}
+
+/// Settings from what is given; the rest at its defaults.
+pub fn filled<const N: usize, T: Tabled<N>>(given: Chosen<'_>) -> T {
     let mut settings = T::defaults();
-    for (value, number) in settings.values_mut().into_iter().zip(numbers) {
+    for (value, number) in settings.values_mut().into_iter().zip(given.numbers) {
         *value = *number;
+    }
+    for (index, option) in given.options.iter().enumerate() {
+        settings.choose(index, *option);
     }
     settings
 }
@@ -198,16 +224,19 @@ pub(crate) const fn switch(device: &[Parameter]) -> u8 {
 ///     /// Why there are such settings.
 ///     pub struct NameSettings, group "name" {
 ///         render { id: 7 always, choice: ["off", "on"], default: 0, meaning: "…" },
+///     } chosen {
+///         form { id: 9 always, choice: ["round", "square"], default: 0, meaning: "…" },
 ///     } {
 ///         gain { id: 8 always, symbol: "g", unit: "1", range: 0.0..=10.0, default: 1.0, meaning: "…" },
 ///     }
 /// }
 /// ```
 ///
-/// Choices come first; they are the device's, not fields of the struct. A number
-/// without an `id` is one that no device has. Made are the struct with its
-/// fields, [`Tabled`] and [`Default`], and `DEVICE`: what a device has of it, to
-/// be listed in `crepitus_protocol::parameters`.
+/// The device's own choices come first; they are not fields of the struct. Those
+/// that are `chosen` are: the place of an option. A number without an `id` is one
+/// that no device has. Made are the struct with its fields, [`Tabled`] and
+/// [`Default`], and `DEVICE`: what a device has of it, to be listed in
+/// `crepitus_protocol::parameters`.
 macro_rules! settings {
     (
         $(#[$meta:meta])*
@@ -218,7 +247,14 @@ macro_rules! settings {
                 default: $choice_default:literal,
                 meaning: $choice_meaning:literal $(,)?
             }),* $(,)?
-        } {
+        } $(chosen {
+            $($pick:ident {
+                id: $pick_id:literal $pick_when:ident,
+                choice: $pick_names:expr,
+                default: $pick_default:literal,
+                meaning: $pick_meaning:literal $(,)?
+            }),* $(,)?
+        })? {
             $($field:ident {
                 $(id: $id:literal $when:ident,)?
                 symbol: $symbol:literal,
@@ -232,6 +268,7 @@ macro_rules! settings {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct $name {
+            $($(#[doc = concat!("Place of the option: ", $pick_meaning, ".")] pub $pick: u8,)*)?
             $(#[doc = concat!($symbol, ", ", $unit, ": ", $meaning, ".")] pub $field: f64,)*
         }
 
@@ -247,6 +284,13 @@ macro_rules! settings {
                 meaning: $meaning,
             };)*
 
+            $($(const $pick: $crate::parameters::Choice = $crate::parameters::Choice {
+                key: stringify!($pick),
+                names: &$pick_names,
+                default: $pick_default,
+                meaning: $pick_meaning,
+            };)*)?
+
             /// The device's parameters of this group.
             pub const DEVICE: &'static [$crate::parameters::Parameter] = &[
                 $($crate::parameters::Parameter {
@@ -255,11 +299,17 @@ macro_rules! settings {
                     kind: $crate::parameters::Kind::Choice(&$crate::parameters::Choice {
                         key: stringify!($choice),
                         names: &$names,
-                        default: $choice_default as f64,
+                        default: $choice_default,
                         meaning: $choice_meaning,
                     }),
                     when: $crate::parameters::settings!(@when $choice_when),
                 },)*
+                $($($crate::parameters::Parameter {
+                    id: $pick_id,
+                    group: $group,
+                    kind: $crate::parameters::Kind::Choice(&Self::$pick),
+                    when: $crate::parameters::settings!(@when $pick_when),
+                },)*)?
                 $($($crate::parameters::Parameter {
                     id: $id,
                     group: $group,
@@ -285,7 +335,23 @@ macro_rules! settings {
             }
 
             fn of([$($field),*]: [f64; [$(stringify!($field)),*].len()]) -> Self {
-                Self { $($field),* }
+                Self { $($($pick: Self::$pick.default,)*)? $($field),* }
+            }
+
+            const CHOICES: &'static [$crate::parameters::Choice] = &[$($(Self::$pick),*)?];
+
+            const CHOICE_IDS: &'static [u8] = &[$($($pick_id),*)?];
+
+            fn chosen(&self) -> impl Iterator<Item = u8> {
+                let chosen: [u8; Self::CHOICE_IDS.len()] = [$($(self.$pick),*)?];
+                chosen.into_iter()
+            }
+
+            fn choose(&mut self, index: usize, option: u8) {
+                let chosen: [&mut u8; Self::CHOICE_IDS.len()] = [$($(&mut self.$pick),*)?];
+                if let Some(chosen) = chosen.into_iter().nth(index) {
+                    *chosen = option;
+                }
             }
         }
 
@@ -324,7 +390,7 @@ pub(crate) mod tests {
         for parameter in crate::render::effects::DEVICE.iter().copied().flatten() {
             let default = match parameter.kind {
                 Kind::Number(spec) => spec.default,
-                Kind::Choice(choice) => choice.default,
+                Kind::Choice(choice) => f64::from(choice.default),
             };
             assert_eq!(parameter.default().to_bits(), default.to_bits());
         }

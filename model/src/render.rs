@@ -20,14 +20,16 @@ pub mod guarded;
 pub mod held;
 pub mod input_check;
 pub mod limits;
+pub mod position;
 pub mod ramp;
 pub mod turn_back;
 
 use crate::joint::{Event, Phase, ShaftStep, StickSlip};
 use crate::real::Real;
 use core::marker::PhantomData;
-use effects::{Added, Phases};
+use effects::{Added, Observe, Phases};
 use input_check::{Checked, Sample};
+use position::Position;
 
 /// Why the torque shown is not the one that the model asks for. The numbers
 /// are those of the wire, where the motor has 3 and 4.
@@ -59,6 +61,8 @@ pub struct Shown<F> {
     pub model_torque_nm: F,
     /// Sum of the jumps of the symptoms' torque in this tick, N·m.
     pub jump_nm: F,
+    /// Torque of the symptoms that give energy, which a tank pays, N·m.
+    pub active_nm: F,
     /// Torque added by each effect besides the joint, N·m.
     pub added: Added<F>,
     /// The phase of each.
@@ -78,6 +82,7 @@ impl<F: Real> Shown<F> {
             torque_nm: self.torque_nm.to_f64(),
             model_torque_nm: self.model_torque_nm.to_f64(),
             jump_nm: self.jump_nm.to_f64(),
+            active_nm: self.active_nm.to_f64(),
             added: self.added.to_f64(),
             phases: self.phases,
             phase: self.phase,
@@ -93,6 +98,7 @@ impl<F: Real> Shown<F> {
             torque_nm: F::ZERO,
             model_torque_nm: F::ZERO,
             jump_nm: F::ZERO,
+            active_nm: F::ZERO,
             added: Added::NONE,
             phases: Phases(0),
             phase: Phase::Stick,
@@ -109,6 +115,10 @@ pub struct Seen<F> {
     pub sample: Sample<F>,
     /// Its velocity as far as known, rad/s; also where this sample is lost.
     pub omega_rad_s: F,
+    /// Where the joint is, or was seen last.
+    pub place: Position<F>,
+    /// The motor is driven: symptoms act.
+    pub is_driven: bool,
 }
 
 /// Decides what symptoms may believe of a sample.
@@ -141,8 +151,17 @@ pub struct Torque<F> {
 
 /// Adds to the torque of the joint.
 pub trait Addition<F> {
+    /// As at arming, at this place of the joint.
+    fn rest(&mut self, place: &Position<F>);
+
     /// One tick.
-    fn tick(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &mut Shown<F>);
+    fn tick(
+        &mut self,
+        seen: &Seen<F>,
+        input: &Checked<F>,
+        shown: &mut Shown<F>,
+        observe: &mut impl Observe<F>,
+    );
 }
 
 /// Holds the torque within what is allowed.
@@ -180,19 +199,41 @@ impl<F: Real, I: Check<F>, S: Symptom<F>, E: Addition<F>, L: Limits<F>> Pipeline
     /// One tick.
     #[inline]
     pub fn tick(&mut self, seen: &Seen<F>, on_event: impl FnMut(Event<F>)) -> Shown<F> {
+        self.tick_observed(seen, on_event, &mut ())
+    }
+
+    /// One tick, with what happens to the effects.
+    #[inline]
+    pub fn tick_observed(
+        &mut self,
+        seen: &Seen<F>,
+        on_event: impl FnMut(Event<F>),
+        observe: &mut impl Observe<F>,
+    ) -> Shown<F> {
         let mut shown = Shown::nothing();
         let input = self.check.check(&seen.sample);
         let torque = self.symptoms.tick(&input, &mut shown, on_event);
         shown.torque_nm = torque.shown_nm;
         shown.model_torque_nm = torque.model_nm;
-        self.add(seen, &input, shown)
+        self.add_observed(seen, &input, shown, observe)
     }
 
     /// The stages after the symptoms; on their own, what is shown before the
     /// first tick.
     #[inline]
-    pub fn add(&mut self, seen: &Seen<F>, input: &Checked<F>, mut shown: Shown<F>) -> Shown<F> {
-        self.effects.tick(seen, input, &mut shown);
+    pub fn add(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: Shown<F>) -> Shown<F> {
+        self.add_observed(seen, input, shown, &mut ())
+    }
+
+    #[inline]
+    fn add_observed(
+        &mut self,
+        seen: &Seen<F>,
+        input: &Checked<F>,
+        mut shown: Shown<F>,
+        observe: &mut impl Observe<F>,
+    ) -> Shown<F> {
+        self.effects.tick(seen, input, &mut shown, observe);
         self.limits.tick(&mut shown);
         shown
     }
@@ -262,8 +303,10 @@ impl<F: Real, S: Symptom<F>> Symptom<F> for Option<S> {
 }
 
 impl<F> Addition<F> for () {
+    fn rest(&mut self, _: &Position<F>) {}
+
     #[inline]
-    fn tick(&mut self, _: &Seen<F>, _: &Checked<F>, _: &mut Shown<F>) {}
+    fn tick(&mut self, _: &Seen<F>, _: &Checked<F>, _: &mut Shown<F>, _: &mut impl Observe<F>) {}
 }
 
 impl<F> Limits<F> for () {
@@ -272,12 +315,23 @@ impl<F> Limits<F> for () {
 }
 
 impl<F: Real> Seen<F> {
-    /// A sample that was taken.
+    /// A sample that was taken of a joint that is driven, at this place.
     #[inline]
-    pub fn taken(shaft: &ShaftStep<F>) -> Self {
+    pub fn taken(shaft: &ShaftStep<F>, place: Position<F>) -> Self {
         Self {
             sample: Sample::Taken(*shaft),
             omega_rad_s: shaft.omega_end_rad_s,
+            place,
+            is_driven: true,
+        }
+    }
+
+    /// Travel since the last sample that was taken, rad; without one none.
+    #[inline]
+    pub fn travel_rad(&self) -> F {
+        match self.sample {
+            Sample::Taken(shaft) => shaft.delta_phi_rad,
+            Sample::Lost => F::ZERO,
         }
     }
 }
@@ -300,11 +354,12 @@ mod tests {
     }
 
     fn steady() -> Seen<f64> {
-        Seen::taken(&ShaftStep {
+        let shaft = ShaftStep {
             delta_phi_rad: 5e-5,
             omega_start_rad_s: 1.0,
             omega_end_rad_s: 1.0,
-        })
+        };
+        Seen::taken(&shaft, Position::at(0))
     }
 
     #[test]
@@ -360,7 +415,7 @@ mod tests {
         let before = pipeline.tick(&steady(), |_| {}).torque_nm;
         let lost = Seen {
             sample: Sample::Lost,
-            omega_rad_s: 1.0,
+            ..steady()
         };
         assert_eq!(pipeline.tick(&lost, |_| {}).torque_nm, before);
         assert!(pipeline.tick(&steady(), |_| {}).torque_nm > before);

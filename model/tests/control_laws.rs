@@ -15,6 +15,7 @@ use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::effects::bone_shaping::BoneShapingSettings;
 use crepitus_model::render::effects::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::render::effects::{DeviceEffect, Timing};
+use crepitus_model::render::position::Sight;
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
     BoneShaping, CurrentLoop, FrictionCompensation, Frozen, Real, Settings, ShaftStep,
@@ -28,6 +29,7 @@ const TICK_S: f64 = 5e-5;
 const TIMING: Timing = Timing {
     step_s: TICK_S,
     delay_ticks: 1,
+    sight: Sight::IDEAL,
 };
 
 /// Any number, NaN and infinities.
@@ -55,7 +57,7 @@ fn bone<F: Real>(settings: &BoneShapingSettings, delay_ticks: usize) -> BoneShap
         delay_ticks,
         ..TIMING
     };
-    BoneShaping::new(settings, &timing).unwrap()
+    BoneShaping::coefficients(settings, &timing).unwrap()
 }
 
 /// A hand and the torque that is added: what it gets back over the worst
@@ -372,7 +374,7 @@ proptest! {
         speeds in prop::collection::vec(-8.0..8.0_f64, 10..300),
         noise in prop::collection::vec(-0.05..0.05_f64, 300),
     ) {
-        let compensation = FrictionCompensation::<f64>::new(&s, &TIMING).unwrap();
+        let compensation = FrictionCompensation::<f64>::coefficients(&s, &TIMING).unwrap();
         let cancelled = s.share * s.friction_nm;
         let friction = cancelled + more;
         let (mut taken, mut given, mut travel) = (0.0, 0.0, 0.0);
@@ -393,7 +395,7 @@ proptest! {
         s in within_the_table::<3, FrictionCompensationSettings>(),
         omega in anything(),
     ) {
-        let compensation = FrictionCompensation::<f32>::new(&s, &TIMING).unwrap();
+        let compensation = FrictionCompensation::<f32>::coefficients(&s, &TIMING).unwrap();
         let torque = compensation.torque_nm(omega);
         prop_assert!(torque.abs() <= (s.share * s.friction_nm) as f32);
         prop_assert_eq!(compensation.torque_nm(-omega), -torque);

@@ -2,6 +2,7 @@
 
 use crate::joint::Parameters;
 use crate::parameters::{OutOfRange, ParameterSpec, Tabled};
+use crate::render::effects::MOST_STIFFNESS_NM_PER_RAD;
 use core::fmt;
 
 /// The longest step, s.
@@ -119,6 +120,16 @@ pub enum SettingsError {
         /// Why.
         reason: &'static str,
     },
+    /// Settings that exclude each other.
+    Contradiction {
+        /// What holds between them, with their names.
+        reason: &'static str,
+    },
+    /// The springs of all symptoms together are too stiff.
+    TooStiff {
+        /// Their sum, N·m/rad.
+        sum_nm_per_rad: f64,
+    },
     /// The step is not a positive, finite time.
     Step {
         /// The requested step, s.
@@ -157,6 +168,13 @@ impl fmt::Display for SettingsError {
             Self::Solver { solver, reason } => {
                 write!(f, "solver \"{solver}\" is refused: {reason}")
             }
+            Self::Contradiction { reason } => f.write_str(reason),
+            Self::TooStiff { sum_nm_per_rad } => write!(
+                f,
+                "what can be elastic at once has {sum_nm_per_rad:.0} N·m/rad together, and a sampled joint stays \
+                 quiet with {MOST_STIFFNESS_NM_PER_RAD} at most: make the joint, the wall, the texture or another \
+                 symptom softer"
+            ),
             Self::Step { step_s } => {
                 write!(
                     f,

@@ -10,6 +10,7 @@
 use super::guarded::Counters;
 use super::held::{Held, JointCounters};
 use super::input_check::{Checked, InputCheck, InputLimits, Sample};
+use super::position::Position;
 use super::ramp::Ramp;
 use super::turn_back::TurnBack;
 use super::{Limit, Pipeline, Seen, Shown, Symptom, Torque};
@@ -142,10 +143,12 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Renderer<F, L> {
     /// One tick.
     #[inline]
     pub fn render(&mut self, sample: &Sample<F>, on_event: impl FnMut(Event<F>)) -> Shown<F> {
-        // No later stage uses the velocity.
+        // No later stage uses the rest.
         let seen = Seen {
             sample: *sample,
             omega_rad_s: F::ZERO,
+            place: Position::at(0),
+            is_driven: true,
         };
         self.tick(&seen, on_event)
     }

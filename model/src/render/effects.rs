@@ -3,27 +3,51 @@
 //! An effect's file has its parameters (`settings!`), its law ([`DeviceEffect`])
 //! and its description ([`EffectSpec`]). From the line here follow the device's
 //! parameters and commits, scene files, traces, studies, and the count of its
-//! cycles on the target.
+//! cycles on the target. A symptom implements [`Law`](symptom::Law).
 
 #[macro_use]
 mod table;
 pub mod bone_shaping;
+pub mod clasp_knife;
+pub mod clonus;
+pub mod cogwheel;
 mod faded;
 pub mod friction_compensation;
+mod kept;
+pub mod lead_pipe;
 mod phases;
+pub mod play;
+pub mod range_limit;
 mod slewed;
+pub mod spasticity;
+pub mod symptom;
+pub mod tank;
+pub mod texture;
+mod together;
 
 pub use faded::Faded;
+pub use kept::Kept;
 pub use phases::{PhaseSpec, Phases};
 pub use slewed::Slewed;
+pub use together::{MOST_SHARE_AT_A_WALL, MOST_STIFFNESS_NM_PER_RAD};
 
 use super::input_check::Checked;
+use super::position::{Position, Scale, Sight, Travel};
 use super::{Addition, Seen, Shown};
-use crate::joint::SettingsError;
-use crate::parameters::{Parameter, ParameterSpec, Source, Tabled, filled, switch};
+use crate::joint::{LONGEST_STEP_S, SettingsError};
+use crate::parameters::{Choice, Chosen, Parameter, ParameterSpec, Source, Tabled, filled, switch};
 use crate::real::Real;
+use symptom::{Change, Law};
+use tank::Tank;
 
 effects! {
+    range_limit: RangeLimit, RangeLimitSettings;
+    lead_pipe: LeadPipe, LeadPipeSettings;
+    cogwheel: Cogwheel, CogwheelSettings;
+    spasticity: Spasticity, SpasticitySettings;
+    clasp_knife: ClaspKnife, ClaspKnifeSettings;
+    clonus: Clonus, ClonusSettings;
+    texture: Texture, TextureSettings;
     friction_compensation: FrictionCompensation, FrictionCompensationSettings;
     bone_shaping: BoneShaping, BoneShapingSettings;
 }
@@ -47,6 +71,11 @@ pub struct EffectSpec {
     pub needs: &'static [Need],
     /// Its parameters.
     pub parameters: &'static [ParameterSpec],
+    /// Its choices.
+    pub choices: &'static [Choice],
+    /// What the names of parameters begin with that belong to a side. In a scene a
+    /// name without it stands for all sides.
+    pub sides: &'static [&'static str],
 }
 
 /// An effect that another one needs.
@@ -65,15 +94,71 @@ pub struct Timing {
     pub step_s: f64,
     /// The most ticks between a sample and the torque that answers it.
     pub delay_ticks: usize,
+    /// How it sees the joint.
+    pub sight: Sight,
 }
+
+impl Timing {
+    /// Scale of angles and times for a symptom.
+    ///
+    /// # Errors
+    /// [`SettingsError::Step`] if the tick is no time that a device has.
+    pub fn scale<F: Real>(&self) -> Result<Scale<F>, SettingsError> {
+        let step_s = self.step_s;
+        if step_s > 0.0 && step_s <= LONGEST_STEP_S {
+            Ok(Scale::new(&self.sight, step_s))
+        } else {
+            Err(SettingsError::Step { step_s })
+        }
+    }
+}
+
+/// What an effect knows in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Tick<'a, F> {
+    /// The shaft.
+    pub seen: &'a Seen<F>,
+    /// What symptoms may believe of it.
+    pub input: &'a Checked<F>,
+    /// The share of torque that is paid from the tank.
+    pub paid_share: F,
+}
+
+/// Sees what happens to the symptoms of the table.
+pub trait Observe<F> {
+    /// Something has happened to this effect.
+    fn change(&mut self, effect: &'static EffectSpec, change: Change<F>);
+}
+
+impl<F> Observe<F> for () {
+    #[inline]
+    fn change(&mut self, _: &'static EffectSpec, _: Change<F>) {}
+}
+
+impl<F, O: FnMut(&'static EffectSpec, Change<F>)> Observe<F> for O {
+    #[inline]
+    fn change(&mut self, effect: &'static EffectSpec, change: Change<F>) {
+        self(effect, change);
+    }
+}
+
+/// Energy that all symptoms that are no springs may return at once, J.
+pub const TANK_J: f64 = 0.2;
+
+/// And continuously, W: in any 2 s at most 0.28 J, with a bone's ringing less than
+/// the half joule that a device may give a leg.
+pub const TANK_REFILL_W: f64 = 0.04;
 
 /// The law of an effect, with its state.
 pub trait DeviceEffect<F: Real>: Sized {
     /// Its parameters.
     type Settings;
 
-    /// How it is switched and changed while the device runs: [`Slewed`] or
-    /// [`Faded`].
+    /// What a commit replaces of it.
+    type Coefficients: Copy + core::fmt::Debug + PartialEq;
+
+    /// How it is switched and changed while the device runs: [`Slewed`],
+    /// [`Faded`] or [`Kept`].
     type Switched: Switched<F, Self>;
 
     /// Its description.
@@ -82,14 +167,28 @@ pub trait DeviceEffect<F: Real>: Sized {
     /// Whether it renders a disorder: its torque is then part of the model's.
     const IS_SYMPTOM: bool = false;
 
-    /// At rest, from settings; computed in f64 and rounded once.
+    /// Coefficients for settings; computed in f64 and rounded once.
     ///
     /// # Errors
     /// [`SettingsError`] if a setting or the tick is out of range.
-    fn new(settings: &Self::Settings, timing: &Timing) -> Result<Self, SettingsError>;
+    fn coefficients(
+        settings: &Self::Settings,
+        timing: &Timing,
+    ) -> Result<Self::Coefficients, SettingsError>;
+
+    /// At rest, with these coefficients.
+    fn new(coefficients: Self::Coefficients) -> Self;
+
+    /// As at arming: at this place of the joint. Only symptoms have one.
+    fn rest(&mut self, _: &Position<F>) {}
 
     /// The torque to add in this tick, N·m.
-    fn added_nm(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &Shown<F>) -> F;
+    fn added_nm(
+        &mut self,
+        tick: &Tick<'_, F>,
+        shown: &mut Shown<F>,
+        observe: &mut impl Observe<F>,
+    ) -> F;
 
     /// The number of its phase.
     fn phase(&self) -> u16 {
@@ -97,20 +196,105 @@ pub trait DeviceEffect<F: Real>: Sized {
     }
 }
 
+/// Every symptom is an effect.
+impl<F: Real, L: Law<Real = F>> DeviceEffect<F> for L {
+    type Settings = L::Settings;
+    type Coefficients = L::Coefficients;
+    type Switched = Kept<F, L>;
+
+    const SPEC: EffectSpec = L::SPEC;
+    const IS_SYMPTOM: bool = true;
+
+    fn coefficients(
+        settings: &L::Settings,
+        timing: &Timing,
+    ) -> Result<L::Coefficients, SettingsError> {
+        <L as Law>::coefficients(settings, timing)
+    }
+
+    fn new(coefficients: L::Coefficients) -> Self {
+        <L as Law>::new(coefficients)
+    }
+
+    fn rest(&mut self, place: &Position<F>) {
+        Law::rest(self, place);
+    }
+
+    #[inline]
+    fn added_nm(
+        &mut self,
+        tick: &Tick<'_, F>,
+        shown: &mut Shown<F>,
+        observe: &mut impl Observe<F>,
+    ) -> F {
+        let torque_nm = match Travel::of(tick.input, &tick.seen.place, self.scale()) {
+            Some(travel) => self.follow(&travel, &mut |change: Change<F>| {
+                if change.word == symptom::Word::Snap {
+                    shown.jump_nm += change.after_nm - change.before_nm;
+                }
+                observe.change(const { &<L as Law>::SPEC }, change);
+            }),
+            None => self.torque_nm(),
+        };
+        if self.is_active() {
+            let paid_nm = tick.paid_share * torque_nm;
+            shown.active_nm += paid_nm;
+            paid_nm
+        } else {
+            torque_nm
+        }
+    }
+
+    fn phase(&self) -> u16 {
+        Law::phase(self)
+    }
+}
+
 /// An effect on a device that runs.
-pub trait Switched<F, E> {
+pub trait Switched<F: Real, E: DeviceEffect<F>> {
     /// Absent.
     fn new(slew_nm: F) -> Self;
 
     /// Adds its torque to what is shown, and returns it, N·m.
-    fn tick(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &mut Shown<F>) -> F;
+    fn tick(
+        &mut self,
+        tick: &Tick<'_, F>,
+        shown: &mut Shown<F>,
+        observe: &mut impl Observe<F>,
+    ) -> F;
 
-    /// From the next tick on: another law, or none, where `law` is given; and
-    /// torque that changes for it by at most `slew_nm` a tick.
-    fn change(&mut self, law: Option<Option<E>>, slew_nm: F);
+    /// From the next tick on: another law, or none, where coefficients are given;
+    /// and torque that changes for it by at most `slew_nm` a tick.
+    fn change(&mut self, coefficients: &Option<Option<E::Coefficients>>, slew_nm: F);
+
+    /// As at arming, at this place of the joint.
+    fn rest(&mut self, _: &Position<F>) {}
 
     /// The law in force.
     fn law(&self) -> Option<&E>;
+}
+
+/// The tank of a device's symptoms.
+fn tank<F: Real>(timing: &Timing) -> Tank<F> {
+    Tank::new(TANK_J, TANK_REFILL_W, timing.step_s, timing.delay_ticks)
+}
+
+/// Accounts for a tick; the share of torque that is paid.
+#[inline]
+fn open<F: Real>(tank: &mut Tank<F>, seen: &Seen<F>) -> F {
+    if tank.is_idle() {
+        return F::ONE;
+    }
+    tank.account(seen.travel_rad());
+    tank.share()
+}
+
+/// Notes what was given.
+#[inline]
+fn close<F: Real>(tank: &mut Tank<F>, shown: &Shown<F>) {
+    if shown.active_nm != F::ZERO || !tank.is_idle() {
+        tank.give(shown.active_nm);
+    }
 }
 
 /// What else is shown of an effect that has acted.
@@ -144,14 +328,30 @@ pub(crate) mod tests {
     pub(crate) const TIMING: Timing = Timing {
         step_s: 5e-5,
         delay_ticks: 1,
+        sight: Sight::IDEAL,
     };
 
     pub(crate) fn seen(omega_rad_s: f32) -> Seen<f32> {
-        Seen::taken(&ShaftStep {
+        let shaft = ShaftStep {
             delta_phi_rad: 0.0,
             omega_start_rad_s: omega_rad_s,
             omega_end_rad_s: omega_rad_s,
-        })
+        };
+        Seen::taken(&shaft, Position::at(0))
+    }
+
+    /// One without a sample.
+    pub(crate) fn missing(seen: &Seen<f32>) -> Tick<'_, f32> {
+        Tick {
+            seen,
+            input: &Checked::Missing(1),
+            paid_share: 1.0,
+        }
+    }
+
+    /// A law at these settings.
+    pub(crate) fn law<F: Real, E: DeviceEffect<F>>(settings: &E::Settings) -> E {
+        E::new(E::coefficients(settings, &TIMING).unwrap())
     }
 
     /// What an effect adds to 1 N·m in a tick, and what is shown then.
@@ -159,13 +359,16 @@ pub(crate) mod tests {
         stage: &mut impl Switched<f32, E>,
         omega_rad_s: f32,
         jump_nm: f32,
-    ) -> (f32, Shown<f32>) {
+    ) -> (f32, Shown<f32>)
+    where
+        E: DeviceEffect<f32>,
+    {
         let mut shown = Shown {
             torque_nm: 1.0,
             jump_nm,
             ..Shown::nothing()
         };
-        let added_nm = stage.tick(&seen(omega_rad_s), &Checked::Missing(1), &mut shown);
+        let added_nm = stage.tick(&missing(&seen(omega_rad_s)), &mut shown, &mut ());
         (added_nm, shown)
     }
 
@@ -174,6 +377,7 @@ pub(crate) mod tests {
 
     impl DeviceEffect<f32> for Constant {
         type Settings = FrictionCompensationSettings;
+        type Coefficients = ();
         type Switched = Faded<f32, Self>;
 
         const SPEC: EffectSpec = EffectSpec {
@@ -186,11 +390,20 @@ pub(crate) mod tests {
         };
         const IS_SYMPTOM: bool = true;
 
-        fn new(_: &Self::Settings, _: &Timing) -> Result<Self, SettingsError> {
-            Ok(Self)
+        fn coefficients(_: &Self::Settings, _: &Timing) -> Result<(), SettingsError> {
+            Ok(())
         }
 
-        fn added_nm(&mut self, _: &Seen<f32>, _: &Checked<f32>, _: &Shown<f32>) -> f32 {
+        fn new((): ()) -> Self {
+            Self
+        }
+
+        fn added_nm(
+            &mut self,
+            _: &Tick<'_, f32>,
+            _: &mut Shown<f32>,
+            _: &mut impl Observe<f32>,
+        ) -> f32 {
             0.5
         }
 
@@ -203,7 +416,7 @@ pub(crate) mod tests {
     fn a_symptom_is_in_the_models_torque_and_its_phase_is_shown() {
         let mut stage = Faded::<f32, Constant>::new(0.1);
         assert!(stage.law().is_none());
-        stage.change(Some(Some(Constant)), 0.1);
+        stage.change(&Some(Some(())), 0.1);
         let (added_nm, mut shown) = after(&mut stage, 0.0, 0.0);
         assert_eq!((shown.torque_nm, shown.model_torque_nm), (1.5, 0.0));
         note(stage.law(), added_nm, &mut shown);
@@ -215,8 +428,8 @@ pub(crate) mod tests {
         let mut shown = Shown::nothing();
         note::<f32, Constant>(None, 0.0, &mut shown);
         assert_eq!(shown, Shown::nothing());
-        let law = FrictionCompensation::new(&FrictionCompensationSettings::defaults(), &TIMING);
-        note(law.as_ref().ok(), 0.3, &mut shown);
+        let law: FrictionCompensation<f32> = law(&FrictionCompensationSettings::defaults());
+        note(Some(&law), 0.3, &mut shown);
         assert_eq!(shown, Shown::nothing());
     }
 
@@ -224,7 +437,10 @@ pub(crate) mod tests {
     fn a_line_of_the_table_is_in_everything_that_follows_from_it() {
         let numbers: std::vec::Vec<f64> = FrictionCompensationSettings::defaults().values().into();
         let settings = EffectSettings::given(|name| {
-            (name == "friction-compensation").then_some(numbers.as_slice())
+            (name == "friction-compensation").then_some(Chosen {
+                numbers: &numbers,
+                options: &[],
+            })
         });
         assert_eq!(settings.friction_compensation, Some(Tabled::defaults()));
         assert_eq!(settings.bone_shaping, None);
@@ -234,7 +450,7 @@ pub(crate) mod tests {
         }
         let mut laws = settings.laws::<f32>(&TIMING).unwrap();
         let mut shown = Shown::nothing();
-        laws.tick(&seen(1.0), &Checked::Missing(1), &mut shown);
+        laws.tick(&seen(1.0), &Checked::Missing(1), &mut shown, &mut ());
         assert_eq!(shown.torque_nm, -0.4);
         assert_eq!(shown.model_torque_nm, 0.0);
         let place = |column| SPECS.iter().position(|spec| spec.column == column);
@@ -243,12 +459,14 @@ pub(crate) mod tests {
         }
         assert_eq!(shown.added.get(SPECS.len()), None);
         // Nothing changes, or only what is another.
-        let unchanged = settings.changes::<f32>(&settings, &TIMING).unwrap();
-        let mut stages = SwitchedEffects::new(1.0);
-        stages.change(laws.clone().into(), 1.0);
-        stages.change(unchanged, 1.0);
+        let none = EffectSettings::default();
+        let changes = settings.changes(&TIMING, (&none, &TIMING)).unwrap();
+        let unchanged = settings.changes(&TIMING, (&settings, &TIMING)).unwrap();
+        let mut stages = SwitchedEffects::<f32>::new(1.0, &TIMING);
+        stages.change(&changes, 1.0);
+        stages.change(&unchanged, 1.0);
         let mut switched = Shown::nothing();
-        stages.tick(&seen(1.0), &Checked::Missing(1), &mut switched);
+        stages.tick(&seen(1.0), &Checked::Missing(1), &mut switched, &mut ());
         assert_eq!(switched, shown);
     }
 }

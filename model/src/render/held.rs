@@ -72,7 +72,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
         match input {
             Checked::Step(shaft) => self.step(shaft, on_event),
             Checked::CatchUp(gap) => self.catch_up(gap, on_event),
-            Checked::Resume(shaft) => self.resume(shaft),
+            Checked::Resume(gap) => self.resume(&gap.shaft),
             Checked::Missing(ticks) => {
                 self.hold(*ticks);
                 return;

@@ -11,6 +11,9 @@ use crate::real::Real;
 /// The most missing ticks that are caught up, step by step.
 pub const CATCH_UP_TICKS: u32 = 3;
 
+/// Ticks for which a torque is held without samples; then it is released.
+pub const HOLD_TICKS: u32 = 20;
+
 /// Sample of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sample<F> {
@@ -29,7 +32,7 @@ pub enum Checked<F> {
     CatchUp(Gap<F>),
     /// The first valid sample after a gap too long to catch up; the step has
     /// the travel since, and the present velocity.
-    Resume(ShaftStep<F>),
+    Resume(Gap<F>),
     /// No valid sample, for this many ticks so far.
     Missing(u32),
 }
@@ -40,15 +43,15 @@ impl<F: Real> Checked<F> {
     #[inline]
     pub fn travel_rad(&self) -> Option<F> {
         match self {
-            Self::Step(shaft) | Self::Resume(shaft) | Self::CatchUp(Gap { shaft, .. }) => {
-                Some(shaft.delta_phi_rad)
-            }
+            Self::Step(shaft)
+            | Self::Resume(Gap { shaft, .. })
+            | Self::CatchUp(Gap { shaft, .. }) => Some(shaft.delta_phi_rad),
             Self::Missing(_) => None,
         }
     }
 }
 
-/// A gap of at most [`CATCH_UP_TICKS`], and the step that ends it.
+/// Ticks without a sample, and the step that ends them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap<F> {
     /// The motion since the last good sample.
@@ -114,7 +117,7 @@ impl<F: Real> InputLimits<F> {
         Self {
             speed_rad_s: F::from_f64(50.0),
             jump_rad_s: F::from_f64(10.0),
-            hold_ticks: 20,
+            hold_ticks: HOLD_TICKS,
             release_nm: F::from_f64(100.0 * step_s),
         }
     }
@@ -190,16 +193,17 @@ impl<F: Real> Check<F> for InputCheck<F> {
             Sample::Taken(shaft) if self.is_plausible(shaft) => {
                 let missed = core::mem::take(&mut self.missed);
                 let omega_rad_s = core::mem::replace(&mut self.omega_rad_s, shaft.omega_end_rad_s);
+                let gap = Gap {
+                    shaft: *shaft,
+                    missed,
+                    omega_rad_s,
+                };
                 if missed == 0 {
                     Checked::Step(*shaft)
                 } else if missed <= CATCH_UP_TICKS {
-                    Checked::CatchUp(Gap {
-                        shaft: *shaft,
-                        missed,
-                        omega_rad_s,
-                    })
+                    Checked::CatchUp(gap)
                 } else {
-                    Checked::Resume(*shaft)
+                    Checked::Resume(gap)
                 }
             }
             Sample::Taken(_) => {
@@ -290,7 +294,10 @@ mod tests {
                     let whole: f64 = steps.iter().map(|s| s.1.delta_phi_rad).sum();
                     assert!((whole - travel).abs() < 1e-15);
                 }
-                Checked::Resume(_) => assert!(missing > CATCH_UP_TICKS),
+                Checked::Resume(gap) => {
+                    assert!(missing > CATCH_UP_TICKS);
+                    assert_eq!((gap.missed, gap.omega_rad_s), (missing, 1.0));
+                }
                 Checked::Missing(_) => panic!("it was seen"),
             }
             // Afterwards it continues from there.

@@ -29,11 +29,8 @@
 //! the paper's crepitus −18 mN·m, 9 % of Tk and below what is just noticeable.
 //!
 //! **Energy.** What is added is no passive spring: a hand that moves with the
-//! ringing gets work from it. So it is paid from a tank. Every tick takes the
-//! hand's work with the added torque into account (of the torques that may
-//! have been acting, the one that gave the most), the tank refills at a fixed
-//! power up to its capacity, and below half of it the output fades in
-//! proportion. Hence, over any time t and for any motion,
+//! ringing gets work from it. So it is paid from a [tank](super::tank), and over
+//! any time t and for any motion
 //!
 //! ```text
 //! energy returned ≤ budget + refill·t
@@ -56,14 +53,13 @@
 //! 0.036 with a meniscal tear (PMC8284919); gain, budget and refill are
 //! engineering estimates; the limit is the step that the slew limit exempts.
 
-use crate::control::energy_observer::MOST_DELAY_TICKS;
 use crate::joint::oscillator::{Oscillator, Transition};
 use crate::joint::{LONGEST_STEP_S, Parameters, SettingsError};
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
-use crate::render::effects::{DeviceEffect, EffectSpec, Faded, Need, Timing};
-use crate::render::input_check::{Checked, Sample};
-use crate::render::{Seen, Shown};
+use crate::render::Shown;
+use crate::render::effects::tank::Tank;
+use crate::render::effects::{DeviceEffect, EffectSpec, Faded, Need, Observe, Tick, Timing};
 
 settings! {
     /// The bone, and what its ringing may cost.
@@ -137,22 +133,16 @@ pub struct BoneShaping<F> {
     omega_n: F,
     gain: F,
     limit_nm: F,
-    capacity_j: F,
-    refill_j: F,
-    /// Of the output, per joule in the tank: reaches 1 at half the capacity.
-    share_per_j: F,
     /// z, N·m.
     ringing_nm: F,
     /// ż, N·m/s.
     rate_nm_per_s: F,
-    level_j: F,
-    /// The last output torques, the latest first.
-    given_nm: [F; MOST_DELAY_TICKS + 1],
-    delay_ticks: usize,
+    tank: Tank<F>,
 }
 
 impl<F: Real> DeviceEffect<F> for BoneShaping<F> {
     type Settings = BoneShapingSettings;
+    type Coefficients = Self;
     type Switched = Faded<F, Self>;
 
     const SPEC: EffectSpec = EffectSpec {
@@ -167,15 +157,19 @@ impl<F: Real> DeviceEffect<F> for BoneShaping<F> {
             why: "it rings where the model's torque jumps",
         }],
         parameters: BoneShapingSettings::TABLE,
+        choices: BoneShapingSettings::CHOICES,
+        sides: &[],
     };
 
-    /// A silent bone with a full tank. Its torque acts in the tick after the
-    /// one that returned it, or up to `delay_ticks` later, at most
-    /// [`MOST_DELAY_TICKS`]. (Half a tick late is 1.)
-    fn new(settings: &BoneShapingSettings, timing: &Timing) -> Result<Self, SettingsError> {
+    /// A silent bone with a full tank.
+    fn coefficients(
+        settings: &BoneShapingSettings,
+        timing: &Timing,
+    ) -> Result<Self, SettingsError> {
         let Timing {
             step_s,
             delay_ticks,
+            ..
         } = *timing;
         settings.validate()?;
         if !(step_s > 0.0 && step_s <= LONGEST_STEP_S) {
@@ -195,27 +189,22 @@ impl<F: Real> DeviceEffect<F> for BoneShaping<F> {
             omega_n: F::from_f64(omega_n),
             gain: F::from_f64(settings.gain),
             limit_nm: F::from_f64(settings.limit_nm),
-            capacity_j: F::from_f64(settings.budget_j),
-            refill_j: F::from_f64(settings.refill_w * step_s),
-            share_per_j: F::from_f64(2.0 / settings.budget_j),
             ringing_nm: F::ZERO,
             rate_nm_per_s: F::ZERO,
-            level_j: F::from_f64(settings.budget_j),
-            given_nm: [F::ZERO; MOST_DELAY_TICKS + 1],
-            delay_ticks: delay_ticks.min(MOST_DELAY_TICKS),
+            tank: Tank::new(settings.budget_j, settings.refill_w, step_s, delay_ticks),
         })
     }
 
     // By name in a profile: a test looks for it where it should not be.
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
-    fn added_nm(&mut self, seen: &Seen<F>, _: &Checked<F>, shown: &Shown<F>) -> F {
-        let travel_rad = match seen.sample {
-            Sample::Taken(step) => step.delta_phi_rad,
-            Sample::Lost => F::ZERO,
-        };
+    fn added_nm(&mut self, tick: &Tick<'_, F>, shown: &mut Shown<F>, _: &mut impl Observe<F>) -> F {
         self.ring(shown.jump_nm);
-        self.tick(travel_rad)
+        self.tick(tick.seen.travel_rad())
+    }
+
+    fn new(coefficients: Self) -> Self {
+        coefficients
     }
 }
 
@@ -235,21 +224,11 @@ impl<F: Real> BoneShaping<F> {
     /// A travel that is NaN or infinite counts as zero and refills nothing.
     #[inline]
     pub fn tick(&mut self, delta_phi_rad: F) -> F {
-        if delta_phi_rad.is_finite() {
-            let work_j = self.least_work_j(delta_phi_rad);
-            self.level_j = (self.level_j + work_j + self.refill_j)
-                .at_most(self.capacity_j)
-                // Only an implausibly fast shaft overdraws; bounded.
-                .at_least(-self.capacity_j);
-        }
+        self.tank.account(delta_phi_rad);
         let (z, rate) = self.swing.apply(self.ringing_nm, self.rate_nm_per_s);
         (self.ringing_nm, self.rate_nm_per_s) = (z.settled(), rate.settled());
-        let share = (self.level_j * self.share_per_j)
-            .at_most(F::ONE)
-            .at_least(F::ZERO);
-        let torque_nm = share * self.limited(self.ringing_nm);
-        let [last, before, _] = self.given_nm;
-        self.given_nm = [torque_nm, last, before];
+        let torque_nm = self.tank.share() * self.limited(self.ringing_nm);
+        self.tank.give(torque_nm);
         torque_nm
     }
 
@@ -257,23 +236,12 @@ impl<F: Real> BoneShaping<F> {
     pub fn reset(&mut self) {
         self.ringing_nm = F::ZERO;
         self.rate_nm_per_s = F::ZERO;
-        self.given_nm = [F::ZERO; MOST_DELAY_TICKS + 1];
+        self.tank.forget();
     }
 
     /// Energy in the tank, J.
     pub fn level_j(&self) -> F {
-        self.level_j
-    }
-
-    /// The least work that the hand has put in by this travel, J: with the
-    /// worst for it of the torques that may have been acting.
-    fn least_work_j(&self, delta_phi_rad: F) -> F {
-        let mut acting = self
-            .given_nm
-            .iter()
-            .take(self.delay_ticks.saturating_add(1));
-        let first = acting.next().map_or(F::ZERO, |t| *t * delta_phi_rad);
-        acting.fold(first, |least, t| least.at_most(*t * delta_phi_rad))
+        self.tank.level_j()
     }
 
     #[inline]
@@ -285,6 +253,7 @@ impl<F: Real> BoneShaping<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::control::energy_observer::MOST_DELAY_TICKS;
     use std::vec::Vec;
 
     const TICK_S: f64 = 5e-5;
@@ -293,11 +262,12 @@ mod tests {
         Timing {
             step_s,
             delay_ticks,
+            ..crate::render::effects::tests::TIMING
         }
     }
 
     fn bone<F: Real>(settings: &BoneShapingSettings) -> BoneShaping<F> {
-        BoneShaping::new(settings, &crate::render::effects::tests::TIMING).unwrap()
+        crate::render::effects::tests::law(settings)
     }
 
     /// The ringing after one jump, with the shaft at rest.
@@ -326,11 +296,11 @@ mod tests {
         );
         assert_eq!((s.limit_nm, s.budget_j, s.refill_w), (0.6, 0.01, 0.1));
         for step_s in [0.0, f64::NAN, 1.1] {
-            assert!(BoneShaping::<f32>::new(&s, &timing(step_s, 0)).is_err());
+            assert!(BoneShaping::<f32>::coefficients(&s, &timing(step_s, 0)).is_err());
         }
         assert_eq!(
-            BoneShaping::<f32>::new(&s, &timing(TICK_S, 9)),
-            BoneShaping::new(&s, &timing(TICK_S, MOST_DELAY_TICKS))
+            BoneShaping::<f32>::coefficients(&s, &timing(TICK_S, 9)),
+            BoneShaping::coefficients(&s, &timing(TICK_S, MOST_DELAY_TICKS))
         );
     }
 
@@ -434,7 +404,7 @@ mod tests {
             ..BoneShapingSettings::default()
         };
         for delay in 0..=MOST_DELAY_TICKS {
-            let mut bone = BoneShaping::<f64>::new(&s, &timing(TICK_S, delay)).unwrap();
+            let mut bone = BoneShaping::<f64>::coefficients(&s, &timing(TICK_S, delay)).unwrap();
             bone.ring(0.5);
             let torques: Vec<f64> = (0..10).map(|_| bone.tick(0.0)).collect();
             assert_eq!(bone.level_j(), 0.01);
@@ -442,7 +412,7 @@ mod tests {
             bone.tick(-2e-3);
             assert!((0.01 - bone.level_j() - torques[9] * 2e-3).abs() < 1e-16);
             // Against the hand it is the earliest that takes the least.
-            let (before, acting) = (bone.level_j(), bone.given_nm[delay]);
+            let (before, acting) = (bone.level_j(), bone.tank.given_nm[delay]);
             bone.tick(1e-3);
             assert!((bone.level_j() - before - acting * 1e-3).abs() < 1e-16);
         }
@@ -457,7 +427,7 @@ mod tests {
         let at = |level: f64| {
             let mut bone = bone::<f64>(&s);
             bone.ring(0.5);
-            bone.level_j = level;
+            bone.tank.level_j = level;
             bone.tick(0.0)
         };
         let full = at(0.01);

@@ -1,9 +1,8 @@
 //! An effect whose torque fades out where it is exchanged.
 
-use super::{DeviceEffect, Switched};
+use super::{DeviceEffect, Observe, Switched, Tick};
 use crate::real::Real;
-use crate::render::input_check::Checked;
-use crate::render::{Seen, Shown};
+use crate::render::Shown;
 
 /// Adds the law's torque as it is; of a law that was exchanged for another,
 /// which begins at rest, the last torque fades out within the slew limit.
@@ -28,11 +27,11 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Faded<F, E> {
         }
     }
 
-    fn change(&mut self, law: Option<Option<E>>, slew_nm: F) {
-        if let Some(law) = law {
+    fn change(&mut self, coefficients: &Option<Option<E::Coefficients>>, slew_nm: F) {
+        if let Some(coefficients) = *coefficients {
             self.fading_nm += self.last_nm;
             self.last_nm = F::ZERO;
-            self.law = law;
+            self.law = coefficients.map(E::new);
         }
         self.slew_nm = slew_nm;
     }
@@ -43,9 +42,14 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Faded<F, E> {
     }
 
     #[inline]
-    fn tick(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &mut Shown<F>) -> F {
+    fn tick(
+        &mut self,
+        tick: &Tick<'_, F>,
+        shown: &mut Shown<F>,
+        observe: &mut impl Observe<F>,
+    ) -> F {
         if let Some(law) = &mut self.law {
-            self.last_nm = law.added_nm(seen, input, shown);
+            self.last_nm = law.added_nm(tick, shown, observe);
             shown.torque_nm += self.last_nm;
         }
         if self.fading_nm == F::ZERO {
@@ -76,16 +80,16 @@ mod tests {
     use super::*;
     use crate::BoneShaping;
     use crate::render::effects::bone_shaping::BoneShapingSettings;
-    use crate::render::effects::tests::{TIMING, after, seen};
+    use crate::render::effects::tests::{after, law, missing, seen};
     use std::vec::Vec;
 
     fn bone() -> BoneShaping<f32> {
-        DeviceEffect::new(&BoneShapingSettings::default(), &TIMING).unwrap()
+        law(&BoneShapingSettings::default())
     }
 
     fn faded() -> Faded<f32, BoneShaping<f32>> {
         let mut stage = Faded::new(0.01);
-        stage.change(Some(Some(bone())), 0.01);
+        stage.change(&Some(Some(bone())), 0.01);
         stage
     }
 
@@ -96,7 +100,7 @@ mod tests {
         let ringing: Vec<f32> = (0..40).map(|_| after(&mut stage, 0.0, 0.0).0).collect();
         let last = ringing[39];
         assert!(last.abs() > 0.1, "{last}");
-        stage.change(Some(None), 0.01);
+        stage.change(&Some(None), 0.01);
         let (fading_nm, shown) = after(&mut stage, 0.0, 0.0);
         assert!((fading_nm - (last.abs() - 0.01).copysign(last)).abs() < 1e-6);
         assert_eq!(shown.torque_nm, 1.0 + fading_nm);
@@ -110,14 +114,14 @@ mod tests {
         for n in 0..50_u8 {
             let jump_nm = if n == 3 { -0.2 } else { 0.0 };
             if n == 20 {
-                staged.change(None, 0.02);
+                staged.change(&None, 0.02);
             }
             let (added_nm, shown) = after(&mut staged, 0.0, jump_nm);
-            let before = Shown {
+            let mut before = Shown {
                 jump_nm,
                 ..Shown::nothing()
             };
-            let expected_nm = alone.added_nm(&seen(0.0), &Checked::Missing(1), &before);
+            let expected_nm = alone.added_nm(&missing(&seen(0.0)), &mut before, &mut ());
             assert_eq!(
                 (added_nm, shown.torque_nm),
                 (expected_nm, 1.0 + expected_nm)

@@ -51,9 +51,8 @@
 use crate::joint::{Parameters, SettingsError};
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
-use crate::render::effects::{DeviceEffect, EffectSpec, Need, Slewed, Timing};
-use crate::render::input_check::Checked;
-use crate::render::{Seen, Shown};
+use crate::render::Shown;
+use crate::render::effects::{DeviceEffect, EffectSpec, Need, Observe, Slewed, Tick, Timing};
 
 settings! {
     /// Assumed friction of the gear, and the share of it to cancel.
@@ -111,6 +110,7 @@ pub struct FrictionCompensation<F> {
 
 impl<F: Real> DeviceEffect<F> for FrictionCompensation<F> {
     type Settings = FrictionCompensationSettings;
+    type Coefficients = Self;
     type Switched = Slewed<F, Self>;
 
     const SPEC: EffectSpec = EffectSpec {
@@ -125,9 +125,14 @@ impl<F: Real> DeviceEffect<F> for FrictionCompensation<F> {
             why: "without it there is no friction to compensate",
         }],
         parameters: FrictionCompensationSettings::TABLE,
+        choices: FrictionCompensationSettings::CHOICES,
+        sides: &[],
     };
 
-    fn new(settings: &FrictionCompensationSettings, _: &Timing) -> Result<Self, SettingsError> {
+    fn coefficients(
+        settings: &FrictionCompensationSettings,
+        _: &Timing,
+    ) -> Result<Self, SettingsError> {
         settings.validate()?;
         let most_nm = settings.share * settings.friction_nm;
         Ok(Self {
@@ -136,11 +141,15 @@ impl<F: Real> DeviceEffect<F> for FrictionCompensation<F> {
         })
     }
 
+    fn new(coefficients: Self) -> Self {
+        coefficients
+    }
+
     // By name in a profile: a test looks for it where it should not be.
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
-    fn added_nm(&mut self, seen: &Seen<F>, _: &Checked<F>, _: &Shown<F>) -> F {
-        self.torque_nm(seen.omega_rad_s)
+    fn added_nm(&mut self, tick: &Tick<'_, F>, _: &mut Shown<F>, _: &mut impl Observe<F>) -> F {
+        self.torque_nm(tick.seen.omega_rad_s)
     }
 }
 
@@ -160,10 +169,10 @@ impl<F: Real> FrictionCompensation<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::effects::tests::TIMING;
+    use crate::render::effects::tests::{TIMING, law};
 
     fn compensation<F: Real>() -> FrictionCompensation<F> {
-        FrictionCompensation::new(&FrictionCompensationSettings::default(), &TIMING).unwrap()
+        law(&FrictionCompensationSettings::default())
     }
 
     #[test]
@@ -173,7 +182,7 @@ mod tests {
         let s = Settings::default();
         assert_eq!((s.friction_nm, s.share, s.fade_rad_s), (0.5, 0.8, 0.05));
         let beyond = Settings { share: 0.91, ..s };
-        assert!(FrictionCompensation::<f32>::new(&beyond, &TIMING).is_err());
+        assert!(FrictionCompensation::<f32>::coefficients(&beyond, &TIMING).is_err());
     }
 
     #[test]

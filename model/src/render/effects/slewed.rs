@@ -1,9 +1,8 @@
 //! An effect that is followed at most as fast as the slew limit.
 
-use super::{DeviceEffect, Switched};
+use super::{DeviceEffect, Observe, Switched, Tick};
 use crate::real::Real;
-use crate::render::input_check::Checked;
-use crate::render::{Limit, Seen, Shown};
+use crate::render::{Limit, Shown};
 
 /// Follows the law's torque within the slew limit, also when it is switched.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,9 +23,9 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Slewed<F, E> {
         }
     }
 
-    fn change(&mut self, law: Option<Option<E>>, slew_nm: F) {
-        if let Some(law) = law {
-            self.law = law;
+    fn change(&mut self, coefficients: &Option<Option<E::Coefficients>>, slew_nm: F) {
+        if let Some(coefficients) = *coefficients {
+            self.law = coefficients.map(E::new);
         }
         self.slew_nm = slew_nm;
     }
@@ -37,9 +36,14 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Slewed<F, E> {
     }
 
     #[inline]
-    fn tick(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &mut Shown<F>) -> F {
+    fn tick(
+        &mut self,
+        tick: &Tick<'_, F>,
+        shown: &mut Shown<F>,
+        observe: &mut impl Observe<F>,
+    ) -> F {
         let target_nm = match &mut self.law {
-            Some(law) => law.added_nm(seen, input, shown),
+            Some(law) => law.added_nm(tick, shown, observe),
             None if self.now_nm == F::ZERO => return F::ZERO,
             None => F::ZERO,
         };
@@ -62,13 +66,13 @@ mod tests {
     use super::*;
     use crate::FrictionCompensation;
     use crate::render::effects::friction_compensation::FrictionCompensationSettings;
-    use crate::render::effects::tests::{TIMING, after, seen};
+    use crate::render::effects::tests::{after, law, missing, seen};
 
     /// 0.4 N·m along.
     fn slewed(slew_nm: f32) -> Slewed<f32, FrictionCompensation<f32>> {
-        let law = DeviceEffect::new(&FrictionCompensationSettings::default(), &TIMING).unwrap();
+        let law = law(&FrictionCompensationSettings::default());
         let mut stage = Slewed::new(slew_nm);
-        stage.change(Some(Some(law)), slew_nm);
+        stage.change(&Some(Some(law)), slew_nm);
         stage
     }
 
@@ -81,10 +85,10 @@ mod tests {
         let (_, second) = after(&mut stage, 1.0, 0.0);
         assert!((second.torque_nm - 0.6).abs() < 1e-6);
         assert_eq!(second.limit, Limit::None);
-        stage.change(None, 0.3);
+        stage.change(&None, 0.3);
         let (_, kept) = after(&mut stage, 1.0, 0.0);
         assert_eq!(kept.torque_nm, second.torque_nm);
-        stage.change(Some(None), 0.3);
+        stage.change(&Some(None), 0.3);
         let (_, leaving) = after(&mut stage, 1.0, 0.0);
         assert!((leaving.torque_nm - 0.9).abs() < 1e-6);
         assert_eq!(leaving.limit, Limit::Slew);
@@ -100,7 +104,7 @@ mod tests {
             limit: Limit::TurnedBack,
             ..Shown::nothing()
         };
-        let added_nm = stage.tick(&seen(1.0), &Checked::Missing(1), &mut shown);
+        let added_nm = stage.tick(&missing(&seen(1.0)), &mut shown, &mut ());
         assert_eq!(shown.limit, Limit::TurnedBack);
         assert_eq!(added_nm, -0.1);
     }

@@ -25,18 +25,21 @@ macro_rules! effects {
         #[derive(Clone, Debug, PartialEq)]
         pub struct Effects<F> {
             $(#[doc = concat!("`", stringify!($effect), "`.")] pub $effect: Option<$effect::$law<F>>,)*
+            /// What symptoms that are no springs are paid from.
+            pub tank: Tank<F>,
         }
 
         /// The effects of a device that runs.
         #[derive(Clone, Debug)]
         pub struct SwitchedEffects<F: Real> {
             $($effect: <$effect::$law<F> as DeviceEffect<F>>::Switched,)*
+            tank: Tank<F>,
         }
 
         /// Other laws, where they are other ones.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct EffectChanges<F> {
-            $($effect: Option<Option<$effect::$law<F>>>,)*
+        pub struct EffectChanges<F: Real> {
+            $($effect: Option<Option<<$effect::$law<F> as DeviceEffect<F>>::Coefficients>>,)*
         }
 
         impl EffectSettings {
@@ -49,11 +52,10 @@ macro_rules! effects {
                 }
             }
 
-            /// From the numbers of each effect that is on, in the order of its
-            /// table.
-            pub fn given<'a>(numbers: impl Fn(&str) -> Option<&'a [f64]>) -> Self {
+            /// From what is given for each effect that is on.
+            pub fn given<'a>(given: impl Fn(&str) -> Option<Chosen<'a>>) -> Self {
                 Self {
-                    $($effect: numbers(<$effect::$law<f64> as DeviceEffect<f64>>::SPEC.name).map(filled),)*
+                    $($effect: given(<$effect::$law<f64> as DeviceEffect<f64>>::SPEC.name).map(filled),)*
                 }
             }
 
@@ -64,24 +66,35 @@ macro_rules! effects {
             pub fn laws<F: Real>(&self, timing: &Timing) -> Result<Effects<F>, SettingsError> {
                 Ok(Effects {
                     $($effect: match &self.$effect {
-                        Some(settings) => Some($effect::$law::new(settings, timing)?),
+                        Some(settings) => {
+                            let made = <$effect::$law<F> as DeviceEffect<F>>::coefficients(settings, timing)?;
+                            Some(DeviceEffect::new(made))
+                        }
                         None => None,
                     },)*
+                    tank: tank(timing),
                 })
             }
 
-            /// The laws that differ from those of `now`.
+            /// What differs from `now`, or from how the joint is seen `now`.
             ///
             /// # Errors
             /// As [`Self::laws`].
             pub fn changes<F: Real>(
                 &self,
-                now: &Self,
                 timing: &Timing,
+                now: (&Self, &Timing),
             ) -> Result<EffectChanges<F>, SettingsError> {
-                let laws = self.laws(timing)?;
+                let (settings, seen) = now;
+                let same = timing == seen;
                 Ok(EffectChanges {
-                    $($effect: (self.$effect != now.$effect).then_some(laws.$effect),)*
+                    $($effect: match &self.$effect {
+                        unchanged if same && *unchanged == settings.$effect => None,
+                        Some(settings) => Some(Some(
+                            <$effect::$law<F> as DeviceEffect<F>>::coefficients(settings, timing)?,
+                        )),
+                        None => Some(None),
+                    },)*
                 })
             }
         }
@@ -116,42 +129,67 @@ macro_rules! effects {
 
         impl<F: Real> SwitchedEffects<F> {
             /// Without any.
-            pub fn new(slew_nm: F) -> Self {
-                Self { $($effect: Switched::new(slew_nm),)* }
+            pub fn new(slew_nm: F, timing: &Timing) -> Self {
+                Self {
+                    $($effect: Switched::new(slew_nm),)*
+                    tank: tank(timing),
+                }
             }
 
             /// From the next tick on, these laws, and this slew limit.
-            pub fn change(&mut self, changes: EffectChanges<F>, slew_nm: F) {
-                $(self.$effect.change(changes.$effect, slew_nm);)*
-            }
-        }
-
-        impl<F: Real> From<Effects<F>> for EffectChanges<F> {
-            fn from(laws: Effects<F>) -> Self {
-                Self { $($effect: Some(laws.$effect),)* }
+            pub fn change(&mut self, changes: &EffectChanges<F>, slew_nm: F) {
+                $(self.$effect.change(&changes.$effect, slew_nm);)*
             }
         }
 
         impl<F: Real> Addition<F> for Effects<F> {
-            #[inline]
-            fn tick(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &mut Shown<F>) {
+            fn rest(&mut self, place: &Position<F>) {
                 $(if let Some(law) = &mut self.$effect {
-                    let added_nm = law.added_nm(seen, input, shown);
+                    DeviceEffect::rest(law, place);
+                })*
+            }
+
+            #[inline]
+            fn tick(
+                &mut self,
+                seen: &Seen<F>,
+                input: &Checked<F>,
+                shown: &mut Shown<F>,
+                observe: &mut impl Observe<F>,
+            ) {
+                let paid_share = open(&mut self.tank, seen);
+                let tick = Tick { seen, input, paid_share };
+                $(if let Some(law) = &mut self.$effect {
+                    let added_nm = law.added_nm(&tick, shown, observe);
                     shown.torque_nm += added_nm;
                     shown.added.$effect = added_nm;
                     note(Some(law), added_nm, shown);
                 })*
+                close(&mut self.tank, shown);
             }
         }
 
         impl<F: Real> Addition<F> for SwitchedEffects<F> {
+            fn rest(&mut self, place: &Position<F>) {
+                $(self.$effect.rest(place);)*
+            }
+
             #[inline]
-            fn tick(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: &mut Shown<F>) {
+            fn tick(
+                &mut self,
+                seen: &Seen<F>,
+                input: &Checked<F>,
+                shown: &mut Shown<F>,
+                observe: &mut impl Observe<F>,
+            ) {
+                let paid_share = open(&mut self.tank, seen);
+                let tick = Tick { seen, input, paid_share };
                 $(
-                    let added_nm = self.$effect.tick(seen, input, shown);
+                    let added_nm = self.$effect.tick(&tick, shown, observe);
                     shown.added.$effect = added_nm;
                     note(self.$effect.law(), added_nm, shown);
                 )*
+                close(&mut self.tank, shown);
             }
         }
 
@@ -168,7 +206,11 @@ macro_rules! effects {
             let mut left = place;
             $(
                 if left == 0 {
-                    let law = $effect::$law::new(&$effect::$settings::defaults(), timing)?;
+                    let made = <$effect::$law<F> as DeviceEffect<F>>::coefficients(
+                        &$effect::$settings::defaults(),
+                        timing,
+                    )?;
+                    let law = <$effect::$law<F> as DeviceEffect<F>>::new(made);
                     return Ok(Some(visitor.visit::<$effect::$law<F>>(law)));
                 }
                 left = left.wrapping_sub(1);

@@ -1,0 +1,477 @@
+//! `clasp-knife`: resistance that builds, melts away at once, and stays away until
+//! the limb is returned.
+//!
+//! ```text
+//! out     u = 0                                              until s·(φ − φon) ≥ 0
+//! build   u = T0 + k·s·(φ − φon)                             until s·(φ − φr) ≥ 0, or T ≥ Tr
+//! fallen  u = Lr·[r + (1 − r)·e^(−(t − tr)/τ)], Lr the u at the release, at any angle
+//!                                                            until s·(φon − φ) ≥ Δ
+//! T = s·play(σ, 0 … u)
+//! ```
+//!
+//! Turned back below φon while it builds, it is out again. In the tick of the
+//! release the decay is linear.
+//!
+//! Sources: all numbers are estimates; the collapse to a fifth takes 85 ms.
+
+use super::play::{Hold, Limits, Part, Play};
+use super::spasticity::sense;
+use super::symptom::{Change, Law, Word};
+use super::{EffectSpec, PhaseSpec, Timing};
+use crate::joint::SettingsError;
+use crate::parameters::{Tabled, settings};
+use crate::real::Real;
+use crate::render::position::{Position, Scale, Travel};
+
+settings! {
+    /// The clasp-knife phenomenon.
+    pub struct ClaspKnifeSettings, group "clasp-knife" {
+        render {
+            id: 90 always,
+            choice: ["off", "on"],
+            default: 0,
+            meaning: "whether a muscle's resistance collapses",
+        },
+    } chosen {
+        muscles {
+            id: 91 always,
+            choice: ["extensors", "flexors"],
+            default: 0,
+            meaning: "which muscles: extensors resist flexion, flexors extension",
+        },
+        trigger {
+            id: 92 always,
+            choice: ["angle", "torque"],
+            default: 0,
+            meaning: "what makes it collapse",
+        },
+    } {
+        onset_deg {
+            id: 93 always,
+            symbol: "φon",
+            unit: "deg",
+            range: 0.0..=150.0,
+            default: 30.0,
+            meaning: "angle at which resistance begins to build (estimate)",
+        },
+        release_deg {
+            id: 94 always,
+            symbol: "φr",
+            unit: "deg",
+            range: 0.0..=150.0,
+            default: 75.0,
+            meaning: "angle at which it collapses, further in the stretch's sense (estimate); trigger angle",
+        },
+        onset_torque_nm {
+            id: 95 always,
+            symbol: "T0",
+            unit: "N·m",
+            range: 0.0..=4.5,
+            default: 0.8,
+            meaning: "resistance at its onset (estimate)",
+        },
+        slope_nm_per_rad {
+            id: 96 always,
+            symbol: "k",
+            unit: "N·m/rad",
+            range: 0.0..=20.0,
+            default: 3.0,
+            meaning: "how it grows from there (estimate)",
+        },
+        residual_share {
+            id: 97 always,
+            symbol: "r",
+            unit: "1",
+            range: 0.0..=0.9,
+            default: 0.15,
+            meaning: "share of it that is left after the collapse (estimate)",
+        },
+        collapse_s {
+            id: 98 always,
+            symbol: "τ",
+            unit: "s",
+            range: 0.005..=0.3,
+            default: 0.03,
+            meaning: "time in which it collapses (estimate)",
+        },
+        rearm_deg {
+            id: 99 always,
+            symbol: "Δ",
+            unit: "deg",
+            range: 2.0..=60.0,
+            default: 10.0,
+            meaning: "how far below the onset the limb is returned before it builds again (estimate)",
+        },
+        catch_stiffness_nm_per_rad {
+            id: 100 always,
+            symbol: "σ",
+            unit: "N·m/rad",
+            range: 10.0..=300.0,
+            default: 60.0,
+            meaning: "stiffness with which it builds up (estimate)",
+        },
+        release_torque_nm {
+            id: 101 always,
+            symbol: "Tr",
+            unit: "N·m",
+            range: 0.2..=4.5,
+            default: 2.5,
+            meaning: "torque at which it collapses (estimate); trigger torque",
+        },
+    }
+}
+
+impl ClaspKnifeSettings {
+    /// From onset to release by the angle, rad.
+    pub fn travel_rad(&self) -> f64 {
+        (self.release_deg - self.onset_deg).to_radians().abs()
+    }
+}
+
+/// Coefficients of [`ClaspKnife`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClaspKnifeCoefficients<F> {
+    scale: Scale<F>,
+    sense: F,
+    onset: Position<F>,
+    /// Where it collapses; `None` if a torque decides.
+    release: Option<Position<F>>,
+    release_nm: F,
+    onset_nm: F,
+    slope: F,
+    residual: F,
+    /// −h/τ, and e to its power.
+    rate: F,
+    decay: F,
+    stiffness: F,
+    rearm_rad: F,
+}
+
+/// What the muscle does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Stage<F> {
+    Out,
+    Build,
+    Fallen {
+        /// Lr·r, N·m.
+        left_nm: F,
+        /// Lr·(1 − r)·e^(−(t − tr)/τ), N·m.
+        decaying_nm: F,
+    },
+}
+
+/// The blade.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClaspKnife<F> {
+    with: ClaspKnifeCoefficients<F>,
+    play: Play<F>,
+    stage: Stage<F>,
+    torque_nm: F,
+}
+
+impl<F: Real> Law for ClaspKnife<F> {
+    type Real = F;
+    type Settings = ClaspKnifeSettings;
+    type Coefficients = ClaspKnifeCoefficients<F>;
+
+    const SPEC: EffectSpec = EffectSpec {
+        name: "clasp-knife",
+        adds: "resistance that builds and collapses, and stays away until the limb is returned",
+        states: &["stretch", "its decay"],
+        column: "clasp_knife_nm",
+        title: "Clasp-knife, part of the model’s torque",
+        phases: Some(PhaseSpec {
+            column: "clasp_knife_phase",
+            names: &["out", "building", "fallen"],
+        }),
+        needs: &[],
+        parameters: ClaspKnifeSettings::TABLE,
+        choices: ClaspKnifeSettings::CHOICES,
+        sides: &[],
+    };
+
+    fn check(s: &ClaspKnifeSettings) -> Result<(), SettingsError> {
+        s.validate()?;
+        let along = if s.muscles == 0 { 1.0 } else { -1.0 };
+        if (s.release_deg - s.onset_deg) * along <= 0.0 {
+            return Err(SettingsError::Contradiction {
+                reason: "clasp-knife: release_deg is beyond onset_deg in the sense of the stretch: \
+                         larger for extensors, smaller for flexors",
+            });
+        }
+        Ok(())
+    }
+
+    fn coefficients(
+        settings: &ClaspKnifeSettings,
+        timing: &Timing,
+    ) -> Result<ClaspKnifeCoefficients<F>, SettingsError> {
+        Self::check(settings)?;
+        let s = settings;
+        let place = |deg: f64| timing.sight.position(deg.to_radians());
+        Ok(ClaspKnifeCoefficients {
+            scale: timing.scale()?,
+            sense: sense(s.muscles),
+            onset: place(s.onset_deg),
+            release: (s.trigger == 0).then(|| place(s.release_deg)),
+            release_nm: F::from_f64(s.release_torque_nm),
+            onset_nm: F::from_f64(s.onset_torque_nm),
+            slope: F::from_f64(s.slope_nm_per_rad),
+            residual: F::from_f64(s.residual_share),
+            rate: F::from_f64(-timing.step_s / s.collapse_s),
+            decay: F::from_f64(libm::exp(-timing.step_s / s.collapse_s)),
+            stiffness: F::from_f64(s.catch_stiffness_nm_per_rad),
+            rearm_rad: F::from_f64(s.rearm_deg.to_radians()),
+        })
+    }
+
+    fn new(coefficients: ClaspKnifeCoefficients<F>) -> Self {
+        Self {
+            with: coefficients,
+            play: Play::new(),
+            stage: Stage::Out,
+            torque_nm: F::ZERO,
+        }
+    }
+
+    fn scale(&self) -> &Scale<F> {
+        &self.with.scale
+    }
+
+    fn rest(&mut self, place: &Position<F>) {
+        self.play.rest(place);
+        self.stage = Stage::Out;
+        self.torque_nm = F::ZERO;
+    }
+
+    #[inline]
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        let beyond_rad = self.with.sense * travel.end_beyond(&self.with.onset);
+        let nm = match self.stage {
+            Stage::Out if beyond_rad < F::ZERO => self.wait(travel, on_change),
+            Stage::Out => {
+                self.begin(travel, on_change);
+                self.build(beyond_rad, travel, on_change)
+            }
+            Stage::Build if beyond_rad < F::ZERO => self.back(travel, on_change),
+            Stage::Build => self.build(beyond_rad, travel, on_change),
+            Stage::Fallen {
+                left_nm,
+                decaying_nm,
+            } => {
+                let nm = self.fall(F::ZERO, (left_nm, decaying_nm), travel, on_change);
+                if -beyond_rad >= self.with.rearm_rad {
+                    self.rearm(travel, nm, on_change)
+                } else {
+                    nm
+                }
+            }
+        };
+        self.torque_nm = self.with.sense * nm;
+        self.torque_nm
+    }
+
+    fn torque_nm(&self) -> F {
+        self.torque_nm
+    }
+
+    fn adopt(&mut self, coefficients: ClaspKnifeCoefficients<F>, slew_nm: F) {
+        if coefficients.sense == self.with.sense {
+            let (from, to) = (self.with.stiffness, coefficients.stiffness);
+            self.play.change(from, to, slew_nm);
+            self.torque_nm = coefficients.sense * self.play.torque_nm();
+            self.with = coefficients;
+        } else {
+            *self = Self::new(coefficients);
+        }
+    }
+
+    fn release(&mut self, slew_nm: F) {
+        self.play.release(slew_nm);
+        self.torque_nm = self.with.sense * self.play.torque_nm();
+    }
+
+    fn phase(&self) -> u16 {
+        match self.stage {
+            Stage::Out => 0,
+            Stage::Build => 1,
+            Stage::Fallen { .. } => 2,
+        }
+    }
+}
+
+impl<F: Real> ClaspKnife<F> {
+    /// Out: torque is left only where the onset was moved away.
+    #[inline]
+    fn wait(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        if self.play.torque_nm() == F::ZERO {
+            return F::ZERO;
+        }
+        let (part, stiffness) = (Part::whole(self.with.sense), self.with.stiffness);
+        let none = Limits::both(F::ZERO);
+        self.play
+            .follow(travel, part, stiffness, |_| none, on_change)
+    }
+
+    /// The onset is met, within this travel or before (armed beyond it).
+    #[cold]
+    fn begin(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+        self.stage = Stage::Build;
+        let started =
+            self.with.sense * (travel.end_beyond(&self.with.onset) - travel.delta_rad) < F::ZERO;
+        if started && self.play.torque_nm() == F::ZERO {
+            self.play.put(&self.with.onset, F::ZERO, Hold::Elastic);
+        }
+        let fraction = if started {
+            travel.reaches(&self.with.onset)
+        } else {
+            F::ZERO
+        };
+        on_change(Change::at(Word::Onset, fraction, F::ZERO, F::ZERO));
+    }
+
+    /// u while it builds, N·m.
+    #[inline]
+    fn limit_nm(&self, beyond_rad: F) -> F {
+        self.with.onset_nm + self.with.slope * beyond_rad.at_least(F::ZERO)
+    }
+
+    #[inline]
+    fn build(
+        &mut self,
+        beyond_rad: F,
+        travel: &Travel<F>,
+        on_change: &mut impl FnMut(Change<F>),
+    ) -> F {
+        let with = self.with;
+        if let Some(release) = &with.release
+            && with.sense * travel.end_beyond(release) >= F::ZERO
+        {
+            let fraction = travel.reaches(release);
+            return self.collapse(fraction, travel, on_change);
+        }
+        let before = self.play;
+        let nm = self.grow(F::ONE, beyond_rad, travel, on_change);
+        if with.release.is_none() && nm >= with.release_nm {
+            let before_nm = before.torque_nm();
+            let fraction = ((with.release_nm - before_nm) / (nm - before_nm).at_least(F::EPSILON))
+                .at_least(F::ZERO)
+                .at_most(F::ONE);
+            self.play = before;
+            return self.collapse(fraction, travel, on_change);
+        }
+        nm
+    }
+
+    /// Follows the limit that builds, up to a share of the travel.
+    #[inline]
+    fn grow(
+        &mut self,
+        to: F,
+        beyond_rad: F,
+        travel: &Travel<F>,
+        on_change: &mut impl FnMut(Change<F>),
+    ) -> F {
+        let with = self.with;
+        let limit_nm = |fraction: F| {
+            let beyond = if fraction == F::ONE {
+                beyond_rad
+            } else {
+                with.sense
+                    * travel
+                        .place(fraction)
+                        .beyond(&with.onset, travel.rad_per_count)
+            };
+            Limits {
+                lower_nm: F::ZERO,
+                upper_nm: with.onset_nm + with.slope * beyond.at_least(F::ZERO),
+            }
+        };
+        let part = Part::until(with.sense, to);
+        self.play
+            .follow(travel, part, with.stiffness, limit_nm, on_change)
+    }
+
+    /// It collapses after this share of the travel.
+    #[cold]
+    fn collapse(
+        &mut self,
+        fraction: F,
+        travel: &Travel<F>,
+        on_change: &mut impl FnMut(Change<F>),
+    ) -> F {
+        let with = self.with;
+        let place = travel.place(fraction);
+        let beyond_rad = with.sense * place.beyond(&with.onset, travel.rad_per_count);
+        let nm = self.grow(fraction, beyond_rad, travel, on_change);
+        let limit_nm = self.limit_nm(beyond_rad);
+        let shown_nm = with.sense * nm;
+        on_change(Change::at(Word::Release, fraction, shown_nm, shown_nm));
+        let left_nm = limit_nm * with.residual;
+        self.fall(fraction, (left_nm, limit_nm - left_nm), travel, on_change)
+    }
+
+    /// Fallen, before this travel or at this share of it.
+    #[inline]
+    fn fall(
+        &mut self,
+        from: F,
+        (left_nm, before_nm): (F, F),
+        travel: &Travel<F>,
+        on_change: &mut impl FnMut(Change<F>),
+    ) -> F {
+        let with = self.with;
+        let after_nm = if from == F::ZERO {
+            (0..travel.ticks).fold(before_nm, |nm, _| nm * with.decay)
+        } else {
+            before_nm * (F::ONE - (F::ONE - from) * (F::ONE - with.decay))
+        };
+        let after_nm = after_nm.settled();
+        let limits = |fraction: F| {
+            let decaying_nm = if fraction == F::ONE {
+                after_nm
+            } else {
+                before_nm * (with.rate * (fraction - from)).exp()
+            };
+            Limits {
+                lower_nm: F::ZERO,
+                upper_nm: left_nm + decaying_nm,
+            }
+        };
+        self.stage = Stage::Fallen {
+            left_nm,
+            decaying_nm: after_nm,
+        };
+        let part = Part::since(with.sense, from);
+        self.play
+            .follow(travel, part, with.stiffness, limits, on_change)
+    }
+
+    /// Turned back before it collapsed.
+    #[cold]
+    fn back(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        let fraction = travel.reaches(&self.with.onset);
+        let nm = self.grow(fraction, F::ZERO, travel, on_change);
+        on_change(Change::at(
+            Word::Back,
+            fraction,
+            self.with.sense * nm,
+            F::ZERO,
+        ));
+        self.stage = Stage::Out;
+        self.play.rest(&travel.to);
+        F::ZERO
+    }
+
+    /// Returned: it can build again.
+    #[cold]
+    fn rearm(&mut self, travel: &Travel<F>, nm: F, on_change: &mut impl FnMut(Change<F>)) -> F {
+        let sense = self.with.sense;
+        let place = self.with.onset.moved(-sense * self.with.rearm_rad);
+        let fraction = travel.reaches(&place);
+        on_change(Change::at(Word::Rearm, fraction, sense * nm, F::ZERO));
+        self.stage = Stage::Out;
+        self.play.rest(&travel.to);
+        F::ZERO
+    }
+}

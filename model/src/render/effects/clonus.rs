@@ -1,0 +1,400 @@
+//! `clonus`: beats that a quick stretch starts, while it is held.
+//!
+//! ```text
+//! start where φ crosses φh in the stretch's sense with s·Ω ≥ Ωon; first beat after τd
+//! interval n:   P = (1/f)·(1 + ε·2⁻ⁿ)
+//! a beat:       T = s·A·sin(πx/(D·P))      for x from 0 to D·P
+//! stop  where s·(φh − φ) ≥ hysteresis: no new beat, the one under way runs out
+//! ```
+//!
+//! A slow crossing is passed over until the joint has returned. Time is counted in
+//! ticks and fractions of one, so long clonus keeps its rhythm. It gives energy: a
+//! tank pays for it.
+//!
+//! Sources: 5 to 8 Hz and a push for 45 % of the time (Physiopedia), 3.8 to 5.8 Hz
+//! under load (Hidler & Rymer), the first beat the longest; the amplitude is an
+//! estimate.
+
+use super::spasticity::sense;
+use super::symptom::{Change, Law, Word};
+use super::{EffectSpec, PhaseSpec, Timing};
+use crate::joint::SettingsError;
+use crate::parameters::{Tabled, settings};
+use crate::real::Real;
+use crate::render::position::{Position, Scale, Travel};
+
+settings! {
+    /// Clonus of one muscle group.
+    pub struct ClonusSettings, group "clonus" {
+        render {
+            id: 104 always,
+            choice: ["off", "on"],
+            default: 0,
+            meaning: "whether a quick stretch starts clonus",
+        },
+    } chosen {
+        muscles {
+            id: 105 always,
+            choice: ["extensors", "flexors"],
+            default: 0,
+            meaning: "which muscles: extensors beat against flexion, flexors against extension",
+        },
+    } {
+        frequency_hz {
+            id: 106 always,
+            symbol: "f",
+            unit: "Hz",
+            range: 3.0..=10.0,
+            default: 6.0,
+            meaning: "beats a second, once they are steady (sourced)",
+        },
+        push_share {
+            id: 107 always,
+            symbol: "D",
+            unit: "1",
+            range: 0.2..=0.8,
+            default: 0.45,
+            meaning: "share of the time in which the muscle pushes (sourced)",
+        },
+        first_stretch {
+            id: 108 always,
+            symbol: "ε",
+            unit: "1",
+            range: 0.0..=1.0,
+            default: 0.3,
+            meaning: "by how much the first interval is longer; half as much with every further one (sourced in kind)",
+        },
+        amplitude_nm {
+            id: 109 always,
+            symbol: "A",
+            unit: "N·m",
+            range: 0.0..=4.5,
+            default: 1.5,
+            meaning: "height of a beat (estimate)",
+        },
+        hold_deg {
+            id: 110 always,
+            symbol: "φh",
+            unit: "deg",
+            range: 0.0..=140.0,
+            default: 60.0,
+            meaning: "angle beyond which the stretch is held (estimate)",
+        },
+        hysteresis_deg {
+            id: 111 always,
+            symbol: "Δh",
+            unit: "deg",
+            range: 1.0..=30.0,
+            default: 5.0,
+            meaning: "return that stops the beats (estimate)",
+        },
+        start_velocity_deg_s {
+            id: 112 always,
+            symbol: "Ωon",
+            unit: "deg/s",
+            range: 20.0..=400.0,
+            default: 100.0,
+            meaning: "least speed of the stretch that starts them (estimate)",
+        },
+        delay_s {
+            id: 113 always,
+            symbol: "τd",
+            unit: "s",
+            range: 0.0..=0.2,
+            default: 0.05,
+            meaning: "time from the stretch to the first beat (sourced)",
+        },
+        beats {
+            id: 114 always,
+            symbol: "n",
+            unit: "1",
+            range: 0.0..=200.0,
+            default: 0.0,
+            meaning: "beats of one stretch; 0 goes on while it is held",
+        },
+    }
+}
+
+/// Coefficients of [`Clonus`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClonusCoefficients<F> {
+    scale: Scale<F>,
+    sense: F,
+    hold: Position<F>,
+    back_rad: F,
+    least_rad_s: F,
+    amplitude_nm: F,
+    /// 1/f, ticks.
+    period: F,
+    push_share: F,
+    first_stretch: F,
+    /// τd, ticks.
+    delay: F,
+    beats: u32,
+}
+
+/// What the muscle does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// Waits for a stretch.
+    Ready,
+    /// Beats, or is about to.
+    Beating,
+    /// Waits for the joint's return: after a slow crossing or the last beat.
+    Over,
+    /// Let go: the beat under way runs out.
+    Stopping,
+}
+
+/// Beats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clonus<F> {
+    with: ClonusCoefficients<F>,
+    stage: Stage,
+    /// Ticks since the interval began, whole ones and the fraction.
+    passed: u32,
+    passed_rest: F,
+    /// The interval, ticks.
+    interval: F,
+    /// ε·2⁻ⁿ of the next interval.
+    stretch: F,
+    /// Beats so far; in the delay none.
+    beaten: u32,
+    /// 1/(D·P), per tick; 0 where no beat is under way.
+    per_tick: F,
+    torque_nm: F,
+}
+
+impl<F: Real> Law for Clonus<F> {
+    type Real = F;
+    type Settings = ClonusSettings;
+    type Coefficients = ClonusCoefficients<F>;
+
+    const SPEC: EffectSpec = EffectSpec {
+        name: "clonus",
+        adds: "beats that a quick stretch starts",
+        states: &["time in the beat", "beats so far"],
+        column: "clonus_nm",
+        title: "Clonus, part of the model’s torque",
+        phases: Some(PhaseSpec {
+            column: "clonus_phase",
+            names: &["ready", "beating", "over", "stopping"],
+        }),
+        needs: &[],
+        parameters: ClonusSettings::TABLE,
+        choices: ClonusSettings::CHOICES,
+        sides: &[],
+    };
+
+    fn check(s: &ClonusSettings) -> Result<(), SettingsError> {
+        s.validate()?;
+        Ok(())
+    }
+
+    fn coefficients(
+        settings: &ClonusSettings,
+        timing: &Timing,
+    ) -> Result<ClonusCoefficients<F>, SettingsError> {
+        Self::check(settings)?;
+        let s = settings;
+        let ticks = |seconds: f64| F::from_f64(seconds / timing.step_s);
+        Ok(ClonusCoefficients {
+            scale: timing.scale()?,
+            sense: sense(s.muscles),
+            hold: timing.sight.position(s.hold_deg.to_radians()),
+            back_rad: F::from_f64(s.hysteresis_deg.to_radians()),
+            least_rad_s: F::from_f64(s.start_velocity_deg_s.to_radians()),
+            amplitude_nm: F::from_f64(s.amplitude_nm),
+            period: ticks(1.0 / s.frequency_hz),
+            push_share: F::from_f64(s.push_share),
+            first_stretch: F::from_f64(s.first_stretch),
+            delay: ticks(s.delay_s),
+            beats: u32::try_from(s.beats.whole()).unwrap_or(u32::MAX),
+        })
+    }
+
+    fn new(coefficients: ClonusCoefficients<F>) -> Self {
+        Self {
+            with: coefficients,
+            stage: Stage::Ready,
+            passed: 0,
+            passed_rest: F::ZERO,
+            interval: F::ZERO,
+            stretch: F::ZERO,
+            beaten: 0,
+            per_tick: F::ZERO,
+            torque_nm: F::ZERO,
+        }
+    }
+
+    fn scale(&self) -> &Scale<F> {
+        &self.with.scale
+    }
+
+    fn rest(&mut self, place: &Position<F>) {
+        let beyond_rad =
+            self.with.sense * place.beyond(&self.with.hold, self.with.scale.rad_per_count);
+        *self = Self::new(self.with);
+        if beyond_rad >= F::ZERO {
+            self.stage = Stage::Over;
+        }
+    }
+
+    #[inline]
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        let with = &self.with;
+        let beyond_rad = with.sense * travel.end_beyond(&with.hold);
+        match self.stage {
+            Stage::Ready => {
+                if beyond_rad >= F::ZERO {
+                    self.cross(travel, on_change);
+                }
+            }
+            Stage::Beating | Stage::Stopping => self.beat(travel, on_change),
+            Stage::Over => {}
+        }
+        if self.stage != Stage::Ready
+            && self.stage != Stage::Stopping
+            && -beyond_rad >= self.with.back_rad
+        {
+            self.let_go(travel, on_change);
+        }
+        self.torque_nm
+    }
+
+    fn torque_nm(&self) -> F {
+        self.torque_nm
+    }
+
+    fn adopt(&mut self, coefficients: ClonusCoefficients<F>, _: F) {
+        // Another rhythm begins with another stretch.
+        *self = Self::new(coefficients);
+        self.stage = Stage::Over;
+    }
+
+    fn release(&mut self, slew_nm: F) {
+        self.torque_nm = self.torque_nm - self.torque_nm.within(slew_nm);
+    }
+
+    fn is_active(&self) -> bool {
+        true
+    }
+
+    fn phase(&self) -> u16 {
+        match self.stage {
+            Stage::Ready => 0,
+            Stage::Beating => 1,
+            Stage::Over => 2,
+            Stage::Stopping => 3,
+        }
+    }
+}
+
+impl<F: Real> Clonus<F> {
+    /// The joint crosses φh in the stretch's sense.
+    #[cold]
+    fn cross(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+        let fraction = travel.reaches(&self.with.hold);
+        let rad_s = self.with.sense * travel.omega_rad_s(fraction);
+        if rad_s < self.with.least_rad_s {
+            self.stage = Stage::Over;
+            return;
+        }
+        on_change(Change::at(Word::Start, fraction, F::ZERO, F::ZERO));
+        self.stage = Stage::Beating;
+        self.passed = 0;
+        self.passed_rest = -fraction;
+        self.interval = self.with.delay;
+        self.stretch = self.with.first_stretch;
+        self.beaten = 0;
+        self.per_tick = F::ZERO;
+        self.beat(travel, on_change);
+    }
+
+    /// Beats through a travel.
+    #[inline]
+    fn beat(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+        self.passed = self.passed.saturating_add(travel.ticks);
+        let passed = F::from_whole(u64::from(self.passed)) + self.passed_rest;
+        if passed >= self.interval && self.stage == Stage::Beating {
+            self.next(passed, travel, on_change);
+        }
+        let passed = F::from_whole(u64::from(self.passed)) + self.passed_rest;
+        let share = passed * self.per_tick;
+        if share < F::ONE {
+            self.torque_nm = self.with.sense * self.with.amplitude_nm * half_wave(share);
+        } else {
+            self.torque_nm = F::ZERO;
+            self.per_tick = F::ZERO;
+            if self.stage == Stage::Stopping {
+                self.stage = Stage::Ready;
+            }
+        }
+        if self.per_tick == F::ZERO {
+            self.torque_nm = F::ZERO;
+        }
+    }
+
+    /// An interval is over, `passed` ticks after it began: the next beat, if there
+    /// is one.
+    #[cold]
+    fn next(&mut self, passed: F, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+        let late = passed - self.interval;
+        let fraction = (F::ONE - late).at_least(F::ZERO);
+        let whole = self.interval.whole();
+        self.passed = self
+            .passed
+            .saturating_sub(u32::try_from(whole).unwrap_or(u32::MAX));
+        self.passed_rest = self.passed_rest - (self.interval - F::from_whole(whole));
+        if self.with.beats > 0 && self.beaten >= self.with.beats {
+            on_change(Change::at(Word::Done, fraction, F::ZERO, F::ZERO));
+            self.stage = Stage::Over;
+            self.per_tick = F::ZERO;
+            return;
+        }
+        on_change(Change::at(Word::Beat, fraction, F::ZERO, F::ZERO));
+        self.interval = self.with.period * (F::ONE + self.stretch);
+        self.stretch = self.stretch * F::HALF;
+        self.beaten = self.beaten.saturating_add(1);
+        self.per_tick = F::ONE / (self.with.push_share * self.interval);
+        let _ = travel;
+    }
+
+    /// The joint has returned.
+    #[cold]
+    fn let_go(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+        let place = self.with.hold.moved(-self.with.sense * self.with.back_rad);
+        if self.beaten > 0 || self.stage == Stage::Beating {
+            let nm = self.torque_nm;
+            on_change(Change::at(Word::Stop, travel.reaches(&place), nm, nm));
+        }
+        self.beaten = 0;
+        self.stage = if self.per_tick > F::ZERO {
+            Stage::Stopping
+        } else {
+            Stage::Ready
+        };
+    }
+}
+
+/// sin(πx) for x from 0 to 1, by its series about the middle.
+#[inline]
+fn half_wave<F: Real>(x: F) -> F {
+    let t = (x - F::HALF) * F::from_f64(core::f64::consts::PI);
+    let u = t * t;
+    SERIES
+        .iter()
+        .fold(F::ZERO, |sum, part| sum * u + F::from_f64(*part))
+}
+
+/// Of the cosine, the smallest first.
+const SERIES: [f64; 8] = [
+    -1.0 / 87_178_291_200.0,
+    1.0 / 479_001_600.0,
+    -1.0 / 3_628_800.0,
+    1.0 / 40_320.0,
+    -1.0 / 720.0,
+    1.0 / 24.0,
+    -0.5,
+    1.0,
+];

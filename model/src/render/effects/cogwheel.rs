@@ -1,0 +1,386 @@
+//! `cogwheel`: rigidity with regular catches and gives, like a ratchet.
+//!
+//! ```text
+//! T = play(σ, ±u) + ke·(φ − φ₀)        u = Th while high, ρ·Th while low        σ = Th/δ
+//! mode time:   high for D/f, low for (1 − D)/f, from arming on
+//! mode space:  high while φ/λ mod 1 < D
+//! ```
+//!
+//! A *give* drops the torque at once; after a *catch* it rises as the hand moves. Its
+//! full height needs Ω ≥ (1 − ρ)·δ·f/D; at rest there is one give, then silence.
+//!
+//! Both clocks are 64-bit fractions of a tooth: they lose nothing, however long.
+//!
+//! Sources: 6 to 6.5 Hz, in a second form 7.5 to 9 Hz (Findley, Gresty, Halmagyi
+//! 1981); torques are estimates.
+
+use super::play::{Hold, Limits, Part, Play};
+use super::symptom::{Change, Law, Word};
+use super::{EffectSpec, PhaseSpec, Timing};
+use crate::joint::SettingsError;
+use crate::parameters::{Tabled, settings};
+use crate::real::Real;
+use crate::render::position::{Position, Scale, Travel};
+
+settings! {
+    /// Cogwheel rigidity.
+    pub struct CogwheelSettings, group "cogwheel" {
+        render {
+            id: 60 always,
+            choice: ["off", "on"],
+            default: 0,
+            meaning: "whether the joint resists as a ratchet does",
+        },
+    } chosen {
+        mode {
+            id: 61 always,
+            choice: ["time", "space"],
+            default: 0,
+            meaning: "whether teeth follow each other in time or in angle",
+        },
+    } {
+        torque_nm {
+            id: 62 always,
+            symbol: "Th",
+            unit: "N·m",
+            range: 0.0..=4.5,
+            default: 2.0,
+            meaning: "resistance at the height of a tooth (estimate)",
+        },
+        low_share {
+            id: 63 always,
+            symbol: "ρ",
+            unit: "1",
+            range: 0.0..=1.0,
+            default: 0.4,
+            meaning: "share of it that is left between two teeth (estimate)",
+        },
+        presliding_deg {
+            id: 64 always,
+            symbol: "δ",
+            unit: "deg",
+            range: 0.2..=10.0,
+            default: 1.5,
+            meaning: "travel over which the resistance builds up (sourced)",
+        },
+        frequency_hz {
+            id: 65 always,
+            symbol: "f",
+            unit: "Hz",
+            range: 3.0..=12.0,
+            default: 6.25,
+            meaning: "teeth a second, in mode time (sourced)",
+        },
+        duty {
+            id: 66 always,
+            symbol: "D",
+            unit: "1",
+            range: 0.1..=0.9,
+            default: 0.5,
+            meaning: "share of a tooth that is high (estimate)",
+        },
+        pitch_deg {
+            id: 67 always,
+            symbol: "λ",
+            unit: "deg",
+            range: 1.0..=30.0,
+            default: 7.5,
+            meaning: "angle from tooth to tooth, in mode space (estimate)",
+        },
+        elastic_nm_per_rad {
+            id: 68 always,
+            symbol: "ke",
+            unit: "N·m/rad",
+            range: 0.0..=10.0,
+            default: 0.0,
+            meaning: "stiffness about the neutral angle (estimate)",
+        },
+        neutral_deg {
+            id: 69 always,
+            symbol: "φ₀",
+            unit: "deg",
+            range: 0.0..=140.0,
+            default: 45.0,
+            meaning: "angle at which the stiffness has no torque (estimate)",
+        },
+    }
+}
+
+/// 2⁶⁴: a whole tooth.
+const TOOTH: f64 = 18_446_744_073_709_551_616.0;
+
+/// Fractions of a tooth that are shifted out for a ratio of two of them.
+const COARSE: u32 = 24;
+
+/// What turns the wheel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Clock {
+    /// 2⁻⁶⁴ of a tooth in a tick.
+    Time(u64),
+    /// 2⁻⁶⁴ of a tooth in a count; and in 2⁻³² rad.
+    Space(u64, u64),
+}
+
+/// Coefficients of [`Cogwheel`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CogwheelCoefficients<F> {
+    scale: Scale<F>,
+    clock: Clock,
+    /// A tooth is low from here on.
+    low_from: u64,
+    /// Noise of the angle, 2⁻⁶⁴ of a tooth.
+    flicker: u64,
+    flicker_rad: F,
+    high_nm: F,
+    low_nm: F,
+    stiffness: F,
+    elastic: F,
+    neutral: Position<F>,
+}
+
+/// The wheel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cogwheel<F> {
+    with: CogwheelCoefficients<F>,
+    play: Play<F>,
+    elastic_nm: F,
+    /// Where in its tooth the wheel is, 2⁻⁶⁴ of a tooth.
+    at: u64,
+    is_high: bool,
+    /// Where the joint was as the height changed last.
+    switched: Position<F>,
+}
+
+impl<F: Real> Law for Cogwheel<F> {
+    type Real = F;
+    type Settings = CogwheelSettings;
+    type Coefficients = CogwheelCoefficients<F>;
+
+    const SPEC: EffectSpec = EffectSpec {
+        name: "cogwheel",
+        adds: "rigidity with regular catches and gives",
+        states: &["stretch", "place in the tooth"],
+        column: "cogwheel_nm",
+        title: "Cogwheel rigidity, part of the model’s torque",
+        phases: Some(PhaseSpec {
+            column: "cogwheel_phase",
+            names: &["low", "high"],
+        }),
+        needs: &[],
+        parameters: CogwheelSettings::TABLE,
+        choices: CogwheelSettings::CHOICES,
+        sides: &[],
+    };
+
+    fn check(s: &CogwheelSettings) -> Result<(), SettingsError> {
+        s.validate()?;
+        Ok(())
+    }
+
+    fn coefficients(
+        settings: &CogwheelSettings,
+        timing: &Timing,
+    ) -> Result<CogwheelCoefficients<F>, SettingsError> {
+        Self::check(settings)?;
+        let s = settings;
+        let pitch_rad = s.pitch_deg.to_radians();
+        Ok(CogwheelCoefficients {
+            scale: timing.scale()?,
+            clock: if s.mode == 0 {
+                Clock::Time((s.frequency_hz * timing.step_s * TOOTH).whole())
+            } else {
+                Clock::Space(
+                    (timing.sight.rad_per_count / pitch_rad * TOOTH).whole(),
+                    (TOOTH / (pitch_rad * RESTS)).whole(),
+                )
+            },
+            low_from: (s.duty * TOOTH).whole(),
+            flicker: (timing.sight.flicker_rad / pitch_rad * TOOTH).whole(),
+            flicker_rad: F::from_f64(timing.sight.flicker_rad),
+            high_nm: F::from_f64(s.torque_nm),
+            low_nm: F::from_f64(s.low_share * s.torque_nm),
+            stiffness: F::from_f64(s.torque_nm / s.presliding_deg.to_radians()),
+            elastic: F::from_f64(s.elastic_nm_per_rad),
+            neutral: timing.sight.position(s.neutral_deg.to_radians()),
+        })
+    }
+
+    fn new(coefficients: CogwheelCoefficients<F>) -> Self {
+        Self {
+            with: coefficients,
+            play: Play::new(),
+            elastic_nm: F::ZERO,
+            at: 0,
+            is_high: true,
+            switched: Position::at(0),
+        }
+    }
+
+    fn scale(&self) -> &Scale<F> {
+        &self.with.scale
+    }
+
+    fn rest(&mut self, place: &Position<F>) {
+        self.play.rest(place);
+        self.elastic_nm = F::ZERO;
+        self.at = match self.with.clock {
+            Clock::Time(_) => 0,
+            Clock::Space(per_count, per_rest) => angle(place, per_count, per_rest),
+        };
+        self.is_high = self.at < self.with.low_from;
+        self.switched = *place;
+    }
+
+    #[inline]
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        let before = self.at;
+        let low_from = self.with.low_from;
+        let (turned, back) = match self.with.clock {
+            Clock::Time(per_tick) => {
+                let turned = per_tick.wrapping_mul(u64::from(travel.ticks));
+                self.at = before.wrapping_add(turned);
+                (turned, false)
+            }
+            Clock::Space(per_count, per_rest) => {
+                self.at = angle(&travel.to, per_count, per_rest);
+                let turned = self.at.wrapping_sub(before);
+                let back = travel.delta_rad < F::ZERO;
+                (if back { turned.wrapping_neg() } else { turned }, back)
+            }
+        };
+        let is_high = self.at < low_from;
+        if is_high != self.is_high {
+            let turn = Turn {
+                before,
+                turned,
+                back,
+            };
+            self.switch(is_high, &turn, travel, on_change);
+        }
+        let with = &self.with;
+        self.elastic_nm = with.elastic * travel.end_beyond(&with.neutral);
+        let limits = self.limits();
+        let part = Part::whole(F::ONE);
+        self.play
+            .follow(travel, part, with.stiffness, |_| limits, on_change)
+            + self.elastic_nm
+    }
+
+    fn torque_nm(&self) -> F {
+        self.play.torque_nm() + self.elastic_nm
+    }
+
+    fn adopt(&mut self, coefficients: CogwheelCoefficients<F>, slew_nm: F) {
+        let (from, to) = (self.with.stiffness, coefficients.stiffness);
+        self.play.change(from, to, slew_nm);
+        self.with = coefficients;
+    }
+
+    fn release(&mut self, slew_nm: F) {
+        self.play.release(slew_nm);
+        self.elastic_nm = self.elastic_nm - self.elastic_nm.within(slew_nm);
+    }
+
+    fn phase(&self) -> u16 {
+        u16::from(self.is_high)
+    }
+}
+
+/// 2⁻³² rad in a radian.
+const RESTS: f64 = 4_294_967_296.0;
+
+/// An angle as part of a tooth.
+#[inline]
+fn angle<F: Real>(place: &Position<F>, per_count: u64, per_rest: u64) -> u64 {
+    #[expect(clippy::cast_sign_loss, reason = "modulo a tooth, where −1 is 2⁶⁴ − 1")]
+    let counts = (i64::from(place.count) as u64).wrapping_mul(per_count);
+    if place.rest_rad == F::ZERO {
+        return counts;
+    }
+    let rest = (place.rest_rad * F::from_f64(RESTS)).whole();
+    counts.wrapping_add(rest.wrapping_mul(per_rest))
+}
+
+impl<F: Real> Cogwheel<F> {
+    #[inline]
+    fn limits(&self) -> Limits<F> {
+        Limits::both(if self.is_high {
+            self.with.high_nm
+        } else {
+            self.with.low_nm
+        })
+    }
+
+    /// A tooth begins or ends within the travel.
+    #[cold]
+    fn switch(
+        &mut self,
+        is_high: bool,
+        turn: &Turn,
+        travel: &Travel<F>,
+        on_change: &mut impl FnMut(Change<F>),
+    ) {
+        // Forwards it is high from 0 on, backwards from the end of its height.
+        let edge = if is_high == turn.back {
+            self.with.low_from
+        } else {
+            0
+        };
+        let beyond = turn.distance(edge, self.at);
+        // Noise at the edge of a tooth is no edge.
+        if matches!(self.with.clock, Clock::Space(..)) && beyond < self.with.flicker {
+            return;
+        }
+        let fraction = turn.share(edge);
+        let limits = self.limits();
+        let until = Part::until(F::ONE, fraction);
+        let before_nm = self
+            .play
+            .follow(travel, until, self.with.stiffness, |_| limits, on_change);
+        self.is_high = is_high;
+        let after_nm = before_nm.within(self.limits().upper_nm);
+        let place = travel.place(fraction);
+        let hold = match after_nm == before_nm {
+            true => Hold::Elastic,
+            false if after_nm > F::ZERO => Hold::Upper,
+            false => Hold::Lower,
+        };
+        self.play.put(&place, after_nm, hold);
+        let moved_rad = travel.to.beyond(&self.switched, travel.rad_per_count);
+        self.switched = travel.to;
+        if is_high && moved_rad.abs() > self.with.flicker_rad {
+            on_change(Change::at(Word::Catch, fraction, before_nm, after_nm));
+        } else if !is_high && after_nm != before_nm {
+            on_change(Change::at(Word::Give, fraction, before_nm, after_nm));
+        }
+    }
+}
+
+/// How far the wheel has turned in a travel, 2⁻⁶⁴ of a tooth.
+struct Turn {
+    before: u64,
+    turned: u64,
+    back: bool,
+}
+
+impl Turn {
+    /// From a place in a tooth to another, in the sense of the turn.
+    fn distance(&self, from: u64, to: u64) -> u64 {
+        if self.back {
+            from.wrapping_sub(to)
+        } else {
+            to.wrapping_sub(from)
+        }
+    }
+
+    /// The share of the travel after which it came to an edge; 0 if that was
+    /// before.
+    fn share<F: Real>(&self, edge: u64) -> F {
+        let passed = self.distance(self.before, edge);
+        if passed > self.turned {
+            return F::ZERO;
+        }
+        let whole = (self.turned >> COARSE).max(1);
+        F::from_whole(passed >> COARSE) / F::from_whole(whole)
+    }
+}

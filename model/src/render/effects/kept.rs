@@ -1,0 +1,135 @@
+//! A symptom on a device that runs: its state outlives a commit.
+
+use super::symptom::Law;
+use super::{DeviceEffect, Observe, Switched, Tick};
+use crate::real::Real;
+use crate::render::Shown;
+use crate::render::input_check::{Checked, HOLD_TICKS};
+use crate::render::position::Position;
+
+/// Keeps a law and what it remembers while its coefficients change.
+///
+/// One that appears begins without torque, wherever the joint is. One that is
+/// removed goes on within a limit that falls from its torque with the slew limit:
+/// it returns no more energy than it holds. While the bridge floats it rests. What
+/// samples are missing for is held for a millisecond, then released.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kept<F, E> {
+    law: Option<E>,
+    slew_nm: F,
+    way: Way<F>,
+    last_nm: F,
+}
+
+/// How a law's torque is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Way<F> {
+    /// As it is.
+    Free,
+    /// Within the slew limit, until that has caught up.
+    CatchingUp,
+    /// Within this limit, which falls to nothing.
+    Leaving(F),
+}
+
+impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
+    fn new(slew_nm: F) -> Self {
+        Self {
+            law: None,
+            slew_nm,
+            way: Way::Free,
+            last_nm: F::ZERO,
+        }
+    }
+
+    fn change(&mut self, coefficients: &Option<Option<E::Coefficients>>, slew_nm: F) {
+        self.slew_nm = slew_nm;
+        match (*coefficients, &mut self.law) {
+            (None, _) | (Some(None), None) => {}
+            (Some(None), Some(_)) => self.way = Way::Leaving(self.last_nm.abs()),
+            (Some(Some(coefficients)), Some(law)) => {
+                law.adopt(coefficients, slew_nm);
+                self.way = Way::CatchingUp;
+            }
+            (Some(Some(coefficients)), None) => {
+                self.law = Some(E::new(coefficients));
+                self.way = Way::Free;
+            }
+        }
+    }
+
+    fn rest(&mut self, place: &Position<F>) {
+        if let Some(law) = &mut self.law {
+            Law::rest(law, place);
+        }
+        if matches!(self.way, Way::Leaving(_)) {
+            self.law = None;
+        }
+        self.way = Way::Free;
+        self.last_nm = F::ZERO;
+    }
+
+    #[inline]
+    fn law(&self) -> Option<&E> {
+        self.law.as_ref()
+    }
+
+    #[inline]
+    fn tick(
+        &mut self,
+        tick: &Tick<'_, F>,
+        shown: &mut Shown<F>,
+        observe: &mut impl Observe<F>,
+    ) -> F {
+        if self.law.is_some() && !tick.seen.is_driven {
+            self.rest(&tick.seen.place);
+        }
+        let Some(law) = &mut self.law else {
+            return F::ZERO;
+        };
+        if !tick.seen.is_driven {
+            return F::ZERO;
+        }
+        if let Checked::Missing(ticks) = tick.input
+            && *ticks > HOLD_TICKS
+        {
+            law.release(self.slew_nm);
+        }
+        let law_nm = law.added_nm(tick, shown, observe);
+        self.last_nm = match self.way {
+            Way::Free => law_nm,
+            _ => self.held_back(law_nm, shown),
+        };
+        shown.torque_nm += self.last_nm;
+        self.last_nm
+    }
+}
+
+impl<F: Real, E> Kept<F, E> {
+    /// What is shown of a law's torque while it is exchanged.
+    #[cold]
+    fn held_back(&mut self, law_nm: F, shown: &mut Shown<F>) -> F {
+        shown.settling = true;
+        match self.way {
+            Way::Free => law_nm,
+            Way::CatchingUp => {
+                let step_nm = law_nm - self.last_nm;
+                if step_nm.abs() > self.slew_nm {
+                    self.last_nm + step_nm.within(self.slew_nm)
+                } else {
+                    self.way = Way::Free;
+                    law_nm
+                }
+            }
+            Way::Leaving(most_nm) => {
+                let most_nm = (most_nm - self.slew_nm).at_least(F::ZERO);
+                self.way = Way::Leaving(most_nm);
+                if most_nm == F::ZERO {
+                    self.law = None;
+                    self.way = Way::Free;
+                }
+                law_nm.within(most_nm)
+            }
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! `lead-pipe`: rigidity that is the same in both directions, over the whole
+//! range, and at any speed.
+//!
+//! ```text
+//! T = play(σ, ±Tc) + ke·(φ − φ₀)        σ = Tc/δ
+//! ```
+//!
+//! A loop over ±A takes 4·Tc·(A − δ); after a turn it takes 2δ to push the other
+//! way. "Elastic coefficient" and "difference of bias", 2Tc, are the components
+//! that physicians perceive (Endo et al. 2013).
+//!
+//! Sources: δ is the short-range stiffness, to 1.5° (De Groote et al. 2018);
+//! torques are estimates.
+
+use super::play::{Hold, Limits, Part, Play};
+use super::symptom::{Change, Law};
+use super::{EffectSpec, PhaseSpec, Timing};
+use crate::joint::SettingsError;
+use crate::parameters::{Tabled, settings};
+use crate::real::Real;
+use crate::render::position::{Position, Scale, Travel};
+
+settings! {
+    /// Lead-pipe rigidity.
+    pub struct LeadPipeSettings, group "lead-pipe" {
+        render {
+            id: 52 always,
+            choice: ["off", "on"],
+            default: 0,
+            meaning: "whether the joint resists as a lead pipe does",
+        },
+    } {
+        torque_nm {
+            id: 53 always,
+            symbol: "Tc",
+            unit: "N·m",
+            range: 0.0..=4.5,
+            default: 1.2,
+            meaning: "resistance, the same in both directions and at any speed (estimate)",
+        },
+        presliding_deg {
+            id: 54 always,
+            symbol: "δ",
+            unit: "deg",
+            range: 0.2..=10.0,
+            default: 1.5,
+            meaning: "travel over which the resistance builds up (sourced)",
+        },
+        elastic_nm_per_rad {
+            id: 55 always,
+            symbol: "ke",
+            unit: "N·m/rad",
+            range: 0.0..=10.0,
+            default: 0.0,
+            meaning: "stiffness about the neutral angle (estimate)",
+        },
+        neutral_deg {
+            id: 56 always,
+            symbol: "φ₀",
+            unit: "deg",
+            range: 0.0..=140.0,
+            default: 45.0,
+            meaning: "angle at which the stiffness has no torque (estimate)",
+        },
+    }
+}
+
+/// Coefficients of [`LeadPipe`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeadPipeCoefficients<F> {
+    scale: Scale<F>,
+    torque_nm: F,
+    stiffness: F,
+    elastic: F,
+    neutral: Position<F>,
+}
+
+/// The rigidity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeadPipe<F> {
+    with: LeadPipeCoefficients<F>,
+    play: Play<F>,
+    elastic_nm: F,
+}
+
+impl<F: Real> Law for LeadPipe<F> {
+    type Real = F;
+    type Settings = LeadPipeSettings;
+    type Coefficients = LeadPipeCoefficients<F>;
+
+    const SPEC: EffectSpec = EffectSpec {
+        name: "lead-pipe",
+        adds: "rigidity that is the same in both directions and at any speed",
+        states: &["stretch"],
+        column: "lead_pipe_nm",
+        title: "Lead-pipe rigidity, part of the model’s torque",
+        phases: Some(PhaseSpec {
+            column: "lead_pipe_phase",
+            names: &["held", "sliding"],
+        }),
+        needs: &[],
+        parameters: LeadPipeSettings::TABLE,
+        choices: LeadPipeSettings::CHOICES,
+        sides: &[],
+    };
+
+    fn check(s: &LeadPipeSettings) -> Result<(), SettingsError> {
+        s.validate()?;
+        Ok(())
+    }
+
+    fn coefficients(
+        settings: &LeadPipeSettings,
+        timing: &Timing,
+    ) -> Result<LeadPipeCoefficients<F>, SettingsError> {
+        Self::check(settings)?;
+        let s = settings;
+        Ok(LeadPipeCoefficients {
+            scale: timing.scale()?,
+            torque_nm: F::from_f64(s.torque_nm),
+            stiffness: F::from_f64(s.torque_nm / s.presliding_deg.to_radians()),
+            elastic: F::from_f64(s.elastic_nm_per_rad),
+            neutral: timing.sight.position(s.neutral_deg.to_radians()),
+        })
+    }
+
+    fn new(coefficients: LeadPipeCoefficients<F>) -> Self {
+        Self {
+            with: coefficients,
+            play: Play::new(),
+            elastic_nm: F::ZERO,
+        }
+    }
+
+    fn scale(&self) -> &Scale<F> {
+        &self.with.scale
+    }
+
+    fn rest(&mut self, place: &Position<F>) {
+        self.play.rest(place);
+        self.elastic_nm = F::ZERO;
+    }
+
+    #[inline]
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        let with = &self.with;
+        self.elastic_nm = with.elastic * travel.end_beyond(&with.neutral);
+        let limits = Limits::both(with.torque_nm);
+        let part = Part::whole(F::ONE);
+        self.play
+            .follow(travel, part, with.stiffness, |_| limits, on_change)
+            + self.elastic_nm
+    }
+
+    fn torque_nm(&self) -> F {
+        self.play.torque_nm() + self.elastic_nm
+    }
+
+    fn adopt(&mut self, coefficients: LeadPipeCoefficients<F>, slew_nm: F) {
+        let (from, to) = (self.with.stiffness, coefficients.stiffness);
+        self.play.change(from, to, slew_nm);
+        self.with = coefficients;
+    }
+
+    fn release(&mut self, slew_nm: F) {
+        self.play.release(slew_nm);
+        self.elastic_nm = self.elastic_nm - self.elastic_nm.within(slew_nm);
+    }
+
+    fn phase(&self) -> u16 {
+        u16::from(self.play.hold() != Hold::Elastic)
+    }
+}

@@ -1,0 +1,472 @@
+//! `range-limit`: the end of the range of motion, and how it feels: soft, firm,
+//! hard, springy, or empty.
+//!
+//! On each side, with p = s·(φ − φw) and s = +1 in flexion, −1 in extension:
+//!
+//! ```text
+//! env(p) = min(Tcap, K1·p + K2·p²)   p > 0        T = s·play(σ, 0 … env(p))
+//! σ = √(K1² + 4·K2·Tcap)/(1 − ψ)
+//! ```
+//!
+//! The play loses energy by hysteresis, as tissue does: a share ψ of what goes in
+//! comes back less. A damper would make a sampled wall less stable, not more. The
+//! wall yields past its cap on purpose: no motor of this size stops a leg.
+//!
+//! The end of the spring is an absolute angle. So a wall that is moved under the
+//! leg, or armed inside, pushes nobody, and one that is moved away lets go.
+//!
+//! Sources: slopes of the healthy knee after Riener & Edrich 1999; end-feels after
+//! Cyriax; the numbers here are derived or estimates.
+
+use super::play::{Hold, Limits, Part, Play};
+use super::symptom::{Change, Law, Word};
+use super::{EffectSpec, PhaseSpec, Timing};
+use crate::joint::SettingsError;
+use crate::parameters::{Tabled, settings};
+use crate::real::Real;
+use crate::render::position::{Position, Scale, Travel};
+
+settings! {
+    /// Both ends of the range.
+    pub struct RangeLimitSettings, group "range-limit" {
+        render {
+            id: 40 always,
+            choice: ["off", "on"],
+            default: 0,
+            meaning: "whether the range of motion is limited",
+        },
+    } {
+        extension_limit_deg {
+            id: 41 always,
+            symbol: "φE",
+            unit: "deg",
+            range: -10.0..=150.0,
+            default: 10.0,
+            meaning: "angle at which the range ends in extension (estimate)",
+        },
+        flexion_limit_deg {
+            id: 42 always,
+            symbol: "φF",
+            unit: "deg",
+            range: 0.0..=160.0,
+            default: 120.0,
+            meaning: "angle at which the range ends in flexion, 5 deg or more beyond the other (estimate)",
+        },
+        extension_stiffness_nm_per_rad {
+            id: 43 always,
+            symbol: "K1",
+            unit: "N·m/rad",
+            range: 1.0..=600.0,
+            default: 60.0,
+            meaning: "stiffness as the end in extension is met (derived)",
+        },
+        extension_stiffening_nm_per_rad2 {
+            id: 44 always,
+            symbol: "K2",
+            unit: "N·m/rad²",
+            range: 0.0..=5000.0,
+            default: 400.0,
+            meaning: "how it grows stiffer beyond the end in extension (derived)",
+        },
+        extension_loss {
+            id: 45 always,
+            symbol: "ψ",
+            unit: "1",
+            range: 0.0..=0.9,
+            default: 0.3,
+            meaning: "share of its energy that the end in extension does not return (estimate)",
+        },
+        extension_torque_nm {
+            id: 46 always,
+            symbol: "Tcap",
+            unit: "N·m",
+            range: 0.0..=6.5,
+            default: 4.0,
+            meaning: "torque at which the end in extension yields (derived)",
+        },
+        flexion_stiffness_nm_per_rad {
+            id: 47 always,
+            symbol: "K1",
+            unit: "N·m/rad",
+            range: 1.0..=600.0,
+            default: 60.0,
+            meaning: "stiffness as the end in flexion is met (derived)",
+        },
+        flexion_stiffening_nm_per_rad2 {
+            id: 48 always,
+            symbol: "K2",
+            unit: "N·m/rad²",
+            range: 0.0..=5000.0,
+            default: 400.0,
+            meaning: "how it grows stiffer beyond the end in flexion (derived)",
+        },
+        flexion_loss {
+            id: 49 always,
+            symbol: "ψ",
+            unit: "1",
+            range: 0.0..=0.9,
+            default: 0.3,
+            meaning: "share of its energy that the end in flexion does not return (estimate)",
+        },
+        flexion_torque_nm {
+            id: 50 always,
+            symbol: "Tcap",
+            unit: "N·m",
+            range: 0.0..=6.5,
+            default: 4.0,
+            meaning: "torque at which the end in flexion yields (derived)",
+        },
+    }
+}
+
+/// The stiffest spring of an end, N·m/rad.
+pub const MOST_SPRING_NM_PER_RAD: f64 = 1000.0;
+
+/// Beyond this a spring needs a loss to be quiet, N·m/rad.
+const LOSSLESS_SPRING_NM_PER_RAD: f64 = 400.0;
+
+/// The loss that it needs.
+const LEAST_LOSS: f64 = 0.1;
+
+/// The least distance of the two ends, deg.
+pub const LEAST_RANGE_DEG: f64 = 5.0;
+
+/// The numbers of one end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EndFeel {
+    /// K1, N·m/rad.
+    pub stiffness_nm_per_rad: f64,
+    /// K2, N·m/rad².
+    pub stiffening_nm_per_rad2: f64,
+    /// ψ.
+    pub loss: f64,
+    /// Tcap, N·m.
+    pub torque_nm: f64,
+}
+
+impl EndFeel {
+    /// K_u, the stiffness of its spring, N·m/rad: no less than the steepest slope
+    /// up to the cap.
+    pub fn spring_nm_per_rad(&self) -> f64 {
+        let (k1, k2) = (self.stiffness_nm_per_rad, self.stiffening_nm_per_rad2);
+        libm::sqrt(k1 * k1 + 4.0 * k2 * self.torque_nm) / (1.0 - self.loss)
+    }
+
+    /// Checks that a sampled wall stays quiet.
+    fn check(&self) -> Result<(), SettingsError> {
+        let spring = self.spring_nm_per_rad();
+        if spring > MOST_SPRING_NM_PER_RAD {
+            return Err(SettingsError::Contradiction {
+                reason: "range-limit: √(K1² + 4·K2·Tcap)/(1 − loss) is at most 1000 N·m/rad",
+            });
+        }
+        if spring > LOSSLESS_SPRING_NM_PER_RAD && self.loss < LEAST_LOSS {
+            return Err(SettingsError::Contradiction {
+                reason: "range-limit: an end whose √(K1² + 4·K2·Tcap)/(1 − loss) is above 400 N·m/rad has \
+                         a loss of at least 0.1",
+            });
+        }
+        Ok(())
+    }
+
+    /// How far beyond its place the end reaches its cap, rad.
+    pub fn cap_rad(&self) -> f64 {
+        let (k1, k2) = (self.stiffness_nm_per_rad, self.stiffening_nm_per_rad2);
+        2.0 * self.torque_nm / (k1 + libm::sqrt(k1 * k1 + 4.0 * k2 * self.torque_nm))
+    }
+}
+
+impl RangeLimitSettings {
+    /// The end in extension.
+    pub fn extension(&self) -> EndFeel {
+        EndFeel {
+            stiffness_nm_per_rad: self.extension_stiffness_nm_per_rad,
+            stiffening_nm_per_rad2: self.extension_stiffening_nm_per_rad2,
+            loss: self.extension_loss,
+            torque_nm: self.extension_torque_nm,
+        }
+    }
+
+    /// The end in flexion.
+    pub fn flexion(&self) -> EndFeel {
+        EndFeel {
+            stiffness_nm_per_rad: self.flexion_stiffness_nm_per_rad,
+            stiffening_nm_per_rad2: self.flexion_stiffening_nm_per_rad2,
+            loss: self.flexion_loss,
+            torque_nm: self.flexion_torque_nm,
+        }
+    }
+}
+
+/// Coefficients of one end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct End<F> {
+    place: Position<F>,
+    slope: F,
+    bend: F,
+    cap_nm: F,
+    /// How far beyond its place the cap is reached, rad.
+    cap_rad: F,
+    spring: F,
+}
+
+impl<F: Real> End<F> {
+    fn new(limit_deg: f64, feel: &EndFeel, timing: &Timing) -> Self {
+        Self {
+            place: timing.sight.position(limit_deg.to_radians()),
+            slope: F::from_f64(feel.stiffness_nm_per_rad),
+            bend: F::from_f64(feel.stiffening_nm_per_rad2),
+            cap_nm: F::from_f64(feel.torque_nm),
+            cap_rad: F::from_f64(feel.cap_rad()),
+            spring: F::from_f64(feel.spring_nm_per_rad()),
+        }
+    }
+
+    /// env(p), N·m.
+    #[inline]
+    fn envelope_nm(&self, beyond_rad: F) -> F {
+        let p = beyond_rad.at_least(F::ZERO);
+        (p * (self.slope + p * self.bend)).at_most(self.cap_nm)
+    }
+}
+
+/// Coefficients of [`RangeLimit`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RangeLimitCoefficients<F> {
+    scale: Scale<F>,
+    flicker_rad: F,
+    extension: End<F>,
+    flexion: End<F>,
+}
+
+/// What a joint does at an end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+enum Stage {
+    #[default]
+    Out,
+    In,
+    AtCap,
+}
+
+/// One end of the range, followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Wall<F> {
+    play: Play<F>,
+    stage: Stage,
+}
+
+impl<F: Real> Wall<F> {
+    fn new() -> Self {
+        Self {
+            play: Play::new(),
+            stage: Stage::Out,
+        }
+    }
+
+    fn rest(&mut self, end: &End<F>, sense: F, place: &Position<F>, scale: &Scale<F>) {
+        self.play.rest(place);
+        let beyond_rad = sense * place.beyond(&end.place, scale.rad_per_count);
+        self.stage = if beyond_rad > F::ZERO {
+            Stage::In
+        } else {
+            Stage::Out
+        };
+    }
+
+    /// Its torque, against growing `sense`·φ, N·m.
+    #[inline]
+    fn follow(
+        &mut self,
+        end: &End<F>,
+        sense: F,
+        flicker_rad: F,
+        travel: &Travel<F>,
+        on_change: &mut impl FnMut(Change<F>),
+    ) -> F {
+        let beyond_rad = sense * travel.end_beyond(&end.place);
+        if self.stage == Stage::Out {
+            // Torque is left here only where the wall was moved away.
+            if beyond_rad <= F::ZERO && self.play.torque_nm() == F::ZERO {
+                return F::ZERO;
+            }
+            if beyond_rad > F::ZERO {
+                self.enter(end, travel, on_change);
+            }
+        }
+        let before_rad = beyond_rad - sense * travel.delta_rad;
+        let was = self.play.hold();
+        let envelope_nm = |fraction: F| {
+            end.envelope_nm(if fraction == F::ONE {
+                beyond_rad
+            } else {
+                sense
+                    * travel
+                        .place(fraction)
+                        .beyond(&end.place, travel.rad_per_count)
+            })
+        };
+        let limits = |fraction: F| Limits {
+            lower_nm: F::ZERO,
+            upper_nm: envelope_nm(fraction),
+        };
+        let nm = self
+            .play
+            .follow(travel, Part::whole(sense), end.spring, limits, on_change);
+        if beyond_rad < -flicker_rad {
+            if self.stage != Stage::Out {
+                self.stage = Stage::Out;
+                on_change(Change::at(Word::Leave, travel.reaches(&end.place), nm, nm));
+            }
+        } else if self.stage == Stage::In {
+            if beyond_rad >= end.cap_rad && self.play.hold() == Hold::Upper {
+                self.stage = Stage::AtCap;
+                if was == Hold::Upper && before_rad < end.cap_rad && nm > F::ZERO {
+                    let place = end.place.moved(sense * end.cap_rad);
+                    let nm = sense * nm;
+                    on_change(Change::at(Word::Cap, travel.reaches(&place), nm, nm));
+                }
+            }
+        } else if self.play.hold() != Hold::Upper {
+            self.stage = Stage::In;
+        }
+        nm
+    }
+
+    /// The joint meets the wall: the spring begins at its place.
+    #[cold]
+    fn enter(&mut self, end: &End<F>, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+        self.stage = Stage::In;
+        if self.play.torque_nm() == F::ZERO {
+            self.play.put(&end.place, F::ZERO, Hold::Upper);
+        }
+        let fraction = travel.reaches(&end.place);
+        on_change(Change::at(Word::Contact, fraction, F::ZERO, F::ZERO));
+    }
+}
+
+/// The ends of the range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RangeLimit<F> {
+    with: RangeLimitCoefficients<F>,
+    extension: Wall<F>,
+    flexion: Wall<F>,
+    torque_nm: F,
+}
+
+impl<F: Real> Law for RangeLimit<F> {
+    type Real = F;
+    type Settings = RangeLimitSettings;
+    type Coefficients = RangeLimitCoefficients<F>;
+
+    const SPEC: EffectSpec = EffectSpec {
+        name: "range-limit",
+        adds: "the ends of a limited range of motion, with their end-feel",
+        states: &["stretch in extension", "stretch in flexion"],
+        column: "range_limit_nm",
+        title: "End of the range, part of the model’s torque",
+        phases: Some(PhaseSpec {
+            column: "range_limit_phase",
+            names: &["free", "in-the-wall", "at-its-cap"],
+        }),
+        needs: &[],
+        parameters: RangeLimitSettings::TABLE,
+        choices: RangeLimitSettings::CHOICES,
+        sides: &["extension_", "flexion_"],
+    };
+
+    fn check(s: &RangeLimitSettings) -> Result<(), SettingsError> {
+        s.validate()?;
+        if s.flexion_limit_deg < s.extension_limit_deg + LEAST_RANGE_DEG {
+            return Err(SettingsError::Contradiction {
+                reason: "range-limit: flexion_limit_deg is at least 5 deg beyond extension_limit_deg",
+            });
+        }
+        for end in [s.extension(), s.flexion()] {
+            end.check()?;
+        }
+        Ok(())
+    }
+
+    fn coefficients(
+        settings: &RangeLimitSettings,
+        timing: &Timing,
+    ) -> Result<RangeLimitCoefficients<F>, SettingsError> {
+        Self::check(settings)?;
+        let s = settings;
+        Ok(RangeLimitCoefficients {
+            scale: timing.scale()?,
+            flicker_rad: F::from_f64(timing.sight.flicker_rad),
+            extension: End::new(s.extension_limit_deg, &s.extension(), timing),
+            flexion: End::new(s.flexion_limit_deg, &s.flexion(), timing),
+        })
+    }
+
+    fn new(coefficients: RangeLimitCoefficients<F>) -> Self {
+        Self {
+            with: coefficients,
+            extension: Wall::new(),
+            flexion: Wall::new(),
+            torque_nm: F::ZERO,
+        }
+    }
+
+    fn scale(&self) -> &Scale<F> {
+        &self.with.scale
+    }
+
+    fn rest(&mut self, place: &Position<F>) {
+        let RangeLimitCoefficients {
+            scale,
+            extension,
+            flexion,
+            ..
+        } = &self.with;
+        self.extension.rest(extension, -F::ONE, place, scale);
+        self.flexion.rest(flexion, F::ONE, place, scale);
+        self.torque_nm = F::ZERO;
+    }
+
+    #[inline]
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        let RangeLimitCoefficients {
+            flicker_rad,
+            extension,
+            flexion,
+            ..
+        } = &self.with;
+        let extension_nm =
+            self.extension
+                .follow(extension, -F::ONE, *flicker_rad, travel, on_change);
+        let flexion_nm = self
+            .flexion
+            .follow(flexion, F::ONE, *flicker_rad, travel, on_change);
+        self.torque_nm = flexion_nm - extension_nm;
+        self.torque_nm
+    }
+
+    fn torque_nm(&self) -> F {
+        self.torque_nm
+    }
+
+    fn adopt(&mut self, coefficients: RangeLimitCoefficients<F>, slew_nm: F) {
+        let (old, new) = (&self.with, &coefficients);
+        for (wall, from, to) in [
+            (&mut self.extension, &old.extension, &new.extension),
+            (&mut self.flexion, &old.flexion, &new.flexion),
+        ] {
+            wall.play.change(from.spring, to.spring, slew_nm);
+        }
+        self.with = coefficients;
+        self.torque_nm = self.flexion.play.torque_nm() - self.extension.play.torque_nm();
+    }
+
+    fn release(&mut self, slew_nm: F) {
+        self.extension.play.release(slew_nm);
+        self.flexion.play.release(slew_nm);
+        self.torque_nm = self.flexion.play.torque_nm() - self.extension.play.torque_nm();
+    }
+
+    fn phase(&self) -> u16 {
+        self.extension.stage.max(self.flexion.stage) as u16
+    }
+}

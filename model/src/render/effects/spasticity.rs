@@ -1,0 +1,340 @@
+//! `spasticity`: a muscle that resists a fast stretch and not a slow one.
+//!
+//! Two forms of one disorder, with one table of severities (the modified Ashworth
+//! scale, MAS):
+//!
+//! - `catch`, what an examiner describes: nothing, then a catch whose angle comes the
+//!   earlier the faster the stretch, then what is left. It is a play and gives no
+//!   energy.
+//! - `reflex`, a mechanism: the threshold of the stretch reflex falls with velocity
+//!   (λ model), the muscle answers late. It pushes back after a stop, so a tank pays
+//!   for it.
+
+mod caught;
+mod reflex;
+
+use super::symptom::{Change, Law};
+use super::{EffectSpec, PhaseSpec, Timing};
+use crate::joint::SettingsError;
+use crate::parameters::{Tabled, settings};
+use crate::real::Real;
+use crate::render::position::{Position, Scale, Travel, rise};
+use caught::{Caught, CaughtCoefficients};
+use reflex::{Reflex, ReflexCoefficients};
+
+settings! {
+    /// A spastic muscle.
+    pub struct SpasticitySettings, group "spasticity" {
+        render {
+            id: 72 always,
+            choice: ["off", "on"],
+            default: 0,
+            meaning: "whether a muscle resists fast stretches",
+        },
+    } chosen {
+        form {
+            id: 73 always,
+            choice: ["catch", "reflex"],
+            default: 0,
+            meaning: "as an examiner describes it, or as the stretch reflex makes it",
+        },
+        muscles {
+            id: 74 always,
+            choice: ["extensors", "flexors"],
+            default: 0,
+            meaning: "which muscles: extensors resist flexion, flexors extension",
+        },
+    } {
+        threshold_deg {
+            id: 75 always,
+            symbol: "λ",
+            unit: "deg",
+            range: -30.0..=170.0,
+            default: 75.0,
+            meaning: "angle at which a slow stretch meets the threshold (estimate)",
+        },
+        velocity_shift_s {
+            id: 76 always,
+            symbol: "μ",
+            unit: "s",
+            range: 0.0..=0.5,
+            default: 0.25,
+            meaning: "how much earlier the threshold is for each rad/s of stretch (sourced)",
+        },
+        torque_nm {
+            id: 77 always,
+            symbol: "Tmax",
+            unit: "N·m",
+            range: 0.0..=6.5,
+            default: 4.5,
+            meaning: "largest torque of the muscle (derived)",
+        },
+        threshold_velocity_deg_s {
+            id: 78 always,
+            symbol: "Ωth",
+            unit: "deg/s",
+            range: 5.0..=200.0,
+            default: 40.0,
+            meaning: "speed of stretch below which there is no catch (estimate); form catch",
+        },
+        velocity_torque_nms_per_rad {
+            id: 79 always,
+            symbol: "b",
+            unit: "N·m·s/rad",
+            range: 0.0..=2.0,
+            default: 0.67,
+            meaning: "torque of the catch for each rad/s of stretch (sourced); form catch",
+        },
+        residual_share {
+            id: 80 always,
+            symbol: "r",
+            unit: "1",
+            range: 0.0..=1.0,
+            default: 0.5,
+            meaning: "share of the catch that is left after its release (estimate); form catch",
+        },
+        stiffness_nm_per_rad {
+            id: 81 always,
+            symbol: "k",
+            unit: "N·m/rad",
+            range: 0.0..=10.0,
+            default: 1.0,
+            meaning: "how it grows beyond the catch (estimate); form catch",
+        },
+        release_s {
+            id: 82 always,
+            symbol: "τ",
+            unit: "s",
+            range: 0.01..=1.0,
+            default: 0.06,
+            meaning: "time in which the catch releases (estimate); form catch",
+        },
+        catch_stiffness_nm_per_rad {
+            id: 83 always,
+            symbol: "σ",
+            unit: "N·m/rad",
+            range: 10.0..=300.0,
+            default: 60.0,
+            meaning: "stiffness with which the catch builds up (estimate); form catch",
+        },
+        rearm_deg {
+            id: 84 always,
+            symbol: "Δ",
+            unit: "deg",
+            range: 2.0..=60.0,
+            default: 10.0,
+            meaning: "retreat from the catch after which there can be another (estimate); form catch",
+        },
+        gain_nm_per_rad {
+            id: 85 always,
+            symbol: "k",
+            unit: "N·m/rad",
+            range: 0.0..=20.0,
+            default: 2.43,
+            meaning: "torque of the muscle for each radian beyond the threshold (sourced); form reflex",
+        },
+        delay_s {
+            id: 86 always,
+            symbol: "τd",
+            unit: "s",
+            range: 0.0..=0.1,
+            default: 0.05,
+            meaning: "time from stretch to answer (sourced); form reflex",
+        },
+        activation_s {
+            id: 87 always,
+            symbol: "τa",
+            unit: "s",
+            range: 0.002..=0.1,
+            default: 0.01,
+            meaning: "time in which the muscle builds up its torque (sourced); form reflex",
+        },
+    }
+}
+
+/// The threshold of a muscle: s·(φ − λ + μΩ), rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Threshold<F> {
+    place: Position<F>,
+    shift_s: F,
+    /// ±1: the sense of φ in which the muscle is stretched.
+    sense: F,
+}
+
+impl<F: Real> Threshold<F> {
+    /// How far beyond it the joint is at the end of a travel.
+    #[inline]
+    fn end_beyond(&self, travel: &Travel<F>) -> F {
+        self.sense * (travel.end_beyond(&self.place) + self.shift_s * travel.omega_end_rad_s)
+    }
+
+    /// And at its beginning.
+    #[inline]
+    fn start_beyond(&self, travel: &Travel<F>) -> F {
+        self.sense
+            * (travel.end_beyond(&self.place) - travel.delta_rad
+                + self.shift_s * travel.omega_start_rad_s)
+    }
+
+    /// The share of a travel at which a joint that begins so far beyond has come to
+    /// `level` from below.
+    fn rises_to(&self, level: F, start_beyond: F, travel: &Travel<F>) -> F {
+        let faster = self.shift_s * (travel.omega_end_rad_s - travel.omega_start_rad_s);
+        let slope = self.sense * (travel.delta_rad - travel.bend_rad + faster);
+        rise(slope, self.sense * travel.bend_rad, level - start_beyond)
+    }
+
+    /// Or from above.
+    fn falls_to(&self, level: F, start_beyond: F, travel: &Travel<F>) -> F {
+        let mirrored = Self {
+            sense: -self.sense,
+            ..*self
+        };
+        mirrored.rises_to(-level, -start_beyond, travel)
+    }
+}
+
+/// Coefficients of [`Spasticity`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpasticityCoefficients<F> {
+    /// Of the form `catch`.
+    Catch(CaughtCoefficients<F>),
+    /// Of the form `reflex`.
+    Reflex(ReflexCoefficients<F>),
+}
+
+/// The muscle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "the reflex remembers a tenth of a second, and there is no heap"
+)]
+pub enum Spasticity<F> {
+    /// As an examiner describes it.
+    Catch(Caught<F>),
+    /// As the reflex makes it.
+    Reflex(Reflex<F>),
+}
+
+impl<F: Real> Law for Spasticity<F> {
+    type Real = F;
+    type Settings = SpasticitySettings;
+    type Coefficients = SpasticityCoefficients<F>;
+
+    const SPEC: EffectSpec = EffectSpec {
+        name: "spasticity",
+        adds: "a muscle that resists a fast stretch and not a slow one",
+        states: &[
+            "stretch of the catch",
+            "its decay",
+            "the reflex’s delay and torque",
+        ],
+        column: "spasticity_nm",
+        title: "Spasticity, part of the model’s torque",
+        phases: Some(PhaseSpec {
+            column: "spasticity_phase",
+            names: &["silent", "caught", "reflex", "reflex-at-its-largest"],
+        }),
+        needs: &[],
+        parameters: SpasticitySettings::TABLE,
+        choices: SpasticitySettings::CHOICES,
+        sides: &[],
+    };
+
+    fn check(s: &SpasticitySettings) -> Result<(), SettingsError> {
+        s.validate()?;
+        if s.form == 1 && s.velocity_shift_s < s.delay_s + s.activation_s {
+            return Err(SettingsError::Contradiction {
+                reason: "spasticity: in the form reflex velocity_shift_s is no less than delay_s + activation_s: \
+                         otherwise it gives energy at every speed",
+            });
+        }
+        Ok(())
+    }
+
+    fn coefficients(
+        settings: &SpasticitySettings,
+        timing: &Timing,
+    ) -> Result<SpasticityCoefficients<F>, SettingsError> {
+        Self::check(settings)?;
+        let threshold = Threshold {
+            place: timing.sight.position(settings.threshold_deg.to_radians()),
+            shift_s: F::from_f64(settings.velocity_shift_s),
+            sense: sense(settings.muscles),
+        };
+        Ok(if settings.form == 0 {
+            SpasticityCoefficients::Catch(CaughtCoefficients::new(settings, threshold, timing)?)
+        } else {
+            SpasticityCoefficients::Reflex(ReflexCoefficients::new(settings, threshold, timing)?)
+        })
+    }
+
+    fn new(coefficients: SpasticityCoefficients<F>) -> Self {
+        match coefficients {
+            SpasticityCoefficients::Catch(with) => Self::Catch(Caught::new(with)),
+            SpasticityCoefficients::Reflex(with) => Self::Reflex(Reflex::new(with)),
+        }
+    }
+
+    fn scale(&self) -> &Scale<F> {
+        match self {
+            Self::Catch(caught) => caught.scale(),
+            Self::Reflex(reflex) => reflex.scale(),
+        }
+    }
+
+    fn rest(&mut self, place: &Position<F>) {
+        match self {
+            Self::Catch(caught) => caught.rest(place),
+            Self::Reflex(reflex) => reflex.rest(),
+        }
+    }
+
+    #[inline]
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        match self {
+            Self::Catch(caught) => caught.follow(travel, on_change),
+            Self::Reflex(reflex) => reflex.follow(travel, on_change),
+        }
+    }
+
+    fn torque_nm(&self) -> F {
+        match self {
+            Self::Catch(caught) => caught.torque_nm(),
+            Self::Reflex(reflex) => reflex.torque_nm(),
+        }
+    }
+
+    fn adopt(&mut self, coefficients: SpasticityCoefficients<F>, slew_nm: F) {
+        match (self, coefficients) {
+            (Self::Catch(caught), SpasticityCoefficients::Catch(with)) => {
+                caught.adopt(with, slew_nm);
+            }
+            (Self::Reflex(reflex), SpasticityCoefficients::Reflex(with)) => reflex.adopt(with),
+            (this, other) => *this = Self::new(other),
+        }
+    }
+
+    fn release(&mut self, slew_nm: F) {
+        match self {
+            Self::Catch(caught) => caught.release(slew_nm),
+            Self::Reflex(reflex) => reflex.release(slew_nm),
+        }
+    }
+
+    fn is_active(&self) -> bool {
+        matches!(self, Self::Reflex(_))
+    }
+
+    fn phase(&self) -> u16 {
+        match self {
+            Self::Catch(caught) => u16::from(caught.is_caught()),
+            Self::Reflex(reflex) => reflex.phase(),
+        }
+    }
+}
+
+/// The sense of φ in which muscles are stretched: extensors in flexion.
+pub(super) fn sense<F: Real>(muscles: u8) -> F {
+    if muscles == 0 { F::ONE } else { -F::ONE }
+}

@@ -1,0 +1,253 @@
+//! The form `catch`.
+//!
+//! ```text
+//! armed ─> caught where s·(φ − λ + μΩ) ≥ 0 and s·Ω ≥ Ωth first hold
+//! P = min(Tmax, b·sΩc)
+//! u = P·[r + (1 − r)·e^(−(t − tc)/τ)] + k·max(0, s·(φ − φc))        T = s·play(σ, 0 … u)
+//! armed again where s·(φc − φ) ≥ Δ
+//! ```
+//!
+//! The torque never pushes: stop, and it falls along σ; go on, and it is there
+//! again. In the tick of the catch the decay is linear.
+
+use super::{SpasticitySettings, Threshold};
+use crate::joint::SettingsError;
+use crate::real::Real;
+use crate::render::effects::Timing;
+use crate::render::effects::play::{Hold, Limits, Part, Play};
+use crate::render::effects::symptom::{Change, Word};
+use crate::render::position::{Position, Scale, Travel, rise};
+
+/// Coefficients of [`Caught`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CaughtCoefficients<F> {
+    scale: Scale<F>,
+    threshold: Threshold<F>,
+    least_rad_s: F,
+    per_rad_s: F,
+    most_nm: F,
+    residual: F,
+    slope: F,
+    /// −h/τ, and e to its power.
+    rate: F,
+    decay: F,
+    stiffness: F,
+    rearm_rad: F,
+}
+
+impl<F: Real> CaughtCoefficients<F> {
+    pub(super) fn new(
+        s: &SpasticitySettings,
+        threshold: Threshold<F>,
+        timing: &Timing,
+    ) -> Result<Self, SettingsError> {
+        Ok(Self {
+            scale: timing.scale()?,
+            threshold,
+            least_rad_s: F::from_f64(s.threshold_velocity_deg_s.to_radians()),
+            per_rad_s: F::from_f64(s.velocity_torque_nms_per_rad),
+            most_nm: F::from_f64(s.torque_nm),
+            residual: F::from_f64(s.residual_share),
+            slope: F::from_f64(s.stiffness_nm_per_rad),
+            rate: F::from_f64(-timing.step_s / s.release_s),
+            decay: F::from_f64(libm::exp(-timing.step_s / s.release_s)),
+            stiffness: F::from_f64(s.catch_stiffness_nm_per_rad),
+            rearm_rad: F::from_f64(s.rearm_deg.to_radians()),
+        })
+    }
+}
+
+/// A catch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Catch<F> {
+    place: Position<F>,
+    /// P·r, N·m.
+    left_nm: F,
+    /// P·(1 − r)·e^(−(t − tc)/τ), N·m.
+    decaying_nm: F,
+}
+
+/// A muscle that catches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Caught<F> {
+    with: CaughtCoefficients<F>,
+    play: Play<F>,
+    /// The catch, until it is armed again.
+    catch: Option<Catch<F>>,
+    torque_nm: F,
+}
+
+impl<F: Real> Caught<F> {
+    pub(super) fn new(with: CaughtCoefficients<F>) -> Self {
+        Self {
+            with,
+            play: Play::new(),
+            catch: None,
+            torque_nm: F::ZERO,
+        }
+    }
+
+    pub(super) fn scale(&self) -> &Scale<F> {
+        &self.with.scale
+    }
+
+    pub(super) fn rest(&mut self, place: &Position<F>) {
+        self.play.rest(place);
+        self.catch = None;
+        self.torque_nm = F::ZERO;
+    }
+
+    pub(super) fn torque_nm(&self) -> F {
+        self.torque_nm
+    }
+
+    pub(super) fn is_caught(&self) -> bool {
+        self.catch.is_some()
+    }
+
+    pub(super) fn adopt(&mut self, with: CaughtCoefficients<F>, slew_nm: F) {
+        if with.threshold.sense == self.with.threshold.sense {
+            self.play
+                .change(self.with.stiffness, with.stiffness, slew_nm);
+            self.torque_nm = with.threshold.sense * self.play.torque_nm();
+            self.with = with;
+        } else {
+            *self = Self::new(with);
+        }
+    }
+
+    pub(super) fn release(&mut self, slew_nm: F) {
+        self.play.release(slew_nm);
+        self.torque_nm = self.with.threshold.sense * self.play.torque_nm();
+    }
+
+    #[inline]
+    pub(super) fn follow(
+        &mut self,
+        travel: &Travel<F>,
+        on_change: &mut impl FnMut(Change<F>),
+    ) -> F {
+        let nm = match &mut self.catch {
+            Some(_) => self.go_on(travel, on_change),
+            None => self.wait(travel, on_change),
+        };
+        self.torque_nm = self.with.threshold.sense * nm;
+        self.torque_nm
+    }
+
+    /// Armed: whether the stretch is fast and far enough.
+    #[inline]
+    fn wait(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        let with = &self.with;
+        let sense = with.threshold.sense;
+        let stretch_rad_s = sense * travel.omega_end_rad_s;
+        if stretch_rad_s < with.least_rad_s && sense * travel.omega_start_rad_s < with.least_rad_s {
+            return F::ZERO;
+        }
+        let start = with.threshold.start_beyond(travel);
+        let start_faster = sense * travel.omega_start_rad_s - with.least_rad_s;
+        if start >= F::ZERO && start_faster >= F::ZERO {
+            return self.catch(F::ZERO, travel, on_change);
+        }
+        if stretch_rad_s < with.least_rad_s || with.threshold.end_beyond(travel) < F::ZERO {
+            return F::ZERO;
+        }
+        let faster = stretch_rad_s - with.least_rad_s - start_faster;
+        let there = if start < F::ZERO {
+            with.threshold.rises_to(F::ZERO, start, travel)
+        } else {
+            F::ZERO
+        };
+        let fast = if start_faster < F::ZERO {
+            rise(faster, F::ZERO, -start_faster)
+        } else {
+            F::ZERO
+        };
+        self.catch(there.at_least(fast), travel, on_change)
+    }
+
+    /// Caught after this share of the travel.
+    #[cold]
+    fn catch(
+        &mut self,
+        fraction: F,
+        travel: &Travel<F>,
+        on_change: &mut impl FnMut(Change<F>),
+    ) -> F {
+        let with = &self.with;
+        let sense = with.threshold.sense;
+        let peak_nm = (with.per_rad_s * sense * travel.omega_rad_s(fraction)).at_most(with.most_nm);
+        let place = travel.place(fraction);
+        let left_nm = peak_nm * with.residual;
+        let mut catch = Catch {
+            place,
+            left_nm,
+            decaying_nm: peak_nm - left_nm,
+        };
+        on_change(Change::at(Word::Catch, fraction, F::ZERO, F::ZERO));
+        self.play.put(&place, F::ZERO, Hold::Elastic);
+        let nm = self.follow_from(fraction, &mut catch, travel, on_change);
+        self.catch = Some(catch);
+        nm
+    }
+
+    /// Caught, before this travel or within it.
+    #[inline]
+    fn follow_from(
+        &mut self,
+        from: F,
+        catch: &mut Catch<F>,
+        travel: &Travel<F>,
+        on_change: &mut impl FnMut(Change<F>),
+    ) -> F {
+        let with = &self.with;
+        let sense = with.threshold.sense;
+        let before_nm = catch.decaying_nm;
+        let after_nm = if from == F::ZERO {
+            (0..travel.ticks).fold(before_nm, |nm, _| nm * with.decay)
+        } else {
+            before_nm * (F::ONE - (F::ONE - from) * (F::ONE - with.decay))
+        };
+        catch.decaying_nm = after_nm.settled();
+        let part = Part::since(sense, from);
+        let limits = |fraction: F| {
+            let at = travel.place(fraction);
+            let beyond = sense * at.beyond(&catch.place, travel.rad_per_count);
+            let decaying_nm = if fraction == F::ONE {
+                after_nm
+            } else {
+                before_nm * (with.rate * (fraction - from)).exp()
+            };
+            Limits {
+                lower_nm: F::ZERO,
+                upper_nm: catch.left_nm + decaying_nm + with.slope * beyond.at_least(F::ZERO),
+            }
+        };
+        self.play
+            .follow(travel, part, with.stiffness, limits, on_change)
+    }
+
+    #[inline]
+    fn go_on(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        let Some(mut catch) = self.catch else {
+            return F::ZERO;
+        };
+        let sense = self.with.threshold.sense;
+        let nm = self.follow_from(F::ZERO, &mut catch, travel, on_change);
+        let back_rad = -sense * travel.end_beyond(&catch.place);
+        if back_rad >= self.with.rearm_rad {
+            let place = catch.place.moved(-sense * self.with.rearm_rad);
+            on_change(Change::at(
+                Word::Rearm,
+                travel.reaches(&place),
+                sense * nm,
+                F::ZERO,
+            ));
+            self.catch = None;
+            self.play.rest(&travel.to);
+            return F::ZERO;
+        }
+        self.catch = Some(catch);
+        nm
+    }
+}

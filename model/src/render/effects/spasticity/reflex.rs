@@ -1,0 +1,233 @@
+//! The form `reflex`.
+//!
+//! ```text
+//! u = min(Tmax, k·max(0, s·(φ − λ + μΩ)))        τa·ẏ + y = u(t − τd)        T = s·y
+//! ```
+//!
+//! The answer is solved exactly for an input that is linear within a tick. The lag
+//! of the device's own velocity counts as part of τd. Passive below and active above
+//! some hertz; with μ ≥ τd + τa it takes energy from a steady stretch.
+
+use super::{SpasticitySettings, Threshold};
+use crate::joint::SettingsError;
+use crate::real::Real;
+use crate::render::effects::Timing;
+use crate::render::effects::symptom::{Change, Word};
+use crate::render::position::{Scale, Travel};
+
+/// Ticks that are remembered: 0.1 s at 20 kHz, and one to interpolate.
+const REMEMBERED: usize = 2048;
+
+/// Coefficients of [`Reflex`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReflexCoefficients<F> {
+    scale: Scale<F>,
+    threshold: Threshold<F>,
+    gain: F,
+    most_nm: F,
+    /// Tmax/k, rad: where the torque is largest; infinite without a gain.
+    most_rad: F,
+    /// Whole ticks of the delay, and the rest of one.
+    delay: usize,
+    delay_rest: F,
+    /// y ← a·y + c0·u0 + c1·u1.
+    keep: F,
+    first: F,
+    second: F,
+}
+
+impl<F: Real> ReflexCoefficients<F> {
+    pub(super) fn new(
+        s: &SpasticitySettings,
+        threshold: Threshold<F>,
+        timing: &Timing,
+    ) -> Result<Self, SettingsError> {
+        let lag_s = (s.delay_s - timing.sight.velocity_lag_s).max(0.0);
+        let ticks = lag_s / timing.step_s;
+        // What is a whole number of ticks but for rounding is one.
+        let whole = libm::floor(ticks + 1e-9);
+        let delay = usize::try_from(whole.whole()).unwrap_or(usize::MAX);
+        if delay > REMEMBERED.saturating_sub(2) {
+            return Err(SettingsError::Step {
+                step_s: timing.step_s,
+            });
+        }
+        let x = timing.step_s / s.activation_s;
+        let keep = libm::exp(-x);
+        let mean = -libm::expm1(-x) / x;
+        Ok(Self {
+            scale: timing.scale()?,
+            threshold,
+            gain: F::from_f64(s.gain_nm_per_rad),
+            most_nm: F::from_f64(s.torque_nm),
+            most_rad: F::from_f64(s.torque_nm / s.gain_nm_per_rad),
+            delay,
+            delay_rest: F::from_f64((ticks - whole).max(0.0)),
+            keep: F::from_f64(keep),
+            first: F::from_f64(mean - keep),
+            second: F::from_f64(1.0 - mean),
+        })
+    }
+}
+
+/// What the muscle is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Drive {
+    Silent,
+    Rising,
+    Most,
+}
+
+/// A muscle that answers late.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reflex<F> {
+    with: ReflexCoefficients<F>,
+    /// u of the last ticks, the latest at `latest`.
+    line: [F; REMEMBERED],
+    latest: usize,
+    /// So many of them are of this stretch.
+    remembered: usize,
+    /// u(t − τd) at the end of the last tick, N·m.
+    told_nm: F,
+    /// y, N·m.
+    answer_nm: F,
+    drive: Drive,
+}
+
+impl<F: Real> Reflex<F> {
+    pub(super) fn new(with: ReflexCoefficients<F>) -> Self {
+        Self {
+            with,
+            line: [F::ZERO; REMEMBERED],
+            latest: 0,
+            remembered: 0,
+            told_nm: F::ZERO,
+            answer_nm: F::ZERO,
+            drive: Drive::Silent,
+        }
+    }
+
+    pub(super) fn scale(&self) -> &Scale<F> {
+        &self.with.scale
+    }
+
+    pub(super) fn rest(&mut self) {
+        self.remembered = 0;
+        self.told_nm = F::ZERO;
+        self.answer_nm = F::ZERO;
+        self.drive = Drive::Silent;
+    }
+
+    pub(super) fn torque_nm(&self) -> F {
+        self.with.threshold.sense * self.answer_nm
+    }
+
+    pub(super) fn phase(&self) -> u16 {
+        match self.drive {
+            Drive::Silent => 0,
+            Drive::Rising => 2,
+            Drive::Most => 3,
+        }
+    }
+
+    pub(super) fn adopt(&mut self, with: ReflexCoefficients<F>) {
+        self.with = with;
+    }
+
+    pub(super) fn release(&mut self, slew_nm: F) {
+        self.answer_nm = self.answer_nm - self.answer_nm.within(slew_nm);
+    }
+
+    #[inline]
+    pub(super) fn follow(
+        &mut self,
+        travel: &Travel<F>,
+        on_change: &mut impl FnMut(Change<F>),
+    ) -> F {
+        let with = self.with;
+        let beyond = with.threshold.end_beyond(travel);
+        let drive = if beyond <= F::ZERO {
+            Drive::Silent
+        } else if beyond < with.most_rad {
+            Drive::Rising
+        } else {
+            Drive::Most
+        };
+        if drive != self.drive {
+            self.tell(drive, travel, on_change);
+        }
+        let nm = match drive {
+            Drive::Silent => F::ZERO,
+            Drive::Rising => with.gain * beyond,
+            Drive::Most => with.most_nm,
+        };
+        for _ in 0..travel.ticks {
+            self.remember(nm);
+            let told_nm = self.told();
+            self.answer_nm =
+                (with.keep * self.answer_nm + with.first * self.told_nm + with.second * told_nm)
+                    .settled();
+            self.told_nm = told_nm;
+        }
+        self.torque_nm()
+    }
+
+    #[inline]
+    fn remember(&mut self, nm: F) {
+        self.latest = self.latest.wrapping_add(1) % REMEMBERED;
+        if let Some(place) = self.line.get_mut(self.latest) {
+            *place = nm;
+        }
+        self.remembered = self.remembered.saturating_add(1).min(REMEMBERED);
+    }
+
+    /// u(t − τd), N·m.
+    #[inline]
+    fn told(&self) -> F {
+        let late = self.ago(self.with.delay);
+        if self.with.delay_rest == F::ZERO {
+            return late;
+        }
+        late + self.with.delay_rest * (self.ago(self.with.delay.wrapping_add(1)) - late)
+    }
+
+    /// u so many ticks ago, N·m; nothing before the beginning.
+    #[inline]
+    fn ago(&self, ticks: usize) -> F {
+        if ticks >= self.remembered {
+            return F::ZERO;
+        }
+        let index = self.latest.wrapping_sub(ticks) % REMEMBERED;
+        self.line.get(index).copied().unwrap_or_default()
+    }
+
+    /// Says what has changed, and when.
+    #[cold]
+    fn tell(&mut self, drive: Drive, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+        let threshold = &self.with.threshold;
+        let start = threshold.start_beyond(travel);
+        let nm = self.torque_nm();
+        let mut tell = |word, level, rises: bool| {
+            let fraction = if rises {
+                threshold.rises_to(level, start, travel)
+            } else {
+                threshold.falls_to(level, start, travel)
+            };
+            on_change(Change::at(word, fraction, nm, nm));
+        };
+        let most_rad = self.with.most_rad;
+        if self.drive == Drive::Silent {
+            tell(Word::Onset, F::ZERO, true);
+        }
+        if self.drive == Drive::Most {
+            tell(Word::Uncap, most_rad, false);
+        }
+        if drive == Drive::Most {
+            tell(Word::Cap, most_rad, true);
+        }
+        if drive == Drive::Silent {
+            tell(Word::Offset, F::ZERO, false);
+        }
+        self.drive = drive;
+    }
+}

@@ -1,0 +1,198 @@
+//! Symptoms besides crepitus: laws of disorders that depend on the joint's angle.
+
+use super::{EffectSpec, Timing};
+use crate::joint::SettingsError;
+use crate::real::Real;
+use crate::render::position::{Position, Scale, Travel};
+
+/// What happens to a symptom; the names are those of `events.csv`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Word {
+    /// The joint enters the wall.
+    Contact,
+    /// It leaves it.
+    Leave,
+    /// The torque has reached its largest.
+    Cap,
+    /// It falls below it again.
+    Uncap,
+    /// A catch.
+    Catch,
+    /// It gives way.
+    Give,
+    /// It can catch again.
+    Rearm,
+    /// Torque begins to build up.
+    Onset,
+    /// There is none any more.
+    Offset,
+    /// The resistance collapses.
+    Release,
+    /// Turned back before it collapsed.
+    Back,
+    /// Clonus starts.
+    Start,
+    /// A beat.
+    Beat,
+    /// The muscle was let go: no further beat.
+    Stop,
+    /// All beats are over.
+    Done,
+    /// An asperity is crossed.
+    Snap,
+    /// A play is dragged along.
+    Flow,
+    /// It stops being dragged.
+    Turn,
+    /// Its torque has fallen to zero.
+    Slack,
+    /// It takes up torque again.
+    Take,
+}
+
+impl Word {
+    /// All words.
+    pub const ALL: [Self; 20] = [
+        Self::Contact,
+        Self::Leave,
+        Self::Cap,
+        Self::Uncap,
+        Self::Catch,
+        Self::Give,
+        Self::Rearm,
+        Self::Onset,
+        Self::Offset,
+        Self::Release,
+        Self::Back,
+        Self::Start,
+        Self::Beat,
+        Self::Stop,
+        Self::Done,
+        Self::Snap,
+        Self::Flow,
+        Self::Turn,
+        Self::Slack,
+        Self::Take,
+    ];
+
+    /// In `events.csv`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Contact => "contact",
+            Self::Leave => "leave",
+            Self::Cap => "cap",
+            Self::Uncap => "uncap",
+            Self::Catch => "catch",
+            Self::Give => "give",
+            Self::Rearm => "rearm",
+            Self::Onset => "onset",
+            Self::Offset => "offset",
+            Self::Release => "release",
+            Self::Back => "back",
+            Self::Start => "start",
+            Self::Beat => "beat",
+            Self::Stop => "stop",
+            Self::Done => "done",
+            Self::Snap => "snap",
+            Self::Flow => "flow",
+            Self::Turn => "turn",
+            Self::Slack => "slack",
+            Self::Take => "take",
+        }
+    }
+
+    /// Whether it is of the play under a symptom, of interest on request.
+    pub fn is_of_play(self) -> bool {
+        matches!(self, Self::Flow | Self::Turn | Self::Slack | Self::Take)
+    }
+}
+
+/// An event of a symptom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change<F> {
+    /// What has happened.
+    pub word: Word,
+    /// When: the share of the travel, 0 to 1.
+    pub fraction: F,
+    /// Torque just before, N·m; like what follows, against growing angle.
+    pub before_nm: F,
+    /// Torque just after, N·m.
+    pub after_nm: F,
+}
+
+impl<F: Real> Change<F> {
+    /// Made of its parts.
+    #[inline]
+    pub fn at(word: Word, fraction: F, before_nm: F, after_nm: F) -> Self {
+        Self {
+            word,
+            fraction,
+            before_nm,
+            after_nm,
+        }
+    }
+}
+
+/// The law of a symptom, with its state.
+pub trait Law: Sized {
+    /// The numbers that it computes with.
+    type Real: Real;
+
+    /// Its parameters.
+    type Settings;
+
+    /// What a commit replaces of it.
+    type Coefficients: Copy + core::fmt::Debug + PartialEq;
+
+    /// Its description.
+    const SPEC: EffectSpec;
+
+    /// Checks ranges, and what holds between the settings.
+    ///
+    /// # Errors
+    /// The first rule that is broken.
+    fn check(settings: &Self::Settings) -> Result<(), SettingsError>;
+
+    /// Coefficients for settings; computed in f64 and rounded once.
+    ///
+    /// # Errors
+    /// [`SettingsError`] if a setting or the tick is out of range.
+    fn coefficients(
+        settings: &Self::Settings,
+        timing: &Timing,
+    ) -> Result<Self::Coefficients, SettingsError>;
+
+    /// With these coefficients; [`Self::rest`] places it.
+    fn new(coefficients: Self::Coefficients) -> Self;
+
+    /// Scale of the angle.
+    fn scale(&self) -> &Scale<Self::Real>;
+
+    /// As at arming: without torque at this place of the joint, whatever it is.
+    fn rest(&mut self, place: &Position<Self::Real>);
+
+    /// Follows the joint: its torque then, N·m.
+    fn follow(
+        &mut self,
+        travel: &Travel<Self::Real>,
+        on_change: &mut impl FnMut(Change<Self::Real>),
+    ) -> Self::Real;
+
+    /// Its torque now, N·m.
+    fn torque_nm(&self) -> Self::Real;
+
+    /// From now on with these coefficients; its torque goes on, and falls by at
+    /// most `slew_nm` a tick to what they allow.
+    fn adopt(&mut self, coefficients: Self::Coefficients, slew_nm: Self::Real);
+
+    /// There are no samples: its torque falls by `slew_nm`.
+    fn release(&mut self, slew_nm: Self::Real);
+
+    /// Whether it gives energy: it is then paid from the tank.
+    fn is_active(&self) -> bool {
+        false
+    }
+
+    /// The number of its phase.
+    fn phase(&self) -> u16;
+}

@@ -1,0 +1,99 @@
+//! A tank of energy from which torque that is no passive spring's is paid.
+//!
+//! Every tick takes the hand's work with that torque into account: of the torques
+//! that may have been acting, the one that gave the most. The tank refills at a
+//! fixed power up to its capacity, and below half of it the output fades in
+//! proportion. Hence, over any time t and for any motion,
+//!
+//! ```text
+//! energy returned ≤ capacity + refill·t
+//! ```
+//!
+//! while no tick takes more than is in it; what is overdrawn is paid back before
+//! the next output.
+
+use crate::control::energy_observer::MOST_DELAY_TICKS;
+use crate::real::Real;
+
+/// A tank of energy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tank<F> {
+    capacity_j: F,
+    refill_j: F,
+    /// Of the output, per joule: reaches 1 at half the capacity.
+    share_per_j: F,
+    pub(super) level_j: F,
+    /// The last output torques, the latest first.
+    pub(super) given_nm: [F; MOST_DELAY_TICKS + 1],
+    delay_ticks: usize,
+}
+
+impl<F: Real> Tank<F> {
+    /// A full tank. A torque acts in the tick after the one that returned it, or up
+    /// to `delay_ticks` later, at most [`MOST_DELAY_TICKS`]. (Half a tick late is 1.)
+    pub fn new(capacity_j: f64, refill_w: f64, step_s: f64, delay_ticks: usize) -> Self {
+        Self {
+            capacity_j: F::from_f64(capacity_j),
+            refill_j: F::from_f64(refill_w * step_s),
+            share_per_j: F::from_f64(2.0 / capacity_j),
+            level_j: F::from_f64(capacity_j),
+            given_nm: [F::ZERO; MOST_DELAY_TICKS + 1],
+            delay_ticks: delay_ticks.min(MOST_DELAY_TICKS),
+        }
+    }
+
+    /// Accounts for a tick in which the shaft has moved so far. A travel that is NaN or
+    /// infinite counts as zero and refills nothing.
+    #[inline]
+    pub fn account(&mut self, delta_phi_rad: F) {
+        if delta_phi_rad.is_finite() {
+            let work_j = self.least_work_j(delta_phi_rad);
+            self.level_j = (self.level_j + work_j + self.refill_j)
+                .at_most(self.capacity_j)
+                // Only an implausibly fast shaft overdraws; bounded.
+                .at_least(-self.capacity_j);
+        }
+    }
+
+    /// The share of an output that is paid now.
+    #[inline]
+    pub fn share(&self) -> F {
+        (self.level_j * self.share_per_j)
+            .at_most(F::ONE)
+            .at_least(F::ZERO)
+    }
+
+    /// Notes the torque that is given from now on, N·m.
+    #[inline]
+    pub fn give(&mut self, torque_nm: F) {
+        let [last, before, _] = self.given_nm;
+        self.given_nm = [torque_nm, last, before];
+    }
+
+    /// Forgets what was given, for disarming.
+    pub fn forget(&mut self) {
+        self.given_nm = [F::ZERO; MOST_DELAY_TICKS + 1];
+    }
+
+    /// Energy in the tank, J.
+    pub fn level_j(&self) -> F {
+        self.level_j
+    }
+
+    /// Whether nothing is missing, and nothing given that could take from it.
+    #[inline]
+    pub fn is_idle(&self) -> bool {
+        self.level_j == self.capacity_j && self.given_nm == [F::ZERO; MOST_DELAY_TICKS + 1]
+    }
+
+    /// The least work that the hand has put in by this travel, J: with the
+    /// worst for it of the torques that may have been acting.
+    fn least_work_j(&self, delta_phi_rad: F) -> F {
+        let mut acting = self
+            .given_nm
+            .iter()
+            .take(self.delay_ticks.saturating_add(1));
+        let first = acting.next().map_or(F::ZERO, |t| *t * delta_phi_rad);
+        acting.fold(first, |least, t| least.at_most(*t * delta_phi_rad))
+    }
+}

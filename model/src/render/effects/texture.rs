@@ -1,0 +1,396 @@
+//! `texture`: asperities fixed to the angle, whose pitch rises with speed.
+//!
+//! ```text
+//! φn = λ·(n + j·(h₂ₙ − ½))     Hn = (Tp − Tb)·(1 − j·h₂ₙ₊₁)     h: a hash of its number and the seed
+//!  u = Tb + Hnext·max(0, 1 − (φnext − φ)/(wλ))
+//! −ℓ = Tb + Hlast·max(0, 1 − (φ − φlast)/(wλ))                  T = play(σ, ℓ … u)
+//! ```
+//!
+//! The same click at the same angle there and back: Ω/λ *snaps* a second, mean torque
+//! Tb + w·(Tp − Tb)/2. Stick-slip alone has one pitch.
+//!
+//! Sources: detection of torque variation follows the spatial, not the temporal
+//! specification (Tan et al.); torques in the paper's range; pitches are estimates.
+
+use super::play::{Hold, Limits, Part, Play};
+use super::symptom::{Change, Law, Word};
+use super::{EffectSpec, PhaseSpec, Timing};
+use crate::joint::SettingsError;
+use crate::parameters::{Tabled, settings};
+use crate::real::Real;
+use crate::render::position::{Position, Scale, Travel};
+
+settings! {
+    /// A rough joint.
+    pub struct TextureSettings, group "texture" {
+        render {
+            id: 118 always,
+            choice: ["off", "on"],
+            default: 0,
+            meaning: "whether the joint has asperities at fixed angles",
+        },
+    } {
+        base_nm {
+            id: 119 always,
+            symbol: "Tb",
+            unit: "N·m",
+            range: 0.0..=2.0,
+            default: 0.1,
+            meaning: "resistance between asperities (estimate, in the paper's range)",
+        },
+        peak_nm {
+            id: 120 always,
+            symbol: "Tp",
+            unit: "N·m",
+            range: 0.0..=4.0,
+            default: 0.4,
+            meaning: "resistance at an asperity, no less than between them (estimate, in the paper's range)",
+        },
+        pitch_deg {
+            id: 121 always,
+            symbol: "λ",
+            unit: "deg",
+            range: 0.2..=20.0,
+            default: 1.5,
+            meaning: "angle from asperity to asperity (estimate)",
+        },
+        width_share {
+            id: 122 always,
+            symbol: "w",
+            unit: "1",
+            range: 0.1..=1.0,
+            default: 0.6,
+            meaning: "share of the pitch over which the resistance rises (estimate)",
+        },
+        irregularity {
+            id: 123 always,
+            symbol: "j",
+            unit: "1",
+            range: 0.0..=0.9,
+            default: 0.3,
+            meaning: "how much asperities differ in place and height (estimate)",
+        },
+        seed {
+            id: 124 always,
+            symbol: "seed",
+            unit: "1",
+            range: 0.0..=4_294_967_295.0,
+            default: 1.0,
+            meaning: "another whole number is another joint",
+        },
+        stiffness_nm_per_rad {
+            id: 125 always,
+            symbol: "σ",
+            unit: "N·m/rad",
+            range: 1.0..=400.0,
+            default: 200.0,
+            meaning: "stiffness of the joint within an asperity, no less than 2(Tp − Tb)/(wλ) (derived)",
+        },
+    }
+}
+
+/// Parts of a count in which a pitch is known: 2⁻²⁰.
+const PARTS: u32 = 20;
+
+/// Coefficients of [`Texture`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureCoefficients<F> {
+    scale: Scale<F>,
+    base_nm: F,
+    height_nm: F,
+    /// λ in 2⁻²⁰ counts.
+    pitch: i64,
+    /// λ, rad, and its reciprocal.
+    pitch_rad: F,
+    per_pitch: F,
+    /// Angle of 2⁻²⁰ counts, rad.
+    rad_per_part: F,
+    /// 1/(wλ), 1/rad.
+    per_width: F,
+    irregularity: F,
+    seed: u32,
+    stiffness: F,
+    flicker_rad: F,
+}
+
+/// An asperity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Asperity<F> {
+    place: Position<F>,
+    height_nm: F,
+}
+
+/// The rough joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Texture<F> {
+    with: TextureCoefficients<F>,
+    play: Play<F>,
+    /// The number of the last asperity: the one below.
+    number: i32,
+    last: Asperity<F>,
+    next: Asperity<F>,
+}
+
+impl<F: Real> TextureCoefficients<F> {
+    fn asperity(&self, number: i32) -> Asperity<F> {
+        #[expect(clippy::cast_sign_loss, reason = "a hash is of the bits")]
+        let first = (number as u32).wrapping_mul(2);
+        let key = self.seed.wrapping_mul(0x9E37_79B9);
+        let shift = F::HALF - share(first ^ key);
+        let height = share::<F>(first.wrapping_add(1) ^ key);
+        let parts = i64::from(number).wrapping_mul(self.pitch);
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "counts wrap as the encoder's do"
+        )]
+        let count = (parts >> PARTS) as i32;
+        #[expect(clippy::cast_possible_truncation, reason = "less than 2²⁰")]
+        let rest = (parts & ((1 << PARTS) - 1)) as i32;
+        Asperity {
+            place: Position {
+                count,
+                rest_rad: F::from_count(rest) * self.rad_per_part
+                    - self.pitch_rad * (self.irregularity * shift),
+            },
+            height_nm: self.height_nm * (F::ONE - self.irregularity * height),
+        }
+    }
+}
+
+/// The top 24 bits of a hash, as a share of one.
+fn share<F: Real>(key: u32) -> F {
+    let mut x = key;
+    x ^= x >> 16;
+    x = x.wrapping_mul(0x7FEB_352D);
+    x ^= x >> 15;
+    x = x.wrapping_mul(0x846C_A68B);
+    x ^= x >> 16;
+    #[expect(clippy::cast_possible_wrap, reason = "24 bits")]
+    let top = (x >> 8) as i32;
+    F::from_count(top) * F::from_f64(1.0 / 16_777_216.0)
+}
+
+impl<F: Real> Law for Texture<F> {
+    type Real = F;
+    type Settings = TextureSettings;
+    type Coefficients = TextureCoefficients<F>;
+
+    const SPEC: EffectSpec = EffectSpec {
+        name: "texture",
+        adds: "asperities at fixed angles, whose pitch rises with speed",
+        states: &["stretch", "the asperities beside it"],
+        column: "texture_nm",
+        title: "Texture, part of the model’s torque",
+        phases: Some(PhaseSpec {
+            column: "texture_phase",
+            names: &["held", "sliding"],
+        }),
+        needs: &[],
+        parameters: TextureSettings::TABLE,
+        choices: TextureSettings::CHOICES,
+        sides: &[],
+    };
+
+    fn check(s: &TextureSettings) -> Result<(), SettingsError> {
+        s.validate()?;
+        let height_nm = s.peak_nm - s.base_nm;
+        if height_nm < 0.0 {
+            return Err(SettingsError::Contradiction {
+                reason: "texture: peak_nm is no less than base_nm",
+            });
+        }
+        let width_rad = s.width_share * s.pitch_deg.to_radians();
+        // Rounding must not refuse the least stiffness itself.
+        if s.stiffness_nm_per_rad * (1.0 + 1e-9) < 2.0 * height_nm / width_rad {
+            return Err(SettingsError::Contradiction {
+                reason: "texture: stiffness_nm_per_rad is no less than \
+                         2(peak_nm − base_nm)/(width_share·pitch_deg), the angle in rad",
+            });
+        }
+        Ok(())
+    }
+
+    fn coefficients(
+        settings: &TextureSettings,
+        timing: &Timing,
+    ) -> Result<TextureCoefficients<F>, SettingsError> {
+        Self::check(settings)?;
+        let s = settings;
+        let pitch_rad = s.pitch_deg.to_radians();
+        let width_rad = s.width_share * pitch_rad;
+        let height_nm = s.peak_nm - s.base_nm;
+        let rad_per_count = timing.sight.rad_per_count;
+        let parts = pitch_rad / rad_per_count * f64::from(1_u32 << PARTS);
+        let seed = u32::try_from(s.seed.whole()).unwrap_or(u32::MAX);
+        Ok(TextureCoefficients {
+            scale: timing.scale()?,
+            base_nm: F::from_f64(s.base_nm),
+            height_nm: F::from_f64(height_nm),
+            pitch: i64::try_from(libm::round(parts).whole()).unwrap_or(i64::MAX),
+            pitch_rad: F::from_f64(pitch_rad),
+            per_pitch: F::from_f64(1.0 / pitch_rad),
+            rad_per_part: F::from_f64(rad_per_count / f64::from(1_u32 << PARTS)),
+            per_width: F::from_f64(1.0 / width_rad),
+            irregularity: F::from_f64(s.irregularity),
+            seed,
+            stiffness: F::from_f64(s.stiffness_nm_per_rad),
+            flicker_rad: F::from_f64(timing.sight.flicker_rad),
+        })
+    }
+
+    fn new(coefficients: TextureCoefficients<F>) -> Self {
+        Self {
+            with: coefficients,
+            play: Play::new(),
+            number: 0,
+            last: coefficients.asperity(0),
+            next: coefficients.asperity(1),
+        }
+    }
+
+    fn scale(&self) -> &Scale<F> {
+        &self.with.scale
+    }
+
+    fn rest(&mut self, place: &Position<F>) {
+        self.play.rest(place);
+        self.seek(place);
+    }
+
+    #[inline]
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        let part = Part::since(F::ONE, self.cross(travel, on_change));
+        let limits = |fraction: F| {
+            self.with
+                .limits(&self.last, &self.next, &travel.place(fraction))
+        };
+        // What the play does by itself is the texture, no event.
+        self.play
+            .follow(travel, part, self.with.stiffness, limits, &mut |_| {})
+    }
+
+    fn torque_nm(&self) -> F {
+        self.play.torque_nm()
+    }
+
+    fn adopt(&mut self, coefficients: TextureCoefficients<F>, slew_nm: F) {
+        let (from, to) = (self.with.stiffness, coefficients.stiffness);
+        self.play.change(from, to, slew_nm);
+        self.with = coefficients;
+        // Found again from where the last one was.
+        let place = self.last.place;
+        self.seek(&place);
+    }
+
+    fn release(&mut self, slew_nm: F) {
+        self.play.release(slew_nm);
+    }
+
+    fn phase(&self) -> u16 {
+        u16::from(self.play.hold() != Hold::Elastic)
+    }
+}
+
+impl<F: Real> TextureCoefficients<F> {
+    /// The limits at a place between two asperities.
+    #[inline]
+    fn limits(&self, last: &Asperity<F>, next: &Asperity<F>, at: &Position<F>) -> Limits<F> {
+        let flank = |rad: F| (F::ONE - rad * self.per_width).at_least(F::ZERO);
+        let to_next = next.place.beyond(at, self.scale.rad_per_count);
+        // Below zero by the encoder's noise only.
+        let from_last = at
+            .beyond(&last.place, self.scale.rad_per_count)
+            .at_least(F::ZERO);
+        Limits {
+            lower_nm: -(self.base_nm + last.height_nm * flank(from_last)),
+            upper_nm: self.base_nm + next.height_nm * flank(to_next),
+        }
+    }
+}
+
+impl<F: Real> Texture<F> {
+    /// Finds the asperities beside a place.
+    #[cold]
+    fn seek(&mut self, place: &Position<F>) {
+        let origin = Position::at(0);
+        let turns = place.beyond(&origin, self.with.scale.rad_per_count) * self.with.per_pitch;
+        // Within one of it; asperities are at most half a pitch off their number.
+        let number = turns.abs().whole().min(1 << 30);
+        let number = i32::try_from(number).unwrap_or(i32::MAX);
+        self.number = if turns < F::ZERO { -number } else { number };
+        self.look();
+        for _ in 0..3 {
+            if self.beyond_next(place) >= F::ZERO {
+                self.step(1);
+            } else if self.beyond_last(place) < F::ZERO {
+                self.step(-1);
+            } else {
+                break;
+            }
+        }
+    }
+
+    fn look(&mut self) {
+        self.last = self.with.asperity(self.number);
+        self.next = self.with.asperity(self.number.wrapping_add(1));
+    }
+
+    fn step(&mut self, by: i32) {
+        self.number = self.number.wrapping_add(by);
+        self.look();
+    }
+
+    #[inline]
+    fn beyond_next(&self, place: &Position<F>) -> F {
+        place.beyond(&self.next.place, self.with.scale.rad_per_count)
+    }
+
+    #[inline]
+    fn beyond_last(&self, place: &Position<F>) -> F {
+        place.beyond(&self.last.place, self.with.scale.rad_per_count)
+    }
+
+    /// Crosses the asperities that lie in a travel, at most one in a tick; the share of
+    /// the travel that is behind it then.
+    #[inline]
+    fn cross(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        let upwards = self.beyond_next(&travel.to) >= F::ZERO;
+        if !upwards && self.beyond_last(&travel.to) >= -self.with.flicker_rad {
+            return F::ZERO;
+        }
+        self.snap(upwards, travel, on_change)
+    }
+
+    #[cold]
+    fn snap(
+        &mut self,
+        upwards: bool,
+        travel: &Travel<F>,
+        on_change: &mut impl FnMut(Change<F>),
+    ) -> F {
+        let place = if upwards {
+            self.next.place
+        } else {
+            self.last.place
+        };
+        let fraction = travel.reaches(&place);
+        let limits = |at: F| self.with.limits(&self.last, &self.next, &travel.place(at));
+        let part = Part::until(F::ONE, fraction);
+        let before_nm = self
+            .play
+            .follow(travel, part, self.with.stiffness, limits, &mut |_| {});
+        let was_held = self.play.hold() == Hold::Elastic;
+        self.step(if upwards { 1 } else { -1 });
+        let at = travel.place(fraction);
+        let Limits { lower_nm, upper_nm } = self.with.limits(&self.last, &self.next, &at);
+        let after_nm = before_nm.at_most(upper_nm).at_least(lower_nm);
+        if after_nm != before_nm {
+            let hold = if upwards { Hold::Upper } else { Hold::Lower };
+            self.play.put(&at, after_nm, hold);
+            if !was_held {
+                on_change(Change::at(Word::Snap, fraction, before_nm, after_nm));
+            }
+        }
+        fraction
+    }
+}

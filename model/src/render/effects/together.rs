@@ -1,0 +1,194 @@
+//! What holds between the symptoms that a device renders at once.
+
+use super::EffectSettings;
+use super::clasp_knife::ClaspKnife;
+use super::clonus::Clonus;
+use super::cogwheel::Cogwheel;
+use super::lead_pipe::LeadPipe;
+use super::range_limit::RangeLimit;
+use super::spasticity::Spasticity;
+use super::symptom::Law;
+use super::texture::Texture;
+use crate::joint::{Parameters, SettingsError};
+use crate::parameters::Tabled;
+
+/// The stiffest that everything together may be where all is elastic, N·m/rad:
+/// dry friction of 0.1 N·m keeps a rotor with as much quiet.
+pub const MOST_STIFFNESS_NM_PER_RAD: f64 = 1200.0;
+
+/// The share of the gear's friction that may be cancelled in front of a wall.
+pub const MOST_SHARE_AT_A_WALL: f64 = 0.8;
+
+impl EffectSettings {
+    /// Checks every effect, and what holds between them and the joint.
+    ///
+    /// # Errors
+    /// The first rule that is broken.
+    pub fn check(&self, joint: Option<&Parameters>) -> Result<(), SettingsError> {
+        if let Some(settings) = &self.range_limit {
+            RangeLimit::<f64>::check(settings)?;
+        }
+        if let Some(settings) = &self.lead_pipe {
+            LeadPipe::<f64>::check(settings)?;
+        }
+        if let Some(settings) = &self.cogwheel {
+            Cogwheel::<f64>::check(settings)?;
+        }
+        if let Some(settings) = &self.spasticity {
+            Spasticity::<f64>::check(settings)?;
+        }
+        if let Some(settings) = &self.clasp_knife {
+            ClaspKnife::<f64>::check(settings)?;
+        }
+        if let Some(settings) = &self.clonus {
+            Clonus::<f64>::check(settings)?;
+        }
+        if let Some(settings) = &self.texture {
+            Texture::<f64>::check(settings)?;
+        }
+        if let Some(settings) = &self.bone_shaping {
+            settings.validate()?;
+        }
+        if let Some(settings) = &self.friction_compensation {
+            settings.validate()?;
+            if self.range_limit.is_some() && settings.share > MOST_SHARE_AT_A_WALL {
+                return Err(SettingsError::Contradiction {
+                    reason: "friction-compensation: a share above 0.8 leaves too little friction to keep the \
+                             wall of range-limit quiet",
+                });
+            }
+        }
+        let sum_nm_per_rad = self.stiffness_nm_per_rad(joint);
+        if sum_nm_per_rad > MOST_STIFFNESS_NM_PER_RAD {
+            return Err(SettingsError::TooStiff { sum_nm_per_rad });
+        }
+        Ok(())
+    }
+
+    /// The sum of the stiffness of all that can be elastic at once, N·m/rad.
+    pub fn stiffness_nm_per_rad(&self, joint: Option<&Parameters>) -> f64 {
+        let sliding = |nm: f64, deg: f64| nm / deg.to_radians();
+        let parts = [
+            joint.map(|joint| joint.stiffness_nm_per_rad),
+            // Never both.
+            self.range_limit.map(|s| {
+                let flexion = s.flexion().spring_nm_per_rad();
+                s.extension().spring_nm_per_rad().max(flexion)
+            }),
+            self.lead_pipe
+                .map(|s| sliding(s.torque_nm, s.presliding_deg)),
+            self.cogwheel
+                .map(|s| sliding(s.torque_nm, s.presliding_deg)),
+            self.spasticity
+                .filter(|s| s.form == 0)
+                .map(|s| s.catch_stiffness_nm_per_rad),
+            self.clasp_knife.map(|s| s.catch_stiffness_nm_per_rad),
+            self.texture.map(|s| s.stiffness_nm_per_rad),
+        ];
+        parts.into_iter().flatten().sum()
+    }
+
+    /// The largest torque that the symptoms and the joint can ask for together, N·m.
+    pub fn largest_torque_nm(&self, joint: Option<&Parameters>) -> f64 {
+        let parts = [
+            joint.map(|joint| joint.static_torque_nm),
+            self.range_limit
+                .map(|s| s.extension_torque_nm.max(s.flexion_torque_nm)),
+            self.lead_pipe.map(|s| s.torque_nm),
+            self.cogwheel.map(|s| s.torque_nm),
+            self.spasticity.map(|s| s.torque_nm),
+            self.clasp_knife
+                .map(|s| s.onset_torque_nm + s.slope_nm_per_rad * s.travel_rad()),
+            self.clonus.map(|s| s.amplitude_nm),
+            self.texture.map(|s| s.peak_nm),
+        ];
+        parts.into_iter().flatten().sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::effects::friction_compensation::FrictionCompensationSettings;
+    use crate::render::effects::lead_pipe::LeadPipeSettings;
+    use crate::render::effects::range_limit::RangeLimitSettings;
+    use crate::render::effects::texture::TextureSettings;
+
+    /// The stiffest that the presets ask for at once: 400 + 400 + 200 + 76.
+    fn stiff() -> EffectSettings {
+        EffectSettings {
+            range_limit: Some(RangeLimitSettings {
+                flexion_stiffness_nm_per_rad: 300.0,
+                flexion_stiffening_nm_per_rad2: 0.0,
+                flexion_loss: 0.25,
+                ..RangeLimitSettings::default()
+            }),
+            lead_pipe: Some(LeadPipeSettings {
+                torque_nm: 2.0,
+                ..LeadPipeSettings::default()
+            }),
+            texture: Some(TextureSettings::default()),
+            ..EffectSettings::default()
+        }
+    }
+
+    #[test]
+    fn all_that_is_elastic_at_once_has_a_limit() {
+        let joint = Parameters::default();
+        let settings = stiff();
+        let sum = settings.stiffness_nm_per_rad(Some(&joint));
+        assert!(
+            (sum - (400.0 + 400.0 + 200.0 + 76.394)).abs() < 1e-3,
+            "{sum}"
+        );
+        assert_eq!(settings.check(Some(&joint)), Ok(()));
+        let stiffer = Parameters {
+            stiffness_nm_per_rad: 530.0,
+            ..joint
+        };
+        let refused = settings.check(Some(&stiffer));
+        assert!(
+            matches!(refused, Err(SettingsError::TooStiff { sum_nm_per_rad }) if sum_nm_per_rad > 1200.0)
+        );
+        assert_eq!(settings.check(None), Ok(()));
+        let nm = settings.largest_torque_nm(Some(&joint));
+        assert!((nm - (0.4 + 4.0 + 2.0 + 0.4)).abs() < 1e-12, "{nm}");
+    }
+
+    #[test]
+    fn a_wall_needs_friction() {
+        let share = |share| FrictionCompensationSettings {
+            share,
+            ..FrictionCompensationSettings::default()
+        };
+        let with = |friction| EffectSettings {
+            friction_compensation: Some(friction),
+            ..stiff()
+        };
+        assert_eq!(with(share(0.8)).check(None), Ok(()));
+        assert!(with(share(0.81)).check(None).is_err());
+        let without_wall = EffectSettings {
+            range_limit: None,
+            ..with(share(0.9))
+        };
+        assert_eq!(without_wall.check(None), Ok(()));
+    }
+
+    #[test]
+    fn a_wall_that_is_too_stiff_or_too_elastic_is_refused() {
+        let wall = |stiffness, loss| EffectSettings {
+            range_limit: Some(RangeLimitSettings {
+                extension_stiffness_nm_per_rad: stiffness,
+                extension_stiffening_nm_per_rad2: 0.0,
+                extension_loss: loss,
+                ..RangeLimitSettings::default()
+            }),
+            ..EffectSettings::default()
+        };
+        assert_eq!(wall(400.0, 0.0).check(None), Ok(()));
+        assert!(wall(401.0, 0.0).check(None).is_err());
+        assert_eq!(wall(600.0, 0.1).check(None), Ok(()));
+        assert_eq!(wall(600.0, 0.39).check(None), Ok(()));
+        assert!(wall(600.0, 0.41).check(None).is_err());
+    }
+}
