@@ -165,6 +165,17 @@ impl Values {
         self.0.get(index(id)?).copied()
     }
 
+    /// The place of the option that is chosen.
+    pub fn option(&self, id: u8) -> u8 {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a cast from float saturates"
+        )]
+        let option = self.get(id).unwrap_or_default() as u8;
+        option
+    }
+
     /// Sets a parameter; ignores an unknown id.
     pub fn set(&mut self, id: u8, value: f64) {
         if let Some(slot) = index(id).and_then(|index| self.0.get_mut(index)) {
@@ -194,6 +205,9 @@ impl Values {
             if let Some(id) = id {
                 self.set(id, value);
             }
+        }
+        for (option, id) in settings.chosen().zip(T::CHOICE_IDS) {
+            self.set(*id, f64::from(option));
         }
         self
     }
@@ -229,7 +243,11 @@ impl Source for Values {
     fn read<const N: usize, T: Tabled<N>>(&self) -> T {
         let mut values = T::TABLE.map(|parameter| parameter.default);
         self.copy_to(&T::IDS, &mut values);
-        T::of(values)
+        let mut settings = T::of(values);
+        for (index, id) in T::CHOICE_IDS.iter().enumerate() {
+            settings.choose(index, self.option(*id));
+        }
+        settings
     }
 }
 

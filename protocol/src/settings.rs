@@ -127,10 +127,13 @@ impl DeviceSettings {
         if range.most_deg - range.least_deg < 2.0 * range.fade_deg {
             return Err(ValueError::NarrowRange);
         }
+        let effects = EffectSettings::read(values);
+        let is_on = values.is_on(id::CREPITUS);
+        effects.check(is_on.then_some(&joint.parameters))?;
         Ok(Self {
-            crepitus: values.is_on(id::CREPITUS).then_some(joint),
+            crepitus: is_on.then_some(joint),
             encoder: values.read(),
-            effects: EffectSettings::read(values),
+            effects,
             current_loop: values.read(),
             motor: values.read(),
             limits,
@@ -197,7 +200,7 @@ impl Values {
 mod tests {
     use super::*;
     use crepitus_model::joint::presets::PRESETS;
-    use crepitus_model::parameters::Tabled;
+    use crepitus_model::parameters::{Chosen, Tabled};
     use crepitus_model::render::effects;
     use std::vec::Vec;
 
@@ -255,12 +258,17 @@ mod tests {
         for spec in effects::SPECS {
             assert_eq!(of(spec.name).first(), Some(&1.0), "{}", spec.name);
         }
-        let numbers: Vec<_> = (effects::SPECS.iter())
-            .map(|spec| (spec.name, of(spec.name)))
+        let given: Vec<_> = (effects::SPECS.iter())
+            .map(|spec| {
+                let own = of(spec.name);
+                let (options, numbers) = own[1..].split_at(spec.choices.len());
+                assert!(options.iter().all(|option| *option == 1.0));
+                (spec.name, std::vec![1_u8; options.len()], numbers.to_vec())
+            })
             .collect();
         let effects = EffectSettings::given(|name| {
-            let (_, numbers) = numbers.iter().find(|(group, _)| *group == name)?;
-            numbers.get(1..)
+            let (_, options, numbers) = given.iter().find(|(group, ..)| *group == name)?;
+            Some(Chosen { numbers, options })
         });
         assert_eq!(s.effects, effects);
     }

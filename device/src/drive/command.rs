@@ -249,6 +249,7 @@ impl Command {
             tick: low(self.next_tick),
             ends_block: self.batch.ends_block(),
             is_armed: self.safety.state() == State::Armed,
+            zero: self.zero,
         });
         outputs
     }

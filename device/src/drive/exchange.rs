@@ -16,7 +16,9 @@
 //! applies the other in the tick that follows, the first of the next block.
 
 use core::sync::atomic::Ordering::Relaxed;
-use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicUsize, Ordering, compiler_fence};
+use core::sync::atomic::{
+    AtomicBool, AtomicI32, AtomicU8, AtomicU32, AtomicUsize, Ordering, compiler_fence,
+};
 use crepitus_protocol::telemetry::SampleFlags;
 
 /// The result of a tick of `render_torque`.
@@ -77,6 +79,8 @@ pub struct Turn {
     pub ends_block: bool,
     /// Torque is applied.
     pub is_armed: bool,
+    /// The count of the angle's zero.
+    pub zero: i32,
 }
 
 /// Value of `newest` before the first result.
@@ -98,6 +102,7 @@ pub struct Exchange {
     tick: AtomicU32,
     ends_block: AtomicBool,
     is_armed: AtomicBool,
+    zero: AtomicI32,
     plan: AtomicU8,
     is_settling: AtomicBool,
 }
@@ -112,6 +117,7 @@ impl Exchange {
             tick: AtomicU32::new(tick as u32),
             ends_block: AtomicBool::new(false),
             is_armed: AtomicBool::new(false),
+            zero: AtomicI32::new(0),
             plan: AtomicU8::new(NO_PLAN),
             is_settling: AtomicBool::new(false),
         }
@@ -141,6 +147,7 @@ impl Exchange {
         self.tick.store(turn.tick, Relaxed);
         self.ends_block.store(turn.ends_block, Relaxed);
         self.is_armed.store(turn.is_armed, Relaxed);
+        self.zero.store(turn.zero, Relaxed);
     }
 
     /// `render_torque`: the tick that begins.
@@ -149,6 +156,7 @@ impl Exchange {
             tick: self.tick.load(Relaxed),
             ends_block: self.ends_block.load(Relaxed),
             is_armed: self.is_armed.load(Relaxed),
+            zero: self.zero.load(Relaxed),
         }
     }
 

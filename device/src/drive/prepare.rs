@@ -11,6 +11,7 @@ use crepitus_model::control::current_loop::{CurrentLoop, CurrentLoopSettings};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::effects::{EffectChanges, Timing};
+use crepitus_model::render::position::Sight;
 use crepitus_model::render::ramp::Ramp;
 use crepitus_model::{Settings, SettingsError, StepCoefficients, Validated};
 use crepitus_protocol::measured::SUPPLY_SHARES;
@@ -28,11 +29,20 @@ const FLOATS_SHARE: f64 = 0.7;
 /// the middle, where the currents are converted.
 pub const LARGEST_DUTY: f32 = 0.84;
 
-/// Delay of the torque: half a tick to a tick and a half, and a lag.
-const TIMING: Timing = Timing {
+/// Delay of the torque: half a tick to a tick and a half, and a lag; of no
+/// particular encoder.
+pub(crate) const TIMING: Timing = Timing {
     step_s: TICK_S,
     delay_ticks: MOST_DELAY_TICKS,
+    sight: Sight::IDEAL,
 };
+
+fn timing(encoder: &EncoderSettings) -> Timing {
+    Timing {
+        sight: Sight::of_encoder(encoder),
+        ..TIMING
+    }
+}
 
 /// An encoder that can be started at any count.
 #[derive(Clone, Copy, Debug)]
@@ -262,7 +272,10 @@ impl Preparation {
                 reader: encoder_changed.then_some(reader),
                 rad_per_count: reader.rad_per_count,
                 joint,
-                effects: next.effects.changes(&now.effects, &TIMING)?,
+                effects: next.effects.changes(
+                    &timing(&next.encoder),
+                    (&now.effects, &timing(&now.encoder)),
+                )?,
                 torque_limit_nm: single(next.limits.torque_nm),
                 slew_nm: single(slew * TICK_S),
             },

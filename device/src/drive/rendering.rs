@@ -3,12 +3,13 @@
 //!
 //! The joint runs in every tick, also while torque is off.
 
-use crate::drive::exchange::{Exchange, Rendered};
-use crate::drive::prepare::{JointPlan, Reader, RenderingPlan};
+use crate::drive::exchange::{Exchange, Rendered, Turn};
+use crate::drive::prepare::{JointPlan, Reader, RenderingPlan, TIMING};
 use crate::drive::sampler::{Sampled, Sampler};
 use crepitus_model::render::effects::SwitchedEffects;
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
+use crepitus_model::render::position::Position;
 use crepitus_model::render::{Limit, Pipeline, Seen, Shown};
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{Crepitus, EventKind, Real};
@@ -43,7 +44,7 @@ impl Rendering {
             stages: Stages::new(
                 InputCheck::new(&limits, f32::from_f64(TICK_S), 0.0),
                 None,
-                SwitchedEffects::new(slew_nm),
+                SwitchedEffects::new(slew_nm, &TIMING),
                 TorqueLimits::new(plan.torque_limit_nm, slew_nm),
             ),
             is_removing: false,
@@ -72,7 +73,7 @@ impl Rendering {
                 }
             }
         }
-        stages.effects.change(plan.effects, plan.slew_nm);
+        stages.effects.change(&plan.effects, plan.slew_nm);
         stages.limits.change(plan.torque_limit_nm, plan.slew_nm);
     }
 
@@ -82,7 +83,7 @@ impl Rendering {
         let turn = exchange.turn();
         let sampled = self.sampler.sample(counter);
         self.omega_rad_s = sampled.omega_rad_s;
-        let rendered = self.render(turn.tick, &sampled, turn.is_armed);
+        let rendered = self.render(&turn, &sampled);
         exchange.set_settling(self.is_settling);
         exchange.show(&rendered);
         exchange.render_takes_plan()
@@ -100,13 +101,15 @@ impl Rendering {
         exchange.render_took_plan();
     }
 
-    fn render(&mut self, tick: u32, sampled: &Sampled, is_energised: bool) -> Rendered {
+    fn render(&mut self, turn: &Turn, sampled: &Sampled) -> Rendered {
         let seen = Seen {
             sample: sampled.shaft,
             omega_rad_s: sampled.omega_rad_s,
+            place: Position::at(sampled.count.wrapping_sub(turn.zero)),
+            is_driven: turn.is_armed,
         };
         let mut flags = SampleFlags::default();
-        self.stages.limits.set_energised(is_energised);
+        self.stages.limits.set_energised(turn.is_armed);
         let shown = self.stages.tick(&seen, |event| {
             flags = flags.with(
                 match event.kind {
@@ -122,7 +125,7 @@ impl Rendering {
         }
         self.is_settling = shown.settling;
         Rendered {
-            tick,
+            tick: turn.tick,
             count: sampled.count,
             omega_rad_s: sampled.omega_rad_s,
             lost_ticks: sampled.lost_ticks,

@@ -190,7 +190,7 @@ fn parameters() -> String {
                     .map(|(place, name)| format!("{place} {name}"))
                     .collect::<Vec<_>>()
                     .join(", "),
-                number(choice.default),
+                number(f64::from(choice.default)),
             ),
         };
         let when = match parameter.when {

@@ -89,6 +89,7 @@ impl Shaft {
                 amplitude_rad,
                 frequency_hz,
                 phase_turns,
+                ..
             } => {
                 let (a, f, p) = (
                     changes.of(0, amplitude_rad),

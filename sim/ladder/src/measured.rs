@@ -5,8 +5,9 @@
 
 use crate::exchange::{Input, Kind, Output};
 use crepitus_model::control::encoder::EncoderReader;
-use crepitus_model::render::effects::DeviceEffect;
+use crepitus_model::render::effects::{DeviceEffect, Tick};
 use crepitus_model::render::input_check::Checked;
+use crepitus_model::render::position::Position;
 use crepitus_model::render::{Seen, Shown};
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
@@ -142,7 +143,19 @@ impl Measured for EncoderReader<f32> {
 
 /// An effect of the device; its input has travel, speed, and the jump of the
 /// joint's torque.
-pub struct Effect<E>(pub E);
+pub struct Effect<E> {
+    law: E,
+    place: Position<f32>,
+}
+
+impl<E: DeviceEffect<f32>> Effect<E> {
+    /// At rest where the joint is straight.
+    pub fn new(mut law: E) -> Self {
+        let place = Position::at(0);
+        law.rest(&place);
+        Self { law, place }
+    }
+}
 
 impl<E: DeviceEffect<f32>> Measured for Effect<E> {
     #[inline]
@@ -153,12 +166,20 @@ impl<E: DeviceEffect<f32>> Measured for Effect<E> {
             omega_start_rad_s: omega_rad_s,
             omega_end_rad_s: omega_rad_s,
         };
-        let shown = Shown {
+        let place = self.place.moved(shaft.delta_phi_rad);
+        if place.rest_rad.is_finite() {
+            self.place = place;
+        }
+        let mut shown = Shown {
             jump_nm: input.number(2),
             ..Shown::nothing()
         };
-        let seen = Seen::taken(&shaft);
-        let added_nm = self.0.added_nm(&seen, &Checked::Step(shaft), &shown);
+        let tick = Tick {
+            seen: &Seen::taken(&shaft, self.place),
+            input: &Checked::Step(shaft),
+            paid_share: 1.0,
+        };
+        let added_nm = self.law.added_nm(&tick, &mut shown, &mut ());
         [added_nm.to_bits(), 0, 0]
     }
 }

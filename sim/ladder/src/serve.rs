@@ -13,6 +13,7 @@ use crepitus_model::parameters::Tabled;
 use crepitus_model::real::Real;
 use crepitus_model::render::effects::{DeviceEffect, LawVisitor, Timing, with_law};
 use crepitus_model::render::input_check::InputLimits;
+use crepitus_model::render::position::Sight;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{CurrentLoop, Guarded, Renderer, SettingsError, StepCoefficients, StickSlip};
 
@@ -83,6 +84,7 @@ impl Here<'_> {
                 let timing = Timing {
                     step_s,
                     delay_ticks: MOST_DELAY_TICKS,
+                    sight: Sight::of_encoder(&EncoderSettings::default()),
                 };
                 // There is a subject for each place of the table only.
                 with_law(place, &timing, EffectVisitor { here: self })?.unwrap_or(false)
@@ -163,7 +165,7 @@ impl LawVisitor<f32> for EffectVisitor<'_, '_> {
     type Output = bool;
 
     fn visit<E: DeviceEffect<f32>>(self, law: E) -> bool {
-        self.here.run(Effect(law), None)
+        self.here.run(Effect::new(law), None)
     }
 }
 

@@ -4,7 +4,7 @@ use crate::actuator::Commanded;
 use crate::boundary::Boundary;
 use crate::chain::{Body, Chain};
 use crepitus_model::SettingsError;
-use crepitus_model::parameters::ParameterSpec;
+use crepitus_model::parameters::{Choice, ParameterSpec};
 use crepitus_model::render::effects::EffectSpec;
 
 pub use crepitus_model::render::effects::Need;
@@ -21,7 +21,7 @@ pub struct Effect {
     /// Its numbers.
     pub parameters: &'static [ParameterSpec],
     /// Its choices by name.
-    pub choices: &'static [ChoiceSpec],
+    pub choices: &'static [Choice],
     /// Effects without which it has no meaning.
     pub needs: &'static [Need],
     /// Where it joins.
@@ -36,22 +36,11 @@ impl Effect {
             adds: spec.adds,
             states: spec.states,
             parameters: spec.parameters,
-            choices: &[],
+            choices: spec.choices,
             needs: spec.needs,
             part: Part::Stage(spec),
         }
     }
-}
-
-/// A choice by name.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChoiceSpec {
-    /// Name in scene files.
-    pub key: &'static str,
-    /// What can be chosen; the first is the default.
-    pub names: &'static [&'static str],
-    /// Description.
-    pub meaning: &'static str,
 }
 
 /// Parameters of an effect from a scene.
@@ -60,7 +49,7 @@ pub struct Given {
     /// A number for each of its parameters.
     pub numbers: Vec<f64>,
     /// For each of its choices the place of the chosen name.
-    pub choices: Vec<usize>,
+    pub choices: Vec<u8>,
 }
 
 impl Given {
@@ -68,7 +57,7 @@ impl Given {
     pub fn defaults(effect: &Effect) -> Self {
         Self {
             numbers: effect.parameters.iter().map(|p| p.default).collect(),
-            choices: vec![0; effect.choices.len()],
+            choices: effect.choices.iter().map(|c| c.default).collect(),
         }
     }
 }

@@ -78,6 +78,7 @@ impl Motion {
             end_s: f64::INFINITY,
             jump: false,
             curve: Curve::Sine {
+                centre_rad: 0.0,
                 amplitude_rad,
                 frequency_hz,
                 phase_turns: phase_deg / 360.0,
@@ -143,6 +144,24 @@ impl Motion {
             ]),
         });
         Self::Sequence(segments.iter().map(piece).chain(straight_on).collect())
+    }
+
+    /// The same motion about another angle: every angle is `by_rad` further.
+    #[must_use]
+    pub fn shifted(mut self, by_rad: f64) -> Self {
+        let shift = |piece: &mut Piece| match &mut piece.curve {
+            Curve::Polynomial([c0, ..]) => *c0 += by_rad,
+            Curve::Sine { centre_rad, .. } => *centre_rad += by_rad,
+        };
+        match &mut self {
+            Self::Single(piece) => shift(piece),
+            Self::Sequence(pieces) => pieces.iter_mut().for_each(shift),
+            Self::Strokes(strokes) => {
+                strokes.from_rad += by_rad;
+                strokes.to_rad += by_rad;
+            }
+        }
+        self
     }
 
     /// The piece in which `time_s` lies; a piece begins at its first instant,

@@ -49,8 +49,10 @@ pub struct Piece {
 pub enum Curve {
     /// φ = Σ cₖ·τᵏ with τ = t − start.
     Polynomial([f64; 6]),
-    /// φ = A·sin(2π(f·t + p)).
+    /// φ = φ₀ + A·sin(2π(f·t + p)).
     Sine {
+        /// φ₀, rad.
+        centre_rad: f64,
         /// A, rad.
         amplitude_rad: f64,
         /// f, Hz.
@@ -100,13 +102,14 @@ impl Piece {
                 )
             }
             Curve::Sine {
+                centre_rad,
                 amplitude_rad,
                 frequency_hz,
                 phase_turns,
             } => {
                 let (sin, cos) = sin_cos_turns(frequency_hz * time_s + phase_turns);
                 (
-                    amplitude_rad * sin,
+                    centre_rad + amplitude_rad * sin,
                     amplitude_rad * TAU * frequency_hz * cos,
                 )
             }
@@ -128,12 +131,16 @@ impl Piece {
                     omega_ddot: (60.0 * c5 * t + 24.0 * c4) * t + 6.0 * c3,
                 }
             }
-            Curve::Sine { frequency_hz, .. } => {
+            Curve::Sine {
+                centre_rad,
+                frequency_hz,
+                ..
+            } => {
                 let w = TAU * frequency_hz;
                 ShaftState {
                     phi_rad,
                     omega_rad_s,
-                    omega_dot: -(w * w * phi_rad),
+                    omega_dot: -(w * w * (phi_rad - centre_rad)),
                     omega_ddot: -(w * w * omega_rad_s),
                 }
             }
@@ -209,6 +216,7 @@ mod tests {
                 end_s: 2.0,
                 jump: false,
                 curve: Curve::Sine {
+                    centre_rad: 0.4,
                     amplitude_rad: 0.7,
                     frequency_hz: 0.9,
                     phase_turns: 0.1,

@@ -28,7 +28,7 @@ pub use summary::{
 
 use crate::any_joint::Precise;
 use crate::scene::{Precision, Scene, SolverChoice};
-use crate::trace::{Column, ColumnKind, EventRecord};
+use crate::trace::{Column, ColumnKind, EventRecord, SymptomEvent};
 use crepitus_model::SettingsError;
 use crepitus_model::solver::Solver;
 use std::convert::Infallible;
@@ -48,6 +48,12 @@ pub trait Observer {
 
     /// An event; it comes before the first row that is not before it.
     fn event(&mut self, event: &EventRecord) -> Result<(), Self::Error>;
+
+    /// An event of a symptom, in the same order of time; those of the play under it
+    /// only in scenes that ask for them.
+    fn symptom(&mut self, _: &SymptomEvent) -> Result<(), Self::Error> {
+        Ok(())
+    }
 
     /// Called now and then with the time reached.
     fn progress(&mut self, time_s: f64) -> Result<(), Self::Error>;

@@ -58,6 +58,8 @@ pub struct Scene {
     pub substeps: u32,
     /// Time between rows of the trace, s.
     pub trace_step_s: f64,
+    /// Events of the play elements under the symptoms are wanted, too.
+    pub play_events: bool,
     /// The recording that the motion is read from.
     pub data: Option<DataFile>,
     /// The scene as it is run, as TOML: overrides applied, every default
@@ -138,8 +140,16 @@ impl Scene {
         let is_device = root.flag("device")?;
         let output = root.optional_section("output")?;
         let trace_step_s = read_trace_step(output.as_ref(), &solver_section, solver, duration_s)?;
+        let play_events = match &output {
+            Some(output) => output.flag("play_events")?,
+            None => false,
+        };
+        if let Some(output) = &output {
+            output.finish()?;
+        }
         root.finish()?;
         root.note("output.trace_step_s", Value::Number(trace_step_s));
+        root.note("output.play_events", Value::Flag(play_events));
 
         let mut stepped: Vec<_> = effects.listed.iter().map(|l| l.effect.name).collect();
         if effects.encoder.is_some() {
@@ -188,6 +198,7 @@ impl Scene {
             listed: effects.listed,
             substeps,
             trace_step_s,
+            play_events,
             data: motion.data,
             as_run: document.resolved(),
             warnings,

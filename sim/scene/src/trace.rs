@@ -6,6 +6,7 @@
 
 use crepitus_model::Event;
 pub use crepitus_model::EventKind;
+pub use crepitus_model::render::effects::symptom::Word;
 
 /// One column of a trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +46,25 @@ pub struct EventRecord {
     /// Torque just before, N·m.
     pub torque_before_nm: f64,
     /// Torque just after, N·m.
+    pub torque_after_nm: f64,
+}
+
+/// One event of a symptom besides crepitus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SymptomEvent {
+    /// Time since the start of the run, s.
+    pub time_s: f64,
+    /// The effect's name.
+    pub effect: &'static str,
+    /// What happened.
+    pub word: Word,
+    /// Angle of the joint, rad.
+    pub angle_rad: f64,
+    /// Its velocity just after, rad/s.
+    pub omega_rad_s: f64,
+    /// Torque of the effect just before, N·m.
+    pub torque_before_nm: f64,
+    /// Torque of the effect just after, N·m.
     pub torque_after_nm: f64,
 }
 

@@ -40,10 +40,10 @@ mod passive;
 pub use passive::Passive;
 
 use crate::chain::{Body, Push, Step, Weight};
-use crate::effect::{ChoiceSpec, Effect, Part, numbers};
+use crate::effect::{Effect, Part, numbers};
 use crate::energy_balance::{Account, EnergyBalance};
 use crate::load::{Load, Loaded};
-use crepitus_model::parameters::ParameterSpec;
+use crepitus_model::parameters::{Choice, ParameterSpec};
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
@@ -80,14 +80,16 @@ pub const EFFECT: Effect = Effect {
         },
     ],
     choices: &[
-        ChoiceSpec {
+        Choice {
             key: "posture",
             names: &["sitting", "standing", "prone", "supine"],
+            default: 0,
             meaning: "where the thigh points: how gravity pulls, and how far the hip is bent",
         },
-        ChoiceSpec {
+        Choice {
             key: "passive",
             names: &["riener-edrich", "none"],
+            default: 0,
             meaning: "passive moment of muscles and ligaments",
         },
     ],
@@ -124,7 +126,7 @@ const NAME: &str = "limb";
 const STANDARD_GRAVITY: f64 = 9.806_65;
 
 /// Angle to add to φ so that weight is a cosine, and flexion of the hip, deg.
-fn posture(choice: usize) -> (f64, f64) {
+fn posture(choice: u8) -> (f64, f64) {
     match choice {
         0 => (0.0, 90.0),
         1 => (90.0, 0.0),

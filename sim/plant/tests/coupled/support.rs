@@ -85,8 +85,8 @@ impl Build {
         let listed = listed.expect(effect);
         let choices = listed.effect.choices;
         let i = choices.iter().position(|c| c.key == key).expect(key);
-        let chosen = choices[i].names.iter().position(|n| *n == name);
-        listed.given.choices[i] = chosen.expect(name);
+        let chosen = (0..).zip(choices[i].names).find(|(_, n)| **n == name);
+        listed.given.choices[i] = chosen.expect(name).0;
         self
     }
 

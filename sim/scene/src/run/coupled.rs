@@ -1,14 +1,13 @@
 //! A run with a plant: device → actuator → chain → boundary, tick by tick. The
 //! shaft does what comes of it.
 
-use super::device::{Device, device};
+use super::device::{Device, Happened, device};
 use super::stages;
 use super::stepping::{CHECK_STEPS, PROGRESS_STEPS};
-use super::watch::{Ended, Watch};
+use super::watch::{Ended, Stopped, Watch};
 use super::{Diverged, RunError, Totals, steps};
 use crate::any_joint::Precise;
 use crate::scene::Scene;
-use crate::trace::EventRecord;
 use crate::walk::Walk;
 use crepitus_model::render::effects::{EffectSpec, SPECS};
 use crepitus_model::solver::Solver;
@@ -137,6 +136,7 @@ impl Run {
         let (mut held, mut limited) = (0.0, 0.0);
         let mut fastest_rad_s: f64 = 0.0;
         let mut row = Vec::new();
+        let mut events = Vec::new();
         let mut n = 0;
         let mut time_s = 0.0;
         loop {
@@ -181,14 +181,8 @@ impl Run {
             for stage in &mut self.stages {
                 stage.work_j += stage.added_nm * turned;
             }
-            let mut result = Ok(());
-            self.device
-                .tick(time_s, &before, &after, &mut |event: &EventRecord| {
-                    if result.is_ok() {
-                        result = watch.event(event);
-                    }
-                });
-            result?;
+            self.device.tick(time_s, &before, &after, &mut events);
+            tell(&mut events, watch)?;
             time_s = walk.time_s();
         }
         let (tally, crowded_steps) = self.device.finish(time_s).unzip();
@@ -223,7 +217,7 @@ impl Run {
         self.device.write(row);
         let shown = self.device.shown();
         for stage in &self.stages {
-            row.push(stage.added_nm);
+            row.push(shown.added.get(stage.place).unwrap_or(0.0));
             let phase = stage.spec.phases.map(|_| shown.phases.get(stage.spec));
             row.extend(phase.map(f64::from));
         }
@@ -254,6 +248,18 @@ impl Run {
             walk.advance(&mut self.plant);
         }
     }
+}
+
+/// Passes the events of a tick on, in the order of time.
+fn tell(events: &mut Vec<Happened>, watch: &mut dyn Watch) -> Result<(), Stopped> {
+    events.sort_by(|a, b| a.time_s().total_cmp(&b.time_s()));
+    for event in events.drain(..) {
+        match event {
+            Happened::Joint(event) => watch.event(&event)?,
+            Happened::Symptom(event) => watch.symptom(&event)?,
+        }
+    }
+    Ok(())
 }
 
 /// What the hand feels in the first tick: a plant that is thrown away goes

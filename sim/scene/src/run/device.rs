@@ -7,14 +7,17 @@ use super::stepping::StepAccounting;
 use super::tally::Tally;
 use crate::any_joint::{AnyJoint, Precise};
 use crate::scene::Scene;
-use crate::trace::{Column, ColumnKind, EventRecord};
+use crate::trace::{Column, ColumnKind, EventRecord, SymptomEvent};
 use crepitus_model::joint::shaft::Linear;
+use crepitus_model::render::effects::EffectSpec;
+use crepitus_model::render::effects::symptom::Change;
 use crepitus_model::render::input_check::{Checked, Sample};
 use crepitus_model::render::{Bare, Seen, Shown};
 use crepitus_model::solver::Solver;
 use crepitus_model::solver::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
 use crepitus_model::{Real, Settings, SettingsError, StickSlip, Validated};
 use crepitus_plant::chain::Body;
+use std::cell::RefCell;
 
 /// Output of a scene's device: the commanded torque, and the
 /// number of the [limit](crepitus_model::render::Limit) that held it back.
@@ -29,19 +32,70 @@ pub(super) const COLUMNS: [Column; 2] = [
     },
 ];
 
+/// An event of a tick.
+pub(super) enum Happened {
+    Joint(EventRecord),
+    Symptom(SymptomEvent),
+}
+
+impl Happened {
+    pub(super) fn time_s(&self) -> f64 {
+        match self {
+            Self::Joint(event) => event.time_s,
+            Self::Symptom(event) => event.time_s,
+        }
+    }
+}
+
+/// Puts the events of symptoms on record.
+#[derive(Clone, Copy)]
+struct Recorder {
+    step_s: f64,
+    play_events: bool,
+}
+
+impl Recorder {
+    fn new(scene: &Scene) -> Self {
+        Self {
+            step_s: scene.step_s(),
+            play_events: scene.play_events,
+        }
+    }
+
+    fn note<F: Real>(
+        self,
+        (start_s, from, to): (f64, &Body, &Body),
+        effect: &'static EffectSpec,
+        change: &Change<F>,
+        events: &mut Vec<Happened>,
+    ) {
+        if change.word.is_of_play() && !self.play_events {
+            return;
+        }
+        let fraction = change.fraction.to_f64();
+        let faster = to.omega_rad_s - from.omega_rad_s;
+        let bend_rad = 0.5 * faster * self.step_s;
+        let travel_rad = to.angle_rad - from.angle_rad;
+        events.push(Happened::Symptom(SymptomEvent {
+            time_s: start_s + fraction * self.step_s,
+            effect: effect.name,
+            word: change.word,
+            angle_rad: from.angle_rad + fraction * (travel_rad - bend_rad * (1.0 - fraction)),
+            omega_rad_s: from.omega_rad_s + faster * fraction,
+            torque_before_nm: change.before_nm.to_f64(),
+            torque_after_nm: change.after_nm.to_f64(),
+        }));
+    }
+}
+
 /// The device's renderer, on the shaft as measured.
 pub(super) trait Device {
     /// Output from now to the end of the next tick.
     fn shown(&self) -> Shown<f64>;
 
-    /// One tick, which began at `start_s` and in which the shaft moved so.
-    fn tick(
-        &mut self,
-        start_s: f64,
-        from: &Body,
-        to: &Body,
-        on_event: &mut dyn FnMut(&EventRecord),
-    );
+    /// One tick, which began at `start_s` and in which the shaft moved so. What
+    /// happens is added to `events`, of each effect in the order of time.
+    fn tick(&mut self, start_s: f64, from: &Body, to: &Body, events: &mut Vec<Happened>);
 
     /// Writes its columns.
     fn write(&self, row: &mut Vec<f64>);
@@ -102,7 +156,7 @@ fn with_sensor<F: Precise, S: Sensor<F> + 'static>(
         scene,
         settings: crepitus.settings,
         step_s,
-        omega_rad_s: shaft.omega_rad_s,
+        shaft: *shaft,
         sensor,
     };
     if !scene.is_device {
@@ -126,10 +180,11 @@ fn watching<F: Real, P: Rendering<F> + 'static, S: Sensor<F> + 'static>(
     sensor: S,
     mut stages: P,
 ) -> Box<dyn Device> {
-    let shown = first(scene, &mut stages, F::ZERO, shaft.omega_rad_s);
+    let shown = first(scene, &mut stages, F::ZERO, (shaft, &sensor));
     Box::new(Watching {
         stages,
         sensor,
+        recorder: Recorder::new(scene),
         shown,
     })
 }
@@ -139,7 +194,7 @@ struct Maker<'a, S> {
     scene: &'a Scene,
     settings: Validated<Settings>,
     step_s: f64,
-    omega_rad_s: f64,
+    shaft: Body,
     sensor: S,
 }
 
@@ -159,13 +214,15 @@ impl<S: 'static> Maker<'_, S> {
         S: Sensor<F>,
     {
         let mut accounting =
-            StepAccounting::new::<F>(*self.settings, self.step_s, self.omega_rad_s);
+            StepAccounting::new::<F>(*self.settings, self.step_s, self.shaft.omega_rad_s);
         let torque_nm = stages.joint().torque_nm();
         accounting.tally.shown(torque_nm.to_f64());
-        let shown = first::<F>(self.scene, &mut stages, torque_nm, self.omega_rad_s);
+        let start = (&self.shaft, &self.sensor);
+        let shown = first::<F>(self.scene, &mut stages, torque_nm, start);
         Box::new(Joined {
             stages,
             sensor: self.sensor,
+            recorder: Recorder::new(self.scene),
             accounting,
             shown,
         })
@@ -178,8 +235,10 @@ fn first<F: Real>(
     scene: &Scene,
     stages: &mut impl Rendering<F>,
     torque_nm: F,
-    omega_rad_s: f64,
+    (shaft, sensor): (&Body, &impl Sensor<F>),
 ) -> Shown<F> {
+    let place = sensor.place(shaft);
+    stages.rest(&place);
     let shown = Shown {
         torque_nm,
         model_torque_nm: torque_nm,
@@ -190,7 +249,9 @@ fn first<F: Real>(
     }
     let seen = Seen {
         sample: Sample::Lost,
-        omega_rad_s: F::from_f64(omega_rad_s),
+        omega_rad_s: F::from_f64(shaft.omega_rad_s),
+        place,
+        is_driven: true,
     };
     stages.add(&seen, &Checked::Missing(1), shown)
 }
@@ -199,6 +260,7 @@ fn first<F: Real>(
 struct Joined<F, P, S> {
     stages: P,
     sensor: S,
+    recorder: Recorder,
     accounting: StepAccounting,
     shown: Shown<F>,
 }
@@ -208,18 +270,21 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
         self.shown.to_f64()
     }
 
-    fn tick(
-        &mut self,
-        start_s: f64,
-        from: &Body,
-        to: &Body,
-        on_event: &mut dyn FnMut(&EventRecord),
-    ) {
+    fn tick(&mut self, start_s: f64, from: &Body, to: &Body, events: &mut Vec<Happened>) {
         let seen = self.sensor.see(from, to);
-        let accounting = &mut self.accounting;
-        self.shown = self.stages.tick(&Seen::taken(&seen), &mut |event| {
-            on_event(&accounting.event(start_s, &seen, &event));
-        });
+        let (accounting, recorder) = (&mut self.accounting, self.recorder);
+        let events = RefCell::new(events);
+        self.shown = self.stages.tick(
+            &Seen::taken(&seen, self.sensor.place(to)),
+            &mut |event| {
+                let event = accounting.event(start_s, &seen, &event);
+                events.borrow_mut().push(Happened::Joint(event));
+            },
+            &mut |effect, change| {
+                let events = &mut events.borrow_mut();
+                recorder.note((start_s, from, to), effect, &change, events);
+            },
+        );
         self.accounting.end_step(&seen, self.stages.joint());
     }
 
@@ -255,6 +320,7 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
 struct Watching<F, P, S> {
     stages: P,
     sensor: S,
+    recorder: Recorder,
     shown: Shown<F>,
 }
 
@@ -263,9 +329,14 @@ impl<F: Real, P: Rendering<F>, S: Sensor<F>> Device for Watching<F, P, S> {
         self.shown.to_f64()
     }
 
-    fn tick(&mut self, _: f64, from: &Body, to: &Body, _: &mut dyn FnMut(&EventRecord)) {
+    fn tick(&mut self, start_s: f64, from: &Body, to: &Body, events: &mut Vec<Happened>) {
         let seen = self.sensor.see(from, to);
-        self.shown = self.stages.tick(&Seen::taken(&seen), &mut |_| {});
+        let recorder = self.recorder;
+        self.shown = self.stages.tick(
+            &Seen::taken(&seen, self.sensor.place(to)),
+            &mut |_| {},
+            &mut |effect, change| recorder.note((start_s, from, to), effect, &change, events),
+        );
     }
 
     fn write(&self, row: &mut Vec<f64>) {

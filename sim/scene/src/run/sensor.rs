@@ -2,6 +2,7 @@
 
 use crate::trace::{Column, ColumnKind};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::render::position::{Position, Sight};
 use crepitus_model::{Real, SettingsError, ShaftStep};
 use crepitus_plant::chain::Body;
 use crepitus_plant::encoder::Encoder;
@@ -16,6 +17,9 @@ pub(super) trait Sensor<F: Real> {
 
     /// Takes in one step. Velocities are those just inside the step.
     fn see(&mut self, from: &Body, to: &Body) -> ShaftStep<F>;
+
+    /// Where it has seen the joint last.
+    fn place(&self, to: &Body) -> Position<F>;
 
     /// Writes its columns.
     fn write(&self, row: &mut Vec<f64>);
@@ -34,6 +38,11 @@ impl<F: Real> Sensor<F> for Ideal {
             omega_start_rad_s: F::from_f64(from.omega_rad_s),
             omega_end_rad_s: F::from_f64(to.omega_rad_s),
         }
+    }
+
+    #[inline]
+    fn place(&self, to: &Body) -> Position<F> {
+        Sight::IDEAL.position(to.angle_rad)
     }
 
     fn write(&self, _: &mut Vec<f64>) {}
@@ -94,6 +103,11 @@ impl<F: Real> Sensor<F> for Encoded<F> {
         let step = self.reader.read(self.count);
         self.omega_rad_s = step.omega_end_rad_s;
         step
+    }
+
+    #[inline]
+    fn place(&self, _: &Body) -> Position<F> {
+        Position::at(self.count)
     }
 
     fn write(&self, row: &mut Vec<f64>) {

@@ -6,9 +6,11 @@ use crate::scene::Scene;
 use crepitus_model::control::device_limits::LimitSettings;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::joint::shaft::Linear;
+use crepitus_model::render::effects::symptom::Change;
 use crepitus_model::render::effects::{EffectSpec, Effects, SwitchedEffects};
 use crepitus_model::render::input_check::{Checked, InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
+use crepitus_model::render::position::Position;
 use crepitus_model::render::{Addition, Bare, Check, Limits, Pipeline, Seen, Shown, Symptom};
 use crepitus_model::solver::locate::Locate;
 use crepitus_model::{
@@ -48,8 +50,9 @@ pub(super) fn drive<F: Real, S: Symptom<F>>(
 ) -> Result<DriveStages<F, S>, SettingsError> {
     let limits = LimitSettings::default();
     let slew_nm = F::from_f64(limits.slew_nm_per_s * step_s);
-    let mut effects = SwitchedEffects::new(slew_nm);
-    effects.change(scene.laws(step_s, MOST_DELAY_TICKS)?.into(), slew_nm);
+    let timing = scene.timing(step_s, MOST_DELAY_TICKS);
+    let mut effects = SwitchedEffects::new(slew_nm, &timing);
+    effects.change(&scene.changes(&timing)?, slew_nm);
     Ok(Pipeline::new(
         InputCheck::new(&InputLimits::device(step_s), F::from_f64(step_s), F::ZERO),
         symptoms,
@@ -87,8 +90,16 @@ pub(super) fn listed(scene: &Scene) -> impl Iterator<Item = &'static EffectSpec>
 
 /// A pipeline of any stages.
 pub(super) trait Rendering<F> {
-    /// See [`Pipeline::tick`].
-    fn tick(&mut self, seen: &Seen<F>, on_event: &mut dyn FnMut(Event<F>)) -> Shown<F>;
+    /// See [`Pipeline::tick_observed`].
+    fn tick(
+        &mut self,
+        seen: &Seen<F>,
+        on_event: &mut dyn FnMut(Event<F>),
+        on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
+    ) -> Shown<F>;
+
+    /// See [`Addition::rest`].
+    fn rest(&mut self, place: &Position<F>);
 
     /// See [`Pipeline::add`].
     fn add(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: Shown<F>) -> Shown<F>;
@@ -102,8 +113,19 @@ where
     L: Limits<F>,
 {
     #[inline]
-    fn tick(&mut self, seen: &Seen<F>, on_event: &mut dyn FnMut(Event<F>)) -> Shown<F> {
-        Self::tick(self, seen, on_event)
+    fn tick(
+        &mut self,
+        seen: &Seen<F>,
+        on_event: &mut dyn FnMut(Event<F>),
+        on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
+    ) -> Shown<F> {
+        self.tick_observed(seen, on_event, &mut |effect, change| {
+            on_change(effect, change)
+        })
+    }
+
+    fn rest(&mut self, place: &Position<F>) {
+        self.effects.rest(place);
     }
 
     #[inline]

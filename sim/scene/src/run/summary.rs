@@ -452,14 +452,15 @@ fn in_force(scene: &Scene, effect: &Effect) -> (Vec<f64>, Vec<ChoiceValue>) {
             .iter()
             .find(|l| l.effect.name == effect.name)
             .map(|l| {
-                let chosen = effect
-                    .choices
-                    .iter()
-                    .zip(&l.given.choices)
-                    .map(|(choice, &place)| ChoiceValue {
-                        key: choice.key,
-                        value: choice.names[place],
-                    });
+                let chosen =
+                    effect
+                        .choices
+                        .iter()
+                        .zip(&l.given.choices)
+                        .map(|(choice, &option)| ChoiceValue {
+                            key: choice.key,
+                            value: choice.names[usize::from(option)],
+                        });
                 (l.given.numbers.clone(), chosen.collect())
             })
             .unwrap_or_default(),

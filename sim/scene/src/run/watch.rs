@@ -2,7 +2,7 @@
 //! compiled here, once, and not again for everybody who observes.
 
 use super::{Observer, RunError};
-use crate::trace::EventRecord;
+use crate::trace::{EventRecord, SymptomEvent};
 
 /// The observer has had enough; it knows why.
 pub(super) struct Stopped;
@@ -13,6 +13,7 @@ pub(super) trait Watch {
     fn wants_rows(&self) -> bool;
     fn row(&mut self, values: &[f64]) -> Result<(), Stopped>;
     fn event(&mut self, event: &EventRecord) -> Result<(), Stopped>;
+    fn symptom(&mut self, event: &SymptomEvent) -> Result<(), Stopped>;
     fn progress(&mut self, time_s: f64) -> Result<(), Stopped>;
 }
 
@@ -52,6 +53,11 @@ impl<O: Observer> Watch for Watching<'_, O> {
 
     fn event(&mut self, event: &EventRecord) -> Result<(), Stopped> {
         let result = self.observer.event(event);
+        self.noted(result)
+    }
+
+    fn symptom(&mut self, event: &SymptomEvent) -> Result<(), Stopped> {
+        let result = self.observer.symptom(event);
         self.noted(result)
     }
 

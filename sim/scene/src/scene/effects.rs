@@ -8,6 +8,7 @@ use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::joint::presets::{PRESETS, Preset};
 use crepitus_model::parameters::ParameterSpec;
 use crepitus_model::parameters::Tabled;
+use crepitus_model::render::effects::EffectSpec;
 use crepitus_model::{Convention, Restart, Settings};
 use crepitus_plant::assembly::Listed;
 use crepitus_plant::effect::{Effect, Given, Part};
@@ -86,13 +87,32 @@ fn encoder(section: &Section<'_>, effect: &Effect) -> Result<EncoderSettings, Sc
 /// The numbers and choices of any effect.
 fn given(section: &Section<'_>, effect: &Effect) -> Result<Given, SceneError> {
     let mut given = Given::defaults(effect);
+    if let Part::Stage(spec) = effect.part {
+        both_sides(section, spec, &mut given.numbers)?;
+    }
     numbers(section, effect.parameters, &mut given.numbers)?;
     for (choice, chosen) in effect.choices.iter().zip(&mut given.choices) {
-        let names: Vec<(&str, usize)> = choice.names.iter().copied().zip(0..).collect();
+        let names: Vec<(&str, u8)> = choice.names.iter().copied().zip(0..).collect();
         *chosen = section.choice_or(choice.key, &names, *chosen)?;
     }
     section.finish()?;
     Ok(given)
+}
+
+/// Numbers that a section gives for all sides at once.
+fn both_sides(
+    section: &Section<'_>,
+    spec: &EffectSpec,
+    values: &mut [f64],
+) -> Result<(), SceneError> {
+    for (parameter, value) in spec.parameters.iter().zip(values) {
+        let of_side = |side: &&str| parameter.key.strip_prefix(*side);
+        if let Some(key) = spec.sides.iter().find_map(of_side) {
+            let range = Range::closed(parameter.min, parameter.max);
+            *value = section.optional_number(key, range)?.unwrap_or(*value);
+        }
+    }
+    Ok(())
 }
 
 /// Reads every number of a parameter table that the section gives.

@@ -141,7 +141,8 @@ fn sine(section: &Section<'_>) -> Result<Motion, SceneError> {
     };
     let frequency_hz = section.number("frequency_hz", Range::above(0.0, 1e4))?;
     let phase_deg = section.number_or("phase_deg", Range::closed(-360.0, 360.0), 0.0)?;
-    Ok(Motion::sine(amplitude_rad, frequency_hz, phase_deg))
+    let from_deg = section.number_or("from_deg", ANY_DEG, 0.0)?;
+    Ok(Motion::sine(amplitude_rad, frequency_hz, phase_deg).shifted(from_deg.to_radians()))
 }
 
 fn velocity_knots(section: &Section<'_>) -> Result<Motion, SceneError> {
@@ -186,7 +187,8 @@ fn velocity_knots(section: &Section<'_>) -> Result<Motion, SceneError> {
     if knots.is_empty() {
         return Err(section.key_error("knots", "at least one knot is needed, at t_s = 0"));
     }
-    Ok(Motion::velocity_knots(&knots))
+    let from_deg = section.number_or("from_deg", ANY_DEG, 0.0)?;
+    Ok(Motion::velocity_knots(&knots).shifted(from_deg.to_radians()))
 }
 
 fn strokes(section: &Section<'_>) -> Result<Motion, SceneError> {
@@ -254,7 +256,9 @@ fn recording(
     let ripple = recording::acceleration_ripple_rad_s2(&segments);
     let data = DataFile::of(&path)
         .map_err(|e| section.key_error("file", format!("cannot be read: {e}")))?;
+    let offset_deg = section.number_or("offset_deg", ANY_DEG, 0.0)?;
     // Whoever repeats the run finds it from anywhere.
     section.note("file", Value::Text(data.file.display().to_string()));
-    Ok((Motion::recording(&segments), ripple, data))
+    let motion = Motion::recording(&segments).shifted(offset_deg.to_radians());
+    Ok((motion, ripple, data))
 }

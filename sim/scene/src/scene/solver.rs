@@ -124,11 +124,7 @@ pub(super) fn read_trace_step(
     const DEFAULT_STEP_S: f64 = 5e-5;
     let wanted = match output {
         None => None,
-        Some(section) => {
-            let step = section.optional_number("trace_step_s", Range::above(0.0, 1e7))?;
-            section.finish()?;
-            step
-        }
+        Some(section) => section.optional_number("trace_step_s", Range::above(0.0, 1e7))?,
     };
     let refuse = |message: String| match (output, wanted) {
         (Some(section), Some(_)) => section.key_error("trace_step_s", message),

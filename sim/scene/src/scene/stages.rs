@@ -2,7 +2,9 @@
 
 use crate::scene::Scene;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
-use crepitus_model::render::effects::{EffectSettings, Effects, Timing};
+use crepitus_model::parameters::Chosen;
+use crepitus_model::render::effects::{EffectChanges, EffectSettings, Effects, Timing};
+use crepitus_model::render::position::Sight;
 use crepitus_model::{Real, SettingsError};
 
 impl Scene {
@@ -12,18 +14,51 @@ impl Scene {
         step_s: f64,
         delay_ticks: usize,
     ) -> Result<Effects<F>, SettingsError> {
-        let numbers = |name: &str| {
+        self.effect_settings()
+            .laws(&self.timing(step_s, delay_ticks))
+    }
+
+    /// What a device without effects changes to render those that it lists.
+    pub(crate) fn changes<F: Real>(
+        &self,
+        timing: &Timing,
+    ) -> Result<EffectChanges<F>, SettingsError> {
+        let none = EffectSettings::default();
+        self.effect_settings().changes(timing, (&none, timing))
+    }
+
+    /// Settings of the device's effects that it lists.
+    pub(crate) fn effect_settings(&self) -> EffectSettings {
+        EffectSettings::given(|name| {
             let listed = self.listed.iter().find(|l| l.effect.name == name)?;
-            Some(listed.given.numbers.as_slice())
-        };
-        EffectSettings::given(numbers).laws(&Timing {
+            Some(Chosen {
+                numbers: &listed.given.numbers,
+                options: &listed.given.choices,
+            })
+        })
+    }
+
+    /// How its device sees the shaft, and when.
+    pub(crate) fn timing(&self, step_s: f64, delay_ticks: usize) -> Timing {
+        Timing {
             step_s,
             delay_ticks,
-        })
+            sight: self.sight(),
+        }
+    }
+
+    /// How its device sees the joint.
+    pub(crate) fn sight(&self) -> Sight {
+        match &self.encoder {
+            Some(encoder) => Sight::of_encoder(encoder),
+            None => Sight::IDEAL,
+        }
     }
 
     /// Rejects numbers that no stage can be built from.
     pub(super) fn check_stages(&self) -> Result<(), SettingsError> {
+        let joint = self.crepitus.as_ref().map(|c| &c.settings.parameters);
+        self.effect_settings().check(joint)?;
         self.laws::<f64>(self.step_s(), MOST_DELAY_TICKS)?;
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! All effects, from the one table of them.
 
-use crepitus_model::parameters::ParameterSpec;
-use crepitus_plant::effect::{ChoiceSpec, Effect, Need};
+use crepitus_model::parameters::{Choice, ParameterSpec};
+use crepitus_plant::effect::{Effect, Need};
 use crepitus_plant::effects::EFFECTS;
 use crepitus_table::{Cell, Table};
 use serde_json::{Value, json};
@@ -32,10 +32,11 @@ fn push(text: &mut String, effect: &Effect) {
     };
     let _ = writeln!(text, "    states: {states}");
     text.push_str(&parameters(effect).to_text());
-    for ChoiceSpec {
+    for Choice {
         key,
         names,
         meaning,
+        ..
     } in effect.choices
     {
         let _ = writeln!(text, "    {key} = \"{}\": {meaning}", names.join("\" | \""));
@@ -78,7 +79,7 @@ fn to_json(effect: &Effect) -> Value {
     let choices = Table::of(effect.choices)
         .column("key", |c| c.key)
         .column("names", |c| c.names)
-        .column("default", |c| c.names.first().copied())
+        .column("default", |c| c.names.get(usize::from(c.default)).copied())
         .column("meaning", |c| c.meaning);
     let needs = Table::of(effect.needs)
         .column("effect", |n| n.effect)

@@ -6,7 +6,7 @@ use crate::progress::Progress;
 use crepitus_report::{Collector, Figures, Setup};
 use crepitus_scene::Observer;
 use crepitus_scene::output::{EventsCsv, Folder, TraceCsv};
-use crepitus_scene::trace::EventRecord;
+use crepitus_scene::trace::{EventRecord, SymptomEvent};
 use std::fs::File;
 use std::io::{self, BufWriter};
 
@@ -70,6 +70,10 @@ impl Observer for Watch {
         self.events.event(event).map_err(WatchError::Write)
     }
 
+    fn symptom(&mut self, event: &SymptomEvent) -> Result<(), WatchError> {
+        self.events.symptom(event).map_err(WatchError::Write)
+    }
+
     fn progress(&mut self, time_s: f64) -> Result<(), WatchError> {
         reached(&mut self.progress, time_s)
     }
@@ -105,6 +109,10 @@ impl Observer for EventsAlone {
 
     fn event(&mut self, event: &EventRecord) -> Result<(), WatchError> {
         self.events.event(event).map_err(WatchError::Write)
+    }
+
+    fn symptom(&mut self, event: &SymptomEvent) -> Result<(), WatchError> {
+        self.events.symptom(event).map_err(WatchError::Write)
     }
 
     fn progress(&mut self, time_s: f64) -> Result<(), WatchError> {

@@ -1,0 +1,201 @@
+//! The symptoms besides crepitus, stepped at 20 kHz, against cases that an
+//! event-driven solver computed with 60 digits.
+//!
+//! They are in `shared/truth/disorders` beside the repository.
+
+use crepitus_scene::run::columns;
+use crepitus_scene::trace::{EventRecord, SymptomEvent};
+use crepitus_scene::{Observer, Overrides, Scene, run};
+use serde_json::Value;
+use std::convert::Infallible;
+use std::fmt::Write;
+use std::path::Path;
+
+/// A case as a scene, and what is known of it.
+struct Case {
+    name: String,
+    scene: String,
+    json: Value,
+}
+
+/// A number, or one in a text.
+fn number(value: &Value) -> f64 {
+    match value {
+        Value::String(text) => text.parse().expect("a decimal number"),
+        other => other.as_f64().expect("a number"),
+    }
+}
+
+fn motion(json: &Value, text: &mut String) -> std::fmt::Result {
+    let rad_s = |deg: &Value| number(deg).to_radians();
+    writeln!(text, "[motion]\nfrom_deg = {:?}", number(&json["from_deg"]))?;
+    match json["kind"].as_str().unwrap() {
+        "constant" => {
+            let velocity = rad_s(&json["velocity_deg_s"]);
+            writeln!(text, "kind = \"constant\"\nvelocity_rad_s = {velocity:?}")
+        }
+        "velocity-knots" => {
+            writeln!(text, "kind = \"velocity-knots\"")?;
+            for knot in json["knots"].as_array().unwrap() {
+                writeln!(text, "[[motion.knots]]\nt_s = {:?}", number(&knot["t_s"]))?;
+                if knot["left"].is_null() {
+                    writeln!(text, "omega_rad_s = {:?}", rad_s(&knot["deg_s"]))?;
+                } else {
+                    let (left, right) = (rad_s(&knot["left"]), rad_s(&knot["right"]));
+                    writeln!(
+                        text,
+                        "omega_left_rad_s = {left:?}\nomega_right_rad_s = {right:?}"
+                    )?;
+                }
+            }
+            Ok(())
+        }
+        other => panic!("unknown motion {other}"),
+    }
+}
+
+fn effects(json: &Value, text: &mut String) {
+    for (effect, keys) in json.as_object().unwrap() {
+        let _ = writeln!(text, "[effects.{effect}]");
+        for (key, value) in keys.as_object().unwrap() {
+            let value = value.as_str().unwrap();
+            let _ = match value.parse::<f64>() {
+                Ok(x) => writeln!(text, "{key} = {x:?}"),
+                Err(_) => writeln!(text, "{key} = \"{value}\""),
+            };
+        }
+    }
+}
+
+fn case(path: &Path, precision: &str) -> Case {
+    let json: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let mut scene = format!(
+        "version = 1\ntitle = \"a case\"\nduration_s = {:?}\n",
+        number(&json["t_end"])
+    );
+    let mut text = String::new();
+    motion(&json["motion"], &mut text).unwrap();
+    scene.push_str(&text);
+    let _ = writeln!(
+        scene,
+        "[solver]\nkind = \"exact-events\"\nstep_s = 5e-5\nprecision = \"{precision}\"\n\
+         [output]\nplay_events = true"
+    );
+    effects(&json["effects"], &mut scene);
+    Case {
+        name: json["name"].as_str().unwrap().to_owned(),
+        scene,
+        json,
+    }
+}
+
+#[derive(Default)]
+struct Keep {
+    rows: Vec<Vec<f64>>,
+    events: Vec<SymptomEvent>,
+}
+
+impl Observer for Keep {
+    type Error = Infallible;
+
+    fn row(&mut self, values: &[f64]) -> Result<(), Infallible> {
+        self.rows.push(values.to_vec());
+        Ok(())
+    }
+
+    fn event(&mut self, _: &EventRecord) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn symptom(&mut self, event: &SymptomEvent) -> Result<(), Infallible> {
+        self.events.push(*event);
+        Ok(())
+    }
+
+    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+/// The worst deviations of a case: s, N·m at events, N·m at ticks.
+fn compare(case: &Case, worst: (f64, f64)) -> (f64, f64, f64) {
+    let scene = Scene::parse(Path::new("case.toml"), &case.scene, &Overrides::default())
+        .unwrap_or_else(|error| panic!("{}: {error}\n{}", case.name, case.scene));
+    let mut keep = Keep::default();
+    let Ok(_) = run(&scene, &mut keep) else {
+        panic!("{}: did not run", case.name);
+    };
+    let name = &case.name;
+    let expected = case.json["events"].as_array().unwrap();
+    let words: Vec<_> = expected
+        .iter()
+        .map(|e| e["type"].as_str().unwrap())
+        .collect();
+    let found: Vec<_> = keep.events.iter().map(|e| e.word.name()).collect();
+    assert_eq!(found, words, "{name}: {:#?}", keep.events);
+    let (mut late_s, mut event_nm) = (0.0_f64, 0.0_f64);
+    for (event, expected) in keep.events.iter().zip(expected) {
+        let error_s = (event.time_s - number(&expected["t"])).abs();
+        assert!(
+            error_s <= worst.0,
+            "{name}: {event:?} {error_s:e} s: {expected}"
+        );
+        late_s = late_s.max(error_s);
+        for (nm, key) in [
+            (event.torque_before_nm, "torque_before"),
+            (event.torque_after_nm, "torque_after"),
+        ] {
+            let error_nm = (nm - number(&expected[key])).abs();
+            assert!(
+                error_nm <= worst.1,
+                "{name}: {event:?} {error_nm:e}: {expected}"
+            );
+            event_nm = event_nm.max(error_nm);
+        }
+    }
+    let names = columns(&scene);
+    let sum: Vec<usize> = (0..names.len())
+        .filter(|i| names[*i].name.ends_with("_nm") && names[*i].name != "hand_torque_nm")
+        .collect();
+    let mut tick_nm = 0.0_f64;
+    for sample in case.json["samples"].as_array().unwrap() {
+        let tick = usize::try_from(sample["tick"].as_u64().unwrap()).unwrap();
+        let nm: f64 = sum.iter().map(|i| keep.rows[tick][*i]).sum();
+        let error_nm = (nm - number(&sample["torque"])).abs();
+        assert!(error_nm <= worst.1, "{name}: tick {tick}: {nm} {sample}");
+        tick_nm = tick_nm.max(error_nm);
+    }
+    (late_s, event_nm, tick_nm)
+}
+
+fn all(precision: &str, worst: (f64, f64)) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/truth/disorders");
+    let Ok(entries) = std::fs::read_dir(&folder) else {
+        println!("left out: there are no cases in {}", folder.display());
+        return;
+    };
+    let mut paths: Vec<_> = entries
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "json"))
+        .collect();
+    paths.sort();
+    assert!(!paths.is_empty());
+    for path in paths {
+        let case = case(&path, precision);
+        let (late_s, event_nm, tick_nm) = compare(&case, worst);
+        println!(
+            "{precision} {:30} {late_s:8.1e} s {event_nm:8.1e} N·m at events {tick_nm:8.1e} at ticks",
+            case.name
+        );
+    }
+}
+
+#[test]
+fn in_f64_events_and_torques_are_those_of_60_digits() {
+    all("f64", (1e-9, 5e-6));
+}
+
+#[test]
+fn in_f32_they_are_within_what_24_bits_allow() {
+    all("f32", (1e-6, 5e-5));
+}
