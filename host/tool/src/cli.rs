@@ -36,7 +36,7 @@ pub(crate) struct Cli {
 pub(crate) struct DeviceArguments {
     /// The device: a port (/dev/ttyACM0), the name of a simulated one from `serve-sim`, or, for this
     /// command only, `sim`, a simulated one, or `emulated`, the firmware's own images on emulated
-    /// controllers, ten to fifteen times slower than real time [default: the one that is attached].
+    /// controllers, five to six times slower than real time [default: the one that is attached].
     #[arg(long, value_name = "DEVICE", global = true)]
     pub(crate) device: Option<String>,
 

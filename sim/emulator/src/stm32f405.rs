@@ -9,9 +9,13 @@
 //!
 //! So an interrupt is pending with the step after its event, and a register is
 //! read with its value at the start of the instruction.
+//!
+//! Unless the core is watched, `fast_path` executes most instructions, with the
+//! same result in the same cycles.
 
 mod as_mcu;
 mod exception_state;
+mod fast_path;
 mod usb;
 
 use crate::chip::Chip;
@@ -24,6 +28,7 @@ use crate::mcu::{Mcu, Pin, RamAccess, Reset, Step, Watch};
 use crate::pins::Mode;
 use crate::time::Time;
 use exception_state::Before;
+use fast_path::FastPath;
 use rsemu::core::space::MemAttrs;
 use rsemu::core::value::Width;
 use rsemu::core::wire::Level;
@@ -62,6 +67,7 @@ pub struct Stm32f405 {
     core: ArmV7m,
     chip: Chip,
     memory: Memory,
+    fast_path: FastPath,
     now: u64,
     cycles: u64,
     /// Cycles of the core's clock, those in which it sleeps too.
@@ -73,6 +79,8 @@ pub struct Stm32f405 {
     /// An exception is pending, besides those of lines that are high.
     is_pending: bool,
     is_hung: bool,
+    /// The core has been reset, and not stepped since.
+    is_reset: bool,
     /// At the pins of the encoder's channels.
     encoder: [bool; 2],
     resets: Vec<(Time, Reset)>,
@@ -97,6 +105,7 @@ impl Stm32f405 {
         core.attach_space(memory.space.clone());
         let mut mcu = Self {
             core,
+            fast_path: FastPath::new(&chip, &memory),
             chip,
             memory,
             now: 0,
@@ -106,6 +115,7 @@ impl Stm32f405 {
             exception: 0,
             is_pending: false,
             is_hung: false,
+            is_reset: false,
             encoder: [false; 2],
             resets: Vec::new(),
         };
@@ -288,6 +298,7 @@ impl Stm32f405 {
     fn step_without_waits(&mut self) -> u64 {
         let may_interrupt = self.is_pending || self.chip.raised.any();
         let before = may_interrupt.then(|| Before::step(&self.core));
+        self.is_reset = false;
         let cycles = self.core.step();
         // Only a store, or an exception, makes one pending.
         if cycles > 1 {
@@ -317,6 +328,20 @@ impl Stm32f405 {
         }
     }
 
+    /// Executes plain instructions until `stop`. Returns `false` if there is none,
+    /// or if accesses to memory are observed or take their time.
+    fn fast_steps(&mut self, stop: u64, units: u64) -> bool {
+        if self.is_reset || self.memory.is_observed() || self.chip.bus.waits.is_on() {
+            return false;
+        }
+        let most = (stop - self.now).div_ceil(units);
+        let cycles = self.fast_path.run(&self.core, most);
+        self.cycles += cycles;
+        self.clock += cycles;
+        self.now += cycles * units;
+        cycles > 0
+    }
+
     /// Steps of the core until `stop`.
     fn steps<const WATCHED: bool>(&mut self, mut stop: u64, watch: &mut dyn Watch) {
         let mut units = self.chip.bus.rates.units(Clock::Core);
@@ -331,6 +356,9 @@ impl Stm32f405 {
                 self.chip.bus.touch("FLASH");
                 self.settle();
                 self.now = stop.min(busy_until);
+                break;
+            }
+            if !WATCHED && self.fast_steps(stop, units) && self.now >= stop {
                 break;
             }
             self.chip.bus.now.store(self.now, Relaxed);

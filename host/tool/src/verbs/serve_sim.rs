@@ -19,7 +19,7 @@ use std::path::PathBuf;
 enum Kind {
     /// The device's code, compiled for this computer.
     Sim,
-    /// The firmware's own images on emulated controllers, ten to fifteen times slower than real time.
+    /// The firmware's own images on emulated controllers, five to six times slower than real time.
     Emulated,
 }
 

@@ -19,9 +19,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 const FLASH_BYTES: u64 = 1 << 20;
-const RAM: u32 = 0x2000_0000;
-const RAM_BYTES: u64 = 128 << 10;
-const CCM_BYTES: u64 = 64 << 10;
+pub(crate) const RAM: u32 = 0x2000_0000;
+pub(crate) const RAM_BYTES: u64 = 128 << 10;
+pub(crate) const CCM: u32 = 0x1000_0000;
+pub(crate) const CCM_BYTES: u64 = 64 << 10;
 
 /// Of the system memory with number and flash size.
 const SYSTEM: u64 = 0x1fff_7a00;
@@ -53,12 +54,12 @@ impl Memory {
         write(&system, 0x22, &1024_u16.to_le_bytes());
         let shared = [
             (flash, 0x0800_0000),
-            (ram_region, 0x2000_0000),
+            (ram_region, u64::from(RAM)),
             (peripherals, 0x4000_0000),
         ];
         let own = [
             (shared[0].0.clone(), 0),
-            (Arc::new(Region::ram("CCM", ccm.clone())), 0x1000_0000),
+            (Arc::new(Region::ram("CCM", ccm.clone())), u64::from(CCM)),
             (Arc::new(Region::ram("system", system)), SYSTEM),
             (window(chip, 0x5000_0000, 0x8_0000), 0x5000_0000),
         ];
@@ -92,6 +93,11 @@ impl Memory {
             observed
         });
         observed.observe(ranges);
+    }
+
+    /// Whether accesses are written down.
+    pub(crate) fn is_observed(&self) -> bool {
+        self.observed.is_some()
     }
 
     /// Takes the accesses since the last call: address, whether it was a write.

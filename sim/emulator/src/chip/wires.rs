@@ -1,12 +1,13 @@
 //! Wires between parts.
 
+use super::part::lock;
 use rsemu::core::device::Device;
 use rsemu::core::wire::{Level, Wire, WireId, WireIdAllocator, WireSink, WireSource};
 use rsemu::cpu::arm::v7m::ArmV7m;
 use rsemu::dev::stm32::rcc::Rcc;
 use std::cell::Cell;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
 
 /// Makes wires to a core and to devices.
 pub(crate) struct Nets<'a> {
@@ -18,21 +19,36 @@ pub(crate) struct Nets<'a> {
 
 /// The interrupt lines that are high, one bit each.
 #[derive(Debug, Default)]
-pub(crate) struct Raised(AtomicU32);
+pub(crate) struct Raised {
+    lines: AtomicU32,
+    /// The exception of each line.
+    exceptions: Mutex<Vec<u16>>,
+}
 
 impl Raised {
     /// Whether one is.
     pub(crate) fn any(&self) -> bool {
-        self.0.load(Relaxed) != 0
+        self.lines.load(Relaxed) != 0
+    }
+
+    /// Whether something holds for the exceptions of all that are.
+    pub(crate) fn all(&self, mut holds: impl FnMut(u16) -> bool) -> bool {
+        let lines = self.lines.load(Relaxed);
+        if lines == 0 {
+            return true;
+        }
+        let exceptions = lock(&self.exceptions);
+        let mut raised = exceptions.iter().enumerate();
+        raised.all(|(line, exception)| lines >> line & 1 == 0 || holds(*exception))
     }
 }
 
 impl WireSink for Raised {
     fn set_level(&self, _: WireId, line: u32, level: Level) {
         if level.is_high() {
-            self.0.fetch_or(1 << line, Relaxed);
+            self.lines.fetch_or(1 << line, Relaxed);
         } else {
-            self.0.fetch_and(!(1 << line), Relaxed);
+            self.lines.fetch_and(!(1 << line), Relaxed);
         }
     }
 }
@@ -59,6 +75,7 @@ impl<'a> Nets<'a> {
         let pin = pin.expect("the core has this interrupt");
         let place = self.interrupts.get();
         assert!(place < u32::BITS, "a bit for each line");
+        lock(&self.raised.exceptions).push(16 + number);
         self.interrupts.set(place + 1);
         let wire = Wire::builder()
             .source(id)

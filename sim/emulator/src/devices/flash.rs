@@ -84,6 +84,8 @@ struct State {
 /// The memory and its controller.
 pub(crate) struct Flash {
     array: Arc<RamStore>,
+    /// Number of changes of the content.
+    version: AtomicU64,
     state: Mutex<State>,
     option_bytes: u32,
     now: Now,
@@ -110,6 +112,7 @@ impl Flash {
         let array = RamStore::new(FLASH_BYTES as u64);
         let flash = Self {
             array: Arc::new(array),
+            version: AtomicU64::new(0),
             state: Mutex::default(),
             option_bytes,
             now,
@@ -142,6 +145,17 @@ impl Flash {
     pub(crate) fn put(&self, at: usize, bytes: &[u8]) {
         let stored = self.array.write_at(at as u64, bytes);
         stored.expect("within the memory");
+        self.version.fetch_add(1, Relaxed);
+    }
+
+    /// The memory, for reading while [`Self::busy_until`] permits it.
+    pub(crate) fn array(&self) -> Arc<RamStore> {
+        self.array.clone()
+    }
+
+    /// A number that is another after each change of the content.
+    pub(crate) fn version(&self) -> u64 {
+        self.version.load(Relaxed)
     }
 
     /// The content.

@@ -123,6 +123,7 @@ impl Mcu for Stm32f405 {
         self.chip.bus.waits.clear();
         self.chip.bus.waits.set_register(0);
         self.core.reset(ResetKind::Cold);
+        self.is_reset = true;
         for name in match reset {
             Reset::PowerOn => &["porrst", "borrst", "pinrst"][..],
             Reset::BrownOut => &["borrst", "pinrst"],

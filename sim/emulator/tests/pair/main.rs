@@ -13,5 +13,6 @@ mod power;
 mod replay;
 mod same;
 mod session;
+mod speed;
 mod usb;
 mod usbip;

@@ -34,6 +34,13 @@ fn two_runs_are_one() {
         "{:.1} s of wall time for a second of both images, leg and host",
         wall.as_secs_f64() / device.as_secs_f64()
     );
+    let samples = first.1.iter().fold(0, |hash: u64, sample| {
+        (hash ^ sample).wrapping_mul(0x0100_0000_01b3)
+    });
+    println!(
+        "both chips: {:016x}, samples: {samples:016x}, {}",
+        first.0, first.2
+    );
     assert!(first.1.len() >= 50, "{}", first.1.len());
     assert_eq!(Some(first), session());
 }

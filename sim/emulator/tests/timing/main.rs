@@ -3,6 +3,7 @@
 mod assembler;
 mod core;
 mod exceptions;
+mod fast_path;
 mod flash;
 mod flash_writes;
 mod reference;

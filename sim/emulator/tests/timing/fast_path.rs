@@ -1,0 +1,233 @@
+//! A run that is not watched is the same as one that is: the fast path, which a
+//! watch switches off, does what the library does, in as many cycles.
+
+use crate::assembler::{Assembler, HANDLER, PROGRAM, RAM, UNITS, image, image_of};
+use crepitus_emulator::mcu::{Step, Watch};
+use crepitus_emulator::{Mcu, Reset, Stm32f405, Time};
+use fastrand::Rng;
+
+const FLASH: u32 = 0x0800_0000;
+
+/// First values of registers 0 to 13 and of the flags.
+const TABLE: u32 = FLASH + 0x400;
+
+/// Where the instructions begin that are compared.
+const COMPARED: u32 = FLASH + 0x280;
+
+/// Their half words: enough for three to eight instructions.
+const HALF_WORDS: usize = 8;
+
+/// Cycles of a program: all of its start, and some of the loop at its end.
+const CYCLES: u64 = 80;
+
+/// Bytes of RAM that are compared.
+const RAM_BYTES: u32 = 0x1000;
+
+const CCR: u32 = 0xe000_ed14;
+const MPU_CTRL: u32 = 0xe000_ed94;
+const MPU_RBAR: u32 = 0xe000_ed9c;
+const MPU_RASR: u32 = 0xe000_eda0;
+
+struct NoWatch;
+
+impl Watch for NoWatch {
+    fn step(&mut self, _: &Step) {}
+}
+
+/// A chip that loads its registers from the table and goes on at [`COMPARED`]. All
+/// faults end in a loop.
+fn chip() -> Stm32f405 {
+    let mut program = Assembler::default();
+    program.load(0, TABLE);
+    // `ldr r1, [r0, #56]`; `msr apsr_nzcvqg, r1`; `ldr.w r13, [r0, #52]`;
+    // `ldm.w r0, {r0-r12}`
+    program.raw(0x6b81).raw(0xf381).raw(0x8c00);
+    program.raw(0xf8d0).raw(0xd034).raw(0xe890).raw(0x1fff);
+    let here = PROGRAM + 2 * program.0.len() + 4;
+    let far = (COMPARED - FLASH) as usize - here;
+    program.raw(0xe000 | u16::try_from(far / 2).unwrap());
+    let mcu = image_of(&[(PROGRAM, &program.0), (HANDLER, &[0xe7fe])]);
+    let mut mcu = Stm32f405::new(&mcu);
+    let handler = FLASH + u32::try_from(HANDLER).unwrap() + 1;
+    mcu.patch_flash(FLASH + 4 * 3, &handler.to_le_bytes());
+    mcu
+}
+
+/// What a program starts with.
+#[derive(Debug)]
+struct Start {
+    code: Vec<u16>,
+    table: Vec<u32>,
+    /// Registers of the core that are written after reset.
+    core: Vec<(u32, u32)>,
+}
+
+/// A value: often an address of RAM or of flash, or a small number.
+fn value(random: &mut Rng) -> u32 {
+    match random.u32(..8) {
+        0..3 => RAM + random.u32(..RAM_BYTES / 4) * 4,
+        3 => RAM + random.u32(..RAM_BYTES),
+        4 => random.u32(..40),
+        5 => FLASH + random.u32(..0x2000),
+        6 => u32::MAX << random.u32(..32),
+        _ => random.u32(..),
+    }
+}
+
+/// An instruction of 16 bits.
+fn narrow(random: &mut Rng) -> Vec<u16> {
+    vec![random.u16(..0b11101 << 11)]
+}
+
+/// An instruction of 32 bits, most of which exist.
+fn wide(random: &mut Rng) -> Vec<u16> {
+    vec![random.u16(0b11101 << 11..), random.u16(..)]
+}
+
+fn narrow_or_wide(random: &mut Rng) -> Vec<u16> {
+    if random.bool() {
+        narrow(random)
+    } else {
+        wide(random)
+    }
+}
+
+/// An `IT` for up to four instructions.
+fn it_block(random: &mut Rng) -> Vec<u16> {
+    let mut block = vec![0xbf00 | random.u16(..15) << 4 | random.u16(1..16)];
+    block.extend(narrow_or_wide(random));
+    block.extend(narrow(random));
+    block
+}
+
+/// Regions of the MPU all over RAM and code, and the traps that there are.
+fn core_registers(random: &mut Rng) -> Vec<(u32, u32)> {
+    let mut writes = vec![(CCR, 0x200 | random.u32(..4) << 3)];
+    for region in 0..random.u32(..6) {
+        let size = random.u32(4..12);
+        let base = if random.u32(..4) == 0 { FLASH } else { RAM };
+        let base = base + (random.u32(..RAM_BYTES) >> (size + 1) << (size + 1));
+        let access = random.u32(..8) << 24 | u32::from(random.u32(..8) == 0) << 28;
+        let without = if random.bool() {
+            random.u32(..256) << 8
+        } else {
+            0
+        };
+        writes.push((MPU_RBAR, base | 1 << 4 | region));
+        writes.push((MPU_RASR, access | without | size << 1 | 1));
+    }
+    writes.push((MPU_CTRL, 0b101));
+    writes
+}
+
+fn state(mcu: &Stm32f405) -> (u64, u64, u16, Vec<u32>) {
+    let registers = (0..16).map(|number| mcu.register(number));
+    let memory = (0..RAM_BYTES)
+        .step_by(4)
+        .map(|at| mcu.peek(RAM + at).unwrap());
+    let all = registers.chain(memory).collect();
+    (mcu.now().units(), mcu.cycles(), mcu.exception(), all)
+}
+
+/// Runs both for so many cycles, one of them watched.
+fn run_both(chips: &mut [Stm32f405; 2], cycles: u64) -> bool {
+    let [watched, fast] = chips;
+    let time = Time::from_units(cycles * UNITS);
+    watched.watch_until(watched.now() + time, &mut NoWatch);
+    fast.run_until(fast.now() + time);
+    state(watched) == state(fast)
+}
+
+fn compare(rounds: u32, next: fn(&mut Rng) -> Vec<u16>, core: fn(&mut Rng) -> Vec<(u32, u32)>) {
+    let mut random = Rng::with_seed(1);
+    let mut chips = [chip(), chip()];
+    for _ in 0..rounds {
+        let mut code = Vec::new();
+        while code.len() < HALF_WORDS - 2 {
+            code.extend(next(&mut random));
+        }
+        // `mrs`, which shows the flags; `b .`
+        code.extend([0xf3ef, 0x8000 | random.u16(..13) << 8, 0xe7fe]);
+        let start = Start {
+            code,
+            table: (0..15).map(|_| value(&mut random)).collect(),
+            core: core(&mut random),
+        };
+        for mcu in &mut chips {
+            let code: Vec<u8> = start
+                .code
+                .iter()
+                .flat_map(|half| half.to_le_bytes())
+                .collect();
+            let table: Vec<u8> = start
+                .table
+                .iter()
+                .flat_map(|word| word.to_le_bytes())
+                .collect();
+            mcu.patch_flash(COMPARED, &code);
+            mcu.patch_flash(TABLE, &table);
+            mcu.reset(Reset::Pin);
+            for (address, value) in &start.core {
+                mcu.poke(*address, *value);
+            }
+        }
+        for cycles in [random.u64(1..CYCLES), CYCLES] {
+            let is_same = run_both(&mut chips, cycles);
+            assert!(is_same, "after {cycles} cycles: {start:08x?}");
+        }
+    }
+}
+
+fn nothing(_: &mut Rng) -> Vec<(u32, u32)> {
+    Vec::new()
+}
+
+#[test]
+fn instructions_of_16_bits_are_executed_as_by_the_library() {
+    compare(8_000, narrow, nothing);
+}
+
+#[test]
+fn instructions_of_32_bits_are_executed_as_by_the_library() {
+    compare(8_000, wide, nothing);
+}
+
+#[test]
+fn conditional_blocks_are_executed_as_by_the_library() {
+    compare(8_000, it_block, nothing);
+}
+
+#[test]
+fn what_the_mpu_refuses_and_traps_fault_as_in_the_library() {
+    compare(8_000, narrow_or_wide, core_registers);
+}
+
+#[test]
+fn interrupts_come_at_the_same_cycle() {
+    let mut random = Rng::with_seed(1);
+    for period in [61, 97, 200] {
+        let mut program = Assembler::interrupted(period, 3);
+        let begin = program.0.len();
+        // `adds r3, #1`, `str r3, [r6, #64]`, `ldr r5, [r6, #64]`, `cpsid i`,
+        // `cpsie i`, in some order; `b` to the first.
+        for _ in 0..12 {
+            let code = [0x3301, 0x6433, 0x6c35, 0xb672, 0xb662];
+            program.raw(*random.choice(&code).unwrap());
+        }
+        program.raw(0xb662);
+        let back = u16::try_from(program.0.len() - begin + 2).unwrap();
+        program.raw(0xe000 | 0x7ff & 0_u16.wrapping_sub(back));
+        // The flags of both timers off, the second's a while later; `bx lr`.
+        let mut handler = Assembler::default();
+        handler.raw(0x2300).store(3, 4, 0x10).load(2, 0x4000_0410);
+        handler.raw(0x3701).raw(0x6077).store(3, 2, 0).raw(0x4770);
+        let image = image(&program, &handler);
+        let mut chips = [Stm32f405::new(&image), Stm32f405::new(&image)];
+        for round in 0..2_000 {
+            let is_same = run_both(&mut chips, random.u64(1..60));
+            assert!(is_same, "period {period}, slice {round}");
+        }
+        let entries = chips[0].register(7);
+        assert!(entries > 100, "{entries}");
+    }
+}
