@@ -195,7 +195,7 @@ impl Comms {
                 Some(Ok(body)) => match body.lane() {
                     Some(Lane::Telemetry) => {
                         let block = body.message();
-                        self.known(block.as_ref(), Self::block);
+                        self.known(block.as_ref(), |comms, block| comms.block(unit, block));
                     }
                     Some(Lane::FromDrive) => {
                         let message = body.message();
@@ -289,7 +289,7 @@ impl Comms {
         &self.counters
     }
 
-    fn block(&mut self, block: &Block) {
+    fn block(&mut self, unit: &mut impl WordCrc, block: &Block) {
         let samples = BLOCK_TICKS;
         let continuity = self.drive.receive_block(block, self.now_ms);
         match continuity {
@@ -307,7 +307,7 @@ impl Comms {
         if !self.sessions.has_subscriber() {
             return;
         }
-        let counter = if self.stream.forward(block, &mut self.outbox) {
+        let counter = if self.stream.forward(unit, block, &mut self.outbox) {
             CommsCounter::SentSamples
         } else {
             CommsCounter::DroppedSamples

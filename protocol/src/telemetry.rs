@@ -1,12 +1,15 @@
 //! Telemetry: the drive's samples, in blocks.
 //!
-//! A block holds 20 ticks, one millisecond. Samples are of fixed width:
+//! A block holds 20 ticks, one millisecond: first the samples, then the phases of
+//! the device's effects in the same ticks. Both are of fixed width:
 //!
 //! ```text
+//! block  = head ‖ 20 samples ‖ 20 phases of effects
 //! sample = count i32 ‖ model torque f32 ‖ torque f32 ‖ current i16 ‖ flags u16     16 bytes, little endian
+//! phases = u16                                                                      2 bytes, little endian
 //!
 //! flags    15 … 12   11     10     9       8 7 6 5   4          3      2         1 0
-//!          effects   late   stick  break   limited   energised  lost   settling  phase
+//!          0         late   stick  break   limited   energised  lost   settling  phase
 //! ```
 //!
 //! Angles and speeds follow from the counts: an encoder's count is
@@ -37,6 +40,12 @@ pub const BLOCK_TICKS: u32 = 20;
 
 /// Bytes of a sample.
 pub const SAMPLE_BYTES: usize = 16;
+
+/// Bytes of the phases of the effects in a tick.
+pub const EFFECT_PHASES_BYTES: usize = 2;
+
+/// Bytes of a block's ticks.
+pub const TICKS_BYTES: usize = BLOCK_SAMPLES * (SAMPLE_BYTES + EFFECT_PHASES_BYTES);
 
 /// One tick of the drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
@@ -75,7 +84,7 @@ impl Sample {
 /// Value of `current_ma` without a measurement.
 pub const NO_CURRENT: i16 = i16::MIN;
 
-/// Per-sample flags, 16 bits.
+/// Per-sample flags, 16 bits; those without a name are reserved, and 0.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
 )]
@@ -100,8 +109,6 @@ impl SampleFlags {
     pub const STICK: u16 = 1 << 10;
     /// Rendering was late: the torque is that of the previous tick.
     pub const LATE: u16 = 1 << 11;
-    /// Where the [`Phases`] of the device's effects begin.
-    pub const PHASES_SHIFT: u32 = 12;
 
     /// Returns the flags with these bits set or cleared.
     #[must_use]
@@ -134,18 +141,6 @@ impl SampleFlags {
         }
     }
 
-    /// Returns the flags with the phases of the effects.
-    #[must_use]
-    pub const fn with_phases(self, phases: Phases) -> Self {
-        const { assert!(Self::PHASES_SHIFT + Phases::BITS <= u16::BITS) };
-        Self(self.0 | phases.0 << Self::PHASES_SHIFT)
-    }
-
-    /// The phases of the effects.
-    pub const fn phases(self) -> Phases {
-        Phases(self.0 >> Self::PHASES_SHIFT)
-    }
-
     /// Returns the flags with this reason.
     #[must_use]
     pub fn with_limit(self, reason: LimitReason) -> Self {
@@ -160,6 +155,35 @@ impl SampleFlags {
             .into_iter()
             .find(|reason| reason.number() == number)
             .unwrap_or_default()
+    }
+}
+
+/// Phases of the device's effects in a tick, 16 bits: in the order of the effects, the
+/// first lowest, each in as many bits as its phases need.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
+)]
+pub struct EffectPhases(#[serde(with = "postcard::fixint::le")] pub u16);
+
+const _: () = assert!(u16::BITS.checked_sub(Phases::BITS).is_some());
+
+impl EffectPhases {
+    /// Encodes them as postcard would.
+    #[inline]
+    pub fn bytes(self) -> [u8; EFFECT_PHASES_BYTES] {
+        self.0.to_le_bytes()
+    }
+}
+
+impl From<Phases> for EffectPhases {
+    fn from(Phases(bits): Phases) -> Self {
+        Self(bits)
+    }
+}
+
+impl From<EffectPhases> for Phases {
+    fn from(EffectPhases(bits): EffectPhases) -> Self {
+        Self(bits)
     }
 }
 
@@ -217,6 +241,8 @@ pub struct Block {
     pub flags: BlockFlags,
     /// The samples.
     pub samples: [Sample; BLOCK_SAMPLES],
+    /// Phases of the device's effects, in the ticks of the samples.
+    pub phases: [EffectPhases; BLOCK_SAMPLES],
 }
 
 /// The fields of a block before its samples.
@@ -237,6 +263,15 @@ impl Block {
         )
     }
 
+    /// The ticks: number, sample, phases of the effects.
+    pub fn ticks(&self) -> impl Iterator<Item = (u64, &Sample, Phases)> {
+        (0..)
+            .zip(self.samples.iter().zip(&self.phases))
+            .map(|(n, (sample, phases))| {
+                (self.first_tick.wrapping_add(n), sample, (*phases).into())
+            })
+    }
+
     /// Tick after the last sample.
     pub fn end_tick(&self) -> u64 {
         self.first_tick.saturating_add(BLOCK_SAMPLES as u64)
@@ -250,15 +285,20 @@ mod tests {
     use crate::lane::Lane;
 
     #[test]
-    fn phases_of_effects_leave_the_other_flags() {
-        let others = SampleFlags::default()
-            .with_phase(-1)
-            .with_limit(LimitReason::NotArmed)
-            .with(SampleFlags::LATE | SampleFlags::STICK, true);
-        for bits in 0..1 << (u16::BITS - SampleFlags::PHASES_SHIFT) {
-            let flags = others.with_phases(Phases(bits));
-            assert_eq!(flags.phases(), Phases(bits));
-            assert_eq!(flags.0 & !(u16::MAX << SampleFlags::PHASES_SHIFT), others.0);
+    fn a_tick_has_its_sample_and_its_phases() {
+        let block = Block {
+            first_tick: 1 << 40,
+            samples: core::array::from_fn(|n| Sample {
+                count: i32::try_from(n).unwrap(),
+                ..Sample::default()
+            }),
+            phases: core::array::from_fn(|n| EffectPhases(0xf000 | u16::try_from(n).unwrap())),
+            ..Block::default()
+        };
+        assert_eq!(block.ticks().count(), BLOCK_SAMPLES);
+        for ((tick, sample, phases), n) in block.ticks().zip(0_u16..) {
+            assert_eq!(tick, block.first_tick + u64::from(n));
+            assert_eq!((sample.count, phases), (n.into(), Phases(0xf000 | n)));
         }
     }
 
@@ -282,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_is_its_head_and_its_samples() {
+    fn a_block_is_its_head_its_samples_and_its_phases() {
         let mut block = Block {
             sequence: 700,
             first_tick: 1 << 40,
@@ -290,6 +330,7 @@ mod tests {
             dropped: 20,
             flags: BlockFlags(7),
             samples: [Sample::default(); BLOCK_SAMPLES],
+            phases: core::array::from_fn(|n| EffectPhases(u16::MAX >> (n % 16))),
         };
         for (sample, n) in block.samples.iter_mut().zip(1..) {
             (sample.count, sample.torque_nm) = (-n, 0.1);
@@ -302,11 +343,14 @@ mod tests {
         for sample in &block.samples {
             pieces.extend(sample.bytes());
         }
+        for phases in block.phases {
+            pieces.extend(phases.bytes());
+        }
         assert_eq!(whole, pieces);
     }
 
     #[test]
-    fn a_block_costs_at_most_seven_percent_more_than_its_samples() {
+    fn a_block_costs_at_most_seven_percent_more_than_its_ticks() {
         // After twenty days, with a busy afternoon of commits and losses.
         let block = Block {
             sequence: u16::MAX,
@@ -314,9 +358,9 @@ mod tests {
             revision: Revision(1000),
             dropped: 1000,
             flags: BlockFlags(7),
-            samples: [Sample::default(); BLOCK_SAMPLES],
+            ..Block::default()
         };
-        let payload = BLOCK_SAMPLES * SAMPLE_BYTES;
+        let payload = TICKS_BYTES;
         let frame = encode(Lane::Telemetry, &block).unwrap();
         assert!(
             (frame.len() - payload) * 100 <= payload * 7,

@@ -6,7 +6,7 @@
 use crate::comms::byte_ring::ByteRing;
 use crepitus_protocol::frame::{DELIMITER, FRAME_BYTES};
 
-/// Capacity in bytes: 48 ms of telemetry.
+/// Capacity in bytes: 42 ms of telemetry.
 pub const OUTBOX_BYTES: usize = 16_384;
 
 /// Bytes reserved for replies.
@@ -74,12 +74,12 @@ mod tests {
     fn telemetry_leaves_room_for_replies() {
         let mut outbox = Outbox::default();
         assert_eq!(outbox.to_send(), [0]);
-        let frame = [7; 340];
+        let frame = [7; 380];
         let mut queued = 0;
         while outbox.telemetry(&frame) {
             queued += 1;
         }
-        assert!(queued >= 44, "{queued}");
+        assert!(queued >= 40, "{queued}");
         assert!(outbox.reply(&frame) && outbox.reply(&frame));
         while outbox.reply(&frame) {}
         let mut bytes = 0;
@@ -89,7 +89,7 @@ mod tests {
             outbox.sent(run);
         }
         assert!(
-            bytes <= OUTBOX_BYTES && bytes % 340 == 1,
+            bytes <= OUTBOX_BYTES && bytes % 380 == 1,
             "whole frames only"
         );
         outbox.sent(1);

@@ -7,7 +7,9 @@
 use crate::counters::Counters;
 use crepitus_protocol::Revision;
 use crepitus_protocol::counters::DriveCounter;
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, BLOCK_TICKS, Block, BlockFlags, Sample};
+use crepitus_protocol::telemetry::{
+    BLOCK_SAMPLES, BLOCK_TICKS, Block, BlockFlags, EffectPhases, Sample,
+};
 
 /// Blocks that may be queued for the link.
 pub const QUEUE_BLOCKS: usize = 4;
@@ -43,10 +45,11 @@ impl Batch {
         }
     }
 
-    /// Adds the sample of the next tick.
+    /// Adds the sample of the next tick, with the phases of the effects.
     pub fn push(
         &mut self,
         sample: Sample,
+        phases: EffectPhases,
         revision: Revision,
         flags: BlockFlags,
         counters: &Counters,
@@ -54,8 +57,11 @@ impl Batch {
         let Some(block) = self.blocks.get_mut(self.filling) else {
             return;
         };
-        if let Some(place) = block.samples.get_mut(self.filled) {
-            *place = sample;
+        if let (Some(sample_place), Some(phases_place)) = (
+            block.samples.get_mut(self.filled),
+            block.phases.get_mut(self.filled),
+        ) {
+            (*sample_place, *phases_place) = (sample, phases);
         }
         self.filled = self.filled.saturating_add(1);
         if self.filled < BLOCK_SAMPLES {
@@ -135,6 +141,7 @@ mod tests {
             for _ in 0..blocks * BLOCK_SAMPLES {
                 batch.push(
                     Sample::default(),
+                    EffectPhases::default(),
                     Revision(3),
                     BlockFlags::default(),
                     &counters,
@@ -174,14 +181,21 @@ mod tests {
                     count: next,
                     ..Sample::default()
                 };
-                batch.push(sample, Revision(1), BlockFlags::default(), &counters);
+                let phases = EffectPhases((next % 1_000).try_into().unwrap());
+                batch.push(
+                    sample,
+                    phases,
+                    Revision(1),
+                    BlockFlags::default(),
+                    &counters,
+                );
                 next += 1;
             }
             while let Some(block) = pop(&mut batch) {
                 let first = i32::try_from(block.first_tick).unwrap();
                 assert!(first >= expected && block.first_tick.is_multiple_of(20));
-                for (sample, n) in block.samples.iter().zip(first..) {
-                    assert_eq!(sample.count, n);
+                for ((_, sample, phases), n) in block.ticks().zip(first..) {
+                    assert_eq!((sample.count, i32::from(phases.0)), (n, n % 1_000));
                 }
                 expected = first + 20;
             }

@@ -324,7 +324,9 @@ impl Command {
         );
         self.doubt_zero(fault_before);
         let flags = BlockFlags::new(self.safety.state(), self.zeroed, self.start);
-        self.batch.push(sample, self.revision, flags, counters);
+        let phases = rendered.phases.into();
+        self.batch
+            .push(sample, phases, self.revision, flags, counters);
         keep(&Tick {
             number: low(now),
             sample,

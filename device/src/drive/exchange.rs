@@ -19,6 +19,7 @@ use core::sync::atomic::Ordering::Relaxed;
 use core::sync::atomic::{
     AtomicBool, AtomicI32, AtomicU8, AtomicU32, AtomicUsize, Ordering, compiler_fence,
 };
+use crepitus_model::render::effects::Phases;
 use crepitus_protocol::telemetry::SampleFlags;
 
 /// The result of a tick of `render_torque`.
@@ -38,6 +39,8 @@ pub struct Rendered {
     pub model_torque_nm: f32,
     /// Sample flags, without those of the motor.
     pub flags: SampleFlags,
+    /// Phases of the effects.
+    pub phases: Phases,
 }
 
 /// Words of a [`Rendered`].
@@ -52,12 +55,12 @@ impl Rendered {
             self.lost_ticks,
             self.torque_nm.to_bits(),
             self.model_torque_nm.to_bits(),
-            u32::from(self.flags.0),
+            u32::from(self.phases.0) << 16 | u32::from(self.flags.0),
         ]
     }
 
-    fn of([tick, count, omega, lost_ticks, torque, model_torque, flags]: [u32; WORDS]) -> Self {
-        let [low, high, ..] = flags.to_le_bytes();
+    fn of([tick, count, omega, lost_ticks, torque, model_torque, last]: [u32; WORDS]) -> Self {
+        let [f0, f1, p0, p1] = last.to_le_bytes();
         Self {
             tick,
             count: count.cast_signed(),
@@ -65,7 +68,8 @@ impl Rendered {
             lost_ticks,
             torque_nm: f32::from_bits(torque),
             model_torque_nm: f32::from_bits(model_torque),
-            flags: SampleFlags(u16::from_le_bytes([low, high])),
+            flags: SampleFlags(u16::from_le_bytes([f0, f1])),
+            phases: Phases(u16::from_le_bytes([p0, p1])),
         }
     }
 }
@@ -219,6 +223,7 @@ mod tests {
             torque_nm: f32::MIN_POSITIVE,
             model_torque_nm: 2.0,
             flags: SampleFlags(0xfedc),
+            phases: Phases(0x8123),
         }
     }
 

@@ -6,7 +6,7 @@ use crate::drive::command::Command;
 use crate::drive::commits::Commits;
 use crate::drive::heartbeat_monitor::Freshness;
 use crate::drive::link::Link;
-use crate::drive::outgoing::{Outgoing, PIECE_SAMPLES};
+use crate::drive::outgoing::{BlockPiece, Outgoing, PIECE_PHASES, PIECE_SAMPLES};
 use crate::drive::slow_checks::SlowReadings;
 use core::borrow::BorrowMut;
 use crepitus_protocol::counters::DriveCounter;
@@ -163,17 +163,27 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             self.start_frame(unit, crash, spare, shared, counters);
             return None;
         }
-        let Some(next) = self.outgoing.next_sample() else {
-            return self.outgoing.piece(unit);
-        };
-        let piece = shared.command(|command| {
-            let samples = command.block()?.samples.get(next..)?;
-            samples.first_chunk::<PIECE_SAMPLES>().copied()
-        })?;
-        let frame = self.outgoing.samples(unit, &piece)?;
-        shared.command(Command::pop_block);
-        self.blocks_before_status = self.blocks_before_status.saturating_sub(1);
-        Some(frame)
+        match self.outgoing.block_piece() {
+            None => self.outgoing.piece(unit),
+            Some(BlockPiece::Samples(next)) => {
+                let piece = shared.command(|command| {
+                    let samples = command.block()?.samples.get(next..)?;
+                    samples.first_chunk::<PIECE_SAMPLES>().copied()
+                })?;
+                self.outgoing.samples(unit, &piece).ok()?;
+                None
+            }
+            Some(BlockPiece::Phases(next)) => {
+                let piece = shared.command(|command| {
+                    let phases = command.block()?.phases.get(next..)?;
+                    phases.first_chunk::<PIECE_PHASES>().copied()
+                })?;
+                let frame = self.outgoing.phases(unit, &piece)?;
+                shared.command(Command::pop_block);
+                self.blocks_before_status = self.blocks_before_status.saturating_sub(1);
+                Some(frame)
+            }
+        }
     }
 
     /// Schedules a status if the state or a command's outcome has changed.

@@ -8,11 +8,19 @@ use crepitus_protocol::crash::{PART_WORDS, Part};
 use crepitus_protocol::frame::{self, EncodedFrame, Encoder, FrameBuffer, TooLong, WordCrc};
 use crepitus_protocol::link::{COUNTER_BYTES, DriveStatus};
 use crepitus_protocol::management::{Answer, AnswerBytes};
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, BlockHead, SAMPLE_BYTES, Sample};
+use crepitus_protocol::telemetry::{
+    BLOCK_SAMPLES, Block, BlockHead, EFFECT_PHASES_BYTES, EffectPhases, SAMPLE_BYTES, Sample,
+};
 
-/// Samples per piece: with its head a block takes eleven of its twenty ticks.
+/// Samples per piece: with its head and its phases a block takes thirteen of its twenty
+/// ticks.
 pub const PIECE_SAMPLES: usize = 2;
 const _: () = assert!(BLOCK_SAMPLES.is_multiple_of(PIECE_SAMPLES));
+
+/// Phases per piece: fewer words than samples have, as the last piece also ends the
+/// frame.
+pub const PIECE_PHASES: usize = 10;
+const _: () = assert!(BLOCK_SAMPLES.is_multiple_of(PIECE_PHASES));
 
 /// Bytes per piece of a management reply.
 const ANSWER_BYTES: usize = 32;
@@ -36,11 +44,22 @@ enum Rest {
     Counters(usize),
     /// The words of a part of the post-mortem record, from this one on.
     CrashPart(usize),
-    /// Checksum and delimiter; those of a block come with its last samples.
+    /// Checksum and delimiter; those of a block come with its last phases.
     End,
-    /// The samples of a block, from this one on. Last, as [`Outgoing::piece`] does not
-    /// meet it: a table of jumps without a hole.
+    /// The samples of a block, from this one on, and then its phases. These two are last,
+    /// as [`Outgoing::piece`] does not meet them: a table of jumps without a hole.
     Samples(usize),
+    /// The phases of a block, from those of this sample on.
+    Phases(usize),
+}
+
+/// The next piece of a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BlockPiece {
+    /// Samples, from this one on: [`Outgoing::samples`].
+    Samples(usize),
+    /// Phases, from those of this sample on: [`Outgoing::phases`].
+    Phases(usize),
 }
 
 /// Encodes one frame at a time, in buffers `P`.
@@ -115,7 +134,7 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
         Ok(())
     }
 
-    /// Starts the frame of a block; its samples follow in pieces.
+    /// Starts the frame of a block; its samples and phases follow in pieces.
     ///
     /// # Errors
     /// [`TooLong`]; never, as a block fits.
@@ -131,29 +150,56 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
         Ok(())
     }
 
-    /// Index of the first sample of the next piece, if a block is in progress.
-    pub fn next_sample(&self) -> Option<usize> {
+    /// The next piece of the block, if one is in progress.
+    pub fn block_piece(&self) -> Option<BlockPiece> {
         match (&self.current, self.rest) {
-            (Some(_), Rest::Samples(next)) => Some(next),
+            (Some(_), Rest::Samples(next)) => Some(BlockPiece::Samples(next)),
+            (Some(_), Rest::Phases(next)) => Some(BlockPiece::Phases(next)),
             _ => None,
         }
     }
 
-    /// Encodes samples of the block; returns the finished frame after the last.
+    /// Encodes samples of the block.
+    ///
+    /// # Errors
+    /// [`TooLong`]; never, as a block fits.
     pub fn samples(
         &mut self,
         unit: &mut impl WordCrc,
         piece: &[Sample; PIECE_SAMPLES],
-    ) -> Option<EncodedFrame<P>> {
-        let (Some(encoder), Rest::Samples(next)) = (&mut self.current, &mut self.rest) else {
-            return None;
+    ) -> Result<(), TooLong> {
+        let (Some(encoder), Rest::Samples(next)) = (&mut self.current, self.rest) else {
+            return Ok(());
         };
         let mut bytes = [0; PIECE_SAMPLES * SAMPLE_BYTES];
         for (bytes, sample) in bytes.as_chunks_mut().0.iter_mut().zip(piece) {
             *bytes = sample.bytes();
         }
+        encoder.push_by(unit, &bytes)?;
+        let next = next.saturating_add(PIECE_SAMPLES);
+        self.rest = if next < BLOCK_SAMPLES {
+            Rest::Samples(next)
+        } else {
+            Rest::Phases(0)
+        };
+        Ok(())
+    }
+
+    /// Encodes phases of the block; returns the finished frame after the last.
+    pub fn phases(
+        &mut self,
+        unit: &mut impl WordCrc,
+        piece: &[EffectPhases; PIECE_PHASES],
+    ) -> Option<EncodedFrame<P>> {
+        let (Some(encoder), Rest::Phases(next)) = (&mut self.current, &mut self.rest) else {
+            return None;
+        };
+        let mut bytes = [0; PIECE_PHASES * EFFECT_PHASES_BYTES];
+        for (bytes, phases) in bytes.as_chunks_mut().0.iter_mut().zip(piece) {
+            *bytes = phases.bytes();
+        }
         encoder.push_by(unit, &bytes).ok()?;
-        *next = next.saturating_add(PIECE_SAMPLES);
+        *next = next.saturating_add(PIECE_PHASES);
         if *next < BLOCK_SAMPLES {
             return None;
         }
@@ -210,7 +256,7 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
                 };
                 (write_words(words, &mut self.bytes)?, next)
             }
-            Rest::Samples(_) => return None,
+            Rest::Samples(_) | Rest::Phases(_) => return None,
             Rest::End => return self.finish(),
         };
         encoder.push_by(unit, written).ok()?;
@@ -241,10 +287,15 @@ mod tests {
     /// Runs the encoder to the end of a frame; returns it and the number of runs.
     fn run(outgoing: &mut Places, block: &Block) -> (Frame, usize) {
         for runs in 1..100 {
-            let made = match outgoing.next_sample() {
-                Some(next) => {
+            let made = match outgoing.block_piece() {
+                Some(BlockPiece::Samples(next)) => {
                     let piece = block.samples[next..].first_chunk().unwrap();
-                    outgoing.samples(&mut SoftwareCrc, piece)
+                    outgoing.samples(&mut SoftwareCrc, piece).unwrap();
+                    None
+                }
+                Some(BlockPiece::Phases(next)) => {
+                    let piece = block.phases[next..].first_chunk().unwrap();
+                    outgoing.phases(&mut SoftwareCrc, piece)
                 }
                 None => outgoing.piece(&mut SoftwareCrc),
             };
@@ -267,6 +318,7 @@ mod tests {
         };
         let mut block = Block {
             first_tick: 300,
+            phases: core::array::from_fn(|n| EffectPhases(u16::MAX >> (n % 16))),
             ..Block::default()
         };
         for (sample, n) in block.samples.iter_mut().zip(1_u8..) {
@@ -294,7 +346,8 @@ mod tests {
         begun.unwrap();
         let (frame, runs) = run(&mut outgoing, &block);
         assert_eq!(frame, frame::encode(Lane::Telemetry, &block).unwrap());
-        assert_eq!(runs, BLOCK_SAMPLES / PIECE_SAMPLES);
+        let pieces = BLOCK_SAMPLES / PIECE_SAMPLES + BLOCK_SAMPLES / PIECE_PHASES;
+        assert_eq!(runs, pieces);
         outgoing.begin_answer(buffer(), &answer).unwrap();
         let (frame, _) = run(&mut outgoing, &block);
         let whole = frame::encode_bytes(Lane::ManagementAnswer, &answer.bytes());

@@ -132,6 +132,7 @@ impl Rendering {
             torque_nm: shown.torque_nm,
             model_torque_nm: shown.model_torque_nm,
             flags: with(flags, &shown).with(SampleFlags::LOST, sampled.lost_ticks > 0),
+            phases: shown.phases,
         }
     }
 }
@@ -142,7 +143,6 @@ fn with(flags: SampleFlags, shown: &Shown<f32>) -> SampleFlags {
     flags
         .with_phase(shown.phase.sign())
         .with(SampleFlags::SETTLING, shown.settling)
-        .with_phases(shown.phases)
         .with_limit(match shown.limit {
             Limit::None => LimitReason::None,
             Limit::Torque => LimitReason::Torque,

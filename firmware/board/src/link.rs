@@ -7,7 +7,7 @@
 //!
 //! 84 MHz / 20 = 4.2 MHz exactly, with 16 samples a bit (1 + 4/16).
 //!
-//! Sending a frame takes 0.8 of the millisecond, and encoding it about as
+//! Sending a frame takes 0.9 of the millisecond, and encoding it about as
 //! long: so there are three buffers, one being sent, one pending, and one for
 //! encoding the next frame in place. The DMA reads it there.
 //!

@@ -1,4 +1,4 @@
-//! Frames of telemetry blocks without samples' content: every sample is zero.
+//! Frames of telemetry blocks without samples' content: all samples and phases are zero.
 //!
 //! The product's encoder looks at each byte. Under a fuzzer that costs more than
 //! all else that a millisecond of comms does, and nothing new is found there
@@ -6,16 +6,16 @@
 //! twentieth of the cost.
 
 use crepitus_protocol::frame::{self, CRC, CRC_BYTES, Frame};
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, BlockFlags, SAMPLE_BYTES};
+use crepitus_protocol::telemetry::{Block, BlockFlags, TICKS_BYTES};
 use crepitus_protocol::{Lane, Revision};
 
-/// Zero bytes of the samples.
-const ZEROS: [u8; BLOCK_SAMPLES * SAMPLE_BYTES] = [0; BLOCK_SAMPLES * SAMPLE_BYTES];
+/// Zero bytes of the samples and phases.
+const ZEROS: [u8; TICKS_BYTES] = [0; TICKS_BYTES];
 
 /// First COBS code, lane, tag, the fields before the samples.
 const HEAD_BYTES: usize = 3 + Block::HEAD_BYTES;
 
-/// The frame of a block whose samples are all zero.
+/// The frame of a block whose samples and phases are all zero.
 pub(crate) fn encode(block: &Block) -> Frame {
     let mut bytes = [0; HEAD_BYTES];
     (bytes[1], bytes[2]) = (Lane::Telemetry.byte(), Lane::Telemetry.tag());

@@ -1,5 +1,6 @@
 //! A sample as a line of CSV.
 
+use crepitus_model::render::effects::Phases;
 use crepitus_protocol::telemetry::SampleFlags;
 use serde_json::{Map, Number, Value};
 use std::fmt::Write as _;
@@ -59,6 +60,8 @@ pub struct Row {
     pub revision: u32,
     /// Phase, limit and the rest.
     pub flags: SampleFlags,
+    /// Phases of the effects.
+    pub phases: Phases,
 }
 
 /// The columns of text; the others are numbers.
@@ -122,7 +125,7 @@ impl Row {
                 separator = "+";
             }
         }
-        for (effect, phase) in self.flags.phases().named() {
+        for (effect, phase) in self.phases.named() {
             let _ = write!(line, "{separator}{}:{phase}", effect.name);
             separator = "+";
         }

@@ -58,7 +58,7 @@ impl Samples {
         self.next_tick = block.end_tick();
         let begin = self.begin;
         let counts_per_s = counts_per_s(block);
-        (tick..).zip(&block.samples).map(move |(tick, sample)| {
+        block.ticks().map(move |(tick, sample, phases)| {
             let (angle_rad, omega_rad_s) = self.shaft.see(tick, sample.count, counts_per_s);
             let since = tick.saturating_sub(begin.tick) + begin.passed;
             Row {
@@ -74,6 +74,7 @@ impl Samples {
                     .then(|| f32::from(sample.current_ma) * 1e-3),
                 revision: block.revision.0,
                 flags: sample.flags,
+                phases,
             }
         })
     }
@@ -89,8 +90,9 @@ fn counts_per_s(block: &Block) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_model::render::effects::Phases;
     use crepitus_protocol::State;
-    use crepitus_protocol::telemetry::BlockFlags;
+    use crepitus_protocol::telemetry::{BlockFlags, EffectPhases};
 
     #[test]
     fn time_goes_on_where_the_drive_has_restarted() {
@@ -107,6 +109,19 @@ mod tests {
         assert_eq!(first_s(block(20, 2)), 0.004);
         // With the same number.
         assert_eq!(first_s(block(20, 2)), 0.005);
+    }
+
+    #[test]
+    fn a_row_has_the_phases_of_its_tick() {
+        let block = Block {
+            first_tick: 40,
+            phases: core::array::from_fn(|n| EffectPhases(1 << (n % 16))),
+            ..Block::default()
+        };
+        let mut samples = Samples::default();
+        for (row, n) in samples.rows(&block).zip(0..) {
+            assert_eq!((row.tick, row.phases), (40 + n, Phases(1 << (n % 16))));
+        }
     }
 
     /// No jump from rest that there was not.

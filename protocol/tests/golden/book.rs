@@ -10,7 +10,7 @@ use crepitus_protocol::frame::{BODY_BYTES, CRC, FRAME_BYTES};
 use crepitus_protocol::host::{Reply, Request};
 use crepitus_protocol::link::{FromDrive, STALE_TICKS, ToDrive};
 use crepitus_protocol::parameters::{Kind, PARAMETER_COUNT, PARAMETERS, When};
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, SAMPLE_BYTES};
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, EFFECT_PHASES_BYTES, SAMPLE_BYTES};
 use crepitus_protocol::{
     HEARTBEAT_TICKS, LEASE_TICKS, Lane, LimitReason, State, TICKS_PER_S, schema,
 };
@@ -76,6 +76,10 @@ fn numbers() -> String {
         ("ticks in a second", TICKS_PER_S.to_string()),
         ("samples in a block", BLOCK_SAMPLES.to_string()),
         ("bytes in a sample", SAMPLE_BYTES.to_string()),
+        (
+            "bytes in the phases of a tick",
+            EFFECT_PHASES_BYTES.to_string(),
+        ),
         ("parameters", PARAMETER_COUNT.to_string()),
         (
             "ticks from the last fresh heartbeat to no torque",

@@ -13,7 +13,7 @@ use crepitus_protocol::measured::Measured;
 use crepitus_protocol::parameters::PARAMETERS;
 use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
-use crepitus_protocol::telemetry::{BlockFlags, NO_CURRENT, Sample, SampleFlags};
+use crepitus_protocol::telemetry::{BlockFlags, EffectPhases, NO_CURRENT, Sample, SampleFlags};
 use crepitus_protocol::{
     Decoder, Frame, Lane, LimitReason, Nonce, Revision, Session, State, ValueError, Values, frame,
 };
@@ -362,11 +362,12 @@ fn blocks() -> Vec<Example> {
         dropped: 140,
         flags: BlockFlags::new(State::Armed, true, 3),
         samples,
+        phases: core::array::from_fn(|n| EffectPhases(u16::try_from(257 * n).expect("small"))),
     };
     let means = "Block { sequence: 65534, first_tick: 20000000000, revision: Revision(300), dropped: 140, \
-                 flags: BlockFlags(30): armed, zeroed, start 3, samples }; sample n has count n - 2, model torque n/4 N·m, \
+                 flags: BlockFlags(30): armed, zeroed, start 3, samples, phases }; sample n has count n - 2, model torque n/4 N·m, \
                  torque -n/2 N·m, current -100 n mA but none in the first, limit reason n modulo 8, energised, \
-                 and slips towards falling angle where n is odd";
+                 and slips towards falling angle where n is odd; its effects' phases are 257 n";
     vec![
         example(Lane::Telemetry, "block", &block, Some(means)),
         example(

@@ -7,7 +7,12 @@ use std::collections::BTreeSet;
 
 /// Fields that are of fixed width, little endian, although their type is not:
 /// the schema does not say so.
-const FIXED: [&str; 3] = ["Sample.count", "Sample.current_ma", "SampleFlags"];
+const FIXED: [&str; 4] = [
+    "Sample.count",
+    "Sample.current_ma",
+    "SampleFlags",
+    "EffectPhases",
+];
 
 /// Whether this field, or this type, is of fixed width.
 pub(crate) fn is_fixed(name: &str) -> bool {

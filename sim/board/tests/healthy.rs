@@ -10,7 +10,7 @@ use crepitus_model::{Frozen, Settings, StepCoefficients, StickSlip};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::parameters;
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, SAMPLE_BYTES, SampleFlags};
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, SampleFlags, TICKS_BYTES};
 use crepitus_protocol::{Revision, State, TICK_S, TICKS_PER_S};
 use std::time::Instant;
 use support::{Host, examination};
@@ -95,7 +95,7 @@ fn a_minute_of_telemetry_arrives_complete_and_faster_than_it_happens() {
     let produced = SECONDS * u64::from(TICKS_PER_S);
     assert!(accounting.received >= produced);
 
-    let payload = accounting.received * SAMPLE_BYTES as u64;
+    let payload = accounting.received / BLOCK_SAMPLES as u64 * TICKS_BYTES as u64;
     let (usb_end, link_end) = (
         host.device.traffic(),
         host.device.board_mut().up().traffic(),

@@ -2,6 +2,7 @@
 
 use crepitus_client::{Accounting, Begin};
 use crepitus_device::drive::exchange::Rendered;
+use crepitus_model::render::effects::Phases;
 use crepitus_protocol::LimitReason;
 use crepitus_protocol::host::Answer;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, NO_CURRENT, Sample, SampleFlags};
@@ -24,13 +25,15 @@ pub(super) struct Produced {
 }
 
 impl Produced {
-    fn compare(&self, sample: &Sample) {
+    fn compare(&self, sample: &Sample, shown_phases: Phases) {
         let Rendered {
             torque_nm,
             model_torque_nm,
             flags,
+            phases,
             ..
         } = self.rendered;
+        assert_eq!(shown_phases, phases);
         let torque_nm = if self.is_energised { torque_nm } else { 0.0 };
         assert_eq!(sample.model_torque_nm.to_bits(), model_torque_nm.to_bits());
         if sample.flags.limit() == LimitReason::None {
@@ -112,8 +115,8 @@ impl Samples {
         let start = block.flags.start();
         let produced = self.produced.get(&start).expect("a start of the drive");
         let first = usize::try_from(block.first_tick).expect("a small number");
-        for (sample, tick) in block.samples.iter().zip(&produced[first..]) {
-            tick.compare(sample);
+        for ((_, sample, phases), tick) in block.ticks().zip(&produced[first..]) {
+            tick.compare(sample, phases);
         }
         assert!(produced.len() >= first + BLOCK_SAMPLES, "of the future");
         for subscription in self.subscriptions.values_mut() {

@@ -39,6 +39,8 @@ fn arm_is_armed_and_stays_so_while_it_is_pumped() {
 
     client.disarm().unwrap();
     assert!(!client.is_armed());
+    // The answer is that of comms; the drive's next block reports its state.
+    pump_for(&mut client, ms(2));
     let status = client.status().unwrap();
     assert_eq!((status.state, status.lease), (State::Disarmed, None));
     assert_eq!((status.drive_fault, status.comms_fault), (0, 0));

@@ -202,18 +202,18 @@ fn set_flags(rows: &mut [Row], columns: &[Vec<ByteArray>; 4]) -> io::Result<()> 
             return Err(short());
         };
         let of_row = [phase, event, limit, notes];
-        let flags = match last {
-            Some((same, flags)) if same == of_row => flags,
+        let read = match last {
+            Some((same, read)) if same == of_row => read,
             _ => {
                 let mut text = words::Words::default();
                 for (text, word) in text.iter_mut().zip(of_row) {
                     word.as_utf8().map_err(other)?.clone_into(text);
                 }
-                words::flags(&text)?
+                words::read(&text)?
             }
         };
-        last = Some((of_row, flags));
-        row.flags = flags;
+        last = Some((of_row, read));
+        (row.flags, row.phases) = read;
     }
     Ok(())
 }

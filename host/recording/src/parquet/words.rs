@@ -17,8 +17,8 @@ pub(super) fn of(row: &Row) -> Words {
     [row.phase(), row.event(), limit, &notes].map(str::to_owned)
 }
 
-/// The flags of these words.
-pub(super) fn flags([phase, event, limit, notes]: &Words) -> io::Result<SampleFlags> {
+/// Reads flags and phases of effects back from their words.
+pub(super) fn read([phase, event, limit, notes]: &Words) -> io::Result<(SampleFlags, Phases)> {
     let wrong = |column: &str, word: &str| {
         io::Error::new(
             io::ErrorKind::InvalidData,
@@ -48,19 +48,20 @@ pub(super) fn flags([phase, event, limit, notes]: &Words) -> io::Result<SampleFl
         .with(SampleFlags::STICK, sticks)
         .with(SampleFlags::ENERGISED, reason != LimitReason::NotArmed)
         .with_limit(reason);
+    let mut phases = Phases::default();
     for note in notes.split('+').filter(|note| !note.is_empty()) {
-        flags = match note.split_once(':') {
-            Some((effect, phase)) => Phases::default()
+        let known = match note.split_once(':') {
+            Some((effect, phase)) => phases
                 .with_named(effect, phase)
-                .map(|phases| flags.with_phases(phases)),
+                .map(|with_it| phases = with_it),
             None => NOTES
                 .iter()
                 .find(|(_, known)| *known == note)
-                .map(|(bit, _)| flags.with(*bit, true)),
-        }
-        .ok_or_else(|| wrong("notes", notes))?;
+                .map(|(bit, _)| flags = flags.with(*bit, true)),
+        };
+        known.ok_or_else(|| wrong("notes", notes))?;
     }
-    Ok(flags)
+    Ok((flags, phases))
 }
 
 #[cfg(test)]
@@ -85,7 +86,7 @@ mod tests {
                         flags,
                         ..Row::default()
                     };
-                    assert_eq!(super::flags(&of(&row)).unwrap(), flags);
+                    assert_eq!(read(&of(&row)).unwrap(), (flags, row.phases));
                 }
             }
         }
@@ -104,7 +105,7 @@ mod tests {
         ] {
             let mut words = good.clone();
             words[column] = word.to_owned();
-            let error = flags(&words).unwrap_err().to_string();
+            let error = read(&words).unwrap_err().to_string();
             assert!(error.contains(&format!("{word:?}")), "{error}");
         }
     }

@@ -32,6 +32,7 @@ pub(crate) fn block(first_tick: u64, revision: u32, dropped: u32, start: u16) ->
                 .with(SampleFlags::BREAK, random.bool())
                 .with(SampleFlags::LATE, random.bool()),
         }),
+        ..Block::default()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Commits that come faster than the joint settles: each waits for the one
 //! before it.
 
-use crate::host::{Host, examination, image};
+use crate::host::{Flash, Host, examination, image};
 use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::{Revision, TICK_S, Values, parameters};
 
@@ -70,4 +70,25 @@ fn a_commit_waits_until_the_one_before_has_settled() {
         }
     }
     panic!("not applied: {starts:?}");
+}
+
+/// The pieces of a commit take every second run of the link's task, and with its blocks
+/// the link is nearly full: those that wait meanwhile have to find a place in the queue.
+#[test]
+fn a_commit_every_thirty_milliseconds_drops_no_block() {
+    let Some(image) = image() else { return };
+    let mut host = Host::timed(&image, &examination(), &[], Flash::Modelled);
+    host.arm();
+    host.run_until_torque();
+    host.blocks.clear();
+    for n in 0..10 {
+        commit(&mut host, if n % 2 == 0 { 1e-3 } else { -1e-3 });
+        host.run(500);
+    }
+    let [first, .., last] = &host.blocks[..] else {
+        panic!("no blocks");
+    };
+    assert_eq!(last.dropped, first.dropped);
+    let sequences = host.blocks.iter().map(|block| block.sequence);
+    assert!(sequences.eq((first.sequence..).take(host.blocks.len())));
 }

@@ -30,5 +30,7 @@ fn it_arms_the_hand_feels_the_joint_and_it_stops() {
     host.run(25);
     assert!(!host.board.drive_is_on());
     assert!(!host.board.line_is_on());
+    // The drive reports it behind a block that is on its way.
+    host.run(40);
     assert_eq!(host.board.comms().comms().state(), State::Disarmed);
 }
