@@ -23,6 +23,7 @@ mod parabola;
 mod repeat;
 mod rules;
 mod swing;
+pub mod symptoms;
 
 pub use follow::Follow;
 
