@@ -77,7 +77,10 @@ fn every_event_and_torque_of_every_shared_case() {
         let found = symptom(effect, &given, &motion).advance(end_s);
         let expected = json["events"].as_array().unwrap();
         let sequence: Vec<_> = found.iter().map(|e| e.kind.name()).collect();
-        let words: Vec<_> = expected.iter().map(|e| e["type"].as_str().unwrap()).collect();
+        let words: Vec<_> = expected
+            .iter()
+            .map(|e| e["type"].as_str().unwrap())
+            .collect();
         assert_eq!(sequence, words, "{name}");
 
         let (mut time, mut other, mut torque) = (0.0_f64, 0.0_f64, 0.0_f64);

@@ -13,7 +13,7 @@
 use super::SymptomEventKind as Kind;
 use super::guard::{Guard, When};
 use super::keys::{Reader, SymptomError};
-use super::play::{Limits, Mode, Play, PlayAction};
+use super::play::{FELT_NM, Limits, Mode, Play, PlayAction};
 use super::rigidity::{Spring, presliding};
 use super::runner::{Instant, Law, Reported, Watches};
 
@@ -147,7 +147,7 @@ impl Law for Cogwheel {
                 let torque_nm = self.play.torque_nm(&self.limits(), at);
                 self.phase = phase;
                 self.relimit(torque_nm, at);
-                let is_felt = at.v != 0.0 || torque_nm.abs() > self.limit_nm();
+                let is_felt = at.v != 0.0 || torque_nm.abs() > self.limit_nm() + FELT_NM;
                 let kind = if self.is_high() {
                     Kind::Catch
                 } else {

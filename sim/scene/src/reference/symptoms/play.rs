@@ -14,6 +14,9 @@ use super::runner::Instant;
 /// What torques differ by from rounding alone, relative to their terms.
 const SAME: f64 = 64.0 * f64::EPSILON;
 
+/// A torque that jumps by less than this does so from rounding, N·m.
+pub(super) const FELT_NM: f64 = 1e-11;
+
 /// One of the two limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum End {

@@ -16,11 +16,8 @@ use super::SymptomEventKind as Kind;
 use super::guard::{Guard, When};
 use super::keys::{Reader, SymptomError};
 use super::limit::Limit;
-use super::play::{End, Limits, Mode, Play, PlayAction};
+use super::play::{End, FELT_NM, Limits, Mode, Play, PlayAction};
 use super::runner::{Instant, Law, Reported, Watches};
-
-/// A torque that falls by less than this does so from rounding, N·m.
-const FELT_NM: f64 = 1e-11;
 
 /// The largest count of asperities from zero: an angle of 1e6 rad has fewer.
 const MOST: f64 = 1e12;
