@@ -1,9 +1,14 @@
 //! The event-driven symptoms: shared cases, closed forms, hard cases, and a
 //! plain integration of the laws.
 
-mod brute_force;
-mod closed_forms;
-mod hard_cases;
+mod any_symptom;
+mod closed_muscles;
+mod closed_plays;
+mod hard_muscles;
+mod hard_plays;
 mod listed;
 mod shared_cases;
+mod stepped;
+mod stepped_muscles;
+mod stepped_plays;
 mod support;

@@ -2,14 +2,10 @@
 //! one: files of schema `disorder-events/1` in a folder `shared/truth/disorders`
 //! beside the repository.
 
-use crate::support::{Given, constant, jumps, symptom};
+use crate::support::{Given, TIME_S, TORQUE_NM, constant, jumps, symptom};
 use crepitus_plant::Motion;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-
-/// Within what the reference agrees, s and N·m.
-const TIME_S: f64 = 1e-9;
-const TORQUE_NM: f64 = 1e-9;
 
 fn number(value: &Value) -> f64 {
     match value {

@@ -5,6 +5,10 @@ use crepitus_plant::motion::VelocityKnot;
 use crepitus_plant::piece::Curve;
 use crepitus_scene::reference::symptoms::{Keys, Symptom, SymptomEvent, SymptomEventKind};
 
+/// Within what the reference agrees with closed forms, s and N·m.
+pub(crate) const TIME_S: f64 = 1e-9;
+pub(crate) const TORQUE_NM: f64 = 1e-9;
+
 /// Numbers and choices by key.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Given {
@@ -98,4 +102,31 @@ pub(crate) fn times(events: &[SymptomEvent], kind: SymptomEventKind) -> Vec<f64>
 pub(crate) fn near(found: f64, expected: f64, within: f64) {
     let error = (found - expected).abs();
     assert!(error <= within, "{found} for {expected}: {error:e}");
+}
+
+/// ∫T dφ over a motion at constant speeds between the given times, by Simpson's
+/// rule on parts between which the torque is smooth.
+pub(crate) fn work_j(name: &str, keys: &Given, motion: &Motion, marks: &[f64]) -> f64 {
+    const PARTS: u32 = 200;
+    let mut symptom = symptom(name, keys, motion);
+    let mut work = 0.0;
+    for span in marks.windows(2) {
+        let (from_s, to_s) = (span[0], span[1]);
+        let step_s = (to_s - from_s) / f64::from(2 * PARTS);
+        // Just inside the span, so that a jump at its ends is not seen.
+        let inside_s = 1e-12 * (to_s - from_s);
+        for i in 0..=2 * PARTS {
+            let time_s = (from_s + step_s * f64::from(i)).clamp(from_s + inside_s, to_s - inside_s);
+            symptom.advance(time_s);
+            let weight = match i {
+                0 => 1.0,
+                i if i == 2 * PARTS => 1.0,
+                i if i % 2 == 1 => 4.0,
+                _ => 2.0,
+            };
+            let omega = motion.at(time_s).omega_rad_s;
+            work += weight * step_s / 3.0 * symptom.torque_nm() * omega;
+        }
+    }
+    work
 }

@@ -7,9 +7,10 @@
 //! −ℓ = Tb + H_last·max(0, 1 − (φ − φ_last)/(wλ))
 //! ```
 //!
-//! Readings: `snap` is where an asperity is crossed while the torque is at the
-//! limit, or so that the torque falls to the other side's limit; a touch is no
-//! crossing. `flow` and `turn` are not reported. n may be negative; k is it in
+//! Readings: `snap` is where an asperity is crossed while the torque is at its
+//! limit, as it is written: a tremble on an asperity is one snap, though from an
+//! elastic torque, too, the crossing takes what is above the limit behind it. A
+//! touch is no crossing. `flow` and `turn` are not reported. n may be negative; k is it in
 //! two's complement.
 
 use super::SymptomEventKind as Kind;
@@ -169,9 +170,8 @@ impl Law for Texture {
                 let falls = end.sign() * (torque_nm - limit_nm) > FELT_NM;
                 if is_at_limit || falls {
                     self.play.change(torque_nm, &self.limits(), at);
-                    return Some(Kind::Snap.into());
                 }
-                None
+                is_at_limit.then(|| Kind::Snap.into())
             }
             Action::Play(action) => {
                 self.play.act(action, &self.limits(), at);
