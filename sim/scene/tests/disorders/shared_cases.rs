@@ -16,8 +16,7 @@ fn number(value: &Value) -> f64 {
 
 fn cases() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let folders = std::env::var_os("CREPITUS_DISORDER_CASES").map(PathBuf::from);
-    let folder = folders.unwrap_or_else(|| root.join("../shared/truth/disorders"));
+    let folder = root.join("../shared/truth/disorders");
     let Ok(entries) = std::fs::read_dir(&folder) else {
         eprintln!("skipped: no cases in {}", folder.display());
         return Vec::new();

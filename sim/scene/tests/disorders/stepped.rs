@@ -8,8 +8,17 @@ use crepitus_scene::reference::symptoms::SymptomEvent;
 pub(crate) const STEP_S: f64 = 2e-6;
 const END_S: f64 = 1.2;
 
-/// Within what the torques agree, N·m: the stiffest rise over two steps.
-const TORQUE_NM: f64 = 6e-3;
+/// Within what the torques agree, N·m: at rest, and for a speed, N·m·s/rad: the
+/// stiffest rise over two steps.
+const TORQUE_NM: f64 = 1e-3;
+const TORQUE_NMS_PER_RAD: f64 = 2.0 * 500.0 * STEP_S;
+
+/// Symptoms whose torque does not hang on which of two events comes first, or
+/// on which side of an edge the joint rests.
+const STEADY: [&str; 3] = ["range-limit", "lead-pipe", "cogwheel"];
+
+/// Within what the times agree, s: a slow return shows what a step was late.
+const TIME_S: f64 = 1e-4;
 
 /// Runs of each law.
 const RUNS: u64 = 40;
@@ -33,8 +42,40 @@ impl Random {
         low + (high - low) * self.share()
     }
 
+    /// As [`Self::between`], but now and then a number at which a law is not
+    /// what it is in general.
+    pub(crate) fn or(&mut self, low: f64, high: f64, special: &[f64]) -> f64 {
+        let (usual, place) = (self.between(low, high), self.between(0.0, 3.0));
+        let special = special.iter().zip(0_u8..);
+        let mut chosen = special.filter(|(_, i)| (place - f64::from(*i)).abs() < 0.15);
+        chosen.next().map_or(usual, |(x, _)| *x)
+    }
+
     fn happens(&mut self, share: f64) -> bool {
         self.share() < share
+    }
+
+    /// Whole degrees and twentieths of seconds: events meet knots, and each
+    /// other.
+    fn lattice(&mut self) -> Motion {
+        let (mut time, mut speed) = (0.0, 0.0);
+        let mut knots = Vec::new();
+        let mut angle = 5.0 * self.between(0.0, 20.0).floor();
+        let from_deg = angle;
+        while time < END_S {
+            let left = speed;
+            if self.happens(0.7) {
+                speed = 20.0 * self.between(-8.0, 9.0).floor();
+                if (angle - 50.0) * speed > 0.0 && self.happens(0.7) {
+                    speed = -speed;
+                }
+            }
+            knots.push((time, left, speed));
+            let length = 0.05 * self.between(1.0, 5.0).floor();
+            angle += speed * length;
+            time += length;
+        }
+        jumps(from_deg, &knots)
     }
 
     /// Strokes, rests and jumps about the middle of the joint's range.
@@ -93,7 +134,8 @@ impl Stop {
     }
 }
 
-/// Steps through a motion and compares.
+/// Steps through motions and compares torques and, on a motion without
+/// coincidences, the events of these words.
 pub(crate) fn compare(
     name: &str,
     choices: &[(&str, &str)],
@@ -105,7 +147,13 @@ pub(crate) fn compare(
     for seed in 0..RUNS {
         let mut random = Random(seed.wrapping_mul(0x1234_5678_9ABC) ^ name.len() as u64);
         let numbers = numbers(&mut random);
-        let motion = random.motion();
+        // Where muscles are triggered, a coincidence may go either way.
+        let is_lattice = STEADY.contains(&name) && choices.is_empty() && seed % 2 == 1;
+        let motion = if is_lattice {
+            random.lattice()
+        } else {
+            random.motion()
+        };
         let given: Given = given(&numbers, choices);
         let mut reference = symptom(name, &given, &motion);
         let mut all: Vec<SymptomEvent> = Vec::new();
@@ -113,6 +161,7 @@ pub(crate) fn compare(
         let mut happened: Vec<(f64, &'static str)> = Vec::new();
         let mut own = Vec::new();
         let mut place = 0;
+        let mut fastest = 0.0_f64;
         let mut piece = motion.piece(0.0);
         #[expect(
             clippy::cast_possible_truncation,
@@ -128,6 +177,7 @@ pub(crate) fn compare(
                 piece = motion.piece_from(piece.end_s, &mut place);
             }
             let (phi, omega) = piece.angle_and_velocity(time_s);
+            fastest = fastest.max(omega.abs());
             let torque = stepped(time_s, phi, omega, &mut own);
             happened.extend(own.drain(..).map(|word| (time_s, word)));
             if let Some((at_s, nm)) = pending.take_if(|_| n % 500 == 5) {
@@ -144,7 +194,7 @@ pub(crate) fn compare(
                 all.extend(reference.advance(time_s));
                 if calm && all.len() == before {
                     assert!(
-                        (found - nm).abs() < TORQUE_NM,
+                        (found - nm).abs() < TORQUE_NM + TORQUE_NMS_PER_RAD * fastest,
                         "{name} {choices:?} {seed}: {found} for {nm} at {at_s}, {numbers:?}"
                     );
                     seen += 1;
@@ -155,6 +205,9 @@ pub(crate) fn compare(
             }
         }
         all.extend(reference.advance(END_S));
+        if is_lattice {
+            continue;
+        }
         let listed: Vec<_> = all
             .iter()
             .filter(|e| words.contains(&e.kind.name()))
@@ -170,7 +223,7 @@ pub(crate) fn compare(
         );
         for ((found, word), (stepped, _)) in listed.iter().zip(&happened) {
             assert!(
-                (found - stepped).abs() < 3.0 * STEP_S,
+                (found - stepped).abs() < TIME_S,
                 "{name} {choices:?} {seed}: {word} at {found} for {stepped}, {numbers:?}"
             );
         }

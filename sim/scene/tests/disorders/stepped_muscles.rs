@@ -12,14 +12,17 @@ fn catch() {
             |r| {
                 vec![
                     ("threshold_deg", r.between(0.0, 120.0)),
-                    ("velocity_shift_s", r.between(0.0, 0.5)),
+                    ("velocity_shift_s", r.or(0.0, 0.5, &[0.0])),
                     ("threshold_velocity_deg_s", r.between(5.0, 150.0)),
-                    ("velocity_torque_nms_per_rad", r.between(0.01, 2.0)),
-                    ("torque_nm", r.between(0.1, 6.0)),
-                    ("residual_share", r.share()),
-                    ("stiffness_nm_per_rad", r.between(0.0, 10.0)),
+                    ("velocity_torque_nms_per_rad", r.or(0.01, 2.0, &[0.0])),
+                    ("torque_nm", r.or(0.1, 6.0, &[0.0])),
+                    ("residual_share", r.or(0.0, 1.0, &[0.0, 1.0])),
+                    ("stiffness_nm_per_rad", r.or(0.0, 10.0, &[0.0, 10.0])),
                     ("release_s", r.between(0.01, 0.3)),
-                    ("catch_stiffness_nm_per_rad", r.between(11.0, 300.0)),
+                    (
+                        "catch_stiffness_nm_per_rad",
+                        r.or(11.0, 300.0, &[10.0, 10.0]),
+                    ),
                     ("rearm_deg", r.between(2.0, 30.0)),
                 ]
             },
@@ -70,9 +73,12 @@ fn reflex() {
             |r| {
                 vec![
                     ("threshold_deg", r.between(0.0, 120.0)),
-                    ("velocity_shift_s", r.between(0.0, 0.5)),
-                    ("gain_nm_per_rad", r.between(0.1, 20.0)),
-                    ("delay_s", r.between(0.0, 0.1)),
+                    ("velocity_shift_s", r.or(0.0, 0.5, &[0.0])),
+                    ("gain_nm_per_rad", r.or(0.1, 20.0, &[0.0])),
+                    (
+                        "delay_s",
+                        STEP_S * (r.or(0.0, 0.1, &[0.0]) / STEP_S).round(),
+                    ),
                     ("activation_s", r.between(0.002, 0.1)),
                     ("torque_nm", r.between(0.1, 6.0)),
                 ]
@@ -126,12 +132,15 @@ fn clasp_knife() {
                     vec![
                         ("onset_deg", onset),
                         ("release_deg", onset + s * r.between(5.0, 60.0)),
-                        ("onset_torque_nm", r.between(0.05, 3.0)),
-                        ("slope_nm_per_rad", r.between(0.0, 10.0)),
-                        ("residual_share", r.between(0.0, 0.9)),
+                        ("onset_torque_nm", r.or(0.05, 3.0, &[0.0, 0.0])),
+                        ("slope_nm_per_rad", r.or(0.0, 10.0, &[0.0, 10.0])),
+                        ("residual_share", r.or(0.0, 0.9, &[0.0])),
                         ("collapse_s", r.between(0.005, 0.3)),
                         ("rearm_deg", r.between(2.0, 30.0)),
-                        ("catch_stiffness_nm_per_rad", r.between(11.0, 300.0)),
+                        (
+                            "catch_stiffness_nm_per_rad",
+                            r.or(11.0, 300.0, &[10.0, 10.0]),
+                        ),
                         ("release_torque_nm", r.between(0.2, 4.5)),
                     ]
                 },
@@ -198,9 +207,9 @@ fn clonus() {
                     ("start_velocity_deg_s", r.between(20.0, 150.0)),
                     ("frequency_hz", r.between(3.0, 10.0)),
                     ("push_share", r.between(0.2, 0.8)),
-                    ("first_stretch", r.share()),
+                    ("first_stretch", r.or(0.0, 1.0, &[0.0, 1.0])),
                     ("amplitude_nm", r.between(0.1, 4.5)),
-                    ("delay_s", r.between(0.0, 0.2)),
+                    ("delay_s", r.or(0.0, 0.2, &[0.0])),
                     ("beats", r.between(0.0, 5.0).floor()),
                 ]
             },

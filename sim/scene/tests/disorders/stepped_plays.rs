@@ -9,16 +9,19 @@ fn range_limit() {
         &[],
         &["contact", "leave"],
         |r| {
-            let low = r.between(-10.0, 60.0);
+            let low = r.or(-10.0, 60.0, &[0.0, 10.0, 40.0]);
             vec![
                 ("extension_limit_deg", low),
-                ("flexion_limit_deg", low + r.between(5.0, 80.0)),
-                ("stiffness_nm_per_rad", r.between(1.0, 400.0)),
-                ("flexion_stiffness_nm_per_rad", r.between(1.0, 400.0)),
-                ("stiffening_nm_per_rad2", r.between(0.0, 2000.0)),
-                ("loss", r.between(0.02, 0.6)),
-                ("extension_loss", r.between(0.02, 0.6)),
-                ("torque_nm", r.between(0.2, 6.0)),
+                (
+                    "flexion_limit_deg",
+                    low + r.or(5.0, 80.0, &[5.0, 20.0, 40.0]),
+                ),
+                ("stiffness_nm_per_rad", r.or(1.0, 400.0, &[60.0])),
+                ("flexion_stiffness_nm_per_rad", r.or(1.0, 400.0, &[60.0])),
+                ("stiffening_nm_per_rad2", r.or(0.0, 2000.0, &[0.0, 0.0])),
+                ("loss", r.or(0.02, 0.6, &[0.0, 0.5])),
+                ("extension_loss", r.or(0.02, 0.6, &[0.0, 0.5])),
+                ("torque_nm", r.or(0.2, 6.0, &[0.0, 1.0])),
             ]
         },
         |n, phi| {
@@ -66,8 +69,8 @@ fn lead_pipe() {
         &[],
         |r| {
             vec![
-                ("torque_nm", r.between(0.1, 4.5)),
-                ("presliding_deg", r.between(0.5, 10.0)),
+                ("torque_nm", r.or(0.1, 4.5, &[0.0, 1.0])),
+                ("presliding_deg", r.or(0.5, 10.0, &[1.0, 2.5])),
                 ("elastic_nm_per_rad", r.between(0.0, 10.0)),
                 ("neutral_deg", r.between(0.0, 140.0)),
             ]
@@ -84,12 +87,12 @@ fn lead_pipe() {
 
 fn cogwheel_numbers(r: &mut Random) -> Vec<(&'static str, f64)> {
     vec![
-        ("torque_nm", r.between(0.1, 4.5)),
-        ("low_share", r.share()),
-        ("frequency_hz", r.between(3.0, 12.0)),
-        ("duty", r.between(0.1, 0.9)),
-        ("pitch_deg", r.between(1.0, 30.0)),
-        ("presliding_deg", r.between(0.5, 10.0)),
+        ("torque_nm", r.or(0.1, 4.5, &[0.0, 1.0])),
+        ("low_share", r.or(0.0, 1.0, &[0.0, 1.0, 0.5])),
+        ("frequency_hz", r.or(3.0, 12.0, &[5.0, 10.0])),
+        ("duty", r.or(0.1, 0.9, &[0.5, 0.25])),
+        ("pitch_deg", r.or(1.0, 30.0, &[2.0, 5.0])),
+        ("presliding_deg", r.or(0.5, 10.0, &[1.0, 2.5])),
     ]
 }
 
@@ -140,15 +143,15 @@ fn texture() {
         &[],
         &["snap"],
         |r| {
-            let (base, height) = (r.between(0.0, 1.0), r.between(0.05, 1.0));
-            let (pitch, width) = (r.between(1.0, 20.0), r.between(0.3, 1.0));
-            let least = 2.0 * height / (width * pitch.to_radians());
+            let (base, height) = (r.or(0.0, 1.0, &[0.0]), r.or(0.05, 1.0, &[0.0]));
+            let (pitch, width) = (r.or(1.0, 20.0, &[1.0, 5.0]), r.or(0.3, 1.0, &[1.0, 0.5]));
+            let least = (2.0 * height / (width * pitch.to_radians())).max(1.0);
             vec![
                 ("base_nm", base),
                 ("peak_nm", base + height),
                 ("pitch_deg", pitch),
                 ("width_share", width),
-                ("irregularity", r.between(0.0, 0.9)),
+                ("irregularity", r.or(0.0, 0.9, &[0.0, 0.9])),
                 ("stiffness_nm_per_rad", least * r.between(1.0, 2.0)),
                 ("seed", r.between(0.0, 4e9).floor()),
             ]
