@@ -4,7 +4,7 @@ use crate::support::{Given, TORQUE_NM, constant, events, given, jumps, near, sym
 use crepitus_plant::Motion;
 use crepitus_plant::motion::Strokes;
 use crepitus_plant::piece::Curve;
-use crepitus_scene::reference::symptoms::{Symptom, SymptomError};
+use crepitus_scene::reference::symptoms::{Symptom, SymptomError, SymptomEventKind as Kind};
 
 /// Every symptom, with flexors where it has muscles.
 fn all(flexors: bool) -> Vec<(&'static str, Given)> {
@@ -69,7 +69,7 @@ fn all(flexors: bool) -> Vec<(&'static str, Given)> {
     ]
 }
 
-fn motions() -> Vec<Motion> {
+pub(crate) fn motions() -> Vec<Motion> {
     vec![
         Motion::sine(0.9, 0.8, 20.0),
         jumps(
@@ -140,6 +140,27 @@ fn flexors_are_the_mirror_image_of_extensors() {
         }
     }
     assert!(count > 300, "{count}");
+}
+
+/// The elastic torque and the limit are computed apart: where one meets the
+/// other both are the same, as exactly as the time is.
+#[test]
+fn a_play_meets_and_leaves_its_limits_without_a_jump() {
+    let mut count = 0;
+    for motion in &motions() {
+        for (name, keys) in all(false) {
+            for e in events(name, &keys, motion, 4.0) {
+                if matches!(e.kind, Kind::Flow | Kind::Turn | Kind::Slack | Kind::Take) {
+                    near(e.torque_before_nm, e.torque_after_nm, 1e-12);
+                    count += 1;
+                }
+                let shaft = motion.at(e.time_s);
+                near(e.angle_rad, shaft.phi_rad, 1e-14);
+                near(e.omega_rad_s, shaft.omega_rad_s, 1e-12);
+            }
+        }
+    }
+    assert!(count > 100, "{count}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! What is known in closed form of spasticity, clasp-knife and clonus.
 
+use crate::any_symptom::motions;
 use crate::support::{
     Given, TIME_S, TORQUE_NM, constant, events, given, jumps, knots, near, symptom, times,
     torque_at, words, work_j,
@@ -143,6 +144,62 @@ fn a_reflex_on_a_sine_has_its_gain_and_phase() {
         );
         assert_eq!(work < 0.0, gives, "{f} Hz: {work} J");
     }
+}
+
+/// y = ∫u(t − τ_d − x)·e^(−x/τ_a)/τ_a dx, by Gauss's rule with four points on
+/// parts between the knots and the events, where u is smooth.
+#[test]
+fn a_reflex_is_the_convolution_of_its_input() {
+    const PARTS: u32 = 400;
+    const POINTS: [(f64, f64); 4] = [
+        (-0.861_136_311_594_052_6, 0.347_854_845_137_453_9),
+        (-0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
+        (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
+        (0.861_136_311_594_052_6, 0.347_854_845_137_453_9),
+    ];
+    let (k, mu, lambda) = (6.0, 0.2, 35.0_f64);
+    let (delay_s, activation_s, cap) = (0.037, 0.021, 2.5);
+    let keys = reflex(&[
+        ("threshold_deg", lambda),
+        ("velocity_shift_s", mu),
+        ("gain_nm_per_rad", k),
+        ("delay_s", delay_s),
+        ("activation_s", activation_s),
+        ("torque_nm", cap),
+    ]);
+    let mut events_seen = 0;
+    for motion in &motions() {
+        for end_s in [0.2, 0.55, 0.9, 1.3, 1.71, 2.6] {
+            let input_s = end_s - delay_s;
+            let mut reflex = symptom("spasticity", &keys, motion);
+            let found = reflex.advance(end_s);
+            events_seen += found.len();
+            let mut marks: Vec<_> = found.iter().map(|e| e.time_s).collect();
+            let mut time_s = 0.0;
+            while time_s < input_s {
+                marks.push(time_s);
+                time_s = motion.piece(time_s).end_s;
+            }
+            marks.push(input_s);
+            marks.retain(|t| *t <= input_s);
+            marks.sort_by(f64::total_cmp);
+            let mut y = 0.0;
+            for span in marks.windows(2) {
+                let part_s = (span[1] - span[0]) / f64::from(PARTS);
+                for i in 0..PARTS {
+                    for (place, weight) in POINTS {
+                        let t = span[0] + part_s * (f64::from(i) + 0.5 + 0.5 * place);
+                        let shaft = motion.at(t);
+                        let lead = shaft.phi_rad - lambda.to_radians() + mu * shaft.omega_rad_s;
+                        let left = (-(input_s - t) / activation_s).exp() / activation_s;
+                        y += 0.5 * part_s * weight * left * (k * lead).clamp(0.0, cap);
+                    }
+                }
+            }
+            near(reflex.torque_nm(), y, 1e-11);
+        }
+    }
+    assert!(events_seen > 50, "{events_seen}");
 }
 
 #[test]

@@ -76,7 +76,9 @@ pub(super) enum Action {
 
 impl Clonus {
     pub(super) fn read(reader: &Reader<'_>, sign: f64) -> Result<Self, SymptomError> {
-        let beats = reader.at_least_zero("beats", 0.0)?;
+        let beats = reader.checked("beats", 0.0, "a whole number of 0 or more", |x| {
+            x.fract() == 0.0 && x >= 0.0
+        })?;
         Ok(Self {
             hold: sign * reader.angle("hold_deg", 60.0)?,
             hysteresis: reader.positive("hysteresis_deg", 5.0)?.to_radians(),
@@ -88,11 +90,7 @@ impl Clonus {
             })?,
             first_stretch: reader.at_least_zero("first_stretch", 0.3)?,
             delay_s: reader.at_least_zero("delay_s", 0.05)?,
-            beats: if beats == 0.0 {
-                f64::INFINITY
-            } else {
-                beats.round()
-            },
+            beats: if beats == 0.0 { f64::INFINITY } else { beats },
             state: State::Idle,
             beat: None,
         })

@@ -59,7 +59,9 @@ impl Cogwheel {
         Ok(Self {
             torque_nm,
             low_share: reader.share("low_share", 0.4)?,
-            duty: reader.share("duty", 0.5)?,
+            duty: reader.checked("duty", 0.5, "a number between 0 and 1", |x| {
+                x > 0.0 && x < 1.0
+            })?,
             ratchet: if by_space {
                 Ratchet::Space { pitch }
             } else {
@@ -112,11 +114,14 @@ impl Law for Cogwheel {
     fn arm(&mut self, at: &Instant) {
         if let Ratchet::Space { pitch } = self.ratchet {
             self.phase = 2.0 * (at.x / pitch).floor();
-            while self.begins(self.phase) * pitch > at.x {
+            // The quotient may round across an edge; and a period has two.
+            if self.begins(self.phase) * pitch > at.x {
                 self.phase -= 1.0;
             }
-            while self.begins(self.phase + 1.0) * pitch <= at.x {
-                self.phase += 1.0;
+            for _ in 0..2 {
+                if self.begins(self.phase + 1.0) * pitch <= at.x {
+                    self.phase += 1.0;
+                }
             }
         }
         self.relimit(0.0, at);
