@@ -112,7 +112,7 @@ kinds! {
 }
 
 impl SymptomEventKind {
-    /// What happens to a play with ℓ = 0, from the mode it was in.
+    /// The kind of an action of a play with ℓ = 0, from the mode it was in.
     fn of_one_sided(action: PlayAction, was: Mode) -> Self {
         match (action, was) {
             (PlayAction::Meet(End::Lower), _) => Self::Slack,
@@ -122,7 +122,7 @@ impl SymptomEventKind {
         }
     }
 
-    /// What happens to a play with two like limits.
+    /// The kind of an action of a play with two like limits.
     fn of_two_sided(action: PlayAction) -> Self {
         match action {
             PlayAction::Meet(_) => Self::Flow,
@@ -136,7 +136,7 @@ impl SymptomEventKind {
 pub struct SymptomEvent {
     /// Time since the start of the run, s.
     pub time_s: f64,
-    /// What happened.
+    /// Kind of the event.
     pub kind: SymptomEventKind,
     /// Angle φ, rad.
     pub angle_rad: f64,

@@ -147,7 +147,7 @@ pub(crate) fn compare(
     for seed in 0..RUNS {
         let mut random = Random(seed.wrapping_mul(0x1234_5678_9ABC) ^ name.len() as u64);
         let numbers = numbers(&mut random);
-        // Where muscles are triggered, a coincidence may go either way.
+        // A coincidence may trigger a muscle or not, by rounding alone.
         let is_lattice = STEADY.contains(&name) && choices.is_empty() && seed % 2 == 1;
         let motion = if is_lattice {
             random.lattice()

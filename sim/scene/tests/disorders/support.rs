@@ -97,7 +97,7 @@ pub(crate) fn times(events: &[SymptomEvent], kind: SymptomEventKind) -> Vec<f64>
     own.map(|e| e.time_s).collect()
 }
 
-/// Whether two numbers agree.
+/// Asserts that two numbers agree.
 #[track_caller]
 pub(crate) fn near(found: f64, expected: f64, within: f64) {
     let error = (found - expected).abs();

@@ -23,7 +23,7 @@ use super::limit::Limit;
 use super::play::{End, Limits, Mode, Play, PlayAction};
 use super::runner::{Instant, Law, Reported, Watches};
 
-/// How near two angles are that are one, rad.
+/// Distance below which two angles are one, rad.
 const ONE_ANGLE: f64 = 1e-12;
 
 /// A clasp-knife of one group of muscles.
@@ -57,14 +57,14 @@ enum Trigger {
 enum State {
     Out,
     Build,
-    /// Since when, s, and L_r, N·m.
+    /// Time of the release, s, and L_r, N·m.
     Fallen {
         since_s: f64,
         level_nm: f64,
     },
 }
 
-/// What happens to it.
+/// Actions of a clasp-knife.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Action {
     Onset,
@@ -121,7 +121,7 @@ impl ClaspKnife {
         })
     }
 
-    /// Where a build is released.
+    /// The release of a build.
     fn release(&self) -> Option<Guard> {
         match (self.trigger, self.play.mode) {
             (Trigger::Angle(at), _) => Some(Guard::above(at)),

@@ -21,7 +21,7 @@ use super::keys::{Reader, SymptomError};
 use super::runner::{Instant, Law, Reported, Watches};
 use std::f64::consts::PI;
 
-/// How far below Ω_on a velocity may be from rounding, relative.
+/// Rounding of a velocity that is Ω_on, relative.
 const SAME: f64 = 16.0 * f64::EPSILON;
 
 /// The clonus of one group of muscles.
@@ -43,7 +43,7 @@ pub(super) struct Clonus {
     first_stretch: f64,
     /// τ_d, s.
     delay_s: f64,
-    /// How many; infinite if sustained.
+    /// Number of beats; infinite if sustained.
     beats: f64,
     state: State,
     beat: Option<Beat>,
@@ -55,7 +55,7 @@ enum State {
     Idle,
     /// Waits for the return; whether this is a `stop`.
     Over { is_stop: bool },
-    /// Since when, s, and the number of the next beat.
+    /// Time of the start, s, and the number of the next beat.
     Beating { since_s: f64, next: f64 },
 }
 
@@ -66,7 +66,7 @@ struct Beat {
     push_s: f64,
 }
 
-/// What happens to it.
+/// Actions of clonus.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Action {
     Stretch,

@@ -17,7 +17,7 @@ use super::play::{FELT_NM, Limits, Mode, Play, PlayAction};
 use super::rigidity::{Spring, presliding};
 use super::runner::{Instant, Law, Reported, Watches};
 
-/// What the phases go by.
+/// Measure of the phases.
 #[derive(Clone, Copy, Debug)]
 enum Ratchet {
     /// Frequency, Hz.
@@ -42,7 +42,7 @@ pub(super) struct Cogwheel {
     play: Play,
 }
 
-/// What happens to it.
+/// Actions of a cogwheel.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Action {
     /// The phase of this number begins.
@@ -89,7 +89,7 @@ impl Cogwheel {
         Limits::symmetric(self.limit_nm())
     }
 
-    /// Where a phase begins, in periods.
+    /// Start of a phase, in periods.
     fn begins(&self, phase: f64) -> f64 {
         let period = (phase / 2.0).floor();
         if phase % 2.0 == 0.0 {

@@ -17,7 +17,7 @@ use crepitus_plant::{Piece, ShaftState};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
-/// How many roundings of its terms count as zero of a condition.
+/// Number of roundings of its terms that count as zero of a condition.
 const ROUNDINGS: f64 = 8.0;
 
 /// D·e^(−(t − t₀)/τ).
@@ -88,16 +88,16 @@ impl Guard {
     }
 }
 
-/// When a state of a symptom ends.
+/// The end of a state of a symptom.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum When {
     /// At a time, s.
     At(f64),
-    /// Where a condition falls below zero; to touch zero is not enough.
+    /// A condition falls below zero; to touch zero is not enough.
     Crosses(Guard),
-    /// Where a condition is first at or below zero.
+    /// A condition is first at or below zero.
     Holds(Guard),
-    /// Where two are first at or below zero together.
+    /// Two conditions are first at or below zero together.
     BothHold([Guard; 2]),
 }
 
@@ -184,7 +184,7 @@ impl<'a> Span<'a> {
             .decay
             .map_or((0.0, 1.0), |decay| (decay.at(time_s), decay.time_s));
         let slope = angle * omega_rad_s + velocity * omega_dot - decay / decay_s;
-        // What the velocity and the angle are rounded by: their terms' sizes.
+        // The velocity and the angle are rounded by the sizes of their terms.
         let age_s = self.piece.age_s(time_s);
         let turned = omega_rad_s.abs() + self.bounds.omega_dot * age_s;
         let size = guard.constant.abs()

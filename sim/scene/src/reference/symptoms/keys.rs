@@ -24,11 +24,11 @@ pub enum SymptomError {
     Number {
         /// Name of the symptom.
         effect: &'static str,
-        /// Which number.
+        /// Key of the number.
         key: String,
-        /// What was given.
+        /// The value given.
         value: f64,
-        /// What is allowed.
+        /// The values allowed.
         expected: &'static str,
     },
     /// A choice that there is not.
@@ -36,9 +36,9 @@ pub enum SymptomError {
     Choice {
         /// Name of the symptom.
         effect: &'static str,
-        /// Which choice.
+        /// Key of the choice.
         key: &'static str,
-        /// What was given.
+        /// The value given.
         value: String,
         /// The names that can be chosen.
         allowed: String,

@@ -82,7 +82,7 @@ impl Limit {
         }
     }
 
-    /// Where the torque σ·(y − anchor) reaches it from below.
+    /// The condition at which the torque σ·(y − anchor) reaches it from below.
     pub(super) fn reach(&self, sigma: f64, anchor: f64) -> Guard {
         match *self {
             Self::Line {
@@ -132,7 +132,7 @@ impl Limit {
         }
     }
 
-    /// Where the torque leaves the limit on which it is: σ·ẏ < du/dt. None if
+    /// The condition at which the torque leaves it: σ·ẏ < du/dt. None if
     /// it falls along the limit as fast as along σ.
     pub(super) fn turn(&self, sigma: f64) -> Option<Guard> {
         let velocity = match *self {

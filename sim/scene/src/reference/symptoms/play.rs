@@ -6,12 +6,17 @@
 //!
 //! It is elastic (a is fixed) until T meets a limit, follows the limit, and is
 //! elastic again from where σ·v < du/dt (upper limit), or σ·v > dℓ/dt (lower).
+//!
+//! Readings: armed, a = φ; a one-sided play is then elastic if the joint moves
+//! in, and slack otherwise, without an event: to move in later is a `take`. At a
+//! limit that jumps to the torque or below it, the torque stays at the limit,
+//! which is no `flow`, unless it is being turned back, which is no `turn`.
 
 use super::guard::{Guard, When};
 use super::limit::Limit;
 use super::runner::Instant;
 
-/// What torques differ by from rounding alone, relative to their terms.
+/// Rounding of a torque, relative to its terms.
 const SAME: f64 = 64.0 * f64::EPSILON;
 
 /// A torque that jumps by less than this does so from rounding, N·m.
@@ -83,7 +88,7 @@ pub(super) enum Mode {
     Flow(End),
 }
 
-/// What may happen to a play.
+/// Actions of a play.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PlayAction {
     /// The torque meets a limit.
@@ -117,7 +122,7 @@ impl Play {
         }
     }
 
-    /// What may happen next, with these limits.
+    /// Lists what may happen next, with these limits.
     pub(super) fn watches(&self, limits: &Limits, mut watch: impl FnMut(When, PlayAction)) {
         match self.mode {
             Mode::Closed => {}

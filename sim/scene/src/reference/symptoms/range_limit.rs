@@ -20,7 +20,7 @@ use super::limit::Limit;
 use super::play::{End, Limits, Mode, Play, PlayAction};
 use super::runner::{Instant, Law, Reported, Watches};
 
-/// How near the torque is to the cap where it is at it, relative.
+/// Rounding of a torque that is at the cap, relative.
 const AT_CAP: f64 = 1e-12;
 
 /// A wall that resists growing x.
@@ -40,7 +40,7 @@ pub(super) struct Wall {
     play: Play,
 }
 
-/// What happens to a wall.
+/// Actions of a wall.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Action {
     Contact,

@@ -63,7 +63,7 @@ impl Reflex {
         })
     }
 
-    /// Where k·s(φ − λ + μΩ) rises above `torque_nm`.
+    /// The condition at which k·s(φ − λ + μΩ) rises above `torque_nm`.
     fn rises_above(&self, torque_nm: f64) -> Guard {
         Guard {
             constant: torque_nm + self.gain * self.threshold,
@@ -73,7 +73,7 @@ impl Reflex {
         }
     }
 
-    /// Where it falls below.
+    /// The condition at which it falls below.
     fn falls_below(&self, torque_nm: f64) -> Guard {
         let up = self.rises_above(torque_nm);
         Guard {

@@ -26,10 +26,10 @@ pub(super) struct Instant {
     pub(super) v: f64,
 }
 
-/// What a law may do next, and when.
+/// Possible next actions of a law, with their conditions.
 pub(super) type Watches<A> = Vec<(When, A)>;
 
-/// What is reported of an action.
+/// Report of an action.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reported {
     pub(super) kind: SymptomEventKind,
@@ -47,7 +47,7 @@ impl From<SymptomEventKind> for Reported {
 
 /// A law of a symptom, written for s = +1.
 pub(super) trait Law {
-    /// What can happen.
+    /// Its actions.
     type Action: Copy;
 
     /// Takes the state in which it is armed: without torque.
@@ -80,7 +80,7 @@ pub(super) trait Run: std::fmt::Debug {
 pub(super) struct Runner<'a, L: Law> {
     motion: &'a Motion,
     piece: Piece,
-    /// Where the motion has it.
+    /// Its place in the motion.
     piece_place: usize,
     sign: f64,
     law: L,

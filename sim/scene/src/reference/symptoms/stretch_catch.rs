@@ -50,11 +50,11 @@ struct Caught {
     time_s: f64,
     /// P, N·m.
     peak_nm: f64,
-    /// Whether x is above that of the catch.
+    /// True where x is above that of the catch.
     is_beyond: bool,
 }
 
-/// What happens to it.
+/// Actions of a catch.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Action {
     Catch,

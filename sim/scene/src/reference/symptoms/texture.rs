@@ -43,7 +43,7 @@ pub(super) struct Texture {
     play: Play,
 }
 
-/// What happens to it.
+/// Actions of texture.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Action {
     /// An asperity is crossed in this direction.
