@@ -17,6 +17,7 @@
 //! | the files of a run, written whole or not at all | [`output`] |
 //! | the clock of every cost | [`cpu_time`] |
 //! | the event-driven solver without a step | [`mod@reference`] |
+//! | the same for the symptoms besides crepitus | [`reference::symptoms`] |
 
 pub mod any_joint;
 pub mod cpu_time;

@@ -13,6 +13,9 @@
 //! The rules (`rules`) are those of the model's `frozen` and `velocity_match`
 //! modules, written a second time and for the true motion, so that each checks
 //! the other. `crepitus-crosscheck` checks both by other mathematics.
+//!
+//! The other symptoms are in [`symptoms`]. They, too, are solved from event to
+//! event, each on its own.
 
 mod ahead;
 mod find_break;
@@ -23,6 +26,7 @@ mod parabola;
 mod repeat;
 mod rules;
 mod swing;
+pub mod symptoms;
 
 pub use follow::Follow;
 

@@ -1,0 +1,230 @@
+//! The symptoms besides crepitus, solved from event to event.
+//!
+//! A second implementation of the laws that the device steps at 20 kHz, written
+//! from the equations alone, so that each checks the other. The motion is
+//! prescribed and known in closed form, so every state of a law ends where a
+//! known function of time meets a limit: there is no step, and nothing to
+//! converge.
+//!
+//! | to find | look in |
+//! |---|---|
+//! | the play that most symptoms are made of, and its limits | `play`, `limit` |
+//! | where a state ends | `guard` |
+//! | the loop over events and pieces of the motion | `runner` |
+//! | a law and how it is read | the file of its name |
+//!
+//! Events and torques are those of one symptom on its own: the sum, its limit
+//! and the tank of the active effects are later stages.
+
+mod clasp_knife;
+mod clonus;
+mod cogwheel;
+mod delayed_response;
+mod guard;
+mod keys;
+mod limit;
+mod listed;
+mod play;
+mod range_limit;
+mod reflex;
+mod rigidity;
+mod runner;
+mod stretch_catch;
+mod texture;
+
+pub use keys::{Keys, SymptomError};
+pub use listed::{ListedSymptoms, NamedEvent};
+
+use clasp_knife::ClaspKnife;
+use clonus::Clonus;
+use cogwheel::Cogwheel;
+use crepitus_plant::Motion;
+use keys::Reader;
+use play::{End, Mode, PlayAction};
+use range_limit::walls;
+use reflex::Reflex;
+use rigidity::LeadPipe;
+use runner::{Law, Run, Runner};
+use std::fmt::Debug;
+use stretch_catch::StretchCatch;
+use texture::Texture;
+
+/// The kinds of event, with their words in files.
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $kind:ident = $name:literal,)*) => {
+        /// The kind of a symptom's event.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum SymptomEventKind { $($(#[$doc])* $kind,)* }
+
+        impl SymptomEventKind {
+            /// All kinds.
+            pub const ALL: &[Self] = &[$(Self::$kind,)*];
+
+            /// Its word in files.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$kind => $name,)* }
+            }
+        }
+    };
+}
+
+kinds! {
+    /// The joint passes a wall inwards.
+    Contact = "contact",
+    /// The joint passes a wall outwards.
+    Leave = "leave",
+    /// The torque of a wall, or the input of a reflex, reaches its cap.
+    Cap = "cap",
+    /// The input of a reflex leaves its cap.
+    Uncap = "uncap",
+    /// A muscle or a tooth catches.
+    Catch = "catch",
+    /// A tooth gives.
+    Give = "give",
+    /// A catch or a clasp-knife is ready again.
+    Rearm = "rearm",
+    /// A reflex or a clasp-knife begins.
+    Onset = "onset",
+    /// A reflex ends.
+    Offset = "offset",
+    /// A clasp-knife collapses.
+    Release = "release",
+    /// A clasp-knife is turned back before its release.
+    Back = "back",
+    /// Clonus starts.
+    Start = "start",
+    /// A beat of clonus begins.
+    Beat = "beat",
+    /// Clonus is let go.
+    Stop = "stop",
+    /// Clonus has had all its beats.
+    Done = "done",
+    /// An asperity is crossed at the limit.
+    Snap = "snap",
+    /// The torque of a play meets a limit.
+    Flow = "flow",
+    /// It leaves the limit.
+    Turn = "turn",
+    /// The torque of a one-sided play reaches zero.
+    Slack = "slack",
+    /// A slack play is moved in again.
+    Take = "take",
+}
+
+impl SymptomEventKind {
+    /// The kind of an action of a play with ℓ = 0, from the mode it was in.
+    fn of_one_sided(action: PlayAction, was: Mode) -> Self {
+        match (action, was) {
+            (PlayAction::Meet(End::Lower), _) => Self::Slack,
+            (PlayAction::Meet(End::Upper), _) => Self::Flow,
+            (PlayAction::Turn, Mode::Flow(End::Lower)) => Self::Take,
+            (PlayAction::Turn, _) => Self::Turn,
+        }
+    }
+
+    /// The kind of an action of a play with two like limits.
+    fn of_two_sided(action: PlayAction) -> Self {
+        match action {
+            PlayAction::Meet(_) => Self::Flow,
+            PlayAction::Turn => Self::Turn,
+        }
+    }
+}
+
+/// An event of a symptom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SymptomEvent {
+    /// Time since the start of the run, s.
+    pub time_s: f64,
+    /// Kind of the event.
+    pub kind: SymptomEventKind,
+    /// Angle φ, rad.
+    pub angle_rad: f64,
+    /// Velocity Ω just after, rad/s.
+    pub omega_rad_s: f64,
+    /// The symptom's torque just before, N·m.
+    pub torque_before_nm: f64,
+    /// Its torque just after, N·m.
+    pub torque_after_nm: f64,
+    /// P of a catch, N·m.
+    pub peak_nm: Option<f64>,
+}
+
+/// Names of the symptoms, as in scene files.
+pub const NAMES: [&str; 7] = [
+    "range-limit",
+    "lead-pipe",
+    "cogwheel",
+    "spasticity",
+    "clasp-knife",
+    "clonus",
+    "texture",
+];
+
+/// A symptom on a prescribed motion.
+#[derive(Debug)]
+pub struct Symptom<'a> {
+    /// Its parts, which never have torque together: the two walls of
+    /// `range-limit`.
+    parts: Vec<Box<dyn Run + 'a>>,
+}
+
+impl<'a> Symptom<'a> {
+    /// The symptom `name`, armed without torque at the start of `motion`. A key
+    /// that is not given has its default.
+    ///
+    /// # Errors
+    /// [`SymptomError`] for an unknown name or choice, and for a number that
+    /// the law cannot take.
+    pub fn new(name: &str, keys: &dyn Keys, motion: &'a Motion) -> Result<Self, SymptomError> {
+        let effect = NAMES.iter().find(|known| **known == name);
+        let effect = effect.ok_or_else(|| SymptomError::Unknown(name.to_owned()))?;
+        let reader = &Reader { effect, keys };
+        let parts = match *effect {
+            "range-limit" => walls(reader)?
+                .into_iter()
+                .map(|(wall, sign)| part(wall, sign, motion))
+                .collect(),
+            "lead-pipe" => vec![part(LeadPipe::read(reader)?, 1.0, motion)],
+            "cogwheel" => vec![part(Cogwheel::read(reader)?, 1.0, motion)],
+            "texture" => vec![part(Texture::read(reader)?, 1.0, motion)],
+            muscular => {
+                let s = reader.muscles()?;
+                let is_reflex = muscular == "spasticity"
+                    && reader.choice("form", ("catch", false), &[("reflex", true)])?;
+                vec![match (muscular, is_reflex) {
+                    ("clasp-knife", _) => part(ClaspKnife::read(reader, s)?, s, motion),
+                    ("clonus", _) => part(Clonus::read(reader, s)?, s, motion),
+                    (_, true) => part(Reflex::read(reader, s)?, s, motion),
+                    (_, false) => part(StretchCatch::read(reader, s)?, s, motion),
+                }]
+            }
+        };
+        Ok(Self { parts })
+    }
+
+    /// Advances to `to_s` and returns every event on the way, in order.
+    pub fn advance(&mut self, to_s: f64) -> Vec<SymptomEvent> {
+        let mut events = Vec::new();
+        for part in &mut self.parts {
+            part.advance(to_s, &mut events);
+        }
+        if self.parts.len() > 1 {
+            events.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+        }
+        events
+    }
+
+    /// Its torque where it has been advanced to, N·m.
+    pub fn torque_nm(&self) -> f64 {
+        self.parts.iter().map(|part| part.torque_nm()).sum()
+    }
+}
+
+fn part<'a, L>(law: L, sign: f64, motion: &'a Motion) -> Box<dyn Run + 'a>
+where
+    L: Law + Debug + 'a,
+    L::Action: Debug,
+{
+    Box::new(Runner::new(law, sign, motion))
+}
