@@ -139,6 +139,9 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
     if scene.encoder.is_some() {
         columns.extend(<sensor::Encoded<f64> as sensor::Sensor<f64>>::COLUMNS);
     }
+    if scene.solver == SolverChoice::Reference {
+        columns.extend(stages::listed(scene).map(|spec| number(spec.column)));
+    }
     if scene.is_coupled()
         && let Ok(plant) = scene.assemble()
     {

@@ -14,6 +14,7 @@ pub use solver::{Precision, SolverChoice};
 
 use crate::document::{Document, Range, Section, Value};
 use crate::error::SceneError;
+use crate::reference::symptoms::NAMES;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use crepitus_plant::actuator::Actuator;
@@ -151,7 +152,9 @@ impl Scene {
         root.note("output.trace_step_s", Value::Number(trace_step_s));
         root.note("output.play_events", Value::Flag(play_events));
 
-        let mut stepped: Vec<_> = effects.listed.iter().map(|l| l.effect.name).collect();
+        let is_solved = |name: &str| solver == SolverChoice::Reference && NAMES.contains(&name);
+        let listed = effects.listed.iter().map(|l| l.effect.name);
+        let mut stepped: Vec<_> = listed.filter(|name| !is_solved(name)).collect();
         if effects.encoder.is_some() {
             stepped.push("encoder");
         }
@@ -159,8 +162,8 @@ impl Scene {
             return Err(solver_section.key_error(
                 "kind",
                 format!(
-                    "\"reference\" has no step, and knows the stick-slip object alone: choose another solver, or \
-                     leave out {}",
+                    "\"reference\" has no step, and knows a joint's symptoms alone: choose another solver, or leave \
+                     out {}",
                     tables(&stepped)
                 ),
             ));
@@ -270,7 +273,7 @@ impl Scene {
     /// Whether it has a plant or a device, so that the shaft does what comes of
     /// it; otherwise the motion prescribes it.
     pub fn is_coupled(&self) -> bool {
-        self.is_device || !self.listed.is_empty()
+        self.is_device || (self.solver != SolverChoice::Reference && !self.listed.is_empty())
     }
 
     /// Whether the motion, or a hand after it, holds the leg.

@@ -38,6 +38,7 @@ pub use listed::{ListedSymptoms, NamedEvent};
 use clasp_knife::ClaspKnife;
 use clonus::Clonus;
 use cogwheel::Cogwheel;
+pub use crepitus_model::render::effects::symptom::Word;
 use crepitus_plant::Motion;
 use keys::Reader;
 use play::{End, Mode, PlayAction};
@@ -49,85 +50,21 @@ use std::fmt::Debug;
 use stretch_catch::StretchCatch;
 use texture::Texture;
 
-/// The kinds of event, with their words in files.
-macro_rules! kinds {
-    ($($(#[$doc:meta])* $kind:ident = $name:literal,)*) => {
-        /// The kind of a symptom's event.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        pub enum SymptomEventKind { $($(#[$doc])* $kind,)* }
-
-        impl SymptomEventKind {
-            /// All kinds.
-            pub const ALL: &[Self] = &[$(Self::$kind,)*];
-
-            /// Its word in files.
-            pub fn name(self) -> &'static str {
-                match self { $(Self::$kind => $name,)* }
-            }
-        }
-    };
-}
-
-kinds! {
-    /// The joint passes a wall inwards.
-    Contact = "contact",
-    /// The joint passes a wall outwards.
-    Leave = "leave",
-    /// The torque of a wall, or the input of a reflex, reaches its cap.
-    Cap = "cap",
-    /// The input of a reflex leaves its cap.
-    Uncap = "uncap",
-    /// A muscle or a tooth catches.
-    Catch = "catch",
-    /// A tooth gives.
-    Give = "give",
-    /// A catch or a clasp-knife is ready again.
-    Rearm = "rearm",
-    /// A reflex or a clasp-knife begins.
-    Onset = "onset",
-    /// A reflex ends.
-    Offset = "offset",
-    /// A clasp-knife collapses.
-    Release = "release",
-    /// A clasp-knife is turned back before its release.
-    Back = "back",
-    /// Clonus starts.
-    Start = "start",
-    /// A beat of clonus begins.
-    Beat = "beat",
-    /// Clonus is let go.
-    Stop = "stop",
-    /// Clonus has had all its beats.
-    Done = "done",
-    /// An asperity is crossed at the limit.
-    Snap = "snap",
-    /// The torque of a play meets a limit.
-    Flow = "flow",
-    /// It leaves the limit.
-    Turn = "turn",
-    /// The torque of a one-sided play reaches zero.
-    Slack = "slack",
-    /// A slack play is moved in again.
-    Take = "take",
-}
-
-impl SymptomEventKind {
-    /// The kind of an action of a play with ℓ = 0, from the mode it was in.
-    fn of_one_sided(action: PlayAction, was: Mode) -> Self {
-        match (action, was) {
-            (PlayAction::Meet(End::Lower), _) => Self::Slack,
-            (PlayAction::Meet(End::Upper), _) => Self::Flow,
-            (PlayAction::Turn, Mode::Flow(End::Lower)) => Self::Take,
-            (PlayAction::Turn, _) => Self::Turn,
-        }
+/// The kind of an action of a play with ℓ = 0, from the mode it was in.
+fn of_one_sided(action: PlayAction, was: Mode) -> Word {
+    match (action, was) {
+        (PlayAction::Meet(End::Lower), _) => Word::Slack,
+        (PlayAction::Meet(End::Upper), _) => Word::Flow,
+        (PlayAction::Turn, Mode::Flow(End::Lower)) => Word::Take,
+        (PlayAction::Turn, _) => Word::Turn,
     }
+}
 
-    /// The kind of an action of a play with two like limits.
-    fn of_two_sided(action: PlayAction) -> Self {
-        match action {
-            PlayAction::Meet(_) => Self::Flow,
-            PlayAction::Turn => Self::Turn,
-        }
+/// The kind of an action of a play with two like limits.
+fn of_two_sided(action: PlayAction) -> Word {
+    match action {
+        PlayAction::Meet(_) => Word::Flow,
+        PlayAction::Turn => Word::Turn,
     }
 }
 
@@ -137,7 +74,7 @@ pub struct SymptomEvent {
     /// Time since the start of the run, s.
     pub time_s: f64,
     /// Kind of the event.
-    pub kind: SymptomEventKind,
+    pub kind: Word,
     /// Angle φ, rad.
     pub angle_rad: f64,
     /// Velocity Ω just after, rad/s.

@@ -5,11 +5,12 @@ use super::lead::Lead;
 use super::tally::{StickEnd, Tally};
 use super::watch::{Ended, Stopped, Watch};
 use super::{Totals, steps};
+use crate::reference::symptoms::{ListedSymptoms, NamedEvent};
 use crate::reference::{Follow, Reference};
 use crate::scene::Scene;
-use crate::trace::EventRecord;
+use crate::trace::{EventRecord, SymptomEvent};
 use crate::walk::Clock;
-use crepitus_model::{Event, Phase, Settings};
+use crepitus_model::{Event, Phase, Settings, SettingsError};
 use crepitus_plant::{Motion, ShaftState};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -36,10 +37,13 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
             EventAccounting::new(*crepitus.settings, &scene.motion, &first),
         )
     });
+    let mut symptoms = ListedSymptoms::new(&scene.listed, &scene.motion)
+        .map_err(|_| SettingsError::Contradiction { reason: UNSOLVED })?;
     let mut row = Vec::new();
 
     for n in 0..=rows {
         let time_s = clock.time_s(n);
+        tell(scene, &mut symptoms, time_s, watch)?;
         row.clear();
         if let Some((reference, accounting)) = &mut joint {
             accounting.follow(time_s, reference, watch)?;
@@ -65,6 +69,7 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
             }
         }
         if wants_rows {
+            row.extend(symptoms.torques().map(|(_, nm)| nm));
             watch.row(&row)?;
         }
         if n.is_multiple_of(PROGRESS_ROWS) {
@@ -73,6 +78,7 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
     }
     // What is left after the last row has events, too.
     let end_s = scene.duration_s.max(clock.time_s(rows));
+    tell(scene, &mut symptoms, end_s, watch)?;
     if let Some((reference, accounting)) = &mut joint {
         accounting.follow(end_s, reference, watch)?;
         accounting.end_row(end_s, reference);
@@ -95,6 +101,32 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
         crowded_steps: 0,
         plant: None,
     })
+}
+
+/// A scene checks its numbers before it runs.
+const UNSOLVED: &str = "the numbers of a symptom have no solution";
+
+/// Passes on what happens to the symptoms up to a time.
+fn tell(
+    scene: &Scene,
+    symptoms: &mut ListedSymptoms<'_>,
+    to_s: f64,
+    watch: &mut dyn Watch,
+) -> Result<(), Ended> {
+    for NamedEvent { effect, event } in symptoms.advance(to_s) {
+        if scene.play_events || !event.kind.is_of_play() {
+            watch.symptom(&SymptomEvent {
+                time_s: event.time_s,
+                effect,
+                word: event.kind,
+                angle_rad: event.angle_rad,
+                omega_rad_s: event.omega_rad_s,
+                torque_before_nm: event.torque_before_nm,
+                torque_after_nm: event.torque_after_nm,
+            })?;
+        }
+    }
+    Ok(())
 }
 
 /// Keeps the tally of an event-driven run.

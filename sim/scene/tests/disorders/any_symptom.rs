@@ -4,7 +4,7 @@ use crate::support::{Given, TORQUE_NM, constant, events, given, jumps, near, sym
 use crepitus_plant::Motion;
 use crepitus_plant::motion::Strokes;
 use crepitus_plant::piece::Curve;
-use crepitus_scene::reference::symptoms::{Symptom, SymptomError, SymptomEventKind as Kind};
+use crepitus_scene::reference::symptoms::{Symptom, SymptomError, Word as Kind};
 
 /// Every symptom, with flexors where it has muscles.
 fn all(flexors: bool) -> Vec<(&'static str, Given)> {
@@ -94,6 +94,7 @@ fn negated(motion: &Motion) -> Motion {
     match motion {
         Motion::Single(piece) => {
             let Curve::Sine {
+                centre_rad,
                 amplitude_rad,
                 frequency_hz,
                 phase_turns,
@@ -101,7 +102,7 @@ fn negated(motion: &Motion) -> Motion {
             else {
                 panic!("a sine");
             };
-            Motion::sine(-amplitude_rad, frequency_hz, 360.0 * phase_turns)
+            Motion::sine(-amplitude_rad, frequency_hz, 360.0 * phase_turns).shifted(-centre_rad)
         }
         Motion::Sequence(pieces) => {
             let mut pieces = pieces.clone();

@@ -6,7 +6,7 @@ use crate::support::{
     torque_at, words, work_j,
 };
 use crepitus_plant::Motion;
-use crepitus_scene::reference::symptoms::SymptomEventKind as Kind;
+use crepitus_scene::reference::symptoms::Word as Kind;
 use std::f64::consts::{PI, TAU};
 
 /// MAS 2.

@@ -3,7 +3,7 @@
 use crate::support::{
     TIME_S, TORQUE_NM, constant, events, given, jumps, near, times, torque_at, words, work_j,
 };
-use crepitus_scene::reference::symptoms::SymptomEventKind as Kind;
+use crepitus_scene::reference::symptoms::Word as Kind;
 
 #[test]
 fn a_wall_is_met_at_its_angle_and_takes_what_its_envelope_says() {

@@ -4,7 +4,7 @@ use crate::support::{
     Given, TIME_S, TORQUE_NM, constant, events, given, jumps, knots, near, symptom, times, words,
 };
 use crepitus_plant::Motion;
-use crepitus_scene::reference::symptoms::SymptomEventKind as Kind;
+use crepitus_scene::reference::symptoms::Word as Kind;
 
 fn catch(numbers: &[(&str, f64)]) -> Given {
     given(numbers, &[("form", "catch")])

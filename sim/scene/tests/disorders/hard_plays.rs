@@ -4,7 +4,7 @@
 use crate::support::{
     Given, TIME_S, TORQUE_NM, constant, events, given, jumps, knots, near, symptom, words,
 };
-use crepitus_scene::reference::symptoms::SymptomEventKind as Kind;
+use crepitus_scene::reference::symptoms::Word as Kind;
 
 fn wall(k1: f64, k2: f64, loss: f64) -> Given {
     given(

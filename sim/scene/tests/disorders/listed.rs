@@ -1,10 +1,10 @@
 //! Symptoms as a scene lists them.
 
 use crate::support::{constant, events, given};
-use crepitus_model::parameters::ParameterSpec;
+use crepitus_model::parameters::{Choice, ParameterSpec};
 use crepitus_plant::assembly::Listed;
-use crepitus_plant::effect::{ChoiceSpec, Effect, Given, Part};
-use crepitus_scene::reference::symptoms::{ListedSymptoms, SymptomEventKind as Kind};
+use crepitus_plant::effect::{Effect, Given, Part};
+use crepitus_scene::reference::symptoms::{ListedSymptoms, Word as Kind};
 
 const fn number(key: &'static str, default: f64) -> ParameterSpec {
     ParameterSpec {
@@ -21,7 +21,7 @@ const fn number(key: &'static str, default: f64) -> ParameterSpec {
 const fn effect(
     name: &'static str,
     parameters: &'static [ParameterSpec],
-    choices: &'static [ChoiceSpec],
+    choices: &'static [Choice],
 ) -> Effect {
     Effect {
         name,
@@ -40,9 +40,10 @@ static MOTOR: Effect = effect("motor", &[], &[]);
 static SPASTICITY: Effect = effect(
     "spasticity",
     &[number("threshold_deg", 75.0), number("torque_nm", 4.5)],
-    &[ChoiceSpec {
+    &[Choice {
         key: "form",
         names: &["catch", "reflex"],
+        default: 0,
         meaning: "",
     }],
 );

@@ -3,7 +3,7 @@
 use crepitus_plant::Motion;
 use crepitus_plant::motion::VelocityKnot;
 use crepitus_plant::piece::Curve;
-use crepitus_scene::reference::symptoms::{Keys, Symptom, SymptomEvent, SymptomEventKind};
+use crepitus_scene::reference::symptoms::{Keys, Symptom, SymptomEvent, Word};
 
 /// Within what the reference agrees with closed forms, s and N·m.
 pub(crate) const TIME_S: f64 = 1e-9;
@@ -92,7 +92,7 @@ pub(crate) fn words(events: &[SymptomEvent]) -> Vec<&'static str> {
 }
 
 /// The times of the events of a kind, s.
-pub(crate) fn times(events: &[SymptomEvent], kind: SymptomEventKind) -> Vec<f64> {
+pub(crate) fn times(events: &[SymptomEvent], kind: Word) -> Vec<f64> {
     let own = events.iter().filter(|e| e.kind == kind);
     own.map(|e| e.time_s).collect()
 }

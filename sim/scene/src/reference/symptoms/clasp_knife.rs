@@ -16,12 +16,12 @@
 //! torque. A torque that reaches 0 at φ_on itself is `back` alone, without
 //! `slack`.
 
-use super::SymptomEventKind as Kind;
 use super::guard::{Decay, Guard, When};
 use super::keys::{Reader, SymptomError};
 use super::limit::Limit;
 use super::play::{End, Limits, Mode, Play, PlayAction};
 use super::runner::{Instant, Law, Reported, Watches};
+use super::{Word as Kind, of_one_sided};
 
 /// Distance below which two angles are one, rad.
 const ONE_ANGLE: f64 = 1e-12;
@@ -203,7 +203,7 @@ impl Law for ClaspKnife {
                 if action == PlayAction::Meet(End::Lower) && is_back {
                     return None;
                 }
-                Some(Kind::of_one_sided(action, was).into())
+                Some(of_one_sided(action, was).into())
             }
         }
     }

@@ -15,7 +15,7 @@
 //! the first beat of another start cuts it off. The tank of the active effects
 //! is a later stage: this is the torque that the law asks for.
 
-use super::SymptomEventKind as Kind;
+use super::Word as Kind;
 use super::guard::{Guard, When};
 use super::keys::{Reader, SymptomError};
 use super::runner::{Instant, Law, Reported, Watches};

@@ -10,12 +10,12 @@
 //! on without a `turn`. With ρ = 0 the low phase has no play, and no events of
 //! it.
 
-use super::SymptomEventKind as Kind;
 use super::guard::{Guard, When};
 use super::keys::{Reader, SymptomError};
 use super::play::{FELT_NM, Limits, Mode, Play, PlayAction};
 use super::rigidity::{Spring, presliding};
 use super::runner::{Instant, Law, Reported, Watches};
+use super::{Word as Kind, of_two_sided};
 
 /// Measure of the phases.
 #[derive(Clone, Copy, Debug)]
@@ -162,7 +162,7 @@ impl Law for Cogwheel {
             }
             Action::Play(action) => {
                 self.play.act(action, &self.limits(), at);
-                Some(Kind::of_two_sided(action).into())
+                Some(of_two_sided(action).into())
             }
         }
     }

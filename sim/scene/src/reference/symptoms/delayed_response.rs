@@ -69,6 +69,7 @@ impl Particular {
                 }
             }
             Curve::Sine {
+                centre_rad,
                 amplitude_rad,
                 frequency_hz,
                 phase_turns,
@@ -80,6 +81,7 @@ impl Particular {
                 Self::Sine {
                     unit: Piece {
                         curve: Curve::Sine {
+                            centre_rad: 0.0,
                             amplitude_rad: 1.0,
                             frequency_hz,
                             phase_turns,
@@ -89,7 +91,7 @@ impl Particular {
                     omega,
                     sine: (a + lag * b) * scale,
                     cosine: (b - lag * a) * scale,
-                    constant: -offset,
+                    constant: gain * centre_rad - offset,
                 }
             }
         }

@@ -17,7 +17,7 @@ impl Keys for Listed {
         let (spec, place) = specs
             .zip(&self.given.choices)
             .find(|(spec, _)| spec.key == key)?;
-        spec.names.get(*place).copied()
+        spec.names.get(usize::from(*place)).copied()
     }
 }
 

@@ -13,12 +13,12 @@
 //! without `turn` or `slack`. With Tcap = 0 there are only `contact` and
 //! `leave`.
 
-use super::SymptomEventKind as Kind;
 use super::guard::{Guard, When};
 use super::keys::{Reader, SymptomError};
 use super::limit::Limit;
 use super::play::{End, Limits, Mode, Play, PlayAction};
 use super::runner::{Instant, Law, Reported, Watches};
+use super::{Word as Kind, of_one_sided};
 
 /// Rounding of a torque that is at the cap, relative.
 const AT_CAP: f64 = 1e-12;
@@ -164,7 +164,7 @@ impl Law for Wall {
                 if self.capped {
                     Kind::Cap
                 } else {
-                    Kind::of_one_sided(action, was)
+                    of_one_sided(action, was)
                 }
             }
         };

@@ -15,7 +15,7 @@
 //! of the active effects is a later stage: this is the torque that the law asks
 //! for.
 
-use super::SymptomEventKind as Kind;
+use super::Word as Kind;
 use super::delayed_response::{DelayedResponse, Particular};
 use super::guard::{Guard, When};
 use super::keys::{Reader, SymptomError};

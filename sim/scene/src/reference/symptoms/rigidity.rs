@@ -4,8 +4,8 @@
 //! play with u = −ℓ = Tc, σ = Tc/δ, plus k_e(φ − φ₀)
 //! ```
 
-use super::SymptomEventKind as Kind;
 use super::keys::{Reader, SymptomError};
+use super::of_two_sided;
 use super::play::{Limits, Play, PlayAction};
 use super::runner::{Instant, Law, Reported, Watches};
 
@@ -74,7 +74,7 @@ impl Law for LeadPipe {
 
     fn act(&mut self, action: PlayAction, at: &Instant) -> Option<Reported> {
         self.play.act(action, &self.limits(), at);
-        Some(Kind::of_two_sided(action).into())
+        Some(of_two_sided(action).into())
     }
 
     fn torque_nm(&self, at: &Instant) -> f64 {

@@ -6,7 +6,7 @@
 //! the bit however often the torque is asked for.
 
 use super::guard::{Span, When};
-use super::{SymptomEvent, SymptomEventKind};
+use super::{SymptomEvent, Word};
 use crepitus_plant::piece::Curve;
 use crepitus_plant::{Motion, Piece};
 
@@ -32,12 +32,12 @@ pub(super) type Watches<A> = Vec<(When, A)>;
 /// Report of an action.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reported {
-    pub(super) kind: SymptomEventKind,
+    pub(super) kind: Word,
     pub(super) peak_nm: Option<f64>,
 }
 
-impl From<SymptomEventKind> for Reported {
-    fn from(kind: SymptomEventKind) -> Self {
+impl From<Word> for Reported {
+    fn from(kind: Word) -> Self {
         Self {
             kind,
             peak_nm: None,

@@ -11,12 +11,12 @@
 //! is on its limit from the catch on, which is no `flow`. Armed, there is no
 //! play, so what torque is left at `rearm` falls to 0 there.
 
-use super::SymptomEventKind as Kind;
 use super::guard::{Decay, Guard, When};
 use super::keys::{Reader, SymptomError};
 use super::limit::Limit;
 use super::play::{End, Limits, Mode, Play, PlayAction};
 use super::runner::{Instant, Law, Reported, Watches};
+use super::{Word as Kind, of_one_sided};
 
 /// A catch of one group of muscles.
 #[derive(Clone, Copy, Debug)]
@@ -175,7 +175,7 @@ impl Law for StretchCatch {
             (Action::Play(action), Some(caught)) => {
                 let (caught, was) = (*caught, self.play.mode);
                 self.play.act(action, &self.limits(&caught), at);
-                Some(Kind::of_one_sided(action, was).into())
+                Some(of_one_sided(action, was).into())
             }
             (_, None) => None,
         }

@@ -13,7 +13,7 @@
 //! touch is no crossing. `flow` and `turn` are not reported. n may be negative; k is it in
 //! two's complement.
 
-use super::SymptomEventKind as Kind;
+use super::Word as Kind;
 use super::guard::{Guard, When};
 use super::keys::{Reader, SymptomError};
 use super::limit::Limit;

@@ -1,5 +1,5 @@
-//! The symptoms besides crepitus, stepped at 20 kHz, against cases that an
-//! event-driven solver computed with 60 digits.
+//! The symptoms besides crepitus in scenes, stepped at 20 kHz and by `reference`,
+//! against cases that an event-driven solver computed with 60 digits.
 //!
 //! They are in `shared/truth/disorders` beside the repository.
 
@@ -67,7 +67,7 @@ fn effects(json: &Value, text: &mut String) {
     }
 }
 
-fn case(path: &Path, precision: &str) -> Case {
+fn case(path: &Path, solver: &str) -> Case {
     let json: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
     let mut scene = format!(
         "version = 1\ntitle = \"a case\"\nduration_s = {:?}\n",
@@ -76,11 +76,7 @@ fn case(path: &Path, precision: &str) -> Case {
     let mut text = String::new();
     motion(&json["motion"], &mut text).unwrap();
     scene.push_str(&text);
-    let _ = writeln!(
-        scene,
-        "[solver]\nkind = \"exact-events\"\nstep_s = 5e-5\nprecision = \"{precision}\"\n\
-         [output]\nplay_events = true"
-    );
+    let _ = writeln!(scene, "[solver]\n{solver}\n[output]\nplay_events = true");
     effects(&json["effects"], &mut scene);
     Case {
         name: json["name"].as_str().unwrap().to_owned(),
@@ -168,7 +164,7 @@ fn compare(case: &Case, worst: (f64, f64)) -> (f64, f64, f64) {
     (late_s, event_nm, tick_nm)
 }
 
-fn all(precision: &str, worst: (f64, f64)) {
+fn all(solver: &str, worst: (f64, f64)) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/truth/disorders");
     let Ok(entries) = std::fs::read_dir(&folder) else {
         println!("left out: there are no cases in {}", folder.display());
@@ -181,21 +177,32 @@ fn all(precision: &str, worst: (f64, f64)) {
     paths.sort();
     assert!(!paths.is_empty());
     for path in paths {
-        let case = case(&path, precision);
+        let case = case(&path, solver);
         let (late_s, event_nm, tick_nm) = compare(&case, worst);
         println!(
-            "{precision} {:30} {late_s:8.1e} s {event_nm:8.1e} N·m at events {tick_nm:8.1e} at ticks",
+            "{:40} {:30} {late_s:8.1e} s {event_nm:8.1e} N·m at events {tick_nm:8.1e} at ticks",
+            solver.replace('\n', ", "),
             case.name
         );
     }
 }
 
+/// On the device's ticks, in this precision.
+fn stepped(precision: &str) -> String {
+    format!("kind = \"exact-events\"\nstep_s = 5e-5\nprecision = \"{precision}\"")
+}
+
 #[test]
 fn in_f64_events_and_torques_are_those_of_60_digits() {
-    all("f64", (1e-9, 5e-6));
+    all(&stepped("f64"), (1e-9, 5e-6));
 }
 
 #[test]
 fn in_f32_they_are_within_what_24_bits_allow() {
-    all("f32", (1e-6, 5e-5));
+    all(&stepped("f32"), (1e-6, 5e-5));
+}
+
+#[test]
+fn the_reference_of_a_scene_has_them_without_steps() {
+    all("kind = \"reference\"", (1e-9, 1e-9));
 }
