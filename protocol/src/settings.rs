@@ -229,6 +229,9 @@ mod tests {
                 },
             );
         }
+        // Flexors are stretched towards smaller angles.
+        let (onset, _) = crate::parameters::find("clasp-knife.onset_deg").unwrap();
+        values.set(onset, 80.0);
         let s = DeviceSettings::of(&values).unwrap();
         let p = s.crepitus.unwrap().parameters;
         let crepitus = [

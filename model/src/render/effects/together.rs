@@ -59,7 +59,9 @@ impl EffectSettings {
             }
         }
         let sum_nm_per_rad = self.stiffness_nm_per_rad(joint);
-        if sum_nm_per_rad > MOST_STIFFNESS_NM_PER_RAD {
+        // The stick-slip joint alone is held to what its turn-back guard can do.
+        let is_alone = self.stiffness_nm_per_rad(None) == 0.0;
+        if sum_nm_per_rad > MOST_STIFFNESS_NM_PER_RAD && !is_alone {
             return Err(SettingsError::TooStiff { sum_nm_per_rad });
         }
         Ok(())
@@ -143,7 +145,7 @@ mod tests {
         );
         assert_eq!(settings.check(Some(&joint)), Ok(()));
         let stiffer = Parameters {
-            stiffness_nm_per_rad: 530.0,
+            stiffness_nm_per_rad: 1530.0,
             ..joint
         };
         let refused = settings.check(Some(&stiffer));
@@ -151,6 +153,7 @@ mod tests {
             matches!(refused, Err(SettingsError::TooStiff { sum_nm_per_rad }) if sum_nm_per_rad > 1200.0)
         );
         assert_eq!(settings.check(None), Ok(()));
+        assert_eq!(EffectSettings::default().check(Some(&stiffer)), Ok(()));
         let nm = settings.largest_torque_nm(Some(&joint));
         assert!((nm - (0.4 + 4.0 + 2.0 + 0.4)).abs() < 1e-12, "{nm}");
     }
