@@ -54,6 +54,7 @@
 #[cfg(test)]
 extern crate std;
 
+mod array;
 pub mod counters;
 pub mod crash;
 pub mod decoder;

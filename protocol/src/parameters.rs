@@ -17,7 +17,6 @@ use crepitus_model::render::effects;
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
-use serde_big_array::BigArray;
 
 pub use crepitus_model::parameters::{Choice, Kind, Parameter, When};
 
@@ -151,7 +150,7 @@ pub mod id {
 
 /// A value for each of [`PARAMETERS`]. A choice is the index of its name.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
-pub struct Values(#[serde(with = "BigArray")] pub [f64; PARAMETER_COUNT]);
+pub struct Values(#[serde(with = "crate::array")] pub [f64; PARAMETER_COUNT]);
 
 impl Default for Values {
     fn default() -> Self {

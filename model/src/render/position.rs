@@ -95,7 +95,7 @@ impl Sight {
 }
 
 /// Scale of the angle, and half a tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scale<F> {
     /// Angle of a count, rad.
     pub rad_per_count: F,

@@ -129,7 +129,7 @@ impl ClaspKnifeSettings {
 }
 
 /// Coefficients of [`ClaspKnife`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClaspKnifeCoefficients<F> {
     scale: Scale<F>,
     sense: F,

@@ -116,7 +116,7 @@ settings! {
 }
 
 /// Coefficients of [`Clonus`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClonusCoefficients<F> {
     scale: Scale<F>,
     sense: F,

@@ -121,8 +121,14 @@ enum Clock {
     Space(u64, u64),
 }
 
+impl Default for Clock {
+    fn default() -> Self {
+        Self::Time(0)
+    }
+}
+
 /// Coefficients of [`Cogwheel`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CogwheelCoefficients<F> {
     scale: Scale<F>,
     clock: Clock,

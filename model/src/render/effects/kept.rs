@@ -15,7 +15,12 @@ use crate::render::position::Position;
 /// samples are missing for is held for a millisecond, then released.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kept<F, E> {
-    law: Option<E>,
+    /// Also while it is off: a law may have much to remember, and a commit moves
+    /// nothing of it.
+    law: E,
+    is_on: bool,
+    /// It has no place yet.
+    is_new: bool,
     slew_nm: F,
     way: Way<F>,
     last_nm: F,
@@ -35,7 +40,9 @@ enum Way<F> {
 impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
     fn new(slew_nm: F) -> Self {
         Self {
-            law: None,
+            law: E::new(E::Coefficients::default()),
+            is_on: false,
+            is_new: false,
             slew_nm,
             way: Way::Free,
             last_nm: F::ZERO,
@@ -44,34 +51,34 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
 
     fn change(&mut self, coefficients: &Option<Option<E::Coefficients>>, slew_nm: F) {
         self.slew_nm = slew_nm;
-        match (*coefficients, &mut self.law) {
-            (None, _) | (Some(None), None) => {}
-            (Some(None), Some(_)) => self.way = Way::Leaving(self.last_nm.abs()),
-            (Some(Some(coefficients)), Some(law)) => {
-                law.adopt(coefficients, slew_nm);
+        match (*coefficients, self.is_on) {
+            (None, _) | (Some(None), false) => {}
+            (Some(None), true) => self.way = Way::Leaving(self.last_nm.abs()),
+            (Some(Some(coefficients)), true) => {
+                self.law.adopt(coefficients, slew_nm);
                 self.way = Way::CatchingUp;
             }
-            (Some(Some(coefficients)), None) => {
-                self.law = Some(E::new(coefficients));
+            (Some(Some(coefficients)), false) => {
+                self.law.adopt(coefficients, slew_nm);
+                (self.is_on, self.is_new) = (true, true);
                 self.way = Way::Free;
             }
         }
     }
 
     fn rest(&mut self, place: &Position<F>) {
-        if let Some(law) = &mut self.law {
-            Law::rest(law, place);
-        }
         if matches!(self.way, Way::Leaving(_)) {
-            self.law = None;
+            self.is_on = false;
         }
+        Law::rest(&mut self.law, place);
+        self.is_new = false;
         self.way = Way::Free;
         self.last_nm = F::ZERO;
     }
 
     #[inline]
     fn law(&self) -> Option<&E> {
-        self.law.as_ref()
+        self.is_on.then_some(&self.law)
     }
 
     #[inline]
@@ -81,21 +88,19 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
         shown: &mut Shown<F>,
         observe: &mut impl Observe<F>,
     ) -> F {
-        if self.law.is_some() && !tick.seen.is_driven {
-            self.rest(&tick.seen.place);
-        }
-        let Some(law) = &mut self.law else {
+        if !self.is_on {
             return F::ZERO;
-        };
-        if !tick.seen.is_driven {
+        }
+        if self.is_new || !tick.seen.is_driven {
+            self.rest(&tick.seen.place);
             return F::ZERO;
         }
         if let Checked::Missing(ticks) = tick.input
             && *ticks > HOLD_TICKS
         {
-            law.release(self.slew_nm);
+            self.law.release(self.slew_nm);
         }
-        let law_nm = law.added_nm(tick, shown, observe);
+        let law_nm = self.law.added_nm(tick, shown, observe);
         self.last_nm = match self.way {
             Way::Free => law_nm,
             _ => self.held_back(law_nm, shown),
@@ -125,7 +130,7 @@ impl<F: Real, E> Kept<F, E> {
                 let most_nm = (most_nm - self.slew_nm).at_least(F::ZERO);
                 self.way = Way::Leaving(most_nm);
                 if most_nm == F::ZERO {
-                    self.law = None;
+                    self.is_on = false;
                     self.way = Way::Free;
                 }
                 law_nm.within(most_nm)

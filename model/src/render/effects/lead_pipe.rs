@@ -66,7 +66,7 @@ settings! {
 }
 
 /// Coefficients of [`LeadPipe`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LeadPipeCoefficients<F> {
     scale: Scale<F>,
     torque_nm: F,

@@ -199,7 +199,7 @@ impl RangeLimitSettings {
 }
 
 /// Coefficients of one end.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct End<F> {
     place: Position<F>,
     slope: F,
@@ -231,7 +231,7 @@ impl<F: Real> End<F> {
 }
 
 /// Coefficients of [`RangeLimit`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RangeLimitCoefficients<F> {
     scale: Scale<F>,
     flicker_rad: F,

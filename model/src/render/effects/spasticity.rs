@@ -153,7 +153,7 @@ settings! {
 }
 
 /// The threshold of a muscle: s·(φ − λ + μΩ), rad.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Threshold<F> {
     place: Position<F>,
     shift_s: F,
@@ -203,17 +203,25 @@ pub enum SpasticityCoefficients<F> {
     Reflex(ReflexCoefficients<F>),
 }
 
-/// The muscle.
+impl<F: Real> Default for SpasticityCoefficients<F> {
+    fn default() -> Self {
+        Self::Catch(CaughtCoefficients::default())
+    }
+}
+
+/// Which form of it is rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    Catch,
+    Reflex,
+}
+
+/// The muscle. It has the memory of both forms: a commit moves none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "the reflex remembers a tenth of a second, and there is no heap"
-)]
-pub enum Spasticity<F> {
-    /// As an examiner describes it.
-    Catch(Caught<F>),
-    /// As the reflex makes it.
-    Reflex(Reflex<F>),
+pub struct Spasticity<F> {
+    form: Form,
+    caught: Caught<F>,
+    reflex: Reflex<F>,
 }
 
 impl<F: Real> Law for Spasticity<F> {
@@ -270,66 +278,77 @@ impl<F: Real> Law for Spasticity<F> {
     }
 
     fn new(coefficients: SpasticityCoefficients<F>) -> Self {
-        match coefficients {
-            SpasticityCoefficients::Catch(with) => Self::Catch(Caught::new(with)),
-            SpasticityCoefficients::Reflex(with) => Self::Reflex(Reflex::new(with)),
-        }
+        let mut spasticity = Self {
+            form: Form::Catch,
+            caught: Caught::new(CaughtCoefficients::default()),
+            reflex: Reflex::new(ReflexCoefficients::default()),
+        };
+        spasticity.adopt(coefficients, F::ZERO);
+        spasticity
     }
 
     fn scale(&self) -> &Scale<F> {
-        match self {
-            Self::Catch(caught) => caught.scale(),
-            Self::Reflex(reflex) => reflex.scale(),
+        match self.form {
+            Form::Catch => self.caught.scale(),
+            Form::Reflex => self.reflex.scale(),
         }
     }
 
     fn rest(&mut self, place: &Position<F>) {
-        match self {
-            Self::Catch(caught) => caught.rest(place),
-            Self::Reflex(reflex) => reflex.rest(),
+        match self.form {
+            Form::Catch => self.caught.rest(place),
+            Form::Reflex => self.reflex.rest(),
         }
     }
 
     #[inline]
     fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
-        match self {
-            Self::Catch(caught) => caught.follow(travel, on_change),
-            Self::Reflex(reflex) => reflex.follow(travel, on_change),
+        match self.form {
+            Form::Catch => self.caught.follow(travel, on_change),
+            Form::Reflex => self.reflex.follow(travel, on_change),
         }
     }
 
     fn torque_nm(&self) -> F {
-        match self {
-            Self::Catch(caught) => caught.torque_nm(),
-            Self::Reflex(reflex) => reflex.torque_nm(),
+        match self.form {
+            Form::Catch => self.caught.torque_nm(),
+            Form::Reflex => self.reflex.torque_nm(),
         }
     }
 
     fn adopt(&mut self, coefficients: SpasticityCoefficients<F>, slew_nm: F) {
-        match (self, coefficients) {
-            (Self::Catch(caught), SpasticityCoefficients::Catch(with)) => {
-                caught.adopt(with, slew_nm);
+        match (self.form, coefficients) {
+            (Form::Catch, SpasticityCoefficients::Catch(with)) => {
+                self.caught.adopt(with, slew_nm);
             }
-            (Self::Reflex(reflex), SpasticityCoefficients::Reflex(with)) => reflex.adopt(with),
-            (this, other) => *this = Self::new(other),
+            (Form::Reflex, SpasticityCoefficients::Reflex(with)) => self.reflex.adopt(with),
+            (Form::Reflex, SpasticityCoefficients::Catch(with)) => {
+                self.form = Form::Catch;
+                self.caught = Caught::new(with);
+            }
+            (Form::Catch, SpasticityCoefficients::Reflex(with)) => {
+                self.form = Form::Reflex;
+                self.reflex.rest();
+                self.reflex.adopt(with);
+            }
         }
     }
 
     fn release(&mut self, slew_nm: F) {
-        match self {
-            Self::Catch(caught) => caught.release(slew_nm),
-            Self::Reflex(reflex) => reflex.release(slew_nm),
+        match self.form {
+            Form::Catch => self.caught.release(slew_nm),
+            Form::Reflex => self.reflex.release(slew_nm),
         }
     }
 
     fn is_active(&self) -> bool {
-        matches!(self, Self::Reflex(_))
+        self.form == Form::Reflex
     }
 
     fn phase(&self) -> u16 {
-        match self {
-            Self::Catch(caught) => u16::from(caught.is_caught()),
-            Self::Reflex(reflex) => reflex.phase(),
+        match self.form {
+            Form::Catch => u16::from(self.caught.is_caught()),
+            Form::Reflex => self.reflex.phase(),
         }
     }
 }

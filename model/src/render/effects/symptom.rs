@@ -141,8 +141,8 @@ pub trait Law: Sized {
     /// Its parameters.
     type Settings;
 
-    /// What a commit replaces of it.
-    type Coefficients: Copy + core::fmt::Debug + PartialEq;
+    /// What a commit replaces of it; its default is that of a law that is off.
+    type Coefficients: Copy + core::fmt::Debug + Default + PartialEq;
 
     /// Its description.
     const SPEC: EffectSpec;

@@ -93,7 +93,7 @@ settings! {
 const PARTS: u32 = 20;
 
 /// Coefficients of [`Texture`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TextureCoefficients<F> {
     scale: Scale<F>,
     base_nm: F,

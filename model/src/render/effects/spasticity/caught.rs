@@ -19,7 +19,7 @@ use crate::render::effects::symptom::{Change, Word};
 use crate::render::position::{Position, Scale, Travel, rise};
 
 /// Coefficients of [`Caught`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CaughtCoefficients<F> {
     scale: Scale<F>,
     threshold: Threshold<F>,
@@ -69,7 +69,7 @@ struct Catch<F> {
 
 /// A muscle that catches.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Caught<F> {
+pub(super) struct Caught<F> {
     with: CaughtCoefficients<F>,
     play: Play<F>,
     /// The catch, until it is armed again.

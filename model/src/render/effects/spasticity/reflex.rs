@@ -19,7 +19,7 @@ use crate::render::position::{Scale, Travel};
 const REMEMBERED: usize = 2048;
 
 /// Coefficients of [`Reflex`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReflexCoefficients<F> {
     scale: Scale<F>,
     threshold: Threshold<F>,
@@ -80,7 +80,7 @@ enum Drive {
 
 /// A muscle that answers late.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reflex<F> {
+pub(super) struct Reflex<F> {
     with: ReflexCoefficients<F>,
     /// u of the last ticks, the latest at `latest`.
     line: [F; REMEMBERED],
