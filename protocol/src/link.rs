@@ -36,6 +36,8 @@ pub enum ToDrive {
         revision: Revision,
         /// Checksum over all values of the commit.
         checksum: u32,
+        /// How many pieces are sent; what is in none is at its default.
+        pieces: u8,
         /// Some of the values.
         piece: Piece,
     },

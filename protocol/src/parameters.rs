@@ -154,9 +154,21 @@ pub struct Values(#[serde(with = "crate::array")] pub [f64; PARAMETER_COUNT]);
 
 impl Default for Values {
     fn default() -> Self {
-        Self(PARAMETERS.map(|parameter| parameter.default()))
+        DEFAULTS
     }
 }
+
+/// Every parameter at its default.
+pub static DEFAULTS: Values = {
+    let mut values = [0.0; PARAMETER_COUNT];
+    let mut index = 0;
+    #[expect(clippy::indexing_slicing, reason = "at compile time")]
+    while index < values.len() {
+        values[index] = PARAMETERS[index].default();
+        index += 1;
+    }
+    Values(values)
+};
 
 impl Values {
     /// The value of a parameter, if there is one.

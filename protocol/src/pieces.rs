@@ -1,12 +1,14 @@
 //! Fragmentation of a commit for the link to the drive.
 //!
-//! A long frame would delay heartbeats, and the number of parameters grows. So
-//! a frame on the link carries at most [`PIECE_VALUES`] values, the revision,
-//! and a checksum over all values. The receiver applies a commit only when all
-//! pieces are there and the checksum is valid.
+//! A long frame would delay heartbeats, and there are many parameters, most of
+//! which are at their defaults. So a frame on the link carries at most
+//! [`PIECE_VALUES`] values, the revision, and a checksum over all values; and only
+//! the pieces that have values of their own are sent. Both sides know the defaults:
+//! they are part of the schema. The receiver applies a commit only when as many
+//! pieces are there as were announced and the checksum is valid.
 
 use crate::frame::CRC;
-use crate::parameters::PARAMETER_COUNT;
+use crate::parameters::{DEFAULTS, PARAMETER_COUNT};
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -38,6 +40,30 @@ impl Piece {
     }
 }
 
+/// Pieces of all values.
+const PIECES: usize = PARAMETER_COUNT.div_ceil(PIECE_VALUES);
+
+const _: () = assert!(PIECES <= 32, "more pieces than bits");
+
+/// The pieces of a commit that are sent, one bit each: those with a value that is
+/// not at its default, and the first.
+pub fn to_send(values: &[f64; PARAMETER_COUNT]) -> u32 {
+    let chunks = values
+        .chunks(PIECE_VALUES)
+        .zip(DEFAULTS.0.chunks(PIECE_VALUES));
+    let mut pieces = 1;
+    for (index, (chunk, defaults)) in (0..u32::BITS).zip(chunks) {
+        let same = chunk
+            .iter()
+            .zip(defaults)
+            .all(|(value, default)| value.to_bits() == default.to_bits());
+        if !same {
+            pieces |= 1 << index;
+        }
+    }
+    pieces
+}
+
 /// Checksum over all values of a commit: CRC-32 of their bytes, little endian.
 pub fn checksum(values: &[f64]) -> u32 {
     let mut digest = CRC.digest();
@@ -49,39 +75,36 @@ pub fn checksum(values: &[f64]) -> u32 {
 
 /// Reassembly of a commit from pieces in any order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reassembly<const N: usize = PARAMETER_COUNT> {
+pub struct Reassembly {
     checksum: u32,
-    values: [f64; N],
-    /// One bit for each missing piece.
-    missing: u32,
+    values: [f64; PARAMETER_COUNT],
+    /// How many pieces there are.
+    count: u8,
+    /// One bit for each that has arrived.
+    arrived: u32,
 }
 
-impl<const N: usize> Default for Reassembly<N> {
+impl Default for Reassembly {
     fn default() -> Self {
-        Self::new(0)
+        Self::new(0, 0)
     }
 }
 
-impl<const N: usize> Reassembly<N> {
-    const ALL: u32 = {
-        let pieces = N.div_ceil(PIECE_VALUES);
-        assert!(pieces < 32, "more pieces than bits");
-        (1 << pieces) - 1
-    };
-
-    /// Starts without pieces, for values with this checksum.
-    pub fn new(checksum: u32) -> Self {
+impl Reassembly {
+    /// Starts without pieces, for so many of them, and values with this checksum.
+    pub fn new(checksum: u32, count: u8) -> Self {
         Self {
             checksum,
-            values: [0.0; N],
-            missing: Self::ALL,
+            values: DEFAULTS.0,
+            count,
+            arrived: 0,
         }
     }
 
-    /// Starts again without pieces, for values with this checksum. Quick: a value
-    /// of before stays where it is until its piece arrives.
-    pub fn restart(&mut self, checksum: u32) {
-        (self.checksum, self.missing) = (checksum, Self::ALL);
+    /// Starts again.
+    pub fn restart(&mut self, checksum: u32, count: u8) {
+        (self.checksum, self.count, self.arrived) = (checksum, count, 0);
+        self.values = DEFAULTS.0;
     }
 
     /// The expected checksum of all values.
@@ -98,16 +121,16 @@ impl<const N: usize> Reassembly<N> {
         for (value, given) in place.iter_mut().zip(piece.values) {
             *value = given;
         }
-        self.missing &= !(1 << piece.index);
+        self.arrived |= 1_u32.unbounded_shl(piece.index.into());
     }
 
     /// Whether every piece has arrived.
     pub fn is_complete(&self) -> bool {
-        self.missing == 0
+        self.arrived.count_ones() == u32::from(self.count)
     }
 
     /// The values, if complete and with a valid checksum.
-    pub fn values(&self) -> Option<&[f64; N]> {
+    pub fn values(&self) -> Option<&[f64; PARAMETER_COUNT]> {
         (self.is_complete() && checksum(&self.values) == self.checksum).then_some(&self.values)
     }
 }
@@ -115,32 +138,29 @@ impl<const N: usize> Reassembly<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Values;
     use proptest::prelude::*;
     use std::vec::Vec;
 
-    const MANY: usize = 100;
+    fn pieces(values: &[f64; PARAMETER_COUNT]) -> Vec<Piece> {
+        let send = to_send(values);
+        let sent = (0..).map_while(|index| Piece::of(values, index));
+        sent.filter(|piece| send >> piece.index & 1 == 1).collect()
+    }
 
-    fn pieces(values: &[f64]) -> Vec<Piece> {
-        (0..).map_while(|index| Piece::of(values, index)).collect()
+    fn count(values: &[f64; PARAMETER_COUNT]) -> u8 {
+        u8::try_from(to_send(values).count_ones()).unwrap()
     }
 
     #[test]
-    fn a_hundred_values_are_twenty_five_pieces() {
-        let values: [f64; MANY] = {
-            let mut next = 0.0;
-            core::array::from_fn(|_| {
-                next += 1.0 / 3.0;
-                next
-            })
-        };
-        let pieces = pieces(&values);
-        assert_eq!(pieces.len(), 25);
-        let mut reassembly = Reassembly::<MANY>::new(checksum(&values));
-        for piece in &pieces {
-            assert_eq!(reassembly.values(), None);
-            reassembly.add(piece);
-        }
-        assert_eq!(reassembly.values(), Some(&values));
+    fn defaults_are_one_piece_and_what_differs_is_sent() {
+        let mut values = Values::default().0;
+        assert_eq!(to_send(&values), 1);
+        values[PARAMETER_COUNT - 1] = -1.0;
+        values[9] = 0.7;
+        assert_eq!(to_send(&values), 1 | 1 << 2 | 1 << (PIECES - 1));
+        let all = [0.125; PARAMETER_COUNT];
+        assert_eq!(count(&all), 27);
     }
 
     #[test]
@@ -151,8 +171,8 @@ mod tests {
 
     #[test]
     fn a_piece_with_an_invalid_index_is_ignored() {
-        let mut reassembly = Reassembly::<MANY>::new(0);
-        for index in [25, 31, 32, 255] {
+        let mut reassembly = Reassembly::new(0, 1);
+        for index in [27, 31, 32, 255] {
             let before = reassembly;
             reassembly.add(&Piece {
                 index,
@@ -167,31 +187,43 @@ mod tests {
         /// another commit among them gives none.
         #[test]
         fn reassembly_is_complete_or_fails(
-            bits in prop::array::uniform32(any::<u64>()),
-            order in Just((0..8_u8).cycle().take(20).collect::<Vec<_>>()).prop_shuffle(),
-            (wrong, flip) in (0..32_usize, 0..64_u32),
+            changes in prop::collection::vec((0..PARAMETER_COUNT, any::<u64>()), 1..40),
+            order in any::<prop::sample::Index>(),
+            (wrong, flip) in (any::<prop::sample::Index>(), 0..64_u32),
         ) {
-            let values = bits.map(f64::from_bits);
-            let mut reassembly = Reassembly::<32>::new(checksum(&values));
-            for index in order {
-                reassembly.add(&Piece::of(&values, index).unwrap());
+            let mut values = Values::default().0;
+            for (place, bits) in &changes {
+                values[*place] = f64::from_bits(*bits);
+            }
+            let mut sent = pieces(&values);
+            let turn = order.index(sent.len());
+            sent.rotate_left(turn);
+            let bits = values.map(f64::to_bits);
+            let mut reassembly = Reassembly::new(checksum(&values), count(&values));
+            for piece in &sent {
+                prop_assert_eq!(reassembly.values(), None);
+                reassembly.add(piece);
+                reassembly.add(piece);
             }
             let whole = reassembly.values().map(|values| values.map(f64::to_bits));
             prop_assert_eq!(whole, Some(bits));
 
             // The next commit takes nothing of this one.
-            reassembly.restart(checksum(&values));
-            for index in 0..7 {
-                reassembly.add(&Piece::of(&values, index).unwrap());
-                prop_assert_eq!(reassembly.values(), None);
-            }
-            reassembly.add(&Piece::of(&values, 7).unwrap());
-            prop_assert!(reassembly.values().is_some());
+            let next = Values::default().0;
+            reassembly.restart(checksum(&next), 1);
+            prop_assert_eq!(reassembly.values(), None);
+            reassembly.add(&Piece::of(&next, 0).unwrap());
+            prop_assert_eq!(reassembly.values(), Some(&next));
 
-            let mut other = values;
-            other[wrong] = f64::from_bits(bits[wrong] ^ 1 << flip);
-            let index = u8::try_from(wrong / PIECE_VALUES).unwrap();
-            reassembly.add(&Piece::of(&other, index).unwrap());
+            reassembly.restart(checksum(&values), count(&values));
+            let wrong = wrong.index(sent.len());
+            for (n, piece) in sent.iter().enumerate() {
+                let mut piece = *piece;
+                if n == wrong {
+                    piece.values[0] = f64::from_bits(piece.values[0].to_bits() ^ 1 << flip);
+                }
+                reassembly.add(&piece);
+            }
             prop_assert!(reassembly.is_complete() && reassembly.values().is_none());
         }
     }

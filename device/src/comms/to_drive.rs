@@ -9,10 +9,6 @@ use crepitus_protocol::{Lane, Revision, Values};
 /// Retry interval of unconfirmed messages, ms.
 const RETRY_MS: u64 = 10;
 
-/// Pieces of a commit in a millisecond: with a heartbeat these are 145 bytes. The
-/// drive reads 100, and its ring has place for all pieces of a commit.
-const PIECES_PER_MS: u8 = 2;
-
 /// Retry interval of questions: a hello, a part of the post-mortem record, ms.
 const ASK_RETRY_MS: u64 = 10;
 
@@ -43,30 +39,40 @@ pub(super) struct Wanted<'a> {
 struct CommitProgress {
     revision: Option<Revision>,
     next: u8,
-    /// The last millisecond with a piece, and how many.
-    sent_ms: u64,
-    sent: u8,
+    /// The millisecond of the last piece. One in each: with a heartbeat that is less
+    /// than the drive reads, and what it sends meanwhile has its runs.
+    sent_ms: Option<u64>,
 }
 
 impl CommitProgress {
-    /// Returns the piece to send now. Starts over when the commit is not confirmed
-    /// in time.
-    fn next_piece(&mut self, now_ms: u64, revision: Revision, values: &Values) -> Option<Piece> {
+    /// Returns the piece to send now, and how many there are. Starts over when the
+    /// commit is not confirmed in time.
+    fn next_piece(
+        &mut self,
+        now_ms: u64,
+        revision: Revision,
+        values: &Values,
+    ) -> Option<(Piece, u8)> {
         if self.revision != Some(revision) {
             (self.revision, self.next) = (Some(revision), 0);
         }
-        let sent = if now_ms > self.sent_ms { 0 } else { self.sent };
-        if sent >= PIECES_PER_MS {
+        let since = |ms: u64| now_ms.saturating_sub(ms);
+        if self.sent_ms.is_some_and(|ms| since(ms) == 0) {
             return None;
         }
-        let piece = match Piece::of(&values.0, self.next) {
-            None if now_ms < self.sent_ms.saturating_add(RETRY_MS) => return None,
-            None => Piece::of(&values.0, 0)?,
-            Some(piece) => piece,
+        let pieces = pieces::to_send(&values.0);
+        let left = pieces & u32::MAX.unbounded_shl(self.next.into());
+        let first = match left {
+            0 if self.sent_ms.is_some_and(|ms| since(ms) < RETRY_MS) => return None,
+            0 => pieces,
+            left => left,
         };
-        self.next = piece.index.saturating_add(1);
-        (self.sent_ms, self.sent) = (now_ms, sent.saturating_add(1));
-        Some(piece)
+        let [index, ..] = first.trailing_zeros().to_le_bytes();
+        let [count, ..] = pieces.count_ones().to_le_bytes();
+        let piece = Piece::of(&values.0, index)?;
+        self.next = index.saturating_add(1);
+        self.sent_ms = Some(now_ms);
+        Some((piece, count))
     }
 }
 
@@ -118,11 +124,12 @@ impl ToDriveQueue {
             });
         }
         if let Some((revision, values)) = wanted.commit
-            && let Some(piece) = self.commit.next_piece(self.now_ms, revision, values)
+            && let Some((piece, pieces)) = self.commit.next_piece(self.now_ms, revision, values)
         {
             return message(&ToDrive::Commit {
                 revision,
                 checksum: pieces::checksum(&values.0),
+                pieces,
                 piece,
             });
         }

@@ -25,7 +25,7 @@ impl Commits {
     pub fn receive(
         &mut self,
         revision: Revision,
-        checksum: u32,
+        (checksum, pieces): (u32, u8),
         piece: &Piece,
         active: Revision,
         counters: &Counters,
@@ -46,7 +46,7 @@ impl Commits {
         }
         if self.pending != Some(revision) || self.reassembly.checksum() != checksum {
             self.pending = Some(revision);
-            self.reassembly.restart(checksum);
+            self.reassembly.restart(checksum, pieces);
         }
         self.reassembly.add(piece);
         false
@@ -99,8 +99,12 @@ impl Commits {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_protocol::parameters::id;
-    use crepitus_protocol::pieces::checksum;
+    use crepitus_protocol::parameters::{PARAMETER_COUNT, id};
+    use crepitus_protocol::pieces::{PIECE_VALUES, checksum};
+
+    /// Every piece is sent, also those at their defaults.
+    #[expect(clippy::cast_possible_truncation, reason = "less than 32")]
+    const ALL: u8 = PARAMETER_COUNT.div_ceil(PIECE_VALUES) as u8;
 
     /// What arrives of a commit.
     struct Wire {
@@ -122,7 +126,7 @@ mod tests {
                 let sum = checksum(&values.0);
                 self.commits.receive(
                     Revision(revision),
-                    sum,
+                    (sum, ALL),
                     piece,
                     Revision(active),
                     &self.counters,
@@ -215,7 +219,7 @@ mod tests {
             let sum = checksum(&values.0) ^ 1;
             let (revision, active) = (Revision(5), Revision(4));
             wire.commits
-                .receive(revision, sum, &piece, active, &wire.counters);
+                .receive(revision, (sum, ALL), &piece, active, &wire.counters);
         }
         assert_eq!(wire.take(), None);
         assert_eq!(wire.counters.get(DriveCounter::Discarded), 1);

@@ -117,11 +117,12 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             ToDrive::Commit {
                 revision,
                 checksum,
+                pieces,
                 piece,
             } => {
                 let active = shared.command(|command| command.revision());
                 let is_decided = shared.commits(|commits| {
-                    commits.receive(*revision, *checksum, piece, active, counters)
+                    commits.receive(*revision, (*checksum, *pieces), piece, active, counters)
                 });
                 if is_decided {
                     self.link.request_status();

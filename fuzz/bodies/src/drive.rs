@@ -265,10 +265,14 @@ impl Bench {
 
     fn commit(&mut self, revision: Revision, values: &Values) {
         self.sent.push((revision, *values));
-        for piece in (0..).map_while(|index| Piece::of(&values.0, index)) {
+        let send = pieces::to_send(&values.0);
+        let [count, ..] = send.count_ones().to_le_bytes();
+        let all = (0..).map_while(|index| Piece::of(&values.0, index));
+        for piece in all.filter(|piece| send >> piece.index & 1 == 1) {
             self.send(&ToDrive::Commit {
                 revision,
                 checksum: pieces::checksum(&values.0),
+                pieces: count,
                 piece,
             });
         }

@@ -66,7 +66,7 @@ impl DriveModel {
             has_rejected: false,
             has_restarted: false,
             latest_tick: 0,
-            reassembly: (Revision::NONE, Reassembly::new(0)),
+            reassembly: (Revision::NONE, Reassembly::new(0, 0)),
             crash_part: None,
         }
     }
@@ -104,10 +104,11 @@ impl DriveModel {
             ToDrive::Commit {
                 revision,
                 checksum,
+                pieces,
                 piece,
             } => {
                 if self.reassembly.0 != revision || self.reassembly.1.checksum() != checksum {
-                    self.reassembly = (revision, Reassembly::new(checksum));
+                    self.reassembly = (revision, Reassembly::new(checksum, pieces));
                 }
                 self.reassembly.1.add(&piece);
                 if self.reassembly.1.values().is_some() {

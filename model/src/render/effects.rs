@@ -32,12 +32,12 @@ pub use slewed::Slewed;
 pub use together::{MOST_SHARE_AT_A_WALL, MOST_STIFFNESS_NM_PER_RAD};
 
 use super::input_check::Checked;
-use super::position::{Position, Scale, Sight, Travel};
+use super::position::{Position, Scale, Sight};
 use super::{Addition, Seen, Shown};
 use crate::joint::{LONGEST_STEP_S, SettingsError};
 use crate::parameters::{Choice, Chosen, Parameter, ParameterSpec, Source, Tabled, filled, switch};
 use crate::real::Real;
-use symptom::{Change, Law};
+use symptom::{Change, Given, Law};
 use tank::Tank;
 
 effects! {
@@ -227,22 +227,10 @@ impl<F: Real, L: Law<Real = F>> DeviceEffect<F> for L {
         shown: &mut Shown<F>,
         observe: &mut impl Observe<F>,
     ) -> F {
-        let torque_nm = match Travel::of(tick.input, &tick.seen.place, self.scale()) {
-            Some(travel) => self.follow(&travel, &mut |change: Change<F>| {
-                if change.word == symptom::Word::Snap {
-                    shown.jump_nm += change.after_nm - change.before_nm;
-                }
-                observe.change(const { &<L as Law>::SPEC }, change);
-            }),
-            None => self.torque_nm(),
-        };
-        if self.is_active() {
-            let paid_nm = tick.paid_share * torque_nm;
-            shown.active_nm += paid_nm;
-            paid_nm
-        } else {
-            torque_nm
-        }
+        let given = Given::by(self, tick, observe);
+        shown.jump_nm += given.jump_nm;
+        shown.active_nm += given.active_nm;
+        given.nm
     }
 
     fn phase(&self) -> u16 {
@@ -277,24 +265,6 @@ pub trait Switched<F: Real, E: DeviceEffect<F>> {
 /// The tank of a device's symptoms.
 fn tank<F: Real>(timing: &Timing) -> Tank<F> {
     Tank::new(TANK_J, TANK_REFILL_W, timing.step_s, timing.delay_ticks)
-}
-
-/// Accounts for a tick; the share of torque that is paid.
-#[inline]
-fn open<F: Real>(tank: &mut Tank<F>, seen: &Seen<F>) -> F {
-    if tank.is_idle() {
-        return F::ONE;
-    }
-    tank.account(seen.travel_rad());
-    tank.share()
-}
-
-/// Notes what was given.
-#[inline]
-fn close<F: Real>(tank: &mut Tank<F>, shown: &Shown<F>) {
-    if shown.active_nm != F::ZERO || !tank.is_idle() {
-        tank.give(shown.active_nm);
-    }
 }
 
 /// What else is shown of an effect that has acted.

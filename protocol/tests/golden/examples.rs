@@ -409,6 +409,7 @@ fn to_drive() -> Vec<Example> {
         ToDrive::Commit {
             revision: Revision(301),
             checksum: pieces::checksum(&values().0),
+            pieces: 9,
             piece: Piece::of(&values().0, 1).expect("more values than one piece has"),
         },
         command(Order::Arm),
@@ -420,7 +421,7 @@ fn to_drive() -> Vec<Example> {
         .iter()
         .map(|message| {
             let means = matches!(message, ToDrive::Commit { .. })
-                .then(|| format!("Commit {{ revision: Revision(301), checksum, piece: Piece {{ index: 1, values }} }}; {VALUES}"));
+                .then(|| format!("Commit {{ revision: Revision(301), checksum, pieces: 9, piece: Piece {{ index: 1, values }} }}; {VALUES}"));
             let name = format!("to-drive.{}", to_drive_name(message));
             example(Lane::ToDrive, &name, message, means.as_deref())
         })

@@ -1,7 +1,7 @@
 //! A symptom on a device that runs: its state outlives a commit.
 
-use super::symptom::Law;
-use super::{DeviceEffect, Observe, Switched, Tick};
+use super::symptom::{Given, Law};
+use super::{Observe, Switched, Tick};
 use crate::real::Real;
 use crate::render::Shown;
 use crate::render::input_check::{Checked, HOLD_TICKS};
@@ -81,7 +81,7 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
         self.is_on.then_some(&self.law)
     }
 
-    #[inline]
+    #[inline(always)]
     fn tick(
         &mut self,
         tick: &Tick<'_, F>,
@@ -91,30 +91,50 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
         if !self.is_on {
             return F::ZERO;
         }
+        // Copies: whose address is taken lives in memory also where this is off.
+        let (seen, input) = (*tick.seen, *tick.input);
+        let tick = Tick {
+            seen: &seen,
+            input: &input,
+            paid_share: tick.paid_share,
+        };
+        let given = self.tick_on(&tick, observe);
+        shown.torque_nm += given.nm;
+        shown.jump_nm += given.jump_nm;
+        shown.active_nm += given.active_nm;
+        shown.settling |= given.is_settling;
+        given.nm
+    }
+}
+
+impl<F: Real, E: Law<Real = F>> Kept<F, E> {
+    /// A tick of one that is on. On its own: so one that is off costs a look, and no
+    /// register of those around it.
+    #[inline(never)]
+    fn tick_on(&mut self, tick: &Tick<'_, F>, observe: &mut impl Observe<F>) -> Given<F> {
         if self.is_new || !tick.seen.is_driven {
             self.rest(&tick.seen.place);
-            return F::ZERO;
+            return Given::NOTHING;
         }
         if let Checked::Missing(ticks) = tick.input
             && *ticks > HOLD_TICKS
         {
             self.law.release(self.slew_nm);
         }
-        let law_nm = self.law.added_nm(tick, shown, observe);
-        self.last_nm = match self.way {
-            Way::Free => law_nm,
-            _ => self.held_back(law_nm, shown),
-        };
-        shown.torque_nm += self.last_nm;
-        self.last_nm
+        let mut given = Given::by(&mut self.law, tick, observe);
+        if self.way != Way::Free {
+            given.nm = self.held_back(given.nm);
+            given.is_settling = true;
+        }
+        self.last_nm = given.nm;
+        given
     }
 }
 
 impl<F: Real, E> Kept<F, E> {
     /// What is shown of a law's torque while it is exchanged.
     #[cold]
-    fn held_back(&mut self, law_nm: F, shown: &mut Shown<F>) -> F {
-        shown.settling = true;
+    fn held_back(&mut self, law_nm: F) -> F {
         match self.way {
             Way::Free => law_nm,
             Way::CatchingUp => {

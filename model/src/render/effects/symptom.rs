@@ -1,6 +1,6 @@
 //! Symptoms besides crepitus: laws of disorders that depend on the joint's angle.
 
-use super::{EffectSpec, Timing};
+use super::{EffectSpec, Observe, Tick, Timing};
 use crate::joint::SettingsError;
 use crate::real::Real;
 use crate::render::position::{Position, Scale, Travel};
@@ -195,4 +195,51 @@ pub trait Law: Sized {
 
     /// The number of its phase.
     fn phase(&self) -> u16;
+}
+
+/// What a symptom gives in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Given<F> {
+    /// Its torque, N·m.
+    pub(super) nm: F,
+    /// By how much that jumped where an asperity was crossed, N·m.
+    pub(super) jump_nm: F,
+    /// Its torque if a tank pays for it, N·m.
+    pub(super) active_nm: F,
+    /// It is on its way to other parameters.
+    pub(super) is_settling: bool,
+}
+
+impl<F: Real> Given<F> {
+    /// Nothing.
+    pub(super) const NOTHING: Self = Self {
+        nm: F::ZERO,
+        jump_nm: F::ZERO,
+        active_nm: F::ZERO,
+        is_settling: false,
+    };
+
+    /// By this law.
+    #[inline]
+    pub(super) fn by<L: Law<Real = F>>(
+        law: &mut L,
+        tick: &Tick<'_, F>,
+        observe: &mut impl Observe<F>,
+    ) -> Self {
+        let mut given = Self::NOTHING;
+        given.nm = match Travel::of(tick.input, &tick.seen.place, law.scale()) {
+            Some(travel) => law.follow(&travel, &mut |change: Change<F>| {
+                if change.word == Word::Snap {
+                    given.jump_nm += change.after_nm - change.before_nm;
+                }
+                observe.change(const { &<L as Law>::SPEC }, change);
+            }),
+            None => law.torque_nm(),
+        };
+        if law.is_active() {
+            given.nm = tick.paid_share * given.nm;
+            given.active_nm = given.nm;
+        }
+        given
+    }
 }

@@ -157,7 +157,7 @@ macro_rules! effects {
                 shown: &mut Shown<F>,
                 observe: &mut impl Observe<F>,
             ) {
-                let paid_share = open(&mut self.tank, seen);
+                let paid_share = self.tank.open(seen.travel_rad());
                 let tick = Tick { seen, input, paid_share };
                 $(if let Some(law) = &mut self.$effect {
                     let added_nm = law.added_nm(&tick, shown, observe);
@@ -165,7 +165,7 @@ macro_rules! effects {
                     shown.added.$effect = added_nm;
                     note(Some(law), added_nm, shown);
                 })*
-                close(&mut self.tank, shown);
+                self.tank.close(shown.active_nm);
             }
         }
 
@@ -182,14 +182,14 @@ macro_rules! effects {
                 shown: &mut Shown<F>,
                 observe: &mut impl Observe<F>,
             ) {
-                let paid_share = open(&mut self.tank, seen);
+                let paid_share = self.tank.open(seen.travel_rad());
                 let tick = Tick { seen, input, paid_share };
                 $(
                     let added_nm = self.$effect.tick(&tick, shown, observe);
                     shown.added.$effect = added_nm;
                     note(self.$effect.law(), added_nm, shown);
                 )*
-                close(&mut self.tank, shown);
+                self.tank.close(shown.active_nm);
             }
         }
 

@@ -26,6 +26,8 @@ pub struct Tank<F> {
     /// The last output torques, the latest first.
     pub(super) given_nm: [F; MOST_DELAY_TICKS + 1],
     delay_ticks: usize,
+    /// Something is missing, or was given that could take from it.
+    is_in_use: bool,
 }
 
 impl<F: Real> Tank<F> {
@@ -39,6 +41,7 @@ impl<F: Real> Tank<F> {
             level_j: F::from_f64(capacity_j),
             given_nm: [F::ZERO; MOST_DELAY_TICKS + 1],
             delay_ticks: delay_ticks.min(MOST_DELAY_TICKS),
+            is_in_use: false,
         }
     }
 
@@ -80,10 +83,26 @@ impl<F: Real> Tank<F> {
         self.level_j
     }
 
-    /// Whether nothing is missing, and nothing given that could take from it.
+    /// The share that is paid of what shares the tank; accounts for a tick first,
+    /// unless there is nothing to account for.
     #[inline]
-    pub fn is_idle(&self) -> bool {
-        self.level_j == self.capacity_j && self.given_nm == [F::ZERO; MOST_DELAY_TICKS + 1]
+    pub fn open(&mut self, delta_phi_rad: F) -> F {
+        if self.is_in_use {
+            self.account(delta_phi_rad);
+            self.share()
+        } else {
+            F::ONE
+        }
+    }
+
+    /// Notes what all that shares it is given, N·m.
+    #[inline]
+    pub fn close(&mut self, torque_nm: F) {
+        if self.is_in_use || torque_nm != F::ZERO {
+            self.give(torque_nm);
+            self.is_in_use =
+                self.level_j != self.capacity_j || self.given_nm != [F::ZERO; MOST_DELAY_TICKS + 1];
+        }
     }
 
     /// The least work that the hand has put in by this travel, J: with the
