@@ -1,7 +1,7 @@
 //! A symptom on a device that runs: its state outlives a commit.
 
 use super::symptom::Law;
-use super::{DeviceEffect, Observe, Switched, Tick};
+use super::{DeviceEffect, MOST_STIFFNESS_NM_PER_RAD, Observe, Switched, Tick};
 use crate::real::Real;
 use crate::render::Shown;
 use crate::render::input_check::{Checked, HOLD_TICKS};
@@ -13,6 +13,10 @@ use crate::render::position::Position;
 /// removed goes on within a limit that falls from its torque with the slew limit:
 /// it returns no more energy than it holds. While the bridge floats it rests. What
 /// samples are missing for is held for a millisecond, then released.
+///
+/// Where a commit makes its torque jump, the jump J is made up for by a torque that
+/// fades with the slew limit, and gives way as a spring of stiffness S where the hand
+/// moves along with it: it returns at most J²/2S.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kept<F, E> {
     law: Option<E>,
@@ -26,8 +30,12 @@ pub struct Kept<F, E> {
 enum Way<F> {
     /// As it is.
     Free,
-    /// Within the slew limit, until that has caught up.
-    CatchingUp,
+    /// Not at all: it appears, and has no place yet.
+    Appearing,
+    /// With other coefficients, for the first time.
+    Adopted,
+    /// With this torque besides, which fades, N·m.
+    Fading(F),
     /// Within this limit, which falls to nothing.
     Leaving(F),
 }
@@ -49,11 +57,13 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
             (Some(None), Some(_)) => self.way = Way::Leaving(self.last_nm.abs()),
             (Some(Some(coefficients)), Some(law)) => {
                 law.adopt(coefficients, slew_nm);
-                self.way = Way::CatchingUp;
+                if self.way != Way::Appearing {
+                    self.way = Way::Adopted;
+                }
             }
             (Some(Some(coefficients)), None) => {
                 self.law = Some(E::new(coefficients));
-                self.way = Way::Free;
+                self.way = Way::Appearing;
             }
         }
     }
@@ -90,6 +100,12 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
         if !tick.seen.is_driven {
             return F::ZERO;
         }
+        if self.way == Way::Appearing {
+            Law::rest(law, &tick.seen.place);
+            self.way = Way::Adopted;
+            shown.settling = true;
+            return F::ZERO;
+        }
         if let Checked::Missing(ticks) = tick.input
             && *ticks > HOLD_TICKS
         {
@@ -98,28 +114,30 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
         let law_nm = law.added_nm(tick, shown, observe);
         self.last_nm = match self.way {
             Way::Free => law_nm,
-            _ => self.held_back(law_nm, shown),
+            _ => self.held_back(law_nm, tick, shown),
         };
         shown.torque_nm += self.last_nm;
         self.last_nm
     }
 }
 
-impl<F: Real, E> Kept<F, E> {
+impl<F: Real, E: Law<Real = F>> Kept<F, E> {
     /// What is shown of a law's torque while it is exchanged.
     #[cold]
-    fn held_back(&mut self, law_nm: F, shown: &mut Shown<F>) -> F {
+    fn held_back(&mut self, law_nm: F, tick: &Tick<'_, F>, shown: &mut Shown<F>) -> F {
         shown.settling = true;
-        match self.way {
-            Way::Free => law_nm,
-            Way::CatchingUp => {
-                let step_nm = law_nm - self.last_nm;
-                if step_nm.abs() > self.slew_nm {
-                    self.last_nm + step_nm.within(self.slew_nm)
+        let shown_nm = match self.way {
+            Way::Free | Way::Appearing => law_nm,
+            Way::Adopted => self.fade(law_nm, self.last_nm - law_nm, self.slew_nm),
+            Way::Fading(besides_nm) => {
+                let moved_rad = tick.input.travel_rad().unwrap_or(F::ZERO);
+                let along = besides_nm * moved_rad < F::ZERO;
+                let gives_nm = if along {
+                    F::from_f64(MOST_STIFFNESS_NM_PER_RAD) * moved_rad.abs()
                 } else {
-                    self.way = Way::Free;
-                    law_nm
-                }
+                    F::ZERO
+                };
+                self.fade(law_nm, besides_nm, self.slew_nm + gives_nm)
             }
             Way::Leaving(most_nm) => {
                 let most_nm = (most_nm - self.slew_nm).at_least(F::ZERO);
@@ -130,6 +148,25 @@ impl<F: Real, E> Kept<F, E> {
                 }
                 law_nm.within(most_nm)
             }
+        };
+        if shown.active_nm != F::ZERO && self.law.as_ref().is_some_and(Law::is_active) {
+            // The tank pays for what is shown.
+            shown.active_nm += shown_nm - law_nm;
         }
+        shown_nm
+    }
+
+    /// The law's torque with what is left of `besides_nm` besides, no more than it is
+    /// or was shown.
+    fn fade(&mut self, law_nm: F, besides_nm: F, fades_nm: F) -> F {
+        let most_nm = self.last_nm.abs().at_least(law_nm.abs());
+        let left_nm = besides_nm - besides_nm.within(fades_nm);
+        let shown_nm = (law_nm + left_nm).within(most_nm);
+        self.way = if left_nm == F::ZERO {
+            Way::Free
+        } else {
+            Way::Fading(shown_nm - law_nm)
+        };
+        shown_nm
     }
 }
