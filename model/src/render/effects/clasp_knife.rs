@@ -14,7 +14,7 @@
 //!
 //! Sources: all numbers are estimates; the collapse to a fifth takes 85 ms.
 
-use super::play::{Hold, Limits, Part, Play};
+use super::play::{Hold, Limits, Part, Play, short_decay};
 use super::spasticity::sense;
 use super::symptom::{Change, Law, Word};
 use super::{EffectSpec, PhaseSpec, Timing};
@@ -321,6 +321,10 @@ impl<F: Real> ClaspKnife<F> {
             self.with.sense * (travel.end_beyond(&self.with.onset) - travel.delta_rad) < F::ZERO;
         if started && self.play.torque_nm() == F::ZERO {
             self.play.put(&self.with.onset, F::ZERO, Hold::Elastic);
+        } else if self.play.torque_nm() == F::ZERO {
+            // Armed beyond the onset, or the onset was moved: it pushes nobody.
+            self.play
+                .put(&travel.place(F::ZERO), F::ZERO, Hold::Elastic);
         }
         let fraction = if started {
             travel.reaches(&self.with.onset)
@@ -347,7 +351,12 @@ impl<F: Real> ClaspKnife<F> {
         if let Some(release) = &with.release
             && with.sense * travel.end_beyond(release) >= F::ZERO
         {
-            let fraction = travel.reaches(release);
+            let before_rad = with.sense * (travel.end_beyond(release) - travel.delta_rad);
+            let fraction = if before_rad >= F::ZERO {
+                F::ZERO
+            } else {
+                travel.reaches(release)
+            };
             return self.collapse(fraction, travel, on_change);
         }
         let before = self.play;
@@ -424,7 +433,7 @@ impl<F: Real> ClaspKnife<F> {
         let after_nm = if from == F::ZERO {
             (0..travel.ticks).fold(before_nm, |nm, _| nm * with.decay)
         } else {
-            before_nm * (F::ONE - (F::ONE - from) * (F::ONE - with.decay))
+            before_nm * short_decay(with.rate * (F::ONE - from))
         };
         let after_nm = after_nm.settled();
         let limits = |fraction: F| {

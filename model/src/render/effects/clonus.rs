@@ -142,8 +142,36 @@ enum Stage {
     Beating,
     /// Waits for the joint's return: after a slow crossing or the last beat.
     Over,
-    /// Let go: the beat under way runs out.
-    Stopping,
+}
+
+/// Time since something began, ticks: whole ones, and a fraction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Since<F> {
+    whole: u32,
+    rest: F,
+}
+
+impl<F: Real> Since<F> {
+    const NOW: Self = Self {
+        whole: 0,
+        rest: F::ZERO,
+    };
+
+    #[inline]
+    fn ticks(&self) -> F {
+        F::from_whole(u64::from(self.whole)) + self.rest
+    }
+
+    /// From so many ticks later on.
+    fn later(&self, ticks: F) -> Self {
+        let whole = ticks.whole();
+        Self {
+            whole: self
+                .whole
+                .saturating_sub(u32::try_from(whole).unwrap_or(u32::MAX)),
+            rest: self.rest - (ticks - F::from_whole(whole)),
+        }
+    }
 }
 
 /// Beats.
@@ -151,9 +179,11 @@ enum Stage {
 pub struct Clonus<F> {
     with: ClonusCoefficients<F>,
     stage: Stage,
-    /// Ticks since the interval began, whole ones and the fraction.
-    passed: u32,
-    passed_rest: F,
+    /// Since the interval began.
+    interval_since: Since<F>,
+    /// Since the last beat began, which outlives its interval where the muscle is let
+    /// go and stretched again.
+    beat_since: Since<F>,
     /// The interval, ticks.
     interval: F,
     /// ε·2⁻ⁿ of the next interval.
@@ -217,8 +247,8 @@ impl<F: Real> Law for Clonus<F> {
         Self {
             with: coefficients,
             stage: Stage::Ready,
-            passed: 0,
-            passed_rest: F::ZERO,
+            interval_since: Since::NOW,
+            beat_since: Since::NOW,
             interval: F::ZERO,
             stretch: F::ZERO,
             beaten: 0,
@@ -244,19 +274,20 @@ impl<F: Real> Law for Clonus<F> {
     fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
         let with = &self.with;
         let beyond_rad = with.sense * travel.end_beyond(&with.hold);
-        match self.stage {
-            Stage::Ready => {
-                if beyond_rad >= F::ZERO {
-                    self.cross(travel, on_change);
-                }
-            }
-            Stage::Beating | Stage::Stopping => self.beat(travel, on_change),
-            Stage::Over => {}
+        let is_back = -beyond_rad >= with.back_rad;
+        if self.per_tick > F::ZERO {
+            self.beat_since.whole = self.beat_since.whole.saturating_add(travel.ticks);
         }
-        if self.stage != Stage::Ready
-            && self.stage != Stage::Stopping
-            && -beyond_rad >= self.with.back_rad
-        {
+        match self.stage {
+            Stage::Ready if beyond_rad >= F::ZERO => self.cross(travel, on_change),
+            Stage::Beating => {
+                self.interval_since.whole = self.interval_since.whole.saturating_add(travel.ticks);
+                self.pace(travel, on_change);
+            }
+            Stage::Ready | Stage::Over => {}
+        }
+        self.push();
+        if self.stage != Stage::Ready && is_back {
             self.let_go(travel, on_change);
         }
         self.torque_nm
@@ -282,10 +313,10 @@ impl<F: Real> Law for Clonus<F> {
 
     fn phase(&self) -> u16 {
         match self.stage {
+            Stage::Ready if self.per_tick > F::ZERO => 3,
             Stage::Ready => 0,
             Stage::Beating => 1,
             Stage::Over => 2,
-            Stage::Stopping => 3,
         }
     }
 }
@@ -302,62 +333,56 @@ impl<F: Real> Clonus<F> {
         }
         on_change(Change::at(Word::Start, fraction, F::ZERO, F::ZERO));
         self.stage = Stage::Beating;
-        self.passed = 0;
-        self.passed_rest = -fraction;
+        self.interval_since = Since {
+            whole: travel.ticks,
+            rest: -fraction * F::from_whole(u64::from(travel.ticks)),
+        };
         self.interval = self.with.delay;
         self.stretch = self.with.first_stretch;
         self.beaten = 0;
-        self.per_tick = F::ZERO;
-        self.beat(travel, on_change);
+        self.pace(travel, on_change);
     }
 
-    /// Beats through a travel.
+    /// Begins the next beat when its time has come.
     #[inline]
-    fn beat(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
-        self.passed = self.passed.saturating_add(travel.ticks);
-        let passed = F::from_whole(u64::from(self.passed)) + self.passed_rest;
-        if passed >= self.interval && self.stage == Stage::Beating {
-            self.next(passed, travel, on_change);
+    fn pace(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+        let late = self.interval_since.ticks() - self.interval;
+        if late >= F::ZERO {
+            self.next(late, travel, on_change);
         }
-        let passed = F::from_whole(u64::from(self.passed)) + self.passed_rest;
-        let share = passed * self.per_tick;
+    }
+
+    /// The torque of the beat under way.
+    #[inline]
+    fn push(&mut self) {
+        if self.per_tick == F::ZERO {
+            return;
+        }
+        let share = self.beat_since.ticks() * self.per_tick;
         if share < F::ONE {
             self.torque_nm = self.with.sense * self.with.amplitude_nm * half_wave(share);
         } else {
             self.torque_nm = F::ZERO;
             self.per_tick = F::ZERO;
-            if self.stage == Stage::Stopping {
-                self.stage = Stage::Ready;
-            }
-        }
-        if self.per_tick == F::ZERO {
-            self.torque_nm = F::ZERO;
         }
     }
 
-    /// An interval is over, `passed` ticks after it began: the next beat, if there
-    /// is one.
+    /// An interval is over, so many ticks ago: the next beat, if there is one.
     #[cold]
-    fn next(&mut self, passed: F, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
-        let late = passed - self.interval;
-        let fraction = (F::ONE - late).at_least(F::ZERO);
-        let whole = self.interval.whole();
-        self.passed = self
-            .passed
-            .saturating_sub(u32::try_from(whole).unwrap_or(u32::MAX));
-        self.passed_rest = self.passed_rest - (self.interval - F::from_whole(whole));
+    fn next(&mut self, late: F, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+        let fraction = (F::ONE - late / F::from_whole(u64::from(travel.ticks))).at_least(F::ZERO);
         if self.with.beats > 0 && self.beaten >= self.with.beats {
             on_change(Change::at(Word::Done, fraction, F::ZERO, F::ZERO));
             self.stage = Stage::Over;
-            self.per_tick = F::ZERO;
             return;
         }
         on_change(Change::at(Word::Beat, fraction, F::ZERO, F::ZERO));
+        self.interval_since = self.interval_since.later(self.interval);
+        self.beat_since = self.interval_since;
         self.interval = self.with.period * (F::ONE + self.stretch);
         self.stretch = self.stretch * F::HALF;
         self.beaten = self.beaten.saturating_add(1);
         self.per_tick = F::ONE / (self.with.push_share * self.interval);
-        let _ = travel;
     }
 
     /// The joint has returned.
@@ -369,11 +394,7 @@ impl<F: Real> Clonus<F> {
             on_change(Change::at(Word::Stop, travel.reaches(&place), nm, nm));
         }
         self.beaten = 0;
-        self.stage = if self.per_tick > F::ZERO {
-            Stage::Stopping
-        } else {
-            Stage::Ready
-        };
+        self.stage = Stage::Ready;
     }
 }
 

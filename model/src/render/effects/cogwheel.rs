@@ -14,7 +14,7 @@
 //! Sources: 6 to 6.5 Hz, in a second form 7.5 to 9 Hz (Findley, Gresty, Halmagyi
 //! 1981); torques are estimates.
 
-use super::play::{Hold, Limits, Part, Play};
+use super::play::{Hold, Limits, Part, Play, dragged};
 use super::symptom::{Change, Law, Word};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
@@ -255,18 +255,19 @@ impl<F: Real> Law for Cogwheel<F> {
             }
         };
         let is_high = self.at < low_from;
+        let mut from = F::ZERO;
         if is_high != self.is_high {
             let turn = Turn {
                 before,
                 turned,
                 back,
             };
-            self.switch(is_high, &turn, travel, on_change);
+            from = self.switch(is_high, &turn, travel, on_change);
         }
         let with = &self.with;
         self.elastic_nm = with.elastic * travel.end_beyond(&with.neutral);
         let limits = self.limits();
-        let part = Part::whole(F::ONE);
+        let part = Part::since(F::ONE, from);
         self.play
             .follow(travel, part, with.stiffness, |_| limits, on_change)
             + self.elastic_nm
@@ -317,7 +318,7 @@ impl<F: Real> Cogwheel<F> {
         })
     }
 
-    /// A tooth begins or ends within the travel.
+    /// A tooth begins or ends within the travel; the share of it that is behind then.
     #[cold]
     fn switch(
         &mut self,
@@ -325,7 +326,7 @@ impl<F: Real> Cogwheel<F> {
         turn: &Turn,
         travel: &Travel<F>,
         on_change: &mut impl FnMut(Change<F>),
-    ) {
+    ) -> F {
         // Forwards it is high from 0 on, backwards from the end of its height.
         let edge = if is_high == turn.back {
             self.with.low_from
@@ -335,7 +336,7 @@ impl<F: Real> Cogwheel<F> {
         let beyond = turn.distance(edge, self.at);
         // Noise at the edge of a tooth is no edge.
         if matches!(self.with.clock, Clock::Space(..)) && beyond < self.with.flicker {
-            return;
+            return F::ZERO;
         }
         let fraction = turn.share(edge);
         let limits = self.limits();
@@ -346,19 +347,24 @@ impl<F: Real> Cogwheel<F> {
         self.is_high = is_high;
         let after_nm = before_nm.within(self.limits().upper_nm);
         let place = travel.place(fraction);
-        let hold = match after_nm == before_nm {
-            true => Hold::Elastic,
-            false if after_nm > F::ZERO => Hold::Upper,
-            false => Hold::Lower,
+        // What is at the limit stays there, what is below is held.
+        let Limits { lower_nm, upper_nm } = self.limits();
+        let hold = if after_nm == upper_nm {
+            dragged(Hold::Upper, upper_nm)
+        } else if after_nm == lower_nm {
+            Hold::Lower
+        } else {
+            Hold::Elastic
         };
         self.play.put(&place, after_nm, hold);
         let moved_rad = travel.to.beyond(&self.switched, travel.rad_per_count);
         self.switched = travel.to;
-        if is_high && moved_rad.abs() > self.with.flicker_rad {
-            on_change(Change::at(Word::Catch, fraction, before_nm, after_nm));
-        } else if !is_high && after_nm != before_nm {
-            on_change(Change::at(Word::Give, fraction, before_nm, after_nm));
+        // At rest one give is felt, then there is silence.
+        if moved_rad.abs() > self.with.flicker_rad || after_nm != before_nm {
+            let word = if is_high { Word::Catch } else { Word::Give };
+            on_change(Change::at(word, fraction, before_nm, after_nm));
         }
+        fraction
     }
 }
 

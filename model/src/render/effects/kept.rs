@@ -1,7 +1,7 @@
 //! A symptom on a device that runs: its state outlives a commit.
 
 use super::symptom::{Given, Law};
-use super::{Observe, Switched, Tick};
+use super::{MOST_STIFFNESS_NM_PER_RAD, Observe, Switched, Tick};
 use crate::real::Real;
 use crate::render::Shown;
 use crate::render::input_check::{Checked, HOLD_TICKS};
@@ -13,14 +13,16 @@ use crate::render::position::Position;
 /// removed goes on within a limit that falls from its torque with the slew limit:
 /// it returns no more energy than it holds. While the bridge floats it rests. What
 /// samples are missing for is held for a millisecond, then released.
+///
+/// Where a commit makes its torque jump, the jump J is made up for by a torque that
+/// fades with the slew limit, and gives way as a spring of stiffness S where the hand
+/// moves along with it: it returns at most J²/2S.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kept<F, E> {
     /// Also while it is off: a law may have much to remember, and a commit moves
     /// nothing of it.
     law: E,
     is_on: bool,
-    /// It has no place yet.
-    is_new: bool,
     slew_nm: F,
     way: Way<F>,
     last_nm: F,
@@ -31,8 +33,12 @@ pub struct Kept<F, E> {
 enum Way<F> {
     /// As it is.
     Free,
-    /// Within the slew limit, until that has caught up.
-    CatchingUp,
+    /// Not at all: it appears, and has no place yet.
+    Appearing,
+    /// With other coefficients, for the first time.
+    Adopted,
+    /// With this torque besides, which fades, N·m.
+    Fading(F),
     /// Within this limit, which falls to nothing.
     Leaving(F),
 }
@@ -42,7 +48,6 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
         Self {
             law: E::new(E::Coefficients::default()),
             is_on: false,
-            is_new: false,
             slew_nm,
             way: Way::Free,
             last_nm: F::ZERO,
@@ -56,12 +61,14 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
             (Some(None), true) => self.way = Way::Leaving(self.last_nm.abs()),
             (Some(Some(coefficients)), true) => {
                 self.law.adopt(coefficients, slew_nm);
-                self.way = Way::CatchingUp;
+                if self.way != Way::Appearing {
+                    self.way = Way::Adopted;
+                }
             }
             (Some(Some(coefficients)), false) => {
                 self.law.adopt(coefficients, slew_nm);
-                (self.is_on, self.is_new) = (true, true);
-                self.way = Way::Free;
+                self.is_on = true;
+                self.way = Way::Appearing;
             }
         }
     }
@@ -71,7 +78,6 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
             self.is_on = false;
         }
         Law::rest(&mut self.law, place);
-        self.is_new = false;
         self.way = Way::Free;
         self.last_nm = F::ZERO;
     }
@@ -112,9 +118,17 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
     /// register of those around it.
     #[inline(never)]
     fn tick_on(&mut self, tick: &Tick<'_, F>, observe: &mut impl Observe<F>) -> Given<F> {
-        if self.is_new || !tick.seen.is_driven {
+        if !tick.seen.is_driven {
             self.rest(&tick.seen.place);
             return Given::NOTHING;
+        }
+        if self.way == Way::Appearing {
+            Law::rest(&mut self.law, &tick.seen.place);
+            self.way = Way::Adopted;
+            return Given {
+                is_settling: true,
+                ..Given::NOTHING
+            };
         }
         if let Checked::Missing(ticks) = tick.input
             && *ticks > HOLD_TICKS
@@ -123,28 +137,28 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
         }
         let mut given = Given::by(&mut self.law, tick, observe);
         if self.way != Way::Free {
-            given.nm = self.held_back(given.nm);
-            given.is_settling = true;
+            self.held_back(&mut given, tick);
         }
         self.last_nm = given.nm;
         given
     }
-}
 
-impl<F: Real, E> Kept<F, E> {
     /// What is shown of a law's torque while it is exchanged.
     #[cold]
-    fn held_back(&mut self, law_nm: F) -> F {
-        match self.way {
-            Way::Free => law_nm,
-            Way::CatchingUp => {
-                let step_nm = law_nm - self.last_nm;
-                if step_nm.abs() > self.slew_nm {
-                    self.last_nm + step_nm.within(self.slew_nm)
+    fn held_back(&mut self, given: &mut Given<F>, tick: &Tick<'_, F>) {
+        let law_nm = given.nm;
+        let shown_nm = match self.way {
+            Way::Free | Way::Appearing => law_nm,
+            Way::Adopted => self.fade(law_nm, self.last_nm - law_nm, self.slew_nm),
+            Way::Fading(besides_nm) => {
+                let moved_rad = tick.input.travel_rad().unwrap_or(F::ZERO);
+                let along = besides_nm * moved_rad < F::ZERO;
+                let gives_nm = if along {
+                    F::from_f64(MOST_STIFFNESS_NM_PER_RAD) * moved_rad.abs()
                 } else {
-                    self.way = Way::Free;
-                    law_nm
-                }
+                    F::ZERO
+                };
+                self.fade(law_nm, besides_nm, self.slew_nm + gives_nm)
             }
             Way::Leaving(most_nm) => {
                 let most_nm = (most_nm - self.slew_nm).at_least(F::ZERO);
@@ -155,6 +169,26 @@ impl<F: Real, E> Kept<F, E> {
                 }
                 law_nm.within(most_nm)
             }
+        };
+        if given.active_nm != F::ZERO {
+            // The tank pays for what is shown.
+            given.active_nm = shown_nm;
         }
+        given.nm = shown_nm;
+        given.is_settling = true;
+    }
+
+    /// The law's torque with what is left of `besides_nm` besides, no more than it is
+    /// or was shown.
+    fn fade(&mut self, law_nm: F, besides_nm: F, fades_nm: F) -> F {
+        let most_nm = self.last_nm.abs().at_least(law_nm.abs());
+        let left_nm = besides_nm - besides_nm.within(fades_nm);
+        let shown_nm = (law_nm + left_nm).within(most_nm);
+        self.way = if left_nm == F::ZERO {
+            Way::Free
+        } else {
+            Way::Fading(shown_nm - law_nm)
+        };
+        shown_nm
     }
 }

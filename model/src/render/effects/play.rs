@@ -67,10 +67,16 @@ pub struct Play<F> {
     there_nm: F,
     now_nm: F,
     hold: Hold,
-    /// By how much the limits are still wider than they will be, N·m.
-    wider_nm: F,
+    /// The torque that is still allowed beyond the limits after they were changed, N·m.
+    allowed_nm: F,
     /// By how much that falls in a tick, N·m.
     slew_nm: F,
+}
+
+impl<F: Real> Default for Play<F> {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl<F: Real> Play<F> {
@@ -81,7 +87,7 @@ impl<F: Real> Play<F> {
             there_nm: F::ZERO,
             now_nm: F::ZERO,
             hold: Hold::Elastic,
-            wider_nm: F::ZERO,
+            allowed_nm: F::ZERO,
             slew_nm: F::ZERO,
         }
     }
@@ -90,7 +96,7 @@ impl<F: Real> Play<F> {
     #[inline]
     pub fn rest(&mut self, place: &Position<F>) {
         self.put(place, F::ZERO, Hold::Elastic);
-        self.wider_nm = F::ZERO;
+        self.allowed_nm = F::ZERO;
     }
 
     /// As at this place with this torque.
@@ -121,20 +127,21 @@ impl<F: Real> Play<F> {
             self.now_nm = self.now_nm * (new_stiffness / stiffness).at_most(F::ONE);
             self.there_nm = self.now_nm - new_stiffness * moved_rad;
         }
-        self.widen(slew_nm);
-    }
-
-    /// The limits are others: what lies beyond them falls by `slew_nm` a tick.
-    pub fn widen(&mut self, slew_nm: F) {
-        self.wider_nm = self.wider_nm.at_least(self.now_nm.abs());
+        // Only in the direction of the torque, and no more than it is: a wall never
+        // pulls, and none exceeds its cap.
+        self.allowed_nm = self.now_nm;
         self.slew_nm = slew_nm;
+        // It has no place on limits that it has not met yet.
+        if self.hold != Hold::Slack {
+            self.hold = Hold::Elastic;
+        }
     }
 
     /// Lets go of so much torque.
     pub fn release(&mut self, nm: F) {
         let less_nm = self.now_nm.within(nm);
-        self.now_nm = self.now_nm - less_nm;
-        self.there_nm = self.there_nm - less_nm;
+        self.now_nm -= less_nm;
+        self.there_nm -= less_nm;
     }
 
     /// Follows the joint, in the direction `sense`·φ, from the share `from` of a
@@ -156,10 +163,10 @@ impl<F: Real> Play<F> {
             mut lower_nm,
             mut upper_nm,
         } = limits(part.to);
-        if self.wider_nm > F::ZERO {
-            lower_nm = lower_nm - self.wider_nm;
-            upper_nm += self.wider_nm;
-            self.wider_nm = (self.wider_nm - self.slew_nm).at_least(F::ZERO);
+        if self.allowed_nm != F::ZERO {
+            lower_nm = lower_nm.at_most(self.allowed_nm);
+            upper_nm = upper_nm.at_least(self.allowed_nm);
+            self.allowed_nm = self.allowed_nm - self.allowed_nm.within(self.slew_nm);
         }
         let was = self.hold;
         // A joint that rests at a limit is still there.
@@ -192,8 +199,16 @@ impl<F: Real> Play<F> {
     }
 }
 
+/// e to the power of `x` ≤ 0 for a part of a tick, far below a time constant.
 #[inline]
-fn dragged<F: Real>(at: Hold, limit_nm: F) -> Hold {
+pub fn short_decay<F: Real>(x: F) -> F {
+    let third = F::from_f64(1.0 / 3.0);
+    F::ONE + x * (F::ONE + F::HALF * x * (F::ONE + third * x))
+}
+
+/// What a play does that is at a limit.
+#[inline]
+pub fn dragged<F: Real>(at: Hold, limit_nm: F) -> Hold {
     if limit_nm == F::ZERO { Hold::Slack } else { at }
 }
 
@@ -329,7 +344,12 @@ impl<F: Real, L: Fn(F) -> Limits<F>> Passage<'_, F, L> {
             }
             fraction = (rate_nm - first_nm) / rises_nm;
         }
-        if fraction >= -F::ONE && fraction <= part.to {
+        let earliest = if part.from > F::ZERO {
+            part.from
+        } else {
+            -F::ONE
+        };
+        if fraction >= earliest && fraction <= part.to {
             fraction
         } else {
             // The velocity has jumped.

@@ -290,11 +290,16 @@ impl<F: Real> Wall<F> {
                 return F::ZERO;
             }
             if beyond_rad > F::ZERO {
-                self.enter(end, travel, on_change);
+                self.enter(
+                    end,
+                    beyond_rad - sense * travel.delta_rad,
+                    travel,
+                    on_change,
+                );
             }
         }
-        let before_rad = beyond_rad - sense * travel.delta_rad;
-        let was = self.play.hold();
+        let is_below_cap = self.stage != Stage::AtCap;
+        let mut is_told = false;
         let envelope_nm = |fraction: F| {
             end.envelope_nm(if fraction == F::ONE {
                 beyond_rad
@@ -309,37 +314,64 @@ impl<F: Real> Wall<F> {
             lower_nm: F::ZERO,
             upper_nm: envelope_nm(fraction),
         };
-        let nm = self
-            .play
-            .follow(travel, Part::whole(sense), end.spring, limits, on_change);
+        let nm = self.play.follow(
+            travel,
+            Part::whole(sense),
+            end.spring,
+            limits,
+            &mut |mut change: Change<F>| {
+                // Met at its cap, the limit is the cap and no envelope to flow along.
+                if is_below_cap && change.word == Word::Flow && change.after_nm.abs() >= end.cap_nm
+                {
+                    change.word = Word::Cap;
+                    is_told = true;
+                }
+                on_change(change);
+            },
+        );
         if beyond_rad < -flicker_rad {
             if self.stage != Stage::Out {
                 self.stage = Stage::Out;
                 on_change(Change::at(Word::Leave, travel.reaches(&end.place), nm, nm));
             }
-        } else if self.stage == Stage::In {
-            if beyond_rad >= end.cap_rad && self.play.hold() == Hold::Upper {
-                self.stage = Stage::AtCap;
-                if was == Hold::Upper && before_rad < end.cap_rad && nm > F::ZERO {
-                    let place = end.place.moved(sense * end.cap_rad);
-                    let nm = sense * nm;
-                    on_change(Change::at(Word::Cap, travel.reaches(&place), nm, nm));
-                }
-            }
         } else if self.play.hold() != Hold::Upper {
+            self.stage = Stage::In;
+        } else if beyond_rad >= end.cap_rad {
+            if is_below_cap && !is_told && nm > F::ZERO {
+                let place = end.place.moved(sense * end.cap_rad);
+                let nm = sense * nm;
+                on_change(Change::at(Word::Cap, travel.reaches(&place), nm, nm));
+            }
+            self.stage = Stage::AtCap;
+        } else if beyond_rad < end.cap_rad - flicker_rad {
             self.stage = Stage::In;
         }
         nm
     }
 
-    /// The joint meets the wall: the spring begins at its place.
+    /// The joint meets the wall: the spring begins at its place. If the wall was moved
+    /// under the joint, `before_rad` beyond it already, the spring begins there.
     #[cold]
-    fn enter(&mut self, end: &End<F>, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+    fn enter(
+        &mut self,
+        end: &End<F>,
+        before_rad: F,
+        travel: &Travel<F>,
+        on_change: &mut impl FnMut(Change<F>),
+    ) {
         self.stage = Stage::In;
+        let fraction = if before_rad > F::ZERO {
+            F::ZERO
+        } else {
+            travel.reaches(&end.place)
+        };
         if self.play.torque_nm() == F::ZERO {
-            self.play.put(&end.place, F::ZERO, Hold::Upper);
+            if before_rad > F::ZERO {
+                self.play.put(&travel.place(F::ZERO), F::ZERO, Hold::Slack);
+            } else {
+                self.play.put(&end.place, F::ZERO, Hold::Upper);
+            }
         }
-        let fraction = travel.reaches(&end.place);
         on_change(Change::at(Word::Contact, fraction, F::ZERO, F::ZERO));
     }
 }

@@ -179,6 +179,9 @@ impl<F: Real> Threshold<F> {
     /// The share of a travel at which a joint that begins so far beyond has come to
     /// `level` from below.
     fn rises_to(&self, level: F, start_beyond: F, travel: &Travel<F>) -> F {
+        if start_beyond >= level {
+            return F::ZERO;
+        }
         let faster = self.shift_s * (travel.omega_end_rad_s - travel.omega_start_rad_s);
         let slope = self.sense * (travel.delta_rad - travel.bend_rad + faster);
         rise(slope, self.sense * travel.bend_rad, level - start_beyond)

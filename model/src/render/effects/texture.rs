@@ -129,6 +129,8 @@ pub struct Texture<F> {
     number: i32,
     last: Asperity<F>,
     next: Asperity<F>,
+    /// Where the joint was seen last.
+    at: Position<F>,
 }
 
 impl<F: Real> TextureCoefficients<F> {
@@ -144,7 +146,6 @@ impl<F: Real> TextureCoefficients<F> {
             reason = "counts wrap as the encoder's do"
         )]
         let count = (parts >> PARTS) as i32;
-        #[expect(clippy::cast_possible_truncation, reason = "less than 2²⁰")]
         let rest = (parts & ((1 << PARTS) - 1)) as i32;
         Asperity {
             place: Position {
@@ -245,6 +246,7 @@ impl<F: Real> Law for Texture<F> {
             number: 0,
             last: coefficients.asperity(0),
             next: coefficients.asperity(1),
+            at: Position::at(0),
         }
     }
 
@@ -254,11 +256,13 @@ impl<F: Real> Law for Texture<F> {
 
     fn rest(&mut self, place: &Position<F>) {
         self.play.rest(place);
+        self.at = *place;
         self.seek(place);
     }
 
     #[inline]
     fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+        self.at = travel.to;
         let part = Part::since(F::ONE, self.cross(travel, on_change));
         let limits = |fraction: F| {
             self.with
@@ -277,8 +281,7 @@ impl<F: Real> Law for Texture<F> {
         let (from, to) = (self.with.stiffness, coefficients.stiffness);
         self.play.change(from, to, slew_nm);
         self.with = coefficients;
-        // Found again from where the last one was.
-        let place = self.last.place;
+        let place = self.at;
         self.seek(&place);
     }
 
@@ -296,8 +299,12 @@ impl<F: Real> TextureCoefficients<F> {
     #[inline]
     fn limits(&self, last: &Asperity<F>, next: &Asperity<F>, at: &Position<F>) -> Limits<F> {
         let flank = |rad: F| (F::ONE - rad * self.per_width).at_least(F::ZERO);
-        let to_next = next.place.beyond(at, self.scale.rad_per_count);
-        // Below zero by the encoder's noise only.
+        // Below zero by the encoder's noise, or where a long travel has crossed more
+        // than one.
+        let to_next = next
+            .place
+            .beyond(at, self.scale.rad_per_count)
+            .at_least(F::ZERO);
         let from_last = at
             .beyond(&last.place, self.scale.rad_per_count)
             .at_least(F::ZERO);
@@ -379,17 +386,25 @@ impl<F: Real> Texture<F> {
         let before_nm = self
             .play
             .follow(travel, part, self.with.stiffness, limits, &mut |_| {});
-        let was_held = self.play.hold() == Hold::Elastic;
+        let is_at_limit = match self.play.hold() {
+            Hold::Elastic => false,
+            Hold::Upper => upwards,
+            Hold::Lower => !upwards,
+            Hold::Slack => true,
+        };
         self.step(if upwards { 1 } else { -1 });
         let at = travel.place(fraction);
         let Limits { lower_nm, upper_nm } = self.with.limits(&self.last, &self.next, &at);
         let after_nm = before_nm.at_most(upper_nm).at_least(lower_nm);
-        if after_nm != before_nm {
-            let hold = if upwards { Hold::Upper } else { Hold::Lower };
-            self.play.put(&at, after_nm, hold);
-            if !was_held {
-                on_change(Change::at(Word::Snap, fraction, before_nm, after_nm));
-            }
+        // A limit that is wider behind the asperity lets go of the torque.
+        let hold = match upwards {
+            true if after_nm == upper_nm => Hold::Upper,
+            false if after_nm == lower_nm => Hold::Lower,
+            _ => Hold::Elastic,
+        };
+        self.play.put(&at, after_nm, hold);
+        if is_at_limit {
+            on_change(Change::at(Word::Snap, fraction, before_nm, after_nm));
         }
         fraction
     }

@@ -8,13 +8,13 @@
 //! ```
 //!
 //! The torque never pushes: stop, and it falls along σ; go on, and it is there
-//! again. In the tick of the catch the decay is linear.
+//! again.
 
 use super::{SpasticitySettings, Threshold};
 use crate::joint::SettingsError;
 use crate::real::Real;
 use crate::render::effects::Timing;
-use crate::render::effects::play::{Hold, Limits, Part, Play};
+use crate::render::effects::play::{Hold, Limits, Part, Play, short_decay};
 use crate::render::effects::symptom::{Change, Word};
 use crate::render::position::{Position, Scale, Travel, rise};
 
@@ -206,7 +206,7 @@ impl<F: Real> Caught<F> {
         let after_nm = if from == F::ZERO {
             (0..travel.ticks).fold(before_nm, |nm, _| nm * with.decay)
         } else {
-            before_nm * (F::ONE - (F::ONE - from) * (F::ONE - with.decay))
+            before_nm * short_decay(with.rate * (F::ONE - from))
         };
         catch.decaying_nm = after_nm.settled();
         let part = Part::since(sense, from);

@@ -25,7 +25,7 @@ pub struct ReflexCoefficients<F> {
     threshold: Threshold<F>,
     gain: F,
     most_nm: F,
-    /// Tmax/k, rad: where the torque is largest; infinite without a gain.
+    /// Tmax/k, rad: where the torque is largest; zero where there is none to give.
     most_rad: F,
     /// Whole ticks of the delay, and the rest of one.
     delay: usize,
@@ -60,7 +60,11 @@ impl<F: Real> ReflexCoefficients<F> {
             threshold,
             gain: F::from_f64(s.gain_nm_per_rad),
             most_nm: F::from_f64(s.torque_nm),
-            most_rad: F::from_f64(s.torque_nm / s.gain_nm_per_rad),
+            most_rad: F::from_f64(if s.gain_nm_per_rad > 0.0 {
+                s.torque_nm / s.gain_nm_per_rad
+            } else {
+                0.0
+            }),
             delay,
             delay_rest: F::from_f64((ticks - whole).max(0.0)),
             keep: F::from_f64(keep),
@@ -131,7 +135,12 @@ impl<F: Real> Reflex<F> {
     }
 
     pub(super) fn adopt(&mut self, with: ReflexCoefficients<F>) {
-        self.with = with;
+        if with.threshold.sense == self.with.threshold.sense {
+            self.with = with;
+        } else {
+            // What the other muscles were told is not for these.
+            *self = Self::new(with);
+        }
     }
 
     pub(super) fn release(&mut self, slew_nm: F) {
@@ -146,7 +155,7 @@ impl<F: Real> Reflex<F> {
     ) -> F {
         let with = self.with;
         let beyond = with.threshold.end_beyond(travel);
-        let drive = if beyond <= F::ZERO {
+        let drive = if beyond <= F::ZERO || with.most_rad == F::ZERO {
             Drive::Silent
         } else if beyond < with.most_rad {
             Drive::Rising
