@@ -49,7 +49,9 @@ fn felt(scene: &Path) -> (Vec<f64>, usize) {
         .iter()
         .map(|row| place.map_or(0.0, |place| number(&row[place])))
         .collect();
-    (torque, csv(&out.join("events.csv")).1.len())
+    let (_, events) = csv(&out.join("events.csv"));
+    let of_joint = events.iter().filter(|event| event[1] == "crepitus");
+    (torque, of_joint.count())
 }
 
 /// Root mean square and peak of a difference.

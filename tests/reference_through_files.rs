@@ -85,7 +85,7 @@ fn reference_cases_hold_through_the_files() {
         let expected = case["events"].as_array().unwrap();
         assert_eq!(events.len(), expected.len(), "{name}");
         for (event, truth) in events.iter().zip(expected) {
-            assert_eq!(event[1], truth["type"].as_str().unwrap(), "{name}");
+            assert_eq!(event[2], truth["type"].as_str().unwrap(), "{name}");
             let error = (number(&event[0]) - number(truth["t"].as_str().unwrap())).abs();
             assert!(error <= 1e-12, "{name}: {error:e} s");
             checked += 1;

@@ -41,7 +41,7 @@ fn a_scene_becomes_four_files() {
     let (header, events) = csv(&folder.join("events.csv"));
     assert_eq!(
         header.join(","),
-        "t_s,event,theta_rad,omega_rad_s,torque_before_nm,torque_after_nm"
+        "t_s,effect,event,angle_rad,theta_rad,omega_rad_s,torque_before_nm,torque_after_nm"
     );
     assert_eq!(events.len(), 127);
     assert_eq!(

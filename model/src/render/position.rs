@@ -176,6 +176,12 @@ impl<F: Real> Travel<F> {
         travel
     }
 
+    /// Whether it is numbers: a bare law has no check of its input before it.
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        (self.delta_rad + self.bend_rad + self.omega_end_rad_s + self.to.rest_rad).is_finite()
+    }
+
     /// Where the joint is after this share of the time.
     #[inline]
     pub fn place(&self, fraction: F) -> Position<F> {
@@ -235,7 +241,8 @@ mod tests {
                 let beyond = at.beyond(&from, sight.rad_per_count);
                 assert!((beyond - (a - b)).abs() < 2e-13, "{beyond} {}", a - b);
                 let single = |x| sight.position::<f32>(x);
-                let near = single(a + 1e-3).beyond(&single(a), sight.rad_per_count as f32);
+                let count_rad = f32::from_f64(sight.rad_per_count);
+                let near = single(a + 1e-3).beyond(&single(a), count_rad);
                 assert!((f64::from(near) - 1e-3).abs() < 2e-10, "{near}");
             }
         }

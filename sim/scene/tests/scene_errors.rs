@@ -339,7 +339,7 @@ fn effects_that_do_not_go_together_are_refused() {
         (
             "kind = \"exact-events\"\nstep_s = 5e-5",
             "kind = \"reference\"\n[effects.motor]",
-            "the stick-slip object alone",
+            "knows a joint's symptoms alone",
         ),
     ] {
         let error = refused(from, to);

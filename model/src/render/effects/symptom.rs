@@ -227,7 +227,8 @@ impl<F: Real> Given<F> {
         observe: &mut impl Observe<F>,
     ) -> Self {
         let mut given = Self::NOTHING;
-        given.nm = match Travel::of(tick.input, &tick.seen.place, law.scale()) {
+        let travel = Travel::of(tick.input, &tick.seen.place, law.scale());
+        given.nm = match travel.filter(Travel::is_finite) {
             Some(travel) => law.follow(&travel, &mut |change: Change<F>| {
                 if change.word == Word::Snap {
                     given.jump_nm += change.after_nm - change.before_nm;

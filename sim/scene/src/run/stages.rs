@@ -120,7 +120,7 @@ where
         on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
     ) -> Shown<F> {
         self.tick_observed(seen, on_event, &mut |effect, change| {
-            on_change(effect, change)
+            on_change(effect, change);
         })
     }
 

@@ -245,6 +245,7 @@ mod tests {
     use crate::accuracy::scenes::standard;
     use crate::accuracy::study;
     use crepitus_ladder::exchange::Kind;
+    use crepitus_model::render::effects::SPECS;
 
     struct Nobody;
 
@@ -287,7 +288,7 @@ mod tests {
         let names: Vec<_> = on.rows.iter().map(|row| row.subject).collect();
         let rungs = ["exact", "exact-break", "exact-interpolated", "exact-events"];
         assert_eq!(names[..4], rungs);
-        assert_eq!((names[4], names.len()), ("input check", 10));
+        assert_eq!((names[4], names.len()), ("input check", 8 + SPECS.len()));
         assert_eq!(
             (on.rows[3].worst_cycles, on.rows[4].worst_cycles),
             (100, 900)
