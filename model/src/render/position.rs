@@ -176,10 +176,15 @@ impl<F: Real> Travel<F> {
         travel
     }
 
-    /// Whether it is numbers: a bare law has no check of its input before it.
+    /// Whether it is numbers that a joint can have: a bare law has no check of its
+    /// input before it. A NaN passes no comparison.
     #[inline]
-    pub fn is_finite(&self) -> bool {
-        (self.delta_rad + self.bend_rad + self.omega_end_rad_s + self.to.rest_rad).is_finite()
+    pub fn is_plausible(&self) -> bool {
+        let all = self.delta_rad.abs()
+            + self.omega_start_rad_s.abs()
+            + self.omega_end_rad_s.abs()
+            + self.to.rest_rad.abs();
+        all < F::from_f64(1e9)
     }
 
     /// Where the joint is after this share of the time.

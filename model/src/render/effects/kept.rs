@@ -56,17 +56,21 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
 
     fn change(&mut self, coefficients: &Option<Option<E::Coefficients>>, slew_nm: F) {
         self.slew_nm = slew_nm;
-        match (*coefficients, self.is_on) {
-            (None, _) | (Some(None), false) => {}
-            (Some(None), true) => self.way = Way::Leaving(self.last_nm.abs()),
-            (Some(Some(coefficients)), true) => {
-                self.law.adopt(coefficients, slew_nm);
+        // By reference: most commits change none, and would copy it.
+        let Some(coefficients) = coefficients else {
+            return;
+        };
+        match (coefficients, self.is_on) {
+            (None, false) => {}
+            (None, true) => self.way = Way::Leaving(self.last_nm.abs()),
+            (Some(coefficients), true) => {
+                self.law.adopt(*coefficients, slew_nm);
                 if self.way != Way::Appearing {
                     self.way = Way::Adopted;
                 }
             }
-            (Some(Some(coefficients)), false) => {
-                self.law.adopt(coefficients, slew_nm);
+            (Some(coefficients), false) => {
+                self.law.adopt(*coefficients, slew_nm);
                 self.is_on = true;
                 self.way = Way::Appearing;
             }

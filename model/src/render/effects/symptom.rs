@@ -228,7 +228,7 @@ impl<F: Real> Given<F> {
     ) -> Self {
         let mut given = Self::NOTHING;
         let travel = Travel::of(tick.input, &tick.seen.place, law.scale());
-        given.nm = match travel.filter(Travel::is_finite) {
+        given.nm = match travel.filter(Travel::is_plausible) {
             Some(travel) => law.follow(&travel, &mut |change: Change<F>| {
                 if change.word == Word::Snap {
                     given.jump_nm += change.after_nm - change.before_nm;

@@ -38,18 +38,18 @@ struct Limits {
 const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::ZeroWaitStates,
-        share: 39,
-        commit_share: 44,
-        cold_share: 38,
-        render_cycles: 880,
+        share: 44,
+        commit_share: 54,
+        cold_share: 43,
+        render_cycles: 1_190,
     },
     // About 3 % above what was measured.
     Limits {
         flash: Flash::Modelled,
-        share: 53,
-        commit_share: 61,
-        cold_share: 50,
-        render_cycles: 1_200,
+        share: 60,
+        commit_share: 77,
+        cold_share: 57,
+        render_cycles: 1_680,
     },
 ];
 

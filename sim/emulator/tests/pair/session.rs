@@ -117,7 +117,8 @@ fn torque_answers_motion_until_the_stop() {
     // Comms answers at once, and sets its line with its next tick.
     let ticks = ticks_until_off(&mut host, MS, true);
     println!("stop: off {ticks} ticks after the answer");
-    run(&mut host, 2);
+    // The state of the drive comes with its next status, which waits behind telemetry.
+    run(&mut host, 10);
     let boards = boards(&mut host);
     assert!(!boards.comms_line_is_on() && !boards.line_is_on());
     assert_eq!(host.status().expect("a status").state, State::Disarmed);
