@@ -45,8 +45,8 @@ fn a_scene_becomes_four_files() {
     );
     assert_eq!(events.len(), 127);
     assert_eq!(
-        (number(&events[0][0]), events[0][1].as_str()),
-        (1e-3, "break")
+        (number(&events[0][0]), &events[0][1..3]),
+        (1e-3, &["crepitus".to_owned(), "break".to_owned()][..])
     );
 
     let summary = summary(&folder);
