@@ -8,7 +8,7 @@ use serde::ser::SerializeTuple;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Serializes an array.
-pub fn serialize<S: Serializer, T: Serialize, const N: usize>(
+pub(crate) fn serialize<S: Serializer, T: Serialize, const N: usize>(
     array: &[T; N],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
@@ -20,7 +20,7 @@ pub fn serialize<S: Serializer, T: Serialize, const N: usize>(
 }
 
 /// Deserializes an array.
-pub fn deserialize<'de, D, T, const N: usize>(deserializer: D) -> Result<[T; N], D::Error>
+pub(crate) fn deserialize<'de, D, T, const N: usize>(deserializer: D) -> Result<[T; N], D::Error>
 where
     D: Deserializer<'de>,
     T: Deserialize<'de> + Default + Copy,

@@ -92,6 +92,7 @@ pub struct Reply {
 
 /// Results of successful requests.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
+#[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
 pub enum Answer {
     /// Done.
     Done,

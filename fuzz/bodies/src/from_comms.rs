@@ -40,6 +40,7 @@ pub(crate) fn is_block(frame: &[u8]) -> bool {
 }
 
 /// A message for hosts.
+#[expect(clippy::large_enum_variant, reason = "one at a time")]
 pub(crate) enum FromComms {
     Reply(Reply),
     Block(Block),

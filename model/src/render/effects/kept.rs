@@ -91,7 +91,7 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
         self.is_on.then_some(&self.law)
     }
 
-    #[inline(always)]
+    #[inline]
     fn tick(
         &mut self,
         tick: &Tick<'_, F>,
