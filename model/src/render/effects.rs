@@ -3,7 +3,7 @@
 //! An effect's file has its parameters (`settings!`), its law ([`DeviceEffect`])
 //! and its description ([`EffectSpec`]). From the line here follow the device's
 //! parameters and commits, scene files, traces, studies, and the count of its
-//! cycles on the target. A symptom implements [`Law`](symptom::Law).
+//! cycles on the target. A symptom implements [`Law`].
 
 #[macro_use]
 mod table;
