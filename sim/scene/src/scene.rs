@@ -186,7 +186,7 @@ impl Scene {
             warnings.extend(encoder.and_then(|encoder| device::guard_refusal(crepitus, encoder)));
         }
         warnings.extend(device::compensation_warning(&effects.listed));
-        let scene = Self {
+        let mut scene = Self {
             file: file.to_owned(),
             title,
             description,
@@ -210,6 +210,8 @@ impl Scene {
         scene
             .check_stages()
             .map_err(|e| root.error(e.to_string()))?;
+        let caps = device::caps_warning(&scene);
+        scene.warnings.extend(caps);
         Ok(scene)
     }
 

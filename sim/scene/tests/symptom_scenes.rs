@@ -206,3 +206,21 @@ fn in_f32_they_are_within_what_24_bits_allow() {
 fn the_reference_of_a_scene_has_them_without_steps() {
     all("kind = \"reference\"", (1e-9, 1e-9));
 }
+
+#[test]
+fn symptoms_that_ask_for_more_than_the_device_shows_are_warned_of() {
+    let warned = |device: bool, torque_nm: f64| {
+        let text = format!(
+            "version = 1\ntitle = \"a sum\"\nduration_s = 1.0\ndevice = {device}\n\
+             [motion]\nkind = \"constant\"\nvelocity_rad_s = 0.1\n[solver]\n{}\n\
+             [effects.range-limit]\n[effects.lead-pipe]\ntorque_nm = {torque_nm}\n",
+            stepped("f32")
+        );
+        let scene = Scene::parse(Path::new("sum.toml"), &text, &Overrides::default()).unwrap();
+        let mut warnings = scene.warnings.iter();
+        warnings.any(|warning| warning.contains("5.2 N·m together"))
+    };
+    assert!(warned(true, 1.2));
+    assert!(!warned(true, 0.5));
+    assert!(!warned(false, 1.2));
+}

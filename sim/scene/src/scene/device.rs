@@ -1,7 +1,7 @@
 //! Rejects settings that the drive cannot render, in a scene with a device.
 
 use super::effects::Effects;
-use super::{Crepitus, SolverChoice};
+use super::{Crepitus, Scene, SolverChoice};
 use crate::document::Section;
 use crate::error::SceneError;
 use crepitus_model::Convention;
@@ -68,6 +68,20 @@ pub(super) fn compensation_warning(listed: &[Listed]) -> Option<String> {
             "the device compensates {compensated_nm} N·m, and the gear has {friction_nm} N·m: nothing is left to keep a \
              moving shaft quiet, and what is beyond pushes the leg; give friction-compensation the least friction that \
              is ever measured"
+        )
+    })
+}
+
+/// That the symptoms of a scene's device can ask for more together than it shows,
+/// if they can.
+pub(super) fn caps_warning(scene: &Scene) -> Option<String> {
+    let joint = scene.crepitus.as_ref().map(|c| &c.settings.parameters);
+    let asked_nm = scene.effect_settings().largest_torque_nm(joint);
+    let most_nm = LimitSettings::default().torque_nm;
+    (scene.is_device && asked_nm > most_nm).then(|| {
+        format!(
+            "the symptoms can ask for {asked_nm:.1} N·m together, and the device shows {most_nm} N·m at most: beyond, \
+             one hides the other"
         )
     })
 }
