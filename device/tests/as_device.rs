@@ -89,6 +89,42 @@ preset = "coarse"
 trace_step_s = 5e-5
 "#;
 
+/// Six symptoms with choices that are not the first, from a straight knee to 80°
+/// and back. (The teeth of a cogwheel in time begin with arming.)
+const SYMPTOMS: &str = r#"
+version = 1
+title = "Six symptoms"
+duration_s = 2.0
+device = true
+[motion]
+kind = "sine"
+from_deg = 40.0
+amplitude_deg = 40.0
+frequency_hz = 0.5
+phase_deg = -90.0
+[solver]
+kind = "exact-events"
+step_s = 5e-5
+precision = "f32"
+[effects.encoder]
+[effects.range-limit]
+flexion_limit_deg = 70.0
+[effects.lead-pipe]
+[effects.cogwheel]
+mode = "space"
+torque_nm = 0.8
+[effects.spasticity]
+form = "reflex"
+muscles = "flexors"
+threshold_deg = -10.0
+velocity_shift_s = 0.27
+[effects.clasp-knife]
+trigger = "torque"
+[effects.texture]
+[output]
+trace_step_s = 5e-5
+"#;
+
 /// A shipped scene as the drive would run it, or the reason why it cannot.
 fn scene(file: &Path) -> Result<Scene, String> {
     let mut overrides = Overrides {
@@ -140,7 +176,12 @@ fn drive(scene: &Scene, rows: &[Row]) -> Bench {
     bench.ask(Operation::Arm).expect("armed");
     // Until the slew limit no longer applies.
     bench.run_leased(200);
-    assert_eq!(bench.drive.state(), State::Armed);
+    assert_eq!(
+        bench.drive.state(),
+        State::Armed,
+        "{:?}",
+        bench.drive.fault()
+    );
     bench.script = rows
         .iter()
         .map(|r| (r.count - first, r.omega_rad_s))
@@ -183,6 +224,35 @@ fn a_scene_shows_what_the_drive_shows_on_the_same_counts_bit_for_bit() {
         limits[usize::from(Limit::TurnedBack as u8)] > 100,
         "{limits:?}"
     );
+}
+
+#[test]
+fn symptoms_and_their_phases_are_those_of_the_scene_on_the_same_counts() {
+    let path = Path::new("symptoms.toml");
+    let scene = Scene::parse(path, SYMPTOMS, &Overrides::default()).expect("a scene");
+    let rows = rows(&scene);
+    let bench = drive(&scene, &rows);
+    assert_eq!(bench.rendered.len(), rows.len());
+    let mut seen = std::collections::BTreeSet::new();
+    for (n, (row, rendered)) in rows.iter().zip(&bench.rendered).enumerate() {
+        assert_eq!(f64::from(rendered.torque_nm), row.shown_nm, "tick {n}");
+        seen.extend(
+            rendered
+                .phases
+                .named()
+                .map(|(spec, phase)| (spec.name, phase)),
+        );
+    }
+    for phase in [
+        ("range-limit", "in-the-wall"),
+        ("lead-pipe", "sliding"),
+        ("cogwheel", "high"),
+        ("spasticity", "reflex"),
+        ("clasp-knife", "fallen"),
+        ("texture", "sliding"),
+    ] {
+        assert!(seen.contains(&phase), "{phase:?} of {seen:?}");
+    }
 }
 
 /// Compares every tick; returns the ticks with each limit, unless the drive disarmed.

@@ -27,7 +27,7 @@ const CURRENT_SLACK_A: f32 = 0.25;
 /// Bounds that follow from parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// The static torque: no model gives more, N·m.
+    /// What no model of these symptoms exceeds, N·m.
     model_torque_nm: f32,
     /// Of the motor, N·m.
     torque_nm: f32,
@@ -58,12 +58,12 @@ impl Bounds {
     pub fn of(settings: &DeviceSettings) -> Self {
         /// For rounding.
         const MARGIN: f64 = 1.001;
-        let static_nm =
-            (settings.crepitus.as_ref()).map_or(0.0, |joint| joint.parameters.static_torque_nm);
+        let joint = settings.crepitus.as_ref().map(|joint| &joint.parameters);
+        let most_nm = settings.effects.torque_bound_nm(joint);
         let rad_per_count = settings.encoder.rad_per_count();
         let rad = FAST_SHARE * settings.limits.speed_rad_s * TICK_S * f64::from(BLOCK_TICKS);
         Self {
-            model_torque_nm: single(static_nm * MARGIN),
+            model_torque_nm: single(most_nm * MARGIN),
             torque_nm: single(settings.limits.torque_nm * MARGIN),
             counts: single(rad / rad_per_count + 2.0),
             amperes_per_nm: single(1.0 / settings.joint_constant()),

@@ -33,7 +33,13 @@ pub fn values(scene: &Scene) -> Result<Values, NotRendered> {
             Kind::Choice(choice) if choice.key == "render" => {
                 values.set(parameter.id, f64::from(u8::from(scene.has(effect.name))));
             }
-            Kind::Choice(_) => {}
+            Kind::Choice(choice) => {
+                let given = scene.given(effect);
+                let at = effect.choices.iter().position(|c| c.key == choice.key);
+                if let Some(option) = at.and_then(|at| given.choices.get(at)) {
+                    values.set(parameter.id, f64::from(*option));
+                }
+            }
             Kind::Number(spec) => {
                 let given = scene.given(effect);
                 let at = effect.parameters.iter().position(|p| p.key == spec.key);

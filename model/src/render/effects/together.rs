@@ -106,6 +106,19 @@ impl EffectSettings {
         ];
         parts.into_iter().flatten().sum()
     }
+
+    /// A torque that symptoms and joint never exceed together while the leg is within
+    /// half a turn, N·m: with what grows with the angle.
+    pub fn torque_bound_nm(&self, joint: Option<&Parameters>) -> f64 {
+        let slopes = [
+            self.lead_pipe.map(|s| s.elastic_nm_per_rad),
+            self.cogwheel.map(|s| s.elastic_nm_per_rad),
+            self.spasticity.map(|s| s.stiffness_nm_per_rad),
+            self.clasp_knife.map(|s| s.slope_nm_per_rad),
+        ];
+        let slope: f64 = slopes.into_iter().flatten().sum();
+        self.largest_torque_nm(joint) + slope * core::f64::consts::PI
+    }
 }
 
 #[cfg(test)]
