@@ -5,6 +5,7 @@
 #[cfg(target_os = "linux")]
 pub(crate) mod served;
 
+use crepitus_protocol::telemetry::{Block, TICKS_BYTES};
 use crepitus_recording::{Damage, Recording, Row, Totals};
 use serde_json::Value;
 use std::fs;
@@ -83,8 +84,9 @@ pub(crate) fn csv(file: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     (header, lines.collect())
 }
 
-/// Bytes of a recording in progress after half a second.
-pub(crate) const HALF_A_SECOND: u64 = 170_000;
+/// Bytes of a recording in progress that has half a second of samples: 500
+/// blocks as long as one can be, each with what the file adds to it.
+pub(crate) const HALF_A_SECOND: u64 = 500 * (TICKS_BYTES + Block::HEAD_BYTES + 16) as u64;
 
 /// Bytes of a file, 0 if there is none.
 pub(crate) fn length(file: &Path) -> u64 {
