@@ -16,6 +16,7 @@
 //! | [`frames`] | bytes on a wire |
 //! | [`drive`] | messages and sensor values for the drive controller |
 //! | [`comms`] | messages of hosts and of the drive for the comms controller |
+//! | [`symptoms`] | samples, and changes of all symptoms under way |
 //! | [`chain`] | requests of hosts, faults of the wires, restarts: host, comms, link, drive |
 
 mod block_frames;
@@ -40,6 +41,7 @@ pub mod scene;
 mod sent;
 mod shaft;
 pub mod step;
+pub mod symptoms;
 mod winding;
 
 /// Turns bytes into inputs, and panics where a law is broken.
@@ -47,7 +49,7 @@ pub type Body = fn(&[u8]);
 
 /// All targets: the name of each, which is also its folder in the corpus, and
 /// its body.
-pub const TARGETS: [(&str, Body); 10] = [
+pub const TARGETS: [(&str, Body); 11] = [
     ("chain", chain::body),
     ("comms", comms::body),
     ("drive", drive::body),
@@ -58,4 +60,5 @@ pub const TARGETS: [(&str, Body); 10] = [
     ("renderer", renderer::body),
     ("scene", scene::body),
     ("step", step::body),
+    ("symptoms", symptoms::body),
 ];

@@ -190,3 +190,8 @@ fn no_text_upsets_the_reader_of_scenes() {
 fn no_motion_breaks_a_step() {
     hold("step");
 }
+
+#[test]
+fn no_commit_and_no_gap_lets_a_symptom_push() {
+    hold("symptoms");
+}

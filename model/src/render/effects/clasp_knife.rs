@@ -252,11 +252,11 @@ impl<F: Real> Law for ClaspKnife<F> {
         let nm = match self.stage {
             Stage::Out if beyond_rad < F::ZERO => self.wait(travel, on_change),
             Stage::Out => {
-                self.begin(travel, on_change);
-                self.build(beyond_rad, travel, on_change)
+                let from = self.begin(travel, on_change);
+                self.build(from, beyond_rad, travel, on_change)
             }
             Stage::Build if beyond_rad < F::ZERO => self.back(travel, on_change),
-            Stage::Build => self.build(beyond_rad, travel, on_change),
+            Stage::Build => self.build(F::ZERO, beyond_rad, travel, on_change),
             Stage::Fallen {
                 left_nm,
                 decaying_nm,
@@ -315,9 +315,10 @@ impl<F: Real> ClaspKnife<F> {
             .follow(travel, part, stiffness, |_| none, on_change)
     }
 
-    /// The onset is met, within this travel or before (armed beyond it).
+    /// The onset is met, within this travel or before (armed beyond it): at this share
+    /// of it.
     #[cold]
-    fn begin(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+    fn begin(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
         self.stage = Stage::Build;
         let started =
             self.with.sense * (travel.end_beyond(&self.with.onset) - travel.delta_rad) < F::ZERO;
@@ -334,6 +335,7 @@ impl<F: Real> ClaspKnife<F> {
             F::ZERO
         };
         on_change(Change::at(Word::Onset, fraction, F::ZERO, F::ZERO));
+        fraction
     }
 
     /// u while it builds, N·m.
@@ -342,9 +344,11 @@ impl<F: Real> ClaspKnife<F> {
         self.with.onset_nm + self.with.slope * beyond_rad.at_least(F::ZERO)
     }
 
+    /// Builds since the share `from` of a travel; a long one may reach the release, too.
     #[inline]
     fn build(
         &mut self,
+        from: F,
         beyond_rad: F,
         travel: &Travel<F>,
         on_change: &mut impl FnMut(Change<F>),
@@ -357,7 +361,7 @@ impl<F: Real> ClaspKnife<F> {
             let fraction = if before_rad >= F::ZERO {
                 F::ZERO
             } else {
-                travel.reaches(release)
+                travel.reaches(release).at_least(from)
             };
             return self.collapse(fraction, travel, on_change);
         }
@@ -366,7 +370,7 @@ impl<F: Real> ClaspKnife<F> {
         if with.release.is_none() && nm >= with.release_nm {
             let before_nm = before.torque_nm();
             let fraction = ((with.release_nm - before_nm) / (nm - before_nm).at_least(F::EPSILON))
-                .at_least(F::ZERO)
+                .at_least(from)
                 .at_most(F::ONE);
             self.play = before;
             return self.collapse(fraction, travel, on_change);

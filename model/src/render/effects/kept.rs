@@ -64,6 +64,11 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
             (None, false) => {}
             (None, true) => self.way = Way::Leaving(self.last_nm.abs()),
             (Some(coefficients), true) => {
+                if matches!(self.way, Way::Leaving(_)) {
+                    // What has left does not come back: that would push.
+                    let left_nm = self.law.torque_nm().abs() - self.last_nm.abs();
+                    self.law.release(left_nm.at_least(F::ZERO));
+                }
                 self.law.adopt(*coefficients, slew_nm);
                 if self.way != Way::Appearing {
                     self.way = Way::Adopted;
@@ -153,7 +158,14 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
         let law_nm = given.nm;
         let shown_nm = match self.way {
             Way::Free | Way::Appearing => law_nm,
-            Way::Adopted => self.fade(law_nm, self.last_nm - law_nm, self.slew_nm),
+            Way::Adopted => {
+                let shown_nm = self.fade(law_nm, self.last_nm - law_nm, self.slew_nm);
+                // What a law makes of its coefficients shows with a sample.
+                if tick.input.travel_rad().is_none() {
+                    self.way = Way::Adopted;
+                }
+                shown_nm
+            }
             Way::Fading(besides_nm) => {
                 let moved_rad = tick.input.travel_rad().unwrap_or(F::ZERO);
                 let along = besides_nm * moved_rad < F::ZERO;
@@ -182,12 +194,13 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
         given.is_settling = true;
     }
 
-    /// The law's torque with what is left of `besides_nm` besides, no more than it is
-    /// or was shown.
+    /// The law's torque with what is left of `besides_nm` besides: between nothing, what
+    /// it is and what was shown. A law that gives way faster leaves no push behind.
     fn fade(&mut self, law_nm: F, besides_nm: F, fades_nm: F) -> F {
-        let most_nm = self.last_nm.abs().at_least(law_nm.abs());
         let left_nm = besides_nm - besides_nm.within(fades_nm);
-        let shown_nm = (law_nm + left_nm).within(most_nm);
+        let shown_nm = (law_nm + left_nm)
+            .at_least(law_nm.at_most(self.last_nm).at_most(F::ZERO))
+            .at_most(law_nm.at_least(self.last_nm).at_least(F::ZERO));
         self.way = if left_nm == F::ZERO {
             Way::Free
         } else {

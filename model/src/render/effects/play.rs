@@ -142,6 +142,11 @@ impl<F: Real> Play<F> {
         let less_nm = self.now_nm.within(nm);
         self.now_nm -= less_nm;
         self.there_nm -= less_nm;
+        self.allowed_nm -= self.allowed_nm.within(nm);
+        // Within its limits now: one that is dragged would go on from its limit.
+        if less_nm != F::ZERO {
+            self.hold = Hold::Elastic;
+        }
     }
 
     /// Follows the joint, in the direction `sense`·φ, from the share `from` of a
@@ -186,13 +191,18 @@ impl<F: Real> Play<F> {
                 limits,
             };
             passage.tell(was, self.hold, on_change);
-            if !F::IS_SINGLE && self.hold == Hold::Elastic {
-                // As exact as f64 can show; f32 cannot, and saves the time.
+            if !F::IS_SINGLE && travel.ticks == 1 && self.hold == Hold::Elastic {
+                // As exact as f64 can show; f32 cannot, and saves the time. Where the
+                // joint has been over a gap nobody knows.
                 let turned = passage.turned(was);
-                self.place = travel.place(turned);
-                self.there_nm = passage.limit_nm(was, turned);
-                self.now_nm = self.there_nm
-                    + stiffness * part.sense * place.beyond(&self.place, travel.rad_per_count);
+                let there = travel.place(turned);
+                let there_nm = passage.limit_nm(was, turned);
+                let moved_rad = part.sense * place.beyond(&there, travel.rad_per_count);
+                let now_nm = there_nm + stiffness * moved_rad;
+                // A travel that goes far back in a tick has met another limit.
+                if now_nm <= upper_nm && now_nm >= lower_nm {
+                    (self.place, self.there_nm, self.now_nm) = (there, there_nm, now_nm);
+                }
             }
         }
         self.now_nm

@@ -408,6 +408,15 @@ impl<F: Real> Texture<F> {
         if is_at_limit {
             on_change(Change::at(Word::Snap, fraction, before_nm, after_nm));
         }
-        fraction
+        let to = travel.to;
+        if self.beyond_next(&to) < F::ZERO && self.beyond_last(&to) >= -self.with.flicker_rad {
+            return fraction;
+        }
+        // After a gap it may lie several asperities on: no snap of each, late.
+        self.seek(&to);
+        let Limits { lower_nm, upper_nm } = self.with.limits(&self.last, &self.next, &to);
+        let nm = after_nm.at_most(upper_nm).at_least(lower_nm);
+        self.play.put(&to, nm, Hold::Elastic);
+        F::ONE
     }
 }

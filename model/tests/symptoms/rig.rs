@@ -1,0 +1,135 @@
+//! The effects of an armed device, tick by tick.
+
+use crepitus_model::render::effects::symptom::{Change, Word};
+use crepitus_model::render::effects::{EffectSettings, EffectSpec, SwitchedEffects, Timing};
+use crepitus_model::render::input_check::{InputCheck, InputLimits};
+use crepitus_model::render::position::{Position, Sight};
+use crepitus_model::render::{Addition, Check, Seen, Shown};
+use crepitus_model::{Real, Sample, ShaftStep};
+
+pub(crate) const TICK_S: f64 = 5e-5;
+pub(crate) const SLEW_NM: f64 = 100.0 * TICK_S;
+
+pub(crate) fn timing(sight: Sight) -> Timing {
+    Timing {
+        step_s: TICK_S,
+        delay_ticks: 2,
+        sight,
+    }
+}
+
+/// Effects of an armed device.
+pub(crate) struct Rig<F: Real> {
+    pub(crate) effects: SwitchedEffects<F>,
+    pub(crate) check: InputCheck<F>,
+    pub(crate) settings: EffectSettings,
+    pub(crate) timing: Timing,
+    /// What happened, and in which share of the last tick.
+    pub(crate) words: Vec<(Word, f64)>,
+    pub(crate) settling: bool,
+}
+
+impl<F: Real> Rig<F> {
+    pub(crate) fn new(settings: EffectSettings, sight: Sight, from_rad: f64) -> Self {
+        let timing = timing(sight);
+        let mut rig = Self {
+            effects: SwitchedEffects::new(F::from_f64(SLEW_NM), &timing),
+            check: InputCheck::new(&InputLimits::device(TICK_S), F::from_f64(TICK_S), F::ZERO),
+            settings: EffectSettings::default(),
+            timing,
+            words: Vec::new(),
+            settling: false,
+        };
+        rig.commit(settings);
+        rig.effects.rest(&sight.position(from_rad));
+        rig
+    }
+
+    pub(crate) fn commit(&mut self, settings: EffectSettings) {
+        let now = (&self.settings, &self.timing);
+        let changes = settings.changes(&self.timing, now).unwrap();
+        self.effects.change(&changes, F::from_f64(SLEW_NM));
+        self.settings = settings;
+    }
+
+    pub(crate) fn tick(&mut self, sample: Sample<F>, place: Position<F>) -> f64 {
+        let input = self.check.check(&sample);
+        let seen = Seen {
+            sample,
+            omega_rad_s: F::ZERO,
+            place,
+            is_driven: true,
+        };
+        let mut shown = Shown::nothing();
+        self.words.clear();
+        let words = &mut self.words;
+        self.effects.tick(
+            &seen,
+            &input,
+            &mut shown,
+            &mut |_: &'static EffectSpec, change: Change<F>| {
+                words.push((change.word, change.fraction.to_f64()));
+            },
+        );
+        self.settling = shown.settling;
+        shown.torque_nm.to_f64()
+    }
+
+    /// A tick over which the velocity changes linearly.
+    pub(crate) fn step(&mut self, from: (f64, f64), to: (f64, f64), travel_rad: f64) -> f64 {
+        let shaft = ShaftStep {
+            delta_phi_rad: F::from_f64(travel_rad),
+            omega_start_rad_s: F::from_f64(from.1),
+            omega_end_rad_s: F::from_f64(to.1),
+        };
+        self.tick(Sample::Taken(shaft), self.timing.sight.position(to.0))
+    }
+
+    /// Along a motion from 0 s on: (s, rad, N·m) at the ticks, and words with their times.
+    pub(crate) fn run(&mut self, end_s: f64, motion: impl Fn(f64) -> (f64, f64)) -> Run {
+        let mut run = Run::default();
+        for n in 0..(end_s / TICK_S).round() as u32 {
+            let from_s = f64::from(n) * TICK_S;
+            let (from, to) = (motion(from_s), motion(from_s + TICK_S));
+            let nm = self.step(from, to, to.0 - from.0);
+            run.rows.push((from_s + TICK_S, to.0, nm));
+            let times = self
+                .words
+                .iter()
+                .map(|(word, f)| (*word, from_s + f * TICK_S));
+            run.words.extend(times);
+        }
+        run
+    }
+}
+
+#[derive(Default)]
+pub(crate) struct Run {
+    pub(crate) rows: Vec<(f64, f64, f64)>,
+    pub(crate) words: Vec<(Word, f64)>,
+}
+
+impl Run {
+    pub(crate) fn times(&self, word: Word) -> Vec<f64> {
+        let of = self.words.iter().filter(|(w, _)| *w == word);
+        of.map(|(_, time_s)| *time_s).collect()
+    }
+
+    pub(crate) fn at(&self, time_s: f64) -> f64 {
+        self.rows[(time_s / TICK_S).round() as usize - 1].2
+    }
+}
+
+/// The same speed from this angle on, deg and deg/s.
+pub(crate) fn ramp(from_deg: f64, deg_s: f64) -> impl Fn(f64) -> (f64, f64) {
+    let omega = deg_s.to_radians();
+    move |t| (from_deg.to_radians() + omega * t, omega)
+}
+
+pub(crate) fn only<F: Real>(settings: EffectSettings, from_deg: f64) -> Rig<F> {
+    Rig::new(settings, Sight::IDEAL, from_deg.to_radians())
+}
+
+pub(crate) fn near(found: f64, expected: f64, within: f64) {
+    assert!((found - expected).abs() <= within, "{found} for {expected}");
+}
