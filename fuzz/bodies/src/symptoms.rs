@@ -312,8 +312,8 @@ impl<F: Real> Knee<F> {
             travel_rad.abs()
         };
         let (mut work_j, mut sum_nm) = (0.0, 0.0);
-        for place in 0..SYMPTOMS {
-            let name = SPECS[place].name;
+        for (place, spec) in SPECS.iter().enumerate().take(SYMPTOMS) {
+            let name = spec.name;
             let nm = shown.added.get(place).expect("a place").to_f64();
             let was_nm = self.shown_nm[place];
             let bound_nm = self.bounds[place].at(self.angle_rad);
