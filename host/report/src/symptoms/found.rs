@@ -1,0 +1,227 @@
+//! What an examiner would note of a symptom: where it was met, how fast, how strong,
+//! how often.
+
+use crate::symptoms::loops::Loops;
+use crepitus_scene::trace::{SymptomEvent, Word};
+
+/// A catch, a reflex, a collapse, or the end of the range.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Met {
+    pub(crate) event: SymptomEvent,
+    /// The largest torque since, as a magnitude, N·m: of a catch until it releases.
+    pub(crate) most_nm: f64,
+    /// How far the joint went on from there, rad.
+    pub(crate) beyond_rad: f64,
+    /// When a collapse had left a fifth, s after it.
+    pub(crate) fifth_s: Option<f64>,
+    is_open: bool,
+}
+
+/// Clonus from one stretch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bout {
+    pub(crate) start: SymptomEvent,
+    pub(crate) beats: u32,
+    /// When the last beat began so far, s.
+    pub(crate) last_s: f64,
+    /// What ended it.
+    pub(crate) end: Option<Word>,
+}
+
+/// A beat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Beat {
+    pub(crate) time_s: f64,
+    /// Which one of its bout; the first is 0.
+    pub(crate) number: u32,
+}
+
+/// How often something happens while the joint moves.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rate {
+    pub(crate) word: Word,
+    pub(crate) count: u64,
+    first_s: f64,
+    last_s: f64,
+    first_rad: f64,
+    last_rad: f64,
+}
+
+impl Rate {
+    /// A second, from the first to the last.
+    pub(crate) fn per_s(&self) -> Option<f64> {
+        let length_s = self.last_s - self.first_s;
+        (self.count > 1 && length_s > 0.0).then(|| (self.count - 1) as f64 / length_s)
+    }
+
+    /// The mean speed meanwhile, rad/s.
+    pub(crate) fn mean_rad_s(&self) -> f64 {
+        (self.last_rad - self.first_rad) / (self.last_s - self.first_s)
+    }
+}
+
+/// See the module.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Found {
+    pub(crate) met: Vec<Met>,
+    pub(crate) bouts: Vec<Bout>,
+    pub(crate) beats: Vec<Beat>,
+    pub(crate) rates: Vec<Rate>,
+    pub(crate) loops: Loops,
+    /// The largest torque in either sense, N·m, and the angle there, rad.
+    pub(crate) most: (f64, f64),
+    /// Events that are counted but not kept.
+    pub(crate) left_out: u64,
+    travel_rad: f64,
+    last_rad: Option<f64>,
+}
+
+/// A catch has released when so much of its torque is left.
+const RELEASED: f64 = 0.9;
+
+impl Found {
+    /// Most of each kind that is kept.
+    pub(crate) const MOST: usize = 1000;
+
+    /// Rows are missing before the next one.
+    pub(crate) fn gap(&mut self) {
+        self.loops.gap();
+        self.last_rad = None;
+        if let Some(met) = self.met.last_mut() {
+            met.is_open = false;
+        }
+    }
+
+    pub(crate) fn row(&mut self, time_s: f64, angle_rad: f64, nm: f64) {
+        self.loops.push(angle_rad, nm);
+        if let Some(last_rad) = self.last_rad {
+            self.travel_rad += (angle_rad - last_rad).abs();
+        }
+        self.last_rad = Some(angle_rad);
+        if nm.abs() > self.most.0.abs() {
+            self.most = (nm, angle_rad);
+        }
+        if let Some(met) = self.met.last_mut() {
+            met.row(time_s, angle_rad, nm);
+        }
+    }
+
+    pub(crate) fn event(&mut self, event: &SymptomEvent) {
+        match (event.effect, event.word) {
+            (_, Word::Contact | Word::Onset | Word::Release) | ("spasticity", Word::Catch) => {
+                self.meet(event);
+            }
+            (_, Word::Leave | Word::Rearm | Word::Offset | Word::Back) => {
+                if let Some(met) = self.met.last_mut() {
+                    met.is_open = false;
+                }
+            }
+            (_, Word::Start) => self.start(event),
+            (_, Word::Beat) => self.beat(event),
+            (_, word @ (Word::Stop | Word::Done)) => {
+                if let Some(bout) = self.bouts.last_mut() {
+                    bout.end = bout.end.or(Some(word));
+                }
+            }
+            (_, Word::Snap | Word::Give) => self.count(event),
+            _ => {}
+        }
+    }
+
+    fn meet(&mut self, event: &SymptomEvent) {
+        // A collapse takes the place of the onset before it.
+        if event.word == Word::Release
+            && let Some(Word::Onset) = self.met.last().map(|met| met.event.word)
+        {
+            self.met.pop();
+        }
+        if self.met.len() == Self::MOST {
+            self.left_out += 1;
+            return;
+        }
+        self.met.push(Met {
+            event: *event,
+            most_nm: event.torque_before_nm.abs(),
+            beyond_rad: 0.0,
+            fifth_s: None,
+            is_open: true,
+        });
+    }
+
+    fn start(&mut self, event: &SymptomEvent) {
+        if self.bouts.len() == Self::MOST {
+            self.left_out += 1;
+            return;
+        }
+        self.bouts.push(Bout {
+            start: *event,
+            beats: 0,
+            last_s: event.time_s,
+            end: None,
+        });
+    }
+
+    fn beat(&mut self, event: &SymptomEvent) {
+        let Some(bout) = self.bouts.last_mut() else {
+            return;
+        };
+        if self.beats.len() < Self::MOST {
+            self.beats.push(Beat {
+                time_s: event.time_s,
+                number: bout.beats,
+            });
+        } else {
+            self.left_out += 1;
+        }
+        bout.beats += 1;
+        bout.last_s = event.time_s;
+    }
+
+    fn count(&mut self, event: &SymptomEvent) {
+        let (at_s, at_rad) = (event.time_s, self.travel_rad);
+        let known = self.rates.iter_mut().find(|rate| rate.word == event.word);
+        match known {
+            Some(rate) => {
+                rate.count += 1;
+                (rate.last_s, rate.last_rad) = (at_s, at_rad);
+            }
+            None => self.rates.push(Rate {
+                word: event.word,
+                count: 1,
+                first_s: at_s,
+                last_s: at_s,
+                first_rad: at_rad,
+                last_rad: at_rad,
+            }),
+        }
+    }
+
+    /// Catches and onsets of a reflex.
+    pub(crate) fn caught(&self) -> impl Iterator<Item = &Met> {
+        let is_catch = |met: &&Met| matches!(met.event.word, Word::Catch | Word::Onset);
+        self.met.iter().filter(is_catch)
+    }
+}
+
+impl Met {
+    fn row(&mut self, time_s: f64, angle_rad: f64, nm: f64) {
+        if !self.is_open {
+            return;
+        }
+        let event = &self.event;
+        let nm = nm.abs();
+        match event.word {
+            Word::Release => {
+                if self.fifth_s.is_none() && nm <= 0.2 * event.torque_before_nm.abs() {
+                    self.fifth_s = Some(time_s - event.time_s);
+                }
+            }
+            Word::Catch if self.most_nm > 0.0 && nm < RELEASED * self.most_nm => {
+                self.is_open = false;
+            }
+            _ => self.most_nm = self.most_nm.max(nm),
+        }
+        let beyond_rad = (angle_rad - event.angle_rad).abs();
+        self.beyond_rad = self.beyond_rad.max(beyond_rad);
+    }
+}
