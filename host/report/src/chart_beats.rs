@@ -1,21 +1,22 @@
 //! The beats of clonus over time: their number, and the time from each to the next.
 
-use crate::chart_symptoms::WIDTH;
+use crate::chart_symptoms::{WIDE, WIDTH};
 use crate::symptoms::Symptom;
 use crate::symptoms::found::Beat;
 use crepitus_model::render::effects::clonus::ClonusSettings;
-use crepitus_plot::palette::{CURVES, TEXT};
-use crepitus_plot::{Axis, Chart, Marker, Panel, Point, stack};
+use crepitus_plot::palette::{AXIS, TEXT};
+use crepitus_plot::{
+    Axis, Chart, CurveStyle, Figure, Key, Marker, Panel, Plot, Point, Sign, stack,
+};
 
 const HEIGHT: f64 = 190.0;
 const FOOT: f64 = 45.0;
+const TIME: &str = "Time (s)";
 
-/// The chart, if there were beats.
-pub(crate) fn chart(symptom: &Symptom, settings: Option<&ClonusSettings>) -> Option<Chart> {
+/// The figure, if there were beats.
+pub(crate) fn figure(symptom: &Symptom, settings: Option<&ClonusSettings>) -> Option<Figure> {
     let beats = &symptom.found.beats;
-    let (Some(first), Some(last)) = (beats.first(), beats.last()) else {
-        return None;
-    };
+    let (first, last) = (beats.first()?, beats.last()?);
     let numbers: Vec<Point> = beats
         .iter()
         .map(|beat| Point::new(beat.time_s, f64::from(beat.number + 1)))
@@ -28,44 +29,45 @@ pub(crate) fn chart(symptom: &Symptom, settings: Option<&ClonusSettings>) -> Opt
     let room_s = 0.03 * (last.time_s - first.time_s) + 0.1;
     let time = Axis::linear(first.time_s - room_s, last.time_s + room_s, 9);
     let number = Axis::covering(numbers.iter().map(|p| p.y).chain([0.0]), 4);
-    let interval = Axis::covering(found.iter().chain(&expected).map(|p| p.y), 4);
-    let mut panels = vec![Panel::new(HEIGHT, time.clone(), ("Beat", number), |plot| {
+    let above = Panel::new(HEIGHT, time.clone(), ("Beat", number), |plot| {
         plot.grid();
-        for point in &numbers {
-            plot.mark((point.x, point.y), Marker::Circle, TEXT);
-        }
-    })];
-    if found.is_empty() {
-        panels = panels
-            .into_iter()
-            .map(|panel| panel.x_title(Some("Time (s)")))
-            .collect();
+        signs(plot, &numbers);
+    });
+    let panels = if found.is_empty() {
+        vec![above.x_title(Some(TIME))]
     } else {
-        let title = "To the next beat (ms)";
+        let interval = Axis::covering(found.iter().chain(&expected).map(|p| p.y), 4);
+        let title = "To the next (ms)";
         let below = Panel::new(HEIGHT + FOOT, time, (title, interval), |plot| {
             plot.grid();
-            for point in &expected {
-                plot.mark((point.x, point.y), Marker::Plus, CURVES[3]);
+            for stretch in stretches(&expected) {
+                plot.line(stretch, AXIS, WIDE);
             }
-            for point in &found {
-                plot.mark((point.x, point.y), Marker::Circle, TEXT);
-            }
+            signs(plot, &found);
         });
-        panels.push(below.x_title(Some("Time (s)")));
-    }
-    let heading = match settings {
-        Some(_) if !found.is_empty() => "Beats over time; plus signs: the rhythm of the settings",
-        _ => "Beats over time",
+        vec![above, below.x_title(Some(TIME))]
     };
-    Some(Chart {
-        svg: stack(
-            WIDTH,
-            "Number of each beat, and time to the next, over time",
-            panels,
-        ),
-        heading: Some(heading.to_owned()),
-        half: false,
+    let mut legend = vec![Key::new(Sign::Filled(CurveStyle::NEUTRAL), "a beat")];
+    if !expected.is_empty() {
+        legend.push(Key::new(Sign::Line(AXIS), "the rhythm of the settings"));
+    }
+    let label = "Number of each beat, and time to the next, over time";
+    Some(Figure {
+        name: "beats",
+        title: "Beats of clonus",
+        legend,
+        charts: vec![Chart::full(stack(WIDTH, label, panels))],
+        caption: "Each beat over time: its number since the stretch, and how long it was to the \
+                  next. The first interval is the longest; from the fourth or fifth beat on the \
+                  rhythm is steady."
+            .to_owned(),
     })
+}
+
+fn signs(plot: &mut Plot, points: &[Point]) {
+    for point in points {
+        plot.mark((point.x, point.y), Marker::Circle, TEXT);
+    }
 }
 
 /// From each beat to the next of the same stretch: (s, ms).
@@ -75,4 +77,9 @@ fn intervals(beats: &[Beat], length_s: impl Fn(&Beat, &Beat) -> f64) -> Vec<Poin
         .filter(|(from, to)| to.number == from.number + 1)
         .map(|(from, to)| Point::new(from.time_s, 1e3 * length_s(from, to)))
         .collect()
+}
+
+/// Parts in which intervals become shorter: a longer one begins another stretch.
+fn stretches(intervals: &[Point]) -> impl Iterator<Item = &[Point]> {
+    intervals.chunk_by(|a, b| b.y <= a.y)
 }

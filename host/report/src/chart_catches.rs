@@ -1,15 +1,17 @@
 //! Where a spastic muscle caught, against the speed of the stretch.
 
-use crate::chart_symptoms::WIDTH;
+use crate::chart_symptoms::{WIDE, WIDTH};
 use crate::symptoms::Symptom;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
-use crepitus_plot::palette::{LEVEL, TEXT};
-use crepitus_plot::{Axis, Chart, Mark, Marker, Panel, Point, Stroke, stack};
+use crepitus_plot::palette::{AXIS, TEXT};
+use crepitus_plot::{
+    Axis, Chart, CurveStyle, Figure, Key, Mark, Marker, Panel, Point, Sign, extent, stack,
+};
 
-const HEIGHT: f64 = 300.0;
+const HEIGHT: f64 = 320.0;
 
-/// The chart, if there was a catch.
-pub(crate) fn chart(symptom: &Symptom, settings: Option<&SpasticitySettings>) -> Option<Chart> {
+/// The figure, if there was a catch.
+pub(crate) fn figure(symptom: &Symptom, settings: Option<&SpasticitySettings>) -> Option<Figure> {
     if symptom.words.effect != "spasticity" {
         return None;
     }
@@ -25,13 +27,14 @@ pub(crate) fn chart(symptom: &Symptom, settings: Option<&SpasticitySettings>) ->
     }
     let law = settings.map(|settings| Law::of(settings, 1.2 * fastest));
     let line = law.iter().flat_map(|law| &law.line);
-    let values = caught.iter().chain(line).map(|p| p.y);
-    let x = Axis::covering([0.0, 1.2 * fastest], 9);
-    let y = Axis::covering(values, 6);
-    let panel = Panel::new(HEIGHT, x, ("Knee angle at the catch (°)", y), |plot| {
+    let (low, high) = extent(caught.iter().chain(line).map(|p| p.y));
+    // Room for a name at the top.
+    let y = Axis::covering([low, high + 0.15 * (high - low)], 6);
+    let x = Axis::linear(0.0, 1.2 * fastest, 9);
+    let panel = Panel::new(HEIGHT, x, ("Knee angle, flexion (°)", y), |plot| {
         plot.grid();
         if let Some(law) = &law {
-            plot.stroke(&law.line, Stroke::dashed(LEVEL, 1.75));
+            plot.line(&law.line, AXIS, WIDE);
             plot.moments(&law.marks, true);
         }
         for point in &caught {
@@ -39,14 +42,23 @@ pub(crate) fn chart(symptom: &Symptom, settings: Option<&SpasticitySettings>) ->
         }
     });
     let panel = panel.x_title(Some("Speed of the stretch (°/s)"));
-    let heading = match law {
-        Some(_) => "Angle of catch against speed; dashed: where the settings put it",
-        None => "Angle of catch against speed",
-    };
-    Some(Chart {
-        svg: stack(WIDTH, "Knee angle at each catch against speed", vec![panel]),
-        heading: Some(heading.to_owned()),
-        half: false,
+    let mut legend = vec![Key::new(Sign::Filled(CurveStyle::NEUTRAL), "a catch")];
+    if law.is_some() {
+        legend.push(Key::new(Sign::Line(AXIS), "where the settings put it"));
+    }
+    Some(Figure {
+        name: "catch-angle",
+        title: "Angle of catch against speed",
+        legend,
+        charts: vec![Chart::full(stack(
+            WIDTH,
+            "Knee angle at each catch against the speed of the stretch",
+            vec![panel],
+        ))],
+        caption: "Where the muscle answered each stretch, and how fast the stretch was there: the \
+                  faster, the earlier. A joint that is only stiff or contracted would answer at \
+                  one angle whatever the speed."
+            .to_owned(),
     })
 }
 

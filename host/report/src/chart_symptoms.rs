@@ -16,12 +16,13 @@ use crepitus_plot::palette::{
     Ink, OBJECT, SHAFT, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, TEXT, TORQUE,
 };
 use crepitus_plot::{
-    Axis, Chart, CurveStyle, Figure, Key, Mark, Marker, Panel, Plot, Point, Sign, Stroke, extent,
-    stack,
+    Axis, Chart, CurveStyle, Figure, Key, Mark, Marker, Panel, Plot, Point, Sign, extent, stack,
 };
-use crepitus_scene::trace::Word;
+use crepitus_scene::trace::{SymptomEvent, Word};
 
 pub(crate) const WIDTH: f64 = 960.0;
+/// Of lines behind others, which may cover them.
+pub(crate) const WIDE: f64 = 5.5;
 const HEIGHT: f64 = 380.0;
 const ANGLE_HEIGHT: f64 = 120.0;
 const TIME_HEIGHT: f64 = 290.0;
@@ -33,7 +34,7 @@ const MOST_SIGNS: usize = 100;
 const MOST_NAMES: usize = 10;
 
 /// The states beside that at rest.
-const STATES: [Ink; 3] = [SLIP_NEGATIVE, SLIP_POSITIVE, STICK];
+const STATES: [Ink; 3] = [SLIP_POSITIVE, SLIP_NEGATIVE, STICK];
 
 /// All of them.
 pub(crate) fn figures(figures: &Figures) -> Vec<Figure> {
@@ -45,9 +46,12 @@ pub(crate) fn figures(figures: &Figures) -> Vec<Figure> {
         list,
         together,
     } = symptoms;
-    let own = list
-        .iter()
-        .filter_map(|symptom| figure(figures, symptom, settings));
+    let own = list.iter().flat_map(|symptom| {
+        let catches = chart_catches::figure(symptom, settings.spasticity.as_ref());
+        let beats = chart_beats::figure(symptom, settings.clonus.as_ref());
+        [figure(figures, symptom, settings), catches, beats]
+    });
+    let own = own.flatten();
     let all = together
         .iter()
         .filter_map(|together| sum(figures, together, list, settings));
@@ -66,10 +70,10 @@ fn figure(figures: &Figures, symptom: &Symptom, settings: &EffectSettings) -> Op
         return None;
     }
     let drawn = limits::of(settings, words.effect, ends(path), &found.met);
-    let mut charts = vec![over_angle(path, &drawn, Some(symptom))];
-    charts.push(over_time(figures, symptom));
-    charts.extend(chart_catches::chart(symptom, settings.spasticity.as_ref()));
-    charts.extend(chart_beats::chart(symptom, settings.clonus.as_ref()));
+    let charts = vec![
+        over_angle(path, &drawn, Some(symptom)),
+        over_time(figures, symptom),
+    ];
     Some(Figure {
         name: words.effect,
         title: words.title,
@@ -112,14 +116,14 @@ fn over_angle(path: &Path, drawn: &Drawn, symptom: Option<&Symptom>) -> Chart {
     let marks = drawn.marks.iter().map(|mark| mark.at);
     let also = marks.chain(drawn.also_deg.iter().copied());
     let x = Axis::covering(all.iter().map(|p| p.x).chain(also), 9);
-    let y = Axis::covering(all.iter().map(|p| p.y).chain([0.0]), 6);
+    let y = torque_axis(all.iter().map(|p| p.y), !drawn.marks.is_empty());
     let panel = Panel::new(HEIGHT, x, (TORQUE_TITLE, y), |plot| {
         for (ink, low, high) in &bands {
             plot.band(low, high, *ink, 0.25);
         }
         plot.grid();
         for line in &drawn.lines {
-            plot.stroke(&line.points, Stroke::dashed(line.ink, 1.75));
+            plot.line(&line.points, line.ink, line.width);
         }
         for (ink, low, high) in &bands {
             plot.line(low, *ink, 1.5);
@@ -130,7 +134,7 @@ fn over_angle(path: &Path, drawn: &Drawn, symptom: Option<&Symptom>) -> Chart {
         }
         plot.moments(&drawn.marks, true);
         if let Some(symptom) = symptom {
-            let at = |event: &crepitus_scene::trace::SymptomEvent| event.angle_rad.to_degrees();
+            let at = |event: &SymptomEvent| event.angle_rad.to_degrees();
             signs(plot, symptom, at);
         }
     });
@@ -140,6 +144,21 @@ fn over_angle(path: &Path, drawn: &Drawn, symptom: Option<&Symptom>) -> Chart {
         svg: stack(WIDTH, label, vec![panel.x_title(Some(ANGLE_TITLE))]),
         half: false,
     }
+}
+
+/// With zero, and with room at the top for names.
+fn torque_axis(nm: impl Iterator<Item = f64>, has_names: bool) -> Axis {
+    let (low, high) = extent(nm.chain([0.0]));
+    let room = if has_names { 0.15 * (high - low) } else { 0.0 };
+    Axis::covering([low, high + room], 6)
+}
+
+/// Whether an event begins something: of these a chart over time says the names.
+fn begins(word: Word) -> bool {
+    !matches!(
+        word,
+        Word::Rearm | Word::Leave | Word::Uncap | Word::Offset | Word::Beat
+    )
 }
 
 /// Where a path has too many strokes: its range in either direction.
@@ -161,11 +180,7 @@ fn bands(path: &Path) -> Vec<(Ink, Vec<Point>, Vec<Point>)> {
 }
 
 /// The signs of a symptom's events, if they are few enough to be told apart.
-fn signs(
-    plot: &mut Plot,
-    symptom: &Symptom,
-    x: impl Fn(&crepitus_scene::trace::SymptomEvent) -> f64,
-) {
+fn signs(plot: &mut Plot, symptom: &Symptom, x: impl Fn(&SymptomEvent) -> f64) {
     let events = &symptom.timeline.events;
     if events.len() > MOST_SIGNS {
         return;
@@ -212,20 +227,22 @@ fn over_time(figures: &Figures, symptom: &Symptom) -> Chart {
         plot.line(&angle, OBJECT, 1.75);
         figures.draw_marks(plot, true);
     });
-    let y = Axis::covering(line.iter().map(|p| p.y).chain([0.0]), 5);
+    let named: Vec<Mark> = events
+        .iter()
+        .filter(|event| begins(event.word))
+        .filter_map(|event| {
+            let name = symptom.words.name(event.word)?.to_owned();
+            let at = event.time_s;
+            Some(Mark { at, name })
+        })
+        .collect();
+    let is_named = (1..=MOST_NAMES).contains(&named.len());
+    let y = torque_axis(line.iter().map(|p| p.y), is_named);
     let below = Panel::new(TIME_HEIGHT, time, (TORQUE_TITLE, y), |plot| {
         shade(plot);
         plot.grid();
         plot.line(&line, TORQUE, 1.5);
-        let named: Vec<Mark> = events
-            .iter()
-            .filter_map(|event| {
-                let name = symptom.words.name(event.word)?.to_owned();
-                let at = event.time_s;
-                Some(Mark { at, name })
-            })
-            .collect();
-        if named.len() <= MOST_NAMES {
+        if is_named {
             plot.moments(&named, true);
         }
         signs(plot, symptom, |event| event.time_s);
@@ -299,7 +316,7 @@ fn caption(symptom: &Symptom, drawn: &Drawn) -> String {
                        bending, below zero against straightening."
         .to_owned();
     if !drawn.lines.is_empty() {
-        caption += " Dashed: the limits that follow from the settings.";
+        caption += " The wide lines behind are the limits that follow from the settings.";
     } else if !symptom.words.changes.is_empty() || symptom.shows_all() {
         caption += " Its settings changed, or are not known: no limits are drawn.";
     }
@@ -336,7 +353,7 @@ fn sum(
         marks: marks.collect(),
         ..Drawn::default()
     };
-    let y = Axis::covering(line.iter().map(|p| p.y).chain([0.0]), 5);
+    let y = torque_axis(line.iter().map(|p| p.y), false);
     let (from_s, to_s) = extent(line.iter().map(|p| p.x));
     let time = Axis::linear(from_s, to_s, 9);
     let panel = Panel::new(TIME_HEIGHT, time, (TORQUE_TITLE, y), |plot| {

@@ -137,7 +137,7 @@ fn catches(found: &Found, settings: &EffectSettings, rows: &mut Vec<Row>) {
             format!(" with {}", torque(nm))
         });
         let value = format!(
-            "{met_at} {} at {}{height}; rose to {}",
+            "{met_at} {} at {}{height}; {} were felt",
             angle(event.angle_rad),
             speed(event.omega_rad_s),
             torque(met.most_nm)
@@ -232,14 +232,16 @@ fn rates(found: &Found, rows: &mut Vec<Row>) {
         } else {
             "gives"
         };
-        let value = match rate.per_s() {
-            Some(per_s) => format!(
-                "{}: {} a second, at a mean speed of {}",
+        let moving_s = found.moving_s;
+        let value = if moving_s > 0.0 {
+            format!(
+                "{}: {} a second while it moved, at a mean speed of {}",
                 count(rate.count),
-                rounded(per_s),
-                speed(rate.mean_rad_s())
-            ),
-            None => count(rate.count),
+                rounded(rate.count as f64 / moving_s),
+                speed(found.travel_rad / moving_s)
+            )
+        } else {
+            count(rate.count)
         };
         rows.push((name.to_owned(), value));
     }

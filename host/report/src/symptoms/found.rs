@@ -36,28 +36,11 @@ pub(crate) struct Beat {
     pub(crate) number: u32,
 }
 
-/// How often something happens while the joint moves.
+/// How often something happens.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rate {
     pub(crate) word: Word,
     pub(crate) count: u64,
-    first_s: f64,
-    last_s: f64,
-    first_rad: f64,
-    last_rad: f64,
-}
-
-impl Rate {
-    /// A second, from the first to the last.
-    pub(crate) fn per_s(&self) -> Option<f64> {
-        let length_s = self.last_s - self.first_s;
-        (self.count > 1 && length_s > 0.0).then(|| (self.count - 1) as f64 / length_s)
-    }
-
-    /// The mean speed meanwhile, rad/s.
-    pub(crate) fn mean_rad_s(&self) -> f64 {
-        (self.last_rad - self.first_rad) / (self.last_s - self.first_s)
-    }
 }
 
 /// See the module.
@@ -72,9 +55,14 @@ pub(crate) struct Found {
     pub(crate) most: (f64, f64),
     /// Events that are counted but not kept.
     pub(crate) left_out: u64,
-    travel_rad: f64,
-    last_rad: Option<f64>,
+    /// How far and how long the joint moved.
+    pub(crate) travel_rad: f64,
+    pub(crate) moving_s: f64,
+    last: Option<(f64, f64)>,
 }
+
+/// Slower, a joint is at rest: one degree a second.
+const SLOWEST_RAD_S: f64 = std::f64::consts::PI / 180.0;
 
 /// A catch has released when so much of its torque is left.
 const RELEASED: f64 = 0.9;
@@ -86,7 +74,7 @@ impl Found {
     /// Rows are missing before the next one.
     pub(crate) fn gap(&mut self) {
         self.loops.gap();
-        self.last_rad = None;
+        self.last = None;
         if let Some(met) = self.met.last_mut() {
             met.is_open = false;
         }
@@ -94,10 +82,14 @@ impl Found {
 
     pub(crate) fn row(&mut self, time_s: f64, angle_rad: f64, nm: f64) {
         self.loops.push(angle_rad, nm);
-        if let Some(last_rad) = self.last_rad {
-            self.travel_rad += (angle_rad - last_rad).abs();
+        if let Some((last_s, last_rad)) = self.last {
+            let (passed_s, moved_rad) = (time_s - last_s, (angle_rad - last_rad).abs());
+            if moved_rad > SLOWEST_RAD_S * passed_s {
+                self.travel_rad += moved_rad;
+                self.moving_s += passed_s;
+            }
         }
-        self.last_rad = Some(angle_rad);
+        self.last = Some((time_s, angle_rad));
         if nm.abs() > self.most.0.abs() {
             self.most = (nm, angle_rad);
         }
@@ -123,7 +115,7 @@ impl Found {
                     bout.end = bout.end.or(Some(word));
                 }
             }
-            (_, Word::Snap | Word::Give) => self.count(event),
+            (_, word @ (Word::Snap | Word::Give)) => self.count(word),
             _ => {}
         }
     }
@@ -177,22 +169,10 @@ impl Found {
         bout.last_s = event.time_s;
     }
 
-    fn count(&mut self, event: &SymptomEvent) {
-        let (at_s, at_rad) = (event.time_s, self.travel_rad);
-        let known = self.rates.iter_mut().find(|rate| rate.word == event.word);
-        match known {
-            Some(rate) => {
-                rate.count += 1;
-                (rate.last_s, rate.last_rad) = (at_s, at_rad);
-            }
-            None => self.rates.push(Rate {
-                word: event.word,
-                count: 1,
-                first_s: at_s,
-                last_s: at_s,
-                first_rad: at_rad,
-                last_rad: at_rad,
-            }),
+    fn count(&mut self, word: Word) {
+        match self.rates.iter_mut().find(|rate| rate.word == word) {
+            Some(rate) => rate.count += 1,
+            None => self.rates.push(Rate { word, count: 1 }),
         }
     }
 

@@ -12,13 +12,13 @@ use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_model::render::effects::texture::TextureSettings;
 use crepitus_plot::number::rounded;
-use crepitus_plot::palette::{CURVES, Ink, LEVEL};
+use crepitus_plot::palette::{AXIS, ENCODER, Ink};
 use crepitus_plot::{Mark, Point};
 use crepitus_scene::trace::Word;
 
 /// Of the limits, the outer or only ones, and the others.
-pub(crate) const OUTER: Ink = LEVEL;
-pub(crate) const INNER: Ink = CURVES[3];
+const OUTER: Ink = AXIS;
+const INNER: Ink = ENCODER;
 
 /// Catches of which the limits are drawn: more would hide each other.
 const CATCHES: usize = 6;
@@ -31,6 +31,8 @@ const POINTS: u8 = 60;
 pub(crate) struct Line {
     pub(crate) ink: Ink,
     pub(crate) name: &'static str,
+    /// CSS pixels.
+    pub(crate) width: f64,
     pub(crate) points: Vec<Point>,
 }
 
@@ -75,7 +77,14 @@ pub(crate) fn of(settings: &EffectSettings, effect: &str, ends: (f64, f64), met:
 
 impl Drawn {
     fn line(&mut self, ink: Ink, name: &'static str, points: Vec<Point>) {
-        self.lines.push(Line { ink, name, points });
+        // A line of the path covers neither.
+        let width = if ink == OUTER { 5.5 } else { 4.5 };
+        self.lines.push(Line {
+            ink,
+            name,
+            width,
+            points,
+        });
     }
 
     /// A curve from angle to angle, deg, of a torque by angle, rad.
@@ -185,9 +194,12 @@ fn spasticity(drawn: &mut Drawn, s: &SpasticitySettings, ends: (f64, f64), met: 
                 s.left_nm(caught_rad, rad_s, rad)
             });
         } else {
-            drawn.curve(INNER, "the same at the speed of the onset", after, |rad| {
-                s.reflex_nm(rad, rad_s)
-            });
+            drawn.curve(
+                INNER,
+                "at the speed of the stretch, without its delay",
+                after,
+                |rad| s.reflex_nm(rad, rad_s),
+            );
         }
     }
 }
