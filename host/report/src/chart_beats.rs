@@ -21,11 +21,8 @@ pub(crate) fn figure(symptom: &Symptom, settings: Option<&ClonusSettings>) -> Op
         .iter()
         .map(|beat| Point::new(beat.time_s, f64::from(beat.number + 1)))
         .collect();
-    let found = intervals(beats, |from, to| to.time_s - from.time_s);
-    let expected = match settings {
-        Some(settings) => intervals(beats, |from, _| settings.interval_s(from.number)),
-        None => Vec::new(),
-    };
+    let found = intervals(beats);
+    let expected = settings.map_or_else(Vec::new, |settings| rhythm(beats, settings));
     let room_s = 0.03 * (last.time_s - first.time_s) + 0.1;
     let time = Axis::linear(first.time_s - room_s, last.time_s + room_s, 9);
     let number = Axis::covering(numbers.iter().map(|p| p.y).chain([0.0]), 4);
@@ -71,7 +68,16 @@ fn signs(plot: &mut Plot, points: &[Point]) {
 }
 
 /// From each beat to the next of the same stretch: (s, ms).
-fn intervals(beats: &[Beat], length_s: impl Fn(&Beat, &Beat) -> f64) -> Vec<Point> {
+fn intervals(beats: &[Beat]) -> Vec<Point> {
+    between(beats, |from, to| to.time_s - from.time_s)
+}
+
+/// The same by the settings.
+fn rhythm(beats: &[Beat], settings: &ClonusSettings) -> Vec<Point> {
+    between(beats, |from, _| settings.interval_s(from.number))
+}
+
+fn between(beats: &[Beat], length_s: impl Fn(&Beat, &Beat) -> f64) -> Vec<Point> {
     let pairs = beats.iter().zip(beats.iter().skip(1));
     pairs
         .filter(|(from, to)| to.number == from.number + 1)
@@ -82,4 +88,41 @@ fn intervals(beats: &[Beat], length_s: impl Fn(&Beat, &Beat) -> f64) -> Vec<Poin
 /// Parts in which intervals become shorter: a longer one begins another stretch.
 fn stretches(intervals: &[Point]) -> impl Iterator<Item = &[Point]> {
     intervals.chunk_by(|a, b| b.y <= a.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::symptom::STEPPED;
+    use crate::symptoms::tests::examined;
+
+    #[test]
+    fn beats_are_in_the_rhythm_of_the_settings_in_milliseconds() {
+        let (settings, symptoms) = examined(6, STEPPED);
+        let beats = &symptoms.list[0].found.beats;
+        let found = intervals(beats);
+        let expected = rhythm(beats, &settings.clonus.expect("on"));
+        assert_eq!((found.len(), expected.len()), (7, 7));
+        for (found, expected) in found.iter().zip(&expected) {
+            assert_eq!(found.x, expected.x);
+            assert!((found.y - expected.y).abs() < 0.1, "{found:?} {expected:?}");
+        }
+        assert!((found[0].y - 216.7).abs() < 0.1, "{found:?}");
+    }
+
+    #[test]
+    fn another_stretch_is_another_line() {
+        let beat = |time_s, number| Beat { time_s, number };
+        let beats = [
+            beat(1.0, 0),
+            beat(1.3, 1),
+            beat(1.5, 2),
+            beat(4.0, 0),
+            beat(4.3, 1),
+        ];
+        let found = intervals(&beats);
+        assert_eq!(found.len(), 3);
+        let lengths: Vec<usize> = stretches(&found).map(<[Point]>::len).collect();
+        assert_eq!(lengths, [2, 1]);
+    }
 }

@@ -15,12 +15,7 @@ pub(crate) fn figure(symptom: &Symptom, settings: Option<&SpasticitySettings>) -
     if symptom.words.effect != "spasticity" {
         return None;
     }
-    let caught = symptom.found.caught().map(|met| {
-        let event = &met.event;
-        let deg_s = event.omega_rad_s.abs().to_degrees();
-        Point::new(deg_s, event.angle_rad.to_degrees())
-    });
-    let caught: Vec<Point> = caught.collect();
+    let caught = caught(symptom);
     let fastest = caught.iter().map(|p| p.x).fold(f64::NAN, f64::max);
     if fastest.is_nan() {
         return None;
@@ -62,6 +57,16 @@ pub(crate) fn figure(symptom: &Symptom, settings: Option<&SpasticitySettings>) -
     })
 }
 
+/// Every catch: (deg/s, deg).
+fn caught(symptom: &Symptom) -> Vec<Point> {
+    let caught = symptom.found.caught().map(|met| {
+        let event = &met.event;
+        let deg_s = event.omega_rad_s.abs().to_degrees();
+        Point::new(deg_s, event.angle_rad.to_degrees())
+    });
+    caught.collect()
+}
+
 /// Where the settings put a catch.
 struct Law {
     /// (deg/s, deg)
@@ -88,5 +93,47 @@ impl Law {
                 .into_iter()
                 .collect(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::symptom::STEPPED;
+    use crate::symptoms::tests::examined;
+    use crepitus_model::Tabled;
+
+    #[test]
+    fn catches_are_on_the_line_in_degrees_and_seconds() {
+        for (place, expected) in [
+            (3, [(90.0, 52.5), (130.0, 42.5)]),
+            (4, [(30.0, 66.9), (90.0, 50.7)]),
+        ] {
+            let (settings, symptoms) = examined(place, STEPPED);
+            let settings = settings.spasticity.expect("on");
+            let points = caught(&symptoms.list[0]);
+            let Law { line, .. } = Law::of(&settings, 200.0);
+            let slope = (line[1].y - line[0].y) / (line[1].x - line[0].x);
+            assert_eq!(points.len(), 2);
+            for (point, (deg_s, deg)) in points.iter().zip(expected) {
+                assert!((point.x - deg_s).abs() < 0.01, "{point:?}");
+                assert!((point.y - deg).abs() < 0.01, "{point:?}");
+                let on_line = line[0].y + slope * (point.x - line[0].x);
+                assert!((point.y - on_line).abs() < 0.01, "{point:?} {on_line}");
+            }
+        }
+    }
+
+    #[test]
+    fn flexors_are_caught_later_in_flexion_the_faster() {
+        let settings = SpasticitySettings {
+            muscles: 1,
+            ..SpasticitySettings::defaults()
+        };
+        let Law { line, marks } = Law::of(&settings, 90.0);
+        let at = |n: usize| (line[n].x, line[n].y);
+        assert!((at(0).0 - 40.0).abs() < 1e-9 && (at(0).1 - 85.0).abs() < 1e-9);
+        assert!((at(1).0 - 90.0).abs() < 1e-9 && (at(1).1 - 97.5).abs() < 1e-9);
+        assert_eq!(marks.len(), 1);
     }
 }

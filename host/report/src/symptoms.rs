@@ -12,6 +12,9 @@ pub(crate) mod path;
 pub(crate) mod timeline;
 pub(crate) mod words;
 
+#[cfg(test)]
+pub(crate) mod tests;
+
 use crate::channels::{Sample, Setup};
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_scene::trace::{Column, SymptomEvent, Word};

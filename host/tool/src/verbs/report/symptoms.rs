@@ -81,3 +81,74 @@ fn of_effect(values: &Values, spec: &EffectSpec) -> Vec<(u8, f64)> {
     let all = values.iter().filter(|(p, _)| p.group == spec.name);
     all.map(|(p, value)| (p.id, value)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_model::Tabled;
+    use crepitus_model::render::effects::lead_pipe::LeadPipeSettings;
+    use crepitus_protocol::telemetry::SampleFlags;
+    use crepitus_recording::{ParameterSet, named_values};
+
+    fn set(values: &Values, first_row: u64) -> ParameterSet {
+        ParameterSet {
+            revision: 1,
+            first_row,
+            first_tick: first_row,
+            values: Some(named_values(values)),
+        }
+    }
+
+    fn id(name: &str) -> u8 {
+        find(name).expect("a parameter").0
+    }
+
+    #[test]
+    fn what_was_on_has_a_column_and_what_never_changed_its_settings() {
+        let off = Values::default();
+        let mut on = off;
+        on.set(id("lead-pipe.render"), 1.0);
+        on.set(id("range-limit.render"), 1.0);
+        let mut other = on;
+        other.set(id("range-limit.flexion_limit_deg"), 90.0);
+        let history = History(vec![
+            set(&off, 0),
+            set(&on, 10),
+            set(&other, 20),
+            set(&off, 30),
+        ]);
+        let symptoms = Symptoms::of(&history);
+        assert_eq!(
+            symptoms.settings.lead_pipe,
+            Some(LeadPipeSettings::defaults())
+        );
+        assert_eq!(symptoms.settings.range_limit, None);
+        let columns = symptoms.columns();
+        let names: Vec<&str> = columns.iter().map(|c| c.name).collect();
+        assert_eq!(
+            names[COLUMNS.len()..],
+            ["range_limit_phase", "lead_pipe_phase"]
+        );
+        let none = Symptoms::of(&History(vec![set(&off, 0)]));
+        assert_eq!(none.columns(), COLUMNS);
+        assert_eq!(none.settings, EffectSettings::default());
+    }
+
+    #[test]
+    fn phases_are_known_while_it_is_armed() {
+        let mut on = Values::default();
+        on.set(id("lead-pipe.render"), 1.0);
+        let symptoms = Symptoms::of(&History(vec![set(&on, 0)]));
+        let phases = Row::default().phases.with_named("lead-pipe", "sliding");
+        let row = Row {
+            phases: phases.expect("a phase"),
+            ..Row::default()
+        };
+        assert_eq!(symptoms.phases(&row).collect::<Vec<_>>(), [1.0]);
+        let not_armed = Row {
+            flags: SampleFlags::default().with_limit(LimitReason::NotArmed),
+            ..row
+        };
+        assert!(symptoms.phases(&not_armed).all(f64::is_nan));
+    }
+}
