@@ -79,7 +79,7 @@ fn every_limit_that_is_drawn_is_met_by_the_torque() {
             .map(|stroke| stroke.points.iter().map(in_degrees));
         let strokes: Vec<Vec<Point>> = strokes.map(Iterator::collect).collect();
         let path: Vec<_> = strokes.iter().flat_map(|stroke| lines(stroke)).collect();
-        let ends = EXAMINED[place].2;
+        let ends = crepitus_plot::extent(strokes.iter().flatten().map(|p| p.x));
         let effect = symptom.words.effect;
         let drawn = limits::of(&settings, effect, ends, &symptom.found.met);
         assert!(!drawn.lines.is_empty(), "{effect}");
