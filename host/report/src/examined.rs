@@ -4,6 +4,7 @@ use crate::collector::Figures;
 use crate::symptoms::found::{Bout, Found, Met};
 use crate::symptoms::{Symptom, Symptoms};
 use crepitus_model::render::effects::EffectSettings;
+use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_plot::number::{count, fixed, rounded};
 use crepitus_plot::page::Section;
 use crepitus_scene::trace::Word;
@@ -131,7 +132,7 @@ fn catches(found: &Found, settings: &EffectSettings, rows: &mut Vec<Row>) {
         } else {
             ("reflex", "began at")
         };
-        let catches = settings.spasticity.filter(|s| s.catches());
+        let catches = settings.spasticity.filter(SpasticitySettings::catches);
         let height = catches.map_or(String::new(), |settings| {
             let nm = settings.catch_nm(event.omega_rad_s);
             format!(" with {}", torque(nm))

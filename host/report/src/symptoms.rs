@@ -190,7 +190,7 @@ impl Symptoms {
             line: crepitus_plot::Thinned::new(Timeline::LINE),
             has_crepitus: total.is_some(),
         });
-        (!list.is_empty()).then(|| Self {
+        (!list.is_empty()).then_some(Self {
             settings: setup.effects,
             list,
             together,
