@@ -392,6 +392,56 @@ fn took(arguments: &[&str]) -> Took {
     }
 }
 
+/// A symptom that was on is drawn: what a recording holds is enough.
+#[test]
+fn a_symptom_of_a_recording_is_drawn_with_its_limits() {
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path();
+    let scene = "version = 1\ntitle = \"Rigid\"\nduration_s = 3.0\ndevice = true\n\
+                 [motion]\nkind = \"constant\"\nvelocity_rad_s = 0.5\n\
+                 [solver]\nkind = \"exact-events\"\nstep_s = 5e-5\nprecision = \"f32\"\n\
+                 [effects.encoder]\n[effects.lead-pipe]\ntorque_nm = 0.8\n";
+    fs::write(folder.join("rigid.toml"), scene).unwrap();
+    let output = crepitus()
+        .current_dir(folder)
+        .args([
+            "record",
+            "rigid",
+            "--device",
+            "sim",
+            "--scene",
+            "rigid.toml",
+            "--for",
+            "2s",
+            "--arm",
+            "--zero",
+        ])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let output = crepitus()
+        .current_dir(folder)
+        .args(["report", "rigid", "--pictures"])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let report = folder.join("rigid-report");
+    for picture in ["lead-pipe-1.svg", "lead-pipe-2.svg"] {
+        let drawn = fs::read_to_string(report.join(picture)).unwrap();
+        assert!(drawn.contains("limits of the rigidity"), "{picture}");
+    }
+    let page = fs::read_to_string(report.join("report.html")).unwrap();
+    for words in [
+        "even resistance",
+        "On examination: lead-pipe rigidity",
+        "0.80 N·m against bending",
+        "of everything that was rendered together",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(!page.contains("Clasp-knife"));
+}
+
 /// Time and size of each format, and memory over a long recording: a minute and
 /// an hour of device time with `CREPITUS_LONG=1`, five and twenty seconds
 /// without.

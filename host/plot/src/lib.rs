@@ -52,4 +52,5 @@ pub use panel::{Panel, stack};
 pub use pdf::PdfError;
 pub use picture::{Picture, pictures};
 pub use plot::{Mark, Plot};
+pub use simplify::simplify;
 pub use thinned::{Point, Thinned};

@@ -3,7 +3,7 @@
 
 /// The points of the line that a line through
 /// the others would miss by more than `tolerance`.
-pub(crate) fn simplify(points: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
+pub fn simplify(points: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
     let Some(end) = points.len().checked_sub(1) else {
         return Vec::new();
     };

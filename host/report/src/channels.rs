@@ -4,6 +4,7 @@
 //! every [`Sample`], and NaN is not drawn.
 
 use crepitus_model::Phase;
+use crepitus_model::render::effects::EffectSettings;
 use crepitus_scene::run::FELT_COLUMN;
 use crepitus_scene::trace::Column;
 
@@ -20,6 +21,9 @@ pub struct Setup<'a> {
     /// The torques between which the object sticks and slips, if the scene
     /// has them: drawn as lines.
     pub levels: Option<TorqueLevels>,
+    /// The settings of the symptoms besides crepitus, of those that had the same all
+    /// the time: their limits are drawn.
+    pub effects: EffectSettings,
 }
 
 /// The torques between which the imaginary object sticks and slips, as

@@ -18,7 +18,8 @@ pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
     let mut charts = Vec::new();
     let mut still = Vec::new();
     for (shown, course) in &plant.columns {
-        if course.is_empty() {
+        // A symptom has a figure of its own.
+        if course.is_empty() || shown.is_symptom() {
             continue;
         }
         if course.is_zero() {

@@ -3,7 +3,7 @@
 //! Memory does not grow with the run: each part has a bound of its own, and
 //! together they stay below a few megabytes.
 
-use crepitus_scene::trace::EventRecord;
+use crepitus_scene::trace::{EventRecord, SymptomEvent};
 
 use crate::balance::Balance;
 use crate::channels::{Channels, Sample, Setup, TorqueLevels};
@@ -13,6 +13,7 @@ use crate::fast_part::{FastPart, Seen};
 use crate::hysteresis::Hysteresis;
 use crate::plant::{Plant, PlantCollector};
 use crate::spectrum::{Spectrum, Welch};
+use crate::symptoms::Symptoms;
 use crate::window::Window;
 use crepitus_plot::palette::RANGE;
 use crepitus_plot::{Mark, Plot, Thinned};
@@ -41,6 +42,7 @@ pub struct Collector {
     hysteresis: Hysteresis,
     welch: Option<Welch>,
     plant: Option<PlantCollector>,
+    symptoms: Option<Symptoms>,
     /// Only where there is a hand.
     fast: Option<FastPart>,
     marks: Vec<Mark>,
@@ -68,6 +70,7 @@ pub struct Figures {
     pub(crate) hysteresis: Hysteresis,
     pub(crate) spectrum: Option<Spectrum>,
     pub(crate) plant: Option<Plant>,
+    pub(crate) symptoms: Option<Symptoms>,
     pub(crate) balance: Option<Balance>,
     /// When parameters changed.
     pub(crate) marks: Vec<Mark>,
@@ -158,6 +161,7 @@ impl Collector {
                 .then(|| welch(setup.row_step_s, setup.rows_expected))
                 .flatten(),
             plant,
+            symptoms: Symptoms::new(setup),
             fast,
             marks: Vec::new(),
             pushes: Vec::new(),
@@ -181,6 +185,9 @@ impl Collector {
         self.encoder_omega.push(sample.time, sample.encoder_omega);
         if let Some(plant) = &mut self.plant {
             plant.row(&sample, values);
+        }
+        if let Some(symptoms) = &mut self.symptoms {
+            symptoms.row(&sample, values);
         }
         if let Some(fast) = &mut self.fast {
             fast.row(sample);
@@ -214,6 +221,9 @@ impl Collector {
         self.envelope.gap();
         self.choice.gap();
         self.hysteresis.gap();
+        if let Some(symptoms) = &mut self.symptoms {
+            symptoms.gap();
+        }
         if let Some(welch) = &mut self.welch {
             welch.gap();
         }
@@ -227,6 +237,13 @@ impl Collector {
             } else {
                 self.take_event(event);
             }
+        }
+    }
+
+    /// Takes an event of a symptom besides crepitus.
+    pub fn symptom(&mut self, event: &SymptomEvent) {
+        if let Some(symptoms) = &mut self.symptoms {
+            symptoms.event(event);
         }
     }
 
@@ -293,6 +310,7 @@ impl Collector {
             hysteresis: self.hysteresis,
             spectrum: self.welch.and_then(Welch::finish),
             plant: self.plant.map(PlantCollector::finish),
+            symptoms: self.symptoms.map(Symptoms::finish),
             balance: None,
             marks: self.marks,
             pushes: self.pushes,
@@ -305,6 +323,7 @@ impl Collector {
 mod tests {
     use super::*;
     use crate::fixture::{Motion, Run};
+    use crepitus_model::render::effects::EffectSettings;
     use std::cell::RefCell;
 
     #[test]
@@ -317,6 +336,7 @@ mod tests {
             rows_expected: 1000,
             row_step_s: 5e-5,
             levels: None,
+            effects: EffectSettings::default(),
         }));
         run.with_encoder().play(
             |row| collector.borrow_mut().row(row),
@@ -348,6 +368,7 @@ mod tests {
             rows_expected: 1000,
             row_step_s: 1e-3,
             levels: None,
+            effects: EffectSettings::default(),
         }));
         Run::new(Motion::Constant { speed: 1.0 }, 300.0, 1e-3).play(
             |row| {
@@ -382,6 +403,7 @@ mod tests {
                 rows_expected: 160_000,
                 row_step_s: 5e-5,
                 levels: None,
+                effects: EffectSettings::default(),
             }));
             let before = RefCell::new(0.0);
             let is_missing = |time_s: f64| (4.0..6.0).contains(&time_s);
@@ -432,6 +454,7 @@ mod tests {
             rows_expected: 0,
             row_step_s: 0.0,
             levels: None,
+            effects: EffectSettings::default(),
         })
         .finish();
         assert_eq!(figures.rows, 0);

@@ -10,7 +10,10 @@
 //! A [`Collector`] sees every row and every event of a run but keeps only
 //! what the figures need, so its memory does not depend on how long the run
 //! is. What a scene does not have is not drawn: leg, hand, motor and energy
-//! only where there is a plant.
+//! only where there is a plant; a figure for each symptom besides crepitus only
+//! where there is one. Those are in the words of a clinic: torque over the knee's
+//! angle with its limits, torque over time with its states, angle of catch against
+//! speed, beats over time, and a table of what an examiner would note.
 //!
 // Counts become numbers to be drawn; none comes near 2^53.
 #![allow(clippy::cast_precision_loss)]
@@ -18,18 +21,22 @@
 mod balance;
 mod balance_table;
 mod channels;
+mod chart_beats;
+mod chart_catches;
 mod chart_energy;
 mod chart_hand;
 mod chart_motion;
 mod chart_orbit;
 mod chart_plant;
 mod chart_spectrum;
+mod chart_symptoms;
 mod chart_torque;
 mod chart_zoom;
 mod choice;
 mod collector;
 mod course;
 mod envelope;
+mod examined;
 mod fast_part;
 mod hysteresis;
 mod levels;
@@ -38,6 +45,7 @@ mod page;
 mod phases;
 mod plant;
 mod spectrum;
+mod symptoms;
 mod text;
 mod window;
 

@@ -7,14 +7,16 @@ use crate::balance_table;
 use crate::collector::Figures;
 use crate::text::Text;
 use crate::{
-    chart_energy, chart_hand, chart_motion, chart_orbit, chart_plant, chart_spectrum, chart_torque,
-    chart_zoom,
+    chart_energy, chart_hand, chart_motion, chart_orbit, chart_plant, chart_spectrum,
+    chart_symptoms, chart_torque, chart_zoom, examined,
 };
 
 /// The report as one HTML page, complete in itself.
 pub fn html(text: &Text, figures: &Figures) -> String {
     let drawn = draw(figures);
     let balance = figures.balance.as_ref().and_then(balance_table::table);
+    let mut sections = examined::sections(figures);
+    sections.extend(text.sections.iter().cloned());
     let warned = if text.warnings.len() == 1 {
         "Warning"
     } else {
@@ -36,7 +38,7 @@ pub fn html(text: &Text, figures: &Figures) -> String {
             @for drawn in &drawn { (page::figure(drawn)) }
             (left_out(figures))
             @if let Some(table) = &balance { (table) }
-            (page::tables(&text.sections))
+            (page::tables(&sections))
         }
         (page::footer(&text.footer))
     };
@@ -59,8 +61,8 @@ fn draw(figures: &Figures) -> Vec<Figure> {
     if figures.rows < 2 {
         return Vec::new();
     }
-    let drawn = [
-        chart_motion::figure(figures),
+    let motion = chart_motion::figure(figures);
+    let others = [
         chart_torque::figure(figures),
         chart_hand::figure(figures),
         chart_zoom::figure(figures),
@@ -69,7 +71,9 @@ fn draw(figures: &Figures) -> Vec<Figure> {
         chart_plant::figure(figures),
         chart_energy::figure(figures),
     ];
-    drawn.into_iter().flatten().collect()
+    let symptoms = chart_symptoms::figures(figures);
+    let others = others.into_iter().flatten();
+    motion.into_iter().chain(symptoms).chain(others).collect()
 }
 
 fn left_out(figures: &Figures) -> Markup {

@@ -7,6 +7,7 @@ use crepitus_scene::trace::Column;
 use crate::channels::{Channels, Sample, Setup};
 use crate::course::Course;
 use crate::spectrum::{Spectrum, Welch};
+use crate::symptoms::words::{SYMPTOMS, Words};
 use crepitus_plot::Thinned;
 use crepitus_plot::palette::{CURVES, Ink};
 
@@ -56,6 +57,14 @@ const fn of_motor(column: &'static str, title: &'static str, axis: &'static str)
     Shown {
         of_motor: true,
         ..shown(column, title, axis)
+    }
+}
+
+impl Shown {
+    /// The torque of a symptom.
+    pub(crate) fn is_symptom(&self) -> bool {
+        let mut all = SYMPTOMS.iter().filter_map(Words::spec);
+        all.any(|spec| spec.column == self.column)
     }
 }
 
@@ -125,7 +134,9 @@ pub(crate) struct Follower {
 impl Plant {
     /// Whether something is added to the model's torque.
     pub(crate) fn has_stages(&self) -> bool {
-        self.columns.iter().any(|(shown, _)| shown.is_stage)
+        self.columns
+            .iter()
+            .any(|(shown, _)| shown.is_stage && !shown.is_symptom())
     }
 }
 

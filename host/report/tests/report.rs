@@ -10,6 +10,7 @@ mod markup;
 use std::cell::RefCell;
 use std::path::Path;
 
+use crepitus_model::render::effects::EffectSettings;
 use crepitus_report::{
     Account, Balance, Collector, EnergyTerm, Figures, Mark, Section, Setup, Text, TorqueLevels,
     html, pictures,
@@ -28,6 +29,7 @@ fn collect(motion: Motion, rows: u32, step: f64, encoder: bool) -> Figures {
         rows_expected: u64::from(rows),
         row_step_s: step,
         levels: Some(TorqueLevels::elastic(KINETIC, STATIC)),
+        effects: EffectSettings::default(),
     }));
     let run = Run::new(motion, f64::from(rows - 1) * step, step);
     let run = if encoder { run.with_encoder() } else { run };
@@ -179,6 +181,7 @@ fn a_healthy_joint_is_motion_only() {
         rows_expected: 1000,
         row_step_s: 1e-3,
         levels: None,
+        effects: EffectSettings::default(),
     });
     for i in 0..1000_u32 {
         let t = f64::from(i) * 1e-3;
@@ -199,6 +202,7 @@ fn no_rows_and_one_row() {
         rows_expected: 0,
         row_step_s: 5e-5,
         levels: Some(TorqueLevels::elastic(KINETIC, STATIC)),
+        effects: EffectSettings::default(),
     };
     let empty = page("empty", &Text::default(), &Collector::new(&setup).finish());
     assert!(empty.contains("too few rows to draw"));
@@ -216,6 +220,7 @@ fn broken_values_are_left_out_and_counted() {
         rows_expected: 2000,
         row_step_s: 1e-3,
         levels: Some(TorqueLevels::elastic(f64::NAN, STATIC)),
+        effects: EffectSettings::default(),
     }));
     let mut broken = 0;
     Run::new(Motion::Constant { speed: 1.0 }, 2.0, 1e-3).play(
@@ -250,6 +255,7 @@ fn words_are_escaped() {
         rows_expected: 0,
         row_step_s: 1.0,
         levels: None,
+        effects: EffectSettings::default(),
     })
     .finish();
     let text = Text {
@@ -309,6 +315,7 @@ fn setup(columns: &[Column], rows: u32, step: f64) -> Setup<'_> {
         rows_expected: u64::from(rows),
         row_step_s: step,
         levels: Some(TorqueLevels::elastic(KINETIC, STATIC)),
+        effects: EffectSettings::default(),
     }
 }
 

@@ -20,6 +20,7 @@ pub mod play;
 pub mod range_limit;
 mod slewed;
 pub mod spasticity;
+mod static_limits;
 pub mod symptom;
 pub mod tank;
 pub mod texture;

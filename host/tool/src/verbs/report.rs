@@ -1,5 +1,6 @@
 //! `crepitus report FILE`: the report of a recording.
 
+mod symptoms;
 mod tables;
 
 use crate::failure::{Failure, print, print_json};
@@ -18,8 +19,9 @@ use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
 use crepitus_scene::trace::{Column, ColumnKind};
 use serde_json::json;
 use std::path::{Path, PathBuf};
+use symptoms::Symptoms;
 
-/// The columns that the report draws.
+/// The columns that every report of a recording draws.
 const COLUMNS: [Column; 8] = {
     const fn number(name: &'static str) -> Column {
         Column {
@@ -100,11 +102,14 @@ pub(super) fn write(
     let parameters = recording.parameters();
     let folder = results::folder(out)?;
     let expected = recording.books().totals.received;
+    let symptoms = Symptoms::of(parameters);
+    let columns = symptoms.columns();
     let setup = Setup {
-        columns: &COLUMNS,
+        columns: &columns,
         rows_expected: expected,
         row_step_s: TICK_S,
         levels: levels(parameters),
+        effects: symptoms.settings,
     };
     let mut collector = Collector::new(&setup);
     let mut changes = parameters.changes().peekable();
@@ -127,7 +132,8 @@ pub(super) fn write(
         }
         previous_s = row.time_s;
         let derived = analysis.row(&row);
-        collector.row(&[
+        let mut values = Vec::with_capacity(columns.len());
+        values.extend([
             row.time_s,
             row.angle_rad,
             f64::from(row.omega_rad_s),
@@ -137,6 +143,8 @@ pub(super) fn write(
             f64::from(row.model_torque_nm),
             derived.motor_torque_nm,
         ]);
+        values.extend(symptoms.phases(&row));
+        collector.row(&values);
         if let Some(event) = derived.event {
             collector.event(&event);
         }

@@ -175,6 +175,7 @@ fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Summary,
         rows_expected: runner::rows(scene),
         row_step_s: scene.trace_step_s,
         levels: scene.crepitus.map(|c| torque_levels(&c.settings)),
+        effects: scene.effect_settings(),
     };
     let mut watch = Watch::new(&folder, &setup, scene.duration_s, arguments.trace_every)
         .map_err(|e| failed(&e))?;

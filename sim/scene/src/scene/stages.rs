@@ -28,7 +28,8 @@ impl Scene {
     }
 
     /// Settings of the device's effects that it lists.
-    pub(crate) fn effect_settings(&self) -> EffectSettings {
+    #[must_use]
+    pub fn effect_settings(&self) -> EffectSettings {
         EffectSettings::given(|name| {
             let listed = self.listed.iter().find(|l| l.effect.name == name)?;
             Some(Chosen {

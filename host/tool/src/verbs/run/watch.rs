@@ -71,6 +71,7 @@ impl Observer for Watch {
     }
 
     fn symptom(&mut self, event: &SymptomEvent) -> Result<(), WatchError> {
+        self.collector.symptom(event);
         self.events.symptom(event).map_err(WatchError::Write)
     }
 

@@ -1,0 +1,249 @@
+//! What an examiner would note of each symptom, in words.
+
+use crate::collector::Figures;
+use crate::symptoms::found::{Bout, Found, Met};
+use crate::symptoms::{Symptom, Symptoms};
+use crepitus_model::render::effects::EffectSettings;
+use crepitus_model::render::effects::spasticity::SpasticitySettings;
+use crepitus_plot::number::{count, fixed, rounded};
+use crepitus_plot::page::Section;
+use crepitus_scene::trace::Word;
+
+/// Catches, collapses and stretches that are noted one by one.
+const MOST: usize = 8;
+
+/// A table for each symptom.
+pub(crate) fn sections(figures: &Figures) -> Vec<Section> {
+    let Some(Symptoms { settings, list, .. }) = &figures.symptoms else {
+        return Vec::new();
+    };
+    let drawn = |symptom: &&Symptom| !symptom.timeline.line.is_empty();
+    list.iter()
+        .filter(drawn)
+        .map(|symptom| section(symptom, settings))
+        .collect()
+}
+
+type Row = (String, String);
+
+fn section(symptom: &Symptom, settings: &EffectSettings) -> Section {
+    let found = &symptom.found;
+    let mut rows = Vec::new();
+    match symptom.words.effect {
+        "range-limit" => ends(found, &mut rows),
+        "spasticity" => catches(found, settings, &mut rows),
+        "clasp-knife" => collapses(found, &mut rows),
+        "clonus" => beats(found, &mut rows),
+        _ => {}
+    }
+    rates(found, &mut rows);
+    let (nm, rad) = found.most;
+    let against = if nm < 0.0 { "straightening" } else { "bending" };
+    let largest = if nm == 0.0 {
+        "none".to_owned()
+    } else {
+        format!("{} against {against}, at {}", torque(nm), angle(rad))
+    };
+    let row = |name: &str, value: String| (name.to_owned(), value);
+    rows.push(row("largest resistance", largest));
+    if let Some(whole) = found.loops.latest()
+        && whole.area_j.abs() > 1e-4
+    {
+        let value = format!(
+            "{} J, between {} and {}",
+            rounded(whole.area_j),
+            angle(whole.from_rad),
+            angle(whole.to_rad)
+        );
+        rows.push(row("taken by one movement to and fro", value));
+    }
+    if symptom.shows_all() {
+        let value = "of everything that was rendered together".to_owned();
+        rows.push(row("resistance", value));
+    }
+    if found.left_out > 0 {
+        let value = format!("{} more, not shown one by one", count(found.left_out));
+        rows.push(row("events", value));
+    }
+    Section {
+        title: format!("On examination: {}", lower(symptom.words.title)),
+        rows,
+    }
+}
+
+/// A title within a sentence.
+fn lower(title: &str) -> String {
+    let mut letters = title.chars();
+    match letters.next() {
+        Some(first) => first.to_lowercase().chain(letters).collect(),
+        None => String::new(),
+    }
+}
+
+fn angle(rad: f64) -> String {
+    format!("{}°", fixed(rad.to_degrees(), 1))
+}
+
+fn speed(rad_s: f64) -> String {
+    format!("{} °/s", rounded(rad_s.abs().to_degrees()))
+}
+
+fn torque(nm: f64) -> String {
+    format!("{} N·m", fixed(nm.abs(), 2))
+}
+
+fn ends(found: &Found, rows: &mut Vec<Row>) {
+    for (name, is_flexion) in [
+        ("end met in extension", false),
+        ("end met in flexion", true),
+    ] {
+        let met = found.met.iter();
+        let of: Vec<&Met> = met
+            .filter(|met| (met.event.omega_rad_s > 0.0) == is_flexion)
+            .collect();
+        let Some(hardest) = of
+            .iter()
+            .max_by(|a, b| a.beyond_rad.total_cmp(&b.beyond_rad))
+        else {
+            rows.push((name.to_owned(), "not met".to_owned()));
+            continue;
+        };
+        let times = match of.len() {
+            1 => String::new(),
+            n => format!("; met {n} times"),
+        };
+        let value = format!(
+            "at {}, at {}; {} within {}{times}",
+            angle(hardest.event.angle_rad),
+            speed(hardest.event.omega_rad_s),
+            torque(hardest.most_nm),
+            angle(hardest.beyond_rad)
+        );
+        rows.push((name.to_owned(), value));
+    }
+}
+
+fn catches(found: &Found, settings: &EffectSettings, rows: &mut Vec<Row>) {
+    let caught: Vec<&Met> = found.caught().collect();
+    for (n, met) in (1..).zip(caught.iter().take(MOST)) {
+        let event = &met.event;
+        let (name, met_at) = if event.word == Word::Catch {
+            ("catch", "caught at")
+        } else {
+            ("reflex", "began at")
+        };
+        let catches = settings.spasticity.filter(SpasticitySettings::catches);
+        let height = catches.map_or(String::new(), |settings| {
+            let nm = settings.catch_nm(event.omega_rad_s);
+            format!(" with {}", torque(nm))
+        });
+        let value = format!(
+            "{met_at} {} at {}{height}; {} were felt",
+            angle(event.angle_rad),
+            speed(event.omega_rad_s),
+            torque(met.most_nm)
+        );
+        rows.push((format!("{name} {n}"), value));
+    }
+    match caught.len() {
+        0 => rows.push(("catch".to_owned(), "none at these speeds".to_owned())),
+        n if n > MOST => rows.push(("catches".to_owned(), format!("{n} in all"))),
+        _ => {}
+    }
+}
+
+fn collapses(found: &Found, rows: &mut Vec<Row>) {
+    for (n, met) in (1..).zip(found.met.iter().take(MOST)) {
+        let event = &met.event;
+        let at = angle(event.angle_rad);
+        let value = if event.word == Word::Release {
+            let fifth = met.fifth_s.map_or(String::new(), |s| {
+                format!("; a fifth was left after {} ms", rounded(1e3 * s))
+            });
+            format!(
+                "collapsed at {at} from {}{fifth}",
+                torque(event.torque_before_nm)
+            )
+        } else {
+            format!(
+                "began at {at}, rose to {}, did not collapse",
+                torque(met.most_nm)
+            )
+        };
+        rows.push((format!("stretch {n}"), value));
+    }
+    if found.met.is_empty() {
+        rows.push(("stretch".to_owned(), "resistance never began".to_owned()));
+    }
+}
+
+fn beats(found: &Found, rows: &mut Vec<Row>) {
+    for (n, bout) in (1..).zip(found.bouts.iter().take(MOST)) {
+        let event = &bout.start;
+        let stretch = format!("{} at {}", angle(event.angle_rad), speed(event.omega_rad_s));
+        rows.push((
+            format!("stretch {n}"),
+            format!("{stretch}: {}", lasted(bout)),
+        ));
+    }
+    if found.bouts.is_empty() {
+        let value = "none: no stretch was quick enough".to_owned();
+        rows.push(("beats".to_owned(), value));
+    }
+    let pairs = found.beats.iter().zip(found.beats.iter().skip(1));
+    let intervals: Vec<f64> = pairs
+        .filter(|(from, to)| to.number == from.number + 1)
+        .map(|(from, to)| 1e3 * (to.time_s - from.time_s))
+        .collect();
+    if let (Some(first), Some(last)) = (intervals.first(), intervals.last()) {
+        let value = format!("first {} ms, last {} ms", rounded(*first), rounded(*last));
+        rows.push(("from beat to beat".to_owned(), value));
+    }
+}
+
+/// How many beats, how long, and the grade that the Spinal Cord Assessment Tool for
+/// Spastic Reflexes gives for that.
+fn lasted(bout: &Bout) -> String {
+    let length_s = bout.last_s - bout.start.time_s;
+    let (grade, words) = match length_s {
+        _ if bout.beats == 0 => (0, "no reaction"),
+        s if s < 3.0 => (1, "mild, less than 3 s"),
+        s if s <= 10.0 => (2, "moderate, 3 to 10 s"),
+        _ => (3, "severe, more than 10 s"),
+    };
+    let beats = match bout.beats {
+        1 => "1 beat".to_owned(),
+        n => format!("{n} beats"),
+    };
+    let end = match bout.end {
+        Some(Word::Done) => "ended by itself",
+        Some(_) => "ended as the muscle was let go",
+        None => "went on to the end, so at least",
+    };
+    format!(
+        "{beats} in {} s, {end}; SCATS {grade}: {words}",
+        fixed(length_s, 1)
+    )
+}
+
+fn rates(found: &Found, rows: &mut Vec<Row>) {
+    for rate in &found.rates {
+        let name = if rate.word == Word::Snap {
+            "snaps"
+        } else {
+            "gives"
+        };
+        let moving_s = found.moving_s;
+        let value = if moving_s > 0.0 {
+            format!(
+                "{}: {} a second while it moved, at a mean speed of {}",
+                count(rate.count),
+                rounded(rate.count as f64 / moving_s),
+                speed(found.travel_rad / moving_s)
+            )
+        } else {
+            count(rate.count)
+        };
+        rows.push((name.to_owned(), value));
+    }
+}

@@ -1,0 +1,207 @@
+//! What an examiner would note of a symptom: where it was met, how fast, how strong,
+//! how often.
+
+use crate::symptoms::loops::Loops;
+use crepitus_scene::trace::{SymptomEvent, Word};
+
+/// A catch, a reflex, a collapse, or the end of the range.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Met {
+    pub(crate) event: SymptomEvent,
+    /// The largest torque since, as a magnitude, N·m: of a catch until it releases.
+    pub(crate) most_nm: f64,
+    /// How far the joint went on from there, rad.
+    pub(crate) beyond_rad: f64,
+    /// When a collapse had left a fifth, s after it.
+    pub(crate) fifth_s: Option<f64>,
+    is_open: bool,
+}
+
+/// Clonus from one stretch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bout {
+    pub(crate) start: SymptomEvent,
+    pub(crate) beats: u32,
+    /// When the last beat began so far, s.
+    pub(crate) last_s: f64,
+    /// What ended it.
+    pub(crate) end: Option<Word>,
+}
+
+/// A beat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Beat {
+    pub(crate) time_s: f64,
+    /// Which one of its bout; the first is 0.
+    pub(crate) number: u32,
+}
+
+/// How often something happens.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rate {
+    pub(crate) word: Word,
+    pub(crate) count: u64,
+}
+
+/// See the module.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Found {
+    pub(crate) met: Vec<Met>,
+    pub(crate) bouts: Vec<Bout>,
+    pub(crate) beats: Vec<Beat>,
+    pub(crate) rates: Vec<Rate>,
+    pub(crate) loops: Loops,
+    /// The largest torque in either sense, N·m, and the angle there, rad.
+    pub(crate) most: (f64, f64),
+    /// Events that are counted but not kept.
+    pub(crate) left_out: u64,
+    /// How far and how long the joint moved.
+    pub(crate) travel_rad: f64,
+    pub(crate) moving_s: f64,
+    last: Option<(f64, f64)>,
+}
+
+/// Slower, a joint is at rest: one degree a second.
+const SLOWEST_RAD_S: f64 = std::f64::consts::PI / 180.0;
+
+/// A catch has released when so much of its torque is left.
+const RELEASED: f64 = 0.9;
+
+impl Found {
+    /// Most of each kind that is kept.
+    pub(crate) const MOST: usize = 1000;
+
+    /// Rows are missing before the next one.
+    pub(crate) fn gap(&mut self) {
+        self.loops.gap();
+        self.last = None;
+        if let Some(met) = self.met.last_mut() {
+            met.is_open = false;
+        }
+    }
+
+    pub(crate) fn row(&mut self, time_s: f64, angle_rad: f64, nm: f64) {
+        self.loops.push(angle_rad, nm);
+        if let Some((last_s, last_rad)) = self.last {
+            let (passed_s, moved_rad) = (time_s - last_s, (angle_rad - last_rad).abs());
+            if moved_rad > SLOWEST_RAD_S * passed_s {
+                self.travel_rad += moved_rad;
+                self.moving_s += passed_s;
+            }
+        }
+        self.last = Some((time_s, angle_rad));
+        if nm.abs() > self.most.0.abs() {
+            self.most = (nm, angle_rad);
+        }
+        if let Some(met) = self.met.last_mut() {
+            met.row(time_s, angle_rad, nm);
+        }
+    }
+
+    pub(crate) fn event(&mut self, event: &SymptomEvent) {
+        match (event.effect, event.word) {
+            (_, Word::Contact | Word::Onset | Word::Release) | ("spasticity", Word::Catch) => {
+                self.meet(event);
+            }
+            (_, Word::Leave | Word::Rearm | Word::Offset | Word::Back) => {
+                if let Some(met) = self.met.last_mut() {
+                    met.is_open = false;
+                }
+            }
+            (_, Word::Start) => self.start(event),
+            (_, Word::Beat) => self.beat(event),
+            (_, word @ (Word::Stop | Word::Done)) => {
+                if let Some(bout) = self.bouts.last_mut() {
+                    bout.end = bout.end.or(Some(word));
+                }
+            }
+            (_, word @ (Word::Snap | Word::Give)) => self.count(word),
+            _ => {}
+        }
+    }
+
+    fn meet(&mut self, event: &SymptomEvent) {
+        // A collapse takes the place of the onset before it.
+        if event.word == Word::Release
+            && let Some(Word::Onset) = self.met.last().map(|met| met.event.word)
+        {
+            self.met.pop();
+        }
+        if self.met.len() == Self::MOST {
+            self.left_out += 1;
+            return;
+        }
+        self.met.push(Met {
+            event: *event,
+            most_nm: event.torque_before_nm.abs(),
+            beyond_rad: 0.0,
+            fifth_s: None,
+            is_open: true,
+        });
+    }
+
+    fn start(&mut self, event: &SymptomEvent) {
+        if self.bouts.len() == Self::MOST {
+            self.left_out += 1;
+            return;
+        }
+        self.bouts.push(Bout {
+            start: *event,
+            beats: 0,
+            last_s: event.time_s,
+            end: None,
+        });
+    }
+
+    fn beat(&mut self, event: &SymptomEvent) {
+        let Some(bout) = self.bouts.last_mut() else {
+            return;
+        };
+        if self.beats.len() < Self::MOST {
+            self.beats.push(Beat {
+                time_s: event.time_s,
+                number: bout.beats,
+            });
+        } else {
+            self.left_out += 1;
+        }
+        bout.beats += 1;
+        bout.last_s = event.time_s;
+    }
+
+    fn count(&mut self, word: Word) {
+        match self.rates.iter_mut().find(|rate| rate.word == word) {
+            Some(rate) => rate.count += 1,
+            None => self.rates.push(Rate { word, count: 1 }),
+        }
+    }
+
+    /// Catches and onsets of a reflex.
+    pub(crate) fn caught(&self) -> impl Iterator<Item = &Met> {
+        let is_catch = |met: &&Met| matches!(met.event.word, Word::Catch | Word::Onset);
+        self.met.iter().filter(is_catch)
+    }
+}
+
+impl Met {
+    fn row(&mut self, time_s: f64, angle_rad: f64, nm: f64) {
+        if !self.is_open {
+            return;
+        }
+        let event = &self.event;
+        let nm = nm.abs();
+        match event.word {
+            Word::Release => {
+                if self.fifth_s.is_none() && nm <= 0.2 * event.torque_before_nm.abs() {
+                    self.fifth_s = Some(time_s - event.time_s);
+                }
+            }
+            Word::Catch if self.most_nm > 0.0 && nm < RELEASED * self.most_nm => {
+                self.is_open = false;
+            }
+            _ => self.most_nm = self.most_nm.max(nm),
+        }
+        let beyond_rad = (angle_rad - event.angle_rad).abs();
+        self.beyond_rad = self.beyond_rad.max(beyond_rad);
+    }
+}

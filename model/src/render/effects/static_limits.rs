@@ -1,0 +1,357 @@
+//! Limits of the symptoms' torque by angle, for pictures and tables of what was
+//! rendered.
+//!
+//! They follow from the settings alone, in f64. Nothing here is rendered, and no
+//! firmware calls it: the laws are in the files of their names, and the tests below
+//! follow each law and compare.
+//!
+//! Angles are those of the joint, rad; torques N·m, positive against growing angle.
+
+use super::clasp_knife::ClaspKnifeSettings;
+use super::clonus::ClonusSettings;
+use super::cogwheel::CogwheelSettings;
+use super::lead_pipe::LeadPipeSettings;
+use super::play::Limits;
+use super::range_limit::{EndFeel, RangeLimitSettings};
+use super::spasticity::{SpasticitySettings, sense};
+use super::texture::TextureSettings;
+
+impl EndFeel {
+    /// env(p), N·m, so far beyond the end's place; nothing before it.
+    fn envelope_nm(&self, beyond_rad: f64) -> f64 {
+        let p = beyond_rad.max(0.0);
+        (p * (self.stiffness_nm_per_rad + p * self.stiffening_nm_per_rad2)).min(self.torque_nm)
+    }
+}
+
+impl RangeLimitSettings {
+    /// Between them is the torque of both ends at an angle.
+    pub fn limits_at(&self, angle_rad: f64) -> Limits<f64> {
+        let (extension, flexion) = (self.extension(), self.flexion());
+        let extension_rad = self.extension_limit_deg.to_radians() - angle_rad;
+        let flexion_rad = angle_rad - self.flexion_limit_deg.to_radians();
+        Limits {
+            lower_nm: -extension.envelope_nm(extension_rad),
+            upper_nm: flexion.envelope_nm(flexion_rad),
+        }
+    }
+}
+
+/// ±`nm` about a spring.
+fn about(nm: f64, elastic_nm_per_rad: f64, neutral_deg: f64, angle_rad: f64) -> Limits<f64> {
+    let spring_nm = elastic_nm_per_rad * (angle_rad - neutral_deg.to_radians());
+    Limits {
+        lower_nm: spring_nm - nm,
+        upper_nm: spring_nm + nm,
+    }
+}
+
+impl LeadPipeSettings {
+    /// Between them is its torque at an angle; on one of them once the joint has moved
+    /// by 2δ in one sense.
+    pub fn limits_at(&self, angle_rad: f64) -> Limits<f64> {
+        let (elastic, neutral_deg) = (self.elastic_nm_per_rad, self.neutral_deg);
+        about(self.torque_nm, elastic, neutral_deg, angle_rad)
+    }
+}
+
+impl CogwheelSettings {
+    /// Between them is its torque at an angle: at the height of a tooth, or between
+    /// two.
+    pub fn limits_at(&self, angle_rad: f64, is_high: bool) -> Limits<f64> {
+        let share = if is_high { 1.0 } else { self.low_share };
+        let (elastic, neutral_deg) = (self.elastic_nm_per_rad, self.neutral_deg);
+        about(share * self.torque_nm, elastic, neutral_deg, angle_rad)
+    }
+}
+
+impl SpasticitySettings {
+    /// +1 where flexion stretches the muscles, −1 where extension does.
+    pub fn sense(&self) -> f64 {
+        sense(self.muscles)
+    }
+
+    /// Whether it has the form `catch`; otherwise `reflex`.
+    pub fn catches(&self) -> bool {
+        self.form == 0
+    }
+
+    /// λ − μΩ, where a stretch at this velocity meets the threshold, rad.
+    pub fn threshold_rad(&self, omega_rad_s: f64) -> f64 {
+        self.threshold_deg.to_radians() - self.velocity_shift_s * omega_rad_s
+    }
+
+    /// The slowest stretch that is answered, rad/s.
+    pub fn slowest_rad_s(&self) -> f64 {
+        if self.catches() {
+            self.threshold_velocity_deg_s.to_radians()
+        } else {
+            0.0
+        }
+    }
+
+    /// P, the height of a catch at this velocity, N·m, as a magnitude.
+    pub fn catch_nm(&self, omega_rad_s: f64) -> f64 {
+        (self.velocity_torque_nms_per_rad * self.sense() * omega_rad_s).clamp(0.0, self.torque_nm)
+    }
+
+    /// What is left at an angle of a catch that has released, N·m, signed.
+    pub fn left_nm(&self, caught_rad: f64, caught_rad_s: f64, angle_rad: f64) -> f64 {
+        let beyond_rad = (self.sense() * (angle_rad - caught_rad)).max(0.0);
+        self.sense()
+            * (self.catch_nm(caught_rad_s) * self.residual_share
+                + self.stiffness_nm_per_rad * beyond_rad)
+    }
+
+    /// What the reflex comes to at an angle in a stretch without end at this velocity,
+    /// but for its lateness, N·m, signed.
+    pub fn reflex_nm(&self, angle_rad: f64, omega_rad_s: f64) -> f64 {
+        let beyond_rad = self.sense() * (angle_rad - self.threshold_rad(omega_rad_s));
+        self.sense() * (self.gain_nm_per_rad * beyond_rad.max(0.0)).min(self.torque_nm)
+    }
+}
+
+impl ClaspKnifeSettings {
+    /// +1 where flexion stretches the muscle, −1 where extension does.
+    pub fn sense(&self) -> f64 {
+        sense(self.muscles)
+    }
+
+    /// The angle at which it collapses, rad; `None` if its torque decides.
+    pub fn release_rad(&self) -> Option<f64> {
+        (self.trigger == 0).then(|| self.release_deg.to_radians())
+    }
+
+    /// Its largest torque at an angle while it builds, N·m, signed; nothing before its
+    /// onset.
+    pub fn building_nm(&self, angle_rad: f64) -> f64 {
+        let beyond_rad = self.sense() * (angle_rad - self.onset_deg.to_radians());
+        if beyond_rad < 0.0 {
+            return 0.0;
+        }
+        self.sense() * (self.onset_torque_nm + self.slope_nm_per_rad * beyond_rad)
+    }
+
+    /// What is left of it, at any angle, after it collapsed at this one, N·m, signed.
+    pub fn left_nm(&self, released_rad: f64) -> f64 {
+        self.residual_share * self.building_nm(released_rad)
+    }
+}
+
+impl ClonusSettings {
+    /// From beat n to the next, s; the first beat is 0.
+    pub fn interval_s(&self, n: u32) -> f64 {
+        (1.0 + self.first_stretch * libm::exp2(-f64::from(n))) / self.frequency_hz
+    }
+
+    /// The height of a beat, N·m, signed.
+    pub fn beat_nm(&self) -> f64 {
+        sense::<f64>(self.muscles) * self.amplitude_nm
+    }
+}
+
+impl TextureSettings {
+    /// Mean resistance of a long movement at one speed, N·m, where asperities are even.
+    pub fn mean_nm(&self) -> f64 {
+        self.base_nm + 0.5 * self.width_share * (self.peak_nm - self.base_nm)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::TIMING;
+    use super::super::{EffectSettings, Effects};
+    use super::*;
+    use crate::render::input_check::{InputCheck, InputLimits};
+    use crate::render::{Addition, Check, Seen, Shown};
+    use crate::{Sample, ShaftStep, Tabled};
+    use std::vec::Vec;
+
+    const STEP_S: f64 = 5e-5;
+
+    /// Angle, velocity and torque at the ticks of a movement over these angles, deg, at
+    /// this speed, deg/s.
+    fn follow(settings: &EffectSettings, degrees: &[f64], deg_s: f64) -> Vec<(f64, f64, f64)> {
+        let mut effects: Effects<f64> = settings.laws(&TIMING).unwrap();
+        let mut check = InputCheck::new(&InputLimits::device(STEP_S), STEP_S, 0.0);
+        effects.rest(&TIMING.sight.position(degrees[0].to_radians()));
+        let mut rows = Vec::new();
+        for ends in degrees.windows(2) {
+            let (from, to) = (ends[0].to_radians(), ends[1].to_radians());
+            let omega_rad_s = deg_s.to_radians().copysign(to - from);
+            let ticks = ((to - from) / omega_rad_s / STEP_S).round();
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            for n in 1..=ticks as u32 {
+                let angle_rad = from + f64::from(n) * STEP_S * omega_rad_s;
+                let sample = Sample::Taken(ShaftStep {
+                    delta_phi_rad: STEP_S * omega_rad_s,
+                    omega_start_rad_s: omega_rad_s,
+                    omega_end_rad_s: omega_rad_s,
+                });
+                let seen = Seen {
+                    sample,
+                    omega_rad_s,
+                    place: TIMING.sight.position(angle_rad),
+                    is_driven: true,
+                };
+                let mut shown = Shown::nothing();
+                effects.tick(&seen, &check.check(&sample), &mut shown, &mut ());
+                rows.push((angle_rad, omega_rad_s, shown.torque_nm));
+            }
+        }
+        rows
+    }
+
+    /// The torque never leaves the limits, and is on both of them for a part of the
+    /// movement.
+    fn assert_between(rows: &[(f64, f64, f64)], limits: impl Fn(f64) -> Limits<f64>) {
+        let (mut at_upper, mut at_lower) = (0, 0);
+        for (angle_rad, _, nm) in rows {
+            let Limits { lower_nm, upper_nm } = limits(*angle_rad);
+            assert!(
+                (lower_nm - 1e-9..=upper_nm + 1e-9).contains(nm),
+                "{nm} at {angle_rad}: {lower_nm} to {upper_nm}"
+            );
+            at_upper += u32::from(upper_nm > 0.0 && (nm - upper_nm).abs() < 1e-9);
+            at_lower += u32::from(lower_nm < 0.0 && (nm - lower_nm).abs() < 1e-9);
+        }
+        assert!(at_upper > 200 && at_lower > 200, "{at_upper}, {at_lower}");
+    }
+
+    #[test]
+    fn both_ends_of_the_range_push_inwards() {
+        let settings = RangeLimitSettings {
+            extension_torque_nm: 3.0,
+            ..RangeLimitSettings::defaults()
+        };
+        let of = EffectSettings {
+            range_limit: Some(settings),
+            ..EffectSettings::default()
+        };
+        let rows = follow(&of, &[60.0, 125.0, 5.0, 60.0], 60.0);
+        assert_between(&rows, |angle_rad| settings.limits_at(angle_rad));
+        assert_eq!(settings.limits_at(1.0), Limits::both(0.0));
+        assert_eq!(settings.limits_at(140_f64.to_radians()).upper_nm, 4.0);
+        assert_eq!(settings.limits_at(0.0).lower_nm, -3.0);
+    }
+
+    #[test]
+    fn rigidity_is_a_band_about_its_spring() {
+        let settings = LeadPipeSettings {
+            elastic_nm_per_rad: 2.0,
+            ..LeadPipeSettings::defaults()
+        };
+        let of = EffectSettings {
+            lead_pipe: Some(settings),
+            ..EffectSettings::default()
+        };
+        let rows = follow(&of, &[45.0, 80.0, 20.0, 45.0], 60.0);
+        assert_between(&rows, |angle_rad| settings.limits_at(angle_rad));
+    }
+
+    #[test]
+    fn a_cogwheel_is_on_the_limits_of_its_teeth() {
+        let settings = CogwheelSettings::defaults();
+        let of = EffectSettings {
+            cogwheel: Some(settings),
+            ..EffectSettings::default()
+        };
+        let rows = follow(&of, &[45.0, 80.0, 20.0, 45.0], 60.0);
+        assert_between(&rows, |angle_rad| settings.limits_at(angle_rad, true));
+        let low = settings.limits_at(0.0, false);
+        let at_low = rows.iter().filter(|(.., nm)| *nm == low.upper_nm).count();
+        assert!(low.upper_nm == 0.8 && at_low > 200, "{at_low}");
+    }
+
+    #[test]
+    fn a_catch_is_where_it_should_be_and_leaves_what_it_should() {
+        for muscles in [0, 1] {
+            let settings = SpasticitySettings {
+                muscles,
+                ..SpasticitySettings::defaults()
+            };
+            let of = EffectSettings {
+                spasticity: Some(settings),
+                ..EffectSettings::default()
+            };
+            let degrees = if muscles == 0 {
+                [20.0, 110.0]
+            } else {
+                [130.0, 40.0]
+            };
+            let rows = follow(&of, &degrees, 90.0);
+            let omega_rad_s = settings.sense() * 90_f64.to_radians();
+            let caught_rad = settings.threshold_rad(omega_rad_s);
+            let (first, ..) = rows.iter().find(|(.., nm)| *nm != 0.0).unwrap();
+            assert!((first - caught_rad).abs() < 2e-4, "{first} {caught_rad}");
+            let (end_rad, _, end_nm) = rows.last().unwrap();
+            let left_nm = settings.left_nm(caught_rad, omega_rad_s, *end_rad);
+            assert!((end_nm - left_nm).abs() < 1e-3, "{end_nm} {left_nm}");
+            assert!((settings.catch_nm(omega_rad_s) - 1.0524).abs() < 1e-4);
+            // Slower than any that is caught.
+            assert!(settings.slowest_rad_s() > 30_f64.to_radians());
+            let slow = follow(&of, &degrees, 30.0);
+            assert!(slow.iter().all(|(.., nm)| *nm == 0.0));
+        }
+    }
+
+    #[test]
+    fn a_reflex_comes_to_its_line_late() {
+        let settings = SpasticitySettings {
+            form: 1,
+            velocity_shift_s: 0.27,
+            ..SpasticitySettings::defaults()
+        };
+        let of = EffectSettings {
+            spasticity: Some(settings),
+            ..EffectSettings::default()
+        };
+        let late_s = settings.delay_s + settings.activation_s;
+        let rows = follow(&of, &[30.0, 110.0], 60.0);
+        let (angle_rad, omega_rad_s, nm) = *rows.last().unwrap();
+        let expected_nm = settings.reflex_nm(angle_rad - omega_rad_s * late_s, omega_rad_s);
+        assert!((nm - expected_nm).abs() < 1e-3, "{nm} {expected_nm}");
+        assert!(nm > 1.0 && !settings.catches() && settings.slowest_rad_s() == 0.0);
+    }
+
+    #[test]
+    fn a_clasp_knife_builds_along_its_line() {
+        for muscles in [0, 1] {
+            let settings = ClaspKnifeSettings {
+                muscles,
+                onset_deg: if muscles == 0 { 30.0 } else { 75.0 },
+                release_deg: if muscles == 0 { 75.0 } else { 30.0 },
+                ..ClaspKnifeSettings::defaults()
+            };
+            let of = EffectSettings {
+                clasp_knife: Some(settings),
+                ..EffectSettings::default()
+            };
+            let (from, to) = if muscles == 0 {
+                (20.0, 110.0)
+            } else {
+                (85.0, -5.0)
+            };
+            let rows = follow(&of, &[from, to], 60.0);
+            let most_nm = |(angle_rad, ..): &(f64, f64, f64)| settings.building_nm(*angle_rad);
+            let on_it = rows
+                .iter()
+                .filter(|row| (row.2 - most_nm(row)).abs() < 1e-9);
+            assert!(on_it.filter(|row| row.2 != 0.0).count() > 10_000);
+            let released_rad = settings.release_rad().unwrap();
+            assert!((settings.building_nm(released_rad).abs() - 3.156).abs() < 1e-3);
+            let (.., end_nm) = rows.last().unwrap();
+            assert!((end_nm - settings.left_nm(released_rad)).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn clonus_and_texture_have_their_closed_forms() {
+        let clonus = ClonusSettings::defaults();
+        for (n, ms) in [(0, 216.7), (1, 191.7), (2, 179.2), (3, 172.9)] {
+            assert!((1e3 * clonus.interval_s(n) - ms).abs() < 0.05);
+        }
+        assert_eq!(clonus.beat_nm(), 1.5);
+        assert!((TextureSettings::defaults().mean_nm() - 0.19).abs() < 1e-12);
+    }
+}
