@@ -1,13 +1,17 @@
 //! The device's parameters of a scene or a preset.
 
-use crepitus_model::render::effects::SPECS;
+use crepitus_model::parameters::Source;
+use crepitus_model::render::effects::friction_compensation::FrictionCompensation;
+use crepitus_model::render::effects::{DeviceEffect, SPECS};
 use crepitus_model::{Convention, Restart};
+use crepitus_plant::assembly::Listed;
 use crepitus_plant::effect::{Effect, Given};
 use crepitus_plant::effects::{EFFECTS, crepitus};
 use crepitus_protocol::Values;
-use crepitus_protocol::parameters::{Kind, PARAMETERS, id};
+use crepitus_protocol::parameters::{Kind, PARAMETERS, find, id};
+use crepitus_protocol::{DeviceSettings, ValueError};
 use crepitus_scene::Scene;
-use crepitus_scene::preset::{Preset, is_disorder};
+use crepitus_scene::preset::Preset;
 use crepitus_scene::scene::Crepitus;
 
 /// The choice that switches an effect.
@@ -66,16 +70,16 @@ pub fn with_scene(now: &Values, scene: &Scene) -> Result<Values, NotRendered> {
 }
 
 /// The values of a device that gets the knee of a preset: its effects at the preset's
-/// values, or at their defaults where it gives none. `keeps_others` decides over
-/// disorders that it does not have: they stay, or go off and to their defaults. All
-/// else stays: friction compensation and bone shaping, too, unless the preset has them.
+/// values, or at their defaults where it gives none. `keeps_others` decides over other
+/// effects of [a knee](is_of_knee): they stay, or go off and to their defaults. All else
+/// stays.
 pub fn with_preset(now: &Values, preset: &Preset, keeps_others: bool) -> Values {
     let mut values = *now;
     for effect in EFFECTS {
         let listed = preset.listed.iter().find(|l| l.effect.name == effect.name);
         if let Some(listed) = listed {
             set(&mut values, effect, true, &listed.given);
-        } else if is_disorder(effect) && !keeps_others {
+        } else if is_of_knee(effect.name) && !keeps_others {
             set(&mut values, effect, false, &Given::defaults(effect));
         }
     }
@@ -89,6 +93,56 @@ pub fn with_preset(now: &Values, preset: &Preset, keeps_others: bool) -> Values 
 /// Whether a group of parameters is an effect that a device renders.
 pub fn is_effect(group: &str) -> bool {
     group == crepitus::EFFECT.name || SPECS.iter().any(|spec| spec.name == group)
+}
+
+/// Whether an effect is of the knee and not of the brace: all but the compensation of
+/// the gear's friction.
+pub fn is_of_knee(group: &str) -> bool {
+    const OF_BRACE: &str = <FrictionCompensation<f64> as DeviceEffect<f64>>::SPEC.name;
+    is_effect(group) && group != OF_BRACE
+}
+
+/// The knee of a device as a preset without a name or texts: its effects that are on.
+///
+/// # Errors
+/// [`ValueError`] if no device has these values.
+pub fn knee(values: &Values) -> Result<Preset, ValueError> {
+    let settings = DeviceSettings::of(values)?;
+    let is_on = |effect: &&Effect| {
+        let switch = find(&format!("{}.{RENDER}", effect.name));
+        is_of_knee(effect.name) && switch.is_some_and(|(id, _)| values.is_on(id))
+    };
+    let listed = EFFECTS.into_iter().filter(is_on);
+    Ok(Preset {
+        crepitus: settings.crepitus.map(|settings| Crepitus {
+            preset: None,
+            settings,
+        }),
+        listed: listed
+            .filter(|effect| effect.name != crepitus::EFFECT.name)
+            .map(|effect| Listed {
+                effect,
+                given: given(values, effect),
+            })
+            .collect(),
+        ..Preset::default()
+    })
+}
+
+/// An effect's numbers and choices on a device.
+fn given(values: &Values, effect: &Effect) -> Given {
+    let value = |key: &str| {
+        let (id, _) = find(&format!("{}.{key}", effect.name))?;
+        Some((values.get(id)?, values.option(id)))
+    };
+    let mut given = Given::defaults(effect);
+    for (number, spec) in given.numbers.iter_mut().zip(effect.parameters) {
+        *number = value(spec.key).map_or(*number, |(number, _)| number);
+    }
+    for (option, choice) in given.choices.iter_mut().zip(effect.choices) {
+        *option = value(choice.key).map_or(*option, |(_, option)| option);
+    }
+    given
 }
 
 /// Switches an effect, with these numbers and choices.
@@ -128,8 +182,6 @@ fn with_joint(values: Values, joint: &Crepitus) -> Result<Values, NotRendered> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_protocol::DeviceSettings;
-    use crepitus_protocol::parameters::find;
     use crepitus_scene::{Overrides, preset};
     use std::path::Path;
 
@@ -146,6 +198,7 @@ mod tests {
             ("clonus.beats", 8.0),
             ("crepitus.restart", 1.0),
             ("crepitus.static_torque_nm", 0.5),
+            ("bone-shaping.render", 1.0),
             ("friction-compensation.render", 1.0),
             ("friction-compensation.share", 0.7),
             ("encoder.lines", 1000.0),
@@ -191,6 +244,7 @@ mod tests {
             ("crepitus.static_torque_nm", 0.4),
             ("clonus.render", 0.0),
             ("clonus.beats", 0.0),
+            ("bone-shaping.render", 0.0),
             ("friction-compensation.render", 1.0),
             ("friction-compensation.share", 0.7),
             ("encoder.lines", 1000.0),
@@ -211,10 +265,74 @@ mod tests {
         }
         // The result does not depend on which disorders there were.
         let mut fresh = used();
-        for effect in EFFECTS.into_iter().filter(|effect| is_disorder(effect)) {
+        for effect in EFFECTS.into_iter().filter(|e| is_of_knee(e.name)) {
             set(&mut fresh, effect, false, &Given::defaults(effect));
         }
         assert_eq!(with_preset(&fresh, preset, false), values);
+    }
+
+    /// Any values that a device takes, saved, reset and applied, are the same bits.
+    #[test]
+    fn a_knee_that_is_saved_comes_back() {
+        let mut rng = fastrand::Rng::with_seed(117);
+        let mut taken = 0;
+        for _ in 0..2_000 {
+            let mut values = Values::default();
+            for parameter in PARAMETERS.iter().filter(|p| is_of_knee(p.group)) {
+                let value = match parameter.kind {
+                    Kind::Number(spec) if parameter.group == "crepitus" => {
+                        spec.default * (0.9 + 0.2 * rng.f64())
+                    }
+                    Kind::Number(spec) => {
+                        let far = spec.min + (spec.max - spec.min) * rng.f64();
+                        spec.default + (far - spec.default) * 0.3 * rng.f64()
+                    }
+                    Kind::Choice(choice) => {
+                        f64::from(rng.u8(0..2).min(choice.names.len() as u8 - 1))
+                    }
+                };
+                values.set(parameter.id, value);
+            }
+            if DeviceSettings::of(&values).is_err() {
+                continue;
+            }
+            taken += 1;
+            let mut saved = knee(&values).unwrap();
+            saved.feel = Some("a \"quoted\" \\ é".to_owned());
+            let text = saved.to_toml();
+            let none = saved.effects().next().is_none();
+            let file = Path::new("mine.toml");
+            let read = match Preset::parse(file, &text) {
+                Ok(read) => read,
+                Err(error) => {
+                    assert!(none, "{error}\n{text}");
+                    continue;
+                }
+            };
+            assert_eq!(
+                (read.feel.as_ref(), &read.to_toml()),
+                (saved.feel.as_ref(), &text)
+            );
+            let back = with_preset(&Values::default(), &read, false);
+            for (parameter, value) in back.iter() {
+                let was_on = saved.has(parameter.group);
+                let expected = if was_on {
+                    values.get(parameter.id).unwrap()
+                } else if parameter.group == "crepitus" && parameter.key() == RENDER {
+                    0.0
+                } else {
+                    parameter.default()
+                };
+                assert_eq!(
+                    value.to_bits(),
+                    expected.to_bits(),
+                    "{}.{}",
+                    parameter.group,
+                    parameter.key()
+                );
+            }
+        }
+        assert!(taken > 200, "{taken}");
     }
 
     #[test]

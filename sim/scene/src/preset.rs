@@ -25,16 +25,17 @@ mod shipped;
 pub use disorder::{Disorder, Evidence};
 pub use shipped::{FILES, Joint, PresetFile, find, joints, shipped};
 
-use crate::document::{Document, Section};
+use crate::document::{Document, Section, quoted};
 use crate::error::SceneError;
 use crate::scene::effects::Presets;
 use crate::scene::stages::effect_settings;
-use crate::scene::{Crepitus, device, effects};
+use crate::scene::{Crepitus, Overrides, Scene, device, effects};
 use crepitus_model::Parameters;
 use crepitus_model::parameters::{ParameterSpec, Tabled};
 use crepitus_model::render::effects::{EffectSettings, IS_SYMPTOM, SPECS};
 use crepitus_plant::assembly::Listed;
 use crepitus_plant::effect::{Effect, Part};
+use std::fmt::Write;
 use std::path::Path;
 
 /// Texts of a preset, and the most characters that each may have.
@@ -46,7 +47,7 @@ const TEXTS: [(&str, usize); 4] = [
 ];
 
 /// A knee with a disorder: the values of a device's effects, and what they are.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Preset {
     /// File name without `.toml`.
     pub name: String,
@@ -184,6 +185,36 @@ impl Preset {
         self.crepitus.as_ref().map(|c| &c.settings.parameters)
     }
 
+    /// The preset as a file, with every value of its effects, so that it means the same
+    /// whatever a default will be. It reads back to the same bits.
+    pub fn to_toml(&self) -> String {
+        let mut text = String::new();
+        // Writing to a String cannot fail.
+        for (key, line) in [
+            ("title", self.title.as_deref()),
+            ("disorder", self.disorder.map(Disorder::name)),
+            ("severity", self.severity.as_deref()),
+            ("feel", self.feel.as_deref()),
+            ("evidence", self.evidence.map(Evidence::name)),
+            ("source", self.source.as_deref()),
+        ] {
+            if let Some(line) = line {
+                let _ = writeln!(text, "{key} = {}", quoted(line));
+            }
+        }
+        for effect in self.effects() {
+            let gap = if text.is_empty() { "" } else { "\n" };
+            let _ = writeln!(text, "{gap}[effects.{}]", effect.name);
+            for (key, setting) in self.settings_of(effect) {
+                let _ = match setting {
+                    Setting::Number(x, _) => writeln!(text, "{key} = {x:?}"),
+                    Setting::Option(name) => writeln!(text, "{key} = {}", quoted(name)),
+                };
+            }
+        }
+        text
+    }
+
     /// That its effects can ask for more together than a device with this limit shows,
     /// if they can.
     pub fn caps_warning(&self, most_nm: f64) -> Option<String> {
@@ -293,6 +324,31 @@ impl Preset {
             .collect();
         all.extend(numbers(&listed.given.numbers));
         all
+    }
+}
+
+/// What a file holds: a scene, which has a `version`, or a preset.
+#[derive(Clone, Debug)]
+pub enum Knee {
+    /// A scene.
+    Scene(Box<Scene>),
+    /// A preset.
+    Preset(Box<Preset>),
+}
+
+impl Knee {
+    /// Reads and checks a file of either kind.
+    ///
+    /// # Errors
+    /// As [`Preset::read`].
+    pub fn read(file: &Path) -> Result<Self, SceneError> {
+        let text = crate::scene::text_of(file)?;
+        if Document::parse(file, &text)?.section().has("version") {
+            let scene = Scene::parse(file, &text, &Overrides::default())?;
+            Ok(Self::Scene(Box::new(scene)))
+        } else {
+            Ok(Self::Preset(Box::new(Preset::parse(file, &text)?)))
+        }
     }
 }
 

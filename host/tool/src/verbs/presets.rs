@@ -1,12 +1,14 @@
 //! `crepitus presets [NAME]`.
 
-use crate::failure::{Failure, print, print_json};
+use crate::failure::{Failure, print, print_json, warn};
+use crate::own_presets;
 use clap::Args;
 use crepitus_client::values::show_number;
 use crepitus_scene::preset::{self, Disorder, Evidence, Preset, PresetValue, Setting};
 use crepitus_table::Table;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 /// List the presets by disorder: what to feel for, and what evidence there is.
 #[derive(Debug, Args)]
@@ -24,28 +26,49 @@ pub(crate) struct Arguments {
 
 /// Lists the presets, or shows one.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let presets = preset::shipped();
-    let Some(name) = &arguments.name else {
+    if let Some(name) = &arguments.name {
+        let (preset, file) = find(name)?;
         return if as_json {
-            print_json(&presets.iter().map(to_json).collect::<Vec<_>>())
+            print_json(&to_json(&preset, file.as_deref()))
         } else {
-            print(&list(presets))
+            print(&shown(&preset, file.as_deref()))
         };
-    };
-    let preset = preset::find(name).ok_or_else(|| {
-        Failure::Input(format!(
-            "no preset \"{name}\" ships: `crepitus presets` lists those that do"
-        ))
-    })?;
-    if as_json {
-        print_json(&to_json(preset))
-    } else {
-        print(&shown(preset))
     }
+    let mut own = Vec::new();
+    for file in own_presets::files()? {
+        match Preset::read(&file) {
+            Ok(preset) => own.push((preset, file)),
+            // The others are still of use.
+            Err(error) => warn(error),
+        }
+    }
+    if as_json {
+        let shipped = preset::shipped().iter().map(|preset| to_json(preset, None));
+        let own = own.iter().map(|(preset, file)| to_json(preset, Some(file)));
+        return print_json(&shipped.chain(own).collect::<Vec<_>>());
+    }
+    print(&list(&own))
+}
+
+/// A preset that ships, or one of the user's own with its file.
+fn find(name: &str) -> Result<(Preset, Option<PathBuf>), Failure> {
+    if let Some(preset) = preset::find(name) {
+        return Ok((preset.clone(), None));
+    }
+    let Some(file) = own_presets::find(name) else {
+        return Err(Failure::Input(match own_presets::grade_0(name) {
+            Some(text) => text,
+            None => {
+                format!("no preset {name:?} ships or is your own: `crepitus presets` lists them")
+            }
+        }));
+    };
+    let preset = Preset::read(&file).map_err(Failure::input)?;
+    Ok((preset, Some(file)))
 }
 
 /// One line a preset, by disorder.
-fn list(presets: &[Preset]) -> String {
+fn list(own: &[(Preset, PathBuf)]) -> String {
     let mut text = String::new();
     for disorder in Disorder::ALL {
         text.push_str(disorder.heading());
@@ -53,14 +76,17 @@ fn list(presets: &[Preset]) -> String {
             let _ = write!(text, "; {grade} is its absence");
         }
         text.push('\n');
-        for preset in presets.iter().filter(|p| p.disorder == Some(disorder)) {
-            let _ = writeln!(
-                text,
-                "  {:20} {:8}  {}",
-                preset.name,
-                evidence(preset.evidence),
-                preset.feel.as_deref().unwrap_or_default()
-            );
+        let shipped = preset::shipped().iter();
+        for preset in shipped.filter(|p| p.disorder == Some(disorder)) {
+            text.push_str(&line(preset));
+        }
+        text.push('\n');
+    }
+    if let Some((_, file)) = own.first() {
+        let folder = file.parent().unwrap_or(file);
+        let _ = writeln!(text, "Your own, in {}", folder.display());
+        for (preset, _) in own {
+            text.push_str(&line(preset));
         }
         text.push('\n');
     }
@@ -71,18 +97,32 @@ fn list(presets: &[Preset]) -> String {
     text
 }
 
+/// Name, evidence, and what to feel for.
+fn line(preset: &Preset) -> String {
+    let text = preset.feel.as_ref().or(preset.title.as_ref());
+    let text = text.map_or("", String::as_str);
+    let line = format!(
+        "  {:20} {:8}  {text}",
+        preset.name,
+        evidence(preset.evidence)
+    );
+    line.trim_end().to_owned() + "\n"
+}
+
 fn evidence(evidence: Option<Evidence>) -> &'static str {
     evidence.map_or("", Evidence::name)
 }
 
 /// A preset with its values.
-fn shown(preset: &Preset) -> String {
+fn shown(preset: &Preset, file: Option<&Path>) -> String {
     let mut text = format!("{}\n", preset.title.as_deref().unwrap_or(&preset.name));
+    let file = file.map(|file| file.display().to_string());
     for (key, line) in [
         ("severity", preset.severity.as_deref()),
         ("feel for", preset.feel.as_deref()),
         ("evidence", preset.evidence.map(Evidence::name)),
         ("source", preset.source.as_deref()),
+        ("file", file.as_deref()),
     ] {
         if let Some(line) = line {
             let _ = writeln!(text, "  {key:9} {line}");
@@ -117,7 +157,7 @@ fn unit(value: &PresetValue) -> Option<&'static str> {
     }
 }
 
-fn to_json(preset: &Preset) -> Value {
+fn to_json(preset: &Preset, file: Option<&Path>) -> Value {
     let effects: Map<String, Value> = preset
         .effects()
         .map(|effect| {
@@ -149,6 +189,7 @@ fn to_json(preset: &Preset) -> Value {
         "feel": preset.feel,
         "evidence": preset.evidence.map(Evidence::name),
         "source": preset.source,
+        "file": file,
         "effects": effects,
         "values": values,
     })
