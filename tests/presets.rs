@@ -377,7 +377,14 @@ Spasticity, MAS 2, as a stretch reflex makes it
 threshold is an estimate
 
 [effects.spasticity]
-?"
+                   value  unit     evidence  meaning
+form              reflex           estimate
+threshold_deg         75  deg      estimate  angle at which a slow stretch meets the threshold
+velocity_shift_s    0.27  s        sourced   how much earlier the threshold is for each rad/s of stretch
+gain_nm_per_rad     2.43  N·m/rad  sourced   torque of the muscle for each radian beyond the threshold; form reflex
+
+All other parameters are at their defaults: `crepitus effects` lists them.
+"
     );
     assert_eq!(run(&["presets", "wobble"]).status.code(), Some(2));
     assert!(stderr(&run(&["presets", "mas-0-catch"])).contains("MAS 0"));

@@ -133,20 +133,37 @@ fn shown(preset: &Preset, file: Option<&Path>) -> String {
         let values: Vec<_> = values.collect();
         let table = Table::of(&values)
             .column("parameter", |v| v.key)
+            .headed("")
             .column("value", |v| match v.setting {
                 Setting::Number(x, _) => show_number(x),
                 Setting::Option(name) => name.to_owned(),
             })
+            .headed("value")
+            .right()
             .column("unit", |v| unit(v).unwrap_or_default())
+            .headed("unit")
             .column("evidence", |v| evidence(v.evidence))
+            .headed("evidence")
             .column("meaning", |v| match v.setting {
-                Setting::Number(_, spec) => spec.meaning,
-                Setting::Option(_) => "",
-            });
+                Setting::Number(_, spec) => without_evidence(spec.meaning),
+                Setting::Option(_) => String::new(),
+            })
+            .headed("meaning");
         let _ = write!(text, "\n[effects.{}]\n{}", effect.name, table.to_text());
     }
     text.push_str("\nAll other parameters are at their defaults: `crepitus effects` lists them.\n");
     text
+}
+
+/// A parameter's meaning without the evidence of its default: "angle (estimate)".
+fn without_evidence(meaning: &str) -> String {
+    let begins = |e: Evidence| meaning.find(&format!(" ({}", e.name()));
+    let Some(begin) = Evidence::ALL.into_iter().find_map(begins) else {
+        return meaning.to_owned();
+    };
+    let (before, rest) = meaning.split_at(begin);
+    let after = rest.split_once(')').map_or("", |(_, after)| after);
+    format!("{before}{after}")
 }
 
 /// The unit, if there is one to show.

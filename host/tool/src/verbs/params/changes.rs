@@ -126,10 +126,15 @@ pub(super) fn diff(
     }
     let table = Table::of(&differences)
         .column("parameter", |d| full_name(d.parameter))
+        .headed("")
         .column("device", |d| show_value(d.parameter, d.device))
+        .headed("device")
+        .right()
         .column("other", |d| show_value(d.parameter, d.other))
         .headed(name)
-        .column("unit", Difference::unit);
+        .right()
+        .column("unit", Difference::unit)
+        .headed("unit");
     print(&format!("revision {revision}\n{}", table.to_text()))
 }
 
