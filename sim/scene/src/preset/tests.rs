@@ -356,10 +356,9 @@ fn scene(effects: &str) -> Result<Scene, SceneError> {
 #[test]
 fn a_scene_takes_the_values_of_every_preset() {
     for preset in shipped() {
-        let tables: String = preset
-            .effects()
-            .map(|e| format!("[effects.{}]\npreset = \"{}\"\n", e.name, preset.name))
-            .collect();
+        let tables = preset.effects().fold(String::new(), |tables, e| {
+            tables + &format!("[effects.{}]\npreset = \"{}\"\n", e.name, preset.name)
+        });
         let scene = scene(&tables).unwrap();
         assert_eq!(scene.effect_settings(), preset.effect_settings());
         let joint = scene.crepitus.as_ref().map(|c| &c.settings.parameters);
