@@ -287,9 +287,7 @@ mod tests {
                         let far = spec.min + (spec.max - spec.min) * rng.f64();
                         spec.default + (far - spec.default) * 0.3 * rng.f64()
                     }
-                    Kind::Choice(choice) => {
-                        f64::from(rng.u8(0..2).min(choice.names.len() as u8 - 1))
-                    }
+                    Kind::Choice(_) => f64::from(rng.u8(0..2)),
                 };
                 values.set(parameter.id, value);
             }
