@@ -290,10 +290,19 @@ fn presets_name_every_parameter() {
     let text = stdout(&run(&["presets"]));
     let json: serde_json::Value =
         serde_json::from_str(&stdout(&run(&["presets", "--json"]))).unwrap();
-    assert_eq!(json[0]["parameters"]["static_torque_nm"], 0.4);
-    for preset in json.as_array().unwrap() {
+    let presets = json.as_array().unwrap();
+    let of = |name: &str| presets.iter().find(|p| p["name"] == name).unwrap();
+    assert_eq!(of("coarse")["effects"]["crepitus"]["static_torque_nm"], 0.4);
+    assert_eq!(
+        of("mas-2-reflex")["effects"]["spasticity"]["form"],
+        "reflex"
+    );
+    for preset in presets {
         assert!(text.contains(preset["name"].as_str().unwrap()));
-        assert_eq!(preset["parameters"].as_object().unwrap().len(), 5);
+        for (effect, values) in preset["effects"].as_object().unwrap() {
+            // All numbers, not only those that the preset gives.
+            assert!(values.as_object().unwrap().len() >= 4, "{effect}");
+        }
     }
 }
 

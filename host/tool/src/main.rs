@@ -9,6 +9,7 @@ mod following;
 mod interrupt;
 mod keys;
 mod line;
+mod own_presets;
 mod pictures;
 mod progress;
 mod recorded;

@@ -8,6 +8,7 @@ mod section;
 mod writer;
 
 pub(crate) use section::{Range, Section};
+pub(crate) use writer::quoted;
 
 use crate::error::{Origin, SceneError};
 use std::cell::RefCell;

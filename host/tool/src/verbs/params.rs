@@ -1,18 +1,22 @@
 //! `crepitus params`: list, read, set and save a device's parameters.
 
+mod changes;
+mod save_preset;
+mod source;
+
 use crate::cli::{DeviceArguments, key_and_value};
-use crate::failure::{Failure, print, print_json};
-use crate::line::{connect, failure, failure_with};
-use crate::shipped;
-use clap::{Args, Subcommand};
+use crate::failure::{Failure, print, print_json, warn};
+use crate::line::{Line, connect, failure, failure_with};
+use clap::{Args, Subcommand, ValueHint};
+use crepitus_client::Client;
 use crepitus_client::values::{allowed_text, full_name, parse_value, show_value};
-use crepitus_model::joint::presets::Preset;
 use crepitus_protocol::parameters::{self, Kind, PARAMETERS, Parameter, When};
-use crepitus_protocol::{Revision, Values};
-use crepitus_scene::Overrides;
+use crepitus_protocol::{DeviceSettings, Revision, Values};
+use crepitus_scene::scene::caps_warning;
+use save_preset::SavePreset;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// List, read, set and save a device's parameters.
 #[derive(Debug, Args)]
@@ -21,8 +25,12 @@ Examples:
   crepitus params list
   crepitus params get crepitus.static_torque_nm
   crepitus params set crepitus.static_torque_nm=0.5 crepitus.kinetic_torque_nm=0.25
-  crepitus params apply fine
+  crepitus params apply mas-2-catch
+  crepitus params apply contracture-mild --add
   crepitus params apply scenes/bone-shaping.toml
+  crepitus params save-preset monday-knee --title 'The knee of Monday'
+  crepitus params diff monday-knee
+  crepitus params reset clonus
   crepitus params save
 
 A set is one commit: all of its values take effect between two ticks, or none; torque then changes \
@@ -51,11 +59,42 @@ enum Action {
         #[arg(value_name = "NAME=VALUE", required = true, value_parser = key_and_value)]
         values: Vec<(String, String)>,
     },
-    /// Apply a preset, or the device parameters of a scene.
+    /// Apply a preset or a scene, in one commit.
+    ///
+    /// A preset is a whole knee: its effects go on, at its values or at their defaults; other effects
+    /// of the knee go off and to their defaults. A scene does the same with all effects, friction
+    /// compensation included, which presets leave as it is. Encoder, motor, limits, range and sensor
+    /// are the brace's, and stay. A file without `version` is a preset; [effects.NAME] tables are enough.
     Apply {
-        /// A preset, a scene that ships, or a scene's file.
+        /// A preset, a scene that ships, or a file of either.
+        #[arg(value_name = "NAME|FILE", value_hint = ValueHint::FilePath)]
         what: PathBuf,
+        /// Keep the effects that the preset does not have.
+        #[arg(long)]
+        add: bool,
     },
+    /// Show what differs from the defaults, or from a preset or a scene.
+    ///
+    /// With NAME|FILE, what `params apply` would change.
+    Diff {
+        /// A preset, a scene that ships, or a file of either.
+        #[arg(value_name = "NAME|FILE", value_hint = ValueHint::FilePath)]
+        what: Option<PathBuf>,
+    },
+    /// Set effects to their defaults, in one commit.
+    ///
+    /// By default all of the knee, which then has the paper's crepitus and nothing else. Friction
+    /// compensation and the brace's own groups (encoder, motor, limits, …) are reset by name only.
+    Reset {
+        /// Effects or other groups of parameters [default: all effects of the knee].
+        #[arg(value_name = "EFFECT", value_parser = changes::groups())]
+        effects: Vec<String>,
+    },
+    /// Save the device's knee as a preset of one's own.
+    ///
+    /// It gets every value of the effects that are on, and lands in the folder that the environment
+    /// variable CREPITUS_PRESETS names, or in crepitus/presets of the user's configuration.
+    SavePreset(SavePreset),
     /// Save the current parameters for the next start.
     Save,
 }
@@ -67,14 +106,22 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         Action::List => list(as_json),
         Action::Get { names } => get(device, names, as_json),
         Action::Set { values } => set(device, values, as_json),
-        Action::Apply { what } => apply(device, what, as_json),
+        Action::Apply { what, add } => changes::apply(device, what, *add, as_json),
+        Action::Diff { what } => changes::diff(device, what.as_deref(), as_json),
+        Action::Reset { effects } => changes::reset(device, effects, as_json),
+        Action::SavePreset(preset) => save_preset::run(device, preset, as_json),
         Action::Save => {
             let mut client = connect(device)?;
             client
                 .save()
                 .map_err(|error| failure_with(&mut client, error))?;
             let (revision, _) = client.parameters().map_err(failure)?;
-            print_done(revision, "saved for the next start", as_json)
+            Done {
+                revision,
+                what: "saved for the next start",
+                values: None,
+            }
+            .print(as_json)
         }
     }
 }
@@ -194,42 +241,78 @@ fn set(
         .collect::<Result<Vec<_>, Failure>>()?;
     let mut client = connect(device)?;
     let revision = client.set(&changes).map_err(failure)?;
-    print_done(revision, "applied", as_json)
-}
-
-/// Commits a preset, or the device parameters of a scene.
-fn apply(device: &DeviceArguments, what: &Path, as_json: bool) -> Result<(), Failure> {
-    let preset = what.to_str().and_then(Preset::find);
-    let from_scene = if preset.is_some() {
-        None
-    } else {
-        Some(values_of_scene(what)?)
-    };
-    let mut client = connect(device)?;
-    let (base, now) = client.parameters().map_err(failure)?;
-    let values: Values = match (preset, from_scene) {
-        (Some(preset), _) => now.with_crepitus(&preset.parameters),
-        (None, Some(values)) => values,
-        (None, None) => now,
-    };
-    let revision = client.commit(base, &values).map_err(failure)?;
-    print_done(revision, "applied", as_json)
-}
-
-fn values_of_scene(what: &Path) -> Result<Values, Failure> {
-    let scene = shipped::scene(what, &Overrides::default()).map_err(|failure| match failure {
-        Failure::Input(text) if !what.exists() => Failure::Input(format!(
-            "{text}; it is not a preset either: `crepitus presets` lists them"
-        )),
-        other => other,
-    })?;
-    crepitus_board::values::values(&scene).map_err(Failure::input)
-}
-
-fn print_done(revision: Revision, what: &str, as_json: bool) -> Result<(), Failure> {
-    if as_json {
-        print_json(&json!({ "revision": revision.0, "done": what }))
-    } else {
-        print(&format!("revision {revision} is {what}\n"))
+    let (_, values) = client.parameters().map_err(failure)?;
+    Done {
+        revision,
+        what: "applied",
+        values: Some(values),
     }
+    .print(as_json)
+}
+
+/// What a verb has changed.
+struct Done {
+    revision: Revision,
+    what: &'static str,
+    /// The values, where they changed.
+    values: Option<Values>,
+}
+
+impl Done {
+    fn print(&self, as_json: bool) -> Result<(), Failure> {
+        let warning = self.values.as_ref().and_then(caps_warning_of);
+        if as_json {
+            return print_json(&json!({
+                "revision": self.revision.0,
+                "done": self.what,
+                "warnings": warning.as_slice(),
+            }));
+        }
+        if let Some(warning) = warning {
+            warn(warning);
+        }
+        print(&format!("revision {} is {}\n", self.revision, self.what))
+    }
+
+    /// The same, with the effects that it has switched, and whether the angle has a zero.
+    fn print_with_switched(
+        &self,
+        client: &mut Client<Line>,
+        before: &Values,
+        as_json: bool,
+    ) -> Result<(), Failure> {
+        let values = self.values.as_ref().unwrap_or(before);
+        let [on, off] = changes::switched(before, values);
+        let is_zeroed = client.status().map_err(failure)?.zeroed;
+        if as_json {
+            return print_json(&json!({
+                "revision": self.revision.0,
+                "done": self.what,
+                "on": on,
+                "off": off,
+                "zeroed": is_zeroed,
+                "warnings": self.values.as_ref().and_then(caps_warning_of).as_slice(),
+            }));
+        }
+        self.print(false)?;
+        for (names, state) in [(on, "on"), (off, "off")] {
+            if !names.is_empty() {
+                print(&format!("now {state}: {}\n", names.join(", ")))?;
+            }
+        }
+        if !is_zeroed {
+            print(
+                "the angle has no zero yet, and the device refuses to arm: straighten the knee and run \
+                 `crepitus zero`\n",
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// That the effects of a device can ask for more together than its limit, if they can.
+fn caps_warning_of(values: &Values) -> Option<String> {
+    let settings = DeviceSettings::of(values).ok()?;
+    let joint = settings.crepitus.as_ref().map(|joint| &joint.parameters);
+    caps_warning(&settings.effects, joint, settings.limits.torque_nm)
 }

@@ -1,58 +1,220 @@
-//! `crepitus presets`.
+//! `crepitus presets [NAME]`.
 
-use crate::failure::{Failure, print, print_json};
+use crate::failure::{Failure, print, print_json, warn};
+use crate::own_presets;
 use clap::Args;
-use crepitus_model::Parameters;
-use crepitus_model::joint::presets::{Evidence, PRESETS, Preset};
-use crepitus_model::parameters::Tabled;
+use crepitus_client::values::show_number;
+use crepitus_scene::preset::{self, Disorder, Evidence, Preset, PresetValue, Setting};
+use crepitus_table::Table;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
-/// List the parameter presets, with what each feels like and its source.
+/// List the presets by disorder: what to feel for, and what evidence there is.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  crepitus presets --json")]
-pub(crate) struct Arguments {}
+#[command(after_help = "\
+Examples:
+  crepitus presets
+  crepitus presets mas-2-catch
+  crepitus presets --json
 
-/// Lists the presets.
-pub(crate) fn run(_: &Arguments, as_json: bool) -> Result<(), Failure> {
-    if as_json {
-        return print_json(&PRESETS.iter().map(to_json).collect::<Vec<_>>());
-    }
-    let mut text = String::new();
-    for preset in &PRESETS {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{}: {}", preset.name, preset.feels_like);
-        for (p, value) in Parameters::TABLE.iter().zip(preset.parameters.values()) {
-            let _ = writeln!(
-                text,
-                "    {:2} = {value:<7} {:10} {}",
-                p.symbol, p.unit, p.key
-            );
-        }
-        let _ = writeln!(text, "    {}: {}\n", evidence(preset), preset.source);
-    }
-    text.push_str("Use one in a scene with [effects.crepitus] preset = \"NAME\".\n");
-    print(&text)
+`sourced` numbers are from a publication, `derived` ones computed from such; an `estimate` is ours.")]
+pub(crate) struct Arguments {
+    /// Show the values of this preset, with unit and evidence.
+    name: Option<String>,
 }
 
-fn to_json(preset: &Preset) -> Value {
-    let parameters: Map<_, _> = Parameters::TABLE
+/// Lists the presets, or shows one.
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    if let Some(name) = &arguments.name {
+        let (preset, file) = find(name)?;
+        return if as_json {
+            print_json(&to_json(&preset, file.as_deref()))
+        } else {
+            print(&shown(&preset, file.as_deref()))
+        };
+    }
+    let mut own = Vec::new();
+    for file in own_presets::files()? {
+        match Preset::read(&file) {
+            Ok(preset) => own.push((preset, file)),
+            // The others are still of use.
+            Err(error) => warn(error),
+        }
+    }
+    if as_json {
+        let shipped = preset::shipped().iter().map(|preset| to_json(preset, None));
+        let own = own.iter().map(|(preset, file)| to_json(preset, Some(file)));
+        return print_json(&shipped.chain(own).collect::<Vec<_>>());
+    }
+    print(&list(&own))
+}
+
+/// A preset that ships, or one of the user's own with its file.
+fn find(name: &str) -> Result<(Preset, Option<PathBuf>), Failure> {
+    if let Some(preset) = preset::find(name) {
+        return Ok((preset.clone(), None));
+    }
+    let Some(file) = own_presets::find(name) else {
+        return Err(Failure::Input(match own_presets::grade_0(name) {
+            Some(text) => text,
+            None => {
+                format!("no preset {name:?} ships or is your own: `crepitus presets` lists them")
+            }
+        }));
+    };
+    let preset = Preset::read(&file).map_err(Failure::input)?;
+    Ok((preset, Some(file)))
+}
+
+/// One line a preset, by disorder.
+fn list(own: &[(Preset, PathBuf)]) -> String {
+    let mut text = String::new();
+    for disorder in Disorder::ALL {
+        text.push_str(disorder.heading());
+        if let Some(grade) = disorder.grade_0() {
+            let _ = write!(text, "; {grade} is its absence");
+        }
+        text.push('\n');
+        let shipped = preset::shipped().iter();
+        for preset in shipped.filter(|p| p.disorder == Some(disorder)) {
+            text.push_str(&line(preset));
+        }
+        text.push('\n');
+    }
+    if let Some((_, file)) = own.first() {
+        let folder = file.parent().unwrap_or(file);
+        let _ = writeln!(text, "Your own, in {}", folder.display());
+        for (preset, _) in own {
+            text.push_str(&line(preset));
+        }
+        text.push('\n');
+    }
+    text.push_str(
+        "Try one with `crepitus params apply NAME`; in a scene, preset = \"NAME\" below [effects.…].\n\
+         `crepitus presets NAME` shows its values.\n",
+    );
+    text
+}
+
+/// Name, evidence, and what to feel for.
+fn line(preset: &Preset) -> String {
+    let text = preset.feel.as_ref().or(preset.title.as_ref());
+    let text = text.map_or("", String::as_str);
+    let line = format!(
+        "  {:20} {:8}  {text}",
+        preset.name,
+        evidence(preset.evidence)
+    );
+    line.trim_end().to_owned() + "\n"
+}
+
+fn evidence(evidence: Option<Evidence>) -> &'static str {
+    evidence.map_or("", Evidence::name)
+}
+
+/// A preset with its values.
+fn shown(preset: &Preset, file: Option<&Path>) -> String {
+    let mut text = format!("{}\n", preset.title.as_deref().unwrap_or(&preset.name));
+    let file = file.map(|file| file.display().to_string());
+    for (key, line) in [
+        ("severity", preset.severity.as_deref()),
+        ("feel for", preset.feel.as_deref()),
+        ("evidence", preset.evidence.map(Evidence::name)),
+        ("source", preset.source.as_deref()),
+        ("file", file.as_deref()),
+    ] {
+        if let Some(line) = line {
+            let _ = writeln!(text, "  {key:9} {line}");
+        }
+    }
+    for effect in preset.effects() {
+        let values = preset.values.iter().filter(|v| v.effect == effect.name);
+        let values: Vec<_> = values.collect();
+        let table = Table::of(&values)
+            .column("parameter", |v| v.key)
+            .headed("")
+            .column("value", |v| match v.setting {
+                Setting::Number(x, _) => show_number(x),
+                Setting::Option(name) => name.to_owned(),
+            })
+            .headed("value")
+            .right()
+            .column("unit", |v| unit(v).unwrap_or_default())
+            .headed("unit")
+            .column("evidence", |v| evidence(v.evidence))
+            .headed("evidence")
+            .column("meaning", |v| match v.setting {
+                Setting::Number(_, spec) => without_evidence(spec.meaning),
+                Setting::Option(_) => String::new(),
+            })
+            .headed("meaning");
+        let _ = write!(text, "\n[effects.{}]\n{}", effect.name, table.to_text());
+    }
+    text.push_str("\nAll other parameters are at their defaults: `crepitus effects` lists them.\n");
+    text
+}
+
+/// A parameter's meaning without the evidence of its default: "angle (estimate)".
+fn without_evidence(meaning: &str) -> String {
+    let begins = |e: Evidence| meaning.find(&format!(" ({}", e.name()));
+    let Some(begin) = Evidence::ALL.into_iter().find_map(begins) else {
+        return meaning.to_owned();
+    };
+    let (before, rest) = meaning.split_at(begin);
+    let after = rest.split_once(')').map_or("", |(_, after)| after);
+    format!("{before}{after}")
+}
+
+/// The unit, if there is one to show.
+fn unit(value: &PresetValue) -> Option<&'static str> {
+    match value.setting {
+        Setting::Number(_, spec) => Some(spec.unit).filter(|unit| *unit != "1"),
+        Setting::Option(_) => None,
+    }
+}
+
+fn to_json(preset: &Preset, file: Option<&Path>) -> Value {
+    let effects: Map<String, Value> = preset
+        .effects()
+        .map(|effect| {
+            let settings = preset.settings_of(effect).into_iter();
+            let settings: Map<_, _> = settings
+                .map(|(key, setting)| (key.to_owned(), value_json(setting)))
+                .collect();
+            (effect.name.to_owned(), settings.into())
+        })
+        .collect();
+    let values: Vec<_> = preset
+        .values
         .iter()
-        .zip(preset.parameters.values())
-        .map(|(p, value)| (p.key.to_owned(), json!(value)))
+        .map(|v| {
+            json!({
+                "effect": v.effect,
+                "key": v.key,
+                "value": value_json(v.setting),
+                "unit": unit(v),
+                "evidence": v.evidence.map(Evidence::name),
+            })
+        })
         .collect();
     json!({
         "name": preset.name,
-        "feels_like": preset.feels_like,
-        "evidence": evidence(preset),
+        "title": preset.title,
+        "disorder": preset.disorder.map(Disorder::name),
+        "severity": preset.severity,
+        "feel": preset.feel,
+        "evidence": preset.evidence.map(Evidence::name),
         "source": preset.source,
-        "parameters": parameters,
+        "file": file,
+        "effects": effects,
+        "values": values,
     })
 }
 
-fn evidence(preset: &Preset) -> &'static str {
-    match preset.evidence {
-        Evidence::Sourced => "source",
-        Evidence::Estimate => "estimate",
+fn value_json(setting: Setting) -> Value {
+    match setting {
+        Setting::Number(x, _) => json!(x),
+        Setting::Option(name) => json!(name),
     }
 }

@@ -64,7 +64,8 @@ fn key(name: &str) -> String {
     }
 }
 
-fn quoted(text: &str) -> String {
+/// A text as TOML.
+pub(crate) fn quoted(text: &str) -> String {
     let mut quoted = String::from("\"");
     for c in text.chars() {
         match c {

@@ -1,0 +1,181 @@
+//! The user's own presets: a folder of files in the form of those that ship.
+
+use crate::failure::Failure;
+use crepitus_scene::preset::{self, Disorder, Preset};
+use std::env;
+use std::fs;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use tempfile::Builder;
+
+/// Names another folder.
+pub(crate) const FOLDER_VARIABLE: &str = "CREPITUS_PRESETS";
+
+/// The longest name.
+const MOST_CHARACTERS: usize = 60;
+
+/// Names that a file cannot have on Windows.
+const RESERVED: [&str; 4] = ["con", "prn", "aux", "nul"];
+
+/// The folder: `CREPITUS_PRESETS`, or `crepitus/presets` in the user's configuration.
+pub(crate) fn folder() -> Result<PathBuf, Failure> {
+    let variable = |name| env::var_os(name).filter(|value| !value.is_empty());
+    if let Some(folder) = variable(FOLDER_VARIABLE) {
+        return Ok(folder.into());
+    }
+    let home = || variable("HOME").map(PathBuf::from);
+    let configuration = if cfg!(windows) {
+        variable("APPDATA").map(PathBuf::from)
+    } else if cfg!(target_os = "macos") {
+        home().map(|home| home.join("Library/Application Support"))
+    } else {
+        // A relative path in it is to be ignored.
+        let xdg = variable("XDG_CONFIG_HOME").map(PathBuf::from);
+        xdg.filter(|path| path.is_absolute())
+            .or_else(|| home().map(|home| home.join(".config")))
+    };
+    match configuration {
+        Some(folder) => Ok(folder.join("crepitus/presets")),
+        None => Err(Failure::Input(format!(
+            "there is no home folder to keep presets in: set {FOLDER_VARIABLE} to a folder"
+        ))),
+    }
+}
+
+/// Rejects what cannot be the name of an own preset.
+pub(crate) fn check_name(name: &str) -> Result<(), Failure> {
+    let no = |why: &str| Err(Failure::Input(format!("invalid name {name:?}: {why}")));
+    let is_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    let begins_well = name.starts_with(|c: char| c.is_ascii_lowercase() || c.is_ascii_digit());
+    if !begins_well || !name.chars().all(is_word) {
+        return no("expected small letters a to z, digits and hyphens, for example monday-knee");
+    }
+    if name.len() > MOST_CHARACTERS {
+        return no(&format!("expected up to {MOST_CHARACTERS} characters"));
+    }
+    let numbered = |word: &str| {
+        let digit = name.strip_prefix(word);
+        digit.is_some_and(|digit| matches!(digit.as_bytes(), [b'1'..=b'9']))
+    };
+    if RESERVED.contains(&name) || numbered("com") || numbered("lpt") {
+        return no("Windows has no file of this name");
+    }
+    if preset::find(name).is_some() {
+        return no("a preset of this name ships; choose another one");
+    }
+    Ok(())
+}
+
+/// The file of the own preset of this name, if there is one.
+pub(crate) fn find(name: &str) -> Option<PathBuf> {
+    check_name(name).ok()?;
+    let file = file(&folder().ok()?, name);
+    file.is_file().then_some(file)
+}
+
+/// That a name is that of a grade without its disorder, which is no preset, if it is:
+/// `mas-0`, `updrs-0-cogwheel`.
+pub(crate) fn grade_0(name: &str) -> Option<String> {
+    let (grade, disorder) = Disorder::ALL.iter().find_map(|disorder| {
+        let grade = disorder.grade_0()?;
+        let rest = name.strip_prefix(&grade.to_lowercase().replace(' ', "-"))?;
+        (rest.is_empty() || rest.starts_with('-')).then_some((grade, disorder))
+    })?;
+    Some(format!(
+        "{name:?} is no preset: {grade} is a knee without {}; switch its effect off, for example with \
+         `crepitus params set spasticity.render=off`",
+        disorder.name()
+    ))
+}
+
+/// The files of all, in the order of their names.
+pub(crate) fn files() -> Result<Vec<PathBuf>, Failure> {
+    // Without a home folder there are none.
+    let Ok(folder) = folder() else {
+        return Ok(Vec::new());
+    };
+    let entries = match fs::read_dir(&folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(Failure::at(&folder, "cannot be read", &error)),
+    };
+    let mut files: Vec<_> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| {
+            let name = path.file_stem().and_then(|stem| stem.to_str());
+            path.extension().is_some_and(|e| e == "toml")
+                && name.is_some_and(|name| check_name(name).is_ok())
+        })
+        .collect();
+    files.sort();
+    Ok(files)
+}
+
+/// Writes a preset under this name, whole or not at all, and returns its file.
+pub(crate) fn write(name: &str, preset: &Preset, force: bool) -> Result<PathBuf, Failure> {
+    check_name(name)?;
+    let folder = folder()?;
+    let target = file(&folder, name);
+    let text = preset.to_toml();
+    // What is written can be read.
+    Preset::parse(&target, &text).map_err(Failure::input)?;
+    let put = || {
+        fs::create_dir_all(&folder)?;
+        let mut part = Builder::new().prefix(".crepitus-").tempfile_in(&folder)?;
+        part.write_all(text.as_bytes())?;
+        part.as_file().sync_all()?;
+        if force {
+            part.persist(&target)
+        } else {
+            part.persist_noclobber(&target)
+        }
+        .map_err(|error| error.error)
+    };
+    match put() {
+        Ok(_) => Ok(target),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists && !force => {
+            Err(Failure::Input(format!(
+                "{} exists: choose another name, or replace it with --force",
+                target.display()
+            )))
+        }
+        Err(error) => Err(Failure::at(&target, "cannot be written", &error)),
+    }
+}
+
+fn file(folder: &Path, name: &str) -> PathBuf {
+    folder.join(name).with_extension("toml")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_files_on_every_system() {
+        for good in ["a", "monday-knee", "2nd", "com", "com10", "console"] {
+            assert!(check_name(good).is_ok(), "{good}");
+        }
+        let long = "x".repeat(61);
+        for bad in [
+            "",
+            "-a",
+            "A",
+            "a b",
+            "a/b",
+            "../a",
+            "a.b",
+            "ä",
+            "a\n",
+            "con",
+            "nul",
+            "com1",
+            "lpt9",
+            "coarse",
+            "mas-2-catch",
+            &long,
+        ] {
+            assert!(check_name(bad).is_err(), "{bad:?}");
+        }
+    }
+}
