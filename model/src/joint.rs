@@ -1,9 +1,9 @@
 //! The stick-slip joint: settings, and the coefficients that every solver uses.
 //!
 //! ```text
-//! parameters, presets → settings → coefficients (one step length) ─┐
-//!                                 shaft (the path within a step) ──┼→ a solver's stick_slip → events
-//!                                 oscillator (the free object) ────┘
+//! parameters → settings → coefficients (one step length) ─┐
+//!                        shaft (the path within a step) ──┼→ a solver's stick_slip → events
+//!                        oscillator (the free object) ────┘
 //! ```
 
 pub mod coefficients;
@@ -13,7 +13,6 @@ mod event;
 pub mod oscillator;
 mod parameters;
 mod phase;
-pub mod presets;
 mod settings;
 pub mod shaft;
 mod stick_slip;

@@ -24,7 +24,6 @@
 )]
 
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::joint::presets::PRESETS;
 use crepitus_model::render::Limit;
 use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::solver::locate::ExactEvents;
@@ -222,7 +221,7 @@ fn shakes(p: Parameters) -> Vec<Named> {
 
 #[test]
 fn half_a_tick_ahead_is_more_passive_on_the_true_velocity_and_less_behind_an_encoder() {
-    let p = PRESETS[0].parameters;
+    let p = Parameters::default();
     let worst = worst("shakes", p, &shakes(p));
     for (delay, d) in DELAYS.into_iter().zip([0.0, 1.0, 2.0]) {
         for (s, _) in SIGHTS.into_iter().enumerate() {

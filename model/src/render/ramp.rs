@@ -109,8 +109,8 @@ impl<F: Real> Ramp<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Parameters;
     use crate::joint::Settings;
-    use crate::{Parameters, joint::presets};
 
     const TICK_S: f64 = 5e-5;
     const SLEW_NM_PER_S: f64 = 100.0;
@@ -132,9 +132,24 @@ mod tests {
 
     #[test]
     fn torques_keep_the_slew_limit_and_end_at_the_new_numbers() {
-        for from in presets::PRESETS {
-            for to in presets::PRESETS {
-                let (from, to) = (coefficients(from.parameters), coefficients(to.parameters));
+        let paper = Parameters::default();
+        let fine = Parameters {
+            inertia_kg_m2: 1e-3,
+            stiffness_nm_per_rad: 300.0,
+            kinetic_torque_nm: 0.08,
+            static_torque_nm: 0.15,
+            ..paper
+        };
+        let heavy = Parameters {
+            inertia_kg_m2: 0.03,
+            stiffness_nm_per_rad: 500.0,
+            kinetic_torque_nm: 0.6,
+            static_torque_nm: 1.1,
+            ..paper
+        };
+        for from in [paper, fine, heavy] {
+            for to in [paper, fine, heavy] {
+                let (from, to) = (coefficients(from), coefficients(to));
                 let mut ramp = Ramp::new(from, to, SLEW_NM_PER_S);
                 let (mut now, mut ticks) = (from, 0);
                 while let Some(next) = ramp.advance() {

@@ -1,10 +1,17 @@
-//! The device's parameters of a scene.
+//! The device's parameters of a scene or a preset.
 
+use crepitus_model::render::effects::SPECS;
 use crepitus_model::{Convention, Restart};
-use crepitus_plant::effects::EFFECTS;
+use crepitus_plant::effect::{Effect, Given};
+use crepitus_plant::effects::{EFFECTS, crepitus};
 use crepitus_protocol::Values;
 use crepitus_protocol::parameters::{Kind, PARAMETERS, id};
 use crepitus_scene::Scene;
+use crepitus_scene::preset::{Preset, is_disorder};
+use crepitus_scene::scene::Crepitus;
+
+/// The choice that switches an effect.
+pub const RENDER: &str = "render";
 
 /// Why a scene cannot be rendered by a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -25,41 +32,212 @@ pub enum NotRendered {
 /// [`NotRendered`] if no device can render it.
 pub fn values(scene: &Scene) -> Result<Values, NotRendered> {
     let mut values = Values::default();
-    for parameter in &PARAMETERS {
-        let Some(effect) = EFFECTS.iter().find(|e| e.name == parameter.group) else {
-            continue;
-        };
-        match parameter.kind {
-            Kind::Choice(choice) if choice.key == "render" => {
-                values.set(parameter.id, f64::from(u8::from(scene.has(effect.name))));
-            }
-            Kind::Choice(choice) => {
-                let given = scene.given(effect);
-                let at = effect.choices.iter().position(|c| c.key == choice.key);
-                if let Some(option) = at.and_then(|at| given.choices.get(at)) {
-                    values.set(parameter.id, f64::from(*option));
-                }
-            }
-            Kind::Number(spec) => {
-                let given = scene.given(effect);
-                let at = effect.parameters.iter().position(|p| p.key == spec.key);
-                if let Some(value) = at.and_then(|at| given.numbers.get(at)) {
-                    values.set(parameter.id, *value);
-                }
-            }
-        }
+    for effect in EFFECTS {
+        set(
+            &mut values,
+            effect,
+            scene.has(effect.name),
+            &scene.given(effect),
+        );
     }
-    if let Some(crepitus) = &scene.crepitus {
-        let settings = &crepitus.settings;
-        if settings.convention != Convention::Frozen {
-            return Err(NotRendered::Convention(settings.convention.name()));
-        }
-        if settings.parameters.damping_nms_per_rad > 0.0 {
-            return Err(NotRendered::Damping);
-        }
-        values = values.with_crepitus(&settings.parameters);
-        let from_kinetic = settings.restart == Restart::FromKinetic;
-        values.set(id::RESTART, f64::from(u8::from(from_kinetic)));
+    if let Some(joint) = &scene.crepitus {
+        values = with_joint(values, joint)?;
     }
     Ok(values)
+}
+
+/// The values of a device that gets the effects of a scene: those that it does not
+/// list go off and to their defaults. What the hardware is and may do stays: encoder,
+/// motor, limits, range, sensor.
+///
+/// # Errors
+/// [`NotRendered`] if no device can render it.
+pub fn with_scene(now: &Values, scene: &Scene) -> Result<Values, NotRendered> {
+    let of_scene = values(scene)?;
+    let mut values = *now;
+    for parameter in &PARAMETERS {
+        if is_effect(parameter.group)
+            && let Some(value) = of_scene.get(parameter.id)
+        {
+            values.set(parameter.id, value);
+        }
+    }
+    Ok(values)
+}
+
+/// The values of a device that gets the knee of a preset: its effects at the preset's
+/// values, or at their defaults where it gives none. `keeps_others` decides over
+/// disorders that it does not have: they stay, or go off and to their defaults. All
+/// else stays: friction compensation and bone shaping, too, unless the preset has them.
+pub fn with_preset(now: &Values, preset: &Preset, keeps_others: bool) -> Values {
+    let mut values = *now;
+    for effect in EFFECTS {
+        let listed = preset.listed.iter().find(|l| l.effect.name == effect.name);
+        if let Some(listed) = listed {
+            set(&mut values, effect, true, &listed.given);
+        } else if is_disorder(effect) && !keeps_others {
+            set(&mut values, effect, false, &Given::defaults(effect));
+        }
+    }
+    match &preset.crepitus {
+        // A preset was read with what a device renders.
+        Some(joint) => with_joint(values, joint).unwrap_or(values),
+        None => values,
+    }
+}
+
+/// Whether a group of parameters is an effect that a device renders.
+pub fn is_effect(group: &str) -> bool {
+    group == crepitus::EFFECT.name || SPECS.iter().any(|spec| spec.name == group)
+}
+
+/// Switches an effect, with these numbers and choices.
+fn set(values: &mut Values, effect: &Effect, is_on: bool, given: &Given) {
+    for parameter in PARAMETERS.iter().filter(|p| p.group == effect.name) {
+        let value = match parameter.kind {
+            Kind::Choice(choice) if choice.key == RENDER => Some(f64::from(u8::from(is_on))),
+            Kind::Choice(choice) => {
+                let at = effect.choices.iter().position(|c| c.key == choice.key);
+                at.and_then(|at| given.choices.get(at))
+                    .map(|option| f64::from(*option))
+            }
+            Kind::Number(spec) => {
+                let at = effect.parameters.iter().position(|p| p.key == spec.key);
+                at.and_then(|at| given.numbers.get(at)).copied()
+            }
+        };
+        values.set(parameter.id, value.unwrap_or(parameter.default()));
+    }
+}
+
+/// The values with this joint.
+fn with_joint(values: Values, joint: &Crepitus) -> Result<Values, NotRendered> {
+    let settings = &joint.settings;
+    if settings.convention != Convention::Frozen {
+        return Err(NotRendered::Convention(settings.convention.name()));
+    }
+    if settings.parameters.damping_nms_per_rad > 0.0 {
+        return Err(NotRendered::Damping);
+    }
+    let mut values = values.with_crepitus(&settings.parameters);
+    let from_kinetic = settings.restart == Restart::FromKinetic;
+    values.set(id::RESTART, f64::from(u8::from(from_kinetic)));
+    Ok(values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_protocol::DeviceSettings;
+    use crepitus_protocol::parameters::find;
+    use crepitus_scene::{Overrides, preset};
+    use std::path::Path;
+
+    fn value(values: &Values, name: &str) -> f64 {
+        values.get(find(name).unwrap().0).unwrap()
+    }
+
+    /// A device that has been used: everything on, nothing at its default that a
+    /// disorder or the hardware has.
+    fn used() -> Values {
+        let mut values = Values::default();
+        for (name, value) in [
+            ("clonus.render", 1.0),
+            ("clonus.beats", 8.0),
+            ("crepitus.restart", 1.0),
+            ("crepitus.static_torque_nm", 0.5),
+            ("friction-compensation.render", 1.0),
+            ("friction-compensation.share", 0.7),
+            ("encoder.lines", 1000.0),
+            ("limits.torque_nm", 4.0),
+            ("range.most_deg", 100.0),
+        ] {
+            values.set(find(name).unwrap().0, value);
+        }
+        values
+    }
+
+    #[test]
+    fn a_device_takes_every_preset() {
+        for preset in preset::shipped() {
+            let values = with_preset(&Values::default(), preset, false);
+            let settings = DeviceSettings::of(&values);
+            assert!(settings.is_ok(), "{}: {settings:?}", preset.name);
+            let settings = settings.unwrap();
+            assert_eq!(
+                settings.effects,
+                preset.effect_settings(),
+                "{}",
+                preset.name
+            );
+            let joint = settings.crepitus.map(|joint| joint.parameters);
+            assert_eq!(joint.as_ref(), preset.joint(), "{}", preset.name);
+        }
+    }
+
+    #[test]
+    fn a_preset_is_a_whole_knee_and_leaves_the_device_alone() {
+        let preset = preset::find("texture-bone-on-bone").unwrap();
+        let now = used();
+        let values = with_preset(&now, preset, false);
+        for (name, expected) in [
+            ("texture.render", 1.0),
+            ("texture.peak_nm", 1.1),
+            ("range-limit.render", 1.0),
+            ("range-limit.flexion_limit_deg", 130.0),
+            // Others are off, and as never set.
+            ("crepitus.render", 0.0),
+            ("crepitus.restart", 0.0),
+            ("crepitus.static_torque_nm", 0.4),
+            ("clonus.render", 0.0),
+            ("clonus.beats", 0.0),
+            ("friction-compensation.render", 1.0),
+            ("friction-compensation.share", 0.7),
+            ("encoder.lines", 1000.0),
+            ("limits.torque_nm", 4.0),
+            ("range.most_deg", 100.0),
+        ] {
+            assert_eq!(value(&values, name), expected, "{name}");
+        }
+        let added = with_preset(&now, preset, true);
+        for (name, expected) in [
+            ("texture.peak_nm", 1.1),
+            ("clonus.render", 1.0),
+            ("clonus.beats", 8.0),
+            ("crepitus.render", 1.0),
+            ("crepitus.restart", 1.0),
+        ] {
+            assert_eq!(value(&added, name), expected, "{name}");
+        }
+        // The result does not depend on which disorders there were.
+        let mut fresh = used();
+        for effect in EFFECTS.into_iter().filter(|effect| is_disorder(effect)) {
+            set(&mut fresh, effect, false, &Given::defaults(effect));
+        }
+        assert_eq!(with_preset(&fresh, preset, false), values);
+    }
+
+    #[test]
+    fn a_scene_has_all_effects_and_leaves_the_hardware_alone() {
+        let toml = "version = 1\ntitle = \"x\"\nduration_s = 1\n\
+                    [motion]\nkind = \"constant\"\nvelocity_rad_s = 1\n\
+                    [solver]\nkind = \"exact-events\"\nstep_s = 5e-5\n\
+                    [effects.lead-pipe]\n[effects.motor]\nbandwidth_hz = 900\n[effects.encoder]\nlines = 500\n";
+        let scene = Scene::parse(Path::new("x.toml"), toml, &Overrides::default()).unwrap();
+        let now = used();
+        let values = with_scene(&now, &scene).unwrap();
+        for (name, expected) in [
+            ("lead-pipe.render", 1.0),
+            ("crepitus.render", 0.0),
+            ("clonus.render", 0.0),
+            ("friction-compensation.render", 0.0),
+            ("friction-compensation.share", 0.8),
+            ("encoder.lines", 1000.0),
+            ("motor.bandwidth_hz", value(&now, "motor.bandwidth_hz")),
+            ("limits.torque_nm", 4.0),
+            ("range.most_deg", 100.0),
+        ] {
+            assert_eq!(value(&values, name), expected, "{name}");
+        }
+    }
 }

@@ -11,6 +11,7 @@
 //! | to find | look in |
 //! |---|---|
 //! | the form of a scene file, its checks and errors | [`scene`], [`error`] |
+//! | a knee with a disorder as a file, and those that ship | [`preset`] |
 //! | the loop, the totals, the summary | [`mod@run`] |
 //! | the motion step by step, for who steps a plant himself | [`walk`] |
 //! | columns, rows and events | [`trace`] |
@@ -24,6 +25,7 @@ pub mod cpu_time;
 mod document;
 pub mod error;
 pub mod output;
+pub mod preset;
 pub mod reference;
 pub mod run;
 pub mod scene;
@@ -31,6 +33,7 @@ pub mod trace;
 pub mod walk;
 
 pub use error::SceneError;
+pub use preset::Preset;
 pub use run::{Observer, RunError, Summary, run};
 pub use scene::{Overrides, Scene};
 pub use walk::Walk;

@@ -1,14 +1,15 @@
 //! A scene: everything that decides a run, checked.
 
 mod data_file;
-mod device;
-mod effects;
+pub(crate) mod device;
+pub(crate) mod effects;
 mod motion;
 mod solver;
-mod stages;
+pub(crate) mod stages;
 mod variants;
 
 pub use data_file::DataFile;
+pub use device::caps_warning;
 pub use motion::MotionKind;
 pub use solver::{Precision, SolverChoice};
 
@@ -100,16 +101,7 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with position, key, cause and valid values.
     pub fn read(file: &Path, overrides: &Overrides) -> Result<Self, SceneError> {
-        let whole = |message: String| SceneError {
-            file: file.to_owned(),
-            origin: None,
-            key: String::new(),
-            message,
-        };
-        let bytes = std::fs::read(file).map_err(|e| whole(format!("cannot be read: {e}")))?;
-        let text = String::from_utf8(bytes)
-            .map_err(|e| whole(format!("is not UTF-8 text: {}", e.utf8_error())))?;
-        Self::parse(file, &text, overrides)
+        Self::parse(file, &text_of(file)?, overrides)
     }
 
     /// Checks the text of a scene file; `file` names it in errors and is the
@@ -210,7 +202,7 @@ impl Scene {
         scene
             .check_stages()
             .map_err(|e| root.error(e.to_string()))?;
-        let caps = device::caps_warning(&scene);
+        let caps = device::caps_warning_of(&scene);
         scene.warnings.extend(caps);
         Ok(scene)
     }
@@ -282,6 +274,18 @@ impl Scene {
     pub fn is_held(&self) -> bool {
         self.motion_kind != MotionKind::Released
     }
+}
+
+/// The text of a file.
+pub(crate) fn text_of(file: &Path) -> Result<String, SceneError> {
+    let whole = |message: String| SceneError {
+        file: file.to_owned(),
+        origin: None,
+        key: String::new(),
+        message,
+    };
+    let bytes = std::fs::read(file).map_err(|e| whole(format!("cannot be read: {e}")))?;
+    String::from_utf8(bytes).map_err(|e| whole(format!("is not UTF-8 text: {}", e.utf8_error())))
 }
 
 /// Effects as a scene file names them.

@@ -1,9 +1,9 @@
 //! The map: of each gear and lag a panel, stiffness up, damping of the cuff to
 //! the right.
 
-use crepitus_model::joint::presets::PRESETS;
 use crepitus_plot::palette::{AXIS, Ink, LEVEL, TEXT};
 use crepitus_plot::{Drawing, Svg};
+use crepitus_scene::preset::joints;
 use crepitus_study::coupled::{
     Cell, CoupledStudy, DAMPINGS, GEARS, LAGS, Onset, STIFFNESSES, Verdict,
 };
@@ -167,7 +167,7 @@ fn panel(at: (f64, f64), cells: &[Cell], onsets: &[&Onset], is_first: bool) -> M
                 }
             }
         }
-        @for preset in &PRESETS {
+        @for preset in joints() {
             @let y = foot - rise(preset.parameters.stiffness_nm_per_rad) * CELL.1;
             (PRESET.path(&format!("M{x0} {y:.1}h{}", panel_width()), preset.name))
         }
@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn the_legend_names_every_preset_with_its_stiffness() {
         let legend = legend(0.0).into_string();
-        for preset in &PRESETS {
+        for preset in joints() {
             let name = format!("{} {}", preset.name, preset.parameters.stiffness_nm_per_rad);
             assert!(legend.contains(&name), "{name}");
         }

@@ -12,12 +12,11 @@ use crate::shipped;
 use crate::simulated::Simulated;
 use clap::Args;
 use crepitus_client::{Begin, Client, RequestKind};
-use crepitus_model::joint::presets::Preset;
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};
 use crepitus_recording::{Damage, RecordingSummary};
-use crepitus_scene::Overrides;
+use crepitus_scene::{Overrides, preset};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::fs;
@@ -75,10 +74,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     )?;
     let mut client = Client::connect(Line::Simulated(Box::new(device))).map_err(failure)?;
     let (base, values) = client.parameters().map_err(failure)?;
-    let preset = Preset::find(PRESET)
+    let joint = preset::find(PRESET)
+        .and_then(preset::Preset::joint)
         .ok_or_else(|| Failure::Work(format!("there is no preset {PRESET}")))?;
     client
-        .commit(base, &values.with_crepitus(&preset.parameters))
+        .commit(base, &values.with_crepitus(joint))
         .map_err(failure)?;
     narration.step("parameters", &format!("preset {PRESET} applied"))?;
 

@@ -6,10 +6,9 @@ use crate::line::{connect, failure, failure_with};
 use crate::shipped;
 use clap::{Args, Subcommand};
 use crepitus_client::values::{allowed_text, full_name, parse_value, show_value};
-use crepitus_model::joint::presets::Preset;
 use crepitus_protocol::parameters::{self, Kind, PARAMETERS, Parameter, When};
 use crepitus_protocol::{Revision, Values};
-use crepitus_scene::Overrides;
+use crepitus_scene::{Overrides, preset};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -199,7 +198,7 @@ fn set(
 
 /// Commits a preset, or the device parameters of a scene.
 fn apply(device: &DeviceArguments, what: &Path, as_json: bool) -> Result<(), Failure> {
-    let preset = what.to_str().and_then(Preset::find);
+    let preset = what.to_str().and_then(preset::find);
     let from_scene = if preset.is_some() {
         None
     } else {
@@ -208,7 +207,7 @@ fn apply(device: &DeviceArguments, what: &Path, as_json: bool) -> Result<(), Fai
     let mut client = connect(device)?;
     let (base, now) = client.parameters().map_err(failure)?;
     let values: Values = match (preset, from_scene) {
-        (Some(preset), _) => now.with_crepitus(&preset.parameters),
+        (Some(preset), _) => crepitus_board::values::with_preset(&now, preset, false),
         (None, Some(values)) => values,
         (None, None) => now,
     };

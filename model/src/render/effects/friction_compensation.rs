@@ -186,15 +186,9 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_share_leaves_what_the_presets_need() {
-        let most = FrictionCompensationSettings::TABLE[1].max;
-        let left_nm = (1.0 - most) * FrictionCompensationSettings::default().friction_nm;
-        let need = |p: &Parameters| least_left_nm(p, 210.4e-6, 0.061);
-        for preset in &crate::joint::presets::PRESETS {
-            assert!(2.0 * need(&preset.parameters) < left_nm, "{}", preset.name);
-        }
-        let coarse = need(&Parameters::default());
-        assert!((coarse - 6.81e-3).abs() < 1e-5, "{coarse}");
+    fn the_papers_joint_needs_little_friction() {
+        let need = least_left_nm(&Parameters::default(), 210.4e-6, 0.061);
+        assert!((need - 6.81e-3).abs() < 1e-5, "{need}");
     }
 
     fn curve<F: Real>() {

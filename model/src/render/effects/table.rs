@@ -6,6 +6,10 @@ macro_rules! effects {
         /// The effects, in the order in which they act.
         pub const SPECS: &[EffectSpec] = &[$(<$effect::$law<f64> as DeviceEffect<f64>>::SPEC),*];
 
+        /// Which of them render a disorder.
+        pub const IS_SYMPTOM: &[bool] =
+            &[$(<$effect::$law<f64> as DeviceEffect<f64>>::IS_SYMPTOM),*];
+
         /// The device's parameters of each.
         pub const DEVICE: &[&[Parameter]] = &[$($effect::$settings::DEVICE),*];
 

@@ -123,6 +123,11 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// Whether there is such a key.
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
     /// A number that may be left out.
     pub(crate) fn optional_number(
         &self,

@@ -4,12 +4,13 @@ use super::effects::Effects;
 use super::{Crepitus, Scene, SolverChoice};
 use crate::document::Section;
 use crate::error::SceneError;
-use crepitus_model::Convention;
 use crepitus_model::control::device_limits::LimitSettings;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Tabled;
+use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::render::turn_back::most_rad_per_count;
+use crepitus_model::{Convention, Parameters, Settings};
 use crepitus_plant::assembly::Listed;
 use crepitus_plant::effect::numbers;
 use crepitus_plant::effects::drivetrain;
@@ -30,16 +31,8 @@ pub(super) fn check(
         return Ok(());
     };
     let settings = &crepitus.settings;
-    if settings.convention != Convention::Frozen {
-        return refuse(format!(
-            "a device renders the convention \"frozen\" alone, not \"{}\"",
-            settings.convention.name()
-        ));
-    }
-    if settings.parameters.damping_nms_per_rad > 0.0 {
-        return refuse(
-            "a device renders a joint without damping: leave damping_nms_per_rad out".to_owned(),
-        );
+    if let Some(why) = convention_refusal(settings) {
+        return refuse(why);
     }
     let (static_nm, most_nm) = (
         settings.parameters.static_torque_nm,
@@ -54,6 +47,19 @@ pub(super) fn check(
         Some(why) => refuse(why),
         None => Ok(()),
     }
+}
+
+/// Why no device renders these settings, if none does.
+pub(crate) fn convention_refusal(settings: &Settings) -> Option<String> {
+    if settings.convention != Convention::Frozen {
+        return Some(format!(
+            "a device renders the convention \"frozen\" alone, not \"{}\"",
+            settings.convention.name()
+        ));
+    }
+    (settings.parameters.damping_nms_per_rad > 0.0).then(|| {
+        "a device renders a joint without damping: leave damping_nms_per_rad out".to_owned()
+    })
 }
 
 /// That a scene's device compensates all the friction that its gear has, or
@@ -72,13 +78,22 @@ pub(super) fn compensation_warning(listed: &[Listed]) -> Option<String> {
     })
 }
 
-/// That the symptoms of a scene's device can ask for more together than it shows,
-/// if they can.
-pub(super) fn caps_warning(scene: &Scene) -> Option<String> {
+/// The same of a scene, if it has a device.
+pub(super) fn caps_warning_of(scene: &Scene) -> Option<String> {
     let joint = scene.crepitus.as_ref().map(|c| &c.settings.parameters);
-    let asked_nm = scene.effect_settings().largest_torque_nm(joint);
     let most_nm = LimitSettings::default().torque_nm;
-    (scene.is_device && asked_nm > most_nm).then(|| {
+    let warning = caps_warning(&scene.effect_settings(), joint, most_nm);
+    warning.filter(|_| scene.is_device)
+}
+
+/// That symptoms and joint can ask for more together than a device shows, if they can.
+pub fn caps_warning(
+    effects: &EffectSettings,
+    joint: Option<&Parameters>,
+    most_nm: f64,
+) -> Option<String> {
+    let asked_nm = effects.largest_torque_nm(joint);
+    (asked_nm > most_nm).then(|| {
         format!(
             "the symptoms can ask for {asked_nm:.1} N·m together, and the device shows {most_nm} N·m at most: beyond, \
              one hides the other"

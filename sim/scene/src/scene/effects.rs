@@ -4,8 +4,8 @@
 use super::Crepitus;
 use crate::document::{Range, Section};
 use crate::error::SceneError;
+use crate::preset::{FILES, Preset, is_disorder, shipped};
 use crepitus_model::control::encoder::EncoderSettings;
-use crepitus_model::joint::presets::{PRESETS, Preset};
 use crepitus_model::parameters::ParameterSpec;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::render::effects::EffectSpec;
@@ -16,37 +16,43 @@ use crepitus_plant::effects::EFFECTS;
 
 /// The effects of one scene.
 #[derive(Default)]
-pub(super) struct Effects {
-    pub(super) crepitus: Option<Crepitus>,
-    pub(super) encoder: Option<EncoderSettings>,
+pub(crate) struct Effects {
+    pub(crate) crepitus: Option<Crepitus>,
+    pub(crate) encoder: Option<EncoderSettings>,
     /// All others, in the order of the table.
-    pub(super) listed: Vec<Listed>,
+    pub(crate) listed: Vec<Listed>,
 }
 
+/// The presets that effects may start from.
+#[derive(Clone, Copy)]
+pub(crate) enum Presets<'p> {
+    /// All that ship.
+    Shipped,
+    /// These.
+    Only(&'p [Preset]),
+}
+
+impl<'p> Presets<'p> {
+    pub(crate) fn list(self) -> &'p [Preset] {
+        match self {
+            Self::Shipped => shipped(),
+            Self::Only(presets) => presets,
+        }
+    }
+}
+
+/// The effects of a scene: each with those that it needs.
 pub(super) fn read(section: Option<&Section<'_>>) -> Result<Effects, SceneError> {
-    let mut effects = Effects::default();
     let Some(section) = section else {
-        return Ok(effects);
+        return Ok(Effects::default());
     };
-    let mut present = Vec::new();
+    let effects = read_alone(section, Presets::Shipped)?;
     for effect in EFFECTS {
         let Some(own) = section.optional_section(effect.name)? else {
             continue;
         };
-        match effect.part {
-            Part::Joint => effects.crepitus = Some(crepitus(&own, effect)?),
-            Part::Sensor => effects.encoder = Some(encoder(&own, effect)?),
-            _ => effects.listed.push(Listed {
-                effect,
-                given: given(&own, effect)?,
-            }),
-        }
-        present.push((effect, own));
-    }
-    section.finish()?;
-    for (effect, own) in &present {
         for need in effect.needs {
-            if !present.iter().any(|(other, _)| other.name == need.effect) {
+            if !section.has(need.effect) {
                 return Err(own.error(format!(
                     "\"{}\" needs [effects.{}] too: {}",
                     effect.name, need.effect, need.why
@@ -57,20 +63,88 @@ pub(super) fn read(section: Option<&Section<'_>>) -> Result<Effects, SceneError>
     Ok(effects)
 }
 
-fn crepitus(section: &Section<'_>, effect: &Effect) -> Result<Crepitus, SceneError> {
-    let presets: Vec<(&str, &'static Preset)> = PRESETS.iter().map(|p| (p.name, p)).collect();
-    let preset = section.optional_choice("preset", &presets)?;
+/// Effects that may start from these presets, without those that they need.
+pub(crate) fn read_alone(
+    section: &Section<'_>,
+    presets: Presets<'_>,
+) -> Result<Effects, SceneError> {
+    let mut effects = Effects::default();
+    for effect in EFFECTS {
+        let Some(own) = section.optional_section(effect.name)? else {
+            continue;
+        };
+        match effect.part {
+            Part::Joint => effects.crepitus = Some(crepitus(&own, effect, presets)?),
+            Part::Sensor => effects.encoder = Some(encoder(&own, effect)?),
+            _ => effects.listed.push(Listed {
+                effect,
+                given: given(&own, effect, presets)?,
+            }),
+        }
+    }
+    section.finish()?;
+    Ok(effects)
+}
+
+/// The preset that a section starts from, if any: of those that have its effect.
+/// Presets are read where one is named, so that a scene without is as quick as ever.
+fn base<'p>(
+    section: &Section<'_>,
+    effect: &Effect,
+    presets: Presets<'p>,
+) -> Result<Option<&'p Preset>, SceneError> {
+    if !is_disorder(effect) || section.optional_text("preset")?.is_none() {
+        return Ok(None);
+    }
+    let choices: Vec<_> = presets
+        .list()
+        .iter()
+        .filter(|preset| preset.has(effect.name))
+        .map(|preset| (preset.name.as_str(), preset))
+        .collect();
+    section.optional_choice("preset", &choices)
+}
+
+/// The key with which a section gives a parameter or a choice, if it does: its own,
+/// or the one for all sides.
+pub(crate) fn written_as<'k>(
+    section: &Section<'_>,
+    effect: &Effect,
+    key: &'k str,
+) -> Option<&'k str> {
+    let sides: &[&str] = match effect.part {
+        Part::Stage(spec) => spec.sides,
+        _ => &[],
+    };
+    let of_all = sides.iter().find_map(|side| key.strip_prefix(side));
+    [Some(key), of_all]
+        .into_iter()
+        .flatten()
+        .find(|key| section.has(key))
+}
+
+fn crepitus(
+    section: &Section<'_>,
+    effect: &Effect,
+    presets: Presets<'_>,
+) -> Result<Crepitus, SceneError> {
+    let preset = base(section, effect, presets)?;
+    let start = preset.and_then(|preset| preset.crepitus.as_ref());
+    let start = start.map_or_else(Settings::default, |crepitus| *crepitus.settings);
     let conventions = Convention::ALL.map(|c| (c.name(), c));
     let restarts = Restart::ALL.map(|r| (r.name(), r));
     let mut settings = Settings {
-        parameters: preset.map(|p| p.parameters).unwrap_or_default(),
-        convention: section.choice_or("convention", &conventions, Convention::default())?,
-        restart: section.choice_or("restart", &restarts, Restart::default())?,
+        parameters: start.parameters,
+        convention: section.choice_or("convention", &conventions, start.convention)?,
+        restart: section.choice_or("restart", &restarts, start.restart)?,
     };
     numbers(section, effect.parameters, settings.parameters.values_mut())?;
     section.finish()?;
     Ok(Crepitus {
-        preset: preset.map(|p| p.name),
+        preset: preset.and_then(|preset| {
+            let names = FILES.iter().map(|file| file.name);
+            names.into_iter().find(|name| preset.name == *name)
+        }),
         settings: settings
             .validate()
             .map_err(|e| section.error(e.to_string()))?,
@@ -85,8 +159,16 @@ fn encoder(section: &Section<'_>, effect: &Effect) -> Result<EncoderSettings, Sc
 }
 
 /// The numbers and choices of any effect.
-fn given(section: &Section<'_>, effect: &Effect) -> Result<Given, SceneError> {
-    let mut given = Given::defaults(effect);
+fn given(
+    section: &Section<'_>,
+    effect: &Effect,
+    presets: Presets<'_>,
+) -> Result<Given, SceneError> {
+    let start = base(section, effect, presets)?.and_then(|preset| {
+        let of_it = |listed: &&Listed| listed.effect.name == effect.name;
+        preset.listed.iter().find(of_it)
+    });
+    let mut given = start.map_or_else(|| Given::defaults(effect), |l| l.given.clone());
     if let Part::Stage(spec) = effect.part {
         both_sides(section, spec, &mut given.numbers)?;
     }

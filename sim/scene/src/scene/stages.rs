@@ -6,6 +6,18 @@ use crepitus_model::parameters::Chosen;
 use crepitus_model::render::effects::{EffectChanges, EffectSettings, Effects, Timing};
 use crepitus_model::render::position::Sight;
 use crepitus_model::{Real, SettingsError};
+use crepitus_plant::assembly::Listed;
+
+/// Settings of the device's effects among those that are listed.
+pub(crate) fn effect_settings(listed: &[Listed]) -> EffectSettings {
+    EffectSettings::given(|name| {
+        let listed = listed.iter().find(|l| l.effect.name == name)?;
+        Some(Chosen {
+            numbers: &listed.given.numbers,
+            options: &listed.given.choices,
+        })
+    })
+}
 
 impl Scene {
     /// The laws of the effects that it lists, besides the joint.
@@ -29,13 +41,7 @@ impl Scene {
 
     /// Settings of the device's effects that it lists.
     pub(crate) fn effect_settings(&self) -> EffectSettings {
-        EffectSettings::given(|name| {
-            let listed = self.listed.iter().find(|l| l.effect.name == name)?;
-            Some(Chosen {
-                numbers: &listed.given.numbers,
-                options: &listed.given.choices,
-            })
-        })
+        effect_settings(&self.listed)
     }
 
     /// How its device sees the shaft, and when.

@@ -1,7 +1,7 @@
 //! The varied settings, and the scene of each.
 
-use crepitus_model::joint::presets::{PRESETS, Preset};
 use crepitus_model::render::effects::friction_compensation::FrictionCompensationSettings;
+use crepitus_scene::preset::{Joint, joints};
 use crepitus_scene::scene::Overrides;
 use crepitus_scene::{Scene, SceneError};
 use std::fmt::Write;
@@ -166,7 +166,7 @@ impl Extra {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     /// The joint, but for its stiffness.
-    pub preset: &'static Preset,
+    pub preset: &'static Joint,
     /// Stiffness, N·m/rad.
     pub stiffness_nm_per_rad: f64,
     /// Damping of the cuff, N·m·s/rad.
@@ -183,7 +183,9 @@ impl Setting {
     /// The paper's joint on the unchanged device, with a plausible damping of
     /// the cuff.
     pub fn shipped() -> Self {
-        let [coarse, ..] = &PRESETS;
+        let [coarse, ..] = joints() else {
+            unreachable!("a test finds joints among the presets")
+        };
         let [_, _, _, _, _, damping] = DAMPINGS;
         let [_, lag, ..] = LAGS;
         let [_, gear, ..] = GEARS;

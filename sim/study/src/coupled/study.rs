@@ -6,7 +6,7 @@ use super::setting::{DAMPINGS, Extra, GEARS, LAGS, STIFFNESSES, Setting};
 use crate::parallel::{Meter, each};
 use crate::watcher::Watcher;
 use crepitus_model::Real;
-use crepitus_model::joint::presets::PRESETS;
+use crepitus_scene::preset::joints;
 use std::time::Instant;
 
 /// Factors of a preset's own stiffness.
@@ -125,7 +125,7 @@ fn map() -> Vec<Setting> {
 
 fn presets() -> Vec<Setting> {
     let mut settings = Vec::new();
-    for preset in &PRESETS {
+    for preset in joints() {
         for gear in GEARS {
             for damping_nms_per_rad in ENDS {
                 settings.push(Setting {
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn each_joint_is_run_at_every_factor() {
         let settings = presets();
-        assert_eq!(settings.len(), PRESETS.len() * GEARS.len() * ENDS.len());
+        assert_eq!(settings.len(), joints().len() * GEARS.len() * ENDS.len());
         assert_eq!(stiffer(&settings[0]).count(), FACTORS.len());
         assert!(FACTORS.contains(&1.0));
         let scenes: Vec<_> = Extra::ALL

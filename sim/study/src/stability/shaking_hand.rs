@@ -143,9 +143,9 @@ impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
 mod tests {
     use super::super::input::Lost;
     use super::*;
-    use crepitus_model::joint::presets::PRESETS;
     use crepitus_plant::Motion;
     use crepitus_plant::recording::{AngleUnit, Source, read, smooth};
+    use crepitus_scene::preset::joints;
     use crepitus_scene::scene::Precision;
     use std::path::Path;
 
@@ -183,7 +183,7 @@ mod tests {
         assert_eq!(firmware.precision, Precision::F32);
         let count_rad = EncoderSettings::default().rad_per_count();
         for (name, motion, duration_s) in recordings() {
-            for preset in PRESETS {
+            for preset in joints() {
                 let p = preset.parameters;
                 let settings = Settings {
                     parameters: p,

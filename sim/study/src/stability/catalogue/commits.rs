@@ -4,9 +4,9 @@ use super::tools::{changed, joint, paper_joint, rendered, slip_s, trial};
 use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Criterion, Limits};
 use crate::stability::input::{Input, Lost, Rendered, Shaft};
-use crepitus_model::joint::presets::PRESETS;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::{Convention, Parameters};
+use crepitus_scene::preset::joints;
 use crepitus_scene::scene::Precision;
 
 pub(super) fn equal_torques_ramp() -> Case {
@@ -189,7 +189,7 @@ pub(super) fn commits_while_blind() -> Case {
                 };
                 let tour = Rendered {
                     commit_every: 1,
-                    commits: PRESETS.map(|preset| preset.parameters).to_vec(),
+                    commits: joints().iter().map(|joint| joint.parameters).collect(),
                     ..plain.clone()
                 };
                 let same_as = Criterion::SameAs(Input::Rendered(plain));

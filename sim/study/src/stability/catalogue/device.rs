@@ -6,9 +6,9 @@ use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Counted, Criterion, Limits};
 use crate::stability::input::{Fault, Input, Lost, Shaft, Shake};
 use crepitus_model::control::encoder::EncoderSettings;
-use crepitus_model::joint::presets::PRESETS;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::{Convention, Parameters};
+use crepitus_scene::preset::joints;
 
 pub(super) fn impossible_samples() -> Case {
     Case {
@@ -119,7 +119,7 @@ pub(super) fn parameter_changes() -> Case {
                 static_torque_nm: 0.1,
                 ..paper
             };
-            let presets = PRESETS.map(|preset| preset.parameters);
+            let presets: Vec<_> = joints().iter().map(|joint| joint.parameters).collect();
             let tour: Vec<_> = (0..60_u8)
                 .map(|n| {
                     let next = presets.get(usize::from(n) % presets.len());
@@ -186,7 +186,7 @@ pub(super) fn shaking_hand() -> Case {
                 return Vec::new();
             }
             let mut trials = Vec::new();
-            for preset in PRESETS {
+            for preset in joints() {
                 let p = preset.parameters;
                 let stroke_rad = p.static_torque_nm / p.stiffness_nm_per_rad;
                 let count_rad = EncoderSettings::default().rad_per_count();

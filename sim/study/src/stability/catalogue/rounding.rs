@@ -5,10 +5,10 @@ use crate::stability::case::{Case, located};
 use crate::stability::criterion::{Counted, Criterion, Limits};
 use crate::stability::input::{Input, Shaft};
 use crate::stability::subject::{Rung, Subject};
-use crepitus_model::joint::presets::PRESETS;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters};
+use crepitus_scene::preset::joints;
 use crepitus_scene::scene::Precision;
 
 pub(super) fn free_period() -> Case {
@@ -25,7 +25,8 @@ pub(super) fn free_period() -> Case {
             if subject.convention != Convention::Frozen {
                 return Vec::new();
             }
-            PRESETS
+            joints()
+                .iter()
                 .map(|preset| {
                     let p = preset.parameters;
                     let slip = Criterion::SlipTime {
@@ -38,7 +39,7 @@ pub(super) fn free_period() -> Case {
                     let settings = joint(subject.convention, p.values());
                     trial(settings, at_tick(Shaft::Constant(1e3), 1.0), [slip])
                 })
-                .to_vec()
+                .collect()
         },
     }
 }
