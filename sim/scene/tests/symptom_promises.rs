@@ -180,11 +180,14 @@ fn texture_snaps_40_times_a_second_at_60_deg_s_and_20_times_at_30() {
             println!("{}: {rate:.3} a second", way.name);
             near(rate, a_second, 0.05);
         }
-        // And all at the same angles, there and back.
+        // And all at the same angles, there and back. Back over one it is two counts
+        // further that a device is sure of it.
         for event in found.events.iter().filter(|e| e.word.name() == "snap") {
             let pitches = event.angle_rad.to_degrees() / 1.5;
             let off_rad = (pitches - pitches.round()).abs() * 1.5_f64.to_radians();
-            assert!(off_rad <= way.angle_rad, "{}: {off_rad:e}", way.name);
+            let is_back = way.is_counted && event.omega_rad_s < 0.0;
+            let most_rad = way.angle_rad * if is_back { 3.0 } else { 1.0 };
+            assert!(off_rad <= most_rad, "{}: {off_rad:e}", way.name);
         }
     }
 }
