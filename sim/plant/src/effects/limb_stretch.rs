@@ -96,7 +96,7 @@ impl Cam {
     /// its bend F·h‴, N·m/rad²; from three derivatives of h².
     fn expand(&self, angle_rad: f64) -> [f64; 3] {
         let (sin, cos) = (2.0 * angle_rad).sin_cos();
-        let h = self.distance_m(angle_rad);
+        let h = (self.mean_m2 + self.oval_m2 * cos).sqrt();
         let first = -self.oval_m2 * sin / h;
         let second = (-2.0 * self.oval_m2 * cos - first * first) / h;
         let third = (4.0 * self.oval_m2 * sin - 3.0 * first * second) / h;

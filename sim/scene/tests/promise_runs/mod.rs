@@ -4,7 +4,7 @@ use crepitus_scene::run::columns;
 use crepitus_scene::trace::{EventRecord, SymptomEvent};
 use crepitus_scene::{Observer, Overrides, Scene, run};
 use std::convert::Infallible;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Time between the rows of a run, s.
 const ROW_S: f64 = 5e-5;
@@ -68,7 +68,7 @@ pub(crate) fn shipped_with(way: &Way, name: &str, set: &[(&str, &str)]) -> Found
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let file = folder.join(format!("{name}.toml"));
     let text = std::fs::read_to_string(&file).unwrap();
-    found(way, file, &text, set)
+    found(way, &file, &text, set)
 }
 
 /// A scene of this length, of the keys of its motion and the tables of its effects.
@@ -77,10 +77,10 @@ pub(crate) fn of(way: &Way, duration_s: f64, motion_and_effects: &str) -> Found 
         "version = 1\ntitle = \"a promise\"\nduration_s = {duration_s:?}\n\
          solver.kind = \"exact-events\"\nsolver.step_s = 5e-5\n[motion]\n{motion_and_effects}\n"
     );
-    found(way, PathBuf::from("promise.toml"), &text, &[])
+    found(way, Path::new("promise.toml"), &text, &[])
 }
 
-fn found(way: &Way, file: PathBuf, text: &str, set: &[(&str, &str)]) -> Found {
+fn found(way: &Way, file: &Path, text: &str, set: &[(&str, &str)]) -> Found {
     let own = |(key, value): &(&str, &str)| ((*key).to_owned(), (*value).to_owned());
     let mut overrides = Overrides {
         solver: way.solver.map(str::to_owned),
@@ -91,7 +91,7 @@ fn found(way: &Way, file: PathBuf, text: &str, set: &[(&str, &str)]) -> Found {
     overrides
         .set
         .push(("output.trace_step_s".to_owned(), row_s));
-    let scene = Scene::parse(&file, text, &overrides)
+    let scene = Scene::parse(file, text, &overrides)
         .unwrap_or_else(|error| panic!("{}: {error}", way.name));
     let mut found = Found {
         names: columns(&scene).iter().map(|c| c.name).collect(),
