@@ -79,14 +79,14 @@ impl Sight {
         }
     }
 
-    /// The position of an angle.
+    /// The position of an angle. Its counts are rounded toward zero, and so those of
+    /// the mirrored angle are mirrored.
     pub fn position<F: Real>(&self, angle_rad: f64) -> Position<F> {
-        let counts = libm::floor(angle_rad / self.rad_per_count);
         #[expect(
             clippy::cast_possible_truncation,
-            reason = "a cast from float saturates"
+            reason = "a cast from float truncates and saturates"
         )]
-        let count = counts as i32;
+        let count = (angle_rad / self.rad_per_count) as i32;
         Position {
             count,
             rest_rad: F::from_f64(angle_rad - f64::from(count) * self.rad_per_count),
@@ -242,7 +242,12 @@ mod tests {
         for sight in [Sight::IDEAL, Sight::of_encoder(&EncoderSettings::default())] {
             for (a, b) in [(2.1, -0.3), (1e-9, 0.0), (-700.0, 700.0)] {
                 let (at, from) = (sight.position::<f64>(a), sight.position::<f64>(b));
-                assert!(at.rest_rad >= 0.0 && at.rest_rad < sight.rad_per_count);
+                assert!(at.rest_rad.abs() < sight.rad_per_count);
+                let mirrored = sight.position::<f64>(-a);
+                assert_eq!(
+                    (mirrored.count, mirrored.rest_rad),
+                    (-at.count, -at.rest_rad)
+                );
                 let beyond = at.beyond(&from, sight.rad_per_count);
                 assert!((beyond - (a - b)).abs() < 2e-13, "{beyond} {}", a - b);
                 let single = |x| sight.position::<f32>(x);

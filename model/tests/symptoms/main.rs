@@ -16,5 +16,6 @@ mod closed;
 mod gaps;
 mod laws;
 mod ledger;
+mod mirror;
 mod random;
 mod rig;

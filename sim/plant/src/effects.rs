@@ -8,12 +8,13 @@ pub mod drivetrain;
 pub mod encoder;
 pub mod hand;
 pub mod limb;
+pub mod limb_stretch;
 pub mod motor;
 
 use crate::effect::Effect;
 use crepitus_model::render::effects::SPECS;
 
-const OWN: [Effect; 8] = [
+const OWN: [Effect; 9] = [
     crepitus::EFFECT,
     encoder::EFFECT,
     motor::EFFECT,
@@ -21,6 +22,7 @@ const OWN: [Effect; 8] = [
     backlash::EFFECT,
     cuff::EFFECT,
     limb::EFFECT,
+    limb_stretch::EFFECT,
     hand::EFFECT,
 ];
 

@@ -10,6 +10,8 @@ pub trait Load: Send {
     const NAME: &'static str;
     /// Its column: the torque, positive where it opposes growing angle.
     const COLUMN: &'static str;
+    /// Further columns, which [`Load::write_more`] fills.
+    const MORE: &'static [&'static str] = &[];
 
     /// Inertia, kg·m².
     fn inertia_kg_m2(&self) -> f64;
@@ -30,6 +32,9 @@ pub trait Load: Send {
     /// Adds stored and dissipated energy to the balance, without the kinetic
     /// energy.
     fn energy(&self, body: &Body, balance: &mut EnergyBalance);
+
+    /// Writes its further columns.
+    fn write_more(&self, _: &Body, _: &mut Vec<f64>) {}
 
     /// Warnings.
     fn warnings(&self, _: &mut Vec<String>) {}
@@ -148,6 +153,7 @@ impl<L: Load> Chain for Loaded<L> {
     fn columns(&self, names: &mut Vec<&'static str>) {
         self.left.columns(names);
         names.push(L::COLUMN);
+        names.extend(L::MORE);
     }
 
     fn write(&self, body: &Body, row: &mut Vec<f64>) {
@@ -157,6 +163,7 @@ impl<L: Load> Chain for Loaded<L> {
             self.load.weight().map_or(0.0, |own| own(body.angle_rad))
         });
         row.push(-torque_nm);
+        self.load.write_more(body, row);
     }
 
     fn impacts(&self) -> Option<Impacts> {

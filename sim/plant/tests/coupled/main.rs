@@ -10,6 +10,7 @@ mod energy;
 mod hand;
 mod hard;
 mod limb;
+mod limb_stretch;
 mod mirror;
 mod motor;
 mod random;

@@ -189,6 +189,14 @@ fn limb() -> impl Strategy<Value = Numbers> {
     ])
 }
 
+fn limb_stretch() -> impl Strategy<Value = Numbers> {
+    numbers([
+        ("pull_n", none_or(0.1, 100.0)),
+        ("straight_radius_m", decades(0.02, 0.1)),
+        ("bent_radius_m", decades(0.02, 0.1)),
+    ])
+}
+
 fn hand() -> impl Strategy<Value = Numbers> {
     numbers([
         ("mass_kg", decades(0.1, 5.0)),
@@ -202,19 +210,28 @@ fn hand() -> impl Strategy<Value = Numbers> {
 fn build(with_limb: bool) -> impl Strategy<Value = Build> {
     let gap = numbers([("gap_deg", decades(1e-3, 5.0))]);
     let choices = (0..4_usize, any::<bool>());
-    let some = prop::array::uniform7(any::<bool>());
+    let some = prop::array::uniform8(any::<bool>());
     (
         some,
         motor(),
         drivetrain(),
         gap,
         cuff(),
-        limb(),
+        (limb(), limb_stretch()),
         choices,
         hand(),
     )
         .prop_map(
-            move |(some, motor, drivetrain, gap, cuff, limb, (posture, passive), hand)| {
+            move |(
+                some,
+                motor,
+                drivetrain,
+                gap,
+                cuff,
+                (limb, stretch),
+                (posture, passive),
+                hand,
+            )| {
                 let has_limb = some[4] && with_limb;
                 let mut build = Build::of(&[]);
                 for (there, effect, numbers) in [
@@ -223,6 +240,7 @@ fn build(with_limb: bool) -> impl Strategy<Value = Build> {
                     (some[2], "backlash", gap),
                     (some[3], "cuff", cuff),
                     (has_limb, "limb", limb),
+                    (has_limb && some[7], "limb-stretch", stretch),
                     (some[5], "hand", hand),
                 ] {
                     if there {
