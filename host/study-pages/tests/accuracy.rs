@@ -50,7 +50,7 @@ fn page(name: &str, points: &[Point], text: &StudyText) -> String {
 }
 
 fn page_with(name: &str, points: &[Point], target: Option<&OnTarget>, text: &StudyText) -> String {
-    let page = html(points, target, text);
+    let page = html(points, &symptoms(), target, text);
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("accuracy-{name}.html"));
     std::fs::write(path, &page).expect("written");
     assert!(page.len() < 3_000_000, "{name}: {} bytes", page.len());
@@ -103,6 +103,7 @@ fn what_the_target_says_has_its_diagram_and_its_table() {
     }
     let row = Row {
         subject: "bone-shaping",
+        form: None,
         convention: None,
         is_rung: false,
         frequency_error_rel: f64::NAN,

@@ -260,6 +260,7 @@ impl<W: Watcher> Work<'_, W> {
         let seen = match (seen, reason) {
             (_, Some(why)) => return Err(StudyError::Watcher(why)),
             (Err(StudyError::Settings(error)), None) => return Err(error.into()),
+            (Err(StudyError::Symptom(error)), None) => return Err(error.into()),
             (Err(StudyError::Watcher(Stopped)), None) => unreachable!("it has a reason"),
             (Ok(seen), None) => seen,
         };
