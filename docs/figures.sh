@@ -23,11 +23,14 @@ for convention in frozen physical; do
     cp "target/figures/accuracy/target-constant-0-988-$convention-f32.svg" "docs/images/accuracy-target-$convention.svg"
     echo "docs/images/accuracy-target-$convention.svg"
 done
-# The table of the target goes between its marks.
-awk 'NR == FNR { if (/^\|/) table = table $0 "\n"; next }
-     /<!-- end of the table -->/ { printf "%s\n", table; inside = 0 }
-     !inside { print }
-     /<!-- table of the target/ { inside = 1; print "" }' \
+# The tables go between their marks: each is what follows its heading.
+awk 'NR == FNR { if (/^The other symptoms/) which = "symptoms"
+                 if (/^A step on the target/) which = "target"
+                 if (/^\|/) table[which] = table[which] $0 "\n"; next }
+     /<!-- end of the table -->/ { printf "%s\n", table[inside]; inside = "" }
+     inside == "" { print }
+     /<!-- table of the target/ { inside = "target"; print "" }
+     /<!-- table of the symptoms/ { inside = "symptoms"; print "" }' \
     target/figures/accuracy.txt docs/accuracy.md >target/figures/accuracy.md
 cp target/figures/accuracy.md docs/accuracy.md
 echo docs/accuracy.md

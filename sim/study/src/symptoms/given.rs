@@ -82,7 +82,7 @@ impl Given {
         let numbers = spec
             .parameters
             .iter()
-            .map(|parameter| self.number(parameter.key).unwrap_or(parameter.default));
+            .map(|parameter| self.number(parameter.key).unwrap_or_default());
         let options = spec.choices.iter().map(|choice| {
             let named = self.choice(choice.key);
             let place = named.and_then(|name| choice.names.iter().position(|n| *n == name));
@@ -109,14 +109,21 @@ impl Given {
 }
 
 impl Keys for Given {
+    /// Where it is not given, the device's default: the reference has its own.
     fn number(&self, key: &str) -> Option<f64> {
-        let found = self.numbers.iter().find(|(known, _)| *known == key);
-        found.map(|(_, number)| *number)
+        let given = self.numbers.iter().find(|(known, _)| *known == key);
+        given.map(|(_, number)| *number).or_else(|| {
+            let mut specs = self.spec()?.parameters.iter();
+            specs.find(|spec| spec.key == key).map(|spec| spec.default)
+        })
     }
 
     fn choice(&self, key: &str) -> Option<&str> {
-        let found = self.choices.iter().find(|(known, _)| *known == key);
-        found.map(|(_, name)| *name)
+        let given = self.choices.iter().find(|(known, _)| *known == key);
+        given.map(|(_, name)| *name).or_else(|| {
+            let choice = self.spec()?.choices.iter().find(|spec| spec.key == key)?;
+            choice.names.get(usize::from(choice.default)).copied()
+        })
     }
 }
 

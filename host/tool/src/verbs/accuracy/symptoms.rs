@@ -66,3 +66,51 @@ fn event(p: &SymptomPoint) -> String {
         (unmatched, _) => format!("{unmatched} unmatched"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(
+        form: Option<&'static str>,
+        precision: &'static str,
+        step_s: f64,
+        unmatched: u64,
+    ) -> SymptomPoint {
+        SymptomPoint {
+            symptom: "cogwheel",
+            form,
+            precision,
+            step_s,
+            events: 40,
+            events_true: 40,
+            unmatched,
+            max_event_error_s: 1.5e-8,
+            rms_event_error_s: 1e-9,
+            max_tick_torque_error_nm: 2.5e-6,
+            rms_tick_torque_error_nm: 3e-7,
+            ns_per_step: 12.5,
+            time_ratio: 6.25,
+            time_spread: 0.01,
+        }
+    }
+
+    #[test]
+    fn a_line_has_both_precisions_at_the_tick() {
+        let text = table(&[
+            point(Some("time"), "f64", 1e-3, 0),
+            point(Some("time"), "f64", 5e-5, 0),
+            point(Some("time"), "f32", 5e-5, 2),
+            point(Some("space"), "f32", 5e-5, 0),
+        ]);
+        assert!(text.contains("at a step of 50 µs"), "{text}");
+        let lines: Vec<&str> = text.lines().filter(|l| l.starts_with('|')).collect();
+        assert_eq!(lines.len(), 4, "{text}");
+        assert_eq!(
+            lines[2],
+            "| cogwheel (time) | 40 | 1.5e-8 | 2.5e-6 | 3.0e-7 | 2 unmatched | 2.5e-6 | 3.0e-7 | 6.2 |"
+        );
+        assert!(lines[3].contains("| – | – | – | 1.5e-8 |"), "{text}");
+        assert_eq!(table(&[]), "");
+    }
+}

@@ -30,7 +30,9 @@ pub fn motions() -> [(&'static str, Hand, f64); 3] {
             "tremor-6",
             Hand::Sine {
                 centre_deg: 74.0,
-                amplitude_deg: 4.0,
+                // In extension first: armed in the middle of a fast stretch a reflex has no past,
+                // and its onset is smeared over the first step.
+                amplitude_deg: -4.0,
                 frequency_hz: 6.0,
             },
             0.5,

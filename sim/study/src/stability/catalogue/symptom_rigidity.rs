@@ -119,8 +119,18 @@ pub(super) fn cogwheel_reversal() -> Case {
                 by_deg,
                 frequency_hz,
             };
-            // At the edge itself rounding decides the side, so the events are counted only.
-            let flicker = seen_in_counts(under(&by_angle, tremble(0.001_226, 700.0), 1.0));
+            // At the edge the angle is within two counts of it: there is a give or not, and
+            // not two. Two counts further on there is one.
+            let flicker = |at_deg| {
+                let hand = Hand::Tremble {
+                    from_deg: 8.0,
+                    deg_s: 22.0,
+                    at_deg,
+                    by_deg: 0.001_226,
+                    frequency_hz: 700.0,
+                };
+                seen_in_counts(under(&by_angle, hand, 1.0))
+            };
             vec![
                 trial(under(&by_time, turned, 0.6), as_the_reference()),
                 trial(
@@ -128,15 +138,19 @@ pub(super) fn cogwheel_reversal() -> Case {
                     [torque(0.2, -0.8, 0.8, 1e-4)],
                 ),
                 trial(
-                    flicker,
+                    flicker(11.25),
                     [
-                        torque(0.2, 0.8, 0.8, 5e-3),
+                        torque(0.2, 0.8, 2.0, 5e-3),
                         Criterion::WordCount {
                             word: Word::Give,
-                            least: 1,
+                            least: 0,
                             most: 1,
                         },
                     ],
+                ),
+                trial(
+                    flicker(11.2545),
+                    [torque(0.2, 0.8, 0.8, 5e-3), times(Word::Give, 1)],
                 ),
             ]
         },
@@ -181,7 +195,15 @@ pub(super) fn texture() -> Case {
                     under(&given, met(10.0), 0.2),
                     [Criterion::Words(&[Word::Snap])],
                 ),
-                trial(under(&given, met(-10.0), 0.2), [Criterion::Words(&[])]),
+                // It turns back on the asperity: rounding says whether it was crossed.
+                trial(
+                    under(&given, met(-10.0), 0.2),
+                    [Criterion::WordCount {
+                        word: Word::Snap,
+                        least: 0,
+                        most: 1,
+                    }],
+                ),
                 // 40 a second at 60 deg/s, each at a tick's end.
                 trial(
                     under(

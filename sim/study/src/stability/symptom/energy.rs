@@ -133,9 +133,10 @@ mod tests {
             move_by(&mut energy, 0.0, 10);
             assert_eq!(energy.returned(), 0.0);
             move_by(&mut energy, -1e-3, 100);
-            // A spring without loss: all of it.
+            // A spring without loss: all of it, but for what is on its way at the ends.
+            let edge = if delay == 0 { 1e-9 } else { 2e-3 };
             assert!(
-                (energy.returned() - 1.0).abs() < 1e-9,
+                (energy.returned() - 1.0).abs() < edge,
                 "{}",
                 energy.returned()
             );
