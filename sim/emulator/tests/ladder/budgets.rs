@@ -8,6 +8,7 @@
 use crate::ladder;
 use crepitus_ladder::{Cost, Subject};
 use crepitus_model::Convention;
+use crepitus_scene::reference::symptoms::NAMES;
 use crepitus_study::accuracy::scenes::standard;
 use crepitus_study::accuracy::target::LABEL;
 use crepitus_study::accuracy::target::inputs::{Lengths, tasks};
@@ -31,8 +32,11 @@ fn hold(subject: Subject, budget: &Budget) {
             _ => budget.motion,
         };
         let line = format!(
-            "{} on {}: mean {:.0}, worst {} of {most} ({LABEL})",
+            "{}{} on {}: mean {:.0}, worst {} of {most} ({LABEL})",
             subject.name(),
+            subject
+                .form()
+                .map_or_else(String::new, |form| format!(" ({form})")),
             task.name,
             cost.mean_cycles(),
             cost.worst_cycles
@@ -61,4 +65,26 @@ fn exact_events_behind_its_check_stays_within_its_budget() {
         other: 4_000,
     };
     hold(Subject::Checked(Convention::Physical), &budget);
+}
+
+/// Most cycles of a step of a symptom besides crepitus, alone.
+const SYMPTOM: u32 = 300;
+
+/// On strokes through walls, catches, blades, beats and snaps, and on hard inputs at the
+/// thresholds.
+#[test]
+fn every_symptom_stays_within_its_budget() {
+    let is_symptom = |subject: &Subject| {
+        matches!(subject, Subject::Effect(..)) && NAMES.contains(&subject.name())
+    };
+    let mut symptoms = 0;
+    for subject in Subject::all().filter(is_symptom) {
+        let budget = Budget {
+            motion: SYMPTOM,
+            other: SYMPTOM,
+        };
+        hold(subject, &budget);
+        symptoms += 1;
+    }
+    assert_eq!(symptoms, 10);
 }
