@@ -110,7 +110,7 @@ pub(super) fn cogwheel_reversal() -> Case {
             let by_angle = Given::new("cogwheel", &[], &[("mode", "space")]);
             let turned = Hand::ramps(
                 40.0,
-                &[(0.0, 60.0), (0.19, 60.0), (0.21, -60.0), (0.6, -60.0)],
+                &[(0.0, 60.0), (0.19, 60.0), (0.21, -47.0), (0.6, -47.0)],
             );
             let tremble = |by_deg, frequency_hz| Hand::Tremble {
                 from_deg: 8.0,
