@@ -54,3 +54,7 @@ for scene in fig8-5-hand fig9-low-speed; do
     cp "target/figures/effects-$scene/build-up.svg" "docs/images/build-up-${scene%%-*}.svg"
     echo "docs/images/build-up-${scene%%-*}.svg"
 done
+cargo run --profile dist --features emulator --quiet -- effects tardieu-fast --out target/figures/effects-symptoms \
+    --set effects.range-limit.flexion_limit_deg=75 --set effects.lead-pipe.torque_nm=1.2 --set effects.cogwheel.torque_nm=2 \
+    --set effects.spasticity.form=catch --set effects.clasp-knife.onset_deg=30 --set effects.clonus.hold_deg=60 \
+    --set effects.texture.pitch_deg=1.5

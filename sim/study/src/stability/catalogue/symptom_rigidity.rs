@@ -78,7 +78,6 @@ pub(super) fn cogwheel_at_rest() -> Case {
                     [
                         torque(0.081, 0.8, 0.8, 1e-6),
                         Criterion::Words(&[Word::Give]),
-                        Criterion::SilentAfter { time_s: 0.080_001 },
                     ],
                 ),
                 trial(

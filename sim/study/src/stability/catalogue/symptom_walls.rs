@@ -70,7 +70,6 @@ pub(super) fn rest_on_a_wall() -> Case {
                     [
                         torque(0.2, pressed_nm, pressed_nm, 2.0 * COUNT_OF_400_NM),
                         Criterion::Words(&[Word::Contact]),
-                        Criterion::SilentAfter { time_s: 0.11 },
                     ],
                 ),
                 trial(

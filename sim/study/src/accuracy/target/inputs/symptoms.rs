@@ -16,9 +16,16 @@ use crepitus_model::render::effects::SPECS;
 use crepitus_plant::encoder::Encoder;
 use crepitus_scene::reference::symptoms::NAMES;
 
-/// Where hard inputs begin, degrees: the symptoms' walls, thresholds and releases at
-/// their defaults; teeth and asperities are at all of them.
-const PLACES_DEG: [f64; 5] = [10.0, 30.0, 60.0, 75.0, 120.0];
+/// Where hard inputs begin, degrees: at the walls, thresholds and releases of a symptom at
+/// its defaults. Teeth and asperities are at every 7.5° and about every 1.5°.
+fn places_deg(subject: Subject) -> &'static [f64] {
+    match subject.name() {
+        "range-limit" => &[10.0, 120.0],
+        "spasticity" => &[75.0],
+        "clasp-knife" => &[30.0, 75.0],
+        _ => &[60.0],
+    }
+}
 
 /// Whether it is a symptom other than crepitus.
 pub(super) fn is_symptom(subject: Subject) -> bool {
@@ -46,7 +53,7 @@ pub(super) fn tasks(
         tasks.push(task(subject, name.to_owned(), true, from_rad, &steps));
     }
     let hard = hard_motions(lengths.hard)?;
-    for place_deg in PLACES_DEG {
+    for place_deg in places_deg(subject) {
         for (name, steps) in &hard {
             let name = format!("{name} at {place_deg}°");
             tasks.push(task(subject, name, false, place_deg.to_radians(), steps));
