@@ -384,4 +384,6 @@ fn nearest(count: f64) -> u64 {
 }
 
 #[cfg(test)]
+mod symptom_tests;
+#[cfg(test)]
 mod tests;
