@@ -30,6 +30,7 @@ pub mod matrix;
 mod observation;
 mod observe;
 mod parameter_changes;
+mod pressed;
 pub(crate) mod random;
 mod rendered;
 pub mod replay;

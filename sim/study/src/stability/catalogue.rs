@@ -113,6 +113,7 @@ pub fn all() -> Vec<Case> {
         symptom_energy::returned_by_springs(),
         symptom_energy::returned_by_muscles(),
         symptom_energy::refused(),
+        symptom_walls::pressed_rotor(),
     ]
 }
 

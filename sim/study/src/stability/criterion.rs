@@ -145,6 +145,14 @@ pub enum Criterion {
         /// Tolerance outside, N·m.
         slack_nm: f64,
     },
+    /// From `from_s` on the torque moves by so much at most, from its lowest to its
+    /// highest.
+    TorqueQuiet {
+        /// From when, s.
+        from_s: f64,
+        /// N·m.
+        most_nm: f64,
+    },
     /// From `from_s` on every torque is the same, bit for bit.
     TorqueStays {
         /// From when, s.

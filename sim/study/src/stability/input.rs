@@ -5,7 +5,7 @@ mod symptom;
 mod words;
 
 pub use device::{Attempt, Change, Fault, Lost, Rendered, Shake};
-pub use symptom::{RefusedSymptoms, SymptomRun};
+pub use symptom::{Pressed, RefusedSymptoms, SymptomRun};
 
 use crepitus_plant::Motion;
 use crepitus_plant::motion::{Strokes, VelocityKnot};
@@ -143,6 +143,8 @@ pub enum Input {
     Rendered(Rendered),
     /// Symptoms besides crepitus, as the device renders them.
     Symptoms(SymptomRun),
+    /// A rotor that is pressed into a wall.
+    Pressed(Pressed),
     /// Settings and steps that must be refused.
     Refusals(Vec<Attempt>),
     /// Symptoms that must be refused.
@@ -220,6 +222,9 @@ impl Input {
                 duration_s, step_s, ..
             })
             | Self::Symptoms(SymptomRun {
+                duration_s, step_s, ..
+            })
+            | Self::Pressed(Pressed {
                 duration_s, step_s, ..
             }) => Some((duration_s, step_s)),
             Self::Encoder {

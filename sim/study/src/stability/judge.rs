@@ -226,6 +226,10 @@ fn of_symptoms(criterion: &Criterion, seen: &Observation, precision: Precision) 
                 Finding::Failed(Failure::OtherEvents { found, expected }, None)
             }
         }
+        Criterion::TorqueQuiet { most_nm, .. } => {
+            let range = seen.late_torque;
+            number(range.high - range.low, *most_nm, "N·m")
+        }
         Criterion::SpringsReturn { most } => number(of.returned, *most, ""),
         Criterion::NetReturned { most_j } => number(of.net_returned_j, *most_j, "J"),
         _ => Finding::Failed(Failure::Broken("no criterion of symptoms"), None),

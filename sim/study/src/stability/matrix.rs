@@ -169,7 +169,9 @@ fn late_s(trial: &Trial) -> f64 {
         .criteria
         .iter()
         .find_map(|criterion| match criterion {
-            Criterion::TorqueWithin { from_s, .. } => Some(*from_s),
+            Criterion::TorqueWithin { from_s, .. } | Criterion::TorqueQuiet { from_s, .. } => {
+                Some(*from_s)
+            }
             _ => None,
         })
         .unwrap_or(0.0)

@@ -48,6 +48,9 @@ pub(super) fn observe(
     if let Input::SymptomRefusals(attempts) = input {
         return Ok(super::symptom::attempt(attempts));
     }
+    if let Input::Pressed(pressed) = input {
+        return Ok(super::pressed::observe(subject, pressed, late_s));
+    }
     if let Input::Symptoms(run) = input {
         return super::symptom::observe(subject, run, late_s);
     }

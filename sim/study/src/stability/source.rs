@@ -34,6 +34,7 @@ pub(super) fn motion(input: &Input) -> Motion {
         Input::Symptoms(run) => run.hand.motion(),
         Input::White { .. }
         | Input::Hand { .. }
+        | Input::Pressed(_)
         | Input::Refusals(_)
         | Input::SymptomRefusals(_) => Motion::constant(0.0),
     }
@@ -134,6 +135,7 @@ pub(super) fn source<'a, F: Real>(
         | Input::ShakingHand { .. }
         | Input::Rendered(_)
         | Input::Symptoms(_)
+        | Input::Pressed(_)
         | Input::Refusals(_)
         | Input::SymptomRefusals(_) => Box::new(Same {
             step: ShaftStep::default(),

@@ -31,7 +31,7 @@ fn studied(steps_s: &[f64]) -> Vec<SymptomPoint> {
     let plan = SymptomPlan {
         steps_s,
         precisions: &BOTH,
-        repeats: 1,
+        repeats: 3,
     };
     add(&mut study, &plan, &mut Patient(0.0)).unwrap();
     study.symptoms
@@ -43,7 +43,7 @@ fn every_symptom_is_within_what_the_device_promises() {
     assert_eq!(points.len(), 2 * Given::all().len());
     for p in &points {
         println!(
-            "{:12} {:8} {}: {} events of {}, {:.1e} s, {:.1e} N·m, rms {:.1e}",
+            "{:12} {:8} {}: {} events of {}, {:.1e} s, {:.1e} N·m, rms {:.1e}; {:.1} ns, {:.1} × crepitus",
             p.symptom,
             p.form.unwrap_or(""),
             p.precision,
@@ -51,7 +51,9 @@ fn every_symptom_is_within_what_the_device_promises() {
             p.events_true,
             p.max_event_error_s,
             p.max_tick_torque_error_nm,
-            p.rms_tick_torque_error_nm
+            p.rms_tick_torque_error_nm,
+            p.ns_per_step,
+            p.time_ratio
         );
         assert_eq!((p.unmatched, p.events), (0, p.events_true), "{p:?}");
         assert_eq!(p.events == 0, p.symptom == "lead-pipe", "{p:?}");

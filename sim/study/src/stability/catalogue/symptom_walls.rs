@@ -3,10 +3,13 @@
 use super::symptom_tools::{
     as_the_reference, exactly, renders_symptoms, seen_in_counts, times, torque, trial, under,
 };
-use crate::stability::case::{Case, located};
+use super::tools::TICK_S;
+use crate::stability::case::{Case, Trial, located};
 use crate::stability::criterion::Criterion;
-use crate::stability::input::SymptomRun;
+use crate::stability::input::{Input, Pressed, SymptomRun};
+use crate::stability::subject::Rung;
 use crate::symptoms::{Given, Hand};
+use crepitus_model::Settings;
 use crepitus_model::render::effects::symptom::Word;
 
 /// σΔ: the torque of a count on a spring of 400 N·m/rad is 14 mN·m; a tremble of 1.2
@@ -273,6 +276,45 @@ pub(super) fn both_limits() -> Case {
                     exactly(&[Word::Contact, Word::Cap, Word::Cap, Word::Leave]),
                 ),
             ]
+        },
+    }
+}
+
+pub(super) fn pressed_rotor() -> Case {
+    Case {
+        id: "H75",
+        name: "wall-pressed",
+        title: "A rotor alone, pressed into a hard end with the device in the loop",
+        hard: "No leg, no cuff, no arm, and hardly any friction: with 0.1 N·m a plain spring of 300 N·m/rad rings for ever. The                wall loses energy by hysteresis, so that the rotor bounces a few times, and then not a millinewton metre moves.",
+        source: "shared reference, disorders, section 2, how stiff: 2 N·m, quiet after 1.2 s",
+        long: false,
+        must: located,
+        trials: |subject| {
+            if !renders_symptoms(subject) || subject.solver == Rung::Reference {
+                return Vec::new();
+            }
+            vec![Trial {
+                settings: Settings::default(),
+                input: Input::Pressed(Pressed {
+                    stiffness_nm_per_rad: 300.0,
+                    loss: 0.25,
+                    friction_nm: 0.1,
+                    torque_nm: 2.0,
+                    duration_s: 2.0,
+                    step_s: TICK_S,
+                }),
+                criteria: vec![
+                    Criterion::TorqueQuiet {
+                        from_s: 1.2,
+                        most_nm: 1e-3,
+                    },
+                    Criterion::WordCount {
+                        word: Word::Contact,
+                        least: 1,
+                        most: 20,
+                    },
+                ],
+            }]
         },
     }
 }

@@ -168,6 +168,12 @@ fn of_a_device(criterion: &Criterion, f: &mut fmt::Formatter<'_>) -> fmt::Result
             f,
             "the turn-back guard switches the torque off for {least} to {most} ticks"
         ),
+        Criterion::TorqueQuiet { from_s, most_nm } => write!(
+            f,
+            "torque moves by at most {} N·m from {} on",
+            Plain(*most_nm),
+            Time(*from_s)
+        ),
         Criterion::SymptomEvents { within_s } => write!(
             f,
             "same events as the symptom's reference, each within {}",

@@ -27,6 +27,7 @@ fn seen() -> Observation {
         step_s: 1e-3,
         ..Observation::default()
     };
+    seen.late_torque.add(1.0);
     seen.symptoms.truth = Some(events.clone());
     seen.symptoms.events = events;
     seen.symptoms.torque_error_nm = Some(1e-6);
@@ -93,6 +94,11 @@ fn a_wrong_symptom_meets_no_criterion() {
     };
     fails_after(&first, |run| run.symptoms.events[2].time_s = 0.21);
     fails_after(&first, |run| run.symptoms.events[2].word = Word::Cap);
+    let quiet = Criterion::TorqueQuiet {
+        from_s: 0.1,
+        most_nm: 1e-3,
+    };
+    fails_after(&quiet, |run| run.late_torque.add(1.2));
     let springs = Criterion::SpringsReturn { most: 1.0 };
     fails_after(&springs, |run| run.symptoms.returned = 1.01);
     let net = Criterion::NetReturned { most_j: 0.28 };
