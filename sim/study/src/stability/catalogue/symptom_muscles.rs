@@ -34,7 +34,7 @@ pub(super) fn dither_at_the_threshold() -> Case {
             let dither: Vec<(f64, f64)> = (0..16_u32)
                 .map(|n| {
                     let up = if n.is_multiple_of(2) { 38.0 } else { 42.0 };
-                    (0.1 * f64::from(n), up)
+                    (f64::from(n) / 10.0, up)
                 })
                 .collect();
             let hand = Hand::ramps(45.0, &dither);
