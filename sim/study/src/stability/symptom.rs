@@ -148,7 +148,7 @@ impl Here<'_> {
                         .sampling
                         .time_s(n - 1, fraction * (missed + 1.0) - missed),
                     word: change.word,
-                    omega_rad_s: view.omega_rad_s(&sample, fraction),
+                    omega_rad_s: omega_rad_s(&sample, fraction),
                     before_nm: change.before_nm.to_f64(),
                     after_nm: change.after_nm.to_f64(),
                 });
@@ -301,14 +301,15 @@ impl<'a, F: Real> View<'a, F> {
         };
         (Sample::Taken(step), travel_rad)
     }
+}
 
-    fn omega_rad_s(&self, sample: &Sample<F>, fraction: f64) -> f64 {
-        match sample {
-            Sample::Taken(step) => {
-                let (from, to) = (step.omega_start_rad_s, step.omega_end_rad_s);
-                from.to_f64() + fraction * (to - from).to_f64()
-            }
-            Sample::Lost => 0.0,
+/// Velocity of the joint at a share of a tick, as it is seen, rad/s.
+fn omega_rad_s<F: Real>(sample: &Sample<F>, fraction: f64) -> f64 {
+    match sample {
+        Sample::Taken(step) => {
+            let (from, to) = (step.omega_start_rad_s, step.omega_end_rad_s);
+            from.to_f64() + fraction * (to - from).to_f64()
         }
+        Sample::Lost => 0.0,
     }
 }

@@ -168,6 +168,17 @@ fn of_a_device(criterion: &Criterion, f: &mut fmt::Formatter<'_>) -> fmt::Result
             f,
             "the turn-back guard switches the torque off for {least} to {most} ticks"
         ),
+        Criterion::Returned { most } => write!(
+            f,
+            "the hand gets back at most {most:.4} Ts²/2kr + (½ + d) kr h ∫Ω² dt"
+        ),
+        other => of_symptoms(other, f),
+    }
+}
+
+/// Criteria of symptoms besides crepitus.
+fn of_symptoms(criterion: &Criterion, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    match criterion {
         Criterion::TorqueQuiet { from_s, most_nm } => write!(
             f,
             "torque moves by at most {} N·m from {} on",
@@ -184,7 +195,7 @@ fn of_a_device(criterion: &Criterion, f: &mut fmt::Formatter<'_>) -> fmt::Result
             "torque at the ends of steps that of the symptom's reference within {}",
             Number(within_nm, "N·m")
         ),
-        Criterion::Words(words) if words.is_empty() => f.write_str("no event"),
+        Criterion::Words([]) => f.write_str("no event"),
         Criterion::Words(words) => {
             let names: Vec<_> = words.iter().map(|word| word.name()).collect();
             write!(f, "events in their order: {}", names.join(", "))
@@ -214,10 +225,6 @@ fn of_a_device(criterion: &Criterion, f: &mut fmt::Formatter<'_>) -> fmt::Result
             f,
             "the hand gets back at most {} J in any 2 s",
             Plain(*most_j)
-        ),
-        Criterion::Returned { most } => write!(
-            f,
-            "the hand gets back at most {most:.4} Ts²/2kr + (½ + d) kr h ∫Ω² dt"
         ),
         _ => f.write_str("nothing"),
     }
