@@ -52,7 +52,7 @@ pub(super) fn returned_by_springs() -> Case {
         hard: "A wall, a catch, a tooth give energy back if what the hand stretched is more at the end than at the beginning: with a \
                limit that jumps up under the leg, or a spring whose end is not taken along. What returns is the spring's energy and that \
                of sampling, with the torque 0, 1 or 2 ticks late.",
-        source: "shared reference, disorders, section 1: E ≤ T₀²/2σ + (½ + d)·σ·h·∫Ω² dt",
+        source: "docs/symptoms.md, The play: E ≤ T₀²/2σ + (½ + d)·σ·h·∫Ω² dt",
         long: false,
         must: located,
         trials: |subject| {
@@ -88,7 +88,7 @@ pub(super) fn returned_by_muscles() -> Case {
         title: "A hand that goes with a reflex and with the beats of clonus",
         hard: "Both push. A reflex gives energy above 3.7 Hz, beats to whoever moves with them. One tank of 0.2 J with 0.04 W pays for \
                both, so that no hand gets more than 0.28 J in any 2 s, however late the torque is.",
-        source: "shared reference, disorders, sections 6 and 11",
+        source: "docs/symptoms.md, Sum, tank and limits",
         long: false,
         must: located,
         trials: |subject| {
@@ -149,7 +149,7 @@ pub(super) fn refused() -> Case {
         hard: "A reflex that is later than its muscle is stretched gives energy at every speed; a wall that is too stiff, or that loses \
                nothing, rings; together they may be stiffer than dry friction keeps quiet. NaN passes every comparison that is \
                written the wrong way round.",
-        source: "shared reference, disorders, sections 2, 6, 7 and 11",
+        source: "docs/symptoms.md, Sum, tank and limits",
         long: false,
         must: located,
         trials: |subject| {

@@ -24,7 +24,7 @@ pub(super) fn dither_at_the_threshold() -> Case {
         hard: "38 and 42 deg/s in turn where 40 is the threshold: each passage would be a catch. The state is single-shot: one \
                catch, and none until the leg has come back by 10°. Behind the encoder a count is 0.64 deg/s of noise, \
                which may only shift the moment.",
-        source: "shared reference, disorders, section 5",
+        source: "docs/symptoms.md, spasticity",
         long: false,
         must: located,
         trials: |subject| {
@@ -60,7 +60,7 @@ pub(super) fn last_condition() -> Case {
         title: "A slow passage and then a faster one, a retreat that is too short, and noise",
         hard: "Angle and velocity have to hold together, whichever comes last: beyond the angle already, the muscle is caught where the \
                velocity is reached. A retreat short of 10° is no second catch, one of 10.1° is.",
-        source: "shared reference, disorders, section 5: caught at 40 deg/s, after 1.5 s; within 10 ms behind counts",
+        source: "docs/symptoms.md, spasticity: caught at 40 deg/s, after 1.5 s; within 10 ms behind counts",
         long: false,
         must: located,
         trials: |subject| {
@@ -105,7 +105,7 @@ pub(super) fn late_in_counts() -> Case {
         title: "MAS 2 at 90 and 130 deg/s behind the encoder",
         hard: "The estimate of the velocity is 6.4 ms late, and shifts the angle of a catch by μ times its error. At a steady \
                stretch that must not be seen: caught once, where it should be within 10 ms.",
-        source: "shared reference, disorders, section 5: caught at 52.5° and 42.5°, after 361 and 173 ms",
+        source: "docs/symptoms.md, spasticity: caught at 52.5° and 42.5°, after 361 and 173 ms",
         long: false,
         must: located,
         trials: |subject| {
@@ -143,7 +143,7 @@ pub(super) fn turned_back() -> Case {
         hard: "Turned back at 74° it has not fallen, and the resistance must be there again on the way to 75°. Crept through at \
                0.5 deg/s, a step is 4e-7 rad. Once it has fallen there is no second blade after a retreat of 30°; there is one \
                after 56°, below the onset by 10°.",
-        source: "shared reference, disorders, section 7",
+        source: "docs/symptoms.md, clasp-knife",
         long: false,
         must: located,
         trials: |subject| {
@@ -203,7 +203,7 @@ pub(super) fn clonus() -> Case {
         title: "A slow crossing that is passed over, and a stretch that ends in a beat",
         hard: "Crossed slowly and then made faster beyond it, the angle of clonus is passed over until the leg has come back. Let go \
                in the middle of a beat there is no further one, and the one under way runs out instead of falling to zero.",
-        source: "shared reference, disorders, section 8",
+        source: "docs/symptoms.md, clonus",
         long: false,
         must: located,
         trials: |subject| {

@@ -15,7 +15,7 @@ pub(super) fn touched_limit() -> Case {
         title: "Rigidity that only touches its limit, and a reversal with a rest in it",
         hard: "A hand that stops where the play has just reached its limit, and turns back, has not dragged it: nothing is lost. \
                A law with the sign of the velocity has two torques at rest; a play has the one that it came with.",
-        source: "shared reference, disorders, section 3; the torque of the reference",
+        source: "docs/symptoms.md, lead-pipe; the torque of the reference",
         long: false,
         must: located,
         trials: |subject| {
@@ -62,7 +62,7 @@ pub(super) fn cogwheel_at_rest() -> Case {
         hard: "The clock of the teeth goes on while the hand rests. The first give lets the torque fall to the low level; the \
                catches after it change nothing, because torque rises only as the hand moves. Moved again, it is at the tooth \
                that the clock has come to.",
-        source: "shared reference, disorders, section 4; a give every 160 ms, 0.4 of 2 N·m",
+        source: "docs/symptoms.md, cogwheel; a give every 160 ms, 0.4 of 2 N·m",
         long: false,
         must: located,
         trials: |subject| {
@@ -98,7 +98,7 @@ pub(super) fn cogwheel_reversal() -> Case {
         title: "A reversal inside a catch, and a tremble across a tooth's edge",
         hard: "Turned back in a catch the torque has to come down along the spring and not at the next give. At an edge between two \
                teeth a tremble of a degree must not make the torque jump up, and a flickering count must not be a row of gives.",
-        source: "shared reference, disorders, section 4; 7.5° a tooth, an edge from high to low at 11.25°",
+        source: "docs/symptoms.md, cogwheel; 7.5° a tooth, an edge from high to low at 11.25°",
         long: false,
         must: located,
         trials: |subject| {
@@ -163,7 +163,7 @@ pub(super) fn texture() -> Case {
         title: "A tremble on an asperity, and one that is met exactly as a tick ends",
         hard: "An asperity is a click when it is crossed at the limit. A hand that trembles on it crosses it again and again with less \
                torque: that is one snap. A tick that ends exactly on it, or a hand that stops there, must count it once, neither never nor twice.",
-        source: "shared reference, disorders, section 9; an asperity every 1.5°, without irregularity",
+        source: "docs/symptoms.md, texture; an asperity every 1.5°, without irregularity",
         long: false,
         must: located,
         trials: |subject| {
@@ -227,7 +227,7 @@ pub(super) fn asperities_there_and_back() -> Case {
         title: "The same asperities there and back, at irregular places",
         hard: "An asperity belongs to an angle: places and heights are a hash of its number, the same on the way back and after a turn \
                between two. A law that counts them as it goes loses one at the first reversal.",
-        source: "shared reference, disorders, section 9; the snaps of the reference",
+        source: "docs/symptoms.md, texture; the snaps of the reference",
         long: false,
         must: located,
         trials: |subject| {

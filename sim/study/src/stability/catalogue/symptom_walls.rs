@@ -56,7 +56,7 @@ pub(super) fn rest_on_a_wall() -> Case {
         title: "A leg that rests on a wall, or exactly at it, while a count flickers",
         hard: "A count more or less is 14 mN·m at 400 N·m/rad: elastic, and no event. At the wall itself every count \
                would be a contact and a leave; the leave needs two counts.",
-        source: "shared reference, disorders, section 2; a hard end-feel, K_u = 400 N·m/rad",
+        source: "docs/symptoms.md, range-limit; a hard end-feel, K_u = 400 N·m/rad",
         long: false,
         must: located,
         trials: |subject| {
@@ -94,7 +94,7 @@ pub(super) fn graze() -> Case {
         title: "A graze of a wall, 10 µrad deep, and a drift onto it at 0.05 deg/s",
         hard: "The hand turns 10 µrad behind the wall, a third of a count, or stays a nanodegree before it. A drift of \
                0.05 deg/s moves by 4e-8 rad in a tick, and takes 15 s to the cap: what is added up tick by tick is lost in f32.",
-        source: "shared reference, disorders, section 2",
+        source: "docs/symptoms.md, range-limit",
         long: false,
         must: located,
         trials: |subject| {
@@ -138,7 +138,7 @@ pub(super) fn moved_wall() -> Case {
         title: "A wall that is armed around the leg, moved under it, or moved away",
         hard: "A wall at an absolute angle would push a leg that is beyond it with all of its cap, at once. Its spring \
                begins where the leg is: nothing is felt until it moves. A wall that is moved away lets go within the slew limit.",
-        source: "shared reference, disorders, section 1: start, arming, moved limits",
+        source: "docs/symptoms.md, The play: start, arming, moved limits",
         long: false,
         must: located,
         trials: |subject| {
@@ -196,7 +196,7 @@ pub(super) fn stiffness_in_contact() -> Case {
         hard: "The stretch of the spring is kept or the torque is: with the stretch kept the torque is five times as large at \
                once, and the energy, too, out of nothing. The torque goes on where the spring gets stiffer, and \
                falls within the slew limit where it gets softer.",
-        source: "shared reference, disorders, section 1: change of σ",
+        source: "docs/symptoms.md, The play: change of σ",
         long: false,
         must: located,
         trials: |subject| {
@@ -242,7 +242,7 @@ pub(super) fn both_limits() -> Case {
         title: "Both ends of the range in one stroke, and beyond a cap and in again",
         hard: "With five degrees between the ends a stroke leaves one wall and meets the other, and on its way back the first again. \
                Beyond its cap a wall yields; turned back and in again without leaving, it must be met where it is.",
-        source: "shared reference, disorders, section 2",
+        source: "docs/symptoms.md, range-limit",
         long: false,
         must: located,
         trials: |subject| {
@@ -285,8 +285,10 @@ pub(super) fn pressed_rotor() -> Case {
         id: "H75",
         name: "wall-pressed",
         title: "A rotor alone, pressed into a hard end with the device in the loop",
-        hard: "No leg, no cuff, no arm, and hardly any friction: with 0.1 N·m a plain spring of 300 N·m/rad rings for ever. The                wall loses energy by hysteresis, so that the rotor bounces a few times, and then not a millinewton metre moves.",
-        source: "shared reference, disorders, section 2, how stiff: 2 N·m, quiet after 1.2 s",
+        hard: "No leg, no cuff, no arm, and hardly any friction between the spring of the wall and counts, half a tick and a \
+               current loop. Without friction the wall's 4 N·m come and go for ever; with 0.1 N·m the rotor bounces a few \
+               times, and then not a millinewton metre moves.",
+        source: "docs/symptoms.md, range-limit, how stiff: 2 N·m, quiet after 1.2 s",
         long: false,
         must: located,
         trials: |subject| {
