@@ -74,7 +74,7 @@ fn a_wrong_symptom_meets_no_criterion() {
     };
     fails_after(&torques, |run| run.symptoms.torque_error_nm = Some(2e-5));
     fails_after(&torques, |run| {
-        run.symptoms.torque_error_nm = Some(f64::NAN)
+        run.symptoms.torque_error_nm = Some(f64::NAN);
     });
     fails_after(&torques, |run| run.symptoms.torque_error_nm = None);
     let words = Criterion::Words(&[Word::Contact, Word::Cap, Word::Leave]);
