@@ -12,7 +12,8 @@
 //! motion: without check, tank and limit, which the reference has not either. The
 //! errors are those of all [`motions`](motions::motions) together.
 //!
-//! What the play under a symptom does is no event here: `lead-pipe` has none.
+//! What the play under a symptom does is no event here: `lead-pipe` has none. A symptom
+//! whose law refuses a step has no point there.
 
 pub mod motions;
 pub mod table;
@@ -23,6 +24,7 @@ use crate::accuracy::study::falling;
 use crate::sampling::Sampling;
 use crate::symptoms::Given;
 use crate::symptoms::errors::{Errors, Truth};
+use crate::symptoms::follow::timing as timing_of;
 use crate::watcher::{StudyError, Watcher};
 use crepitus_model::Real;
 use crepitus_scene::scene::Precision;
@@ -96,7 +98,7 @@ pub fn add<W: Watcher>(
     plan: &SymptomPlan<'_>,
     watcher: &mut W,
 ) -> Result<(), StudyError<W::Error>> {
-    let symptoms = Given::all();
+    let all = Given::all();
     let steps_s = falling(plan.steps_s);
     // A shorter step is more work.
     let work = |step_s: f64| 1e-6 + 1.0 / step_s;
@@ -104,6 +106,9 @@ pub fn add<W: Watcher>(
     let mut done = 0.0;
     let mut points = Vec::new();
     for &step_s in &steps_s {
+        // The memory of a reflex is too short for its delay in steps below 25 µs.
+        let has_a_law = |given: &&Given| given.settings().laws::<f64>(&timing_of(step_s)).is_ok();
+        let symptoms: Vec<Given> = all.iter().filter(has_a_law).cloned().collect();
         let costs = timing::time(&symptoms, plan, step_s, || {
             watcher.progress(done / total).map_err(StudyError::Watcher)
         })?;
@@ -131,7 +136,7 @@ pub fn add<W: Watcher>(
     let place = |p: &SymptomPoint| {
         let own = |g: &Given| g.effect == p.symptom && g.form() == p.form;
         let precision = plan.precisions.iter().position(|q| q.name() == p.precision);
-        (symptoms.iter().position(own), precision)
+        (all.iter().position(own), precision)
     };
     points.sort_by_key(place);
     study.symptoms = points;

@@ -144,3 +144,12 @@ fn a_wrong_torque_and_a_missing_event_are_measured() {
     torques_nm[2000] = f64::NAN;
     assert!(errors(&found, &torques_nm).torque_nm.most().is_nan());
 }
+
+/// A reflex of 50 ms remembers 2,048 steps at most.
+#[test]
+fn a_step_that_a_law_refuses_is_left_out() {
+    let points = studied(&[2e-5]);
+    assert_eq!(points.len(), 2 * (Given::all().len() - 1));
+    assert!(points.iter().all(|p| p.form != Some("reflex")));
+    assert!(points.iter().all(|p| p.unmatched == 0), "{points:?}");
+}
