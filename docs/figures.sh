@@ -23,11 +23,14 @@ for convention in frozen physical; do
     cp "target/figures/accuracy/target-constant-0-988-$convention-f32.svg" "docs/images/accuracy-target-$convention.svg"
     echo "docs/images/accuracy-target-$convention.svg"
 done
-# The table of the target goes between its marks.
-awk 'NR == FNR { if (/^\|/) table = table $0 "\n"; next }
-     /<!-- end of the table -->/ { printf "%s\n", table; inside = 0 }
-     !inside { print }
-     /<!-- table of the target/ { inside = 1; print "" }' \
+# The tables go between their marks: each is what follows its heading.
+awk 'NR == FNR { if (/^The other symptoms/) which = "symptoms"
+                 if (/^A step on the target/) which = "target"
+                 if (/^\|/) table[which] = table[which] $0 "\n"; next }
+     /<!-- end of the table -->/ { printf "%s\n", table[inside]; inside = "" }
+     inside == "" { print }
+     /<!-- table of the target/ { inside = "target"; print "" }
+     /<!-- table of the symptoms/ { inside = "symptoms"; print "" }' \
     target/figures/accuracy.txt docs/accuracy.md >target/figures/accuracy.md
 cp target/figures/accuracy.md docs/accuracy.md
 echo docs/accuracy.md
@@ -51,3 +54,7 @@ for scene in fig8-5-hand fig9-low-speed; do
     cp "target/figures/effects-$scene/build-up.svg" "docs/images/build-up-${scene%%-*}.svg"
     echo "docs/images/build-up-${scene%%-*}.svg"
 done
+cargo run --profile dist --features emulator --quiet -- effects tardieu-fast --out target/figures/effects-symptoms \
+    --set effects.range-limit.flexion_limit_deg=75 --set effects.lead-pipe.torque_nm=1.2 --set effects.cogwheel.torque_nm=2 \
+    --set effects.spasticity.form=catch --set effects.clasp-knife.onset_deg=30 --set effects.clonus.hold_deg=60 \
+    --set effects.texture.pitch_deg=1.5

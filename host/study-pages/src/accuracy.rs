@@ -20,11 +20,13 @@ mod names;
 mod page;
 mod pair;
 mod steps;
+mod symptom_tables;
 mod target;
 mod target_table;
 mod tick_table;
 
 use crepitus_study::accuracy::Point;
+use crepitus_study::accuracy::symptoms::SymptomPoint;
 use crepitus_study::accuracy::target::OnTarget;
 
 use crate::{Picture, StudyText};
@@ -34,9 +36,15 @@ use pair::Study;
 ///
 /// The pair of a scene with `0.988` in its name and the frozen convention
 /// comes first and in full, the others below it, folded. What the ladder costs
-/// on the target, if that is known, has a diagram in each and a table below.
-pub fn html(points: &[Point], target: Option<&OnTarget>, text: &StudyText) -> String {
-    page::html(&Study::new(points), target, text)
+/// on the target, if that is known, has a diagram in each and a table below; so have
+/// the other symptoms, if they were studied.
+pub fn html(
+    points: &[Point],
+    symptoms: &[SymptomPoint],
+    target: Option<&OnTarget>,
+    text: &StudyText,
+) -> String {
+    page::html(&Study::new(points), symptoms, target, text)
 }
 
 /// Every diagram as a file of its own, named after what it shows:

@@ -13,6 +13,7 @@ mod study;
 use std::path::Path;
 
 use crepitus_study::accuracy::Point;
+use crepitus_study::accuracy::symptoms::SymptomPoint;
 use crepitus_study::accuracy::target::{LABEL, OnTarget, Row};
 use crepitus_study_pages::accuracy::{html, pictures};
 use crepitus_study_pages::{Section, StudyText};
@@ -50,7 +51,17 @@ fn page(name: &str, points: &[Point], text: &StudyText) -> String {
 }
 
 fn page_with(name: &str, points: &[Point], target: Option<&OnTarget>, text: &StudyText) -> String {
-    let page = html(points, target, text);
+    whole_page(name, points, &[], target, text)
+}
+
+fn whole_page(
+    name: &str,
+    points: &[Point],
+    symptoms: &[SymptomPoint],
+    target: Option<&OnTarget>,
+    text: &StudyText,
+) -> String {
+    let page = html(points, symptoms, target, text);
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("accuracy-{name}.html"));
     std::fs::write(path, &page).expect("written");
     assert!(page.len() < 3_000_000, "{name}: {} bytes", page.len());
@@ -63,6 +74,40 @@ fn page_with(name: &str, points: &[Point], target: Option<&OnTarget>, text: &Stu
         assert!(assert_labels_inside(&chart) > 3);
     }
     page
+}
+
+#[test]
+fn symptoms_have_a_table_at_the_tick_and_one_by_step() {
+    let point = |symptom, form, step_s, events_true, unmatched| SymptomPoint {
+        symptom,
+        form,
+        precision: "f32",
+        step_s,
+        events: events_true + unmatched,
+        events_true,
+        unmatched,
+        max_event_error_s: if events_true > 0 { 1.5e-8 } else { f64::NAN },
+        rms_event_error_s: f64::NAN,
+        max_tick_torque_error_nm: 2.5e-6,
+        rms_tick_torque_error_nm: 3e-7,
+        ns_per_step: 12.5,
+        time_ratio: 6.25,
+        time_spread: 0.01,
+    };
+    let points = [
+        point("lead-pipe", None, 1e-4, 0, 0),
+        point("lead-pipe", None, 5e-5, 0, 0),
+        point("cogwheel", Some("space"), 5e-5, 40, 0),
+        point("texture", None, 5e-5, 40, 3),
+    ];
+    let page = whole_page("symptoms", &[], &points, None, &text("With symptoms"));
+    assert_eq!(count(&page, "The other symptoms"), 1);
+    assert!(page.contains("cogwheel (space)") && page.contains("3 unmatched"));
+    assert!(page.contains("100 µs") && page.contains("50 µs"));
+    // Only lead-pipe was studied at both steps.
+    assert_eq!(count(&page, "lead-pipe</th>"), 2);
+    let without = whole_page("no-symptoms", &[], &[], None, &text("Without"));
+    assert!(!without.contains("The other symptoms"));
 }
 
 #[test]
@@ -103,6 +148,7 @@ fn what_the_target_says_has_its_diagram_and_its_table() {
     }
     let row = Row {
         subject: "bone-shaping",
+        form: None,
         convention: None,
         is_rung: false,
         frequency_error_rel: f64::NAN,

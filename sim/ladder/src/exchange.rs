@@ -12,7 +12,7 @@
 //!
 //! | | words of an input | words of an output |
 //! |---|---|---|
-//! | joints | Δφ, Ω at its begin, Ω at its end, [kind](Kind) | torque, [events](crate::measured), fraction of the last |
+//! | joints, symptoms | Δφ, Ω at its begin, Ω at its end, [kind](Kind) | torque, [events](crate::measured) of a joint, fraction of the last |
 //! | encoder | count, –, –, kind | Δφ, Ω |
 //! | friction compensation | Ω | torque |
 //! | bone shaping | Δφ, jump of the torque | torque |
@@ -21,11 +21,12 @@
 use core::sync::atomic::AtomicU32;
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
-/// Address of the block on the target: from the sixteenth kilobyte of RAM on.
-pub const ADDRESS: u32 = 0x2000_4000;
+/// Address of the block on the target: from the 48th kilobyte of RAM on. Below is the
+/// stack: a reflex remembers 8 KB, and is moved while it is set up.
+pub const ADDRESS: u32 = 0x2000_c000;
 
-/// Its words on the target: 96 KB.
-pub const WORDS: usize = 24 << 10;
+/// Its words on the target: 80 KB.
+pub const WORDS: usize = 20 << 10;
 
 /// Command: read the plan.
 pub const BEGIN: u32 = 1;

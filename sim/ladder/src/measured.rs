@@ -141,17 +141,17 @@ impl Measured for EncoderReader<f32> {
     }
 }
 
-/// An effect of the device; its input has travel, speed, and the jump of the
-/// joint's torque.
+/// An effect of the device. The input of a symptom is a step of the shaft, that of
+/// others travel, speed, and the jump of the joint's torque.
 pub struct Effect<E> {
     law: E,
     place: Position<f32>,
 }
 
 impl<E: DeviceEffect<f32>> Effect<E> {
-    /// At rest where the joint is straight.
-    pub fn new(mut law: E) -> Self {
-        let place = Position::at(0);
+    /// At rest so many counts from where the joint is straight.
+    pub fn new(mut law: E, count: i32) -> Self {
+        let place = Position::at(count);
         law.rest(&place);
         Self { law, place }
     }
@@ -160,18 +160,23 @@ impl<E: DeviceEffect<f32>> Effect<E> {
 impl<E: DeviceEffect<f32>> Measured for Effect<E> {
     #[inline]
     fn step(&mut self, input: &Input) -> Output {
-        let omega_rad_s = input.number(1);
-        let shaft = ShaftStep {
-            delta_phi_rad: input.number(0),
-            omega_start_rad_s: omega_rad_s,
-            omega_end_rad_s: omega_rad_s,
+        let (shaft, jump_nm) = if E::IS_SYMPTOM {
+            (input.shaft(), 0.0)
+        } else {
+            let omega_rad_s = input.number(1);
+            let shaft = ShaftStep {
+                delta_phi_rad: input.number(0),
+                omega_start_rad_s: omega_rad_s,
+                omega_end_rad_s: omega_rad_s,
+            };
+            (shaft, input.number(2))
         };
         let place = self.place.moved(shaft.delta_phi_rad);
         if place.rest_rad.is_finite() {
             self.place = place;
         }
         let mut shown = Shown {
-            jump_nm: input.number(2),
+            jump_nm,
             ..Shown::nothing()
         };
         let tick = Tick {

@@ -19,6 +19,8 @@ pub struct Plan {
     pub step_s: f64,
     /// The shaft's velocity at the start, rad/s.
     pub omega_rad_s: f32,
+    /// Where an effect finds the joint at the start, in counts of the encoder.
+    pub place: i32,
     /// Steps of one command.
     pub steps: u32,
 }
@@ -27,7 +29,7 @@ pub struct Plan {
 const WORDS: usize = STEPS - PLAN;
 
 /// Words before the joint's parameters.
-const HEAD: usize = 6;
+const HEAD: usize = 7;
 
 impl Plan {
     /// A subject with the paper's parameters at the device's tick, from rest.
@@ -38,6 +40,7 @@ impl Plan {
             restart: Restart::default(),
             step_s: 5e-5,
             omega_rad_s: 0.0,
+            place: 0,
             steps: 0,
         }
     }
@@ -68,6 +71,7 @@ impl Plan {
             self.omega_rad_s.to_bits(),
             low(step),
             high(step),
+            self.place.cast_unsigned(),
         ];
         let values = self.parameters.iter().flat_map(Parameters::values);
         let bits = values.flat_map(|value| [low(value.to_bits()), high(value.to_bits())]);
@@ -98,6 +102,7 @@ impl Plan {
             },
             omega_rad_s: f32::from_bits(word(3)),
             step_s: number(4),
+            place: word(6).cast_signed(),
             parameters: [HEAD, HEAD + 10].map(parameters),
         })
     }
@@ -126,6 +131,7 @@ mod tests {
         plan.restart = Restart::FromKinetic;
         plan.step_s = 1.0 / 3.0;
         plan.omega_rad_s = -0.25;
+        plan.place = -12_345;
         plan.steps = 77;
         let head = [0; PLAN].into_iter();
         let words: Vec<_> = head.chain(plan.encode()).map(AtomicU32::new).collect();

@@ -3,7 +3,7 @@
 use crate::exchange::{BEGIN, ENTRY, Exchange, Input, Kind, Output, READY, REFUSED, RUN, STATE};
 use crate::measured::{Effect, Joint, Measured, Rendered, step};
 use crate::plan::Plan;
-use crate::subject::Subject;
+use crate::subject::{Subject, in_form};
 use core::hint::black_box;
 use crepitus_model::control::current_loop::CurrentLoopSettings;
 use crepitus_model::control::device_limits::LimitSettings;
@@ -11,7 +11,7 @@ use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::real::Real;
-use crepitus_model::render::effects::{DeviceEffect, LawVisitor, Timing, with_law};
+use crepitus_model::render::effects::{DeviceEffect, LawVisitor, SPECS, Timing};
 use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::render::position::Sight;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
@@ -80,14 +80,18 @@ impl Here<'_> {
                     None,
                 )
             }
-            Subject::Effect(place) => {
+            Subject::Effect(place, form) => {
                 let timing = Timing {
                     step_s,
                     delay_ticks: MOST_DELAY_TICKS,
                     sight: Sight::of_encoder(&EncoderSettings::default()),
                 };
                 // There is a subject for each place of the table only.
-                with_law(place, &timing, EffectVisitor { here: self })?.unwrap_or(false)
+                let settings = SPECS
+                    .get(place)
+                    .map_or_else(Default::default, |spec| in_form(spec, form));
+                let visitor = EffectVisitor { here: self, plan };
+                settings.with_law(place, &timing, visitor)?.unwrap_or(false)
             }
             Subject::CurrentLoop => {
                 let settings = CurrentLoopSettings::defaults();
@@ -159,13 +163,14 @@ fn address(of: usize) -> u32 {
 /// Runs a law.
 struct EffectVisitor<'a, 'b> {
     here: &'a mut Here<'b>,
+    plan: &'a Plan,
 }
 
 impl LawVisitor<f32> for EffectVisitor<'_, '_> {
     type Output = bool;
 
     fn visit<E: DeviceEffect<f32>>(self, law: E) -> bool {
-        self.here.run(Effect::new(law), None)
+        self.here.run(Effect::new(law, self.plan.place), None)
     }
 }
 

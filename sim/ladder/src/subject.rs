@@ -1,7 +1,8 @@
 //! The measured subjects.
 
 use crepitus_model::Convention;
-use crepitus_model::render::effects::SPECS;
+use crepitus_model::parameters::{Choice, Chosen};
+use crepitus_model::render::effects::{EffectSettings, EffectSpec, SPECS};
 use crepitus_model::solver::Solver;
 
 /// Code that the device could run in every tick.
@@ -16,10 +17,33 @@ pub enum Subject {
     Renderer,
     /// Counts of the motor's encoder to angle and speed.
     Encoder,
-    /// The effect at this place of the model's table.
-    Effect(usize),
+    /// The effect at this place of the model's table, in this [form](forms) of its
+    /// law.
+    Effect(usize, u8),
     /// The loop of the motor's current.
     CurrentLoop,
+}
+
+/// The choice between laws of an effect: its form, its mode, or its trigger.
+/// Which muscles are affected is none: it mirrors the law.
+pub fn forms(spec: &EffectSpec) -> Option<&'static Choice> {
+    spec.choices.iter().find(|choice| choice.key != "muscles")
+}
+
+/// Settings of an effect in this form of its law, the rest at its defaults.
+pub fn in_form(spec: &EffectSpec, form: u8) -> EffectSettings {
+    let mut options = [0; 8];
+    for (option, choice) in options.iter_mut().zip(spec.choices) {
+        let is_form = forms(spec).is_some_and(|of| of.key == choice.key);
+        *option = if is_form { form } else { choice.default };
+    }
+    let options = options.get(..spec.choices.len()).unwrap_or_default();
+    EffectSettings::given(|name| {
+        (name == spec.name).then_some(Chosen {
+            numbers: &[],
+            options,
+        })
+    })
 }
 
 /// Subjects that are not rungs.
@@ -43,8 +67,20 @@ impl Subject {
         });
         rungs
             .chain(DEVICE)
-            .chain((0..SPECS.len()).map(Self::Effect))
+            .chain((0..).zip(SPECS).flat_map(|(place, spec)| {
+                let forms = forms(spec).map_or(1, |choice| choice.names.len());
+                (0..).take(forms).map(move |form| Self::Effect(place, form))
+            }))
             .chain([Self::CurrentLoop])
+    }
+
+    /// The form of an effect's law, if it has several.
+    pub fn form(self) -> Option<&'static str> {
+        let Self::Effect(place, form) = self else {
+            return None;
+        };
+        let names = forms(SPECS.get(place)?)?.names;
+        names.get(usize::from(form)).copied()
     }
 
     /// Its name: of a rung as in scene files, of an effect as in `crepitus
@@ -55,7 +91,7 @@ impl Subject {
             Self::Checked(_) => "input check",
             Self::Renderer => "renderer",
             Self::Encoder => "encoder",
-            Self::Effect(place) => SPECS.get(place).map_or("", |spec| spec.name),
+            Self::Effect(place, _) => SPECS.get(place).map_or("", |spec| spec.name),
             Self::CurrentLoop => "current loop",
         }
     }
@@ -100,6 +136,31 @@ mod tests {
                 .count()
         };
         assert_eq!(Convention::ALL.map(rungs), [4, 9, 10]);
+    }
+
+    #[test]
+    fn each_form_of_a_law_is_there_with_its_settings() {
+        let forms: Vec<_> = Subject::all()
+            .filter_map(|subject| Some((subject.name(), subject.form()?)))
+            .collect();
+        assert_eq!(
+            forms,
+            [
+                ("cogwheel", "time"),
+                ("cogwheel", "space"),
+                ("spasticity", "catch"),
+                ("spasticity", "reflex"),
+                ("clasp-knife", "angle"),
+                ("clasp-knife", "torque"),
+            ]
+        );
+        let spec = SPECS.iter().find(|spec| spec.name == "spasticity").unwrap();
+        let of = |form| in_form(spec, form);
+        assert_eq!([0, 1].map(|form| of(form).spasticity.unwrap().form), [0, 1]);
+        assert_eq!(of(1).cogwheel, None);
+        for spec in SPECS {
+            assert!(spec.choices.len() <= 8, "{}", spec.name);
+        }
     }
 
     #[test]

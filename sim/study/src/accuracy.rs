@@ -16,6 +16,7 @@
 //! | the torque to compare with, at the ends of steps and within them | [`reference_torque`], [`held_torque`] |
 //! | accuracy and time of a run | [`measure`], [`timing`] |
 //! | cost of a step on the device's core | [`target`] |
+//! | the other symptoms: errors, and cost over a step of crepitus | [`symptoms`] |
 //! | orders of convergence, and on motions of other kinds | [`orders`], [`convergence`] |
 //! | limits, and the cheapest rung within them | [`need`], [`mod@answer`] |
 
@@ -31,6 +32,7 @@ pub mod reference_torque;
 pub mod results;
 pub mod scenes;
 pub mod study;
+pub mod symptoms;
 pub mod target;
 pub mod timing;
 

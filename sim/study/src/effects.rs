@@ -11,7 +11,8 @@
 //!
 //! The torque at the hand is `hand_torque_nm`, the mean of the tick that ended;
 //! without a plant it is the joint's own `torque_nm`, and without a joint
-//! zero. The first row, before the first tick, is ignored.
+//! zero. The first row, before the first tick, is ignored. Events are those of the joint
+//! and of the other symptoms, without what the plays under them do.
 //!
 //! | to find | look in |
 //! |---|---|

@@ -32,12 +32,35 @@ pub fn match_events(
     step_s: f64,
     end_s: f64,
 ) -> Matching {
-    let gaps = gaps(truth);
     let cycle_s = shortest_cycle(truth);
-    let interior_s = end_s - (2.0 * step_s).max(cycle_s);
+    match_alike(truth, found, end_s - (2.0 * step_s).max(cycle_s))
+}
+
+/// Something that happens at a time.
+pub trait Alike: Copy {
+    /// Since the start of the run, s.
+    fn time_s(&self) -> f64;
+
+    /// Whether both are of one kind.
+    fn is_like(&self, other: &Self) -> bool;
+}
+
+impl Alike for TimedEvent {
+    fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    fn is_like(&self, other: &Self) -> bool {
+        Self::is_like(self, other)
+    }
+}
+
+/// The same for any events, with those after `interior_s` exempt.
+pub fn match_alike<E: Alike>(truth: &[E], found: &[E], interior_s: f64) -> Matching {
+    let gaps = gaps(truth);
     let mut matching = Matching::default();
-    let mut alone = |event: &TimedEvent| {
-        if event.time_s < interior_s {
+    let mut alone = |event: &E| {
+        if event.time_s() < interior_s {
             matching.unmatched += 1;
         }
     };
@@ -49,13 +72,13 @@ pub fn match_events(
             (Some(t), Some(f)) => {
                 let reach_s = gaps.get(i).map_or(f64::INFINITY, |gap_s| gap_s / 2.0);
                 // Where the partner is due.
-                let due_s = t.time_s + late_s;
-                if t.is_like(f) && (f.time_s - due_s).abs() < reach_s {
-                    late_s = f.time_s - t.time_s;
+                let due_s = t.time_s() + late_s;
+                if t.is_like(f) && (f.time_s() - due_s).abs() < reach_s {
+                    late_s = f.time_s() - t.time_s();
                     matching.pairs.push((i, j));
                     i += 1;
                     j += 1;
-                } else if due_s <= f.time_s {
+                } else if due_s <= f.time_s() {
                     alone(t);
                     i += 1;
                 } else {
@@ -78,12 +101,12 @@ pub fn match_events(
 
 /// The cycle around each event: time to the nearer neighbour of the same kind
 /// and sense, s; infinite where there is none.
-fn gaps(events: &[TimedEvent]) -> Vec<f64> {
+fn gaps<E: Alike>(events: &[E]) -> Vec<f64> {
     let mut gaps = vec![f64::INFINITY; events.len()];
-    let mut last: Vec<(usize, TimedEvent)> = Vec::new();
+    let mut last: Vec<(usize, E)> = Vec::new();
     for (index, event) in events.iter().enumerate() {
         if let Some(before) = last.iter_mut().find(|(_, e)| e.is_like(event)) {
-            let gap_s = event.time_s - before.1.time_s;
+            let gap_s = event.time_s() - before.1.time_s();
             for neighbour in [before.0, index] {
                 if let Some(gap) = gaps.get_mut(neighbour) {
                     *gap = gap_s.min(*gap);

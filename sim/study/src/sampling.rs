@@ -94,6 +94,15 @@ impl Walk<'_> {
         }
     }
 
+    /// The same, each with the angle where it ends, rad.
+    pub fn fill_with_angles<F: Real>(&mut self, chunk: &mut Vec<(f64, ShaftStep<F>)>, most: usize) {
+        chunk.clear();
+        while chunk.len() < most && self.n < self.sampling.steps {
+            let step = self.step();
+            chunk.push((self.now.0, step));
+        }
+    }
+
     fn step<F: Real>(&mut self) -> ShaftStep<F> {
         self.n += 1;
         let time_s = self.sampling.time_s(self.n, 0.0);

@@ -11,7 +11,7 @@
 //! |---|---|
 //! | the cases | [`catalogue`], and their parts: [`case`], [`input`], [`criterion`] |
 //! | the tested solvers | [`subject`] |
-//! | how a case is run and judged | `source`, `observe`, `energy_audit`, `judge` |
+//! | how a case is run and judged | `source`, `observe`, `symptom`, `energy_audit`, `judge` |
 //! | results | [`verdict`], [`matrix`] |
 //! | an input as data, for a joint elsewhere | [`replay`] |
 //! | the file of results | [`cases_table`] |
@@ -30,14 +30,16 @@ pub mod matrix;
 mod observation;
 mod observe;
 mod parameter_changes;
-mod random;
+mod pressed;
+pub(crate) mod random;
 mod rendered;
 pub mod replay;
 mod shaking_hand;
 mod source;
 pub mod story;
 pub mod subject;
-mod text;
+mod symptom;
+pub(crate) mod text;
 pub mod verdict;
 mod without_steps;
 

@@ -1,6 +1,7 @@
 //! Progress and cancellation of a study.
 
 use crepitus_model::SettingsError;
+use crepitus_scene::reference::symptoms::SymptomError;
 
 /// Receives the progress of a study, and may cancel it.
 pub trait Watcher {
@@ -24,4 +25,7 @@ pub enum StudyError<E> {
     /// Settings that do not go together.
     #[error(transparent)]
     Settings(#[from] SettingsError),
+    /// A symptom that its reference cannot take.
+    #[error(transparent)]
+    Symptom(#[from] SymptomError),
 }

@@ -3,7 +3,7 @@
 
 use crepitus_plant::effects::{EFFECTS, find};
 use crepitus_scene::run::{FELT_COLUMN, Observer, columns};
-use crepitus_scene::trace::EventRecord;
+use crepitus_scene::trace::{EventRecord, SymptomEvent};
 use crepitus_scene::{Overrides, Scene};
 use crepitus_study::effects::results::Outcome;
 use crepitus_study::effects::variant::Change;
@@ -62,6 +62,11 @@ impl Observer for Hand {
         Ok(())
     }
 
+    fn symptom(&mut self, event: &SymptomEvent) -> Result<(), Infallible> {
+        self.events += u64::from(!event.word.is_of_play());
+        Ok(())
+    }
+
     fn progress(&mut self, _: f64) -> Result<(), Infallible> {
         Ok(())
     }
@@ -93,6 +98,34 @@ fn apart(a: &[f64], b: &[f64]) -> (f64, f64) {
 
 const SMALL: &str = "[effects.crepitus]\npreset = \"coarse\"\n[effects.encoder]\n[effects.drivetrain]\n\
                      [effects.friction-compensation]\n[effects.limb]\n";
+
+#[test]
+fn a_symptom_that_is_left_out_takes_its_torque_and_its_events_along() {
+    let knee = scene(
+        "[effects.range-limit]\nextension_limit_deg = -5\nflexion_limit_deg = 15\n[effects.lead-pipe]\n\
+         [effects.texture]\n[effects.clasp-knife]\nonset_deg = 5\nrelease_deg = 12\nrearm_deg = 2\n",
+    );
+    let study = study(&knee, None);
+    let whole = study.whole().unwrap().ran().unwrap();
+    let (torque, events) = hand(&knee);
+    assert_eq!(whole.events, events);
+    assert!(events > 20, "{events}");
+    for effect in ["range-limit", "lead-pipe", "texture", "clasp-knife"] {
+        let row = study.rows.iter().find(|r| r.effect == effect).unwrap();
+        let left = knee.without(find(effect).unwrap()).unwrap();
+        let (without, fewer) = hand(&left);
+        let added = row.added().unwrap();
+        let (rms_nm, peak_nm) = apart(&torque, &without);
+        assert!((added.rms_nm - rms_nm).abs() <= 1e-12 * rms_nm, "{row:?}");
+        assert_eq!(added.peak_nm, peak_nm);
+        assert!(rms_nm > 0.01, "{effect}: {rms_nm}");
+        let own = i64::try_from(events).unwrap() - i64::try_from(fewer).unwrap();
+        assert_eq!(added.events, own, "{effect}");
+        // Rigidity has none of its own.
+        assert_eq!(own == 0, effect == "lead-pipe", "{effect}: {own}");
+        assert!(added.states > 0, "{row:?}");
+    }
+}
 
 #[test]
 fn every_variant_is_what_two_runs_say() {

@@ -1,5 +1,6 @@
 //! The page of the study.
 
+use crepitus_study::accuracy::symptoms::SymptomPoint;
 use crepitus_study::accuracy::target::OnTarget;
 use maud::{Markup, html};
 
@@ -7,13 +8,18 @@ use super::curve::{FLOOR, unfit};
 use super::diagram::side_by_side;
 use super::measure::Measure;
 use super::pair::{Pair, Study};
-use super::{left_out, target, target_table, tick_table};
+use super::{left_out, symptom_tables, target, target_table, tick_table};
 use crate::StudyText;
 use crepitus_plot::{Chart, Figure, page};
 
 const LAYOUT: &str = include_str!("page.css");
 
-pub(crate) fn html(study: &Study, on: Option<&OnTarget>, text: &StudyText) -> String {
+pub(crate) fn html(
+    study: &Study,
+    symptoms: &[SymptomPoint],
+    on: Option<&OnTarget>,
+    text: &StudyText,
+) -> String {
     let shown: Vec<_> = study
         .pairs
         .iter()
@@ -43,6 +49,7 @@ pub(crate) fn html(study: &Study, on: Option<&OnTarget>, text: &StudyText) -> St
                     }
                 }
             }
+            (symptom_tables::tables(symptoms))
             @if let Some(on) = on { (target_table::table(on)) }
             (page::tables(&text.tables))
             (page::notes(&text.notes))

@@ -45,7 +45,7 @@ fn steps(on: &OnTarget) -> f64 {
 fn line(row: &Row) -> Markup {
     html! {
         tr {
-            th scope="row" { (row.subject) }
+            th scope="row" { (row.name()) }
             td { (row.convention.unwrap_or("–")) }
             td.number { @if row.is_rung { (scientific(row.frequency_error_rel)) } }
             td.number { (rounded(row.mean_cycles)) }

@@ -6,6 +6,7 @@ mod orders_table;
 mod page;
 mod plan;
 mod summary;
+mod symptoms;
 mod table;
 mod target;
 mod words;
@@ -15,7 +16,8 @@ use crate::pictures::Pictures;
 use crate::results;
 use crate::studying::{self, Watch};
 use clap::Args;
-use crepitus_study::accuracy::{Need, convergence, study};
+use crepitus_study::accuracy::symptoms::SymptomPlan;
+use crepitus_study::accuracy::{self, Need, convergence, study};
 use serde_json::json;
 use std::path::PathBuf;
 use summary::Summary;
@@ -32,7 +34,8 @@ Examples:
   crepitus accuracy --need frequency=1e-6 --convention physical --precision f64
 
 Every solver, in f32 and f64 and at steps from 1 ms to 2 µs, is compared with the reference \
-on four constant speeds and a hand-like sine, and timed on this machine in CPU time. With --target it is also \
+on four constant speeds and a hand-like sine, and timed on this machine in CPU time; so is every other symptom, \
+on strokes, a steady movement and a tremor, timed beside a step of crepitus. With --target it is also \
 run on an emulated STM32F405: modelled cycles, 0 wait states; not measured on hardware. The worst \
 cycles are the worst observed, over inputs with breaks, matches and reversals.
 
@@ -50,7 +53,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
 
-    /// Folder for points.csv, summary.json and report.html [default: out/accuracy].
+    /// Folder for points.csv, symptoms.csv, summary.json and report.html [default: out/accuracy].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
@@ -116,7 +119,16 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let scenes = &studied.plan.scenes;
         target::add(&mut study, scenes, arguments.quick, &mut ladder)?;
     }
-    let by_motion = if arguments.scene.is_none() && need.is_none() {
+    let is_whole = arguments.scene.is_none() && need.is_none();
+    if is_whole {
+        let plan = SymptomPlan {
+            steps_s: &studied.plan.steps_s,
+            precisions: &studied.plan.precisions,
+            repeats: studied.plan.repeats,
+        };
+        accuracy::symptoms::add(&mut study, &plan, &mut Watch::new()).map_err(studying::failed)?;
+    }
+    let by_motion = if is_whole {
         convergence::motions().and_then(|motions| convergence::orders_on(&motions))
     } else {
         Ok(Vec::new())
@@ -139,12 +151,22 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             let report = out.unwrap_or_default().join("report.html");
             let target = study.target.as_ref().map(target::table);
             print(&format!(
-                "{}\n{}{}\nreport: {}\n",
+                "{}\n{}{}{}\nreport: {}\n",
                 table::at_the_tick(&study),
                 orders_table::by_motion(&by_motion),
+                with_a_line_before(&symptoms::table(&study.symptoms)),
                 target.map_or_else(String::new, |table| format!("\n{table}")),
                 report.display()
             ))
         }
+    }
+}
+
+/// A paragraph of its own, if there is one.
+fn with_a_line_before(text: &str) -> String {
+    if text.is_empty() {
+        String::new()
+    } else {
+        format!("\n{text}")
     }
 }

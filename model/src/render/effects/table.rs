@@ -197,30 +197,31 @@ macro_rules! effects {
             }
         }
 
-        /// Runs `visitor` with the law of the effect at this place, at its
-        /// defaults; `None` beyond the last.
-        ///
-        /// # Errors
-        /// As [`EffectSettings::laws`].
-        pub fn with_law<F: Real, V: LawVisitor<F>>(
-            place: usize,
-            timing: &Timing,
-            visitor: V,
-        ) -> Result<Option<V::Output>, SettingsError> {
-            let mut left = place;
-            $(
-                if left == 0 {
-                    let made = <$effect::$law<F> as DeviceEffect<F>>::coefficients(
-                        &$effect::$settings::defaults(),
-                        timing,
-                    )?;
-                    let law = <$effect::$law<F> as DeviceEffect<F>>::new(made);
-                    return Ok(Some(visitor.visit::<$effect::$law<F>>(law)));
-                }
-                left = left.wrapping_sub(1);
-            )*
-            let _ = left;
-            Ok(None)
+        impl EffectSettings {
+            /// Runs `visitor` with the law of the effect at this place of the table, of
+            /// one that is off at its defaults; `None` beyond the last.
+            ///
+            /// # Errors
+            /// As [`Self::laws`].
+            pub fn with_law<F: Real, V: LawVisitor<F>>(
+                &self,
+                place: usize,
+                timing: &Timing,
+                visitor: V,
+            ) -> Result<Option<V::Output>, SettingsError> {
+                let mut left = place;
+                $(
+                    if left == 0 {
+                        let settings = self.$effect.unwrap_or_else(Tabled::defaults);
+                        let made = <$effect::$law<F> as DeviceEffect<F>>::coefficients(&settings, timing)?;
+                        let law = <$effect::$law<F> as DeviceEffect<F>>::new(made);
+                        return Ok(Some(visitor.visit::<$effect::$law<F>>(law)));
+                    }
+                    left = left.wrapping_sub(1);
+                )*
+                let _ = left;
+                Ok(None)
+            }
         }
     };
 }

@@ -2,6 +2,7 @@
 
 use crate::accuracy::orders::Orders;
 use crate::accuracy::point::Point;
+use crate::accuracy::symptoms::SymptomPoint;
 use crate::accuracy::target::OnTarget;
 use serde::Serialize;
 
@@ -25,6 +26,10 @@ pub struct Study {
     /// Costs of the ladder on the target, if measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<OnTarget>,
+    /// The other symptoms, by symptom, form, precision and falling step; empty if
+    /// they were not studied.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub symptoms: Vec<SymptomPoint>,
     /// The points, by scene, convention, rung, precision and falling step.
     #[serde(skip)]
     pub points: Vec<Point>,

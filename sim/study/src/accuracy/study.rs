@@ -63,6 +63,7 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError
         orders: Vec::new(),
         wall_s: 0.0,
         target: None,
+        symptoms: Vec::new(),
         points: Vec::new(),
     };
     let mut work = Work {
@@ -202,7 +203,7 @@ fn point(
 }
 
 /// Sorts steps, longest first, without duplicates.
-fn falling(steps_s: &[f64]) -> Vec<f64> {
+pub(super) fn falling(steps_s: &[f64]) -> Vec<f64> {
     let mut steps_s = steps_s.to_vec();
     steps_s.sort_by(|a, b| b.total_cmp(a));
     steps_s.dedup();

@@ -9,7 +9,8 @@
 //!                                                                     └─> rows
 //! ```
 //!
-//! The mean of a rung is over the study's scenes, a part of each; the worst
+//! The mean of a rung is over the study's scenes, a part of each, that of a
+//! symptom over the motions of symptoms; the worst
 //! is the worst *observed*, over those and hard [`inputs`] with breaks,
 //! matches and reversals. It is not a bound.
 
@@ -56,6 +57,9 @@ pub struct Row {
     /// Name of the rung in scene files, or of the effect in `crepitus
     /// effects`.
     pub subject: &'static str,
+    /// The form of the effect's law, if it has several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub form: Option<&'static str>,
     /// The convention of its joint.
     pub convention: Option<&'static str>,
     /// Whether it is a rung of the ladder.
@@ -63,7 +67,8 @@ pub struct Row {
     /// Relative error of the cycle frequency in f32 at the device's tick, the
     /// worst of the study's scenes; NaN without, or if events are wrong.
     pub frequency_error_rel: f64,
-    /// Mean cycles of a step on the study's scenes.
+    /// Mean cycles of a step on the study's scenes; of a symptom on the
+    /// [motions](crate::accuracy::symptoms::motions) of symptoms.
     pub mean_cycles: f64,
     /// Most cycles observed in a step.
     pub worst_cycles: u32,
@@ -156,6 +161,16 @@ fn is_studied(subject: Subject, scenes: &[StudyScene]) -> bool {
     })
 }
 
+impl Row {
+    /// What it is of, with the form in brackets: `cogwheel (space)`.
+    pub fn name(&self) -> String {
+        match self.form {
+            Some(form) => format!("{} ({form})", self.subject),
+            None => self.subject.to_owned(),
+        }
+    }
+}
+
 /// Whether a point has the device's precision and tick.
 fn is_on_the_device(point: &Point) -> bool {
     point.precision == Precision::F32.name()
@@ -211,7 +226,7 @@ struct SubjectCost {
 
 impl SubjectCost {
     fn add(&mut self, task: &Task<'_>, cost: &Cost) {
-        if task.scene.is_some() {
+        if task.is_usual {
             self.usual.add(cost);
         }
         if cost.worst_cycles > self.all.worst_cycles {
@@ -224,6 +239,7 @@ impl SubjectCost {
         let mean_cycles = self.usual.mean_cycles();
         Row {
             subject: subject.name(),
+            form: subject.form(),
             convention: subject.convention().map(Convention::name),
             is_rung: matches!(subject, Subject::Rung(..)),
             frequency_error_rel,
@@ -288,7 +304,10 @@ mod tests {
         let names: Vec<_> = on.rows.iter().map(|row| row.subject).collect();
         let rungs = ["exact", "exact-break", "exact-interpolated", "exact-events"];
         assert_eq!(names[..4], rungs);
-        assert_eq!((names[4], names.len()), ("input check", 8 + SPECS.len()));
+        let effects = Subject::all().filter(|s| matches!(s, Subject::Effect(..)));
+        let effects = effects.count();
+        assert!(effects > SPECS.len());
+        assert_eq!((names[4], names.len()), ("input check", 8 + effects));
         assert_eq!(
             (on.rows[3].worst_cycles, on.rows[4].worst_cycles),
             (100, 900)

@@ -19,10 +19,10 @@ use std::hint::black_box;
 use std::time::Duration;
 
 /// The most steps that one repeat times.
-const MOST_STEPS: u64 = 40_000;
+pub(super) const MOST_STEPS: u64 = 40_000;
 
 /// A short scene is run again until this many steps are timed.
-const LEAST_STEPS: u64 = 8_000;
+pub(super) const LEAST_STEPS: u64 = 8_000;
 
 /// A rung in a precision.
 pub type Contestant = (Solver, Precision);
@@ -70,7 +70,7 @@ pub fn time<E: From<SettingsError>>(
 
 /// The timed part of a scene, around the end of its first quarter: there the
 /// hand-like sine is fastest, and short steps do not cover its rest only.
-struct Track<'a> {
+pub(super) struct Track<'a> {
     scene: &'a StudyScene,
     step_s: f64,
     /// Cost of reading the clock in each chunk.
@@ -80,7 +80,7 @@ struct Track<'a> {
 }
 
 impl<'a> Track<'a> {
-    fn new(scene: &'a StudyScene, sampling: &Sampling<'_>) -> Self {
+    pub(super) fn new(scene: &'a StudyScene, sampling: &Sampling<'_>) -> Self {
         let length = sampling.steps().min(MOST_STEPS);
         let start = (sampling.steps() / 4).saturating_sub(length / 2);
         let most = usize::try_from(length).unwrap_or(usize::MAX);
@@ -96,7 +96,10 @@ impl<'a> Track<'a> {
         }
     }
 
-    fn ns_per_step(&self, (solver, precision): Contestant) -> Result<f64, SettingsError> {
+    pub(super) fn ns_per_step(
+        &self,
+        (solver, precision): Contestant,
+    ) -> Result<f64, SettingsError> {
         match precision {
             Precision::F32 => self.run(solver, &self.single),
             Precision::F64 => self.run(solver, &self.double),
@@ -153,7 +156,7 @@ impl<F: Real> JointVisitor<F> for Timed<'_, F> {
 }
 
 /// Median and spread.
-fn cost(times: &mut [f64]) -> Cost {
+pub(super) fn cost(times: &mut [f64]) -> Cost {
     times.sort_by(f64::total_cmp);
     let median = quantile(times, 0.5);
     Cost {

@@ -1,7 +1,7 @@
 //! The smallest set of a scene's effects within a tolerance, the effects that
 //! were dropped, and why the rest is kept.
 
-use super::hand::{Ended, events, hand_torque};
+use super::hand::{Ended, hand_torque};
 use super::influence::{Difference, Size, relative};
 use super::smallest::{Set, sets, smallest, without};
 use super::study::{TIMINGS, WholeRun};
@@ -200,14 +200,14 @@ impl Question<'_> {
         let most = rms_nm * rms_nm * ticks * (1.0 + 1e-9);
         let mut size = Size::default();
         let mut whole = self.whole.signal.iter();
-        let summary = hand_torque(scene, meter, |torque_nm| {
+        let felt = hand_torque(scene, meter, |torque_nm| {
             size.push(torque_nm - whole.next().copied().unwrap_or(f64::NAN));
             size.squares <= most && size.peak <= peak_nm
         })?;
         Ok(Difference {
             rms_nm: size.rms(),
             peak_nm: size.peak,
-            events_relative: relative(events(&summary), self.whole.events),
+            events_relative: relative(felt.events, self.whole.events),
         })
     }
 

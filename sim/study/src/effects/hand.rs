@@ -3,7 +3,7 @@
 use crate::parallel::Meter;
 use crepitus_model::Real;
 use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns};
-use crepitus_scene::trace::EventRecord;
+use crepitus_scene::trace::{EventRecord, SymptomEvent};
 use crepitus_scene::{RunError, Scene, Summary};
 
 /// Why a run has no result.
@@ -20,36 +20,45 @@ pub(super) enum Ended {
     Failed(String),
 }
 
+/// A completed run.
+#[derive(Debug)]
+pub(super) struct Felt {
+    /// What the run says of itself.
+    pub(super) summary: Summary,
+    /// Events of the joint, and those of symptoms without the play under them.
+    pub(super) events: u64,
+}
+
 /// Runs a scene. `on_torque` gets the torque of each tick, N·m, and returns
 /// whether to continue.
 pub(super) fn hand_torque(
     scene: &Scene,
     meter: &Meter,
     on_torque: impl FnMut(f64) -> bool,
-) -> Result<Summary, Ended> {
+) -> Result<Felt, Ended> {
     let mut scene = scene.clone();
     scene.trace_step_s = scene.step_s();
     let mut observer = HandTorqueObserver {
         place: place(&scene),
         on_torque,
         rows: 0,
+        symptom_events: 0,
         metered: 0,
         meter,
     };
     let result = run::run(&scene, &mut observer);
     // The rest of a run that ended early is done, too.
     meter.add(run::step_count(&scene).saturating_sub(observer.metered));
-    result.map_err(|e| match e {
+    let summary = result.map_err(|e| match e {
         RunError::Observer(ended) => ended,
         other => Ended::Failed(other.to_string()),
+    })?;
+    let of_joint = summary.events;
+    let of_joint = of_joint.map_or(0, |e| e.breaks + e.sticks + e.reverses);
+    Ok(Felt {
+        summary,
+        events: of_joint + observer.symptom_events,
     })
-}
-
-/// Number of events of a run; 0 without a joint.
-pub(super) fn events(summary: &Summary) -> u64 {
-    summary
-        .events
-        .map_or(0, |e| e.breaks + e.sticks + e.reverses)
 }
 
 /// Index of the torque at the hand in a row, if there is one.
@@ -66,6 +75,7 @@ struct HandTorqueObserver<'m, F> {
     place: Option<usize>,
     on_torque: F,
     rows: u64,
+    symptom_events: u64,
     /// Ticks already added to the meter.
     metered: u64,
     meter: &'m Meter,
@@ -98,6 +108,11 @@ impl<F: FnMut(f64) -> bool> Observer for HandTorqueObserver<'_, F> {
     }
 
     fn event(&mut self, _: &EventRecord) -> Result<(), Ended> {
+        Ok(())
+    }
+
+    fn symptom(&mut self, event: &SymptomEvent) -> Result<(), Ended> {
+        self.symptom_events += u64::from(!event.word.is_of_play());
         Ok(())
     }
 

@@ -80,7 +80,7 @@ pub enum Outcome {
 pub struct Ran {
     /// Torque at the hand.
     pub torque: Torque,
-    /// Events of the joint.
+    /// Events of the joint and of the other symptoms.
     pub events: u64,
     /// Contribution of the effect and of those dropped or added with it; `None`
     /// for the scene itself.

@@ -2,7 +2,7 @@
 
 use super::answer::{Answer, Question, answer, set_count};
 use super::build_up::build_up;
-use super::hand::{Ended, events, hand_torque, ticks};
+use super::hand::{Ended, hand_torque, ticks};
 use super::influence::{Size, TorqueStatistics};
 use super::refusal::{Refusal, refusal};
 use super::results::{Added, EffectsStudy, Outcome, Ran, Row};
@@ -136,23 +136,23 @@ fn whole<W: Watcher>(
         let count = step_count(scene);
         let mut signal = Vec::with_capacity(usize::try_from(count).unwrap_or(0));
         let mut statistics = TorqueStatistics::new(scene.step_s(), count);
-        let summary = hand_torque(scene, meter, |torque_nm| {
+        let felt = hand_torque(scene, meter, |torque_nm| {
             signal.push(torque_nm);
             statistics.push(torque_nm);
             true
         })?;
-        Ok((signal, statistics.finish(), summary))
+        Ok((signal, statistics.finish(), felt))
     })
     .map_err(EffectsError::Watcher)?;
     match runs.into_iter().next() {
-        Some(Ok((signal, torque, summary))) => {
-            let events = events(&summary);
+        Some(Ok((signal, torque, felt))) => {
+            let events = felt.events;
             let ran = Ran {
                 torque,
                 events,
                 added: None,
             };
-            Ok((WholeRun { signal, events }, ran, summary.warnings))
+            Ok((WholeRun { signal, events }, ran, felt.summary.warnings))
         }
         Some(Err(Ended::Failed(why))) => Err(EffectsError::Scene(why)),
         _ => Err(EffectsError::Scene("the run ended early".to_owned())),
@@ -178,7 +178,7 @@ fn run_variant(variant: &Variant, whole: &WholeRun, meter: &Meter) -> Result<Var
     let mut difference = Size::default();
     let mut profile = Profile::new(count);
     let mut own = whole.signal.iter();
-    let summary = hand_torque(scene, meter, |torque_nm| {
+    let felt = hand_torque(scene, meter, |torque_nm| {
         let apart = torque_nm - own.next().copied().unwrap_or(f64::NAN);
         statistics.push(torque_nm);
         difference.push(apart);
@@ -189,7 +189,7 @@ fn run_variant(variant: &Variant, whole: &WholeRun, meter: &Meter) -> Result<Var
     Ok(VariantRun {
         ran: Ran {
             torque: statistics.finish(),
-            events: events(&summary),
+            events: felt.events,
             added: None,
         },
         difference,

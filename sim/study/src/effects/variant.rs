@@ -1,6 +1,6 @@
 //! The variants of a scene: each effect left out, each absent one added.
 
-use crepitus_plant::effect::Effect;
+use crepitus_plant::effect::{Effect, Part};
 use crepitus_plant::effects::EFFECTS;
 use crepitus_scene::Scene;
 use serde::Serialize;
@@ -80,9 +80,20 @@ fn more(large: &Scene, small: &Scene, effect: &Effect) -> Vec<&'static str> {
         .collect()
 }
 
-/// Number of state variables of a scene; a shared one counts once.
+/// Number of state variables of a scene; one that parts of the mechanics share counts
+/// once. Effects of the device share none, though two may call theirs the same.
 pub fn states(scene: &Scene) -> usize {
-    let mut names: Vec<_> = scene.effects().into_iter().flat_map(|e| e.states).collect();
+    let mut names: Vec<_> = scene
+        .effects()
+        .into_iter()
+        .flat_map(|effect| {
+            let owner = match effect.part {
+                Part::Stage(_) => effect.name,
+                _ => "",
+            };
+            effect.states.iter().map(move |state| (owner, *state))
+        })
+        .collect();
     names.sort_unstable();
     names.dedup();
     names.len()
@@ -127,5 +138,9 @@ mod tests {
         assert_eq!((limb, hand), (2, 2));
         assert_eq!(states(&scene(&["limb", "hand"], 0.1)), 2);
         assert_eq!(states(&scene(&[], 0.1)), 0);
+        // The stretches of two plays are two.
+        let alone = ["lead-pipe", "clasp-knife"].map(|effect| states(&scene(&[effect], 0.1)));
+        let both = states(&scene(&["lead-pipe", "clasp-knife"], 0.1));
+        assert_eq!(both, alone[0] + alone[1]);
     }
 }

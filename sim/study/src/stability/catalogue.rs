@@ -1,6 +1,7 @@
 //! The catalogue of hard cases as data, in the order of their numbers.
 //!
-//! From H38 on are those that were added to detect planted faults. A case that
+//! From H38 to H56 are those that were added to detect planted faults, from H57 on those
+//! of symptoms besides crepitus. A case that
 //! ends in `L` is the long version of the one before it: hours of simulated
 //! time. To add a case, write a function like its neighbours in the file of its
 //! theme and give it a line in [`all`]; tests, matrix and report follow.
@@ -18,6 +19,11 @@ mod refusals;
 mod reversals;
 mod rounding;
 mod steady;
+mod symptom_energy;
+mod symptom_muscles;
+mod symptom_rigidity;
+mod symptom_tools;
+mod symptom_walls;
 mod ties;
 mod time;
 mod tools;
@@ -89,6 +95,25 @@ pub fn all() -> Vec<Case> {
         rounding::break_at_a_sample(),
         rounding::slip_without_lead(),
         gaps::retreat_in_a_gap(),
+        symptom_walls::rest_on_a_wall(),
+        symptom_walls::graze(),
+        symptom_walls::moved_wall(),
+        symptom_walls::stiffness_in_contact(),
+        symptom_walls::both_limits(),
+        symptom_rigidity::touched_limit(),
+        symptom_rigidity::cogwheel_at_rest(),
+        symptom_rigidity::cogwheel_reversal(),
+        symptom_rigidity::texture(),
+        symptom_rigidity::asperities_there_and_back(),
+        symptom_muscles::dither_at_the_threshold(),
+        symptom_muscles::last_condition(),
+        symptom_muscles::late_in_counts(),
+        symptom_muscles::turned_back(),
+        symptom_muscles::clonus(),
+        symptom_energy::returned_by_springs(),
+        symptom_energy::returned_by_muscles(),
+        symptom_energy::refused(),
+        symptom_walls::pressed_rotor(),
     ]
 }
 

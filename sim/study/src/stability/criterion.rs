@@ -4,6 +4,7 @@ mod words;
 
 use super::input::Input;
 use crepitus_model::EVENTS_PER_STEP;
+use crepitus_model::render::effects::symptom::Word;
 use crepitus_scene::scene::Precision;
 
 /// Common bounds of every trial: everything is finite, and no torque exceeds
@@ -144,6 +145,14 @@ pub enum Criterion {
         /// Tolerance outside, N·m.
         slack_nm: f64,
     },
+    /// From `from_s` on the torque moves by so much at most, from its lowest to its
+    /// highest.
+    TorqueQuiet {
+        /// From when, s.
+        from_s: f64,
+        /// N·m.
+        most_nm: f64,
+    },
     /// From `from_s` on every torque is the same, bit for bit.
     TorqueStays {
         /// From when, s.
@@ -228,6 +237,47 @@ pub enum Criterion {
         /// At most.
         most: f64,
     },
+    /// The symptom's own events are those of its reference, each within a tolerance.
+    SymptomEvents {
+        /// Seconds.
+        within_s: Limits,
+    },
+    /// The symptom's torque at the end of each step is that of its reference.
+    SymptomTorques {
+        /// N·m.
+        within_nm: Limits,
+    },
+    /// The symptoms' own events are these, in this order.
+    Words(&'static [Word]),
+    /// When something happens to the symptoms for the first time.
+    FirstWord {
+        /// What.
+        word: Word,
+        /// When it is due, s.
+        at_s: f64,
+        /// Seconds.
+        within_s: Limits,
+    },
+    /// How often something happens to the symptoms.
+    WordCount {
+        /// What.
+        word: Word,
+        /// At least.
+        least: u64,
+        /// At most.
+        most: u64,
+    },
+    /// Energy that the hand gets back over any time from the springs of symptoms, beyond
+    /// that of sampling, (½ + d)·σ·h·∫Ω²dt, as a share of T²/2σ.
+    SpringsReturn {
+        /// At most.
+        most: f64,
+    },
+    /// Energy that the hand gets back in any two seconds.
+    NetReturned {
+        /// At most, J.
+        most_j: f64,
+    },
     /// Every attempt is refused.
     Refused,
 }
@@ -244,6 +294,8 @@ impl Criterion {
                 | Self::TorqueBits(_)
                 | Self::TorqueStep { .. }
                 | Self::Subnormals { .. }
+                | Self::SymptomEvents { .. }
+                | Self::SymptomTorques { .. }
         )
     }
 

@@ -1,9 +1,11 @@
 //! The exact input of a joint in a trial, as data.
 
 mod device;
+mod symptom;
 mod words;
 
 pub use device::{Attempt, Change, Fault, Lost, Rendered, Shake};
+pub use symptom::{Pressed, RefusedSymptoms, SymptomRun};
 
 use crepitus_plant::Motion;
 use crepitus_plant::motion::{Strokes, VelocityKnot};
@@ -139,8 +141,14 @@ pub enum Input {
     },
     /// A frozen joint as the device renders it, with lost samples and commits.
     Rendered(Rendered),
+    /// Symptoms besides crepitus, as the device renders them.
+    Symptoms(SymptomRun),
+    /// A rotor that is pressed into a wall.
+    Pressed(Pressed),
     /// Settings and steps that must be refused.
     Refusals(Vec<Attempt>),
+    /// Symptoms that must be refused.
+    SymptomRefusals(Vec<RefusedSymptoms>),
 }
 
 impl Shaft {
@@ -212,19 +220,29 @@ impl Input {
             }
             | Self::Rendered(Rendered {
                 duration_s, step_s, ..
+            })
+            | Self::Symptoms(SymptomRun {
+                duration_s, step_s, ..
+            })
+            | Self::Pressed(Pressed {
+                duration_s, step_s, ..
             }) => Some((duration_s, step_s)),
             Self::Encoder {
                 duration_s,
                 rate_hz,
                 ..
             } => Some((duration_s, 1.0 / rate_hz)),
-            Self::Refusals(_) => None,
+            Self::Refusals(_) | Self::SymptomRefusals(_) => None,
         }
     }
 
     /// Whether it applies to the reference, which takes no samples.
     pub(super) fn suits_the_reference(&self) -> bool {
-        matches!(self, Self::Sampled { .. })
+        match self {
+            Self::Sampled { .. } => true,
+            Self::Symptoms(run) => run.suits_the_reference(),
+            _ => false,
+        }
     }
 
     /// Whether the joint needs the check of its input that the device has.

@@ -6,6 +6,7 @@ use super::subject::{Rung, Subject};
 use super::verdict::{Failure, Margin, Verdict};
 use crate::event_errors::EventErrors;
 use crate::matching::match_events;
+use crate::symptoms::event::{SymptomEvent, matched};
 use crate::true_events::{TimedEvent, TrueEvent};
 use crepitus_model::solver::Solver;
 use crepitus_model::{EventKind, Real};
@@ -183,8 +184,84 @@ fn of_a_device(criterion: &Criterion, seen: &Observation, precision: Precision) 
             }
         }
         Criterion::Returned { most } => number(seen.returned, *most, ""),
-        _ => Finding::Failed(Failure::Broken("no criterion of a device"), None),
+        _ => of_symptoms(criterion, seen, precision),
     }
+}
+
+/// Checks a criterion of symptoms besides crepitus.
+fn of_symptoms(criterion: &Criterion, seen: &Observation, precision: Precision) -> Finding {
+    let of = &seen.symptoms;
+    match criterion {
+        Criterion::SymptomEvents { within_s } => match &of.truth {
+            Some(truth) => symptom_events(seen, truth, within_s.of(precision)),
+            None => Finding::Failed(Failure::Broken("no reference"), None),
+        },
+        Criterion::SymptomTorques { within_nm } => match of.torque_error_nm {
+            Some(error_nm) => number(error_nm, within_nm.of(precision), "N·m"),
+            None => Finding::Failed(Failure::Broken("no reference"), None),
+        },
+        Criterion::Words(words) => {
+            let found = of.events.iter().map(|event| event.word);
+            if found.eq(words.iter().copied()) {
+                number(0.0, 0.0, "")
+            } else {
+                other_words(of.events.len(), words.len())
+            }
+        }
+        Criterion::FirstWord {
+            word,
+            at_s,
+            within_s,
+        } => match of.events.iter().find(|event| event.word == *word) {
+            Some(first) => number((first.time_s - at_s).abs(), within_s.of(precision), "s"),
+            None => Finding::Failed(Failure::Broken("it does not happen"), None),
+        },
+        Criterion::WordCount { word, least, most } => {
+            let own = of.events.iter().filter(|event| event.word == *word);
+            let found = u64::try_from(own.count()).unwrap_or(u64::MAX);
+            if (*least..=*most).contains(&found) {
+                number(0.0, 0.0, "")
+            } else {
+                let expected = if found < *least { *least } else { *most };
+                Finding::Failed(Failure::OtherEvents { found, expected }, None)
+            }
+        }
+        Criterion::TorqueQuiet { most_nm, .. } => {
+            let range = seen.late_torque;
+            number(range.high - range.low, *most_nm, "N·m")
+        }
+        Criterion::SpringsReturn { most } => number(of.returned, *most, ""),
+        Criterion::NetReturned { most_j } => number(of.net_returned_j, *most_j, "J"),
+        _ => Finding::Failed(Failure::Broken("no criterion of symptoms"), None),
+    }
+}
+
+/// Checks the events of a symptom and their times.
+fn symptom_events(seen: &Observation, truth: &[SymptomEvent], within_s: f64) -> Finding {
+    let found = &seen.symptoms.events;
+    let matching = matched(truth, found, seen.step_s, seen.duration_s());
+    if matching.unmatched > 0 {
+        return other_words(found.len(), truth.len());
+    }
+    let errors_s = matching.pairs.iter().filter_map(|&(i, j)| {
+        let (truth, found) = (truth.get(i)?, found.get(j)?);
+        Some((found.time_s - truth.time_s).abs())
+    });
+    number(errors_s.fold(0.0, f64::max), within_s, "s")
+}
+
+/// Other events than expected.
+fn other_words(found: usize, expected: usize) -> Finding {
+    let count = |n: usize| u64::try_from(n).unwrap_or(u64::MAX);
+    let failure = if found == expected {
+        Failure::Broken("other events in the same number")
+    } else {
+        Failure::OtherEvents {
+            found: count(found),
+            expected: count(expected),
+        }
+    };
+    Finding::Failed(failure, None)
 }
 
 /// Checks a criterion of the torque over time.
@@ -310,5 +387,7 @@ fn nearest(count: f64) -> u64 {
     (count + 0.5).whole()
 }
 
+#[cfg(test)]
+mod symptom_tests;
 #[cfg(test)]
 mod tests;

@@ -169,7 +169,9 @@ fn late_s(trial: &Trial) -> f64 {
         .criteria
         .iter()
         .find_map(|criterion| match criterion {
-            Criterion::TorqueWithin { from_s, .. } => Some(*from_s),
+            Criterion::TorqueWithin { from_s, .. } | Criterion::TorqueQuiet { from_s, .. } => {
+                Some(*from_s)
+            }
             _ => None,
         })
         .unwrap_or(0.0)
@@ -260,6 +262,7 @@ impl<W: Watcher> Work<'_, W> {
         let seen = match (seen, reason) {
             (_, Some(why)) => return Err(StudyError::Watcher(why)),
             (Err(StudyError::Settings(error)), None) => return Err(error.into()),
+            (Err(StudyError::Symptom(error)), None) => return Err(error.into()),
             (Err(StudyError::Watcher(Stopped)), None) => unreachable!("it has a reason"),
             (Ok(seen), None) => seen,
         };

@@ -1,5 +1,6 @@
 //! Observation of a run.
 
+use crate::symptoms::SymptomEvent;
 use crate::true_events::TimedEvent;
 use crepitus_model::{EventKind, Real, Sense};
 
@@ -59,6 +60,25 @@ pub(super) struct Observation {
     pub(super) guard_ticks: u64,
     /// Attempts that were accepted by mistake.
     pub(super) accepted: Vec<&'static str>,
+    /// Of symptoms besides crepitus.
+    pub(super) symptoms: SymptomsSeen,
+}
+
+/// Observation of symptoms besides crepitus.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SymptomsSeen {
+    /// Their own events.
+    pub(super) events: Vec<SymptomEvent>,
+    /// Those of the reference, if it solves the input.
+    pub(super) truth: Option<Vec<SymptomEvent>>,
+    /// Largest error of the torque at the end of a step, if the reference solves the
+    /// input, N·m.
+    pub(super) torque_error_nm: Option<f64>,
+    /// The most that a hand got back at once beyond what sampling generates, as a share
+    /// of what the stretched springs hold at the largest torque.
+    pub(super) returned: f64,
+    /// The most that a hand got back within two seconds, J.
+    pub(super) net_returned_j: f64,
 }
 
 impl Observation {

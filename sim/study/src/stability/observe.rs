@@ -45,6 +45,15 @@ pub(super) fn observe(
     if let Input::Refusals(attempts) = input {
         return Ok(attempt(subject, attempts));
     }
+    if let Input::SymptomRefusals(attempts) = input {
+        return Ok(super::symptom::attempt(attempts));
+    }
+    if let Input::Pressed(pressed) = input {
+        return Ok(super::pressed::observe(subject, pressed, late_s));
+    }
+    if let Input::Symptoms(run) = input {
+        return super::symptom::observe(subject, run, late_s);
+    }
     let Rung::Ladder(solver) = subject.solver else {
         return Ok(without_steps(settings, input, late_s)?);
     };

@@ -31,7 +31,12 @@ pub(super) fn motion(input: &Input) -> Motion {
         | Input::Rendered(Rendered { shaft, .. }) => shaft.motion(),
         Input::Repeated { omega_rad_s, .. } => Shaft::Constant(*omega_rad_s).motion(),
         Input::ShakingHand { shake, .. } => shake.motion(),
-        Input::White { .. } | Input::Hand { .. } | Input::Refusals(_) => Motion::constant(0.0),
+        Input::Symptoms(run) => run.hand.motion(),
+        Input::White { .. }
+        | Input::Hand { .. }
+        | Input::Pressed(_)
+        | Input::Refusals(_)
+        | Input::SymptomRefusals(_) => Motion::constant(0.0),
     }
 }
 
@@ -129,7 +134,10 @@ pub(super) fn source<'a, F: Real>(
         Input::ParameterChanges { .. }
         | Input::ShakingHand { .. }
         | Input::Rendered(_)
-        | Input::Refusals(_) => Box::new(Same {
+        | Input::Symptoms(_)
+        | Input::Pressed(_)
+        | Input::Refusals(_)
+        | Input::SymptomRefusals(_) => Box::new(Same {
             step: ShaftStep::default(),
             left: 0,
         }),

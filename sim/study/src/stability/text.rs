@@ -4,7 +4,7 @@ use std::fmt;
 
 /// A number with the fewest digits: `0.5`, `1e-12`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Plain(pub f64);
+pub(crate) struct Plain(pub f64);
 
 impl fmt::Display for Plain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -19,7 +19,7 @@ impl fmt::Display for Plain {
 
 /// A duration in a suitable unit.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Time(pub f64);
+pub(crate) struct Time(pub f64);
 
 impl fmt::Display for Time {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -9,6 +9,7 @@ use crepitus_model::Convention;
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::orders::{Order, Orders};
 use crepitus_study::accuracy::points_table::points_table;
+use crepitus_study::accuracy::symptoms::table::symptoms_table;
 use crepitus_study::accuracy::{Point, Study};
 use crepitus_study_pages::{Section, StudyText, accuracy};
 
@@ -18,13 +19,22 @@ pub(super) fn files(
     summary: &Summary<'_>,
     pictures: &Pictures,
 ) -> Result<Files, Failure> {
-    let page = accuracy::html(&study.points, study.target.as_ref(), &text(study, summary));
+    let page = accuracy::html(
+        &study.points,
+        &study.symptoms,
+        study.target.as_ref(),
+        &text(study, summary),
+    );
     let pictures = pictures.files(|| accuracy::pictures(&study.points))?;
     let mut files = report_files(page, summary, pictures)?;
     files.push((
         "points.csv".to_owned(),
         points_table(&study.points).to_csv().into(),
     ));
+    if !study.symptoms.is_empty() {
+        let table = symptoms_table(&study.symptoms);
+        files.push(("symptoms.csv".to_owned(), table.to_csv().into()));
+    }
     Ok(files)
 }
 

@@ -76,7 +76,7 @@ fn push(text: &mut String, row: &Row) {
     let _ = writeln!(
         text,
         "| {} | {} | {frequency} | {:.0} | {} | {} | {:.0} | {} | {:.1} |",
-        row.subject,
+        row.name(),
         row.convention.unwrap_or("–"),
         row.mean_cycles,
         row.worst_cycles,

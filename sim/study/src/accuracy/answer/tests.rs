@@ -169,6 +169,7 @@ fn what_is_not_known_fails_in_torque_and_passes_where_there_is_no_event() {
 fn target(rungs: &[(&'static str, f64, u32)]) -> OnTarget {
     let row = |&(subject, mean_cycles, worst_cycles): &(&'static str, f64, u32)| Row {
         subject,
+        form: None,
         convention: Some("frozen"),
         is_rung: true,
         frequency_error_rel: 1e-8,

@@ -11,9 +11,11 @@
 //! | `extremes` | numbers at and beyond every limit | effects |
 //!
 //! The effects get their inputs in the device: counts of the encoder, jumps of
-//! the rendered torque, the commanded current.
+//! the rendered torque, the commanded current. Symptoms depend on the joint's angle:
+//! they have motions and hard inputs of their own, see `symptoms`.
 
 mod device;
+mod symptoms;
 
 use crate::accuracy::scenes::StudyScene;
 use crate::sampling::Sampling;
@@ -60,6 +62,8 @@ pub struct Task<'a> {
     pub name: String,
     /// The scene that it is a part of.
     pub scene: Option<&'a StudyScene>,
+    /// The mean is over these.
+    pub is_usual: bool,
     /// The plan.
     pub plan: Plan,
     /// Its inputs.
@@ -79,6 +83,9 @@ pub fn tasks(
     scenes: &[StudyScene],
     lengths: Lengths,
 ) -> Result<Vec<Task<'_>>, SettingsError> {
+    if symptoms::is_symptom(subject) {
+        return symptoms::tasks(subject, lengths);
+    }
     let first = scenes.first().map(|scene| scene.settings.convention);
     let convention = subject.convention().or(first);
     let mut tasks = Vec::new();
@@ -93,6 +100,7 @@ pub fn tasks(
             tasks.push(Task {
                 name: scene.name.clone(),
                 scene: Some(scene),
+                is_usual: true,
                 plan,
                 inputs: device::usual(&plan, &motion)?,
             });
@@ -101,6 +109,7 @@ pub fn tasks(
     let hard = |name: &str, plan, inputs| Task {
         name: name.to_owned(),
         scene: None,
+        is_usual: false,
         plan,
         inputs,
     };

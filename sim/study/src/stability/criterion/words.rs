@@ -172,6 +172,60 @@ fn of_a_device(criterion: &Criterion, f: &mut fmt::Formatter<'_>) -> fmt::Result
             f,
             "the hand gets back at most {most:.4} Ts²/2kr + (½ + d) kr h ∫Ω² dt"
         ),
+        other => of_symptoms(other, f),
+    }
+}
+
+/// Criteria of symptoms besides crepitus.
+fn of_symptoms(criterion: &Criterion, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    match criterion {
+        Criterion::TorqueQuiet { from_s, most_nm } => write!(
+            f,
+            "torque moves by at most {} N·m from {} on",
+            Plain(*most_nm),
+            Time(*from_s)
+        ),
+        Criterion::SymptomEvents { within_s } => write!(
+            f,
+            "same events as the symptom's reference, each within {}",
+            Number(within_s, "s")
+        ),
+        Criterion::SymptomTorques { within_nm } => write!(
+            f,
+            "torque at the ends of steps that of the symptom's reference within {}",
+            Number(within_nm, "N·m")
+        ),
+        Criterion::Words([]) => f.write_str("no event"),
+        Criterion::Words(words) => {
+            let names: Vec<_> = words.iter().map(|word| word.name()).collect();
+            write!(f, "events in their order: {}", names.join(", "))
+        }
+        Criterion::FirstWord {
+            word,
+            at_s,
+            within_s,
+        } => write!(
+            f,
+            "the first {} at {} within {}",
+            word.name(),
+            Time(*at_s),
+            Number(within_s, "s")
+        ),
+        Criterion::WordCount { word, least, most } if least == most => {
+            write!(f, "{} happens {most} times", word.name())
+        }
+        Criterion::WordCount { word, least, most } => {
+            write!(f, "{} happens {least} to {most} times", word.name())
+        }
+        Criterion::SpringsReturn { most } => write!(
+            f,
+            "the hand gets back at most {most:.4} T²/2σ + (½ + d) σ h ∫Ω² dt"
+        ),
+        Criterion::NetReturned { most_j } => write!(
+            f,
+            "the hand gets back at most {} J in any 2 s",
+            Plain(*most_j)
+        ),
         _ => f.write_str("nothing"),
     }
 }

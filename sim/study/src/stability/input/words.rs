@@ -121,6 +121,14 @@ impl fmt::Display for Input {
             }
             Self::ShakingHand { shake, .. } => write!(f, "{shake}")?,
             Self::Rendered(rendered) => write!(f, "{rendered}")?,
+            Self::Symptoms(run) => write!(f, "{run}")?,
+            Self::Pressed(pressed) => write!(f, "{pressed}")?,
+            Self::SymptomRefusals(attempts) => {
+                for (i, attempt) in attempts.iter().enumerate() {
+                    let comma = if i == 0 { "" } else { ", " };
+                    write!(f, "{comma}{}", attempt.what)?;
+                }
+            }
             Self::Refusals(attempts) => {
                 for (i, attempt) in attempts.iter().enumerate() {
                     let comma = if i == 0 { "" } else { ", " };

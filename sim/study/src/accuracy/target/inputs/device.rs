@@ -19,7 +19,7 @@ pub(super) fn usual(plan: &Plan, motion: &[ShaftStep<f32>]) -> Result<Vec<Input>
             motion.iter().map(taken).collect()
         }
         Subject::Encoder => counts(motion),
-        Subject::Effect(_) => rendered(plan, motion)?
+        Subject::Effect(..) => rendered(plan, motion)?
             .iter()
             .zip(motion)
             .map(|((_, jump_nm), step)| input([step.delta_phi_rad, step.omega_end_rad_s, *jump_nm]))
@@ -101,7 +101,7 @@ pub(super) fn extremes() -> Vec<Input> {
     pairs.collect()
 }
 
-fn taken(step: &ShaftStep<f32>) -> Input {
+pub(super) fn taken(step: &ShaftStep<f32>) -> Input {
     let numbers = [
         step.delta_phi_rad,
         step.omega_start_rad_s,

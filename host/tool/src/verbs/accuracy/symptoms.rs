@@ -1,0 +1,116 @@
+//! The symptoms besides crepitus, as a table for the terminal and for a page of the
+//! book.
+
+use super::words;
+use crepitus_scene::scene::Precision;
+use crepitus_study::accuracy::symptoms::SymptomPoint;
+use crepitus_study::accuracy::target::inputs::TICK_S;
+use crepitus_table::show::{fixed, scientific};
+use std::fmt::Write;
+
+/// At the device's tick, or the studied step that is nearest to it.
+pub(super) fn table(points: &[SymptomPoint]) -> String {
+    let away = |h: f64| (h / TICK_S).ln().abs();
+    let steps = points.iter().map(|p| p.step_s);
+    let Some(step_s) = steps.min_by(|a, b| away(*a).total_cmp(&away(*b))) else {
+        return String::new();
+    };
+    let mut text = format!(
+        "The other symptoms at a step of {}, against the reference:\n\n\
+         | symptom | events | f64: event, s | torque, N·m | RMS | f32: event, s | torque, N·m | RMS | f32: × crepitus |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+        words::step(step_s)
+    );
+    let here = || points.iter().filter(|p| p.step_s == step_s);
+    for single in here().filter(|p| p.precision == Precision::F32.name()) {
+        let is_double = |p: &&SymptomPoint| {
+            p.precision == Precision::F64.name()
+                && (p.symptom, p.form) == (single.symptom, single.form)
+        };
+        push(&mut text, single, here().find(is_double));
+    }
+    text
+}
+
+fn push(text: &mut String, single: &SymptomPoint, double: Option<&SymptomPoint>) {
+    let name = single.name();
+    let errors = |p: Option<&SymptomPoint>| {
+        p.map_or_else(
+            || "– | – | –".to_owned(),
+            |p| {
+                format!(
+                    "{} | {} | {}",
+                    event(p),
+                    scientific(p.max_tick_torque_error_nm),
+                    scientific(p.rms_tick_torque_error_nm)
+                )
+            },
+        )
+    };
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        text,
+        "| {name} | {} | {} | {} | {} |",
+        single.events_true,
+        errors(double),
+        errors(Some(single)),
+        fixed::<1>(single.time_ratio)
+    );
+}
+
+/// The worst error of an event, or how many have no partner.
+fn event(p: &SymptomPoint) -> String {
+    match (p.unmatched, p.events_true) {
+        (0, 0) => "–".to_owned(),
+        (0, _) => scientific(p.max_event_error_s),
+        (unmatched, _) => format!("{unmatched} unmatched"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(
+        form: Option<&'static str>,
+        precision: &'static str,
+        step_s: f64,
+        unmatched: u64,
+    ) -> SymptomPoint {
+        SymptomPoint {
+            symptom: "cogwheel",
+            form,
+            precision,
+            step_s,
+            events: 40,
+            events_true: 40,
+            unmatched,
+            max_event_error_s: 1.5e-8,
+            rms_event_error_s: 1e-9,
+            max_tick_torque_error_nm: 2.5e-6,
+            rms_tick_torque_error_nm: 3e-7,
+            ns_per_step: 12.5,
+            time_ratio: 6.25,
+            time_spread: 0.01,
+        }
+    }
+
+    #[test]
+    fn a_line_has_both_precisions_at_the_tick() {
+        let text = table(&[
+            point(Some("time"), "f64", 1e-3, 0),
+            point(Some("time"), "f64", 5e-5, 0),
+            point(Some("time"), "f32", 5e-5, 2),
+            point(Some("space"), "f32", 5e-5, 0),
+        ]);
+        assert!(text.contains("at a step of 50 µs"), "{text}");
+        let lines: Vec<&str> = text.lines().filter(|l| l.starts_with('|')).collect();
+        assert_eq!(lines.len(), 4, "{text}");
+        assert_eq!(
+            lines[2],
+            "| cogwheel (time) | 40 | 1.5e-8 | 2.5e-6 | 3.0e-7 | 2 unmatched | 2.5e-6 | 3.0e-7 | 6.2 |"
+        );
+        assert!(lines[3].contains("| – | – | – | 1.5e-8 |"), "{text}");
+        assert_eq!(table(&[]), "");
+    }
+}

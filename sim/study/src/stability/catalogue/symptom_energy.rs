@@ -1,0 +1,235 @@
+//! Energy that a hand gets back from symptoms, and settings that must be refused.
+
+use super::symptom_tools::{renders_symptoms, trial, under};
+use crate::stability::case::{Case, Trial, located};
+use crate::stability::criterion::Criterion;
+use crate::stability::input::{Input, RefusedSymptoms, SymptomRun};
+use crate::stability::subject::Rung;
+use crate::symptoms::{Given, Hand};
+use crepitus_model::Settings;
+use crepitus_model::render::effects::{TANK_J, TANK_REFILL_W};
+
+/// The symptoms that are springs, each stiff and strong.
+fn springs() -> [Given; 6] {
+    [
+        Given::new(
+            "range-limit",
+            &[
+                ("extension_limit_deg", 50.0),
+                ("flexion_limit_deg", 70.0),
+                ("extension_stiffness_nm_per_rad", 300.0),
+                ("extension_stiffening_nm_per_rad2", 0.0),
+                ("flexion_stiffness_nm_per_rad", 300.0),
+                ("flexion_stiffening_nm_per_rad2", 0.0),
+            ],
+            &[],
+        ),
+        Given::new("lead-pipe", &[], &[]),
+        Given::new("cogwheel", &[], &[]),
+        Given::new(
+            "spasticity",
+            &[("threshold_deg", 70.0)],
+            &[("form", "catch")],
+        ),
+        Given::new(
+            "clasp-knife",
+            &[
+                ("onset_deg", 50.0),
+                ("release_deg", 75.0),
+                ("rearm_deg", 2.0),
+            ],
+            &[],
+        ),
+        Given::new("texture", &[], &[]),
+    ]
+}
+
+pub(super) fn returned_by_springs() -> Case {
+    Case {
+        id: "H72",
+        name: "play-energy",
+        title: "Random hands get no more from a play than its spring holds",
+        hard: "A wall, a catch, a tooth give energy back if what the hand stretched is more at the end than at the beginning: with a \
+               limit that jumps up under the leg, or a spring whose end is not taken along. What returns is the spring's energy and that \
+               of sampling, with the torque 0, 1 or 2 ticks late.",
+        source: "docs/symptoms.md, The play: E ≤ T₀²/2σ + (½ + d)·σ·h·∫Ω² dt",
+        long: false,
+        must: located,
+        trials: |subject| {
+            if !renders_symptoms(subject) || subject.solver == Rung::Reference {
+                return Vec::new();
+            }
+            let mut trials = Vec::new();
+            for given in springs() {
+                for seed in 1..=4 {
+                    for delay_ticks in 0..=2 {
+                        let hand = Hand::Wander {
+                            about_deg: 60.0,
+                            deg_s: 200.0,
+                            seed,
+                        };
+                        let run = SymptomRun {
+                            delay_ticks,
+                            ..under(&given, hand, 4.0)
+                        };
+                        trials.push(trial(run, [Criterion::SpringsReturn { most: 1.0 }]));
+                    }
+                }
+            }
+            trials
+        },
+    }
+}
+
+pub(super) fn returned_by_muscles() -> Case {
+    Case {
+        id: "H73",
+        name: "tank",
+        title: "A hand that goes with a reflex and with the beats of clonus",
+        hard: "Both push. A reflex gives energy above 3.7 Hz, beats to whoever moves with them. One tank of 0.2 J with 0.04 W pays for \
+               both, so that no hand gets more than 0.28 J in any 2 s, however late the torque is.",
+        source: "docs/symptoms.md, Sum, tank and limits",
+        long: false,
+        must: located,
+        trials: |subject| {
+            if !renders_symptoms(subject) || subject.solver == Rung::Reference {
+                return Vec::new();
+            }
+            let reflex = Given::new(
+                "spasticity",
+                &[("gain_nm_per_rad", 20.0), ("threshold_deg", 60.0)],
+                &[("form", "reflex")],
+            );
+            let clonus = Given::new(
+                "clonus",
+                &[
+                    ("amplitude_nm", 4.5),
+                    ("hold_deg", 58.0),
+                    ("hysteresis_deg", 30.0),
+                ],
+                &[],
+            );
+            let mut trials = Vec::new();
+            for symptoms in [
+                vec![reflex.clone()],
+                vec![clonus.clone()],
+                vec![reflex, clonus],
+            ] {
+                for frequency_hz in [4.5, 6.0, 8.0] {
+                    for delay_ticks in 0..=2 {
+                        let hand = Hand::Sine {
+                            centre_deg: 60.0,
+                            amplitude_deg: 8.0,
+                            frequency_hz,
+                        };
+                        let run = SymptomRun {
+                            symptoms: symptoms.clone(),
+                            delay_ticks,
+                            ..under(&Given::new("clonus", &[], &[]), hand, 6.0)
+                        };
+                        trials.push(trial(
+                            run,
+                            [Criterion::NetReturned {
+                                most_j: TANK_J + 2.0 * TANK_REFILL_W,
+                            }],
+                        ));
+                    }
+                }
+            }
+            trials
+        },
+    }
+}
+
+pub(super) fn refused() -> Case {
+    Case {
+        id: "H74",
+        name: "bad-symptoms",
+        title: "Symptoms that a device must refuse",
+        hard: "A reflex that is later than its muscle is stretched gives energy at every speed; a wall that is too stiff, or that loses \
+               nothing, rings; together they may be stiffer than dry friction keeps quiet. NaN passes every comparison that is \
+               written the wrong way round.",
+        source: "docs/symptoms.md, Sum, tank and limits",
+        long: false,
+        must: located,
+        trials: |subject| {
+            if !renders_symptoms(subject) || subject.solver == Rung::Reference {
+                return Vec::new();
+            }
+            let wall = |k1: f64, k2: f64, loss: f64| {
+                Given::new(
+                    "range-limit",
+                    &[
+                        ("flexion_stiffness_nm_per_rad", k1),
+                        ("flexion_stiffening_nm_per_rad2", k2),
+                        ("flexion_loss", loss),
+                    ],
+                    &[],
+                )
+            };
+            let one = |effect, numbers: &[(&'static str, f64)]| Given::new(effect, numbers, &[]);
+            let reflex = |numbers: &[(&'static str, f64)]| {
+                Given::new("spasticity", numbers, &[("form", "reflex")])
+            };
+            let nan = f64::NAN;
+            let attempts = vec![
+                ("a wall of 1,001 N·m/rad", vec![wall(600.0, 0.0, 0.401)]),
+                (
+                    "a wall of 401 N·m/rad without a loss",
+                    vec![wall(401.0, 0.0, 0.0)],
+                ),
+                (
+                    "ends of the range 4.9° apart",
+                    vec![one(
+                        "range-limit",
+                        &[("extension_limit_deg", 50.0), ("flexion_limit_deg", 54.9)],
+                    )],
+                ),
+                (
+                    "1,236 N·m/rad together",
+                    vec![
+                        wall(300.0, 0.0, 0.25),
+                        one("lead-pipe", &[("torque_nm", 2.2), ("presliding_deg", 0.5)]),
+                        one("texture", &[("stiffness_nm_per_rad", 400.0)]),
+                        one("clasp-knife", &[("catch_stiffness_nm_per_rad", 190.0)]),
+                    ],
+                ),
+                (
+                    "a reflex with μ < τd + τa",
+                    vec![reflex(&[("velocity_shift_s", 0.059)])],
+                ),
+                (
+                    "a reflex with μ = NaN",
+                    vec![reflex(&[("velocity_shift_s", nan)])],
+                ),
+                (
+                    "a clasp-knife that is released before its onset",
+                    vec![one(
+                        "clasp-knife",
+                        &[("onset_deg", 75.0), ("release_deg", 30.0)],
+                    )],
+                ),
+                (
+                    "a texture whose spring is too soft for its teeth",
+                    vec![one("texture", &[("stiffness_nm_per_rad", 30.0)])],
+                ),
+                (
+                    "a rigidity of NaN N·m",
+                    vec![one("lead-pipe", &[("torque_nm", nan)])],
+                ),
+                (
+                    "a cogwheel of 0 Hz",
+                    vec![one("cogwheel", &[("frequency_hz", 0.0)])],
+                ),
+            ];
+            let attempts = attempts
+                .into_iter()
+                .map(|(what, symptoms)| RefusedSymptoms { what, symptoms });
+            vec![Trial {
+                settings: Settings::default(),
+                input: Input::SymptomRefusals(attempts.collect()),
+                criteria: vec![Criterion::Refused],
+            }]
+        },
+    }
+}

@@ -1,0 +1,315 @@
+//! Symptoms besides crepitus under a hand, as the device renders them: the check of its
+//! input, its switched effects, and the tank.
+
+mod energy;
+
+use super::input::{RefusedSymptoms, SymptomRun};
+use super::observation::{Observation, SymptomsSeen};
+use super::observe::{Stopped, bits};
+use super::parameter_changes::SLEW_NM_PER_S;
+use super::subject::{Rung, Subject};
+use crate::sampling::Sampling;
+use crate::symptoms::errors::{Errors, Truth};
+use crate::symptoms::event::{SymptomEvent, own};
+use crate::symptoms::truth::{true_events, true_torques};
+use crate::symptoms::{Given, follow};
+use crate::watcher::StudyError;
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
+use crepitus_model::render::effects::symptom::Change;
+use crepitus_model::render::effects::{EffectSettings, EffectSpec, SwitchedEffects, Timing};
+use crepitus_model::render::input_check::{InputCheck, InputLimits};
+use crepitus_model::render::position::{Position, Sight};
+use crepitus_model::render::{Addition, Check, Seen, Shown};
+use crepitus_model::{Real, Sample, SettingsError, ShaftStep};
+use crepitus_plant::encoder::Encoder;
+use crepitus_scene::scene::Precision;
+use energy::Energy;
+
+/// The torque is compared with the reference's at most so often.
+const MOST_COMPARED: u64 = 50_000;
+
+/// Runs symptoms on an input; the late torque is that after `late_s`.
+pub(super) fn observe(
+    subject: Subject,
+    run: &SymptomRun,
+    late_s: f64,
+) -> Result<Observation, StudyError<Stopped>> {
+    let motion = run.hand.motion();
+    let sampling = Sampling::new(&motion, run.duration_s, run.step_s);
+    let here = Here {
+        run,
+        sampling,
+        late_step: (late_s / run.step_s).ceil().whole(),
+    };
+    if subject.solver == Rung::Reference {
+        return here.by_reference();
+    }
+    let (mut seen, torques_nm) = match subject.precision {
+        Precision::F32 => here.stepped::<f32>()?,
+        Precision::F64 => here.stepped::<f64>()?,
+    };
+    if let ([given], true) = (run.symptoms.as_slice(), run.suits_the_reference()) {
+        let stride = sampling.steps() / MOST_COMPARED + 1;
+        let truth = Truth::new(given, &motion, &sampling, stride)?;
+        let mut errors = Errors::default();
+        let strided: Vec<f64> = (1_u64..)
+            .zip(torques_nm)
+            .filter_map(|(n, nm)| n.is_multiple_of(stride).then_some(nm))
+            .collect();
+        errors.compare(&sampling, &truth, &seen.symptoms.events, &strided);
+        seen.symptoms.torque_error_nm = Some(errors.torque_nm.most());
+        seen.symptoms.truth = Some(truth.events);
+    }
+    Ok(seen)
+}
+
+/// Which of these are accepted.
+pub(super) fn attempt(attempts: &[RefusedSymptoms]) -> Observation {
+    let accepts =
+        |attempt: &&RefusedSymptoms| Given::settings_of(&attempt.symptoms).check(None).is_ok();
+    Observation {
+        accepted: attempts.iter().filter(accepts).map(|a| a.what).collect(),
+        ..Observation::default()
+    }
+}
+
+struct Here<'a> {
+    run: &'a SymptomRun,
+    sampling: Sampling<'a>,
+    /// First step of the late torque.
+    late_step: u64,
+}
+
+impl Here<'_> {
+    fn by_reference(&self) -> Result<Observation, StudyError<Stopped>> {
+        let mut seen = self.begun();
+        let Some(given) = self.run.symptoms.first() else {
+            return Ok(seen);
+        };
+        let (sampling, motion) = (&self.sampling, self.run.hand.motion());
+        let times_s = (1..=sampling.steps()).map(|n| sampling.time_s(n, 0.0));
+        for torque_nm in true_torques(given, &motion, times_s)? {
+            self.row::<f64>(&mut seen, torque_nm);
+        }
+        seen.symptoms.events = own(true_events(given, &motion, sampling.end_s())?);
+        seen.tally.last_s = seen.symptoms.events.last().map(|event| event.time_s);
+        Ok(seen)
+    }
+
+    fn begun(&self) -> Observation {
+        Observation {
+            step_s: self.run.step_s,
+            ..Observation::default()
+        }
+    }
+
+    /// Records the torque of a tick.
+    fn row<F: Real>(&self, seen: &mut Observation, torque_nm: f64) {
+        let now_s = self.sampling.time_s(seen.steps, 0.0);
+        seen.steps += 1;
+        if !torque_nm.is_finite() {
+            seen.overflow_s.get_or_insert(now_s);
+        }
+        if seen.steps > self.late_step {
+            seen.late_torque.add(torque_nm);
+        }
+        let moved_nm = (torque_nm - seen.last_torque_nm).abs();
+        seen.largest_step_nm = seen.largest_step_nm.max(moved_nm);
+        seen.last_torque_nm = torque_nm;
+        seen.torque.add(torque_nm);
+        seen.torque_bits.add(bits::<F>(torque_nm));
+        seen.mirrored_bits.add(bits::<F>(-torque_nm));
+    }
+
+    /// With the torque at the end of each step, N·m.
+    fn stepped<F: Real>(&self) -> Result<(Observation, Vec<f64>), SettingsError> {
+        let (run, step_s) = (self.run, self.run.step_s);
+        let mut view = View::<F>::new(run, &self.sampling)?;
+        let mut device = Device::<F>::new(run, view.sight, &view.place)?;
+        let mut seen = self.begun();
+        let mut torques_nm = Vec::new();
+        let mut energy = Energy::new(device.now.stiffness_nm_per_rad(None), run);
+        let mut events = Vec::new();
+        for n in 1..=self.sampling.steps() {
+            let from_s = self.sampling.time_s(n - 1, 0.0);
+            for (at_s, symptoms) in &run.commits {
+                if (from_s..from_s + step_s).contains(at_s) {
+                    device.commit(Given::settings_of(symptoms))?;
+                }
+            }
+            let is_lost = run.lost.takes(n, step_s);
+            let (sample, travel_rad) = view.sample(is_lost);
+            let torque_nm = device.tick(sample, view.place, |change| {
+                let fraction = change.fraction.to_f64();
+                let missed = f64::from_whole(view.missed);
+                events.push(SymptomEvent {
+                    time_s: self
+                        .sampling
+                        .time_s(n - 1, fraction * (missed + 1.0) - missed),
+                    word: change.word,
+                    omega_rad_s: omega_rad_s(&sample, fraction),
+                    before_nm: change.before_nm.to_f64(),
+                    after_nm: change.after_nm.to_f64(),
+                });
+            });
+            view.missed = if is_lost { view.missed + 1 } else { 0 };
+            energy.tick(travel_rad, torque_nm);
+            self.row::<F>(&mut seen, torque_nm);
+            torques_nm.push(torque_nm);
+        }
+        let events = own(events);
+        seen.tally.last_s = events.last().map(|event| event.time_s);
+        seen.symptoms = SymptomsSeen {
+            events,
+            returned: energy.returned(),
+            net_returned_j: energy.net_returned_j(),
+            ..SymptomsSeen::default()
+        };
+        Ok((seen, torques_nm))
+    }
+}
+
+/// The effects of an armed device.
+struct Device<F: Real> {
+    effects: SwitchedEffects<F>,
+    check: InputCheck<F>,
+    now: EffectSettings,
+    timing: Timing,
+}
+
+impl<F: Real> Device<F> {
+    fn new(run: &SymptomRun, sight: Sight, place: &Position<F>) -> Result<Self, SettingsError> {
+        let timing = Timing {
+            delay_ticks: MOST_DELAY_TICKS,
+            sight,
+            ..follow::timing(run.step_s)
+        };
+        let step_s = F::from_f64(run.step_s);
+        let mut device = Self {
+            effects: SwitchedEffects::new(slew_nm(run.step_s), &timing),
+            check: InputCheck::new(&InputLimits::device(run.step_s), step_s, F::ZERO),
+            now: EffectSettings::default(),
+            timing,
+        };
+        device.commit(Given::settings_of(&run.symptoms))?;
+        device.effects.rest(place);
+        Ok(device)
+    }
+
+    fn commit(&mut self, next: EffectSettings) -> Result<(), SettingsError> {
+        next.check(None)?;
+        let changes = next.changes(&self.timing, (&self.now, &self.timing))?;
+        self.effects.change(&changes, slew_nm(self.timing.step_s));
+        self.now = next;
+        Ok(())
+    }
+
+    fn tick(
+        &mut self,
+        sample: Sample<F>,
+        place: Position<F>,
+        mut on_change: impl FnMut(Change<F>),
+    ) -> f64 {
+        let input = self.check.check(&sample);
+        let seen = Seen {
+            sample,
+            omega_rad_s: F::ZERO,
+            place,
+            is_driven: true,
+        };
+        let mut shown = Shown::nothing();
+        self.effects.tick(
+            &seen,
+            &input,
+            &mut shown,
+            &mut |_: &'static EffectSpec, change: Change<F>| on_change(change),
+        );
+        shown.torque_nm.to_f64()
+    }
+}
+
+fn slew_nm<F: Real>(step_s: f64) -> F {
+    F::from_f64(SLEW_NM_PER_S * step_s)
+}
+
+/// How the device sees the joint: its true motion, or the encoder's counts.
+struct View<'a, F> {
+    walk: crate::sampling::Walk<'a>,
+    chunk: Vec<(f64, ShaftStep<F>)>,
+    encoder: Encoder,
+    reader: EncoderReader<F>,
+    counts: bool,
+    sight: Sight,
+    place: Position<F>,
+    angle_rad: f64,
+    /// Samples lost since the last one, and their travel, rad.
+    missed: u64,
+    unseen: F,
+}
+
+impl<'a, F: Real> View<'a, F> {
+    fn new(run: &SymptomRun, sampling: &Sampling<'a>) -> Result<Self, SettingsError> {
+        let settings = EncoderSettings::default();
+        let encoder = Encoder::new(&settings);
+        let walk = sampling.walk_from(0);
+        let (angle_rad, omega_rad_s) = walk.now();
+        let first = encoder.count(angle_rad);
+        let (sight, place) = if run.counts {
+            (Sight::of_encoder(&settings), Position::at(first))
+        } else {
+            (Sight::IDEAL, Sight::IDEAL.position(angle_rad))
+        };
+        Ok(Self {
+            walk,
+            chunk: Vec::new(),
+            reader: EncoderReader::new(&settings, run.step_s, first, F::from_f64(omega_rad_s))?,
+            encoder,
+            counts: run.counts,
+            sight,
+            place,
+            angle_rad,
+            missed: 0,
+            unseen: F::ZERO,
+        })
+    }
+
+    /// The next sample, if it is not lost, and the true travel, rad.
+    fn sample(&mut self, is_lost: bool) -> (Sample<F>, f64) {
+        self.walk.fill_with_angles(&mut self.chunk, 1);
+        let Some((angle_rad, shaft)) = self.chunk.first() else {
+            return (Sample::Lost, 0.0);
+        };
+        let travel_rad = angle_rad - self.angle_rad;
+        self.angle_rad = *angle_rad;
+        self.unseen += shaft.delta_phi_rad;
+        if is_lost {
+            self.reader.miss();
+            return (Sample::Lost, travel_rad);
+        }
+        let delta_phi_rad = std::mem::take(&mut self.unseen);
+        let step = if self.counts {
+            let count = self.encoder.count(*angle_rad);
+            self.place = Position::at(count);
+            self.reader.read(count)
+        } else {
+            self.place = Sight::IDEAL.position(*angle_rad);
+            ShaftStep {
+                delta_phi_rad,
+                ..*shaft
+            }
+        };
+        (Sample::Taken(step), travel_rad)
+    }
+}
+
+/// Velocity of the joint at a share of a tick, as it is seen, rad/s.
+fn omega_rad_s<F: Real>(sample: &Sample<F>, fraction: f64) -> f64 {
+    match sample {
+        Sample::Taken(step) => {
+            let (from, to) = (step.omega_start_rad_s, step.omega_end_rad_s);
+            from.to_f64() + fraction * (to - from).to_f64()
+        }
+        Sample::Lost => 0.0,
+    }
+}

@@ -1,0 +1,101 @@
+//! The law of a symptom alone, step by step: without check, tank and limit.
+
+use super::event::SymptomEvent;
+use super::given::Given;
+use crate::sampling::{CHUNK_STEPS, Sampling};
+use crepitus_model::render::Seen;
+use crepitus_model::render::Shown;
+use crepitus_model::render::effects::symptom::Change;
+use crepitus_model::render::effects::{DeviceEffect, EffectSpec, LawVisitor, Tick, Timing};
+use crepitus_model::render::input_check::Checked;
+use crepitus_model::render::position::{Position, Sight};
+use crepitus_model::{Real, SettingsError, ShaftStep};
+
+/// How a law sees a joint whose true motion it knows.
+pub fn timing(step_s: f64) -> Timing {
+    Timing {
+        step_s,
+        delay_ticks: 1,
+        sight: Sight::IDEAL,
+    }
+}
+
+/// One tick of a law that is paid in full: its torque, N·m.
+#[inline]
+pub fn tick<F: Real, E: DeviceEffect<F>>(
+    law: &mut E,
+    shaft: &ShaftStep<F>,
+    place: Position<F>,
+    on_change: impl FnMut(Change<F>),
+) -> F {
+    let mut on_change = on_change;
+    let tick = Tick {
+        seen: &Seen::taken(shaft, place),
+        input: &Checked::Step(*shaft),
+        paid_share: F::ONE,
+    };
+    law.added_nm(
+        &tick,
+        &mut Shown::nothing(),
+        &mut |_: &'static EffectSpec, change: Change<F>| on_change(change),
+    )
+}
+
+/// Follows a motion: calls `on_tick` with the number of steps and the torque after
+/// each, N·m, and returns all events.
+///
+/// # Errors
+/// [`SettingsError`] if the settings or the step are out of range.
+pub fn follow<F: Real>(
+    given: &Given,
+    sampling: &Sampling<'_>,
+    on_tick: impl FnMut(u64, f64),
+) -> Result<Vec<SymptomEvent>, SettingsError> {
+    let timing = timing(sampling.step_s());
+    let run = Run { sampling, on_tick };
+    let events = given
+        .settings()
+        .with_law::<F, _>(given.place(), &timing, run)?;
+    Ok(events.unwrap_or_default())
+}
+
+struct Run<'a, T> {
+    sampling: &'a Sampling<'a>,
+    on_tick: T,
+}
+
+impl<F: Real, T: FnMut(u64, f64)> LawVisitor<F> for Run<'_, T> {
+    type Output = Vec<SymptomEvent>;
+
+    fn visit<E: DeviceEffect<F>>(mut self, mut law: E) -> Vec<SymptomEvent> {
+        let mut events = Vec::new();
+        let mut walk = self.sampling.walk_from(0);
+        let mut angle_rad = walk.now().0;
+        law.rest(&Sight::IDEAL.position(angle_rad));
+        let mut chunk: Vec<(f64, ShaftStep<F>)> = Vec::with_capacity(CHUNK_STEPS);
+        let mut n = 0;
+        loop {
+            walk.fill_with_angles(&mut chunk, CHUNK_STEPS);
+            if chunk.is_empty() {
+                return events;
+            }
+            for (end_rad, shaft) in &chunk {
+                angle_rad = *end_rad;
+                let place = Sight::IDEAL.position(angle_rad);
+                let torque_nm = tick(&mut law, shaft, place, |change| {
+                    let fraction = change.fraction.to_f64();
+                    let (from, to) = (shaft.omega_start_rad_s, shaft.omega_end_rad_s);
+                    events.push(SymptomEvent {
+                        time_s: self.sampling.time_s(n, fraction),
+                        word: change.word,
+                        omega_rad_s: from.to_f64() + fraction * (to - from).to_f64(),
+                        before_nm: change.before_nm.to_f64(),
+                        after_nm: change.after_nm.to_f64(),
+                    });
+                });
+                n += 1;
+                (self.on_tick)(n, torque_nm.to_f64());
+            }
+        }
+    }
+}
