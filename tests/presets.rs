@@ -199,7 +199,7 @@ fn a_knee_is_saved_and_comes_back_to_the_bit() {
     let limit = limit.unwrap();
     assert_eq!(
         (&limit["device"], &limit["other"]),
-        (&json!(120.0), &json!(98.76543210987654))
+        (&json!(120.0), &json!(98.765_432_109_876_54))
     );
     knee.done(&["params", "apply", "monday-knee"]);
     assert_eq!(knee.values(), before);
