@@ -32,24 +32,30 @@ pub use slewed::Slewed;
 pub use together::{MOST_SHARE_AT_A_WALL, MOST_STIFFNESS_NM_PER_RAD};
 
 use super::input_check::Checked;
-use super::position::{Position, Scale, Sight};
+use super::position::{Position, Scale, Sight, Travel};
 use super::{Addition, Seen, Shown};
 use crate::joint::{LONGEST_STEP_S, SettingsError};
-use crate::parameters::{Choice, Chosen, Parameter, ParameterSpec, Source, Tabled, filled, switch};
+use crate::parameters::{
+    Choice, Chosen, Parameter, ParameterSpec, Source, Tabled, filled, same, switch,
+};
 use crate::real::Real;
 use symptom::{Change, Given, Law};
 use tank::Tank;
 
 effects! {
-    range_limit: RangeLimit, RangeLimitSettings;
-    lead_pipe: LeadPipe, LeadPipeSettings;
-    cogwheel: Cogwheel, CogwheelSettings;
-    spasticity: Spasticity, SpasticitySettings;
-    clasp_knife: ClaspKnife, ClaspKnifeSettings;
-    clonus: Clonus, ClonusSettings;
-    texture: Texture, TextureSettings;
-    friction_compensation: FrictionCompensation, FrictionCompensationSettings;
-    bone_shaping: BoneShaping, BoneShapingSettings;
+    symptoms {
+        range_limit: RangeLimit, RangeLimitSettings;
+        lead_pipe: LeadPipe, LeadPipeSettings;
+        cogwheel: Cogwheel, CogwheelSettings;
+        spasticity: Spasticity, SpasticitySettings;
+        clasp_knife: ClaspKnife, ClaspKnifeSettings;
+        clonus: Clonus, ClonusSettings;
+        texture: Texture, TextureSettings;
+    }
+    additions {
+        friction_compensation: FrictionCompensation, FrictionCompensationSettings;
+        bone_shaping: BoneShaping, BoneShapingSettings;
+    }
 }
 
 /// Description of an effect.
@@ -120,6 +126,8 @@ pub struct Tick<'a, F> {
     pub seen: &'a Seen<F>,
     /// What symptoms may believe of it.
     pub input: &'a Checked<F>,
+    /// What that says of the joint's motion; symptoms need no more.
+    pub travel: Option<&'a Travel<F>>,
     /// The share of torque that is paid from the tank.
     pub paid_share: F,
 }
@@ -267,6 +275,19 @@ fn tank<F: Real>(timing: &Timing) -> Tank<F> {
     Tank::new(TANK_J, TANK_REFILL_W, timing.step_s, timing.delay_ticks)
 }
 
+/// A bit for an effect, at its place in the table.
+const fn bit<E: DeviceEffect<f64>>() -> u32 {
+    let (mut bit, mut specs) = (1, SPECS);
+    while let [spec, rest @ ..] = specs {
+        if same(spec.name, E::SPEC.name) {
+            break;
+        }
+        bit <<= 1;
+        specs = rest;
+    }
+    bit
+}
+
 /// What else is shown of an effect that has acted.
 #[inline]
 fn note<F: Real, E: DeviceEffect<F>>(law: Option<&E>, added_nm: F, shown: &mut Shown<F>) {
@@ -315,6 +336,7 @@ pub(crate) mod tests {
         Tick {
             seen,
             input: &Checked::Missing(1),
+            travel: None,
             paid_share: 1.0,
         }
     }

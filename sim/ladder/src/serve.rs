@@ -11,6 +11,7 @@ use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::real::Real;
+use crepitus_model::render::position::Scale;
 use crepitus_model::render::effects::{DeviceEffect, LawVisitor, Timing, with_law};
 use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::render::position::Sight;
@@ -87,7 +88,11 @@ impl Here<'_> {
                     sight: Sight::of_encoder(&EncoderSettings::default()),
                 };
                 // There is a subject for each place of the table only.
-                with_law(place, &timing, EffectVisitor { here: self })?.unwrap_or(false)
+                let visitor = EffectVisitor {
+                    scale: timing.scale()?,
+                    here: self,
+                };
+                with_law(place, &timing, visitor)?.unwrap_or(false)
             }
             Subject::CurrentLoop => {
                 let settings = CurrentLoopSettings::defaults();
@@ -158,6 +163,7 @@ fn address(of: usize) -> u32 {
 
 /// Runs a law.
 struct EffectVisitor<'a, 'b> {
+    scale: Scale<f32>,
     here: &'a mut Here<'b>,
 }
 
@@ -165,7 +171,7 @@ impl LawVisitor<f32> for EffectVisitor<'_, '_> {
     type Output = bool;
 
     fn visit<E: DeviceEffect<f32>>(self, law: E) -> bool {
-        self.here.run(Effect::new(law), None)
+        self.here.run(Effect::new(law, self.scale), None)
     }
 }
 

@@ -234,10 +234,6 @@ impl<F: Real> Law for ClaspKnife<F> {
         }
     }
 
-    fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     fn rest(&mut self, place: &Position<F>) {
         self.play.rest(place);
         self.stage = Stage::Out;

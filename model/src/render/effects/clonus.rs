@@ -257,10 +257,6 @@ impl<F: Real> Law for Clonus<F> {
         }
     }
 
-    fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     fn rest(&mut self, place: &Position<F>) {
         let beyond_rad =
             self.with.sense * place.beyond(&self.with.hold, self.with.scale.rad_per_count);

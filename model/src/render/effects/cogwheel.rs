@@ -222,10 +222,6 @@ impl<F: Real> Law for Cogwheel<F> {
         }
     }
 
-    fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     fn rest(&mut self, place: &Position<F>) {
         self.play.rest(place);
         self.elastic_nm = F::ZERO;

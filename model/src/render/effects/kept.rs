@@ -101,14 +101,7 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
         if !self.is_on {
             return F::ZERO;
         }
-        // Copies: whose address is taken lives in memory also where this is off.
-        let (seen, input) = (*tick.seen, *tick.input);
-        let tick = Tick {
-            seen: &seen,
-            input: &input,
-            paid_share: tick.paid_share,
-        };
-        let given = self.tick_on(&tick, observe);
+        let given = self.tick_on(tick, observe);
         shown.torque_nm += given.nm;
         shown.jump_nm += given.jump_nm;
         shown.active_nm += given.active_nm;

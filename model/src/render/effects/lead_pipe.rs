@@ -132,10 +132,6 @@ impl<F: Real> Law for LeadPipe<F> {
         }
     }
 
-    fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     fn rest(&mut self, place: &Position<F>) {
         self.play.rest(place);
         self.elastic_nm = F::ZERO;

@@ -442,10 +442,6 @@ impl<F: Real> Law for RangeLimit<F> {
         }
     }
 
-    fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     fn rest(&mut self, place: &Position<F>) {
         let RangeLimitCoefficients {
             scale,

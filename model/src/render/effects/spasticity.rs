@@ -18,7 +18,7 @@ use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
-use crate::render::position::{Position, Scale, Travel, rise};
+use crate::render::position::{Position, Travel, rise};
 use caught::{Caught, CaughtCoefficients};
 use reflex::{Reflex, ReflexCoefficients};
 
@@ -288,13 +288,6 @@ impl<F: Real> Law for Spasticity<F> {
         };
         spasticity.adopt(coefficients, F::ZERO);
         spasticity
-    }
-
-    fn scale(&self) -> &Scale<F> {
-        match self.form {
-            Form::Catch => self.caught.scale(),
-            Form::Reflex => self.reflex.scale(),
-        }
     }
 
     fn rest(&mut self, place: &Position<F>) {

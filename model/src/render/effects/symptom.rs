@@ -3,7 +3,7 @@
 use super::{EffectSpec, Observe, Tick, Timing};
 use crate::joint::SettingsError;
 use crate::real::Real;
-use crate::render::position::{Position, Scale, Travel};
+use crate::render::position::{Position, Travel};
 
 /// What happens to a symptom; the names are those of `events.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -165,9 +165,6 @@ pub trait Law: Sized {
     /// With these coefficients; [`Self::rest`] places it.
     fn new(coefficients: Self::Coefficients) -> Self;
 
-    /// Scale of the angle.
-    fn scale(&self) -> &Scale<Self::Real>;
-
     /// As at arming: without torque at this place of the joint, whatever it is.
     fn rest(&mut self, place: &Position<Self::Real>);
 
@@ -227,9 +224,8 @@ impl<F: Real> Given<F> {
         observe: &mut impl Observe<F>,
     ) -> Self {
         let mut given = Self::NOTHING;
-        let travel = Travel::of(tick.input, &tick.seen.place, law.scale());
-        given.nm = match travel.filter(Travel::is_plausible) {
-            Some(travel) => law.follow(&travel, &mut |change: Change<F>| {
+        given.nm = match tick.travel {
+            Some(travel) => law.follow(travel, &mut |change: Change<F>| {
                 if change.word == Word::Snap {
                     given.jump_nm += change.after_nm - change.before_nm;
                 }

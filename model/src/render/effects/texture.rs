@@ -250,10 +250,6 @@ impl<F: Real> Law for Texture<F> {
         }
     }
 
-    fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     fn rest(&mut self, place: &Position<F>) {
         self.play.rest(place);
         self.at = *place;

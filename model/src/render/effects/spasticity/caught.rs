@@ -87,10 +87,6 @@ impl<F: Real> Caught<F> {
         }
     }
 
-    pub(super) fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     pub(super) fn rest(&mut self, place: &Position<F>) {
         self.play.rest(place);
         self.catch = None;

@@ -111,10 +111,6 @@ impl<F: Real> Reflex<F> {
         }
     }
 
-    pub(super) fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     pub(super) fn rest(&mut self) {
         self.remembered = 0;
         self.told_nm = F::ZERO;
