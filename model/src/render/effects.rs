@@ -122,28 +122,65 @@ impl Timing {
 /// What an effect knows in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Tick<'a, F> {
-    /// The shaft.
-    pub seen: &'a Seen<F>,
-    /// What symptoms may believe of it.
-    pub input: &'a Checked<F>,
-    /// What that says of the joint's motion; symptoms need no more.
+    /// The joint's velocity as far as known, rad/s.
+    pub omega_rad_s: F,
+    /// Its travel since the last sample that was taken, rad; without one none.
+    pub travel_rad: F,
+    /// What symptoms may believe of its motion; `None` without a good sample.
     pub travel: Option<&'a Travel<F>>,
+    /// Consecutive ticks without a good sample.
+    pub missing_ticks: u32,
+    /// Where it is, or was seen last.
+    pub place: Position<F>,
+    /// The motor is driven: symptoms act.
+    pub is_driven: bool,
     /// The share of torque that is paid from the tank.
     pub paid_share: F,
 }
 
+impl<'a, F: Real> Tick<'a, F> {
+    /// Of this sample.
+    #[inline]
+    pub fn of(
+        seen: &Seen<F>,
+        input: &Checked<F>,
+        travel: Option<&'a Travel<F>>,
+        paid_share: F,
+    ) -> Self {
+        Self {
+            omega_rad_s: seen.omega_rad_s,
+            travel_rad: seen.travel_rad(),
+            travel,
+            missing_ticks: match input {
+                Checked::Missing(ticks) => *ticks,
+                _ => 0,
+            },
+            place: seen.place,
+            is_driven: seen.is_driven,
+            paid_share,
+        }
+    }
+}
+
 /// Sees what happens to the symptoms of the table.
 pub trait Observe<F> {
+    /// Whether anybody does.
+    const LISTENS: bool;
+
     /// Something has happened to this effect.
     fn change(&mut self, effect: &'static EffectSpec, change: Change<F>);
 }
 
 impl<F> Observe<F> for () {
+    const LISTENS: bool = false;
+
     #[inline]
     fn change(&mut self, _: &'static EffectSpec, _: Change<F>) {}
 }
 
 impl<F, O: FnMut(&'static EffectSpec, Change<F>)> Observe<F> for O {
+    const LISTENS: bool = true;
+
     #[inline]
     fn change(&mut self, effect: &'static EffectSpec, change: Change<F>) {
         self(effect, change);
@@ -332,13 +369,8 @@ pub(crate) mod tests {
     }
 
     /// One without a sample.
-    pub(crate) fn missing(seen: &Seen<f32>) -> Tick<'_, f32> {
-        Tick {
-            seen,
-            input: &Checked::Missing(1),
-            travel: None,
-            paid_share: 1.0,
-        }
+    pub(crate) fn missing(seen: &Seen<f32>) -> Tick<'static, f32> {
+        Tick::of(seen, &Checked::Missing(1), None, 1.0)
     }
 
     /// A law at these settings.

@@ -177,12 +177,8 @@ impl<E: DeviceEffect<f32>> Measured for Effect<E> {
         };
         let input = Checked::Step(shaft);
         let travel = Travel::plausible(&input, &self.place, &self.scale);
-        let tick = Tick {
-            seen: &Seen::taken(&shaft, self.place),
-            input: &input,
-            travel: travel.as_ref(),
-            paid_share: 1.0,
-        };
+        let seen = Seen::taken(&shaft, self.place);
+        let tick = Tick::of(&seen, &input, travel.as_ref(), 1.0);
         let added_nm = self.law.added_nm(&tick, &mut shown, &mut ());
         [added_nm.to_bits(), 0, 0]
     }

@@ -16,7 +16,7 @@
 
 use super::play::{Hold, Limits, Part, Play, short_decay};
 use super::spasticity::sense;
-use super::symptom::{Change, Law, Word};
+use super::symptom::{Change, Hear, Law, Word};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -243,7 +243,7 @@ impl<F: Real> Law for ClaspKnife<F> {
     // By name in a profile: a test looks for it where it should not be.
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
-    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let beyond_rad = self.with.sense * travel.end_beyond(&self.with.onset);
         let nm = match self.stage {
             Stage::Out if beyond_rad < F::ZERO => self.wait(travel, on_change),
@@ -301,7 +301,7 @@ impl<F: Real> Law for ClaspKnife<F> {
 impl<F: Real> ClaspKnife<F> {
     /// Out: torque is left only where the onset was moved away.
     #[inline]
-    fn wait(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn wait(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         if self.play.torque_nm() == F::ZERO {
             return F::ZERO;
         }
@@ -313,7 +313,7 @@ impl<F: Real> ClaspKnife<F> {
 
     /// The onset is met, within this travel or before (armed beyond it).
     #[cold]
-    fn begin(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+    fn begin(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
         self.stage = Stage::Build;
         let started =
             self.with.sense * (travel.end_beyond(&self.with.onset) - travel.delta_rad) < F::ZERO;
@@ -329,7 +329,7 @@ impl<F: Real> ClaspKnife<F> {
         } else {
             F::ZERO
         };
-        on_change(Change::at(Word::Onset, fraction, F::ZERO, F::ZERO));
+        on_change.hear(Change::at(Word::Onset, fraction, F::ZERO, F::ZERO));
     }
 
     /// u while it builds, N·m.
@@ -343,7 +343,7 @@ impl<F: Real> ClaspKnife<F> {
         &mut self,
         beyond_rad: F,
         travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
+        on_change: &mut impl Hear<F>,
     ) -> F {
         let with = self.with;
         if let Some(release) = &with.release
@@ -377,7 +377,7 @@ impl<F: Real> ClaspKnife<F> {
         to: F,
         beyond_rad: F,
         travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
+        on_change: &mut impl Hear<F>,
     ) -> F {
         let with = self.with;
         let limit_nm = |fraction: F| {
@@ -405,7 +405,7 @@ impl<F: Real> ClaspKnife<F> {
         &mut self,
         fraction: F,
         travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
+        on_change: &mut impl Hear<F>,
     ) -> F {
         let with = self.with;
         let place = travel.place(fraction);
@@ -413,7 +413,7 @@ impl<F: Real> ClaspKnife<F> {
         let nm = self.grow(fraction, beyond_rad, travel, on_change);
         let limit_nm = self.limit_nm(beyond_rad);
         let shown_nm = with.sense * nm;
-        on_change(Change::at(Word::Release, fraction, shown_nm, shown_nm));
+        on_change.hear(Change::at(Word::Release, fraction, shown_nm, shown_nm));
         let left_nm = limit_nm * with.residual;
         self.fall(fraction, (left_nm, limit_nm - left_nm), travel, on_change)
     }
@@ -425,7 +425,7 @@ impl<F: Real> ClaspKnife<F> {
         from: F,
         (left_nm, before_nm): (F, F),
         travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
+        on_change: &mut impl Hear<F>,
     ) -> F {
         let with = self.with;
         let after_nm = if from == F::ZERO {
@@ -456,10 +456,10 @@ impl<F: Real> ClaspKnife<F> {
 
     /// Turned back before it collapsed.
     #[cold]
-    fn back(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn back(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let fraction = travel.reaches(&self.with.onset);
         let nm = self.grow(fraction, F::ZERO, travel, on_change);
-        on_change(Change::at(
+        on_change.hear(Change::at(
             Word::Back,
             fraction,
             self.with.sense * nm,
@@ -472,11 +472,11 @@ impl<F: Real> ClaspKnife<F> {
 
     /// Returned: it can build again.
     #[cold]
-    fn rearm(&mut self, travel: &Travel<F>, nm: F, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn rearm(&mut self, travel: &Travel<F>, nm: F, on_change: &mut impl Hear<F>) -> F {
         let sense = self.with.sense;
         let place = self.with.onset.moved(-sense * self.with.rearm_rad);
         let fraction = travel.reaches(&place);
-        on_change(Change::at(Word::Rearm, fraction, sense * nm, F::ZERO));
+        on_change.hear(Change::at(Word::Rearm, fraction, sense * nm, F::ZERO));
         self.stage = Stage::Out;
         self.play.rest(&travel.to);
         F::ZERO

@@ -13,7 +13,7 @@
 mod caught;
 mod reflex;
 
-use super::symptom::{Change, Law};
+use super::symptom::{Hear, Law};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -300,7 +300,7 @@ impl<F: Real> Law for Spasticity<F> {
     // By name in a profile: a test looks for it where it should not be.
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
-    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         match self.form {
             Form::Catch => self.caught.follow(travel, on_change),
             Form::Reflex => self.reflex.follow(travel, on_change),

@@ -133,6 +133,51 @@ impl<F: Real> Change<F> {
     }
 }
 
+/// Hears what happens to a symptom.
+pub trait Hear<F> {
+    /// Whether it needs more than snaps. A device does not, and need not find out when
+    /// all else was.
+    const LISTENS: bool;
+
+    /// Something has happened.
+    fn hear(&mut self, change: Change<F>);
+}
+
+impl<F> Hear<F> for () {
+    const LISTENS: bool = false;
+
+    #[inline]
+    fn hear(&mut self, _: Change<F>) {}
+}
+
+impl<F, O: FnMut(Change<F>)> Hear<F> for O {
+    const LISTENS: bool = true;
+
+    #[inline]
+    fn hear(&mut self, change: Change<F>) {
+        self(change);
+    }
+}
+
+/// What a device hears of a symptom: by how much its torque has jumped.
+struct Heard<'a, F, O> {
+    spec: &'static EffectSpec,
+    jump_nm: F,
+    observe: &'a mut O,
+}
+
+impl<F: Real, O: Observe<F>> Hear<F> for Heard<'_, F, O> {
+    const LISTENS: bool = O::LISTENS;
+
+    #[inline]
+    fn hear(&mut self, change: Change<F>) {
+        if change.word == Word::Snap {
+            self.jump_nm += change.after_nm - change.before_nm;
+        }
+        self.observe.change(self.spec, change);
+    }
+}
+
 /// The law of a symptom, with its state.
 pub trait Law: Sized {
     /// The numbers that it computes with.
@@ -172,7 +217,7 @@ pub trait Law: Sized {
     fn follow(
         &mut self,
         travel: &Travel<Self::Real>,
-        on_change: &mut impl FnMut(Change<Self::Real>),
+        on_change: &mut impl Hear<Self::Real>,
     ) -> Self::Real;
 
     /// Its torque now, N·m.
@@ -225,12 +270,16 @@ impl<F: Real> Given<F> {
     ) -> Self {
         let mut given = Self::NOTHING;
         given.nm = match tick.travel {
-            Some(travel) => law.follow(travel, &mut |change: Change<F>| {
-                if change.word == Word::Snap {
-                    given.jump_nm += change.after_nm - change.before_nm;
-                }
-                observe.change(const { &<L as Law>::SPEC }, change);
-            }),
+            Some(travel) => {
+                let mut heard = Heard {
+                    spec: const { &<L as Law>::SPEC },
+                    jump_nm: F::ZERO,
+                    observe,
+                };
+                let nm = law.follow(travel, &mut heard);
+                given.jump_nm = heard.jump_nm;
+                nm
+            }
             None => law.torque_nm(),
         };
         if law.is_active() {

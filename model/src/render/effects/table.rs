@@ -155,7 +155,7 @@ macro_rules! effects {
             ) {
                 let paid_share = self.tank.open(seen.travel_rad());
                 let travel = Travel::plausible(input, &seen.place, &self.scale);
-                let tick = Tick { seen, input, travel: travel.as_ref(), paid_share };
+                let tick = Tick::of(seen, input, travel.as_ref(), paid_share);
                 $(if let Some(law) = &mut self.$effect {
                     let added_nm = law.added_nm(&tick, shown, observe);
                     shown.torque_nm += added_nm;
@@ -247,15 +247,8 @@ macro_rules! effects {
                 shown: &mut Shown<F>,
                 observe: &mut impl Observe<F>,
             ) {
-                // Copies: whose address is taken lives in memory also where all are off.
-                let (seen, input) = (*seen, *input);
-                let travel = Travel::plausible(&input, &seen.place, &self.scale);
-                let tick = Tick {
-                    seen: &seen,
-                    input: &input,
-                    travel: travel.as_ref(),
-                    paid_share,
-                };
+                let travel = Travel::plausible(input, &seen.place, &self.scale);
+                let tick = Tick::of(seen, input, travel.as_ref(), paid_share);
                 $(if self.on & const { bit::<$symptom::$s_law<f64>>() } != 0 {
                     let added_nm = self.$symptom.tick(&tick, shown, observe);
                     shown.added.$symptom = added_nm;
@@ -288,7 +281,7 @@ macro_rules! effects {
                     self.add_symptoms(seen, input, paid_share, shown, observe);
                 }
                 self.tank.close(shown.active_nm);
-                let tick = Tick { seen, input, travel: None, paid_share };
+                let tick = Tick::of(seen, input, None, paid_share);
                 $(
                     let added_nm = self.$addition.tick(&tick, shown, observe);
                     shown.added.$addition = added_nm;

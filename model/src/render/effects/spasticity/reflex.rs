@@ -12,7 +12,7 @@ use super::{SpasticitySettings, Threshold};
 use crate::joint::SettingsError;
 use crate::real::Real;
 use crate::render::effects::Timing;
-use crate::render::effects::symptom::{Change, Word};
+use crate::render::effects::symptom::{Change, Hear, Word};
 use crate::render::position::{Scale, Travel};
 
 /// Ticks that are remembered: 0.1 s at 20 kHz, and one to interpolate.
@@ -147,7 +147,7 @@ impl<F: Real> Reflex<F> {
     pub(super) fn follow(
         &mut self,
         travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
+        on_change: &mut impl Hear<F>,
     ) -> F {
         let with = self.with;
         let beyond = with.threshold.end_beyond(travel);
@@ -208,7 +208,7 @@ impl<F: Real> Reflex<F> {
 
     /// Says what has changed, and when.
     #[cold]
-    fn tell(&mut self, drive: Drive, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+    fn tell<O: Hear<F>>(&mut self, drive: Drive, travel: &Travel<F>, on_change: &mut O) {
         let threshold = &self.with.threshold;
         let start = threshold.start_beyond(travel);
         let nm = self.torque_nm();
@@ -218,7 +218,7 @@ impl<F: Real> Reflex<F> {
             } else {
                 threshold.falls_to(level, start, travel)
             };
-            on_change(Change::at(word, fraction, nm, nm));
+            on_change.hear(Change::at(word, fraction, nm, nm));
         };
         let most_rad = self.with.most_rad;
         if self.drive == Drive::Silent {
