@@ -475,8 +475,8 @@ impl<F: Real> ClaspKnife<F> {
     fn rearm(&mut self, travel: &Travel<F>, nm: F, on_change: &mut impl Hear<F>) -> F {
         let sense = self.with.sense;
         let place = self.with.onset.moved(-sense * self.with.rearm_rad);
-        let fraction = travel.reaches(&place);
-        on_change.hear(Change::at(Word::Rearm, fraction, sense * nm, F::ZERO));
+        let fraction = || travel.reaches(&place);
+        on_change.tell(Word::Rearm, fraction, sense * nm, F::ZERO);
         self.stage = Stage::Out;
         self.play.rest(&travel.to);
         F::ZERO

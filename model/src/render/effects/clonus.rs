@@ -389,7 +389,7 @@ impl<F: Real> Clonus<F> {
         let place = self.with.hold.moved(-self.with.sense * self.with.back_rad);
         if self.beaten > 0 || self.stage == Stage::Beating {
             let nm = self.torque_nm;
-            on_change.hear(Change::at(Word::Stop, travel.reaches(&place), nm, nm));
+            on_change.tell(Word::Stop, || travel.reaches(&place), nm, nm);
         }
         self.beaten = 0;
         self.stage = Stage::Ready;

@@ -331,15 +331,15 @@ impl<F: Real> Wall<F> {
         if beyond_rad < -flicker_rad {
             if self.stage != Stage::Out {
                 self.stage = Stage::Out;
-                on_change.hear(Change::at(Word::Leave, travel.reaches(&end.place), nm, nm));
+                on_change.tell(Word::Leave, || travel.reaches(&end.place), nm, nm);
             }
         } else if self.play.hold() != Hold::Upper {
             self.stage = Stage::In;
         } else if beyond_rad >= end.cap_rad {
-            if O::LISTENS && is_below_cap && !is_told && nm > F::ZERO {
+            if is_below_cap && !is_told && nm > F::ZERO {
                 let place = end.place.moved(sense * end.cap_rad);
                 let nm = sense * nm;
-                on_change.hear(Change::at(Word::Cap, travel.reaches(&place), nm, nm));
+                on_change.tell(Word::Cap, || travel.reaches(&place), nm, nm);
             }
             self.stage = Stage::AtCap;
         } else if beyond_rad < end.cap_rad - flicker_rad {
@@ -359,10 +359,12 @@ impl<F: Real> Wall<F> {
         on_change: &mut impl Hear<F>,
     ) {
         self.stage = Stage::In;
-        let fraction = if before_rad > F::ZERO {
-            F::ZERO
-        } else {
-            travel.reaches(&end.place)
+        let fraction = || {
+            if before_rad > F::ZERO {
+                F::ZERO
+            } else {
+                travel.reaches(&end.place)
+            }
         };
         if self.play.torque_nm() == F::ZERO {
             if before_rad > F::ZERO {
@@ -371,7 +373,7 @@ impl<F: Real> Wall<F> {
                 self.play.put(&end.place, F::ZERO, Hold::Upper);
             }
         }
-        on_change.hear(Change::at(Word::Contact, fraction, F::ZERO, F::ZERO));
+        on_change.tell(Word::Contact, fraction, F::ZERO, F::ZERO);
     }
 }
 

@@ -141,6 +141,19 @@ pub trait Hear<F> {
 
     /// Something has happened.
     fn hear(&mut self, change: Change<F>);
+
+    /// The same; when it was is found out only if somebody needs it.
+    #[inline]
+    fn tell(&mut self, word: Word, when: impl FnOnce() -> F, before_nm: F, after_nm: F) {
+        if Self::LISTENS {
+            self.hear(Change {
+                word,
+                fraction: when(),
+                before_nm,
+                after_nm,
+            });
+        }
+    }
 }
 
 impl<F> Hear<F> for () {

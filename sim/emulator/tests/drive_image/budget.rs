@@ -9,7 +9,7 @@ use crepitus_protocol::parameters;
 use crepitus_scene::Scene;
 
 /// Modelled cycles of a tick.
-const TICK_CYCLES: u64 = 8_400;
+pub(crate) const TICK_CYCLES: u64 = 8_400;
 
 /// Ticks that are watched, with some twenty cycles of stick and slip.
 const TICKS: u64 = 4_000;
@@ -20,7 +20,7 @@ const COMMITS: usize = 15;
 const MANY_COMMITS: usize = 60;
 
 /// Exception of `render_torque`.
-const RENDER: u16 = 16 + 30;
+pub(crate) const RENDER: u16 = 16 + 30;
 
 /// Upper limits.
 struct Limits {
@@ -62,7 +62,7 @@ fn under_torque(image: &Image, scene: &Scene, flash: Flash) -> Host {
 }
 
 #[expect(clippy::cast_precision_loss, reason = "for people")]
-fn percent(cycles: u64) -> f64 {
+pub(crate) fn percent(cycles: u64) -> f64 {
     cycles as f64 / TICK_CYCLES as f64 * 100.0
 }
 

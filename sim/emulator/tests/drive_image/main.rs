@@ -15,9 +15,11 @@ mod noise;
 mod outputs;
 #[path = "../timing/reference_flash.rs"]
 mod reference_flash;
+mod prof;
 mod registers;
 mod replay;
 mod self_test;
+mod symptoms;
 mod tasks;
 mod torque;
 mod wiring;

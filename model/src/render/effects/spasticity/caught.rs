@@ -233,12 +233,7 @@ impl<F: Real> Caught<F> {
         let back_rad = -sense * travel.end_beyond(&catch.place);
         if back_rad >= self.with.rearm_rad {
             let place = catch.place.moved(-sense * self.with.rearm_rad);
-            on_change.hear(Change::at(
-                Word::Rearm,
-                travel.reaches(&place),
-                sense * nm,
-                F::ZERO,
-            ));
+            on_change.tell(Word::Rearm, || travel.reaches(&place), sense * nm, F::ZERO);
             self.catch = None;
             self.play.rest(&travel.to);
             return F::ZERO;

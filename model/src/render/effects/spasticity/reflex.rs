@@ -12,7 +12,7 @@ use super::{SpasticitySettings, Threshold};
 use crate::joint::SettingsError;
 use crate::real::Real;
 use crate::render::effects::Timing;
-use crate::render::effects::symptom::{Change, Hear, Word};
+use crate::render::effects::symptom::{Hear, Word};
 use crate::render::position::{Scale, Travel};
 
 /// Ticks that are remembered: 0.1 s at 20 kHz, and one to interpolate.
@@ -208,17 +208,19 @@ impl<F: Real> Reflex<F> {
 
     /// Says what has changed, and when.
     #[cold]
-    fn tell<O: Hear<F>>(&mut self, drive: Drive, travel: &Travel<F>, on_change: &mut O) {
+    fn tell(&mut self, drive: Drive, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
         let threshold = &self.with.threshold;
         let start = threshold.start_beyond(travel);
         let nm = self.torque_nm();
         let mut tell = |word, level, rises: bool| {
-            let fraction = if rises {
-                threshold.rises_to(level, start, travel)
-            } else {
-                threshold.falls_to(level, start, travel)
+            let fraction = || {
+                if rises {
+                    threshold.rises_to(level, start, travel)
+                } else {
+                    threshold.falls_to(level, start, travel)
+                }
             };
-            on_change.hear(Change::at(word, fraction, nm, nm));
+            on_change.tell(word, fraction, nm, nm);
         };
         let most_rad = self.with.most_rad;
         if self.drive == Drive::Silent {
