@@ -339,12 +339,7 @@ impl<F: Real> ClaspKnife<F> {
     }
 
     #[inline]
-    fn build(
-        &mut self,
-        beyond_rad: F,
-        travel: &Travel<F>,
-        on_change: &mut impl Hear<F>,
-    ) -> F {
+    fn build(&mut self, beyond_rad: F, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = self.with;
         if let Some(release) = &with.release
             && with.sense * travel.end_beyond(release) >= F::ZERO
@@ -401,12 +396,7 @@ impl<F: Real> ClaspKnife<F> {
 
     /// It collapses after this share of the travel.
     #[cold]
-    fn collapse(
-        &mut self,
-        fraction: F,
-        travel: &Travel<F>,
-        on_change: &mut impl Hear<F>,
-    ) -> F {
+    fn collapse(&mut self, fraction: F, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = self.with;
         let place = travel.place(fraction);
         let beyond_rad = with.sense * place.beyond(&with.onset, travel.rad_per_count);

@@ -324,7 +324,8 @@ impl<F: Real> Wall<F> {
             on_change.hear(change);
         };
         let nm = if O::LISTENS {
-            self.play.follow(travel, part, end.spring, limits, &mut told)
+            self.play
+                .follow(travel, part, end.spring, limits, &mut told)
         } else {
             self.play.follow(travel, part, end.spring, limits, &mut ())
         };

@@ -367,12 +367,7 @@ impl<F: Real> Texture<F> {
     }
 
     #[cold]
-    fn snap(
-        &mut self,
-        upwards: bool,
-        travel: &Travel<F>,
-        on_change: &mut impl Hear<F>,
-    ) -> F {
+    fn snap(&mut self, upwards: bool, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let place = if upwards {
             self.next.place
         } else {

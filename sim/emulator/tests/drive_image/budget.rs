@@ -38,18 +38,18 @@ struct Limits {
 const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::ZeroWaitStates,
-        share: 44,
-        commit_share: 54,
-        cold_share: 43,
-        render_cycles: 1_190,
+        share: 41,
+        commit_share: 52,
+        cold_share: 40,
+        render_cycles: 900,
     },
     // About 3 % above what was measured.
     Limits {
         flash: Flash::Modelled,
-        share: 60,
-        commit_share: 77,
-        cold_share: 57,
-        render_cycles: 1_680,
+        share: 58,
+        commit_share: 71,
+        cold_share: 52,
+        render_cycles: 1_280,
     },
 ];
 

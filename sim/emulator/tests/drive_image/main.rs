@@ -15,7 +15,6 @@ mod noise;
 mod outputs;
 #[path = "../timing/reference_flash.rs"]
 mod reference_flash;
-mod prof;
 mod registers;
 mod replay;
 mod self_test;

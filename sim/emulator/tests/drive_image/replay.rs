@@ -240,18 +240,25 @@ fn every_symptom_is_that_of_the_native_drive_bit_for_bit() {
     for cases in &each {
         let revision = symptoms::commit(&mut host, symptoms::values_of(cases));
         host.run(PERIOD_TICKS);
-        let blocks = host.blocks.iter().filter(|block| block.revision == revision);
+        let blocks = host
+            .blocks
+            .iter()
+            .filter(|block| block.revision == revision);
         let phases: Vec<Phases> = blocks.flat_map(|b| b.phases).map(Phases::from).collect();
         for case in cases {
             for phase in case.phases {
                 let mut named = phases.iter().flat_map(|phases| phases.named());
-                let is_there = named.any(|(spec, name)| spec.name == case.symptom && name == *phase);
+                let is_there =
+                    named.any(|(spec, name)| spec.name == case.symptom && name == *phase);
                 assert!(is_there, "{}: {phase}", case.symptom);
             }
         }
     }
     let armed = compare(&mut host);
-    assert!(armed as u64 >= each.len() as u64 * PERIOD_TICKS, "{armed} ticks under torque");
+    assert!(
+        armed as u64 >= each.len() as u64 * PERIOD_TICKS,
+        "{armed} ticks under torque"
+    );
 }
 
 /// Gives the native drive what the image has read, and compares what they have sent: how

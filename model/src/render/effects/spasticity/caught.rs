@@ -118,11 +118,7 @@ impl<F: Real> Caught<F> {
     }
 
     #[inline]
-    pub(super) fn follow(
-        &mut self,
-        travel: &Travel<F>,
-        on_change: &mut impl Hear<F>,
-    ) -> F {
+    pub(super) fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let nm = match &mut self.catch {
             Some(_) => self.go_on(travel, on_change),
             None => self.wait(travel, on_change),
@@ -164,12 +160,7 @@ impl<F: Real> Caught<F> {
 
     /// Caught after this share of the travel.
     #[cold]
-    fn catch(
-        &mut self,
-        fraction: F,
-        travel: &Travel<F>,
-        on_change: &mut impl Hear<F>,
-    ) -> F {
+    fn catch(&mut self, fraction: F, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = &self.with;
         let sense = with.threshold.sense;
         let peak_nm = (with.per_rad_s * sense * travel.omega_rad_s(fraction)).at_most(with.most_nm);

@@ -144,11 +144,7 @@ impl<F: Real> Reflex<F> {
     }
 
     #[inline]
-    pub(super) fn follow(
-        &mut self,
-        travel: &Travel<F>,
-        on_change: &mut impl Hear<F>,
-    ) -> F {
+    pub(super) fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = self.with;
         let beyond = with.threshold.end_beyond(travel);
         let drive = if beyond <= F::ZERO || with.most_rad == F::ZERO {
