@@ -170,17 +170,19 @@ pub trait Limits<F> {
     fn tick(&mut self, shown: &mut Shown<F>);
 }
 
-/// The stages of a device, in their order.
+/// The stages of a device. In the order of its fields, the effects last: their memory
+/// would push others out of a load's reach.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Pipeline<F, I, S, E = (), L = ()> {
     /// The check of its input.
     pub check: I,
+    /// What it may not do.
+    pub limits: L,
     /// The symptoms.
     pub symptoms: S,
     /// The effects besides the joint.
     pub effects: E,
-    /// What it may not do.
-    pub limits: L,
     precision: PhantomData<F>,
 }
 

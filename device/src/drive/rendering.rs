@@ -22,16 +22,18 @@ pub type Symptoms = Option<Crepitus<f32, ExactEvents>>;
 /// The stages of the device.
 pub type Stages = Pipeline<f32, InputCheck<f32>, Symptoms, SwitchedEffects<f32>, TorqueLimits<f32>>;
 
-/// Renders the torque, once a tick.
+/// Renders the torque, once a tick. In the order of its fields, the stages last: what is
+/// within the first kilobyte a load reaches directly.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Rendering {
     sampler: Sampler,
-    stages: Stages,
     /// The joint is removed once it has settled.
     is_removing: bool,
     is_settling: bool,
     /// Speed of the last tick.
     omega_rad_s: f32,
+    stages: Stages,
 }
 
 impl Rendering {

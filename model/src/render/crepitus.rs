@@ -92,11 +92,13 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Symptom<F> for Crepitus<F, L> {
         if let Some(coefficients) = self.ramp.advance() {
             self.held.joint_mut().adjust(coefficients);
         }
-        let jump_nm = &mut shown.jump_nm;
-        self.held.follow(input, move |event| {
-            *jump_nm += event.torque_after_nm - event.torque_before_nm;
+        // By itself: what is shown would live in memory if a part of it were lent.
+        let mut jump_nm = F::ZERO;
+        self.held.follow(input, |event| {
+            jump_nm += event.torque_after_nm - event.torque_before_nm;
             on_event(event);
         });
+        shown.jump_nm = jump_nm;
         let joint = self.held.joint();
         let model_nm = joint.torque_nm();
         let is_missing = matches!(input, Checked::Missing(_));

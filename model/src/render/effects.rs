@@ -33,24 +33,30 @@ pub use slewed::Slewed;
 pub use together::{MOST_SHARE_AT_A_WALL, MOST_STIFFNESS_NM_PER_RAD};
 
 use super::input_check::Checked;
-use super::position::{Position, Scale, Sight};
+use super::position::{Position, Scale, Sight, Travel};
 use super::{Addition, Seen, Shown};
 use crate::joint::{LONGEST_STEP_S, SettingsError};
-use crate::parameters::{Choice, Chosen, Parameter, ParameterSpec, Source, Tabled, filled, switch};
+use crate::parameters::{
+    Choice, Chosen, Parameter, ParameterSpec, Source, Tabled, filled, same, switch,
+};
 use crate::real::Real;
 use symptom::{Change, Given, Law};
 use tank::Tank;
 
 effects! {
-    range_limit: RangeLimit, RangeLimitSettings;
-    lead_pipe: LeadPipe, LeadPipeSettings;
-    cogwheel: Cogwheel, CogwheelSettings;
-    spasticity: Spasticity, SpasticitySettings;
-    clasp_knife: ClaspKnife, ClaspKnifeSettings;
-    clonus: Clonus, ClonusSettings;
-    texture: Texture, TextureSettings;
-    friction_compensation: FrictionCompensation, FrictionCompensationSettings;
-    bone_shaping: BoneShaping, BoneShapingSettings;
+    symptoms {
+        range_limit: RangeLimit, RangeLimitSettings;
+        lead_pipe: LeadPipe, LeadPipeSettings;
+        cogwheel: Cogwheel, CogwheelSettings;
+        spasticity: Spasticity, SpasticitySettings;
+        clasp_knife: ClaspKnife, ClaspKnifeSettings;
+        clonus: Clonus, ClonusSettings;
+        texture: Texture, TextureSettings;
+    }
+    additions {
+        friction_compensation: FrictionCompensation, FrictionCompensationSettings;
+        bone_shaping: BoneShaping, BoneShapingSettings;
+    }
 }
 
 /// Description of an effect.
@@ -117,26 +123,65 @@ impl Timing {
 /// What an effect knows in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Tick<'a, F> {
-    /// The shaft.
-    pub seen: &'a Seen<F>,
-    /// What symptoms may believe of it.
-    pub input: &'a Checked<F>,
+    /// The joint's velocity as far as known, rad/s.
+    pub omega_rad_s: F,
+    /// Its travel since the last sample that was taken, rad; without one none.
+    pub travel_rad: F,
+    /// What symptoms may believe of its motion; `None` without a good sample.
+    pub travel: Option<&'a Travel<F>>,
+    /// Consecutive ticks without a good sample.
+    pub missing_ticks: u32,
+    /// Where it is, or was seen last.
+    pub place: Position<F>,
+    /// The motor is driven: symptoms act.
+    pub is_driven: bool,
     /// The share of torque that is paid from the tank.
     pub paid_share: F,
 }
 
+impl<'a, F: Real> Tick<'a, F> {
+    /// Of this sample.
+    #[inline]
+    pub fn of(
+        seen: &Seen<F>,
+        input: &Checked<F>,
+        travel: Option<&'a Travel<F>>,
+        paid_share: F,
+    ) -> Self {
+        Self {
+            omega_rad_s: seen.omega_rad_s,
+            travel_rad: seen.travel_rad(),
+            travel,
+            missing_ticks: match input {
+                Checked::Missing(ticks) => *ticks,
+                _ => 0,
+            },
+            place: seen.place,
+            is_driven: seen.is_driven,
+            paid_share,
+        }
+    }
+}
+
 /// Sees what happens to the symptoms of the table.
 pub trait Observe<F> {
+    /// Whether anybody does.
+    const LISTENS: bool;
+
     /// Something has happened to this effect.
     fn change(&mut self, effect: &'static EffectSpec, change: Change<F>);
 }
 
 impl<F> Observe<F> for () {
+    const LISTENS: bool = false;
+
     #[inline]
     fn change(&mut self, _: &'static EffectSpec, _: Change<F>) {}
 }
 
 impl<F, O: FnMut(&'static EffectSpec, Change<F>)> Observe<F> for O {
+    const LISTENS: bool = true;
+
     #[inline]
     fn change(&mut self, effect: &'static EffectSpec, change: Change<F>) {
         self(effect, change);
@@ -268,6 +313,19 @@ fn tank<F: Real>(timing: &Timing) -> Tank<F> {
     Tank::new(TANK_J, TANK_REFILL_W, timing.step_s, timing.delay_ticks)
 }
 
+/// A bit for an effect, at its place in the table.
+const fn bit<E: DeviceEffect<f64>>() -> u32 {
+    let (mut bit, mut specs) = (1, SPECS);
+    while let [spec, rest @ ..] = specs {
+        if same(spec.name, E::SPEC.name) {
+            break;
+        }
+        bit <<= 1;
+        specs = rest;
+    }
+    bit
+}
+
 /// What else is shown of an effect that has acted.
 #[inline]
 fn note<F: Real, E: DeviceEffect<F>>(law: Option<&E>, added_nm: F, shown: &mut Shown<F>) {
@@ -312,12 +370,8 @@ pub(crate) mod tests {
     }
 
     /// One without a sample.
-    pub(crate) fn missing(seen: &Seen<f32>) -> Tick<'_, f32> {
-        Tick {
-            seen,
-            input: &Checked::Missing(1),
-            paid_share: 1.0,
-        }
+    pub(crate) fn missing(seen: &Seen<f32>) -> Tick<'static, f32> {
+        Tick::of(seen, &Checked::Missing(1), None, 1.0)
     }
 
     /// A law at these settings.

@@ -151,6 +151,12 @@ impl<F: Real> Travel<F> {
         }
     }
 
+    /// The same of numbers that a joint can have.
+    #[inline]
+    pub fn plausible(input: &Checked<F>, to: &Position<F>, scale: &Scale<F>) -> Option<Self> {
+        Self::of(input, to, scale).filter(Self::is_plausible)
+    }
+
     #[inline]
     fn over(shaft: &ShaftStep<F>, to: &Position<F>, scale: &Scale<F>, ticks: u32) -> Self {
         Self {

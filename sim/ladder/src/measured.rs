@@ -7,7 +7,7 @@ use crate::exchange::{Input, Kind, Output};
 use crepitus_model::control::encoder::EncoderReader;
 use crepitus_model::render::effects::{DeviceEffect, Tick};
 use crepitus_model::render::input_check::Checked;
-use crepitus_model::render::position::Position;
+use crepitus_model::render::position::{Position, Scale, Travel};
 use crepitus_model::render::{Seen, Shown};
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
@@ -146,14 +146,15 @@ impl Measured for EncoderReader<f32> {
 pub struct Effect<E> {
     law: E,
     place: Position<f32>,
+    scale: Scale<f32>,
 }
 
 impl<E: DeviceEffect<f32>> Effect<E> {
     /// At rest so many counts from where the joint is straight.
-    pub fn new(mut law: E, count: i32) -> Self {
+    pub fn new(mut law: E, count: i32, scale: Scale<f32>) -> Self {
         let place = Position::at(count);
         law.rest(&place);
-        Self { law, place }
+        Self { law, place, scale }
     }
 }
 
@@ -179,11 +180,10 @@ impl<E: DeviceEffect<f32>> Measured for Effect<E> {
             jump_nm,
             ..Shown::nothing()
         };
-        let tick = Tick {
-            seen: &Seen::taken(&shaft, self.place),
-            input: &Checked::Step(shaft),
-            paid_share: 1.0,
-        };
+        let input = Checked::Step(shaft);
+        let travel = Travel::plausible(&input, &self.place, &self.scale);
+        let seen = Seen::taken(&shaft, self.place);
+        let tick = Tick::of(&seen, &input, travel.as_ref(), 1.0);
         let added_nm = self.law.added_nm(&tick, &mut shown, &mut ());
         [added_nm.to_bits(), 0, 0]
     }

@@ -13,6 +13,7 @@ use crepitus_model::parameters::Tabled;
 use crepitus_model::real::Real;
 use crepitus_model::render::effects::{DeviceEffect, LawVisitor, SPECS, Timing};
 use crepitus_model::render::input_check::InputLimits;
+use crepitus_model::render::position::Scale;
 use crepitus_model::render::position::Sight;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{CurrentLoop, Guarded, Renderer, SettingsError, StepCoefficients, StickSlip};
@@ -90,7 +91,11 @@ impl Here<'_> {
                 let settings = SPECS
                     .get(place)
                     .map_or_else(Default::default, |spec| in_form(spec, form));
-                let visitor = EffectVisitor { here: self, plan };
+                let visitor = EffectVisitor {
+                    scale: timing.scale()?,
+                    here: self,
+                    plan,
+                };
                 settings.with_law(place, &timing, visitor)?.unwrap_or(false)
             }
             Subject::CurrentLoop => {
@@ -162,6 +167,7 @@ fn address(of: usize) -> u32 {
 
 /// Runs a law.
 struct EffectVisitor<'a, 'b> {
+    scale: Scale<f32>,
     here: &'a mut Here<'b>,
     plan: &'a Plan,
 }
@@ -170,7 +176,8 @@ impl LawVisitor<f32> for EffectVisitor<'_, '_> {
     type Output = bool;
 
     fn visit<E: DeviceEffect<f32>>(self, law: E) -> bool {
-        self.here.run(Effect::new(law, self.plan.place), None)
+        let place = self.plan.place;
+        self.here.run(Effect::new(law, place, self.scale), None)
     }
 }
 

@@ -200,7 +200,7 @@ impl<F: Real> DeviceEffect<F> for BoneShaping<F> {
     #[cfg_attr(not(target_os = "none"), inline(never))]
     fn added_nm(&mut self, tick: &Tick<'_, F>, shown: &mut Shown<F>, _: &mut impl Observe<F>) -> F {
         self.ring(shown.jump_nm);
-        self.tick(tick.seen.travel_rad())
+        self.tick(tick.travel_rad)
     }
 
     fn new(coefficients: Self) -> Self {

@@ -16,7 +16,7 @@
 
 use super::play::{Hold, Limits, Part, Play, short_decay};
 use super::spasticity::sense;
-use super::symptom::{Change, Law, Word};
+use super::symptom::{Change, Hear, Law, Word};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -234,10 +234,6 @@ impl<F: Real> Law for ClaspKnife<F> {
         }
     }
 
-    fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     fn rest(&mut self, place: &Position<F>) {
         self.play.rest(place);
         self.stage = Stage::Out;
@@ -247,7 +243,7 @@ impl<F: Real> Law for ClaspKnife<F> {
     // By name in a profile: a test looks for it where it should not be.
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
-    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let beyond_rad = self.with.sense * travel.end_beyond(&self.with.onset);
         let nm = match self.stage {
             Stage::Out if beyond_rad < F::ZERO => self.wait(travel, on_change),
@@ -305,7 +301,7 @@ impl<F: Real> Law for ClaspKnife<F> {
 impl<F: Real> ClaspKnife<F> {
     /// Out: torque is left only where the onset was moved away.
     #[inline]
-    fn wait(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn wait(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         if self.play.torque_nm() == F::ZERO {
             return F::ZERO;
         }
@@ -318,7 +314,7 @@ impl<F: Real> ClaspKnife<F> {
     /// The onset is met, within this travel or before (armed beyond it): at this share
     /// of it.
     #[cold]
-    fn begin(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn begin(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         self.stage = Stage::Build;
         let started =
             self.with.sense * (travel.end_beyond(&self.with.onset) - travel.delta_rad) < F::ZERO;
@@ -334,7 +330,7 @@ impl<F: Real> ClaspKnife<F> {
         } else {
             F::ZERO
         };
-        on_change(Change::at(Word::Onset, fraction, F::ZERO, F::ZERO));
+        on_change.hear(Change::at(Word::Onset, fraction, F::ZERO, F::ZERO));
         fraction
     }
 
@@ -351,7 +347,7 @@ impl<F: Real> ClaspKnife<F> {
         from: F,
         beyond_rad: F,
         travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
+        on_change: &mut impl Hear<F>,
     ) -> F {
         let with = self.with;
         if let Some(release) = &with.release
@@ -385,7 +381,7 @@ impl<F: Real> ClaspKnife<F> {
         to: F,
         beyond_rad: F,
         travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
+        on_change: &mut impl Hear<F>,
     ) -> F {
         let with = self.with;
         let limit_nm = |fraction: F| {
@@ -409,19 +405,14 @@ impl<F: Real> ClaspKnife<F> {
 
     /// It collapses after this share of the travel.
     #[cold]
-    fn collapse(
-        &mut self,
-        fraction: F,
-        travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
-    ) -> F {
+    fn collapse(&mut self, fraction: F, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = self.with;
         let place = travel.place(fraction);
         let beyond_rad = with.sense * place.beyond(&with.onset, travel.rad_per_count);
         let nm = self.grow(fraction, beyond_rad, travel, on_change);
         let limit_nm = self.limit_nm(beyond_rad);
         let shown_nm = with.sense * nm;
-        on_change(Change::at(Word::Release, fraction, shown_nm, shown_nm));
+        on_change.hear(Change::at(Word::Release, fraction, shown_nm, shown_nm));
         let left_nm = limit_nm * with.residual;
         self.fall(fraction, (left_nm, limit_nm - left_nm), travel, on_change)
     }
@@ -433,7 +424,7 @@ impl<F: Real> ClaspKnife<F> {
         from: F,
         (left_nm, before_nm): (F, F),
         travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
+        on_change: &mut impl Hear<F>,
     ) -> F {
         let with = self.with;
         let after_nm = if from == F::ZERO {
@@ -464,10 +455,10 @@ impl<F: Real> ClaspKnife<F> {
 
     /// Turned back before it collapsed.
     #[cold]
-    fn back(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn back(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let fraction = travel.reaches(&self.with.onset);
         let nm = self.grow(fraction, F::ZERO, travel, on_change);
-        on_change(Change::at(
+        on_change.hear(Change::at(
             Word::Back,
             fraction,
             self.with.sense * nm,
@@ -480,11 +471,11 @@ impl<F: Real> ClaspKnife<F> {
 
     /// Returned: it can build again.
     #[cold]
-    fn rearm(&mut self, travel: &Travel<F>, nm: F, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn rearm(&mut self, travel: &Travel<F>, nm: F, on_change: &mut impl Hear<F>) -> F {
         let sense = self.with.sense;
         let place = self.with.onset.moved(-sense * self.with.rearm_rad);
-        let fraction = travel.reaches(&place);
-        on_change(Change::at(Word::Rearm, fraction, sense * nm, F::ZERO));
+        let fraction = || travel.reaches(&place);
+        on_change.tell(Word::Rearm, fraction, sense * nm, F::ZERO);
         self.stage = Stage::Out;
         self.play.rest(&travel.to);
         F::ZERO

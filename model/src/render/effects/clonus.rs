@@ -16,7 +16,7 @@
 //! estimate.
 
 use super::spasticity::sense;
-use super::symptom::{Change, Law, Word};
+use super::symptom::{Change, Hear, Law, Word};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -257,10 +257,6 @@ impl<F: Real> Law for Clonus<F> {
         }
     }
 
-    fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     fn rest(&mut self, place: &Position<F>) {
         let beyond_rad =
             self.with.sense * place.beyond(&self.with.hold, self.with.scale.rad_per_count);
@@ -273,7 +269,7 @@ impl<F: Real> Law for Clonus<F> {
     // By name in a profile: a test looks for it where it should not be.
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
-    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = &self.with;
         let beyond_rad = with.sense * travel.end_beyond(&with.hold);
         let is_back = -beyond_rad >= with.back_rad;
@@ -326,14 +322,14 @@ impl<F: Real> Law for Clonus<F> {
 impl<F: Real> Clonus<F> {
     /// The joint crosses φh in the stretch's sense.
     #[cold]
-    fn cross(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+    fn cross(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
         let fraction = travel.reaches(&self.with.hold);
         let rad_s = self.with.sense * travel.omega_rad_s(fraction);
         if rad_s < self.with.least_rad_s {
             self.stage = Stage::Over;
             return;
         }
-        on_change(Change::at(Word::Start, fraction, F::ZERO, F::ZERO));
+        on_change.hear(Change::at(Word::Start, fraction, F::ZERO, F::ZERO));
         self.stage = Stage::Beating;
         self.interval_since = Since {
             whole: travel.ticks,
@@ -347,7 +343,7 @@ impl<F: Real> Clonus<F> {
 
     /// Begins the next beat when its time has come.
     #[inline]
-    fn pace(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+    fn pace(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
         let late = self.interval_since.ticks() - self.interval;
         if late >= F::ZERO {
             self.next(late, travel, on_change);
@@ -371,14 +367,14 @@ impl<F: Real> Clonus<F> {
 
     /// An interval is over, so many ticks ago: the next beat, if there is one.
     #[cold]
-    fn next(&mut self, late: F, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+    fn next(&mut self, late: F, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
         let fraction = (F::ONE - late / F::from_whole(u64::from(travel.ticks))).at_least(F::ZERO);
         if self.with.beats > 0 && self.beaten >= self.with.beats {
-            on_change(Change::at(Word::Done, fraction, F::ZERO, F::ZERO));
+            on_change.hear(Change::at(Word::Done, fraction, F::ZERO, F::ZERO));
             self.stage = Stage::Over;
             return;
         }
-        on_change(Change::at(Word::Beat, fraction, F::ZERO, F::ZERO));
+        on_change.hear(Change::at(Word::Beat, fraction, F::ZERO, F::ZERO));
         self.interval_since = self.interval_since.later(self.interval);
         self.beat_since = self.interval_since;
         self.interval = self.with.period * (F::ONE + self.stretch);
@@ -389,11 +385,11 @@ impl<F: Real> Clonus<F> {
 
     /// The joint has returned.
     #[cold]
-    fn let_go(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+    fn let_go(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
         let place = self.with.hold.moved(-self.with.sense * self.with.back_rad);
         if self.beaten > 0 || self.stage == Stage::Beating {
             let nm = self.torque_nm;
-            on_change(Change::at(Word::Stop, travel.reaches(&place), nm, nm));
+            on_change.tell(Word::Stop, || travel.reaches(&place), nm, nm);
         }
         self.beaten = 0;
         self.stage = Stage::Ready;

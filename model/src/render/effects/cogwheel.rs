@@ -15,7 +15,7 @@
 //! 1981); torques are estimates.
 
 use super::play::{Hold, Limits, Part, Play, dragged};
-use super::symptom::{Change, Law, Word};
+use super::symptom::{Change, Hear, Law, Word};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -222,10 +222,6 @@ impl<F: Real> Law for Cogwheel<F> {
         }
     }
 
-    fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     fn rest(&mut self, place: &Position<F>) {
         self.play.rest(place);
         self.elastic_nm = F::ZERO;
@@ -240,7 +236,7 @@ impl<F: Real> Law for Cogwheel<F> {
     // By name in a profile: a test looks for it where it should not be.
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
-    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let before = self.at;
         let low_from = self.with.low_from;
         let (turned, back) = match self.with.clock {
@@ -327,7 +323,7 @@ impl<F: Real> Cogwheel<F> {
         is_high: bool,
         turn: &Turn,
         travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
+        on_change: &mut impl Hear<F>,
     ) -> F {
         // Forwards it is high from 0 on, backwards from the end of its height.
         let edge = if is_high == turn.back {
@@ -364,7 +360,7 @@ impl<F: Real> Cogwheel<F> {
         // At rest one give is felt, then there is silence.
         if moved_rad.abs() > self.with.flicker_rad || after_nm != before_nm {
             let word = if is_high { Word::Catch } else { Word::Give };
-            on_change(Change::at(word, fraction, before_nm, after_nm));
+            on_change.hear(Change::at(word, fraction, before_nm, after_nm));
         }
         fraction
     }

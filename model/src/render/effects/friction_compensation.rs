@@ -149,7 +149,7 @@ impl<F: Real> DeviceEffect<F> for FrictionCompensation<F> {
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
     fn added_nm(&mut self, tick: &Tick<'_, F>, _: &mut Shown<F>, _: &mut impl Observe<F>) -> F {
-        self.torque_nm(tick.seen.omega_rad_s)
+        self.torque_nm(tick.omega_rad_s)
     }
 }
 

@@ -4,7 +4,7 @@ use super::symptom::{Given, Law};
 use super::{MOST_STIFFNESS_NM_PER_RAD, Observe, Switched, Tick};
 use crate::real::Real;
 use crate::render::Shown;
-use crate::render::input_check::{Checked, HOLD_TICKS};
+use crate::render::input_check::HOLD_TICKS;
 use crate::render::position::Position;
 
 /// Keeps a law and what it remembers while its coefficients change.
@@ -106,14 +106,7 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
         if !self.is_on {
             return F::ZERO;
         }
-        // Copies: whose address is taken lives in memory also where this is off.
-        let (seen, input) = (*tick.seen, *tick.input);
-        let tick = Tick {
-            seen: &seen,
-            input: &input,
-            paid_share: tick.paid_share,
-        };
-        let given = self.tick_on(&tick, observe);
+        let given = self.tick_on(tick, observe);
         shown.torque_nm += given.nm;
         shown.jump_nm += given.jump_nm;
         shown.active_nm += given.active_nm;
@@ -127,21 +120,19 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
     /// register of those around it.
     #[inline(never)]
     fn tick_on(&mut self, tick: &Tick<'_, F>, observe: &mut impl Observe<F>) -> Given<F> {
-        if !tick.seen.is_driven {
-            self.rest(&tick.seen.place);
+        if !tick.is_driven {
+            self.rest(&tick.place);
             return Given::NOTHING;
         }
         if self.way == Way::Appearing {
-            Law::rest(&mut self.law, &tick.seen.place);
+            Law::rest(&mut self.law, &tick.place);
             self.way = Way::Adopted;
             return Given {
                 is_settling: true,
                 ..Given::NOTHING
             };
         }
-        if let Checked::Missing(ticks) = tick.input
-            && *ticks > HOLD_TICKS
-        {
+        if tick.missing_ticks > HOLD_TICKS {
             self.law.release(self.slew_nm);
         }
         let mut given = Given::by(&mut self.law, tick, observe);
@@ -161,13 +152,13 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
             Way::Adopted => {
                 let shown_nm = self.fade(law_nm, self.last_nm - law_nm, self.slew_nm);
                 // What a law makes of its coefficients shows with a sample.
-                if tick.input.travel_rad().is_none() {
+                if tick.travel.is_none() {
                     self.way = Way::Adopted;
                 }
                 shown_nm
             }
             Way::Fading(besides_nm) => {
-                let moved_rad = tick.input.travel_rad().unwrap_or(F::ZERO);
+                let moved_rad = tick.travel.map_or(F::ZERO, |travel| travel.delta_rad);
                 let along = besides_nm * moved_rad < F::ZERO;
                 let gives_nm = if along {
                     F::from_f64(MOST_STIFFNESS_NM_PER_RAD) * moved_rad.abs()

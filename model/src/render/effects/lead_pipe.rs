@@ -13,7 +13,7 @@
 //! torques are estimates.
 
 use super::play::{Hold, Limits, Part, Play};
-use super::symptom::{Change, Law};
+use super::symptom::{Hear, Law};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -132,10 +132,6 @@ impl<F: Real> Law for LeadPipe<F> {
         }
     }
 
-    fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     fn rest(&mut self, place: &Position<F>) {
         self.play.rest(place);
         self.elastic_nm = F::ZERO;
@@ -144,7 +140,7 @@ impl<F: Real> Law for LeadPipe<F> {
     // By name in a profile: a test looks for it where it should not be.
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
-    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = &self.with;
         self.elastic_nm = with.elastic * travel.end_beyond(&with.neutral);
         let limits = Limits::both(with.torque_nm);

@@ -21,7 +21,7 @@
 //! E ≤ T₀²/2σ + (½ + d)·σ·h·∫Ω² dt          d ticks late
 //! ```
 
-use super::symptom::{Change, Word};
+use super::symptom::{Change, Hear, Word};
 use crate::real::Real;
 use crate::render::position::{Position, Travel};
 
@@ -153,13 +153,13 @@ impl<F: Real> Play<F> {
     /// travel to the share `to`: the torque there, N·m. `limits` are those of a
     /// share of the travel.
     #[inline]
-    pub fn follow(
+    pub fn follow<O: Hear<F>>(
         &mut self,
         travel: &Travel<F>,
         part: Part<F>,
         stiffness: F,
         limits: impl Fn(F) -> Limits<F>,
-        on_change: &mut impl FnMut(Change<F>),
+        on_change: &mut O,
     ) -> F {
         let place = part.end_place(travel);
         let moved_rad = part.sense * place.beyond(&self.place, travel.rad_per_count);
@@ -182,7 +182,7 @@ impl<F: Real> Play<F> {
         } else {
             (self.now_nm, self.hold) = (elastic_nm, Hold::Elastic);
         }
-        if self.hold != was {
+        if self.hold != was && (O::LISTENS || !F::IS_SINGLE) {
             let passage = Passage {
                 travel,
                 part,
@@ -285,10 +285,10 @@ struct Passage<'a, F, L> {
 
 impl<F: Real, L: Fn(F) -> Limits<F>> Passage<'_, F, L> {
     /// Says what has changed, and when.
-    fn tell(&self, was: Hold, is: Hold, on_change: &mut impl FnMut(Change<F>)) {
+    fn tell(&self, was: Hold, is: Hold, on_change: &mut impl Hear<F>) {
         let mut tell = |word, fraction, hold| {
             let nm = self.part.sense * self.limit_nm(hold, fraction);
-            on_change(Change::at(word, fraction, nm, nm));
+            on_change.hear(Change::at(word, fraction, nm, nm));
         };
         match was {
             Hold::Elastic => {}

@@ -13,12 +13,12 @@
 mod caught;
 mod reflex;
 
-use super::symptom::{Change, Law};
+use super::symptom::{Hear, Law};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
-use crate::render::position::{Position, Scale, Travel, rise};
+use crate::render::position::{Position, Travel, rise};
 use caught::{Caught, CaughtCoefficients};
 use reflex::{Reflex, ReflexCoefficients};
 
@@ -290,13 +290,6 @@ impl<F: Real> Law for Spasticity<F> {
         spasticity
     }
 
-    fn scale(&self) -> &Scale<F> {
-        match self.form {
-            Form::Catch => self.caught.scale(),
-            Form::Reflex => self.reflex.scale(),
-        }
-    }
-
     fn rest(&mut self, place: &Position<F>) {
         match self.form {
             Form::Catch => self.caught.rest(place),
@@ -307,7 +300,7 @@ impl<F: Real> Law for Spasticity<F> {
     // By name in a profile: a test looks for it where it should not be.
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
-    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         match self.form {
             Form::Catch => self.caught.follow(travel, on_change),
             Form::Reflex => self.reflex.follow(travel, on_change),

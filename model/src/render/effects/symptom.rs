@@ -3,7 +3,7 @@
 use super::{EffectSpec, Observe, Tick, Timing};
 use crate::joint::SettingsError;
 use crate::real::Real;
-use crate::render::position::{Position, Scale, Travel};
+use crate::render::position::{Position, Travel};
 
 /// What happens to a symptom; the names are those of `events.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -133,6 +133,64 @@ impl<F: Real> Change<F> {
     }
 }
 
+/// Hears what happens to a symptom.
+pub trait Hear<F> {
+    /// Whether it needs more than snaps. A device does not, and need not find out when
+    /// all else was.
+    const LISTENS: bool;
+
+    /// Something has happened.
+    fn hear(&mut self, change: Change<F>);
+
+    /// The same; when it was is found out only if somebody needs it.
+    #[inline]
+    fn tell(&mut self, word: Word, when: impl FnOnce() -> F, before_nm: F, after_nm: F) {
+        if Self::LISTENS {
+            self.hear(Change {
+                word,
+                fraction: when(),
+                before_nm,
+                after_nm,
+            });
+        }
+    }
+}
+
+impl<F> Hear<F> for () {
+    const LISTENS: bool = false;
+
+    #[inline]
+    fn hear(&mut self, _: Change<F>) {}
+}
+
+impl<F, O: FnMut(Change<F>)> Hear<F> for O {
+    const LISTENS: bool = true;
+
+    #[inline]
+    fn hear(&mut self, change: Change<F>) {
+        self(change);
+    }
+}
+
+/// What a device hears of a symptom: by how much its torque has jumped.
+struct Heard<'a, F, O> {
+    spec: &'static EffectSpec,
+    jump_nm: F,
+    observe: &'a mut O,
+}
+
+impl<F: Real, O: Observe<F>> Hear<F> for Heard<'_, F, O> {
+    const LISTENS: bool = O::LISTENS;
+
+    #[inline]
+    fn hear(&mut self, change: Change<F>) {
+        if change.word == Word::Snap {
+            self.jump_nm += change.after_nm - change.before_nm;
+        }
+        self.observe.change(self.spec, change);
+    }
+}
+
 /// The law of a symptom, with its state.
 pub trait Law: Sized {
     /// The numbers that it computes with.
@@ -165,9 +223,6 @@ pub trait Law: Sized {
     /// With these coefficients; [`Self::rest`] places it.
     fn new(coefficients: Self::Coefficients) -> Self;
 
-    /// Scale of the angle.
-    fn scale(&self) -> &Scale<Self::Real>;
-
     /// As at arming: without torque at this place of the joint, whatever it is.
     fn rest(&mut self, place: &Position<Self::Real>);
 
@@ -175,7 +230,7 @@ pub trait Law: Sized {
     fn follow(
         &mut self,
         travel: &Travel<Self::Real>,
-        on_change: &mut impl FnMut(Change<Self::Real>),
+        on_change: &mut impl Hear<Self::Real>,
     ) -> Self::Real;
 
     /// Its torque now, N·m.
@@ -227,14 +282,17 @@ impl<F: Real> Given<F> {
         observe: &mut impl Observe<F>,
     ) -> Self {
         let mut given = Self::NOTHING;
-        let travel = Travel::of(tick.input, &tick.seen.place, law.scale());
-        given.nm = match travel.filter(Travel::is_plausible) {
-            Some(travel) => law.follow(&travel, &mut |change: Change<F>| {
-                if change.word == Word::Snap {
-                    given.jump_nm += change.after_nm - change.before_nm;
-                }
-                observe.change(const { &<L as Law>::SPEC }, change);
-            }),
+        given.nm = match tick.travel {
+            Some(travel) => {
+                let mut heard = Heard {
+                    spec: const { &<L as Law>::SPEC },
+                    jump_nm: F::ZERO,
+                    observe,
+                };
+                let nm = law.follow(travel, &mut heard);
+                given.jump_nm = heard.jump_nm;
+                nm
+            }
             None => law.torque_nm(),
         };
         if law.is_active() {

@@ -1,8 +1,21 @@
 //! Everything that follows from a line in the table of effects.
 
-/// Generates what follows from the table.
+/// Generates what follows from the table. Symptoms act before what is added to them.
 macro_rules! effects {
-    ($($effect:ident: $law:ident, $settings:ident;)*) => {
+    (
+        symptoms { $($symptom:ident: $s_law:ident, $s_settings:ident;)* }
+        additions { $($addition:ident: $a_law:ident, $a_settings:ident;)* }
+    ) => {
+        effects! { @all
+            $($symptom: $s_law, $s_settings;)*
+            $($addition: $a_law, $a_settings;)*
+        }
+        effects! { @switched
+            { $($symptom: $s_law;)* }
+            { $($addition: $a_law;)* }
+        }
+    };
+    (@all $($effect:ident: $law:ident, $settings:ident;)*) => {
         /// The effects, in the order in which they act.
         pub const SPECS: &[EffectSpec] = &[$(<$effect::$law<f64> as DeviceEffect<f64>>::SPEC),*];
 
@@ -31,19 +44,15 @@ macro_rules! effects {
             $(#[doc = concat!("`", stringify!($effect), "`.")] pub $effect: Option<$effect::$law<F>>,)*
             /// What symptoms that are no springs are paid from.
             pub tank: Tank<F>,
-        }
-
-        /// The effects of a device that runs.
-        #[derive(Clone, Debug)]
-        pub struct SwitchedEffects<F: Real> {
-            $($effect: <$effect::$law<F> as DeviceEffect<F>>::Switched,)*
-            tank: Tank<F>,
+            /// Of angles and times.
+            pub scale: Scale<F>,
         }
 
         /// Other laws, where they are other ones.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct EffectChanges<F: Real> {
             $($effect: Option<Option<<$effect::$law<F> as DeviceEffect<F>>::Coefficients>>,)*
+            scale: Scale<F>,
         }
 
         impl EffectSettings {
@@ -77,6 +86,7 @@ macro_rules! effects {
                         None => None,
                     },)*
                     tank: tank(timing),
+                    scale: timing.scale()?,
                 })
             }
 
@@ -99,6 +109,7 @@ macro_rules! effects {
                         )),
                         None => Some(None),
                     },)*
+                    scale: timing.scale()?,
                 })
             }
         }
@@ -131,21 +142,6 @@ macro_rules! effects {
             }
         }
 
-        impl<F: Real> SwitchedEffects<F> {
-            /// Without any.
-            pub fn new(slew_nm: F, timing: &Timing) -> Self {
-                Self {
-                    $($effect: Switched::new(slew_nm),)*
-                    tank: tank(timing),
-                }
-            }
-
-            /// From the next tick on, these laws, and this slew limit.
-            pub fn change(&mut self, changes: &EffectChanges<F>, slew_nm: F) {
-                $(self.$effect.change(&changes.$effect, slew_nm);)*
-            }
-        }
-
         impl<F: Real> Addition<F> for Effects<F> {
             fn rest(&mut self, place: &Position<F>) {
                 $(if let Some(law) = &mut self.$effect {
@@ -162,37 +158,14 @@ macro_rules! effects {
                 observe: &mut impl Observe<F>,
             ) {
                 let paid_share = self.tank.open(seen.travel_rad());
-                let tick = Tick { seen, input, paid_share };
+                let travel = Travel::plausible(input, &seen.place, &self.scale);
+                let tick = Tick::of(seen, input, travel.as_ref(), paid_share);
                 $(if let Some(law) = &mut self.$effect {
                     let added_nm = law.added_nm(&tick, shown, observe);
                     shown.torque_nm += added_nm;
                     shown.added.$effect = added_nm;
                     note(Some(law), added_nm, shown);
                 })*
-                self.tank.close(shown.active_nm);
-            }
-        }
-
-        impl<F: Real> Addition<F> for SwitchedEffects<F> {
-            fn rest(&mut self, place: &Position<F>) {
-                $(self.$effect.rest(place);)*
-            }
-
-            #[inline]
-            fn tick(
-                &mut self,
-                seen: &Seen<F>,
-                input: &Checked<F>,
-                shown: &mut Shown<F>,
-                observe: &mut impl Observe<F>,
-            ) {
-                let paid_share = self.tank.open(seen.travel_rad());
-                let tick = Tick { seen, input, paid_share };
-                $(
-                    let added_nm = self.$effect.tick(&tick, shown, observe);
-                    shown.added.$effect = added_nm;
-                    note(self.$effect.law(), added_nm, shown);
-                )*
                 self.tank.close(shown.active_nm);
             }
         }
@@ -221,6 +194,104 @@ macro_rules! effects {
                 )*
                 let _ = left;
                 Ok(None)
+            }
+        }
+    };
+    (@switched
+        { $($symptom:ident: $s_law:ident;)* }
+        { $($addition:ident: $a_law:ident;)* }
+    ) => {
+        /// The effects of a device that runs. In the order of its fields: what every tick
+        /// needs first, within reach of a load, the memory of symptoms last.
+        #[derive(Clone, Debug)]
+        #[repr(C)]
+        pub struct SwitchedEffects<F: Real> {
+            /// A bit for each symptom, at its place in the table: all that are on have one.
+            on: u32,
+            tank: Tank<F>,
+            $($addition: <$addition::$a_law<F> as DeviceEffect<F>>::Switched,)*
+            scale: Scale<F>,
+            $($symptom: <$symptom::$s_law<F> as DeviceEffect<F>>::Switched,)*
+        }
+
+        impl<F: Real> SwitchedEffects<F> {
+            /// Without any.
+            pub fn new(slew_nm: F, timing: &Timing) -> Self {
+                Self {
+                    on: 0,
+                    tank: tank(timing),
+                    $($addition: Switched::new(slew_nm),)*
+                    scale: Scale::new(&timing.sight, timing.step_s),
+                    $($symptom: Switched::new(slew_nm),)*
+                }
+            }
+
+            /// From the next tick on, these laws, and this slew limit.
+            pub fn change(&mut self, changes: &EffectChanges<F>, slew_nm: F) {
+                $(self.$symptom.change(&changes.$symptom, slew_nm);)*
+                $(self.$addition.change(&changes.$addition, slew_nm);)*
+                self.scale = changes.scale;
+                self.look();
+            }
+
+            /// Sees which symptoms are on.
+            fn look(&mut self) {
+                self.on = 0;
+                $(if self.$symptom.law().is_some() {
+                    self.on |= const { bit::<$symptom::$s_law<f64>>() };
+                })*
+            }
+
+            /// Adds the symptoms, where any is on.
+            #[inline]
+            fn add_symptoms(
+                &mut self,
+                seen: &Seen<F>,
+                input: &Checked<F>,
+                paid_share: F,
+                shown: &mut Shown<F>,
+                observe: &mut impl Observe<F>,
+            ) {
+                let travel = Travel::plausible(input, &seen.place, &self.scale);
+                let tick = Tick::of(seen, input, travel.as_ref(), paid_share);
+                $(if self.on & const { bit::<$symptom::$s_law<f64>>() } != 0 {
+                    let added_nm = self.$symptom.tick(&tick, shown, observe);
+                    shown.added.$symptom = added_nm;
+                    note(self.$symptom.law(), added_nm, shown);
+                })*
+                // Only then may one have gone.
+                if shown.settling || !seen.is_driven {
+                    self.look();
+                }
+            }
+        }
+
+        impl<F: Real> Addition<F> for SwitchedEffects<F> {
+            fn rest(&mut self, place: &Position<F>) {
+                $(self.$symptom.rest(place);)*
+                $(self.$addition.rest(place);)*
+                self.look();
+            }
+
+            #[inline]
+            fn tick(
+                &mut self,
+                seen: &Seen<F>,
+                input: &Checked<F>,
+                shown: &mut Shown<F>,
+                observe: &mut impl Observe<F>,
+            ) {
+                let paid_share = self.tank.open(seen.travel_rad());
+                if self.on != 0 {
+                    self.add_symptoms(seen, input, paid_share, shown, observe);
+                }
+                self.tank.close(shown.active_nm);
+                let tick = Tick::of(seen, input, None, paid_share);
+                $(
+                    let added_nm = self.$addition.tick(&tick, shown, observe);
+                    shown.added.$addition = added_nm;
+                    note(self.$addition.law(), added_nm, shown);
+                )*
             }
         }
     };

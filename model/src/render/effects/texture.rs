@@ -13,7 +13,7 @@
 //! specification (Tan et al.); torques in the paper's range; pitches are estimates.
 
 use super::play::{Hold, Limits, Part, Play};
-use super::symptom::{Change, Law, Word};
+use super::symptom::{Change, Hear, Law, Word};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -250,10 +250,6 @@ impl<F: Real> Law for Texture<F> {
         }
     }
 
-    fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     fn rest(&mut self, place: &Position<F>) {
         self.play.rest(place);
         self.at = *place;
@@ -263,7 +259,7 @@ impl<F: Real> Law for Texture<F> {
     // By name in a profile: a test looks for it where it should not be.
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
-    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         self.at = travel.to;
         let part = Part::since(F::ONE, self.cross(travel, on_change));
         let limits = |fraction: F| {
@@ -272,7 +268,7 @@ impl<F: Real> Law for Texture<F> {
         };
         // What the play does by itself is the texture, no event.
         self.play
-            .follow(travel, part, self.with.stiffness, limits, &mut |_| {})
+            .follow(travel, part, self.with.stiffness, limits, &mut ())
     }
 
     fn torque_nm(&self) -> F {
@@ -362,7 +358,7 @@ impl<F: Real> Texture<F> {
     /// Crosses the asperities that lie in a travel, at most one in a tick; the share of
     /// the travel that is behind it then.
     #[inline]
-    fn cross(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn cross(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let upwards = self.beyond_next(&travel.to) >= F::ZERO;
         if !upwards && self.beyond_last(&travel.to) >= -self.with.flicker_rad {
             return F::ZERO;
@@ -371,12 +367,7 @@ impl<F: Real> Texture<F> {
     }
 
     #[cold]
-    fn snap(
-        &mut self,
-        upwards: bool,
-        travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
-    ) -> F {
+    fn snap(&mut self, upwards: bool, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let place = if upwards {
             self.next.place
         } else {
@@ -387,7 +378,7 @@ impl<F: Real> Texture<F> {
         let part = Part::until(F::ONE, fraction);
         let before_nm = self
             .play
-            .follow(travel, part, self.with.stiffness, limits, &mut |_| {});
+            .follow(travel, part, self.with.stiffness, limits, &mut ());
         let is_at_limit = match self.play.hold() {
             Hold::Elastic => false,
             Hold::Upper => upwards,
@@ -406,7 +397,7 @@ impl<F: Real> Texture<F> {
         };
         self.play.put(&at, after_nm, hold);
         if is_at_limit {
-            on_change(Change::at(Word::Snap, fraction, before_nm, after_nm));
+            on_change.hear(Change::at(Word::Snap, fraction, before_nm, after_nm));
         }
         let to = travel.to;
         if self.beyond_next(&to) < F::ZERO && self.beyond_last(&to) >= -self.with.flicker_rad {

@@ -9,7 +9,7 @@ use crepitus_protocol::parameters;
 use crepitus_scene::Scene;
 
 /// Modelled cycles of a tick.
-const TICK_CYCLES: u64 = 8_400;
+pub(crate) const TICK_CYCLES: u64 = 8_400;
 
 /// Ticks that are watched, with some twenty cycles of stick and slip.
 const TICKS: u64 = 4_000;
@@ -20,7 +20,7 @@ const COMMITS: usize = 15;
 const MANY_COMMITS: usize = 60;
 
 /// Exception of `render_torque`.
-const RENDER: u16 = 16 + 30;
+pub(crate) const RENDER: u16 = 16 + 30;
 
 /// Upper limits.
 struct Limits {
@@ -38,18 +38,18 @@ struct Limits {
 const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::ZeroWaitStates,
-        share: 44,
-        commit_share: 54,
-        cold_share: 43,
-        render_cycles: 1_190,
+        share: 41,
+        commit_share: 52,
+        cold_share: 40,
+        render_cycles: 900,
     },
     // About 3 % above what was measured.
     Limits {
         flash: Flash::Modelled,
-        share: 60,
-        commit_share: 77,
-        cold_share: 57,
-        render_cycles: 1_680,
+        share: 58,
+        commit_share: 71,
+        cold_share: 52,
+        render_cycles: 1_280,
     },
 ];
 
@@ -62,7 +62,7 @@ fn under_torque(image: &Image, scene: &Scene, flash: Flash) -> Host {
 }
 
 #[expect(clippy::cast_precision_loss, reason = "for people")]
-fn percent(cycles: u64) -> f64 {
+pub(crate) fn percent(cycles: u64) -> f64 {
     cycles as f64 / TICK_CYCLES as f64 * 100.0
 }
 

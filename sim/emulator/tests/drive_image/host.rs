@@ -5,6 +5,7 @@ use crepitus_board::values::values;
 use crepitus_device::usb_port::HostBytes;
 use crepitus_emulator::drive_board::NativeComms;
 use crepitus_emulator::firmware::{Program, image_for_test};
+use crepitus_emulator::mcu::Watch;
 use crepitus_emulator::{DriveBoard, Image, Mcu, Time};
 use crepitus_protocol::frame;
 use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request};
@@ -69,8 +70,12 @@ pub(crate) fn examination() -> Scene {
 
 /// The examination with more effects.
 pub(crate) fn scene(effects: &str) -> Scene {
-    let text = [include_str!("examination.toml"), effects].concat();
-    Scene::parse(Path::new("examination.toml"), &text, &Overrides::default()).expect("a scene")
+    scene_of(&[include_str!("examination.toml"), effects].concat())
+}
+
+/// A scene of this text.
+pub(crate) fn scene_of(text: &str) -> Scene {
+    Scene::parse(Path::new("examination.toml"), text, &Overrides::default()).expect("a scene")
 }
 
 impl Host {
@@ -139,17 +144,36 @@ impl Host {
 
     pub(crate) fn run(&mut self, ticks: u64) {
         for _ in 0..ticks {
-            if self.holds_lease && self.ticks.is_multiple_of(RENEWAL_TICKS) {
-                self.say(0, Operation::Renew);
-            }
+            self.renew();
             match &mut self.locks {
                 Some(locks) => self.board.watch(1, locks),
                 None => self.board.run(1),
             }
-            self.ticks += 1;
-            self.listen();
-            self.check_board();
+            self.hear();
         }
+    }
+
+    /// As [`Self::run`], passing every step of the core to `watch`.
+    pub(crate) fn watch(&mut self, ticks: u64, watch: &mut dyn Watch) {
+        for _ in 0..ticks {
+            self.renew();
+            self.board.watch(1, watch);
+            self.hear();
+        }
+    }
+
+    /// Renews the lease, when it is time.
+    fn renew(&mut self) {
+        if self.holds_lease && self.ticks.is_multiple_of(RENEWAL_TICKS) {
+            self.say(0, Operation::Renew);
+        }
+    }
+
+    /// After a tick: what was sent, and what the board found.
+    fn hear(&mut self) {
+        self.ticks += 1;
+        self.listen();
+        self.check_board();
     }
 
     /// Fails at the first mismatch of image and board.

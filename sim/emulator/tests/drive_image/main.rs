@@ -18,6 +18,7 @@ mod reference_flash;
 mod registers;
 mod replay;
 mod self_test;
+mod symptoms;
 mod tasks;
 mod torque;
 mod wiring;

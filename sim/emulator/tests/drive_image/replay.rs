@@ -6,12 +6,14 @@
 //! of its program, and has to send the same blocks.
 
 use crate::host::{Flash, Host, examination, image};
+use crate::symptoms::{self, CASES, Case, PERIOD_TICKS, SYMPTOMS};
 use crepitus_device::Drive;
 use crepitus_device::drive::Boot;
 use crepitus_device::drive::command::Inputs;
 use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_emulator::Mcu;
 use crepitus_emulator::mcu::Access;
+use crepitus_model::render::effects::Phases;
 use crepitus_protocol::frame::DELIMITER;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 use crepitus_protocol::{Decoder, Lane, Revision, State};
@@ -218,6 +220,50 @@ fn check(flash: Flash) {
     let mut host = Host::timed(&image, &examination(), &REGISTERS, flash);
     host.arm();
     host.run(TICKS as u64 + 500);
+    let armed = compare(&mut host);
+    assert!(armed >= TICKS, "{armed} ticks under torque");
+    // To the end: in the last 100 ms, as in one sample there may be none.
+    let last = host.blocks.iter().rev().take(100);
+    let mut torques_nm = last.flat_map(|block| block.samples.map(|sample| sample.torque_nm));
+    assert!(torques_nm.any(|torque_nm| torque_nm.abs() > 0.05));
+}
+
+/// Each symptom by itself, in both forms where it has two, and all at once.
+#[test]
+fn every_symptom_is_that_of_the_native_drive_bit_for_bit() {
+    let Some(mut host) = symptoms::armed(&REGISTERS, Flash::ZeroWaitStates) else {
+        return;
+    };
+    let all: Vec<&Case> = CASES.iter().take(SYMPTOMS).collect();
+    let each = CASES.iter().map(|case| vec![case]);
+    let each: Vec<Vec<&Case>> = each.chain([all]).collect();
+    for cases in &each {
+        let revision = symptoms::commit(&mut host, symptoms::values_of(cases));
+        host.run(PERIOD_TICKS);
+        let blocks = host
+            .blocks
+            .iter()
+            .filter(|block| block.revision == revision);
+        let phases: Vec<Phases> = blocks.flat_map(|b| b.phases).map(Phases::from).collect();
+        for case in cases {
+            for phase in case.phases {
+                let mut named = phases.iter().flat_map(|phases| phases.named());
+                let is_there =
+                    named.any(|(spec, name)| spec.name == case.symptom && name == *phase);
+                assert!(is_there, "{}: {phase}", case.symptom);
+            }
+        }
+    }
+    let armed = compare(&mut host);
+    assert!(
+        armed as u64 >= each.len() as u64 * PERIOD_TICKS,
+        "{armed} ticks under torque"
+    );
+}
+
+/// Gives the native drive what the image has read, and compares what they have sent: how
+/// many ticks of it armed.
+fn compare(host: &mut Host) -> usize {
     let accesses = host.board.mcu_mut().take_accesses();
     let listens = accesses
         .iter()
@@ -282,9 +328,5 @@ fn check(flash: Flash) {
             armed += BLOCK_SAMPLES;
         }
     }
-    assert!(armed >= TICKS, "{armed} ticks under torque");
-    // To the end: in the last 100 ms, as in one sample there may be none.
-    let last = host.blocks.iter().rev().take(100);
-    let mut torques_nm = last.flat_map(|block| block.samples.map(|sample| sample.torque_nm));
-    assert!(torques_nm.any(|torque_nm| torque_nm.abs() > 0.05));
+    armed
 }

@@ -17,8 +17,8 @@ const TICK_UNITS: u64 = 16_800;
 /// Limits of a run with the modelled flash, cycles: about 3 % above what was
 /// measured.
 const COMMAND_CYCLES: u64 = 1_990;
-const RENDER_CYCLES: u64 = 1_620;
-const LINK_CYCLES: u64 = 1_260;
+const RENDER_CYCLES: u64 = 1_250;
+const LINK_CYCLES: u64 = 1_380;
 
 /// Ticks that are watched.
 const TICKS: u64 = 1_000;

@@ -8,7 +8,7 @@ use crepitus_model::render::Shown;
 use crepitus_model::render::effects::symptom::Change;
 use crepitus_model::render::effects::{DeviceEffect, EffectSpec, LawVisitor, Tick, Timing};
 use crepitus_model::render::input_check::Checked;
-use crepitus_model::render::position::{Position, Sight};
+use crepitus_model::render::position::{Position, Scale, Sight, Travel};
 use crepitus_model::{Real, SettingsError, ShaftStep};
 
 /// How a law sees a joint whose true motion it knows.
@@ -26,14 +26,12 @@ pub fn tick<F: Real, E: DeviceEffect<F>>(
     law: &mut E,
     shaft: &ShaftStep<F>,
     place: Position<F>,
-    on_change: impl FnMut(Change<F>),
+    scale: &Scale<F>,
+    mut on_change: impl FnMut(Change<F>),
 ) -> F {
-    let mut on_change = on_change;
-    let tick = Tick {
-        seen: &Seen::taken(shaft, place),
-        input: &Checked::Step(*shaft),
-        paid_share: F::ONE,
-    };
+    let input = Checked::Step(*shaft);
+    let travel = Travel::plausible(&input, &place, scale);
+    let tick = Tick::of(&Seen::taken(shaft, place), &input, travel.as_ref(), F::ONE);
     law.added_nm(
         &tick,
         &mut Shown::nothing(),
@@ -52,19 +50,24 @@ pub fn follow<F: Real>(
     on_tick: impl FnMut(u64, f64),
 ) -> Result<Vec<SymptomEvent>, SettingsError> {
     let timing = timing(sampling.step_s());
-    let run = Run { sampling, on_tick };
+    let run = Run {
+        sampling,
+        scale: timing.scale()?,
+        on_tick,
+    };
     let events = given
         .settings()
         .with_law::<F, _>(given.place(), &timing, run)?;
     Ok(events.unwrap_or_default())
 }
 
-struct Run<'a, T> {
+struct Run<'a, F, T> {
     sampling: &'a Sampling<'a>,
+    scale: Scale<F>,
     on_tick: T,
 }
 
-impl<F: Real, T: FnMut(u64, f64)> LawVisitor<F> for Run<'_, T> {
+impl<F: Real, T: FnMut(u64, f64)> LawVisitor<F> for Run<'_, F, T> {
     type Output = Vec<SymptomEvent>;
 
     fn visit<E: DeviceEffect<F>>(mut self, mut law: E) -> Vec<SymptomEvent> {
@@ -82,7 +85,7 @@ impl<F: Real, T: FnMut(u64, f64)> LawVisitor<F> for Run<'_, T> {
             for (end_rad, shaft) in &chunk {
                 angle_rad = *end_rad;
                 let place = Sight::IDEAL.position(angle_rad);
-                let torque_nm = tick(&mut law, shaft, place, |change| {
+                let torque_nm = tick(&mut law, shaft, place, &self.scale, |change| {
                     let fraction = change.fraction.to_f64();
                     let (from, to) = (shaft.omega_start_rad_s, shaft.omega_end_rad_s);
                     events.push(SymptomEvent {

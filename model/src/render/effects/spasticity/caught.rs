@@ -15,7 +15,7 @@ use crate::joint::SettingsError;
 use crate::real::Real;
 use crate::render::effects::Timing;
 use crate::render::effects::play::{Hold, Limits, Part, Play, short_decay};
-use crate::render::effects::symptom::{Change, Word};
+use crate::render::effects::symptom::{Change, Hear, Word};
 use crate::render::position::{Position, Scale, Travel, rise};
 
 /// Coefficients of [`Caught`].
@@ -87,10 +87,6 @@ impl<F: Real> Caught<F> {
         }
     }
 
-    pub(super) fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     pub(super) fn rest(&mut self, place: &Position<F>) {
         self.play.rest(place);
         self.catch = None;
@@ -122,11 +118,7 @@ impl<F: Real> Caught<F> {
     }
 
     #[inline]
-    pub(super) fn follow(
-        &mut self,
-        travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
-    ) -> F {
+    pub(super) fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let nm = match &mut self.catch {
             Some(_) => self.go_on(travel, on_change),
             None => self.wait(travel, on_change),
@@ -137,7 +129,7 @@ impl<F: Real> Caught<F> {
 
     /// Armed: whether the stretch is fast and far enough.
     #[inline]
-    fn wait(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn wait(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = &self.with;
         let sense = with.threshold.sense;
         let stretch_rad_s = sense * travel.omega_end_rad_s;
@@ -168,12 +160,7 @@ impl<F: Real> Caught<F> {
 
     /// Caught after this share of the travel.
     #[cold]
-    fn catch(
-        &mut self,
-        fraction: F,
-        travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
-    ) -> F {
+    fn catch(&mut self, fraction: F, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = &self.with;
         let sense = with.threshold.sense;
         let peak_nm = (with.per_rad_s * sense * travel.omega_rad_s(fraction)).at_most(with.most_nm);
@@ -184,7 +171,7 @@ impl<F: Real> Caught<F> {
             left_nm,
             decaying_nm: peak_nm - left_nm,
         };
-        on_change(Change::at(Word::Catch, fraction, F::ZERO, F::ZERO));
+        on_change.hear(Change::at(Word::Catch, fraction, F::ZERO, F::ZERO));
         self.play.put(&place, F::ZERO, Hold::Elastic);
         let nm = self.follow_from(fraction, &mut catch, travel, on_change);
         self.catch = Some(catch);
@@ -198,7 +185,7 @@ impl<F: Real> Caught<F> {
         from: F,
         catch: &mut Catch<F>,
         travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
+        on_change: &mut impl Hear<F>,
     ) -> F {
         let with = &self.with;
         let sense = with.threshold.sense;
@@ -228,7 +215,7 @@ impl<F: Real> Caught<F> {
     }
 
     #[inline]
-    fn go_on(&mut self, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) -> F {
+    fn go_on(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let Some(mut catch) = self.catch else {
             return F::ZERO;
         };
@@ -237,12 +224,7 @@ impl<F: Real> Caught<F> {
         let back_rad = -sense * travel.end_beyond(&catch.place);
         if back_rad >= self.with.rearm_rad {
             let place = catch.place.moved(-sense * self.with.rearm_rad);
-            on_change(Change::at(
-                Word::Rearm,
-                travel.reaches(&place),
-                sense * nm,
-                F::ZERO,
-            ));
+            on_change.tell(Word::Rearm, || travel.reaches(&place), sense * nm, F::ZERO);
             self.catch = None;
             self.play.rest(&travel.to);
             return F::ZERO;

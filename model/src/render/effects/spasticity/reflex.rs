@@ -12,7 +12,7 @@ use super::{SpasticitySettings, Threshold};
 use crate::joint::SettingsError;
 use crate::real::Real;
 use crate::render::effects::Timing;
-use crate::render::effects::symptom::{Change, Word};
+use crate::render::effects::symptom::{Hear, Word};
 use crate::render::position::{Scale, Travel};
 
 /// Ticks that are remembered: 0.1 s at 20 kHz, and one to interpolate.
@@ -111,10 +111,6 @@ impl<F: Real> Reflex<F> {
         }
     }
 
-    pub(super) fn scale(&self) -> &Scale<F> {
-        &self.with.scale
-    }
-
     pub(super) fn rest(&mut self) {
         self.remembered = 0;
         self.told_nm = F::ZERO;
@@ -148,11 +144,7 @@ impl<F: Real> Reflex<F> {
     }
 
     #[inline]
-    pub(super) fn follow(
-        &mut self,
-        travel: &Travel<F>,
-        on_change: &mut impl FnMut(Change<F>),
-    ) -> F {
+    pub(super) fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = self.with;
         let beyond = with.threshold.end_beyond(travel);
         let drive = if beyond <= F::ZERO || with.most_rad == F::ZERO {
@@ -212,17 +204,19 @@ impl<F: Real> Reflex<F> {
 
     /// Says what has changed, and when.
     #[cold]
-    fn tell(&mut self, drive: Drive, travel: &Travel<F>, on_change: &mut impl FnMut(Change<F>)) {
+    fn tell(&mut self, drive: Drive, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
         let threshold = &self.with.threshold;
         let start = threshold.start_beyond(travel);
         let nm = self.torque_nm();
         let mut tell = |word, level, rises: bool| {
-            let fraction = if rises {
-                threshold.rises_to(level, start, travel)
-            } else {
-                threshold.falls_to(level, start, travel)
+            let fraction = || {
+                if rises {
+                    threshold.rises_to(level, start, travel)
+                } else {
+                    threshold.falls_to(level, start, travel)
+                }
             };
-            on_change(Change::at(word, fraction, nm, nm));
+            on_change.tell(word, fraction, nm, nm);
         };
         let most_rad = self.with.most_rad;
         if self.drive == Drive::Silent {

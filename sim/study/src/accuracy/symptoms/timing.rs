@@ -10,7 +10,7 @@ use crate::symptoms::Given;
 use crate::symptoms::follow::{tick, timing};
 use crate::watcher::StudyError;
 use crepitus_model::render::effects::{DeviceEffect, LawVisitor};
-use crepitus_model::render::position::{Position, Sight};
+use crepitus_model::render::position::{Position, Scale, Sight};
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Real, SettingsError, ShaftStep};
 use crepitus_scene::cpu_time;
@@ -153,13 +153,14 @@ impl Steps {
         let (mut total, mut timed) = (Duration::ZERO, 0_u64);
         let length = u64::try_from(steps.len()).unwrap_or(u64::MAX);
         let settings = given.settings();
+        let timing = timing(self.step_s);
         while timed < LEAST_STEPS.max(length) && length > 0 {
             let visitor = Timed {
                 steps,
                 from: Sight::IDEAL.position(self.from_rad),
+                scale: timing.scale()?,
                 reading: self.reading,
             };
-            let timing = timing(self.step_s);
             let took = settings.with_law::<F, _>(given.place(), &timing, visitor)?;
             total += took.unwrap_or_default();
             timed += length;
@@ -183,6 +184,7 @@ fn prepared<F: Real>(
 struct Timed<'a, F> {
     steps: &'a [(ShaftStep<F>, Position<F>)],
     from: Position<F>,
+    scale: Scale<F>,
     reading: Duration,
 }
 
@@ -199,7 +201,7 @@ impl<F: Real> LawVisitor<F> for Timed<'_, F> {
             let steps = black_box(cached.as_slice());
             let begun = cpu_time::now();
             for (shaft, place) in steps {
-                black_box(tick(&mut law, shaft, *place, |change| {
+                black_box(tick(&mut law, shaft, *place, &self.scale, |change| {
                     black_box(change);
                 }));
             }
