@@ -10,6 +10,14 @@ figure() { # SCENE CHART PICTURE
 figure slow-examination zoom-1 stick-slip-cycles
 figure knee-pass-frozen torque knee-pass-frozen
 figure knee-pass-physical torque knee-pass-physical
+figure end-feel-capsular range-limit-1 disorder-end-feel
+figure lead-pipe-examination lead-pipe-1 disorder-lead-pipe
+figure cogwheel-examination cogwheel-2 disorder-cogwheel
+figure spasticity-tardieu spasticity-2 disorder-spasticity
+figure spasticity-catch-angles catch-angle disorder-catch-angles
+figure clasp-knife-examination clasp-knife-1 disorder-clasp-knife
+figure clonus-hold clonus-2 disorder-clonus
+figure texture-there-and-back texture-1 disorder-texture
 
 cargo run --profile dist --features emulator --quiet -- accuracy --target --pictures --out target/figures/accuracy >target/figures/accuracy.txt
 for picture in frequency-f64 frequency-f32 tick-torque-f32; do

@@ -87,7 +87,7 @@ pub(crate) const SYMPTOMS: [Words; 7] = [
         states: &[
             "no beats",
             "beating",
-            "beats are over, still held",
+            "held without beats",
             "let go: the last beat runs out",
         ],
         changes: &[
