@@ -15,8 +15,7 @@
 //! Sources: all numbers are estimates; the collapse to a fifth takes 85 ms.
 
 use super::play::{Hold, Limits, Part, Play, short_decay};
-use super::spasticity::sense;
-use super::symptom::{Change, Hear, Law, Word};
+use super::symptom::{Change, Hear, Law, Word, sense};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};

@@ -15,8 +15,7 @@
 //! under load (Hidler & Rymer), the first beat the longest; the amplitude is an
 //! estimate.
 
-use super::spasticity::sense;
-use super::symptom::{Change, Hear, Law, Word};
+use super::symptom::{Change, Hear, Law, Word, sense};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};

@@ -13,7 +13,7 @@
 mod caught;
 mod reflex;
 
-use super::symptom::{Hear, Law};
+use super::symptom::{Hear, Law, sense};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -349,9 +349,4 @@ impl<F: Real> Law for Spasticity<F> {
             Form::Reflex => self.reflex.phase(),
         }
     }
-}
-
-/// The sense of φ in which muscles are stretched: extensors in flexion.
-pub(super) fn sense<F: Real>(muscles: u8) -> F {
-    if muscles == 0 { F::ONE } else { -F::ONE }
 }

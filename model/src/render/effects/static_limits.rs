@@ -13,7 +13,8 @@ use super::cogwheel::CogwheelSettings;
 use super::lead_pipe::LeadPipeSettings;
 use super::play::Limits;
 use super::range_limit::{EndFeel, RangeLimitSettings};
-use super::spasticity::{SpasticitySettings, sense};
+use super::spasticity::SpasticitySettings;
+use super::symptom::sense;
 use super::texture::TextureSettings;
 
 impl EndFeel {

@@ -302,3 +302,8 @@ impl<F: Real> Given<F> {
         given
     }
 }
+
+/// The sense of φ in which muscles are stretched: extensors in flexion.
+pub(super) fn sense<F: Real>(muscles: u8) -> F {
+    if muscles == 0 { F::ONE } else { -F::ONE }
+}

@@ -86,7 +86,7 @@ macro_rules! effects {
                         None => None,
                     },)*
                     tank: tank(timing),
-                    scale: timing.scale()?,
+                    scale: Scale::new(&timing.sight, timing.step_s),
                 })
             }
 
@@ -109,7 +109,7 @@ macro_rules! effects {
                         )),
                         None => Some(None),
                     },)*
-                    scale: timing.scale()?,
+                    scale: Scale::new(&timing.sight, timing.step_s),
                 })
             }
         }

@@ -12,6 +12,7 @@ use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{Revision, Values, parameters};
 use crepitus_scene::Scene;
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 /// The shaft rests until it is armed, then it turns to 12° and back, again and again: its
 /// velocity is a triangle.
@@ -43,7 +44,7 @@ fn moving(effects: &str) -> Scene {
          [motion]\nkind = \"velocity-knots\"\n",
     );
     let mut knot = |t_s: f64, omega_rad_s: f64| {
-        text += &format!("[[motion.knots]]\nt_s = {t_s}\nomega_rad_s = {omega_rad_s}\n");
+        let _ = writeln!(text, "[[motion.knots]]\nt_s = {t_s}\nomega_rad_s = {omega_rad_s}");
     };
     knot(0.0, 0.0);
     knot(REST_S, 0.0);
