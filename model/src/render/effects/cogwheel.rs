@@ -302,8 +302,13 @@ fn angle<F: Real>(place: &Position<F>, per_count: u64, per_rest: u64) -> u64 {
     if place.rest_rad == F::ZERO {
         return counts;
     }
-    let rest = (place.rest_rad * F::from_f64(RESTS)).whole();
-    counts.wrapping_add(rest.wrapping_mul(per_rest))
+    let rest = (place.rest_rad.abs() * F::from_f64(RESTS)).whole();
+    let rest = rest.wrapping_mul(per_rest);
+    if place.rest_rad < F::ZERO {
+        counts.wrapping_sub(rest)
+    } else {
+        counts.wrapping_add(rest)
+    }
 }
 
 impl<F: Real> Cogwheel<F> {

@@ -13,6 +13,7 @@ mod locks;
 mod mpu;
 mod noise;
 mod outputs;
+mod profile;
 #[path = "../timing/reference_flash.rs"]
 mod reference_flash;
 mod registers;

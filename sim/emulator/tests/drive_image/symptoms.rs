@@ -44,7 +44,10 @@ fn moving(effects: &str) -> Scene {
          [motion]\nkind = \"velocity-knots\"\n",
     );
     let mut knot = |t_s: f64, omega_rad_s: f64| {
-        let _ = writeln!(text, "[[motion.knots]]\nt_s = {t_s}\nomega_rad_s = {omega_rad_s}");
+        let _ = writeln!(
+            text,
+            "[[motion.knots]]\nt_s = {t_s}\nomega_rad_s = {omega_rad_s}"
+        );
     };
     knot(0.0, 0.0);
     knot(REST_S, 0.0);
@@ -59,7 +62,7 @@ fn moving(effects: &str) -> Scene {
 
 /// A symptom whose settings make everything happen to it in one period.
 pub(crate) struct Case {
-    name: &'static str,
+    pub(crate) name: &'static str,
     pub(crate) symptom: &'static str,
     settings: &'static str,
     /// Phases that it has to go through.

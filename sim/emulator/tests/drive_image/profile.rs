@@ -1,0 +1,100 @@
+//! Cycles of `render_torque` by function, with a symptom and without: where they go
+//! is seen before they are saved.
+//!
+//! `cargo test -p crepitus-emulator --test drive_image -- --nocapture profile`; all
+//! symptoms with `CREPITUS_LONG` set.
+
+use crate::budget::RENDER;
+use crate::host::Flash;
+use crate::symptoms::{CASES, Case, PERIOD_TICKS, SYMPTOMS, armed, commit, values_of};
+use crepitus_emulator::Time;
+use crepitus_emulator::firmware::{Program, path};
+use crepitus_emulator::mcu::{Step, Watch};
+use crepitus_image::lines::Lines;
+use std::collections::BTreeMap;
+
+/// Functions that are listed.
+const LISTED: usize = 18;
+
+/// Cycles by the address of an instruction.
+type Addresses = BTreeMap<u32, u64>;
+
+/// The cycles of `render_torque` in each tick.
+#[derive(Default)]
+struct Profile {
+    ticks: BTreeMap<u64, Addresses>,
+    all: Addresses,
+}
+
+impl Watch for Profile {
+    fn step(&mut self, step: &Step) {
+        if step.exception == RENDER {
+            let cycles = u64::from(step.cycles);
+            let tick = step.at.units() / Time::from_us(50).units();
+            *self
+                .ticks
+                .entry(tick)
+                .or_default()
+                .entry(step.pc)
+                .or_default() += cycles;
+            *self.all.entry(step.pc).or_default() += cycles;
+        }
+    }
+}
+
+fn sum(addresses: &Addresses) -> u64 {
+    addresses.values().sum()
+}
+
+impl Profile {
+    fn worst(&self) -> &Addresses {
+        let worst = self.ticks.values().max_by_key(|addresses| sum(addresses));
+        worst.expect("a tick")
+    }
+
+    /// Prints cycles of the worst tick and of the mean one, by innermost function.
+    fn print(&self, name: &str, lines: &Lines) {
+        let ticks = self.ticks.len() as u64;
+        println!(
+            "\n{name}: worst {}, mean {}",
+            sum(self.worst()),
+            sum(&self.all) / ticks
+        );
+        let mut functions: BTreeMap<String, (u64, u64)> = BTreeMap::new();
+        let mut add = |addresses: &Addresses, is_worst: bool| {
+            for (address, cycles) in addresses {
+                let frames = lines.frames(*address);
+                let function = frames.last().map_or("?", |frame| frame.function.as_str());
+                let (worst, mean) = functions.entry(function.to_owned()).or_default();
+                *if is_worst { worst } else { mean } += cycles;
+            }
+        };
+        add(self.worst(), true);
+        add(&self.all, false);
+        let mut functions: Vec<(String, (u64, u64))> = functions.into_iter().collect();
+        functions.sort_by_key(|(_, (worst, _))| std::cmp::Reverse(*worst));
+        println!("{:>6} {:>6}", "worst", "mean");
+        for (function, (worst, all)) in functions.iter().take(LISTED) {
+            println!("{worst:>6} {:>6} {function}", all / ticks);
+        }
+    }
+}
+
+#[test]
+fn where_the_cycles_of_render_torque_go() {
+    let Some(mut host) = armed(&[], Flash::ZeroWaitStates) else {
+        return;
+    };
+    let lines = Lines::of(&path(Program::Drive).expect("an image"));
+    let is_long = std::env::var_os("CREPITUS_LONG").is_some();
+    let all = CASES.iter().map(|case| (case.name, vec![case]));
+    let every: Vec<&Case> = CASES.iter().take(SYMPTOMS).collect();
+    let all = all.chain([("all", every)]).filter(|_| is_long);
+    for (name, cases) in std::iter::once(("no symptom", Vec::new())).chain(all) {
+        commit(&mut host, values_of(&cases));
+        let mut profile = Profile::default();
+        host.watch(PERIOD_TICKS, &mut profile);
+        profile.print(name, &lines);
+        assert!(profile.ticks.len() as u64 >= PERIOD_TICKS - 1, "{name}");
+    }
+}
