@@ -40,7 +40,7 @@ use crate::parameters::{
     Choice, Chosen, Parameter, ParameterSpec, Source, Tabled, filled, same, switch,
 };
 use crate::real::Real;
-use symptom::{Change, Given, Law};
+use symptom::{Besides, Change, Law, law_nm};
 use tank::Tank;
 
 effects! {
@@ -273,10 +273,14 @@ impl<F: Real, L: Law<Real = F>> DeviceEffect<F> for L {
         shown: &mut Shown<F>,
         observe: &mut impl Observe<F>,
     ) -> F {
-        let given = Given::by(self, tick, observe);
-        shown.jump_nm += given.jump_nm;
-        shown.active_nm += given.active_nm;
-        given.nm
+        let mut besides = Besides::NOTHING;
+        let mut nm = law_nm(self, tick.travel, &mut besides, observe);
+        if self.is_active() {
+            nm = tick.paid_share * nm;
+            besides.active_nm = nm;
+        }
+        besides.add_to(shown);
+        nm
     }
 
     fn phase(&self) -> u16 {

@@ -1,11 +1,11 @@
 //! A symptom on a device that runs: its state outlives a commit.
 
-use super::symptom::{Given, Law};
+use super::symptom::{Besides, Law, law_nm};
 use super::{MOST_STIFFNESS_NM_PER_RAD, Observe, Switched, Tick};
 use crate::real::Real;
 use crate::render::Shown;
 use crate::render::input_check::HOLD_TICKS;
-use crate::render::position::Position;
+use crate::render::position::{Position, Travel};
 
 /// Keeps a law and what it remembers while its coefficients change.
 ///
@@ -96,7 +96,6 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
         self.is_on.then_some(&self.law)
     }
 
-    #[inline]
     fn tick(
         &mut self,
         tick: &Tick<'_, F>,
@@ -106,59 +105,105 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
         if !self.is_on {
             return F::ZERO;
         }
-        let given = self.tick_on(tick, observe);
-        shown.torque_nm += given.nm;
-        shown.jump_nm += given.jump_nm;
-        shown.active_nm += given.active_nm;
-        shown.settling |= given.is_settling;
-        given.nm
+        let mut besides = Besides::NOTHING;
+        let nm = match tick.travel {
+            Some(travel) if tick.is_driven => {
+                self.follow(travel, tick.paid_share, &mut besides, observe)
+            }
+            _ => self.unseen(tick, &mut besides),
+        };
+        besides.add_to(shown);
+        shown.torque_nm += nm;
+        nm
     }
 }
 
 impl<F: Real, E: Law<Real = F>> Kept<F, E> {
-    /// A tick of one that is on. On its own: so one that is off costs a look, and no
-    /// register of those around it.
+    /// A tick of one that is on, with a sample and a driven motor: its torque, N·m. On its
+    /// own: so one that is off costs a look, and no register of those around it.
     #[inline(never)]
-    fn tick_on(&mut self, tick: &Tick<'_, F>, observe: &mut impl Observe<F>) -> Given<F> {
+    pub(super) fn follow(
+        &mut self,
+        travel: &Travel<F>,
+        paid_share: F,
+        besides: &mut Besides<F>,
+        observe: &mut impl Observe<F>,
+    ) -> F {
+        if self.way == Way::Appearing {
+            return self.appear(&travel.to, besides);
+        }
+        let law_nm = law_nm(&mut self.law, Some(travel), besides, observe);
+        self.show(law_nm, paid_share, Some(travel), besides)
+    }
+
+    /// A tick of one that is on, without a sample or with a motor that is not driven.
+    #[cold]
+    pub(super) fn unseen(&mut self, tick: &Tick<'_, F>, besides: &mut Besides<F>) -> F {
         if !tick.is_driven {
             self.rest(&tick.place);
-            return Given::NOTHING;
+            return F::ZERO;
         }
         if self.way == Way::Appearing {
-            Law::rest(&mut self.law, &tick.place);
-            self.way = Way::Adopted;
-            return Given {
-                is_settling: true,
-                ..Given::NOTHING
-            };
+            return self.appear(&tick.place, besides);
         }
         if tick.missing_ticks > HOLD_TICKS {
             self.law.release(self.slew_nm);
         }
-        let mut given = Given::by(&mut self.law, tick, observe);
-        if self.way != Way::Free {
-            self.held_back(&mut given, tick);
+        let law_nm = self.law.torque_nm();
+        self.show(law_nm, tick.paid_share, None, besides)
+    }
+
+    /// It begins, wherever the joint is.
+    #[cold]
+    fn appear(&mut self, place: &Position<F>, besides: &mut Besides<F>) -> F {
+        Law::rest(&mut self.law, place);
+        self.way = Way::Adopted;
+        besides.is_settling = true;
+        F::ZERO
+    }
+
+    /// What is shown of a law's torque.
+    #[inline]
+    fn show(
+        &mut self,
+        law_nm: F,
+        paid_share: F,
+        travel: Option<&Travel<F>>,
+        besides: &mut Besides<F>,
+    ) -> F {
+        let is_active = self.law.is_active();
+        let mut nm = law_nm;
+        if is_active {
+            nm = paid_share * nm;
         }
-        self.last_nm = given.nm;
-        given
+        let gives = is_active && nm != F::ZERO;
+        if self.way != Way::Free {
+            nm = self.held_back(nm, travel);
+            besides.is_settling = true;
+        }
+        if gives {
+            // The tank pays for what is shown.
+            besides.active_nm += nm;
+        }
+        self.last_nm = nm;
+        nm
     }
 
     /// What is shown of a law's torque while it is exchanged.
     #[cold]
-    fn held_back(&mut self, given: &mut Given<F>, tick: &Tick<'_, F>) {
-        let law_nm = given.nm;
-        let shown_nm = match self.way {
+    fn held_back(&mut self, law_nm: F, travel: Option<&Travel<F>>) -> F {
+        match self.way {
             Way::Free | Way::Appearing => law_nm,
             Way::Adopted => {
                 let shown_nm = self.fade(law_nm, self.last_nm - law_nm, self.slew_nm);
                 // What a law makes of its coefficients shows with a sample.
-                if tick.travel.is_none() {
+                if travel.is_none() {
                     self.way = Way::Adopted;
                 }
                 shown_nm
             }
             Way::Fading(besides_nm) => {
-                let moved_rad = tick.travel.map_or(F::ZERO, |travel| travel.delta_rad);
+                let moved_rad = travel.map_or(F::ZERO, |travel| travel.delta_rad);
                 let along = besides_nm * moved_rad < F::ZERO;
                 let gives_nm = if along {
                     F::from_f64(MOST_STIFFNESS_NM_PER_RAD) * moved_rad.abs()
@@ -176,13 +221,7 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
                 }
                 law_nm.within(most_nm)
             }
-        };
-        if given.active_nm != F::ZERO {
-            // The tank pays for what is shown.
-            given.active_nm = shown_nm;
         }
-        given.nm = shown_nm;
-        given.is_settling = true;
     }
 
     /// The law's torque with what is left of `besides_nm` besides: between nothing, what

@@ -1,8 +1,9 @@
 //! Symptoms besides crepitus: laws of disorders that depend on the joint's angle.
 
-use super::{EffectSpec, Observe, Tick, Timing};
+use super::{EffectSpec, Observe, Timing};
 use crate::joint::SettingsError;
 use crate::real::Real;
+use crate::render::Shown;
 use crate::render::position::{Position, Travel};
 
 /// What happens to a symptom; the names are those of `events.csv`.
@@ -175,7 +176,7 @@ impl<F, O: FnMut(Change<F>)> Hear<F> for O {
 /// What a device hears of a symptom: by how much its torque has jumped.
 struct Heard<'a, F, O> {
     spec: &'static EffectSpec,
-    jump_nm: F,
+    jump_nm: &'a mut F,
     observe: &'a mut O,
 }
 
@@ -185,7 +186,7 @@ impl<F: Real, O: Observe<F>> Hear<F> for Heard<'_, F, O> {
     #[inline]
     fn hear(&mut self, change: Change<F>) {
         if change.word == Word::Snap {
-            self.jump_nm += change.after_nm - change.before_nm;
+            *self.jump_nm += change.after_nm - change.before_nm;
         }
         self.observe.change(self.spec, change);
     }
@@ -252,55 +253,53 @@ pub trait Law: Sized {
     fn phase(&self) -> u16;
 }
 
-/// What a symptom gives in a tick.
+/// What symptoms give in a tick besides their torque: rarely anything, so it lies in memory
+/// and is touched only then.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Given<F> {
-    /// Its torque, N·m.
-    pub(super) nm: F,
-    /// By how much that jumped where an asperity was crossed, N·m.
+pub(super) struct Besides<F> {
+    /// By how much their torque jumped where an asperity was crossed, N·m.
     pub(super) jump_nm: F,
-    /// Its torque if a tank pays for it, N·m.
+    /// Their torque for which a tank pays, N·m.
     pub(super) active_nm: F,
-    /// It is on its way to other parameters.
+    /// One is on its way to other parameters.
     pub(super) is_settling: bool,
 }
 
-impl<F: Real> Given<F> {
+impl<F: Real> Besides<F> {
     /// Nothing.
     pub(super) const NOTHING: Self = Self {
-        nm: F::ZERO,
         jump_nm: F::ZERO,
         active_nm: F::ZERO,
         is_settling: false,
     };
 
-    /// By this law.
+    /// Adds it to what is shown.
     #[inline]
-    pub(super) fn by<L: Law<Real = F>>(
-        law: &mut L,
-        tick: &Tick<'_, F>,
-        observe: &mut impl Observe<F>,
-    ) -> Self {
-        let mut given = Self::NOTHING;
-        given.nm = match tick.travel {
-            Some(travel) => {
-                let mut heard = Heard {
-                    spec: const { &<L as Law>::SPEC },
-                    jump_nm: F::ZERO,
-                    observe,
-                };
-                let nm = law.follow(travel, &mut heard);
-                given.jump_nm = heard.jump_nm;
-                nm
-            }
-            None => law.torque_nm(),
-        };
-        if law.is_active() {
-            given.nm = tick.paid_share * given.nm;
-            given.active_nm = given.nm;
-        }
-        given
+    pub(super) fn add_to(&self, shown: &mut Shown<F>) {
+        shown.jump_nm += self.jump_nm;
+        shown.active_nm += self.active_nm;
+        shown.settling |= self.is_settling;
     }
+}
+
+/// The torque of a law in a tick, N·m, before a tank pays for it: held where there is no
+/// sample to follow.
+#[inline]
+pub(super) fn law_nm<L: Law>(
+    law: &mut L,
+    travel: Option<&Travel<L::Real>>,
+    besides: &mut Besides<L::Real>,
+    observe: &mut impl Observe<L::Real>,
+) -> L::Real {
+    let Some(travel) = travel else {
+        return law.torque_nm();
+    };
+    let mut heard = Heard {
+        spec: const { &<L as Law>::SPEC },
+        jump_nm: &mut besides.jump_nm,
+        observe,
+    };
+    law.follow(travel, &mut heard)
 }
 
 /// The sense of φ in which muscles are stretched: extensors in flexion.

@@ -252,13 +252,24 @@ macro_rules! effects {
                 shown: &mut Shown<F>,
                 observe: &mut impl Observe<F>,
             ) {
-                let travel = Travel::plausible(input, &seen.place, &self.scale);
-                let tick = Tick::of(seen, input, travel.as_ref(), paid_share);
-                $(if self.on & const { bit::<$symptom::$s_law<f64>>() } != 0 {
-                    let added_nm = self.$symptom.tick(&tick, shown, observe);
-                    shown.added.$symptom = added_nm;
-                    note(self.$symptom.law(), added_nm, shown);
+                // The input's check has seen to it that its numbers are a joint's.
+                let travel = Travel::of(input, &seen.place, &self.scale);
+                let mut besides = Besides::NOTHING;
+                let on = self.on;
+                let followed = travel.as_ref().filter(|_| seen.is_driven);
+                let tick = Tick::of(seen, input, None, paid_share);
+                $(if on & const { bit::<$symptom::$s_law<f64>>() } != 0 {
+                    let nm = match followed {
+                        Some(travel) => {
+                            self.$symptom.follow(travel, paid_share, &mut besides, observe)
+                        }
+                        None => self.$symptom.unseen(&tick, &mut besides),
+                    };
+                    shown.torque_nm += nm;
+                    shown.added.$symptom = nm;
+                    note(self.$symptom.law(), nm, shown);
                 })*
+                besides.add_to(shown);
                 // Only then may one have gone.
                 if shown.settling || !seen.is_driven {
                     self.look();
