@@ -161,13 +161,34 @@ impl<F: Real> Play<F> {
         limits: impl Fn(F) -> Limits<F>,
         on_change: &mut O,
     ) -> F {
-        let place = part.end_place(travel);
+        let end = End {
+            place: part.end_place(travel),
+            limits: limits(part.to),
+        };
+        self.follow_to(&end, (travel, part), stiffness, limits, on_change)
+    }
+
+    /// The same where the part's end is known already. Its shares matter only to somebody
+    /// who listens, and in f64.
+    #[inline]
+    pub fn follow_to<O: Hear<F>>(
+        &mut self,
+        end: &End<F>,
+        (travel, part): (&Travel<F>, Part<F>),
+        stiffness: F,
+        limits: impl Fn(F) -> Limits<F>,
+        on_change: &mut O,
+    ) -> F {
+        let End {
+            place,
+            limits:
+                Limits {
+                    mut lower_nm,
+                    mut upper_nm,
+                },
+        } = *end;
         let moved_rad = part.sense * place.beyond(&self.place, travel.rad_per_count);
         let elastic_nm = self.there_nm + stiffness * moved_rad;
-        let Limits {
-            mut lower_nm,
-            mut upper_nm,
-        } = limits(part.to);
         if self.allowed_nm != F::ZERO {
             lower_nm = lower_nm.at_most(self.allowed_nm);
             upper_nm = upper_nm.at_least(self.allowed_nm);
@@ -220,6 +241,15 @@ pub fn short_decay<F: Real>(x: F) -> F {
 #[inline]
 pub fn dragged<F: Real>(at: Hold, limit_nm: F) -> Hold {
     if limit_nm == F::ZERO { Hold::Slack } else { at }
+}
+
+/// Where a part of a travel ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct End<F> {
+    /// The joint's place then.
+    pub place: Position<F>,
+    /// The limits there.
+    pub limits: Limits<F>,
 }
 
 /// Part of a travel, in the direction of a torque.

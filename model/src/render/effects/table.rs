@@ -257,13 +257,15 @@ macro_rules! effects {
                 let mut besides = Besides::NOTHING;
                 let on = self.on;
                 let followed = travel.as_ref().filter(|_| seen.is_driven);
-                let tick = Tick::of(seen, input, None, paid_share);
                 $(if on & const { bit::<$symptom::$s_law<f64>>() } != 0 {
                     let nm = match followed {
                         Some(travel) => {
                             self.$symptom.follow(travel, paid_share, &mut besides, observe)
                         }
-                        None => self.$symptom.unseen(&tick, &mut besides),
+                        None => {
+                            let tick = Tick::of(seen, input, None, paid_share);
+                            self.$symptom.unseen(&tick, &mut besides)
+                        }
                     };
                     shown.torque_nm += nm;
                     shown.added.$symptom = nm;

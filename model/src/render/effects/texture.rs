@@ -12,7 +12,7 @@
 //! Sources: detection of torque variation follows the spatial, not the temporal
 //! specification (Tan et al.); torques in the paper's range; pitches are estimates.
 
-use super::play::{Hold, Limits, Part, Play};
+use super::play::{End, Hold, Limits, Part, Play};
 use super::symptom::{Change, Hear, Law, Word};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
@@ -108,7 +108,8 @@ pub struct TextureCoefficients<F> {
     /// 1/(wλ), 1/rad.
     per_width: F,
     irregularity: F,
-    seed: u32,
+    /// The seed, hashed.
+    key: u32,
     stiffness: F,
     flicker_rad: F,
 }
@@ -120,6 +121,21 @@ struct Asperity<F> {
     height_nm: F,
 }
 
+/// The asperities below and above the joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pair<F> {
+    last: Asperity<F>,
+    next: Asperity<F>,
+}
+
+/// How far a place is from both; below zero beyond one that the encoder's noise, or a
+/// long travel, has passed.
+#[derive(Clone, Copy)]
+struct Beside<F> {
+    from_last_rad: F,
+    to_next_rad: F,
+}
+
 /// The rough joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Texture<F> {
@@ -127,19 +143,26 @@ pub struct Texture<F> {
     play: Play<F>,
     /// The number of the last asperity: the one below.
     number: i32,
-    last: Asperity<F>,
-    next: Asperity<F>,
+    pair: Pair<F>,
     /// Where the joint was seen last.
     at: Position<F>,
 }
 
 impl<F: Real> TextureCoefficients<F> {
+    /// The asperity of a number, and the one above.
+    fn pair(&self, number: i32) -> Pair<F> {
+        Pair {
+            last: self.asperity(number),
+            next: self.asperity(number.wrapping_add(1)),
+        }
+    }
+
+    #[inline]
     fn asperity(&self, number: i32) -> Asperity<F> {
         #[expect(clippy::cast_sign_loss, reason = "a hash is of the bits")]
         let first = (number as u32).wrapping_mul(2);
-        let key = self.seed.wrapping_mul(0x9E37_79B9);
-        let shift = F::HALF - share(first ^ key);
-        let height = share::<F>(first.wrapping_add(1) ^ key);
+        let shift = F::HALF - share(first ^ self.key);
+        let height = share::<F>(first.wrapping_add(1) ^ self.key);
         let parts = i64::from(number).wrapping_mul(self.pitch);
         #[expect(
             clippy::cast_possible_truncation,
@@ -233,7 +256,7 @@ impl<F: Real> Law for Texture<F> {
             rad_per_part: F::from_f64(rad_per_count / f64::from(1_u32 << PARTS)),
             per_width: F::from_f64(1.0 / width_rad),
             irregularity: F::from_f64(s.irregularity),
-            seed,
+            key: seed.wrapping_mul(0x9E37_79B9),
             stiffness: F::from_f64(s.stiffness_nm_per_rad),
             flicker_rad: F::from_f64(timing.sight.flicker_rad),
         })
@@ -244,8 +267,7 @@ impl<F: Real> Law for Texture<F> {
             with: coefficients,
             play: Play::new(),
             number: 0,
-            last: coefficients.asperity(0),
-            next: coefficients.asperity(1),
+            pair: coefficients.pair(0),
             at: Position::at(0),
         }
     }
@@ -261,14 +283,12 @@ impl<F: Real> Law for Texture<F> {
     #[cfg_attr(not(target_os = "none"), inline(never))]
     fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         self.at = travel.to;
-        let part = Part::since(F::ONE, self.cross(travel, on_change));
-        let limits = |fraction: F| {
-            self.with
-                .limits(&self.last, &self.next, &travel.place(fraction))
-        };
-        // What the play does by itself is the texture, no event.
-        self.play
-            .follow(travel, part, self.with.stiffness, limits, &mut ())
+        let beside = self.pair.beside(&travel.to, travel.rad_per_count);
+        let upwards = beside.to_next_rad <= F::ZERO;
+        if upwards || beside.from_last_rad < -self.with.flicker_rad {
+            return self.cross(upwards, &beside, travel, on_change);
+        }
+        self.slide(&beside, Part::whole(F::ONE), travel)
     }
 
     fn torque_nm(&self) -> F {
@@ -292,24 +312,48 @@ impl<F: Real> Law for Texture<F> {
     }
 }
 
-impl<F: Real> TextureCoefficients<F> {
-    /// The limits at a place between two asperities.
+impl<F: Real> Pair<F> {
     #[inline]
-    fn limits(&self, last: &Asperity<F>, next: &Asperity<F>, at: &Position<F>) -> Limits<F> {
-        let flank = |rad: F| (F::ONE - rad * self.per_width).at_least(F::ZERO);
-        // Below zero by the encoder's noise, or where a long travel has crossed more
-        // than one.
-        let to_next = next
-            .place
-            .beyond(at, self.scale.rad_per_count)
-            .at_least(F::ZERO);
-        let from_last = at
-            .beyond(&last.place, self.scale.rad_per_count)
-            .at_least(F::ZERO);
-        Limits {
-            lower_nm: -(self.base_nm + last.height_nm * flank(from_last)),
-            upper_nm: self.base_nm + next.height_nm * flank(to_next),
+    fn beside(&self, place: &Position<F>, rad_per_count: F) -> Beside<F> {
+        Beside {
+            from_last_rad: place.beyond(&self.last.place, rad_per_count),
+            to_next_rad: self.next.place.beyond(place, rad_per_count),
         }
+    }
+
+    /// The limits there.
+    #[inline]
+    fn limits(&self, with: &TextureCoefficients<F>, beside: &Beside<F>) -> Limits<F> {
+        let flank = |rad: F| (F::ONE - rad.at_least(F::ZERO) * with.per_width).at_least(F::ZERO);
+        Limits {
+            lower_nm: -(with.base_nm + self.last.height_nm * flank(beside.from_last_rad)),
+            upper_nm: with.base_nm + self.next.height_nm * flank(beside.to_next_rad),
+        }
+    }
+
+    /// The limits at a place that is at one of them.
+    #[inline]
+    fn limits_at(
+        &self,
+        with: &TextureCoefficients<F>,
+        is_next: bool,
+        place: &Position<F>,
+    ) -> Limits<F> {
+        let beside = self.beside(place, with.scale.rad_per_count);
+        self.limits(
+            with,
+            &if is_next {
+                Beside {
+                    to_next_rad: F::ZERO,
+                    ..beside
+                }
+            } else {
+                Beside {
+                    from_last_rad: F::ZERO,
+                    ..beside
+                }
+            },
+        )
     }
 }
 
@@ -318,76 +362,94 @@ impl<F: Real> Texture<F> {
     #[cold]
     fn seek(&mut self, place: &Position<F>) {
         let origin = Position::at(0);
-        let turns = place.beyond(&origin, self.with.scale.rad_per_count) * self.with.per_pitch;
+        let rad_per_count = self.with.scale.rad_per_count;
+        let turns = place.beyond(&origin, rad_per_count) * self.with.per_pitch;
         // Within one of it; asperities are at most half a pitch off their number.
         let number = turns.abs().whole().min(1 << 30);
         let number = i32::try_from(number).unwrap_or(i32::MAX);
         self.number = if turns < F::ZERO { -number } else { number };
-        self.look();
+        self.pair = self.with.pair(self.number);
         for _ in 0..3 {
-            if self.beyond_next(place) >= F::ZERO {
-                self.step(1);
-            } else if self.beyond_last(place) < F::ZERO {
-                self.step(-1);
+            let beside = self.pair.beside(place, rad_per_count);
+            if beside.to_next_rad <= F::ZERO {
+                self.step(true);
+            } else if beside.from_last_rad < F::ZERO {
+                self.step(false);
             } else {
                 break;
             }
         }
     }
 
-    fn look(&mut self) {
-        self.last = self.with.asperity(self.number);
-        self.next = self.with.asperity(self.number.wrapping_add(1));
-    }
-
-    fn step(&mut self, by: i32) {
-        self.number = self.number.wrapping_add(by);
-        self.look();
-    }
-
+    /// Goes on by one asperity.
     #[inline]
-    fn beyond_next(&self, place: &Position<F>) -> F {
-        place.beyond(&self.next.place, self.with.scale.rad_per_count)
-    }
-
-    #[inline]
-    fn beyond_last(&self, place: &Position<F>) -> F {
-        place.beyond(&self.last.place, self.with.scale.rad_per_count)
-    }
-
-    /// Crosses the asperities that lie in a travel, at most one in a tick; the share of
-    /// the travel that is behind it then.
-    #[inline]
-    fn cross(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
-        let upwards = self.beyond_next(&travel.to) >= F::ZERO;
-        if !upwards && self.beyond_last(&travel.to) >= -self.with.flicker_rad {
-            return F::ZERO;
-        }
-        self.snap(upwards, travel, on_change)
-    }
-
-    #[cold]
-    fn snap(&mut self, upwards: bool, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
-        let place = if upwards {
-            self.next.place
+    fn step(&mut self, upwards: bool) {
+        let Pair { last, next } = self.pair;
+        if upwards {
+            self.number = self.number.wrapping_add(1);
+            let above = self.with.asperity(self.number.wrapping_add(1));
+            self.pair = Pair {
+                last: next,
+                next: above,
+            };
         } else {
-            self.last.place
+            self.number = self.number.wrapping_sub(1);
+            let below = self.with.asperity(self.number);
+            self.pair = Pair {
+                last: below,
+                next: last,
+            };
+        }
+    }
+
+    /// Follows the joint to the travel's end, between two asperities.
+    #[inline]
+    fn slide(&mut self, beside: &Beside<F>, part: Part<F>, travel: &Travel<F>) -> F {
+        let (with, pair) = (&self.with, &self.pair);
+        let end = End {
+            place: travel.to,
+            limits: pair.limits(with, beside),
         };
-        let fraction = travel.reaches(&place);
-        let limits = |at: F| self.with.limits(&self.last, &self.next, &travel.place(at));
-        let part = Part::until(F::ONE, fraction);
-        let before_nm = self
-            .play
-            .follow(travel, part, self.with.stiffness, limits, &mut ());
+        let limits = |fraction: F| {
+            let place = travel.place(fraction);
+            pair.limits(with, &pair.beside(&place, travel.rad_per_count))
+        };
+        // What the play does by itself is the texture, no event.
+        self.play
+            .follow_to(&end, (travel, part), with.stiffness, limits, &mut ())
+    }
+
+    /// Crosses the asperities that lie in a travel, at most one in a tick.
+    #[cold]
+    fn cross(
+        &mut self,
+        upwards: bool,
+        beside: &Beside<F>,
+        travel: &Travel<F>,
+        on_change: &mut impl Hear<F>,
+    ) -> F {
+        let (asperity, beyond_rad) = if upwards {
+            (self.pair.next.place, -beside.to_next_rad)
+        } else {
+            (self.pair.last.place, beside.from_last_rad)
+        };
+        // Noise is waited out, so a joint may have passed it before this travel.
+        let start_rad = beyond_rad - travel.delta_rad;
+        let place = if (start_rad > F::ZERO) == upwards && start_rad != F::ZERO {
+            travel.place(F::ZERO)
+        } else {
+            asperity
+        };
+        let fraction = travel.reaches(&asperity);
+        let before_nm = self.climb(upwards, &place, fraction, travel);
         let is_at_limit = match self.play.hold() {
             Hold::Elastic => false,
             Hold::Upper => upwards,
             Hold::Lower => !upwards,
             Hold::Slack => true,
         };
-        self.step(if upwards { 1 } else { -1 });
-        let at = travel.place(fraction);
-        let Limits { lower_nm, upper_nm } = self.with.limits(&self.last, &self.next, &at);
+        self.step(upwards);
+        let Limits { lower_nm, upper_nm } = self.pair.limits_at(&self.with, !upwards, &place);
         let after_nm = before_nm.at_most(upper_nm).at_least(lower_nm);
         // A limit that is wider behind the asperity lets go of the torque.
         let hold = match upwards {
@@ -395,19 +457,45 @@ impl<F: Real> Texture<F> {
             false if after_nm == lower_nm => Hold::Lower,
             _ => Hold::Elastic,
         };
-        self.play.put(&at, after_nm, hold);
+        self.play.put(&place, after_nm, hold);
         if is_at_limit {
             on_change.hear(Change::at(Word::Snap, fraction, before_nm, after_nm));
         }
-        let to = travel.to;
-        if self.beyond_next(&to) < F::ZERO && self.beyond_last(&to) >= -self.with.flicker_rad {
-            return fraction;
+        let beside = self.pair.beside(&travel.to, travel.rad_per_count);
+        if beside.to_next_rad > F::ZERO && beside.from_last_rad >= -self.with.flicker_rad {
+            return self.slide(&beside, Part::since(F::ONE, fraction), travel);
         }
-        // After a gap it may lie several asperities on: no snap of each, late.
-        self.seek(&to);
-        let Limits { lower_nm, upper_nm } = self.with.limits(&self.last, &self.next, &to);
-        let nm = after_nm.at_most(upper_nm).at_least(lower_nm);
-        self.play.put(&to, nm, Hold::Elastic);
-        F::ONE
+        self.land(after_nm, travel)
+    }
+
+    /// Follows the joint up to the asperity that it crosses: the torque just before.
+    #[inline]
+    fn climb(&mut self, upwards: bool, place: &Position<F>, fraction: F, travel: &Travel<F>) -> F {
+        let (with, pair) = (&self.with, &self.pair);
+        let end = End {
+            place: *place,
+            limits: pair.limits_at(with, upwards, place),
+        };
+        let limits = |fraction: F| {
+            let place = travel.place(fraction);
+            pair.limits(with, &pair.beside(&place, travel.rad_per_count))
+        };
+        let part = Part::until(F::ONE, fraction);
+        self.play
+            .follow_to(&end, (travel, part), with.stiffness, limits, &mut ())
+    }
+
+    /// After a gap the joint may lie several asperities on: no snap of each, late.
+    #[cold]
+    fn land(&mut self, nm: F, travel: &Travel<F>) -> F {
+        self.seek(&travel.to);
+        let beside = self.pair.beside(&travel.to, travel.rad_per_count);
+        let Limits { lower_nm, upper_nm } = self.pair.limits(&self.with, &beside);
+        self.play.put(
+            &travel.to,
+            nm.at_most(upper_nm).at_least(lower_nm),
+            Hold::Elastic,
+        );
+        self.slide(&beside, Part::since(F::ONE, F::ONE), travel)
     }
 }
