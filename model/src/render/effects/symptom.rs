@@ -143,6 +143,20 @@ pub trait Hear<F> {
     /// Something has happened.
     fn hear(&mut self, change: Change<F>);
 
+    /// The share of a travel at which something happens where no torque depends on it in
+    /// f32: located only if somebody needs it.
+    #[inline]
+    fn when(&self, when: impl FnOnce() -> F) -> F
+    where
+        F: Real,
+    {
+        if Self::LISTENS || !F::IS_SINGLE {
+            when()
+        } else {
+            F::ZERO
+        }
+    }
+
     /// The same; when it was is found out only if somebody needs it.
     #[inline]
     fn tell(&mut self, word: Word, when: impl FnOnce() -> F, before_nm: F, after_nm: F) {

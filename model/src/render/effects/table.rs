@@ -254,27 +254,30 @@ macro_rules! effects {
             ) {
                 // The input's check has seen to it that its numbers are a joint's.
                 let travel = Travel::of(input, &seen.place, &self.scale);
+                // Its address, if it were known, would be in every access to what lies beyond
+                // the reach of a load, and most of it does.
+                let this = core::hint::black_box(self);
                 let mut besides = Besides::NOTHING;
-                let on = self.on;
+                let on = this.on;
                 let followed = travel.as_ref().filter(|_| seen.is_driven);
                 $(if on & const { bit::<$symptom::$s_law<f64>>() } != 0 {
                     let nm = match followed {
                         Some(travel) => {
-                            self.$symptom.follow(travel, paid_share, &mut besides, observe)
+                            this.$symptom.follow(travel, paid_share, &mut besides, observe)
                         }
                         None => {
                             let tick = Tick::of(seen, input, None, paid_share);
-                            self.$symptom.unseen(&tick, &mut besides)
+                            this.$symptom.unseen(&tick, &mut besides)
                         }
                     };
                     shown.torque_nm += nm;
                     shown.added.$symptom = nm;
-                    note(self.$symptom.law(), nm, shown);
+                    note(this.$symptom.law(), nm, shown);
                 })*
                 besides.add_to(shown);
                 // Only then may one have gone.
                 if shown.settling || !seen.is_driven {
-                    self.look();
+                    this.look();
                 }
             }
         }

@@ -440,7 +440,7 @@ impl<F: Real> Texture<F> {
         } else {
             asperity
         };
-        let fraction = travel.reaches(&asperity);
+        let fraction = on_change.when(|| travel.reaches(&asperity));
         let before_nm = self.climb(upwards, &place, fraction, travel);
         let is_at_limit = match self.play.hold() {
             Hold::Elastic => false,
