@@ -193,6 +193,21 @@ impl<F: Real> Travel<F> {
         all < F::from_f64(1e9)
     }
 
+    /// What is left of `x` after all of it, where each tick leaves a share.
+    #[inline]
+    pub fn decayed(&self, x: F, share: F) -> F {
+        if self.ticks == 1 {
+            x * share
+        } else {
+            self.decayed_over_gap(x, share)
+        }
+    }
+
+    #[cold]
+    fn decayed_over_gap(&self, x: F, share: F) -> F {
+        (0..self.ticks).fold(x, |left, _| left * share)
+    }
+
     /// Where the joint is after this share of the time.
     #[inline]
     pub fn place(&self, fraction: F) -> Position<F> {

@@ -427,7 +427,7 @@ impl<F: Real> ClaspKnife<F> {
     ) -> F {
         let with = self.with;
         let after_nm = if from == F::ZERO {
-            (0..travel.ticks).fold(before_nm, |nm, _| nm * with.decay)
+            travel.decayed(before_nm, with.decay)
         } else {
             before_nm * short_decay(with.rate * (F::ONE - from))
         };

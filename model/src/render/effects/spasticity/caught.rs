@@ -136,6 +136,16 @@ impl<F: Real> Caught<F> {
         if stretch_rad_s < with.least_rad_s && sense * travel.omega_start_rad_s < with.least_rad_s {
             return F::ZERO;
         }
+        self.look(travel, on_change)
+    }
+
+    /// The stretch is fast: whether, and when, it is far enough, too. On its own: what waits
+    /// needs no registers of it.
+    #[inline(never)]
+    fn look(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
+        let with = &self.with;
+        let sense = with.threshold.sense;
+        let stretch_rad_s = sense * travel.omega_end_rad_s;
         let start = with.threshold.start_beyond(travel);
         let start_faster = sense * travel.omega_start_rad_s - with.least_rad_s;
         if start >= F::ZERO && start_faster >= F::ZERO {
@@ -191,7 +201,7 @@ impl<F: Real> Caught<F> {
         let sense = with.threshold.sense;
         let before_nm = catch.decaying_nm;
         let after_nm = if from == F::ZERO {
-            (0..travel.ticks).fold(before_nm, |nm, _| nm * with.decay)
+            travel.decayed(before_nm, with.decay)
         } else {
             before_nm * short_decay(with.rate * (F::ONE - from))
         };

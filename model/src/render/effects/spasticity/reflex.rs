@@ -143,9 +143,10 @@ impl<F: Real> Reflex<F> {
         self.answer_nm = self.answer_nm - self.answer_nm.within(slew_nm);
     }
 
-    #[inline]
+    /// On its own: no register of the other form.
+    #[inline(never)]
     pub(super) fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
-        let with = self.with;
+        let with = &self.with;
         let beyond = with.threshold.end_beyond(travel);
         let drive = if beyond <= F::ZERO || with.most_rad == F::ZERO {
             Drive::Silent
@@ -159,18 +160,34 @@ impl<F: Real> Reflex<F> {
         }
         let nm = match drive {
             Drive::Silent => F::ZERO,
-            Drive::Rising => with.gain * beyond,
-            Drive::Most => with.most_nm,
+            Drive::Rising => self.with.gain * beyond,
+            Drive::Most => self.with.most_nm,
         };
-        for _ in 0..travel.ticks {
-            self.remember(nm);
-            let told_nm = self.told();
-            self.answer_nm =
-                (with.keep * self.answer_nm + with.first * self.told_nm + with.second * told_nm)
-                    .settled();
-            self.told_nm = told_nm;
+        if travel.ticks == 1 {
+            self.answer(nm);
+        } else {
+            self.answer_over_gap(nm, travel.ticks);
         }
         self.torque_nm()
+    }
+
+    #[cold]
+    fn answer_over_gap(&mut self, nm: F, ticks: u32) {
+        for _ in 0..ticks {
+            self.answer(nm);
+        }
+    }
+
+    /// A tick in which the muscle is told `nm`.
+    #[inline]
+    fn answer(&mut self, nm: F) {
+        self.remember(nm);
+        let told_nm = self.told();
+        let with = &self.with;
+        self.answer_nm =
+            (with.keep * self.answer_nm + with.first * self.told_nm + with.second * told_nm)
+                .settled();
+        self.told_nm = told_nm;
     }
 
     #[inline]
