@@ -274,7 +274,11 @@ impl<F: Real> Wall<F> {
     }
 
     /// Its torque, against growing `sense`·φ, N·m.
-    #[inline]
+    #[expect(
+        clippy::inline_always,
+        reason = "twice in the same task, which else passes its numbers through memory: 110 cycles"
+    )]
+    #[inline(always)]
     fn follow<O: Hear<F>>(
         &mut self,
         end: &End<F>,

@@ -79,70 +79,70 @@ pub(crate) const CASES: [Case; 10] = [
         symptom: "range-limit",
         settings: "extension_limit_deg = 3.0\nflexion_limit_deg = 9.0\ntorque_nm = 1.0\n",
         phases: &["in-the-wall", "at-its-cap"],
-        most_cycles: 560,
+        most_cycles: 405,
     },
     Case {
         name: "lead-pipe",
         symptom: "lead-pipe",
         settings: "torque_nm = 0.5\nelastic_nm_per_rad = 1.0\n",
         phases: &["sliding"],
-        most_cycles: 290,
+        most_cycles: 230,
     },
     Case {
         name: "cogwheel, in angle",
         symptom: "cogwheel",
         settings: "mode = \"space\"\npitch_deg = 3.0\ntorque_nm = 0.6\nelastic_nm_per_rad = 1.0\n",
         phases: &["high"],
-        most_cycles: 645,
+        most_cycles: 595,
     },
     Case {
         name: "catch",
         symptom: "spasticity",
         settings: "threshold_deg = 6.0\nvelocity_shift_s = 0.01\nrearm_deg = 2.0\n",
         phases: &["caught"],
-        most_cycles: 660,
+        most_cycles: 605,
     },
     Case {
         name: "clasp-knife",
         symptom: "clasp-knife",
         settings: "onset_deg = 4.0\nrelease_deg = 8.0\nrearm_deg = 2.0\n",
         phases: &["building", "fallen"],
-        most_cycles: 930,
+        most_cycles: 590,
     },
     Case {
         name: "clonus",
         symptom: "clonus",
         settings: "hold_deg = 5.0\nhysteresis_deg = 1.0\ndelay_s = 0.01\nfrequency_hz = 10.0\n",
         phases: &["beating"],
-        most_cycles: 590,
+        most_cycles: 480,
     },
     Case {
         name: "texture",
         symptom: "texture",
         settings: "",
         phases: &["sliding"],
-        most_cycles: 1_200,
+        most_cycles: 815,
     },
     Case {
         name: "cogwheel, in time",
         symptom: "cogwheel",
         settings: "frequency_hz = 12.0\ntorque_nm = 0.6\n",
         phases: &["high"],
-        most_cycles: 730,
+        most_cycles: 680,
     },
     Case {
         name: "reflex",
         symptom: "spasticity",
         settings: "form = \"reflex\"\nthreshold_deg = 6.0\ngain_nm_per_rad = 4.0\nvelocity_shift_s = 0.1\ntorque_nm = 1.0\n",
         phases: &["reflex", "reflex-at-its-largest"],
-        most_cycles: 570,
+        most_cycles: 490,
     },
     Case {
         name: "clasp-knife, by torque",
         symptom: "clasp-knife",
         settings: "trigger = \"torque\"\nrelease_torque_nm = 0.9\nonset_deg = 4.0\nrelease_deg = 8.0\nrearm_deg = 2.0\n",
         phases: &["building", "fallen"],
-        most_cycles: 1_075,
+        most_cycles: 700,
     },
 ];
 
@@ -193,7 +193,7 @@ pub(crate) fn commit(host: &mut Host, values: Values) -> Revision {
 
 /// Upper limit of all tasks with any two symptoms and 0 wait states, percent of a tick: what
 /// was reached, where 38 was asked for.
-const PAIR_SHARE: u64 = 56;
+const PAIR_SHARE: u64 = 52;
 
 /// Upper limits of all tasks with all symptoms, percent of a tick.
 struct All {
@@ -203,17 +203,17 @@ struct All {
     commit_share: u64,
 }
 
-/// What was reached; with 0 wait states 55 and 70 were asked for.
+/// What was reached: with 0 wait states 55 were asked for, and 70 with a commit.
 const ALL: [All; 2] = [
     All {
         flash: Flash::ZeroWaitStates,
-        share: 71,
-        commit_share: 77,
+        share: 63,
+        commit_share: 70,
     },
     All {
         flash: Flash::Modelled,
-        share: 95,
-        commit_share: 101,
+        share: 82,
+        commit_share: 93,
     },
 ];
 
@@ -365,8 +365,7 @@ fn a_tick_with_all_symptoms_takes_its_share_at_most() {
             "all symptoms: {late} late samples in {} blocks ({label})",
             host.blocks.len()
         );
-        // With the modelled flash all at once are more than a tick can render.
-        assert!(late == 0 || limits.flash == Flash::Modelled);
+        assert_eq!(late, 0);
     }
 }
 
