@@ -193,7 +193,7 @@ impl<F: Real> Travel<F> {
         all < F::from_f64(1e9)
     }
 
-    /// What is left of `x` after all of it, where each tick leaves a share.
+    /// Returns what a decay leaves of `x` after all its ticks, `share` of it per tick.
     #[inline]
     pub fn decayed(&self, x: F, share: F) -> F {
         if self.ticks == 1 {

@@ -119,8 +119,8 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
 }
 
 impl<F: Real, E: Law<Real = F>> Kept<F, E> {
-    /// A tick of one that is on, with a sample and a driven motor: its torque, N·m. On its
-    /// own: so one that is off costs a look, and no register of those around it.
+    /// Follows a sample while the motor is driven; returns the torque, N·m. Not inlined: a
+    /// symptom that is off then costs one test, and no saved registers.
     #[inline(never)]
     pub(super) fn follow(
         &mut self,
@@ -136,7 +136,8 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
         self.show(law_nm, paid_share, Some(travel), besides)
     }
 
-    /// A tick of one that is on, without a sample or with a motor that is not driven.
+    /// Handles a tick without a sample, or with a motor that is not driven; returns the
+    /// torque, N·m.
     #[cold]
     pub(super) fn unseen(&mut self, tick: &Tick<'_, F>, besides: &mut Besides<F>) -> F {
         if !tick.is_driven {
@@ -153,7 +154,7 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
         self.show(law_nm, tick.paid_share, None, besides)
     }
 
-    /// It begins, wherever the joint is.
+    /// Starts without torque at the joint's present place.
     #[cold]
     fn appear(&mut self, place: &Position<F>, besides: &mut Besides<F>) -> F {
         Law::rest(&mut self.law, place);
@@ -162,7 +163,7 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
         F::ZERO
     }
 
-    /// What is shown of a law's torque.
+    /// Returns the torque to show for the law's torque, N·m.
     #[inline]
     fn show(
         &mut self,

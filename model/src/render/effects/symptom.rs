@@ -143,8 +143,8 @@ pub trait Hear<F> {
     /// Something has happened.
     fn hear(&mut self, change: Change<F>);
 
-    /// The share of a travel at which something happens where no torque depends on it in
-    /// f32: located only if somebody needs it.
+    /// The share of a travel at which an event happens, for events whose time changes no
+    /// torque in f32: located in f64, or for a listener, and zero otherwise.
     #[inline]
     fn when(&self, when: impl FnOnce() -> F) -> F
     where
@@ -267,8 +267,8 @@ pub trait Law: Sized {
     fn phase(&self) -> u16;
 }
 
-/// What symptoms give in a tick besides their torque: rarely anything, so it lies in memory
-/// and is touched only then.
+/// Outputs of the symptoms in a tick besides their torque. They are rarely set, so they
+/// live in memory and not in registers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Besides<F> {
     /// By how much their torque jumped where an asperity was crossed, N·m.
@@ -296,8 +296,8 @@ impl<F: Real> Besides<F> {
     }
 }
 
-/// The torque of a law in a tick, N·m, before a tank pays for it: held where there is no
-/// sample to follow.
+/// Returns the torque of a law in a tick, N·m, before the tank scales it. Without a sample
+/// to follow it is held.
 #[inline]
 pub(super) fn law_nm<L: Law>(
     law: &mut L,

@@ -331,7 +331,7 @@ impl<F: Real> Pair<F> {
         }
     }
 
-    /// The limits at a place that is at one of them.
+    /// The limits at a place on the next asperity, or on the last.
     #[inline]
     fn limits_at(
         &self,
@@ -381,7 +381,7 @@ impl<F: Real> Texture<F> {
         }
     }
 
-    /// Goes on by one asperity.
+    /// Moves the pair by one asperity.
     #[inline]
     fn step(&mut self, upwards: bool) {
         let Pair { last, next } = self.pair;
@@ -468,7 +468,7 @@ impl<F: Real> Texture<F> {
         self.land(after_nm, travel)
     }
 
-    /// Follows the joint up to the asperity that it crosses: the torque just before.
+    /// Follows the joint up to the asperity that it crosses; returns the torque just before.
     #[inline]
     fn climb(&mut self, upwards: bool, place: &Position<F>, fraction: F, travel: &Travel<F>) -> F {
         let (with, pair) = (&self.with, &self.pair);

@@ -139,8 +139,8 @@ impl<F: Real> Caught<F> {
         self.look(travel, on_change)
     }
 
-    /// The stretch is fast: whether, and when, it is far enough, too. On its own: what waits
-    /// needs no registers of it.
+    /// Locates the catch of a stretch that is fast enough, if it also goes far enough. Not
+    /// inlined: a muscle that waits then saves no registers for it.
     #[inline(never)]
     fn look(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = &self.with;

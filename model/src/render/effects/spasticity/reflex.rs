@@ -143,7 +143,8 @@ impl<F: Real> Reflex<F> {
         self.answer_nm = self.answer_nm - self.answer_nm.within(slew_nm);
     }
 
-    /// On its own: no register of the other form.
+    /// Follows the joint; returns the torque, N·m. Not inlined: the form `catch` then saves
+    /// no registers for it.
     #[inline(never)]
     pub(super) fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = &self.with;
@@ -178,7 +179,7 @@ impl<F: Real> Reflex<F> {
         }
     }
 
-    /// A tick in which the muscle is told `nm`.
+    /// Advances the answer by a tick in which the muscle is told `nm`.
     #[inline]
     fn answer(&mut self, nm: F) {
         self.remember(nm);
