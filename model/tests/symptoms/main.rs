@@ -17,5 +17,7 @@ mod gaps;
 mod laws;
 mod ledger;
 mod mirror;
+mod phases;
+mod play;
 mod random;
 mod rig;

@@ -1,7 +1,9 @@
 //! The effects of an armed device, tick by tick.
 
 use crepitus_model::render::effects::symptom::{Change, Word};
-use crepitus_model::render::effects::{EffectSettings, EffectSpec, SwitchedEffects, Timing};
+use crepitus_model::render::effects::{
+    EffectSettings, EffectSpec, Phases, SwitchedEffects, Timing,
+};
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
 use crepitus_model::render::position::{Position, Sight};
 use crepitus_model::render::{Addition, Check, Seen, Shown};
@@ -27,6 +29,7 @@ pub(crate) struct Rig<F: Real> {
     /// What happened, and in which share of the last tick.
     pub(crate) words: Vec<(Word, f64)>,
     pub(crate) settling: bool,
+    phases: Phases,
 }
 
 impl<F: Real> Rig<F> {
@@ -39,6 +42,7 @@ impl<F: Real> Rig<F> {
             timing,
             words: Vec::new(),
             settling: false,
+            phases: Phases::default(),
         };
         rig.commit(settings);
         rig.effects.rest(&sight.position(from_rad));
@@ -72,7 +76,13 @@ impl<F: Real> Rig<F> {
             },
         );
         self.settling = shown.settling;
+        self.phases = shown.phases;
         shown.torque_nm.to_f64()
+    }
+
+    /// The phase of the only symptom, unless it is at rest.
+    pub(crate) fn phase(&self) -> Option<&'static str> {
+        self.phases.named().next().map(|(_, name)| name)
     }
 
     /// A tick over which the velocity changes linearly.
@@ -93,6 +103,9 @@ impl<F: Real> Rig<F> {
             let (from, to) = (motion(from_s), motion(from_s + TICK_S));
             let nm = self.step(from, to, to.0 - from.0);
             run.rows.push((from_s + TICK_S, to.0, nm));
+            if run.phases.last() != Some(&self.phase()) {
+                run.phases.push(self.phase());
+            }
             let times = self
                 .words
                 .iter()
@@ -107,6 +120,8 @@ impl<F: Real> Rig<F> {
 pub(crate) struct Run {
     pub(crate) rows: Vec<(f64, f64, f64)>,
     pub(crate) words: Vec<(Word, f64)>,
+    /// One after the other.
+    pub(crate) phases: Vec<Option<&'static str>>,
 }
 
 impl Run {

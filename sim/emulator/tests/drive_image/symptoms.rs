@@ -146,6 +146,9 @@ pub(crate) const CASES: [Case; 10] = [
     },
 ];
 
+/// Those that are paid from the tank.
+const GIVE_ENERGY: [&str; 2] = ["clonus", "reflex"];
+
 /// How many of them are different symptoms: the first ones.
 pub(crate) const SYMPTOMS: usize = 7;
 
@@ -266,7 +269,12 @@ fn a_symptom_adds_no_more_than_its_cycles() {
     let (Some(mut with), Some(mut without)) = (armed(&[], flash), armed(&[], flash)) else {
         return;
     };
-    for case in &CASES {
+    // Those that give energy come last: the tank, which fills up for seconds after them,
+    // costs every tick until it is full.
+    let (giving, other): (Vec<&Case>, Vec<&Case>) = CASES
+        .iter()
+        .partition(|case| GIVE_ENERGY.contains(&case.name));
+    for case in other.into_iter().chain(giving) {
         commit(&mut with, values_of(&[case]));
         let with_it = renderings(&mut with);
         // The same ticks of the same joint on the same shaft.

@@ -1,0 +1,250 @@
+//! The phases of each symptom, and its torque while samples are missing.
+
+use super::rig::*;
+use crepitus_model::Sample;
+use crepitus_model::render::effects::EffectSettings;
+use crepitus_model::render::effects::clasp_knife::ClaspKnifeSettings;
+use crepitus_model::render::effects::clonus::ClonusSettings;
+use crepitus_model::render::effects::cogwheel::CogwheelSettings;
+use crepitus_model::render::effects::lead_pipe::LeadPipeSettings;
+use crepitus_model::render::effects::range_limit::RangeLimitSettings;
+use crepitus_model::render::effects::spasticity::SpasticitySettings;
+use crepitus_model::render::effects::symptom::Word;
+use crepitus_model::render::effects::texture::TextureSettings;
+use crepitus_model::render::position::{Position, Sight};
+
+/// A symptom, and an examination that brings it through its phases.
+struct Case {
+    settings: EffectSettings,
+    from_deg: f64,
+    /// Speeds and how long each lasts, deg/s and s.
+    strokes: &'static [(f64, f64)],
+    phases: &'static [Option<&'static str>],
+    /// A time at which it has torque, s.
+    torque_s: f64,
+}
+
+fn cases() -> Vec<Case> {
+    let none = EffectSettings::default;
+    vec![
+        Case {
+            settings: EffectSettings {
+                range_limit: Some(RangeLimitSettings {
+                    flexion_limit_deg: 60.0,
+                    ..RangeLimitSettings::default()
+                }),
+                ..none()
+            },
+            from_deg: 58.0,
+            strokes: &[(20.0, 0.3), (-20.0, 0.3)],
+            phases: &[
+                None,
+                Some("in-the-wall"),
+                Some("at-its-cap"),
+                Some("in-the-wall"),
+                None,
+            ],
+            torque_s: 0.29,
+        },
+        Case {
+            settings: EffectSettings {
+                lead_pipe: Some(LeadPipeSettings {
+                    elastic_nm_per_rad: 1.0,
+                    // Both parts of the torque in one direction.
+                    neutral_deg: 0.0,
+                    ..LeadPipeSettings::default()
+                }),
+                ..none()
+            },
+            from_deg: 20.0,
+            strokes: &[(20.0, 0.2), (-20.0, 0.05)],
+            phases: &[None, Some("sliding"), None],
+            torque_s: 0.15,
+        },
+        Case {
+            settings: EffectSettings {
+                cogwheel: Some(CogwheelSettings {
+                    elastic_nm_per_rad: 1.0,
+                    // Both parts of the torque in one direction.
+                    neutral_deg: 0.0,
+                    ..CogwheelSettings::default()
+                }),
+                ..none()
+            },
+            from_deg: 20.0,
+            strokes: &[(60.0, 0.2)],
+            phases: &[Some("high"), None, Some("high")],
+            torque_s: 0.07,
+        },
+        Case {
+            settings: EffectSettings {
+                spasticity: Some(SpasticitySettings::default()),
+                ..none()
+            },
+            from_deg: 40.0,
+            strokes: &[(90.0, 0.2), (-90.0, 0.3)],
+            phases: &[None, Some("caught"), None],
+            torque_s: 0.19,
+        },
+        Case {
+            settings: EffectSettings {
+                spasticity: Some(SpasticitySettings {
+                    form: 1,
+                    torque_nm: 0.5,
+                    velocity_shift_s: 0.1,
+                    ..SpasticitySettings::default()
+                }),
+                ..none()
+            },
+            from_deg: 60.0,
+            strokes: &[(90.0, 0.4), (-90.0, 0.4)],
+            phases: &[
+                None,
+                Some("reflex"),
+                Some("reflex-at-its-largest"),
+                Some("reflex"),
+                None,
+            ],
+            torque_s: 0.39,
+        },
+        Case {
+            settings: EffectSettings {
+                clasp_knife: Some(ClaspKnifeSettings::default()),
+                ..none()
+            },
+            from_deg: 25.0,
+            strokes: &[(60.0, 1.0), (-120.0, 0.6)],
+            phases: &[None, Some("building"), Some("fallen"), None],
+            torque_s: 0.5,
+        },
+        Case {
+            settings: EffectSettings {
+                clonus: Some(ClonusSettings::default()),
+                ..none()
+            },
+            from_deg: 40.0,
+            // The joint is let go of in mid-beat.
+            strokes: &[(150.0, 0.2), (-300.0, 0.15)],
+            phases: &[None, Some("beating"), Some("stopping"), None],
+            torque_s: 0.195,
+        },
+        Case {
+            settings: EffectSettings {
+                texture: Some(TextureSettings {
+                    irregularity: 0.0,
+                    ..TextureSettings::default()
+                }),
+                ..none()
+            },
+            from_deg: 20.2,
+            strokes: &[(20.0, 0.04)],
+            phases: &[None, Some("sliding")],
+            torque_s: 0.03,
+        },
+    ]
+}
+
+/// Where an examination is, rad and rad/s.
+fn motion(case: &Case) -> impl Fn(f64) -> (f64, f64) {
+    let (from_deg, strokes) = (case.from_deg, case.strokes);
+    move |time_s| {
+        let (mut deg, mut left_s) = (from_deg, time_s);
+        for &(deg_s, lasts_s) in strokes {
+            if left_s < lasts_s - 1e-9 {
+                return ((deg + deg_s * left_s).to_radians(), deg_s.to_radians());
+            }
+            deg += deg_s * lasts_s;
+            left_s -= lasts_s;
+        }
+        (deg.to_radians(), 0.0)
+    }
+}
+
+#[test]
+fn every_phase_is_shown_while_it_lasts() {
+    for case in cases() {
+        let mut rig = only::<f64>(case.settings, case.from_deg);
+        let end_s = case.strokes.iter().map(|stroke| stroke.1).sum();
+        let run = rig.run(end_s, motion(&case));
+        assert_eq!(run.phases, case.phases);
+    }
+}
+
+#[test]
+fn a_torque_is_held_for_a_millisecond_without_samples_and_then_released() {
+    for case in cases() {
+        let mut rig = only::<f64>(case.settings, case.from_deg);
+        let run = rig.run(case.torque_s, motion(&case));
+        let (_, at_rad, nm) = *run.rows.last().unwrap();
+        assert!(nm.abs() > 0.05, "{nm}");
+        let place = Sight::IDEAL.position(at_rad);
+        for _ in 0..20 {
+            assert_eq!(rig.tick(Sample::Lost, place), nm, "{:?}", rig.phase());
+        }
+        let released_nm = rig.tick(Sample::Lost, place);
+        // Each part of a torque is released with the slew limit.
+        let less_nm = nm.abs() - released_nm.abs();
+        assert!(
+            less_nm >= SLEW_NM - 1e-9 && less_nm <= 2.0 * SLEW_NM + 1e-9,
+            "{:?}: {less_nm}",
+            case.phases
+        );
+    }
+}
+
+#[test]
+fn a_beat_within_a_gap_has_its_time() {
+    let case = cases().swap_remove(6);
+    let mut rig = only::<f64>(case.settings, 40.0);
+    // It starts at 2,666.7 ticks, the beat is 1,000 ticks later.
+    let motion = motion(&case);
+    rig.run(3_665.0 * TICK_S, &motion);
+    assert!(rig.words.is_empty());
+    let [from, to] = [3_665.0, 3_668.0].map(|tick| motion(tick * TICK_S));
+    for _ in 0..2 {
+        rig.tick(Sample::Lost, Sight::IDEAL.position(from.0));
+    }
+    rig.step(from, to, to.0 - from.0);
+    let [(Word::Beat, share)] = rig.words[..] else {
+        panic!("{:?}", rig.words);
+    };
+    near(share, 5.0 / 9.0, 1e-6);
+}
+
+#[test]
+fn a_count_that_flickers_at_the_edge_of_a_tooth_gives_nothing_way() {
+    let sight = Sight::of_encoder(&crepitus_model::control::encoder::EncoderSettings::default());
+    let settings = EffectSettings {
+        cogwheel: Some(CogwheelSettings {
+            mode: 1,
+            ..CogwheelSettings::default()
+        }),
+        ..EffectSettings::default()
+    };
+    // A tooth of 7.5 deg is high for its first half.
+    let edge = sight.position::<f64>(3.75_f64.to_radians()).count;
+    let mut rig = Rig::<f64>::new(settings, sight, 0.0);
+    let mut count = 0;
+    let mut go = |to: i32| {
+        let mut nm = 0.0;
+        while count != to {
+            let by = (to - count).signum();
+            count += by;
+            let travel_rad = f64::from(by) * sight.rad_per_count;
+            let omega = travel_rad / TICK_S;
+            let shaft = crepitus_model::ShaftStep {
+                delta_phi_rad: travel_rad,
+                omega_start_rad_s: omega,
+                omega_end_rad_s: omega,
+            };
+            nm = rig.tick(Sample::Taken(shaft), Position::at(count));
+        }
+        nm
+    };
+    near(go(edge), 2.0, 1e-9);
+    for _ in 0..10 {
+        assert!(go(edge + 1) > 1.99);
+        assert!(go(edge) > 1.99);
+    }
+    near(go(edge + 3), 0.8, 1e-2);
+}

@@ -1,0 +1,114 @@
+//! The play element by itself.
+
+use super::rig::*;
+use crepitus_model::ShaftStep;
+use crepitus_model::render::effects::play::{Hold, Limits, Part, Play, short_decay};
+use crepitus_model::render::input_check::Checked;
+use crepitus_model::render::position::{Scale, Sight, Travel};
+
+/// A tick from one angle to another, rad.
+fn travel(from_rad: f64, to_rad: f64) -> Travel<f64> {
+    let omega = (to_rad - from_rad) / TICK_S;
+    let shaft = ShaftStep {
+        delta_phi_rad: to_rad - from_rad,
+        omega_start_rad_s: omega,
+        omega_end_rad_s: omega,
+    };
+    let scale = Scale::new(&Sight::IDEAL, TICK_S);
+    let place = Sight::IDEAL.position(to_rad);
+    Travel::of(&Checked::Step(shaft), &place, &scale).unwrap()
+}
+
+/// To an angle with a spring of 100 N·m/rad within ±2 N·m.
+fn to(play: &mut Play<f64>, from_rad: f64, to_rad: f64, stiffness: f64) -> f64 {
+    let travel = travel(from_rad, to_rad);
+    play.follow(
+        &travel,
+        Part::whole(1.0),
+        stiffness,
+        |_| Limits::both(2.0),
+        &mut (),
+    )
+}
+
+fn stretched() -> Play<f64> {
+    let mut play = Play::new();
+    play.rest(&Sight::IDEAL.position(0.5));
+    near(to(&mut play, 0.5, 0.51, 100.0), 1.0, 1e-12);
+    play
+}
+
+#[test]
+fn it_is_dragged_at_its_limits_and_elastic_between() {
+    let mut play = stretched();
+    assert_eq!(play.hold(), Hold::Elastic);
+    near(to(&mut play, 0.51, 0.6, 100.0), 2.0, 1e-12);
+    assert_eq!(play.hold(), Hold::Upper);
+    near(to(&mut play, 0.6, 0.59, 100.0), 1.0, 1e-12);
+    near(to(&mut play, 0.59, 0.5, 100.0), -2.0, 1e-12);
+    assert_eq!(play.hold(), Hold::Lower);
+}
+
+#[test]
+fn a_stiffer_spring_keeps_its_torque_and_a_softer_one_its_share() {
+    for (stiffness, nm) in [(400.0, 1.0), (100.0, 1.0), (25.0, 0.25)] {
+        let mut play = stretched();
+        play.change(100.0, stiffness, 1.0);
+        near(play.torque_nm(), nm, 1e-12);
+        // It goes on from there with the new one.
+        near(to(&mut play, 0.51, 0.51, stiffness), nm, 1e-12);
+        near(
+            to(&mut play, 0.51, 0.512, stiffness),
+            nm + 0.002 * stiffness,
+            1e-12,
+        );
+        // Its energy does not rise.
+        assert!(nm * nm / (2.0 * stiffness) <= 1.0 / 200.0 + 1e-12);
+    }
+}
+
+#[test]
+fn what_lies_beyond_a_lowered_limit_falls_with_the_slew_limit() {
+    let mut play = stretched();
+    play.change(100.0, 100.0, 0.1);
+    let mut follow = |nm: f64| {
+        let travel = travel(0.51, 0.51);
+        let limits = |_| Limits::both(0.65);
+        near(
+            play.follow(&travel, Part::whole(1.0), 100.0, limits, &mut ()),
+            nm,
+            1e-12,
+        );
+    };
+    for nm in [1.0, 0.9, 0.8, 0.7, 0.65, 0.65] {
+        follow(nm);
+    }
+}
+
+#[test]
+fn a_release_lets_go_of_so_much_and_no_more_than_there_is() {
+    let mut play = stretched();
+    play.release(0.3);
+    near(to(&mut play, 0.51, 0.51, 100.0), 0.7, 1e-12);
+    play.release(5.0);
+    near(to(&mut play, 0.51, 0.51, 100.0), 0.0, 1e-12);
+    near(to(&mut play, 0.51, 0.5, 100.0), -1.0, 1e-12);
+}
+
+#[test]
+fn part_of_a_travel_ends_where_its_share_does() {
+    let mut play = stretched();
+    let travel = travel(0.51, 0.514);
+    let part = Part::until(1.0, 0.25);
+    let nm = play.follow(&travel, part, 100.0, |_| Limits::both(2.0), &mut ());
+    near(nm, 1.1, 1e-12);
+}
+
+#[test]
+fn a_short_decay_is_the_exponential() {
+    // The shortest time constant is 5 ms, a hundred ticks.
+    for n in 0..=100 {
+        let x = -1e-4 * f64::from(n);
+        near(short_decay(x), x.exp(), 5e-10);
+    }
+}
