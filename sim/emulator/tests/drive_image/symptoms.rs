@@ -121,14 +121,14 @@ pub(crate) const CASES: [Case; 10] = [
         symptom: "texture",
         settings: "",
         phases: &["sliding"],
-        most_cycles: 815,
+        most_cycles: 710,
     },
     Case {
         name: "cogwheel, in time",
         symptom: "cogwheel",
         settings: "frequency_hz = 12.0\ntorque_nm = 0.6\n",
         phases: &["high"],
-        most_cycles: 680,
+        most_cycles: 580,
     },
     Case {
         name: "reflex",
@@ -142,7 +142,7 @@ pub(crate) const CASES: [Case; 10] = [
         symptom: "clasp-knife",
         settings: "trigger = \"torque\"\nrelease_torque_nm = 0.9\nonset_deg = 4.0\nrelease_deg = 8.0\nrearm_deg = 2.0\n",
         phases: &["building", "fallen"],
-        most_cycles: 700,
+        most_cycles: 595,
     },
 ];
 
