@@ -132,3 +132,23 @@ fn a_gap_over_many_asperities_leaves_no_late_snaps() {
         assert!(rig.words.is_empty(), "{:?}", rig.words);
     }
 }
+
+#[test]
+fn a_symptom_that_is_committed_begins_without_torque_where_the_joint_is() {
+    let mut rig = only::<f64>(EffectSettings::default(), 45.0);
+    let mut at = (moved(&mut rig, 45_f64.to_radians(), 100).0, 1.0);
+    rig.commit(lead_pipe(LeadPipeSettings::default()));
+    let mut go = |ticks: u32| {
+        (0..ticks).fold(0.0, |_, _| {
+            let to = (at.0 + TICK_S, 1.0);
+            let nm = rig.step(at, to, TICK_S);
+            at = to;
+            nm
+        })
+    };
+    assert_eq!(go(1), 0.0);
+    // From there on by its stiffness, up to 1.2 N·m after 1.5 deg.
+    let per_tick_nm = 1.2 / 1.5_f64.to_radians() * TICK_S;
+    near(go(100), 100.0 * per_tick_nm, 1e-9);
+    near(go(500), 1.2, 1e-9);
+}
