@@ -233,3 +233,34 @@ fn a_reflex_is_late_and_passive_below_some_hertz() {
         assert_eq!(work > 0.0, is_passive, "{frequency} Hz: {work}");
     }
 }
+
+#[test]
+fn asperities_go_on_below_zero_and_each_lets_go_of_its_height() {
+    let settings = EffectSettings {
+        texture: Some(TextureSettings {
+            irregularity: 0.0,
+            ..TextureSettings::default()
+        }),
+        ..EffectSettings::default()
+    };
+    // Up from -20.3 deg: 0.8 deg to the first one, and then each 1.5 deg; and down.
+    for (from_deg, deg_s, jump_nm) in [(-20.3, 20.0, -0.3), (-20.2, -20.0, 0.3)] {
+        let mut rig = only::<f64>(settings, from_deg);
+        let motion = ramp(from_deg, deg_s);
+        let mut snaps = Vec::new();
+        for n in 0..8_000_u32 {
+            let [from, to] = [n, n + 1].map(|tick| motion(f64::from(tick) * TICK_S));
+            rig.step(from, to, to.0 - from.0);
+            if let [(Word::Snap, share)] = rig.words[..] {
+                snaps.push((f64::from(n) + share) * TICK_S);
+                near(rig.jump_nm, jump_nm, 1e-6);
+            } else {
+                assert_eq!(rig.jump_nm, 0.0);
+            }
+        }
+        assert_eq!(snaps.len(), 5);
+        for (nth, time_s) in snaps.iter().enumerate() {
+            near(*time_s, (0.8 + 1.5 * nth as f64) / 20.0, 1e-9);
+        }
+    }
+}

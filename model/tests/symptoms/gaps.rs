@@ -2,10 +2,10 @@
 
 use super::rig::*;
 use crepitus_model::Sample;
-use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::lead_pipe::LeadPipeSettings;
 use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_model::render::effects::texture::TextureSettings;
+use crepitus_model::render::effects::{EffectSettings, MOST_STIFFNESS_NM_PER_RAD};
 use crepitus_model::render::position::Sight;
 
 fn lead_pipe(settings: LeadPipeSettings) -> EffectSettings {
@@ -151,4 +151,41 @@ fn a_symptom_that_is_committed_begins_without_torque_where_the_joint_is() {
     let per_tick_nm = 1.2 / 1.5_f64.to_radians() * TICK_S;
     near(go(100), 100.0 * per_tick_nm, 1e-9);
     near(go(500), 1.2, 1e-9);
+}
+
+#[test]
+fn a_torque_that_fades_gives_way_as_a_spring_where_it_would_push() {
+    let with = |elastic_nm_per_rad: f64| {
+        lead_pipe(LeadPipeSettings {
+            torque_nm: 0.0,
+            elastic_nm_per_rad,
+            neutral_deg: 0.0,
+            ..LeadPipeSettings::default()
+        })
+    };
+    let mut rig = only::<f64>(with(2.0), 45.0);
+    let rest = moved(&mut rig, 45_f64.to_radians(), 10);
+    let full_nm = rig.step(rest, rest, 0.0);
+    near(full_nm, 2.0 * rest.0, 1e-9);
+    // The stiffness is gone at once, its torque is not.
+    rig.commit(with(0.0));
+    for n in 1..=20 {
+        near(
+            rig.step(rest, rest, 0.0),
+            full_nm - f64::from(n) * SLEW_NM,
+            1e-9,
+        );
+    }
+    // A hand that goes along with it at 0.5 rad/s gets what the stiffest spring has.
+    let (mut at, mut nm) = (rest.0, full_nm - 20.0 * SLEW_NM);
+    let travel_rad = -0.5 * TICK_S;
+    for _ in 0..10 {
+        nm -= SLEW_NM + MOST_STIFFNESS_NM_PER_RAD * 0.5 * TICK_S;
+        near(
+            rig.step((at, -0.5), (at + travel_rad, -0.5), travel_rad),
+            nm,
+            1e-9,
+        );
+        at += travel_rad;
+    }
 }

@@ -30,6 +30,8 @@ pub(crate) struct Rig<F: Real> {
     pub(crate) words: Vec<(Word, f64)>,
     pub(crate) settling: bool,
     phases: Phases,
+    /// Jump of the torque in the last tick, N·m.
+    pub(crate) jump_nm: f64,
 }
 
 impl<F: Real> Rig<F> {
@@ -43,6 +45,7 @@ impl<F: Real> Rig<F> {
             words: Vec::new(),
             settling: false,
             phases: Phases::default(),
+            jump_nm: 0.0,
         };
         rig.commit(settings);
         rig.effects.rest(&sight.position(from_rad));
@@ -77,6 +80,7 @@ impl<F: Real> Rig<F> {
         );
         self.settling = shown.settling;
         self.phases = shown.phases;
+        self.jump_nm = shown.jump_nm.to_f64();
         shown.torque_nm.to_f64()
     }
 

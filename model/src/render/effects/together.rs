@@ -124,9 +124,13 @@ impl EffectSettings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::effects::clasp_knife::ClaspKnifeSettings;
+    use crate::render::effects::clonus::ClonusSettings;
+    use crate::render::effects::cogwheel::CogwheelSettings;
     use crate::render::effects::friction_compensation::FrictionCompensationSettings;
     use crate::render::effects::lead_pipe::LeadPipeSettings;
     use crate::render::effects::range_limit::RangeLimitSettings;
+    use crate::render::effects::spasticity::SpasticitySettings;
     use crate::render::effects::texture::TextureSettings;
 
     /// The stiffest that the presets ask for at once: 400 + 400 + 200 + 76.
@@ -169,6 +173,34 @@ mod tests {
         assert_eq!(EffectSettings::default().check(Some(&stiffer)), Ok(()));
         let nm = settings.largest_torque_nm(Some(&joint));
         assert!((nm - (0.4 + 4.0 + 2.0 + 0.4)).abs() < 1e-12, "{nm}");
+    }
+
+    #[test]
+    fn the_torques_of_all_symptoms_have_a_sum_and_a_bound() {
+        let all = EffectSettings {
+            range_limit: Some(RangeLimitSettings::default()),
+            lead_pipe: Some(LeadPipeSettings {
+                elastic_nm_per_rad: 2.0,
+                ..LeadPipeSettings::default()
+            }),
+            cogwheel: Some(CogwheelSettings {
+                elastic_nm_per_rad: 5.0,
+                ..CogwheelSettings::default()
+            }),
+            spasticity: Some(SpasticitySettings::default()),
+            clasp_knife: Some(ClaspKnifeSettings::default()),
+            clonus: Some(ClonusSettings::default()),
+            texture: Some(TextureSettings::default()),
+            ..EffectSettings::default()
+        };
+        let clasp_nm = 0.8 + 3.0 * core::f64::consts::FRAC_PI_4;
+        let sum_nm = 0.4 + 4.0 + 1.2 + 2.0 + 4.5 + clasp_nm + 1.5 + 0.4;
+        let joint = Parameters::default();
+        let nm = all.largest_torque_nm(Some(&joint));
+        assert!((nm - sum_nm).abs() < 1e-12, "{nm}");
+        let bound_nm = all.torque_bound_nm(Some(&joint));
+        let slopes = 2.0 + 5.0 + 1.0 + 3.0;
+        assert!((bound_nm - sum_nm - slopes * core::f64::consts::PI).abs() < 1e-12);
     }
 
     #[test]
