@@ -213,10 +213,14 @@ fn a_reflex_is_late_and_passive_below_some_hertz() {
         spasticity: Some(muscle),
         ..EffectSettings::default()
     };
-    // A stretch at constant speed: y = k(φ − λ + μΩ − Ω(τd + τa)).
-    let run = only::<f64>(settings(muscle), 5.0).run(1.0, ramp(5.0, 40.0));
-    let expected = (5.0 + 40.0 * 0.9 - 20.0 + 40.0 * (0.25 - 0.06_f64)).to_radians();
-    near(run.at(0.9), expected, 1e-6);
+    // A stretch at constant speed: y = k(φ − λ + μΩ − Ω(τd + τa)), also where the delay
+    // has a part of a tick.
+    for delay_s in [0.05, 0.050_02] {
+        let muscle = SpasticitySettings { delay_s, ..muscle };
+        let run = only::<f64>(settings(muscle), 5.0).run(1.0, ramp(5.0, 40.0));
+        let expected = (5.0 + 40.0 * 0.9 - 20.0 + 40.0 * (0.25 - 0.01 - delay_s)).to_radians();
+        near(run.at(0.9), expected, 1e-6);
+    }
     // A sine about a place beyond the threshold: the work of its last periods.
     for (frequency, is_passive) in [(2.0, true), (3.6, true), (3.9, false), (6.0, false)] {
         let w = std::f64::consts::TAU * frequency;
