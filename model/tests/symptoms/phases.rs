@@ -145,7 +145,7 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// Where an examination is, rad and rad/s.
+/// Angle and velocity of an examination over time, rad and rad/s.
 fn motion(case: &Case) -> impl Fn(f64) -> (f64, f64) {
     let (from_deg, strokes) = (case.from_deg, case.strokes);
     move |time_s| {

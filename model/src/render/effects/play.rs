@@ -243,7 +243,7 @@ pub fn dragged<F: Real>(at: Hold, limit_nm: F) -> Hold {
     if limit_nm == F::ZERO { Hold::Slack } else { at }
 }
 
-/// Where a part of a travel ends.
+/// The end of a part of a travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct End<F> {
     /// The joint's place then.

@@ -128,8 +128,8 @@ struct Pair<F> {
     next: Asperity<F>,
 }
 
-/// How far a place is from both; below zero beyond one that the encoder's noise, or a
-/// long travel, has passed.
+/// Distances of a place from both asperities; negative beyond one that was passed by the
+/// encoder's noise or in a long travel.
 #[derive(Clone, Copy)]
 struct Beside<F> {
     from_last_rad: F,

@@ -206,7 +206,7 @@ struct All {
     commit_share: u64,
 }
 
-/// What was reached: with 0 wait states 55 were asked for, and 70 with a commit.
+/// Limits just above the measured shares. Goals with 0 wait states: 55, and 70 with a commit.
 const ALL: [All; 2] = [
     All {
         flash: Flash::ZeroWaitStates,

@@ -179,7 +179,7 @@ impl<F: Real> Reflex<F> {
         }
     }
 
-    /// Advances the answer by a tick in which the muscle is told `nm`.
+    /// Advances delay and activation filter by a tick; `nm` is their input.
     #[inline]
     fn answer(&mut self, nm: F) {
         self.remember(nm);
