@@ -63,7 +63,12 @@ pub struct Shown<F> {
     pub jump_nm: F,
     /// Torque of the symptoms that give energy, which a tank pays, N·m.
     pub active_nm: F,
-    /// Torque added by each effect besides the joint, N·m.
+    /// Torque of the symptoms that the actuator on the shell alone gets, N·m.
+    pub shell_nm: F,
+    /// Voltage at the coil of that actuator, V: V > 0 pushes the shell towards growing
+    /// angle.
+    pub coil_v: F,
+    /// What each effect besides the joint adds, N·m or V.
     pub added: Added<F>,
     /// The phase of each.
     pub phases: Phases,
@@ -83,6 +88,8 @@ impl<F: Real> Shown<F> {
             model_torque_nm: self.model_torque_nm.to_f64(),
             jump_nm: self.jump_nm.to_f64(),
             active_nm: self.active_nm.to_f64(),
+            shell_nm: self.shell_nm.to_f64(),
+            coil_v: self.coil_v.to_f64(),
             added: self.added.to_f64(),
             phases: self.phases,
             phase: self.phase,
@@ -99,6 +106,8 @@ impl<F: Real> Shown<F> {
             model_torque_nm: F::ZERO,
             jump_nm: F::ZERO,
             active_nm: F::ZERO,
+            shell_nm: F::ZERO,
+            coil_v: F::ZERO,
             added: Added::NONE,
             phases: Phases(0),
             phase: Phase::Stick,

@@ -11,8 +11,8 @@ use crepitus_protocol::frame::CRC;
 use crepitus_protocol::parameters::PARAMETER_COUNT;
 use crepitus_protocol::{Revision, Values};
 
-/// Bytes between the beginnings of two records: room for 111 parameters.
-pub const SLOT_BYTES: usize = 1024;
+/// Bytes between the beginnings of two records: room for 225 parameters.
+pub const SLOT_BYTES: usize = 2048;
 
 const MAGIC: [u8; 4] = *b"CRP2";
 const HEAD_BYTES: usize = 16;

@@ -25,6 +25,7 @@ pub mod symptom;
 pub mod tank;
 pub mod texture;
 mod together;
+pub mod vibration_actuator;
 
 pub use faded::Faded;
 pub use kept::Kept;
@@ -56,6 +57,7 @@ effects! {
     additions {
         friction_compensation: FrictionCompensation, FrictionCompensationSettings;
         bone_shaping: BoneShaping, BoneShapingSettings;
+        vibration_actuator: VibrationActuator, VibrationActuatorSettings;
     }
 }
 
@@ -68,9 +70,11 @@ pub struct EffectSpec {
     pub adds: &'static str,
     /// Its state variables.
     pub states: &'static [&'static str],
-    /// Column of a trace: the torque that it adds, N·m.
+    /// Column of a trace: what it adds.
     pub column: &'static str,
-    /// Title of the chart of that torque.
+    /// The unit of that: N·m, or V of a coil of its own.
+    pub unit: &'static str,
+    /// Title of the chart of it.
     pub title: &'static str,
     /// Its phases, if it has several.
     pub phases: Option<PhaseSpec>,
@@ -195,6 +199,17 @@ pub const TANK_J: f64 = 0.2;
 /// the half joule that a device may give a leg.
 pub const TANK_REFILL_W: f64 = 0.04;
 
+/// Where what an effect adds goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// N·m of the motor.
+    Joint,
+    /// N·m that the [actuator on the shell](vibration_actuator) alone gets.
+    Shell,
+    /// V at the coil of that actuator.
+    Coil,
+}
+
 /// The law of an effect, with its state.
 pub trait DeviceEffect<F: Real>: Sized {
     /// Its parameters.
@@ -228,8 +243,19 @@ pub trait DeviceEffect<F: Real>: Sized {
     /// As at arming: at this place of the joint. Only symptoms have one.
     fn rest(&mut self, _: &Position<F>) {}
 
-    /// The torque to add in this tick, N·m.
-    fn added_nm(
+    /// Where what an effect with these settings adds goes.
+    fn target_of(_: &Self::Settings) -> Target {
+        Target::Joint
+    }
+
+    /// Where what this one adds goes.
+    #[inline]
+    fn target(&self) -> Target {
+        Target::Joint
+    }
+
+    /// What to add in this tick, N·m or V.
+    fn added(
         &mut self,
         tick: &Tick<'_, F>,
         shown: &mut Shown<F>,
@@ -267,7 +293,7 @@ impl<F: Real, L: Law<Real = F>> DeviceEffect<F> for L {
     }
 
     #[inline]
-    fn added_nm(
+    fn added(
         &mut self,
         tick: &Tick<'_, F>,
         shown: &mut Shown<F>,
@@ -315,6 +341,16 @@ pub trait Switched<F: Real, E: DeviceEffect<F>> {
 /// The tank of a device's symptoms.
 fn tank<F: Real>(timing: &Timing) -> Tank<F> {
     Tank::new(TANK_J, TANK_REFILL_W, timing.step_s, timing.delay_ticks)
+}
+
+/// Adds to where it goes.
+#[inline]
+fn give<F: Real>(target: Target, added: F, shown: &mut Shown<F>) {
+    match target {
+        Target::Joint => shown.torque_nm += added,
+        Target::Shell => shown.shell_nm += added,
+        Target::Coil => shown.coil_v += added,
+    }
 }
 
 /// A bit for an effect, at its place in the table.
@@ -427,7 +463,7 @@ pub(crate) mod tests {
             Self
         }
 
-        fn added_nm(
+        fn added(
             &mut self,
             _: &Tick<'_, f32>,
             _: &mut Shown<f32>,

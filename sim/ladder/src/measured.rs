@@ -184,7 +184,7 @@ impl<E: DeviceEffect<f32>> Measured for Effect<E> {
         let travel = Travel::plausible(&input, &self.place, &self.scale);
         let seen = Seen::taken(&shaft, self.place);
         let tick = Tick::of(&seen, &input, travel.as_ref(), 1.0);
-        let added_nm = self.law.added_nm(&tick, &mut shown, &mut ());
+        let added_nm = self.law.added(&tick, &mut shown, &mut ());
         [added_nm.to_bits(), 0, 0]
     }
 }

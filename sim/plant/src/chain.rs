@@ -30,6 +30,7 @@
 //! step cut in two.
 
 use crate::energy_balance::EnergyBalance;
+use crate::plant::Coil;
 use crepitus_model::Sense;
 
 /// A body of the chain, all referred to the joint.
@@ -93,6 +94,8 @@ pub struct Step {
     pub drive: Push,
     /// Torque that goes through the gear, N·m.
     pub load_nm: f64,
+    /// Bridge of the actuator on the shell.
+    pub coil: Coil,
     /// It continues from an end of a mode.
     pub cut: bool,
 }

@@ -27,7 +27,19 @@ pub struct Plant<A = Box<dyn Commanded>> {
     boundary: Box<dyn Boundary>,
     /// The body at the right end of the chain.
     body: Body,
+    /// Bridge of the actuator on the shell.
+    coil: Coil,
     start: EnergyBalance,
+}
+
+/// Bridge of the coil of the actuator on the shell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Coil {
+    /// It holds this voltage, V.
+    Driven(f64),
+    /// It sleeps.
+    #[default]
+    Open,
 }
 
 /// A stretch solved.
@@ -38,9 +50,11 @@ struct Solution {
 }
 
 impl<A: Commanded> Plant<A> {
-    /// Starts a tick with the torque setpoint of the device, N·m.
-    pub fn command(&mut self, torque_nm: f64) {
+    /// Starts a tick with the torque setpoint of the device, N·m, and the voltage that
+    /// it commanded for the coil in the tick before, V.
+    pub fn command(&mut self, torque_nm: f64, coil_v: f64) {
         self.actuator.command(torque_nm);
+        self.coil = Coil::Driven(coil_v);
     }
 }
 
@@ -58,6 +72,7 @@ impl<A: Actuator> Plant<A> {
             chain,
             boundary,
             body: start,
+            coil: Coil::Open,
             start: EnergyBalance::default(),
         };
         plant.start = plant.booked();
@@ -72,6 +87,11 @@ impl<A: Actuator> Plant<A> {
     /// Its actuator, for commands between two steps.
     pub fn actuator_mut(&mut self) -> &mut A {
         &mut self.actuator
+    }
+
+    /// Switches the bridge of the coil.
+    pub fn set_coil(&mut self, coil: Coil) {
+        self.coil = coil;
     }
 
     /// Between two steps the motion's velocity jumps.
@@ -174,6 +194,7 @@ impl<A: Actuator> Plant<A> {
             length_s: stretch.length_s,
             drive: self.actuator.fold(stretch.length_s),
             load_nm: self.actuator.load_nm(),
+            coil: self.coil,
             cut: stretch.from > 0.0,
         };
         let push = self.chain.fold(&step, &self.body);

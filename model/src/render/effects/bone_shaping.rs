@@ -49,6 +49,11 @@
 //! crepitus does not fade up to 4 rad/s (230 deg/s), and beyond only a little.
 //! Both at the ends of their ranges return at most 0.5 J in 2 s.
 //!
+//! **On the actuator.** Of a ringing of the motor's torque a hand gets next to nothing,
+//! so with `output = "actuator"` it goes to the [actuator on the
+//! shell](super::vibration_actuator) instead. It is then no torque on the shaft and costs the motor no
+//! energy: there is no account, and the actuator's own limits hold.
+//!
 //! Sources: 115 Hz with ζ 0.098 after a click of a healthy knee, 67 Hz with ζ
 //! 0.036 with a meniscal tear (PMC8284919); gain, budget and refill are
 //! engineering estimates; the limit is the step that the slew limit exempts.
@@ -59,7 +64,9 @@ use crate::parameters::{Tabled, settings};
 use crate::real::Real;
 use crate::render::Shown;
 use crate::render::effects::tank::Tank;
-use crate::render::effects::{DeviceEffect, EffectSpec, Faded, Need, Observe, Tick, Timing};
+use crate::render::effects::{
+    DeviceEffect, EffectSpec, Faded, Need, Observe, Target, Tick, Timing,
+};
 
 settings! {
     /// The bone, and what its ringing may cost.
@@ -69,6 +76,13 @@ settings! {
             choice: ["off", "on"],
             default: 0,
             meaning: "whether the bone rings when the joint clicks",
+        },
+    } chosen {
+        output {
+            id: 138 always,
+            choice: ["motor", "actuator"],
+            default: 0,
+            meaning: "what the hand gets the ringing from: the motor, or the vibration-actuator alone",
         },
     } {
         frequency_hz {
@@ -137,6 +151,7 @@ pub struct BoneShaping<F> {
     ringing_nm: F,
     /// ż, N·m/s.
     rate_nm_per_s: F,
+    target: Target,
     tank: Tank<F>,
 }
 
@@ -150,6 +165,7 @@ impl<F: Real> DeviceEffect<F> for BoneShaping<F> {
         adds: "a ringing of the rendered torque where cuff and tissue swallow that of the bone",
         states: &["ringing", "its rate"],
         column: "shaping_nm",
+        unit: "N·m",
         title: "Bone shaping, added to the model’s torque",
         phases: None,
         needs: &[Need {
@@ -191,6 +207,7 @@ impl<F: Real> DeviceEffect<F> for BoneShaping<F> {
             limit_nm: F::from_f64(settings.limit_nm),
             ringing_nm: F::ZERO,
             rate_nm_per_s: F::ZERO,
+            target: Self::target_of(settings),
             tank: Tank::new(settings.budget_j, settings.refill_w, step_s, delay_ticks),
         })
     }
@@ -198,13 +215,25 @@ impl<F: Real> DeviceEffect<F> for BoneShaping<F> {
     // By name in a profile: a test looks for it where it should not be.
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
-    fn added_nm(&mut self, tick: &Tick<'_, F>, shown: &mut Shown<F>, _: &mut impl Observe<F>) -> F {
+    fn added(&mut self, tick: &Tick<'_, F>, shown: &mut Shown<F>, _: &mut impl Observe<F>) -> F {
         self.ring(shown.jump_nm);
         self.tick(tick.travel_rad)
     }
 
     fn new(coefficients: Self) -> Self {
         coefficients
+    }
+
+    fn target_of(settings: &BoneShapingSettings) -> Target {
+        match settings.output {
+            0 => Target::Joint,
+            _ => Target::Shell,
+        }
+    }
+
+    #[inline]
+    fn target(&self) -> Target {
+        self.target
     }
 }
 
@@ -224,9 +253,12 @@ impl<F: Real> BoneShaping<F> {
     /// A travel that is NaN or infinite counts as zero and refills nothing.
     #[inline]
     pub fn tick(&mut self, delta_phi_rad: F) -> F {
-        self.tank.account(delta_phi_rad);
         let (z, rate) = self.swing.apply(self.ringing_nm, self.rate_nm_per_s);
         (self.ringing_nm, self.rate_nm_per_s) = (z.settled(), rate.settled());
+        if self.target == Target::Shell {
+            return self.limited(self.ringing_nm);
+        }
+        self.tank.account(delta_phi_rad);
         let torque_nm = self.tank.share() * self.limited(self.ringing_nm);
         self.tank.give(torque_nm);
         torque_nm
@@ -278,6 +310,7 @@ mod tests {
     }
 
     const TEAR: BoneShapingSettings = BoneShapingSettings {
+        output: 0,
         frequency_hz: 67.0,
         damping_ratio: 0.036,
         gain: 0.7,
@@ -434,5 +467,25 @@ mod tests {
         assert!(full > 0.01);
         assert_eq!((at(0.005), at(0.0), at(-0.001)), (full, 0.0, 0.0));
         assert!((at(0.001) - 0.2 * full).abs() < 1e-15);
+    }
+
+    #[test]
+    fn on_the_actuator_it_rings_alike_and_keeps_no_account() {
+        let on_actuator = BoneShapingSettings {
+            output: 1,
+            ..BoneShapingSettings::default()
+        };
+        let mut motor = bone::<f32>(&BoneShapingSettings::default());
+        let mut actuator = bone::<f32>(&on_actuator);
+        assert_eq!(motor.target(), Target::Joint);
+        assert_eq!(actuator.target(), Target::Shell);
+        for n in 0..400 {
+            if n % 150 == 0 {
+                motor.ring(-0.2);
+                actuator.ring(-0.2);
+            }
+            assert_eq!(motor.tick(0.0), actuator.tick(1e-3));
+        }
+        assert_eq!(actuator.level_j(), 0.01);
     }
 }

@@ -178,6 +178,7 @@ impl<F: Real> Law for ClaspKnife<F> {
         adds: "resistance that builds and collapses, and stays away until the limb is returned",
         states: &["stretch", "its decay"],
         column: "clasp_knife_nm",
+        unit: "N·m",
         title: "Clasp-knife, part of the model’s torque",
         phases: Some(PhaseSpec {
             column: "clasp_knife_phase",

@@ -204,6 +204,7 @@ impl<F: Real> Law for Clonus<F> {
         adds: "beats that a quick stretch starts",
         states: &["time in the beat", "beats so far"],
         column: "clonus_nm",
+        unit: "N·m",
         title: "Clonus, part of the model’s torque",
         phases: Some(PhaseSpec {
             column: "clonus_phase",

@@ -167,6 +167,7 @@ impl<F: Real> Law for Cogwheel<F> {
         adds: "rigidity with regular catches and gives",
         states: &["stretch", "place in the tooth"],
         column: "cogwheel_nm",
+        unit: "N·m",
         title: "Cogwheel rigidity, part of the model’s torque",
         phases: Some(PhaseSpec {
             column: "cogwheel_phase",

@@ -1,6 +1,6 @@
 //! An effect whose torque fades out where it is exchanged.
 
-use super::{DeviceEffect, Observe, Switched, Tick};
+use super::{DeviceEffect, Observe, Switched, Target, Tick, give};
 use crate::real::Real;
 use crate::render::Shown;
 
@@ -15,6 +15,8 @@ pub struct Faded<F, E> {
     fading_nm: F,
     /// The last torque of the law, N·m.
     last_nm: F,
+    /// Where it went.
+    target: Target,
 }
 
 impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Faded<F, E> {
@@ -24,6 +26,7 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Faded<F, E> {
             slew_nm,
             fading_nm: F::ZERO,
             last_nm: F::ZERO,
+            target: Target::Joint,
         }
     }
 
@@ -49,8 +52,9 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Faded<F, E> {
         observe: &mut impl Observe<F>,
     ) -> F {
         if let Some(law) = &mut self.law {
-            self.last_nm = law.added_nm(tick, shown, observe);
-            shown.torque_nm += self.last_nm;
+            self.last_nm = law.added(tick, shown, observe);
+            self.target = law.target();
+            give(self.target, self.last_nm, shown);
         }
         if self.fading_nm == F::ZERO {
             self.last_nm
@@ -70,7 +74,7 @@ impl<F: Real, E> Faded<F, E> {
         } else {
             left_nm
         };
-        shown.torque_nm += self.fading_nm;
+        give(self.target, self.fading_nm, shown);
         self.last_nm + self.fading_nm
     }
 }
@@ -121,7 +125,7 @@ mod tests {
                 jump_nm,
                 ..Shown::nothing()
             };
-            let expected_nm = alone.added_nm(&missing(&seen(0.0)), &mut before, &mut ());
+            let expected_nm = alone.added(&missing(&seen(0.0)), &mut before, &mut ());
             assert_eq!(
                 (added_nm, shown.torque_nm),
                 (expected_nm, 1.0 + expected_nm)

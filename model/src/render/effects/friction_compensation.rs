@@ -118,6 +118,7 @@ impl<F: Real> DeviceEffect<F> for FrictionCompensation<F> {
         adds: "the device's feed-forward against a share of the gear's dry friction",
         states: &[],
         column: "compensation_nm",
+        unit: "N·m",
         title: "Friction compensation, added to the model’s torque",
         phases: None,
         needs: &[Need {
@@ -148,7 +149,7 @@ impl<F: Real> DeviceEffect<F> for FrictionCompensation<F> {
     // By name in a profile: a test looks for it where it should not be.
     #[cfg_attr(target_os = "none", inline)]
     #[cfg_attr(not(target_os = "none"), inline(never))]
-    fn added_nm(&mut self, tick: &Tick<'_, F>, _: &mut Shown<F>, _: &mut impl Observe<F>) -> F {
+    fn added(&mut self, tick: &Tick<'_, F>, _: &mut Shown<F>, _: &mut impl Observe<F>) -> F {
         self.torque_nm(tick.omega_rad_s)
     }
 }

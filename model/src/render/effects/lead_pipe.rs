@@ -93,6 +93,7 @@ impl<F: Real> Law for LeadPipe<F> {
         adds: "rigidity that is the same in both directions and at any speed",
         states: &["stretch"],
         column: "lead_pipe_nm",
+        unit: "N·m",
         title: "Lead-pipe rigidity, part of the model’s torque",
         phases: Some(PhaseSpec {
             column: "lead_pipe_phase",

@@ -401,6 +401,7 @@ impl<F: Real> Law for RangeLimit<F> {
         adds: "the ends of a limited range of motion, with their end-feel",
         states: &["stretch in extension", "stretch in flexion"],
         column: "range_limit_nm",
+        unit: "N·m",
         title: "End of the range, part of the model’s torque",
         phases: Some(PhaseSpec {
             column: "range_limit_phase",

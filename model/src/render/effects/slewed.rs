@@ -43,7 +43,7 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Slewed<F, E> {
         observe: &mut impl Observe<F>,
     ) -> F {
         let target_nm = match &mut self.law {
-            Some(law) => law.added_nm(tick, shown, observe),
+            Some(law) => law.added(tick, shown, observe),
             None if self.now_nm == F::ZERO => return F::ZERO,
             None => F::ZERO,
         };

@@ -241,6 +241,7 @@ impl<F: Real> Law for Spasticity<F> {
             "the reflex’s delay and torque",
         ],
         column: "spasticity_nm",
+        unit: "N·m",
         title: "Spasticity, part of the model’s torque",
         phases: Some(PhaseSpec {
             column: "spasticity_phase",

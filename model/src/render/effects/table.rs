@@ -32,7 +32,7 @@ macro_rules! effects {
             $(#[doc = concat!("`", stringify!($effect), "`.")] pub $effect: Option<$effect::$settings>,)*
         }
 
-        /// The torque of each, N·m.
+        /// What each adds, N·m or V.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct Added<F> {
             $(#[doc = concat!("Of `", stringify!($effect), "`.")] pub $effect: F,)*
@@ -70,6 +70,14 @@ macro_rules! effects {
                 Self {
                     $($effect: given(<$effect::$law<f64> as DeviceEffect<f64>>::SPEC.name).map(filled),)*
                 }
+            }
+
+            /// Whether what the effect at a place of the table adds is torque of the motor.
+            pub fn acts_on_joint(&self, place: usize) -> bool {
+                let acts = [$(self.$effect.as_ref().is_some_and(|settings| {
+                    <$effect::$law<f64> as DeviceEffect<f64>>::target_of(settings) == Target::Joint
+                })),*];
+                acts.get(place).is_some_and(|acts| *acts)
             }
 
             /// The laws.
@@ -131,11 +139,6 @@ macro_rules! effects {
                     .fold(F::ZERO, |sum, (_, nm)| sum + nm)
             }
 
-            /// Of all, N·m.
-            pub fn all_nm(&self) -> F {
-                [$(self.$effect),*].into_iter().fold(F::ZERO, |sum, nm| sum + nm)
-            }
-
             /// Of the effect at a place of the table.
             pub fn get(&self, place: usize) -> Option<F> {
                 [$(self.$effect),*].get(place).copied()
@@ -161,10 +164,10 @@ macro_rules! effects {
                 let travel = Travel::plausible(input, &seen.place, &self.scale);
                 let tick = Tick::of(seen, input, travel.as_ref(), paid_share);
                 $(if let Some(law) = &mut self.$effect {
-                    let added_nm = law.added_nm(&tick, shown, observe);
-                    shown.torque_nm += added_nm;
-                    shown.added.$effect = added_nm;
-                    note(Some(law), added_nm, shown);
+                    let added = law.added(&tick, shown, observe);
+                    give(law.target(), added, shown);
+                    shown.added.$effect = added;
+                    note(Some(law), added, shown);
                 })*
                 self.tank.close(shown.active_nm);
             }
@@ -304,9 +307,9 @@ macro_rules! effects {
                 self.tank.close(shown.active_nm);
                 let tick = Tick::of(seen, input, None, paid_share);
                 $(
-                    let added_nm = self.$addition.tick(&tick, shown, observe);
-                    shown.added.$addition = added_nm;
-                    note(self.$addition.law(), added_nm, shown);
+                    let added = self.$addition.tick(&tick, shown, observe);
+                    shown.added.$addition = added;
+                    note(self.$addition.law(), added, shown);
                 )*
             }
         }

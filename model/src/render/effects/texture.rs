@@ -204,6 +204,7 @@ impl<F: Real> Law for Texture<F> {
         adds: "asperities at fixed angles, whose pitch rises with speed",
         states: &["stretch", "the asperities beside it"],
         column: "texture_nm",
+        unit: "N·m",
         title: "Texture, part of the model’s torque",
         phases: Some(PhaseSpec {
             column: "texture_phase",

@@ -46,8 +46,16 @@ impl EffectSettings {
         if let Some(settings) = &self.texture {
             Texture::<f64>::check(settings)?;
         }
+        if let Some(settings) = &self.vibration_actuator {
+            settings.check()?;
+        }
         if let Some(settings) = &self.bone_shaping {
             settings.validate()?;
+            if settings.output != 0 && self.vibration_actuator.is_none() {
+                return Err(SettingsError::Contradiction {
+                    reason: "bone-shaping: an output to the actuator needs vibration-actuator",
+                });
+            }
         }
         if let Some(settings) = &self.friction_compensation {
             settings.validate()?;

@@ -197,7 +197,7 @@ impl<A: Commanded> Rig<A> {
     /// One tick with the device asking for `torque_nm`.
     pub(crate) fn tick(&mut self, torque_nm: f64) {
         let felt = self.plant.felt_nms();
-        self.plant.command(torque_nm);
+        self.plant.command(torque_nm, 0.0);
         for part in 0..self.parts {
             if 2 * part == self.parts {
                 self.mid.clear();

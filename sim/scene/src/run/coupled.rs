@@ -83,6 +83,8 @@ struct Stage {
     spec: &'static EffectSpec,
     /// Its place in the model's table.
     place: usize,
+    /// What it adds is torque of the motor.
+    acts_on_joint: bool,
     added_nm: f64,
     work_j: f64,
 }
@@ -96,19 +98,25 @@ pub(super) fn simulate<F: Precise>(
     let tick_s = scene.step_s();
     let plant = scene.assemble()?;
     let shaft = plant.shaft();
+    let settings = scene.effect_settings();
     let run = Run {
         first_felt_nm: first_felt_nm(scene)?,
         device: device::<F>(scene, solver, tick_s, &shaft)?,
         plant,
         stages: stages::listed(scene)
-            .map(|spec| Stage {
-                spec,
-                place: SPECS.iter().take_while(|s| s.name != spec.name).count(),
-                added_nm: 0.0,
-                work_j: 0.0,
+            .map(|spec| {
+                let place = SPECS.iter().take_while(|s| s.name != spec.name).count();
+                Stage {
+                    spec,
+                    place,
+                    acts_on_joint: settings.acts_on_joint(place),
+                    added_nm: 0.0,
+                    work_j: 0.0,
+                }
             })
             .collect(),
         tick_s,
+        coil_v: 0.0,
     };
     run.go(scene, watch)
 }
@@ -118,6 +126,8 @@ struct Run {
     plant: Plant,
     stages: Vec<Stage>,
     tick_s: f64,
+    /// Voltage for the coil, which its PWM loads with the next tick.
+    coil_v: f64,
     /// What the hand feels in the first tick stands in the first row, too.
     first_felt_nm: f64,
 }
@@ -199,6 +209,7 @@ impl Run {
                     stages: self
                         .stages
                         .iter()
+                        .filter(|stage| stage.acts_on_joint)
                         .map(|s| (s.spec.name, s.work_j))
                         .collect(),
                     limits: scene.is_device.then_some(limited),
@@ -232,12 +243,15 @@ impl Run {
     #[inline]
     fn command(&mut self) -> (f64, f64) {
         let shown = self.device.shown();
-        for stage in &mut self.stages {
+        let mut all_nm = 0.0;
+        for stage in self.stages.iter_mut().filter(|stage| stage.acts_on_joint) {
             stage.added_nm = shown.added.get(stage.place).unwrap_or(0.0);
+            all_nm += stage.added_nm;
         }
-        self.plant.command(shown.torque_nm);
+        self.plant.command(shown.torque_nm, self.coil_v);
+        self.coil_v = shown.coil_v;
         let joint_nm = shown.model_torque_nm - shown.added.symptoms_nm();
-        let taken_nm = shown.torque_nm - joint_nm - shown.added.all_nm();
+        let taken_nm = shown.torque_nm - joint_nm - all_nm;
         (joint_nm, taken_nm)
     }
 
@@ -268,7 +282,7 @@ fn first_felt_nm(scene: &Scene) -> Result<f64, crepitus_model::SettingsError> {
     let mut plant = scene.assemble()?;
     let tick_s = scene.step_s();
     let mut walk = Walk::new(&scene.motion, tick_s);
-    plant.command(0.0);
+    plant.command(0.0, 0.0);
     let (from, to) = walk.step();
     plant.advance(&MotionStep {
         length_s: tick_s,

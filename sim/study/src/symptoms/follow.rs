@@ -32,7 +32,7 @@ pub fn tick<F: Real, E: DeviceEffect<F>>(
     let input = Checked::Step(*shaft);
     let travel = Travel::plausible(&input, &place, scale);
     let tick = Tick::of(&Seen::taken(shaft, place), &input, travel.as_ref(), F::ONE);
-    law.added_nm(
+    law.added(
         &tick,
         &mut Shown::nothing(),
         &mut |_: &'static EffectSpec, change: Change<F>| on_change(change),

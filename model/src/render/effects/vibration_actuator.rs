@@ -1,0 +1,954 @@
+//! A reaction-mass actuator on the shell that the trainee's hand holds.
+//!
+//! Rotor, brace and cuff swallow what is fast in the rendered torque: of a ripple
+//! of 0.4 N·m the hand gets 5 mN·m. A small moving mass near the ankle pushes the
+//! shell with the missing force itself. Above the corner fc it is
+//!
+//! ```text
+//! force on the shell = −g·T/r          T = torque of all symptoms, with a bone's ringing
+//! ```
+//!
+//! so that at g = 1 a shell that is held gets what a knee that gives T at its
+//! axis gives at the lever r. The motor gets T as ever: a crossover in its path
+//! would be a delay inside the loop of the stick, and makes it hum.
+//!
+//! **The filters.** A voltage V at a coil with force constant Bl and resistance R
+//! moves a mass on a flexure, and the shell gets its reaction
+//!
+//! ```text
+//! F/V = (Bl/R)·s²/(s² + 2ζω₀·s + ω₀²)
+//! ```
+//!
+//! ζ with the damping of the back-EMF. The command moves that resonance down to
+//! the corner, and adds a high-pass: both together are a Butterworth filter of
+//! fourth order,
+//!
+//! ```text
+//!                    s²            s² + 2ζω₀·s + ω₀²
+//! V = −g·T·R/(Bl·r)·────────────────·─────────────────    2ζ₁ = 1/1.307, 2ζ₂ = 1/0.541
+//!              s² + 2ζ₁ωc·s + ωc²   s² + 2ζ₂ωc·s + ωc²
+//! ```
+//!
+//! Each is an oscillator that a held input pulls ([`oscillator`](crate::joint::oscillator)):
+//! its motion over a tick is exact. What is kept is the distance from the input,
+//! which is small where the mean torque is large, so that f32 loses nothing.
+//!
+//! **Limits.** An observer of the mass knows its excursion x and the coil's current;
+//! its own gravity and the motion of the leg it does not know, so a part of the
+//! stroke is left for them. From 80 % of what may be on,
+//! the command is reduced: where it drives the mass further out, for the
+//! excursion; at all, for the mean square of the current. The voltage is cut at the
+//! supply's. So for any torque
+//!
+//! ```text
+//! |V| ≤ supply,   √(x² + (ẋ/ω₀)²) ≤ limit,   mean square of the current ≤ limit²
+//! ```
+//!
+//! up to what one tick adds. The command fades in, and out before a filter is exchanged.
+//!
+//! Sources: the moving coil is a Moticont LVCM-016-010-01 (1.1 N/A, 1.8 Ω,
+//! ±1.6 mm, 1.45 A); mass, flexure, lever and time constants are engineering
+//! estimates; corner and gain from simulations of the coupled leg, see the book.
+
+use crate::joint::oscillator::{Oscillator, Transition};
+use crate::joint::{LONGEST_STEP_S, Parameters, SettingsError};
+use crate::parameters::{Tabled, settings};
+use crate::real::Real;
+use crate::render::Shown;
+use crate::render::effects::{
+    DeviceEffect, EffectSpec, Observe, PhaseSpec, Switched, Target, Tick, Timing,
+};
+
+settings! {
+    /// The actuator as it was measured, and what it is to do.
+    pub struct VibrationActuatorSettings, group "vibration-actuator" {
+        render {
+            id: 126 always,
+            choice: ["off", "on"],
+            default: 0,
+            meaning: "whether an actuator on the shell vibrates with the joint",
+        },
+    } {
+        gain {
+            id: 127 always,
+            symbol: "g",
+            unit: "1",
+            range: 0.0..=2.0,
+            default: 1.0,
+            meaning: "force at the shell per torque over lever: 1 as at a shell that is held, 0.09 as of a bare knee",
+        },
+        corner_hz {
+            id: 128 always,
+            symbol: "fc",
+            unit: "Hz",
+            range: 8.0..=30.0,
+            default: 10.0,
+            meaning: "frequency above which the actuator takes over",
+        },
+        resonance_hz {
+            id: 129 always,
+            symbol: "f0",
+            unit: "Hz",
+            range: 10.0..=200.0,
+            default: 35.0,
+            meaning: "resonance of the moving mass on its flexure",
+        },
+        damping_ratio {
+            id: 130 always,
+            symbol: "ζ",
+            unit: "1",
+            range: 0.02..=1.0,
+            default: 0.13,
+            meaning: "damping ratio of that resonance, with the coil connected",
+        },
+        moving_mass_g {
+            id: 131 always,
+            symbol: "m",
+            unit: "g",
+            range: 2.0..=300.0,
+            default: 60.0,
+            meaning: "mass that the coil moves",
+        },
+        force_constant_n_per_a {
+            id: 132 always,
+            symbol: "Bl",
+            unit: "N/A",
+            range: 0.1..=20.0,
+            default: 1.1,
+            meaning: "force of the coil for one ampere",
+        },
+        resistance_ohm {
+            id: 133 always,
+            symbol: "R",
+            unit: "Ω",
+            range: 1.0..=20.0,
+            default: 1.8,
+            meaning: "resistance of the coil and of what feeds it",
+        },
+        stroke_mm {
+            id: 134 always,
+            symbol: "X",
+            unit: "mm",
+            range: 0.2..=8.0,
+            default: 1.6,
+            meaning: "way of the mass from its middle to a stop",
+        },
+        continuous_current_a {
+            id: 135 always,
+            symbol: "Ic",
+            unit: "A",
+            range: 0.05..=3.0,
+            default: 1.45,
+            meaning: "current that the coil bears for ever",
+        },
+        supply_v {
+            id: 136 always,
+            symbol: "U",
+            unit: "V",
+            range: 3.0..=12.0,
+            default: 5.0,
+            meaning: "supply of the coil's bridge",
+        },
+        lever_m {
+            id: 137 always,
+            symbol: "r",
+            unit: "m",
+            range: 0.1..=0.5,
+            default: 0.3,
+            meaning: "distance of the actuator from the knee's axis",
+        },
+    }
+}
+
+/// 2ζ of the two halves of a Butterworth filter of fourth order: 2·sin(π/8), and
+/// 2·sin(3π/8).
+const BUTTERWORTH: [f64; 2] = [0.765_366_864_730_179_5, 1.847_759_065_022_573_5];
+
+/// Where reductions begin, as a share of a limit.
+const BEGINS_AT: f64 = 0.8;
+
+/// Time constant of the mean square of the current, s: estimate for a coil of a few
+/// grams of copper.
+pub const HEATING_S: f64 = 10.0;
+
+/// How fast the gain grows and falls, 1/s: a fade of 50 ms.
+const FADE_PER_S: f64 = 20.0;
+
+/// The least share of the stroke that is left to the command.
+const LEAST_STROKE_SHARE: f64 = 0.2;
+
+/// m/s².
+const STANDARD_GRAVITY: f64 = 9.806_65;
+
+/// The phases, by number: what holds the command back.
+const ACTING: u16 = 1;
+const VOLTAGE: u16 = 2;
+const EXCURSION: u16 = 3;
+const HEAT: u16 = 4;
+
+impl VibrationActuatorSettings {
+    /// ω₀, rad/s.
+    pub fn resonance_rad_s(&self) -> f64 {
+        core::f64::consts::TAU * self.resonance_hz
+    }
+
+    /// Stiffness of the flexure, N/m.
+    pub fn stiffness_n_per_m(&self) -> f64 {
+        let omega = self.resonance_rad_s();
+        self.moving_mass_g * 1e-3 * omega * omega
+    }
+
+    /// The excursion that the command may use, m: the stroke without what the mass
+    /// sags when the leg is turned.
+    pub fn usable_stroke_m(&self) -> f64 {
+        let omega = self.resonance_rad_s();
+        let stroke_m = self.stroke_mm * 1e-3;
+        let left_m = stroke_m - STANDARD_GRAVITY / (omega * omega);
+        left_m.at_least(LEAST_STROKE_SHARE * stroke_m)
+    }
+
+    /// Damping ratio of the back-EMF alone.
+    pub fn electric_damping_ratio(&self) -> f64 {
+        let constant = self.force_constant_n_per_a;
+        let mass_kg = self.moving_mass_g * 1e-3;
+        constant * constant / (2.0 * self.resistance_ohm * mass_kg * self.resonance_rad_s())
+    }
+
+    /// Checks the ranges, and what such a coil cannot be.
+    ///
+    /// # Errors
+    /// The first rule that is broken.
+    pub fn check(&self) -> Result<(), SettingsError> {
+        self.validate()?;
+        if self.damping_ratio < self.electric_damping_ratio() {
+            return Err(SettingsError::Contradiction {
+                reason: "vibration-actuator: a coil with this force constant and resistance damps such a mass more \
+                         than damping_ratio, Bl²/(2·R·m·ω₀)",
+            });
+        }
+        Ok(())
+    }
+
+    /// Voltage for a torque far above the corner at gain 1, V per N·m.
+    pub fn volts_per_nm(&self) -> f64 {
+        -self.resistance_ohm / (self.force_constant_n_per_a * self.lever_m)
+    }
+}
+
+/// An oscillator that follows its input, as a filter: the low-pass is where it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Follower<F> {
+    /// The motion over a tick.
+    swing: Transition<F>,
+    /// 2ζ/ω, s.
+    damping_s: F,
+}
+
+/// Its state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Following<F> {
+    input: F,
+    /// Distance from the input.
+    behind: F,
+    rate: F,
+}
+
+/// Output of a follower: each times a power of s/ω.
+struct Parts<F> {
+    high: F,
+    rate: F,
+    low: F,
+}
+
+impl<F: Real> Follower<F> {
+    /// Of a frequency, rad/s, and 2ζ.
+    fn new(omega: f64, two_zeta: f64, step_s: f64) -> Self {
+        let oscillator = Oscillator::<F>::of(&Parameters {
+            inertia_kg_m2: 1.0,
+            stiffness_nm_per_rad: omega * omega,
+            damping_nms_per_rad: two_zeta * omega,
+            kinetic_torque_nm: 0.0,
+            static_torque_nm: 0.0,
+        });
+        Self {
+            swing: oscillator.transition(F::from_f64(step_s)),
+            damping_s: F::from_f64(two_zeta / omega),
+        }
+    }
+
+    /// The output now, for an input that is held over the tick that begins.
+    #[inline]
+    fn tick(&self, state: &mut Following<F>, input: F) -> Parts<F> {
+        let behind = state.behind - (input - state.input);
+        let parts = Parts {
+            high: -behind - self.damping_s * state.rate,
+            rate: state.rate,
+            low: input + behind,
+        };
+        let (behind, rate) = self.swing.apply(behind, state.rate);
+        *state = Following {
+            input,
+            behind: behind.settled(),
+            rate: rate.settled(),
+        };
+        parts
+    }
+}
+
+impl<F: Real> Following<F> {
+    /// As if this had been the input for ever.
+    #[inline]
+    fn at(input: F) -> Self {
+        Self {
+            input,
+            behind: F::ZERO,
+            rate: F::ZERO,
+        }
+    }
+}
+
+/// What a commit replaces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficients<F> {
+    gain: F,
+    /// The rest, for which the command fades out.
+    design: Design<F>,
+}
+
+/// The filters, the observer, and the limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Design<F> {
+    high_pass: Follower<F>,
+    equaliser: Follower<F>,
+    /// What the equaliser adds of its rate, and of its low-pass.
+    of_rate: F,
+    of_low: F,
+    volts_per_nm: F,
+    most_v: F,
+    /// The mass over a tick; its place is a share of the excursion that may be.
+    mass: Transition<F>,
+    share_per_v: F,
+    /// 1/ω₀², s².
+    per_omega_squared: F,
+    /// Current, as a share of what may last: of the voltage, and of the mass.
+    per_v: F,
+    per_rate: F,
+    /// Share of the way to its mean that the heat goes in a tick.
+    heating: F,
+    /// Change of the gain in a tick.
+    fade: F,
+}
+
+/// The command for an actuator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VibrationActuator<F> {
+    /// The gain that is faded to.
+    goal: F,
+    gain: F,
+    high_pass: Following<F>,
+    equaliser: Following<F>,
+    /// Observed excursion and its rate, as a share of what may be.
+    excursion: F,
+    excursion_rate: F,
+    /// Mean square of the current, as a share of what may last.
+    heat: F,
+    phase: u16,
+    has_begun: bool,
+    design: Design<F>,
+}
+
+impl<F: Real> DeviceEffect<F> for VibrationActuator<F> {
+    type Settings = VibrationActuatorSettings;
+    type Coefficients = Coefficients<F>;
+    type Switched = Exchanged<F>;
+
+    const SPEC: EffectSpec = EffectSpec {
+        name: "vibration-actuator",
+        adds: "a reaction-mass actuator on the shell that the hand holds, driven by the same model",
+        states: &[
+            "high-pass",
+            "its rate",
+            "equaliser",
+            "its rate",
+            "excursion",
+            "its rate",
+            "heat",
+        ],
+        column: "coil_command_v",
+        unit: "V",
+        title: "Vibration actuator, voltage commanded",
+        phases: Some(PhaseSpec {
+            column: "vibration_actuator_phase",
+            names: &["silent", "acting", "voltage", "excursion", "heat"],
+        }),
+        needs: &[],
+        parameters: VibrationActuatorSettings::TABLE,
+        choices: VibrationActuatorSettings::CHOICES,
+        sides: &[],
+    };
+
+    fn coefficients(
+        settings: &VibrationActuatorSettings,
+        timing: &Timing,
+    ) -> Result<Coefficients<F>, SettingsError> {
+        settings.check()?;
+        let step_s = timing.step_s;
+        if !(step_s > 0.0 && step_s <= LONGEST_STEP_S) {
+            return Err(SettingsError::Step { step_s });
+        }
+        let f = F::from_f64;
+        let corner = core::f64::consts::TAU * settings.corner_hz;
+        let omega = settings.resonance_rad_s();
+        let two_zeta = 2.0 * settings.damping_ratio;
+        let [first, second] = BUTTERWORTH;
+        let force_per_v = settings.force_constant_n_per_a / settings.resistance_ohm;
+        let most_m = settings.usable_stroke_m();
+        let emf_a_per_m_s = force_per_v;
+        Ok(Coefficients {
+            gain: f(settings.gain),
+            design: Design {
+                high_pass: Follower::new(corner, first, step_s),
+                equaliser: Follower::new(corner, second, step_s),
+                of_rate: f(two_zeta * omega / (corner * corner)),
+                of_low: f(omega * omega / (corner * corner)),
+                volts_per_nm: f(settings.volts_per_nm()),
+                most_v: f(settings.supply_v),
+                mass: Follower::new(omega, two_zeta, step_s).swing,
+                share_per_v: f(force_per_v / (settings.stiffness_n_per_m() * most_m)),
+                per_omega_squared: f(1.0 / (omega * omega)),
+                per_v: f(1.0 / (settings.resistance_ohm * settings.continuous_current_a)),
+                per_rate: f(emf_a_per_m_s * most_m / settings.continuous_current_a),
+                heating: f(step_s / HEATING_S),
+                fade: f(FADE_PER_S * step_s),
+            },
+        })
+    }
+
+    /// Silent, with a cold coil.
+    fn new(coefficients: Coefficients<F>) -> Self {
+        Self {
+            goal: coefficients.gain,
+            gain: F::ZERO,
+            high_pass: Following::at(F::ZERO),
+            equaliser: Following::at(F::ZERO),
+            excursion: F::ZERO,
+            excursion_rate: F::ZERO,
+            heat: F::ZERO,
+            phase: 0,
+            has_begun: false,
+            design: coefficients.design,
+        }
+    }
+
+    fn target_of(_: &VibrationActuatorSettings) -> Target {
+        Target::Coil
+    }
+
+    #[inline]
+    fn target(&self) -> Target {
+        Target::Coil
+    }
+
+    #[inline]
+    fn added(&mut self, tick: &Tick<'_, F>, shown: &mut Shown<F>, _: &mut impl Observe<F>) -> F {
+        // What compensates the gear's friction is no part of the joint.
+        let torque_nm = shown.torque_nm - shown.added.friction_compensation + shown.shell_nm;
+        self.tick(torque_nm, tick.is_driven)
+    }
+
+    fn phase(&self) -> u16 {
+        self.phase
+    }
+}
+
+impl<F: Real> VibrationActuator<F> {
+    /// One tick: the voltage at the coil from now to the next, V, for a knee that
+    /// shows this torque, N·m. Zero while nothing is driven, and where the torque is
+    /// no finite number.
+    // By name in a profile.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub fn tick(&mut self, torque_nm: F, is_driven: bool) -> F {
+        if !(is_driven && self.has_begun && torque_nm.is_finite()) {
+            self.rest(torque_nm);
+            self.has_begun = is_driven;
+            return F::ZERO;
+        }
+        let design = &self.design;
+        self.gain += (self.goal - self.gain).within(design.fade);
+        let high = design.high_pass.tick(&mut self.high_pass, torque_nm).high;
+        let parts = design.equaliser.tick(&mut self.equaliser, high);
+        let shaped_nm = parts.high + (design.of_rate * parts.rate + design.of_low * parts.low);
+        let volts = self.limited(self.gain * design.volts_per_nm * shaped_nm);
+        self.observe(volts);
+        volts
+    }
+
+    /// As if the knee had shown this torque for ever; the coil stays warm.
+    #[cold]
+    #[inline(never)]
+    fn rest(&mut self, torque_nm: F) {
+        let torque_nm = if torque_nm.is_finite() {
+            torque_nm
+        } else {
+            F::ZERO
+        };
+        let cooled = self.heat - self.design.heating * self.heat;
+        *self = Self {
+            goal: self.goal,
+            high_pass: Following::at(torque_nm),
+            heat: cooled,
+            ..Self::new(Coefficients {
+                gain: self.goal,
+                design: self.design,
+            })
+        };
+    }
+
+    /// What the limits leave of a command, V.
+    #[inline]
+    fn limited(&mut self, wanted_v: F) -> F {
+        let steep = F::from_f64(1.0 / (1.0 - BEGINS_AT));
+        let steep_squared = F::from_f64(1.0 / (1.0 - BEGINS_AT * BEGINS_AT));
+        let mut volts = wanted_v;
+        self.phase = ACTING;
+        let cool = steep * (F::ONE - self.heat);
+        if cool < F::ONE {
+            volts = cool.at_least(F::ZERO) * volts;
+            self.phase = HEAT;
+        }
+        let rate = self.excursion_rate;
+        let swing = self.excursion * self.excursion + rate * rate * self.design.per_omega_squared;
+        let room = steep_squared * (F::ONE - swing);
+        if room < F::ONE && volts * rate > F::ZERO {
+            volts = room.at_least(F::ZERO) * volts;
+            self.phase = EXCURSION;
+        }
+        if volts.abs() > self.design.most_v {
+            volts = volts.within(self.design.most_v);
+            self.phase = VOLTAGE;
+        }
+        volts
+    }
+
+    /// The mass and the coil over the tick that begins.
+    #[inline]
+    fn observe(&mut self, volts: F) {
+        let design = &self.design;
+        let current = design.per_v * volts - design.per_rate * self.excursion_rate;
+        self.heat += design.heating * (current * current - self.heat);
+        let middle = design.share_per_v * volts;
+        let (from, rate) = design
+            .mass
+            .apply(self.excursion - middle, self.excursion_rate);
+        self.excursion = (middle + from).settled();
+        self.excursion_rate = rate.settled();
+    }
+
+    /// Observed amplitude √(x² + (ẋ/ω₀)²), as a share of what may be.
+    pub fn amplitude(&self) -> F {
+        let rate = self.excursion_rate;
+        (self.excursion * self.excursion + rate * rate * self.design.per_omega_squared).sqrt()
+    }
+
+    /// Observed mean square of the current, as a share of what may last.
+    pub fn heat(&self) -> F {
+        self.heat
+    }
+}
+
+/// The actuator of a device that runs: its gain is followed; what is designed otherwise
+/// is exchanged once it is silent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exchanged<F> {
+    law: Option<VibrationActuator<F>>,
+    /// What comes then.
+    next: Option<Option<Coefficients<F>>>,
+}
+
+impl<F: Real> Switched<F, VibrationActuator<F>> for Exchanged<F> {
+    fn new(_: F) -> Self {
+        Self {
+            law: None,
+            next: None,
+        }
+    }
+
+    fn change(&mut self, coefficients: &Option<Option<Coefficients<F>>>, _: F) {
+        let Some(coefficients) = *coefficients else {
+            return;
+        };
+        self.next = None;
+        match (&mut self.law, coefficients) {
+            (None, new) => self.law = new.map(VibrationActuator::new),
+            (Some(law), Some(new)) if law.design == new.design => law.goal = new.gain,
+            (Some(law), new) => {
+                law.goal = F::ZERO;
+                self.next = Some(new);
+            }
+        }
+    }
+
+    #[inline]
+    fn law(&self) -> Option<&VibrationActuator<F>> {
+        self.law.as_ref()
+    }
+
+    #[inline]
+    fn tick(
+        &mut self,
+        tick: &Tick<'_, F>,
+        shown: &mut Shown<F>,
+        observe: &mut impl Observe<F>,
+    ) -> F {
+        let Some(law) = &mut self.law else {
+            return F::ZERO;
+        };
+        let volts = law.added(tick, shown, observe);
+        shown.coil_v = volts;
+        if law.gain != law.goal && tick.is_driven {
+            shown.settling = true;
+        } else if self.next.is_some() {
+            self.exchange();
+        }
+        volts
+    }
+}
+
+impl<F: Real> Exchanged<F> {
+    /// The next law takes over, with the coil as warm as it is.
+    #[cold]
+    #[inline(never)]
+    fn exchange(&mut self) {
+        if let Some(next) = self.next.take() {
+            let heat = self.law.map_or(F::ZERO, |law| law.heat);
+            self.law = next.map(|coefficients| VibrationActuator {
+                heat,
+                ..VibrationActuator::new(coefficients)
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::effects::tests::{TIMING, missing, seen};
+    use std::vec::Vec;
+
+    const TICK_S: f64 = 5e-5;
+    const TAU: f64 = core::f64::consts::TAU;
+
+    fn actuator<F: Real>(settings: &VibrationActuatorSettings) -> VibrationActuator<F> {
+        crate::render::effects::tests::law(settings)
+    }
+
+    /// At full gain from the first tick on, at rest before.
+    fn faded_in<F: Real>(settings: &VibrationActuatorSettings) -> VibrationActuator<F> {
+        let mut law = actuator(settings);
+        law.tick(F::ZERO, true);
+        law.gain = law.goal;
+        law
+    }
+
+    #[test]
+    fn settings_are_their_table_and_are_held_to_it() {
+        crate::parameters::tests::is_its_table_and_is_held_to_it::<11, VibrationActuatorSettings>();
+        let s = VibrationActuatorSettings::default();
+        assert!((s.stiffness_n_per_m() - 2901.6).abs() < 0.1);
+        // 0.2 of 1.6 mm are for its weight.
+        assert!((s.usable_stroke_m() - 1.397e-3).abs() < 1e-6);
+        assert!((s.volts_per_nm() + 5.4545).abs() < 1e-4);
+        let soft = VibrationActuatorSettings {
+            resonance_hz: 10.0,
+            ..s
+        };
+        assert!((soft.usable_stroke_m() - 0.2 * 1.6e-3).abs() < 1e-12);
+        assert!((s.electric_damping_ratio() - 0.02547).abs() < 1e-5);
+        let light = VibrationActuatorSettings {
+            moving_mass_g: 11.0,
+            ..s
+        };
+        assert!(matches!(
+            light.check(),
+            Err(SettingsError::Contradiction { .. })
+        ));
+        for step_s in [0.0, f64::NAN, 1.1] {
+            let timing = Timing { step_s, ..TIMING };
+            assert!(VibrationActuator::<f32>::coefficients(&s, &timing).is_err());
+        }
+    }
+
+    /// Step response of s², s·ω and ω² over s² + 2ζω·s + ω², for ζ < 1.
+    fn step_response(omega: f64, two_zeta: f64, t: f64) -> [f64; 3] {
+        let zeta = two_zeta / 2.0;
+        let damped = libm::sqrt(1.0 - zeta * zeta);
+        let (decay, turn) = (libm::exp(-zeta * omega * t), damped * omega * t);
+        let (sin, cos) = (libm::sin(turn), libm::cos(turn));
+        let high = decay * (cos - zeta / damped * sin);
+        let band = decay * sin / damped;
+        [high, band, 1.0 - high - two_zeta * band]
+    }
+
+    #[test]
+    fn each_filter_answers_a_step_as_its_closed_form() {
+        fn errors<F: Real>(corner_hz: f64, two_zeta: f64) -> f64 {
+            let omega = TAU * corner_hz;
+            let follower = Follower::<F>::new(omega, two_zeta, TICK_S);
+            let mut state = Following::at(F::ZERO);
+            let height = 0.4;
+            (0..20_000)
+                .map(|n| {
+                    let parts = follower.tick(&mut state, F::from_f64(height));
+                    let [high, band, low] = step_response(omega, two_zeta, f64::from(n) * TICK_S);
+                    let off = [
+                        parts.high.to_f64() - height * high,
+                        parts.rate.to_f64() / omega - height * band,
+                        parts.low.to_f64() - height * low,
+                    ];
+                    off.iter().fold(0.0_f64, |most, off| most.max(off.abs()))
+                })
+                .fold(0.0, f64::max)
+        }
+        for corner_hz in [8.0, 10.0, 30.0] {
+            for two_zeta in BUTTERWORTH {
+                let (double, single) = (
+                    errors::<f64>(corner_hz, two_zeta),
+                    errors::<f32>(corner_hz, two_zeta),
+                );
+                assert!(double < 1e-12, "{corner_hz} {two_zeta}: {double:e}");
+                assert!(single < 1e-6, "{corner_hz} {two_zeta}: {single:e}");
+            }
+        }
+    }
+
+    /// Complex numbers, as far as needed.
+    #[derive(Clone, Copy)]
+    struct C(f64, f64);
+
+    impl C {
+        fn times(self, b: C) -> C {
+            C(self.0 * b.0 - self.1 * b.1, self.0 * b.1 + self.1 * b.0)
+        }
+        fn over(self, b: C) -> C {
+            let size = b.0 * b.0 + b.1 * b.1;
+            let top = self.times(C(b.0, -b.1));
+            C(top.0 / size, top.1 / size)
+        }
+        fn plus(self, b: C) -> C {
+            C(self.0 + b.0, self.1 + b.1)
+        }
+        fn abs(self) -> f64 {
+            libm::hypot(self.0, self.1)
+        }
+    }
+
+    /// a·s² + b·s + c at s = iω.
+    fn polynomial(omega: f64, a: f64, b: f64, c: f64) -> C {
+        C(c - a * omega * omega, b * omega)
+    }
+
+    /// Amplitude and phase of the output for a sine of this frequency: by correlation
+    /// over whole periods, once it is steady.
+    fn response(settings: &VibrationActuatorSettings, ticks_per_period: u32) -> C {
+        let mut law = faded_in::<f64>(settings);
+        let omega = TAU / f64::from(ticks_per_period);
+        let periods = (60_000 / ticks_per_period).max(4);
+        let mut sum = C(0.0, 0.0);
+        for n in 0..2 * periods * ticks_per_period {
+            let turn = omega * f64::from(n % ticks_per_period);
+            let volts = law.tick(1e-3 * libm::sin(turn), true) / 1e-3;
+            if n >= periods * ticks_per_period {
+                sum = sum.plus(C(volts * libm::sin(turn), volts * libm::cos(turn)));
+            }
+        }
+        let ticks = f64::from(periods * ticks_per_period);
+        C(2.0 * sum.0 / ticks, 2.0 * sum.1 / ticks)
+    }
+
+    #[test]
+    fn filter_and_actuator_together_are_a_butterworth_of_fourth_order() {
+        let s = VibrationActuatorSettings {
+            stroke_mm: 8.0,
+            ..VibrationActuatorSettings::default()
+        };
+        let (corner, resonance) = (TAU * s.corner_hz, s.resonance_rad_s());
+        // 5, 10, 20, 40, 100, 200 and 500 Hz.
+        for ticks_per_period in [4000, 2000, 1000, 500, 200, 100, 40] {
+            let omega = TAU / (f64::from(ticks_per_period) * TICK_S);
+            let mass = polynomial(resonance, 0.0, 2.0 * s.damping_ratio * resonance, 0.0);
+            let mass = polynomial(omega, 1.0, 0.0, 0.0).over(C(
+                resonance * resonance - omega * omega,
+                mass.1 / resonance * omega,
+            ));
+            let [first, second] = BUTTERWORTH.map(|two_zeta| {
+                polynomial(omega, 1.0, 0.0, 0.0).over(polynomial(
+                    omega,
+                    1.0,
+                    two_zeta * corner,
+                    corner * corner,
+                ))
+            });
+            let wanted = first.times(second);
+            let got = response(&s, ticks_per_period)
+                .times(mass)
+                .times(C(1.0 / s.volts_per_nm(), 0.0));
+            let error = got.plus(C(-wanted.0, -wanted.1)).abs();
+            // Inputs are held over a tick, in both filters: as if a tick late at most.
+            assert!(
+                error < omega * TICK_S * wanted.abs() + 1e-3,
+                "{omega}: {error}"
+            );
+        }
+    }
+
+    /// The paper's crepitus at 1 rad/s, roughly: ramps of 1 ms and drops, on a mean.
+    fn grating(n: u32) -> f64 {
+        let place = f64::from(n % 640);
+        0.2 + if place < 20.0 {
+            0.01 * (place - 10.0)
+        } else {
+            0.0
+        }
+    }
+
+    #[test]
+    fn in_single_precision_it_is_the_same() {
+        let s = VibrationActuatorSettings::default();
+        let (mut single, mut double) = (actuator::<f32>(&s), actuator::<f64>(&s));
+        let (mut most, mut peak) = (0.0_f64, 0.0_f64);
+        for n in 0..400_000 {
+            #[expect(clippy::cast_possible_truncation, reason = "the input of both")]
+            let torque = grating(n) as f32;
+            let volts = double.tick(f64::from(torque), true);
+            let off = f64::from(single.tick(torque, true)) - volts;
+            (most, peak) = (most.max(off.abs()), peak.max(volts.abs()));
+        }
+        assert!(peak > 0.5, "{peak}");
+        assert!(most < 1e-5 * peak, "{most:e} of {peak}");
+    }
+
+    #[test]
+    fn a_mean_torque_moves_nothing_and_driving_fades_in() {
+        let s = VibrationActuatorSettings::default();
+        let mut law = actuator::<f32>(&s);
+        for _ in 0..100 {
+            assert_eq!(law.tick(4.0, false), 0.0);
+        }
+        assert_eq!(law.phase, 0);
+        for _ in 0..2_000 {
+            assert_eq!(law.tick(4.0, true), 0.0);
+        }
+        assert_eq!((law.gain, law.phase), (1.0, ACTING));
+        // Driving that ends silences at once, and fades in again.
+        law.tick(4.2, true);
+        assert!(law.tick(4.2, true).abs() > 0.5);
+        assert_eq!(law.tick(4.2, false), 0.0);
+        assert_eq!((law.gain, law.excursion, law.phase), (0.0, 0.0, 0));
+        law.tick(4.2, true);
+        assert!((1..=1_000).all(|n| {
+            let volts = law.tick(4.2 + 0.1 * f32::from(n % 2 == 0), true);
+            volts.abs() < 0.6
+        }));
+    }
+
+    #[test]
+    fn what_is_no_number_silences() {
+        let s = VibrationActuatorSettings::default();
+        let mut law = faded_in::<f32>(&s);
+        law.tick(0.3, true);
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            assert_eq!(law.tick(bad, true), 0.0);
+            assert!(law.tick(0.1, true).is_finite() && law.amplitude().is_finite());
+        }
+        let mut silent = faded_in::<f32>(&s);
+        silent.tick(0.2, true);
+        for _ in 0..200_000 {
+            silent.tick(0.2, true);
+        }
+        assert_eq!((silent.excursion, silent.high_pass.behind), (0.0, 0.0));
+    }
+
+    /// Its command in a tick that shows this torque.
+    fn after(stage: &mut Exchanged<f32>, torque_nm: f32, is_driven: bool) -> Shown<f32> {
+        let mut shown = Shown {
+            torque_nm,
+            ..Shown::nothing()
+        };
+        let tick = Tick {
+            is_driven,
+            ..missing(&seen(0.0))
+        };
+        let volts = stage.tick(&tick, &mut shown, &mut ());
+        assert_eq!(volts, shown.coil_v);
+        assert_eq!(shown.torque_nm, torque_nm);
+        shown
+    }
+
+    fn coefficients(s: &VibrationActuatorSettings) -> Option<Option<Coefficients<f32>>> {
+        Some(Some(
+            VibrationActuator::<f32>::coefficients(s, &TIMING).unwrap(),
+        ))
+    }
+
+    #[test]
+    fn a_gain_is_followed_and_a_design_is_exchanged_in_silence() {
+        let s = VibrationActuatorSettings::default();
+        let mut stage = Exchanged::<f32>::new(0.0);
+        assert_eq!(after(&mut stage, 0.3, true).coil_v, 0.0);
+        stage.change(&coefficients(&s), 0.0);
+        let settles = |stage: &mut Exchanged<f32>| {
+            (0..5_000)
+                .take_while(|_| after(stage, 0.3, true).settling)
+                .count()
+        };
+        after(&mut stage, 0.3, true);
+        // One more than the 1000 ticks of 50 ms: rounded.
+        assert!((999..=1001).contains(&settles(&mut stage)));
+        let louder = VibrationActuatorSettings { gain: 2.0, ..s };
+        stage.change(&coefficients(&louder), 0.0);
+        let before = stage.law().unwrap().high_pass;
+        assert!((998..=1001).contains(&settles(&mut stage)));
+        assert_eq!(stage.law().unwrap().high_pass.input, before.input);
+        assert_eq!(stage.law().unwrap().gain, 2.0);
+        // Another resonance: it fades out first, and in again.
+        let other = VibrationActuatorSettings {
+            resonance_hz: 40.0,
+            ..s
+        };
+        stage.law.as_mut().unwrap().heat = 0.25;
+        stage.change(&coefficients(&other), 0.0);
+        let old = stage.law().unwrap().design;
+        let mut largest_step = 0.0_f32;
+        let mut last = after(&mut stage, 0.3, true).coil_v;
+        for _ in 0..6_000 {
+            let now = after(&mut stage, 0.3, true).coil_v;
+            (largest_step, last) = (largest_step.max((now - last).abs()), now);
+        }
+        assert!(largest_step < 1e-3);
+        let law = stage.law().unwrap();
+        assert!(law.design != old && law.gain == 1.0);
+        assert!((0.2..0.25).contains(&law.heat));
+        stage.change(&Some(None), 0.0);
+        assert!(after(&mut stage, 0.3, true).settling);
+        // Where nothing is driven it goes at once.
+        after(&mut stage, 0.3, false);
+        assert!(stage.law().is_none());
+    }
+
+    #[test]
+    fn the_joint_and_the_ringing_are_heard_and_the_compensation_is_not() {
+        let s = VibrationActuatorSettings::default();
+        let (mut whole, mut alone) = (faded_in::<f32>(&s), faded_in::<f32>(&s));
+        let sequence: Vec<f32> = (0..50_u8).map(|n| f32::from(n) * 0.01).collect();
+        for nm in sequence {
+            let mut shown = Shown {
+                torque_nm: nm - 0.25,
+                shell_nm: 0.125,
+                ..Shown::nothing()
+            };
+            shown.added.friction_compensation = -0.25;
+            let volts = whole.added(&missing(&seen(0.0)), &mut shown, &mut ());
+            assert_eq!(volts, alone.tick(nm - 0.25 + 0.25 + 0.125, true));
+        }
+    }
+}
