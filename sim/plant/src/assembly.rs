@@ -5,7 +5,8 @@
 use crate::actuator::{Actuator, Commanded, Ideal};
 use crate::boundary::{Boundary, Prescribed, Released};
 use crate::chain::{Chain, Shaft};
-use crate::effect::{Context, Effect, Given, Part};
+use crate::effect::{Context, Effect, Given, Mounted, Part};
+use crate::effects::{cuff, limb, shell};
 use crate::plant::Plant;
 use crepitus_model::SettingsError;
 
@@ -46,6 +47,21 @@ pub fn assemble_with<A: Actuator>(
     released: bool,
     actuator: A,
 ) -> Plant<A> {
+    let gravity_rad = listed
+        .iter()
+        .find(|l| l.effect.name == limb::EFFECT.name)
+        .map(|l| limb::gravity_rad(&l.given));
+    let context = &Context {
+        gravity_rad,
+        ..*context
+    };
+    let mounts = |place: Mounted, chain: Box<dyn Chain>| {
+        listed.iter().fold(chain, |chain, l| match l.effect.part {
+            Part::Mount(of, make) if of(&l.given) == place => make(&l.given, context, chain),
+            _ => chain,
+        })
+    };
+    let has = |name: &str| listed.iter().any(|l| l.effect.name == name);
     let mut chain: Box<dyn Chain> = Box::new(Shaft);
     let mut boundary: Box<dyn Boundary> = if released {
         Box::new(Released)
@@ -54,7 +70,26 @@ pub fn assemble_with<A: Actuator>(
     };
     for Listed { effect, given } in listed {
         match effect.part {
-            Part::Link(make) => chain = make(given, context, chain),
+            Part::Link(make) => {
+                if effect.name == cuff::EFFECT.name {
+                    chain = mounts(Mounted::Brace, chain);
+                }
+                chain = make(given, context, chain);
+            }
+            Part::Shell(make) => {
+                let mount = |shell| mounts(Mounted::Shell, shell);
+                chain = make(given, context, chain, &mount);
+            }
+            Part::Mount(of, make) => {
+                // Where nothing else carries it, the right end does.
+                let carrier = match of(given) {
+                    Mounted::Shell => shell::EFFECT.name,
+                    Mounted::Brace => cuff::EFFECT.name,
+                };
+                if !has(carrier) {
+                    chain = make(given, context, chain);
+                }
+            }
             Part::Boundary(make) => boundary = make(given, context, chain.as_ref()),
             Part::Joint | Part::Sensor | Part::Stage(..) | Part::Actuator(_) => {}
         }

@@ -238,6 +238,9 @@ pub trait Chain: Send {
     /// The impacts so far, if a part of the chain can have any.
     fn impacts(&self) -> Option<Impacts>;
 
+    /// The current of the actuator's coil, A, if a part of the chain has one.
+    fn coil_current_a(&self) -> Option<f64>;
+
     /// Warnings.
     fn warnings(&self, warnings: &mut Vec<String>);
 }
@@ -296,6 +299,10 @@ impl Chain for Shaft {
     fn write(&self, _: &Body, _: &mut Vec<f64>) {}
 
     fn impacts(&self) -> Option<Impacts> {
+        None
+    }
+
+    fn coil_current_a(&self) -> Option<f64> {
         None
     }
 

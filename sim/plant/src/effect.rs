@@ -71,12 +71,28 @@ pub struct Context {
     pub single: bool,
     /// How the motion begins.
     pub start: Body,
+    /// Angle to add to φ so that weight on the leg is a cosine, rad: of the posture of
+    /// a `limb`. Without one nothing has weight.
+    pub gravity_rad: Option<f64>,
 }
 
 /// Makes an actuator.
 pub type MakeActuator = fn(&Given, &Context) -> Result<Box<dyn Commanded>, SettingsError>;
 /// Lengthens the chain.
 pub type MakeLink = fn(&Given, &Context, Box<dyn Chain>) -> Box<dyn Chain>;
+/// What carries an actuator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mounted {
+    /// The shell; without one the right end of the chain.
+    Shell,
+    /// The brace, left of the cuff.
+    Brace,
+}
+
+/// Puts something on a chain.
+pub type OnChain<'a> = &'a dyn Fn(Box<dyn Chain>) -> Box<dyn Chain>;
+/// Lengthens the chain by a shell that carries something.
+pub type MakeShell = fn(&Given, &Context, Box<dyn Chain>, OnChain<'_>) -> Box<dyn Chain>;
 /// Makes what holds the chain's right end.
 pub type MakeBoundary = fn(&Given, &Context, &dyn Chain) -> Box<dyn Boundary>;
 
@@ -94,6 +110,10 @@ pub enum Part {
     Actuator(MakeActuator),
     /// A part of the chain, right of those before it in the table.
     Link(MakeLink),
+    /// The shell, right of all links.
+    Shell(MakeShell),
+    /// What sits on a part of the chain.
+    Mount(fn(&Given) -> Mounted, MakeLink),
     /// What holds the right end.
     Boundary(MakeBoundary),
 }

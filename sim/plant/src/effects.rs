@@ -10,11 +10,13 @@ pub mod hand;
 pub mod limb;
 pub mod limb_stretch;
 pub mod motor;
+pub mod reaction_mass;
+pub mod shell;
 
 use crate::effect::Effect;
 use crepitus_model::render::effects::SPECS;
 
-const OWN: [Effect; 9] = [
+const OWN: [Effect; 11] = [
     crepitus::EFFECT,
     encoder::EFFECT,
     motor::EFFECT,
@@ -23,6 +25,8 @@ const OWN: [Effect; 9] = [
     cuff::EFFECT,
     limb::EFFECT,
     limb_stretch::EFFECT,
+    shell::EFFECT,
+    reaction_mass::EFFECT,
     hand::EFFECT,
 ];
 

@@ -11,13 +11,15 @@
 //! | counts of the encoder at the motor | [`encoder`] |
 //! | what an effect is, and the table of them | [`effect`], [`effects`] |
 //! | how listed effects become a plant | [`assembly`] |
-//! | how a plant is stepped | [`plant`], [`chain`], [`load`], [`actuator`], [`boundary`] |
+//! | how a plant is stepped | [`plant`], [`chain`], [`branch`], [`compliance`], [`load`], [`actuator`], [`boundary`] |
 //! | where its energy is | [`energy_balance`] |
 
 pub mod actuator;
 pub mod assembly;
 pub mod boundary;
+pub mod branch;
 pub mod chain;
+pub mod compliance;
 pub mod effect;
 pub mod effects;
 pub mod encoder;

@@ -33,6 +33,11 @@ pub trait Load: Send {
     /// energy.
     fn energy(&self, body: &Body, balance: &mut EnergyBalance);
 
+    /// The current of an actuator's coil, A, if it has one.
+    fn coil_current_a(&self) -> Option<f64> {
+        None
+    }
+
     /// Writes its further columns.
     fn write_more(&self, _: &Body, _: &mut Vec<f64>) {}
 
@@ -168,6 +173,12 @@ impl<L: Load> Chain for Loaded<L> {
 
     fn impacts(&self) -> Option<Impacts> {
         self.left.impacts()
+    }
+
+    fn coil_current_a(&self) -> Option<f64> {
+        self.load
+            .coil_current_a()
+            .or_else(|| self.left.coil_current_a())
     }
 
     fn warnings(&self, warnings: &mut Vec<String>) {

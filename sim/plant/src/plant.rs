@@ -241,6 +241,11 @@ impl<A: Actuator> Plant<A> {
         self.chain.impacts()
     }
 
+    /// The current of the coil of the actuator on the shell, A, if there is one.
+    pub fn coil_current_a(&self) -> Option<f64> {
+        self.chain.coil_current_a()
+    }
+
     /// Work that the actuator has taken out of the mechanics so far, J.
     pub fn absorbed_j(&self) -> f64 {
         self.actuator.absorbed_j()

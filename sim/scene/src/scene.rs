@@ -234,6 +234,7 @@ impl Scene {
     fn context(&self, tick_s: f64) -> Context {
         Context {
             tick_s,
+            gravity_rad: None,
             single: matches!(
                 self.solver,
                 SolverChoice::Ladder {

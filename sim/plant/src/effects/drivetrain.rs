@@ -260,6 +260,10 @@ impl Chain for Drivetrain {
         self.left.impacts()
     }
 
+    fn coil_current_a(&self) -> Option<f64> {
+        self.left.coil_current_a()
+    }
+
     fn warnings(&self, warnings: &mut Vec<String>) {
         self.left.warnings(warnings);
     }

@@ -12,14 +12,27 @@
 //! | mass, damping, stiffness | 0.554 kg, 6.45 N·s/m, 135 N/m | endpoint impedance of an arm, one trial (Sci. Rep. srep18004, fig. 3) |
 //! | lever | 0.35 m | estimate: a hand near the ankle |
 //!
+//! That is an arm for slow motion. What vibrates meets the hand alone, so with another
+//! `grip` a palm sits on the leg (or the shell), and the arm pulls it by the tissue
+//! between them, linear about the force that lifts the leg:
+//!
+//! | grip | palm | stiffness | damping | source |
+//! |---|---|---|---|---|
+//! | `light` | 0.1 kg | 300 N/m | 10 N·s/m | estimate |
+//! | `firm` | 0.2 kg | 600 N/m | 20 N·s/m | estimate |
+//! | `whole-arm` | 0.5 kg | 3000 N/m | 60 N·s/m | estimate |
+//!
 //! Who lifts a leg knows its weight: if the scene has a `limb`, the hand adds
 //! the torque that holds it at the intended angle, so the leg does not sag.
+
+mod grip;
 
 use crate::boundary::{Boundary, MotionStep, Stretch};
 use crate::chain::{Body, Chain, Flow, Push, Settled, Weight};
 use crate::effect::{Effect, Part, numbers};
 use crate::energy_balance::{Account, EnergyBalance};
-use crepitus_model::parameters::ParameterSpec;
+use crepitus_model::parameters::{Choice, ParameterSpec};
+use grip::{Grip, Palm};
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
@@ -64,7 +77,12 @@ pub const EFFECT: Effect = Effect {
             meaning: "distance of the hand from the knee's axis",
         },
     ],
-    choices: &[],
+    choices: &[Choice {
+        key: "grip",
+        names: &["arm", "light", "firm", "whole-arm"],
+        default: 0,
+        meaning: "the hand between leg and arm: none, for slow motion; or as it is for 10 to 500 Hz",
+    }],
     needs: &[],
     part: Part::Boundary(|given, context, chain| {
         let [mass, damping, stiffness, lever] = numbers(given);
@@ -84,15 +102,16 @@ pub const EFFECT: Effect = Effect {
             given_j: 0.0,
             lost_j: 0.0,
         };
-        match chain.weight() {
-            None => Box::new(Hand { arm, lift: () }),
-            Some(weight) => Box::new(Hand {
-                arm,
-                lift: Lifts {
-                    weight,
-                    given_j: 0.0,
-                },
-            }),
+        let lifts = chain.weight().map(|weight| Lifts {
+            weight,
+            given_j: 0.0,
+        });
+        let palm = Palm::of(given.choices[0], lever);
+        match (palm, lifts) {
+            (None, None) => Box::new(Hand { arm, lift: () }),
+            (None, Some(lift)) => Box::new(Hand { arm, lift }),
+            (Some(palm), None) => Box::new(Grip::new(Hand { arm, lift: () }, palm)),
+            (Some(palm), Some(lift)) => Box::new(Grip::new(Hand { arm, lift }, palm)),
         }
     }),
 };

@@ -40,7 +40,7 @@ mod passive;
 pub use passive::Passive;
 
 use crate::chain::{Body, Push, Step, Weight};
-use crate::effect::{Effect, Part, numbers};
+use crate::effect::{Effect, Given, Part, numbers};
 use crate::energy_balance::{Account, EnergyBalance};
 use crate::load::{Load, Loaded};
 use crepitus_model::parameters::{Choice, ParameterSpec};
@@ -123,7 +123,12 @@ pub const EFFECT: Effect = Effect {
 const NAME: &str = "limb";
 
 /// m/s².
-const STANDARD_GRAVITY: f64 = 9.806_65;
+pub(crate) const STANDARD_GRAVITY: f64 = 9.806_65;
+
+/// Angle to add to φ so that weight on a leg like `given` is a cosine, rad.
+pub fn gravity_rad(given: &Given) -> f64 {
+    posture(given.choices[0]).0.to_radians()
+}
 
 /// Angle to add to φ so that weight is a cosine, and flexion of the hip, deg.
 fn posture(choice: u8) -> (f64, f64) {

@@ -1,12 +1,14 @@
 //! The coupled plant against what is known without it: closed forms, textbook
 //! results and conservation laws. `-- --nocapture` prints the numbers found.
 
+mod actuator;
 mod backlash;
 mod bridge;
 mod convergence;
 mod cuff;
 mod drivetrain;
 mod energy;
+mod grip;
 mod hand;
 mod hard;
 mod limb;
@@ -14,4 +16,5 @@ mod limb_stretch;
 mod mirror;
 mod motor;
 mod random;
+mod shell;
 mod support;

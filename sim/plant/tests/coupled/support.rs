@@ -8,6 +8,7 @@ use crepitus_plant::effect::{Context, Given};
 use crepitus_plant::effects::EFFECTS;
 use crepitus_plant::effects::motor::bridge::Bridge;
 use crepitus_plant::effects::motor::{self, MotorNumbers};
+use crepitus_plant::plant::Coil;
 use crepitus_plant::{Motion, Piece, Plant};
 use proptest::test_runner::{Config, RngSeed};
 use std::fmt::{self, Debug, Formatter};
@@ -142,6 +143,7 @@ impl Build {
     fn context(&self, motion: &Motion) -> Context {
         Context {
             tick_s: TICK_S,
+            gravity_rad: None,
             single: false,
             start: self.start.unwrap_or(body(&motion.piece(0.0), 0.0)),
         }
@@ -196,8 +198,14 @@ pub(crate) struct Rig<A = Box<dyn Commanded>> {
 impl<A: Commanded> Rig<A> {
     /// One tick with the device asking for `torque_nm`.
     pub(crate) fn tick(&mut self, torque_nm: f64) {
+        self.tick_with(torque_nm, Coil::Driven(0.0));
+    }
+
+    /// One tick, with the bridge of the coil like this.
+    pub(crate) fn tick_with(&mut self, torque_nm: f64, coil: Coil) {
         let felt = self.plant.felt_nms();
         self.plant.command(torque_nm, 0.0);
+        self.plant.set_coil(coil);
         for part in 0..self.parts {
             if 2 * part == self.parts {
                 self.mid.clear();

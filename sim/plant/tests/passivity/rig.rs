@@ -54,6 +54,7 @@ fn motor() -> Box<dyn Commanded> {
     };
     let context = Context {
         tick_s: TICK_S,
+        gravity_rad: None,
         single: false,
         start: Body {
             angle_rad: 0.0,
