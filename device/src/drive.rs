@@ -19,6 +19,7 @@
 
 pub mod arming;
 pub mod batch;
+pub mod coil;
 pub mod command;
 pub mod commits;
 pub mod emf_check;
@@ -44,7 +45,7 @@ use commits::Commits;
 use crepitus_protocol::crash::{Head, NO_TICK_WORDS, Part, Ring, TICKS, Tick};
 use crepitus_protocol::frame::{FRAME_BYTES, Frame, FrameBuffer, SoftwareCrc};
 use crepitus_protocol::management::Identity;
-use crepitus_protocol::{Fault, Revision, State, ValueError, Values};
+use crepitus_protocol::{CoilFault, Fault, Revision, State, ValueError, Values};
 use exchange::{Exchange, Rendered};
 use link_task::{LinkTask, Shared};
 use prepare::{Preparation, Prepared, Start};
@@ -244,6 +245,11 @@ impl Drive {
     /// The latched fault.
     pub fn fault(&self) -> Option<Fault> {
         self.command.safety().fault()
+    }
+
+    /// The latched fault of the vibration actuator's coil.
+    pub fn coil_fault(&self) -> Option<CoilFault> {
+        self.command.coil().fault()
     }
 
     /// Whether arming waits for the enable line of comms, or has it.

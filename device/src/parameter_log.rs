@@ -1,8 +1,8 @@
 //! Parameters in two sectors of flash, as an append-only log.
 //!
 //! ```text
-//! sector 0  | seal | record 1 | record 2 | ... | record 15 |       16 KB each, 1 KB a slot
-//! sector 1  | seal | record 16 | free | free | ...
+//! sector 0  | seal | record 1 | record 2 | ... | record 7 |       16 KB each, 2 KB a slot
+//! sector 1  | seal | record 8 | free | free | ...
 //! ```
 //!
 //! Writing takes a few milliseconds; erasing a sector stops the core for
@@ -239,16 +239,16 @@ mod tests {
     }
 
     #[test]
-    fn without_a_start_in_between_there_is_room_for_30_and_then_it_says_so() {
+    fn without_a_start_in_between_there_is_room_for_14_and_then_it_says_so() {
         let mut bytes = vec![0xff; LOG_BYTES];
         let mut log = open(&mut bytes);
         assert_eq!(log.sectors.erased, 2, "neither is sealed");
         let kept = (1..=100).take_while(|n| log.store(Revision(*n), &values(*n)));
         assert_eq!(kept.count(), 2 * RECORDS_PER_SECTOR);
         let mut log = open(&mut bytes);
-        assert_eq!(log.newest(), Some((Revision(30), values(30))));
+        assert_eq!(log.newest(), Some((Revision(14), values(14))));
         assert_eq!(log.sectors.erased, 1);
-        assert!(log.store(Revision(31), &values(31)));
+        assert!(log.store(Revision(15), &values(15)));
         // The other one is full, and no longer in use.
         assert_eq!(open(&mut bytes).sectors.erased, 1);
         assert_eq!(open(&mut bytes).sectors.erased, 0);

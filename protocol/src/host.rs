@@ -160,6 +160,8 @@ pub struct Status {
     pub polarity_proven: bool,
     /// What the drive measures beside the motion.
     pub measured: Measured,
+    /// Code of the fault of the vibration actuator's coil, 0 for none: the motor goes on.
+    pub coil_fault: u8,
 }
 
 /// Counters since boot, in the order of

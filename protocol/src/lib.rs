@@ -29,6 +29,7 @@
 //! | schema hash: compatibility of two programs | [`schema`] |
 //! | parameters: id, name, unit, range, default, meaning | [`parameters`] |
 //! | faults: code, cause, detector, reaction, time, how to clear | [`fault`] |
+//! | faults of the vibration actuator's coil | [`coil`] |
 //! | counters | [`counters`] |
 //! | post-mortem record | [`crash`] |
 //! | USB ids, to discover a device | [`usb`] |
@@ -55,6 +56,7 @@
 extern crate std;
 
 mod array;
+pub mod coil;
 pub mod counters;
 pub mod crash;
 pub mod decoder;
@@ -74,6 +76,7 @@ pub mod state;
 pub mod telemetry;
 pub mod usb;
 
+pub use coil::CoilFault;
 pub use decoder::Decoder;
 pub use fault::Fault;
 pub use frame::Frame;

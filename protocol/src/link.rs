@@ -109,7 +109,10 @@ impl DriveStatus {
     ) {
         const STATUS: u8 = 0;
         let begin = (STATUS, self.tick, self.start, self.comms_start);
-        let middle = (self.state, self.fault, self.revision, self.refused);
+        let middle = (
+            (self.state, self.fault, self.coil_fault),
+            (self.revision, self.refused),
+        );
         let end = (
             (self.last, self.zeroed, self.polarity_proven),
             (self.awaits_comms, self.measured),
@@ -132,6 +135,8 @@ pub struct DriveStatus {
     pub state: State,
     /// Code of the fault, 0 for none.
     pub fault: u8,
+    /// Code of the fault of the vibration actuator's coil, 0 for none.
+    pub coil_fault: u8,
     /// Active revision of the parameters.
     pub revision: Revision,
     /// The last rejected commit, and the reason.
@@ -197,6 +202,7 @@ mod tests {
             comms_start: Some(u16::MAX),
             state: State::Faulted,
             fault: 255,
+            coil_fault: 255,
             revision: Revision(u32::MAX),
             refused: Some((Revision(u32::MAX), ValueError::KineticAboveStatic)),
             last: Some(Outcome {

@@ -6,6 +6,7 @@
 //! [management lane](crate::management). The low byte is the tag of all other
 //! frames, so that incompatible frames are rejected.
 
+use crate::coil::COIL_FAULTS;
 use crate::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
 use crate::fault::FAULTS;
 use crate::host::{Reply, Request};
@@ -64,6 +65,12 @@ const fn hash() -> u64 {
         parameters = tail;
     }
     let mut faults: &[_] = &FAULTS;
+    while let [fault, tail @ ..] = faults {
+        hash = update(hash, &[fault.fault.code()]);
+        hash = update(hash, fault.name.as_bytes());
+        faults = tail;
+    }
+    let mut faults: &[_] = &COIL_FAULTS;
     while let [fault, tail @ ..] = faults {
         hash = update(hash, &[fault.fault.code()]);
         hash = update(hash, fault.name.as_bytes());

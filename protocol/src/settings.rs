@@ -262,10 +262,16 @@ mod tests {
         }
         let given: Vec<_> = (effects::SPECS.iter())
             .map(|spec| {
-                let own = of(spec.name);
-                let (options, numbers) = own[1..].split_at(spec.choices.len());
-                assert!(options.iter().all(|option| *option == 1.0));
-                (spec.name, std::vec![1_u8; options.len()], numbers.to_vec())
+                // A choice that came later has a later id than the numbers.
+                let own = PARAMETERS
+                    .iter()
+                    .zip(values.0)
+                    .skip_while(|(p, _)| p.group != spec.name);
+                let own = own.skip(1).filter(|(p, _)| p.group == spec.name);
+                let numbers = own.filter(|(p, _)| matches!(p.kind, Kind::Number(_)));
+                let numbers: Vec<f64> = numbers.map(|(_, value)| value).collect();
+                assert_eq!(numbers.len() + spec.choices.len() + 1, of(spec.name).len());
+                (spec.name, std::vec![1_u8; spec.choices.len()], numbers)
             })
             .collect();
         let effects = EffectSettings::given(|name| {

@@ -4,9 +4,10 @@
 //! the device's effects in the same ticks. Both are of fixed width:
 //!
 //! ```text
-//! block  = head ‖ 20 samples ‖ 20 phases of effects
+//! block  = head ‖ 20 samples ‖ 20 phases of effects ‖ 4 currents of the coil
 //! sample = count i32 ‖ model torque f32 ‖ torque f32 ‖ current i16 ‖ flags u16     16 bytes, little endian
 //! phases = u16                                                                      2 bytes, little endian
+//! coil   = i16, the mean of 5 ticks in mA                                           2 bytes, little endian
 //!
 //! flags    15 … 12   11     10     9       8 7 6 5   4          3      2         1 0
 //!          0         late   stick  break   limited   energised  lost   settling  phase
@@ -44,8 +45,18 @@ pub const SAMPLE_BYTES: usize = 16;
 /// Bytes of the phases of the effects in a tick.
 pub const EFFECT_PHASES_BYTES: usize = 2;
 
+/// Currents of the vibration actuator's coil in a block.
+pub const COIL_CURRENTS: usize = 4;
+
+/// Ticks of each.
+pub const COIL_TICKS: usize = BLOCK_SAMPLES / COIL_CURRENTS;
+const _: () = assert!(COIL_CURRENTS * COIL_TICKS == BLOCK_SAMPLES);
+
+/// Bytes of a block's currents of the coil.
+pub const COIL_BYTES: usize = COIL_CURRENTS * 2;
+
 /// Bytes of a block's ticks.
-pub const TICKS_BYTES: usize = BLOCK_SAMPLES * (SAMPLE_BYTES + EFFECT_PHASES_BYTES);
+pub const TICKS_BYTES: usize = BLOCK_SAMPLES * (SAMPLE_BYTES + EFFECT_PHASES_BYTES) + COIL_BYTES;
 
 /// One tick of the drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
@@ -83,6 +94,38 @@ impl Sample {
 
 /// Value of `current_ma` without a measurement.
 pub const NO_CURRENT: i16 = i16::MIN;
+
+/// Mean current of the vibration actuator's coil over [`COIL_TICKS`] ticks, mA;
+/// positive pushes the shell towards growing angle. −32768 while it is not driven, and
+/// without a measurement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema)]
+pub struct CoilCurrent(#[serde(with = "postcard::fixint::le")] pub i16);
+
+impl Default for CoilCurrent {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+impl CoilCurrent {
+    /// None was measured.
+    pub const NONE: Self = Self(NO_CURRENT);
+
+    /// In A.
+    pub fn amperes(self) -> Option<f32> {
+        (self != Self::NONE).then(|| f32::from(self.0) * 1e-3)
+    }
+
+    /// Encodes a block's as postcard would.
+    #[inline]
+    pub fn bytes([a, b, c, d]: [Self; COIL_CURRENTS]) -> [u8; COIL_BYTES] {
+        let [a0, a1] = a.0.to_le_bytes();
+        let [b0, b1] = b.0.to_le_bytes();
+        let [c0, c1] = c.0.to_le_bytes();
+        let [d0, d1] = d.0.to_le_bytes();
+        [a0, a1, b0, b1, c0, c1, d0, d1]
+    }
+}
 
 /// Per-sample flags, 16 bits; those without a name are reserved, and 0.
 #[derive(
@@ -243,6 +286,8 @@ pub struct Block {
     pub samples: [Sample; BLOCK_SAMPLES],
     /// Phases of the device's effects, in the ticks of the samples.
     pub phases: [EffectPhases; BLOCK_SAMPLES],
+    /// Currents of the vibration actuator's coil.
+    pub coil: [CoilCurrent; COIL_CURRENTS],
 }
 
 /// The fields of a block before its samples.
@@ -322,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_is_its_head_its_samples_and_its_phases() {
+    fn a_block_is_its_head_its_samples_its_phases_and_its_currents_of_the_coil() {
         let mut block = Block {
             sequence: 700,
             first_tick: 1 << 40,
@@ -331,6 +376,7 @@ mod tests {
             flags: BlockFlags(7),
             samples: [Sample::default(); BLOCK_SAMPLES],
             phases: core::array::from_fn(|n| EffectPhases(u16::MAX >> (n % 16))),
+            coil: [-1, 1_500, NO_CURRENT, 7].map(CoilCurrent),
         };
         for (sample, n) in block.samples.iter_mut().zip(1..) {
             (sample.count, sample.torque_nm) = (-n, 0.1);
@@ -346,7 +392,13 @@ mod tests {
         for phases in block.phases {
             pieces.extend(phases.bytes());
         }
+        pieces.extend(CoilCurrent::bytes(block.coil));
         assert_eq!(whole, pieces);
+        let amperes = block.coil.map(CoilCurrent::amperes);
+        assert_eq!(
+            amperes,
+            [Some(-0.001), Some(1.500_000_1), None, Some(0.007)]
+        );
     }
 
     #[test]

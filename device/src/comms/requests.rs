@@ -7,7 +7,7 @@ use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::crash::{Controller, Part};
 use crepitus_protocol::frame::{self, Frame};
 use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Reply, Request, Status};
-use crepitus_protocol::link::Order;
+use crepitus_protocol::link::{DriveStatus, Order};
 use crepitus_protocol::management::ManagementRequest;
 use crepitus_protocol::{Fault, Lane, Revision, Session, State, Values};
 
@@ -230,7 +230,8 @@ impl Comms {
             return Err(Refusal::Faulted { code: fault.code() });
         }
         self.drive_clock.restart();
-        if self.drive.status().is_some_and(|status| status.fault != 0) {
+        let has_fault = |status: &DriveStatus| status.fault != 0 || status.coil_fault != 0;
+        if self.drive.status().is_some_and(has_fault) {
             self.command(request, Order::ClearFault)
         } else {
             Ok(Started::Replied(Answer::Done))
@@ -417,6 +418,7 @@ impl Comms {
         Status {
             state: self.state(),
             drive_fault: drive.fault,
+            coil_fault: drive.coil_fault,
             comms_fault: self.supervision.fault().map_or(0, Fault::code),
             drive_present: self.drive.is_present(self.now_ms),
             tick: self.drive.seen_tick(),

@@ -5,7 +5,9 @@ use crate::comms::outbox::Outbox;
 use crepitus_protocol::Lane;
 use crepitus_protocol::frame::{self, EncodedFrame, Encoder, FRAME_BYTES, FrameBuffer};
 use crepitus_protocol::frame::{TooLong, WordCrc};
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, BlockHead, EFFECT_PHASES_BYTES};
+use crepitus_protocol::telemetry::{
+    BLOCK_SAMPLES, Block, BlockHead, COIL_BYTES, CoilCurrent, EFFECT_PHASES_BYTES,
+};
 
 /// The stream of blocks to the host.
 #[derive(Clone, Copy, Debug, Default)]
@@ -61,9 +63,12 @@ fn encode<'a>(
     for sample in &block.samples {
         encoder.push_by(unit, &sample.bytes())?;
     }
-    let mut bytes = [0; BLOCK_SAMPLES * EFFECT_PHASES_BYTES];
+    let mut bytes = [0; BLOCK_SAMPLES * EFFECT_PHASES_BYTES + COIL_BYTES];
     for (bytes, phases) in bytes.as_chunks_mut().0.iter_mut().zip(&block.phases) {
         *bytes = phases.bytes();
+    }
+    if let Some(end) = bytes.last_chunk_mut() {
+        *end = CoilCurrent::bytes(block.coil);
     }
     encoder.push_by(unit, &bytes)?;
     encoder.finish()
@@ -85,6 +90,7 @@ mod tests {
                 ..Sample::default()
             }),
             phases: core::array::from_fn(|n| EffectPhases(u16::MAX >> (n % 16))),
+            coil: [1, -2, 300, -400].map(CoilCurrent),
             ..Block::default()
         };
         let mut outbox = Outbox::default();

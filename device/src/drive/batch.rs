@@ -5,10 +5,12 @@
 //! copied until the link sends them.
 
 use crate::counters::Counters;
+use crate::drive::command::milliamperes;
 use crepitus_protocol::Revision;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::telemetry::{
-    BLOCK_SAMPLES, BLOCK_TICKS, Block, BlockFlags, EffectPhases, Sample,
+    BLOCK_SAMPLES, BLOCK_TICKS, Block, BlockFlags, COIL_CURRENTS, COIL_TICKS, CoilCurrent,
+    EffectPhases, Sample,
 };
 
 /// Blocks that may be queued for the link.
@@ -29,6 +31,8 @@ pub struct Batch {
     sequence: u16,
     first_tick: u64,
     dropped: u32,
+    /// Currents of the coil that were measured in the last ticks, A: sum and number.
+    coil: (f32, u8),
 }
 
 impl Batch {
@@ -42,7 +46,25 @@ impl Batch {
             sequence,
             first_tick,
             dropped: 0,
+            coil: (0.0, 0),
         }
+    }
+
+    /// Adds a tick in which the coil was driven, before its sample: the mean of those
+    /// that were measured is stored with the last of [`COIL_TICKS`].
+    pub fn add_coil(&mut self, current_a: Option<f32>) {
+        let place = (self.blocks.get_mut(self.filling))
+            .and_then(|block| block.coil.get_mut(self.filled / COIL_TICKS));
+        let (Some(place), Some(current_a)) = (place, current_a) else {
+            return;
+        };
+        let (sum, count) = match *place {
+            CoilCurrent::NONE => (current_a, 1),
+            _ => (self.coil.0 + current_a, self.coil.1.saturating_add(1)),
+        };
+        self.coil = (sum, count);
+        // In every tick, as the coil may sleep in the next one.
+        *place = CoilCurrent(milliamperes(sum / f32::from(count)));
     }
 
     /// Adds the sample of the next tick, with the phases of the effects.
@@ -78,6 +100,9 @@ impl Batch {
         } else {
             counters.add(DriveCounter::Dropped, BLOCK_TICKS);
             self.dropped = self.dropped.wrapping_add(BLOCK_TICKS);
+        }
+        if let Some(next) = self.blocks.get_mut(self.filling) {
+            next.coil = [CoilCurrent::NONE; COIL_CURRENTS];
         }
         self.sequence = self.sequence.wrapping_add(1);
         self.first_tick = self.first_tick.wrapping_add(BLOCK_SAMPLES as u64);
@@ -167,6 +192,41 @@ mod tests {
         received += 20;
         assert_eq!(counters.get(DriveCounter::Produced), received + 40);
         assert_eq!(counters.get(DriveCounter::Dropped), 40);
+    }
+
+    #[test]
+    fn a_block_has_the_means_of_what_was_measured_of_the_coil() {
+        let counters = Counters::new();
+        let mut batch = Batch::new(0, 0);
+        // Two rounds of all slots; driven from the third tick of a block to its 12th.
+        for n in 0..2 * SLOTS * BLOCK_SAMPLES {
+            let place = n % BLOCK_SAMPLES;
+            if (2..12).contains(&place) {
+                let measured = (place != 7).then_some(place as f32 * 0.1 - 0.5);
+                batch.add_coil(measured);
+            }
+            let none = (Sample::default(), EffectPhases::default());
+            let flags = BlockFlags::default();
+            batch.push(none.0, none.1, Revision(1), flags, &counters);
+            if let Some(block) = pop(&mut batch) {
+                // Of 2, 3, 4; 5, 6, 8, 9; 10, 11.
+                let expected = [-200, 200, 550, i16::MIN].map(CoilCurrent);
+                assert_eq!(block.coil, expected);
+            }
+        }
+        // A block without any has none, in whichever slot.
+        for _ in 0..SLOTS * BLOCK_SAMPLES {
+            batch.push(
+                Sample::default(),
+                EffectPhases::default(),
+                Revision(1),
+                BlockFlags::default(),
+                &counters,
+            );
+            if let Some(block) = pop(&mut batch) {
+                assert_eq!(block.coil, [CoilCurrent::NONE; COIL_CURRENTS]);
+            }
+        }
     }
 
     #[test]

@@ -4,10 +4,13 @@
 mod guards;
 mod samples;
 
+pub(in crate::drive) use samples::milliamperes;
+
 use crate::counters::Counters;
 use crate::drive::Boot;
 use crate::drive::arming::Seen;
 use crate::drive::batch::Batch;
+use crate::drive::coil::{Coil, CoilOutput};
 use crate::drive::emf_check::EmfCheck;
 use crate::drive::exchange::{Exchange, Rendered, Turn};
 use crate::drive::motor::{Bridge, Motor};
@@ -42,6 +45,12 @@ pub struct Inputs {
     pub has_tripped: bool,
     /// One of the inputs that change slowly.
     pub slow: SlowInput,
+    /// Current of the vibration actuator's coil, A, positive as its command. `None` if
+    /// its converter has no result, or if the coil is asleep.
+    pub coil_a: Option<f32>,
+    /// The break input of the coil's timer has tripped: its driver's nFAULT. Only read
+    /// while the coil is driven.
+    pub coil_has_tripped: bool,
 }
 
 /// Outputs to the peripherals.
@@ -53,6 +62,8 @@ pub struct Outputs {
     pub bridge: Bridge,
     /// The same as a share of the supply's voltage, −1 to 1, rounded.
     pub duty: f32,
+    /// The bridge of the vibration actuator's coil.
+    pub coil: CoilOutput,
 }
 
 /// Commands the motor, once a tick. In the order of its fields, the blocks last: what is
@@ -74,6 +85,7 @@ pub struct Command {
     range: Range,
     slow_checks: SlowChecks,
     overload: Overload,
+    coil: Coil,
     /// The bridge was driven in the previous tick.
     was_driven: bool,
     /// Consecutive ticks with a current while the bridge floats.
@@ -109,6 +121,7 @@ impl Command {
             range: Range::new(&plan.range),
             slow_checks: SlowChecks::new(&plan.slow),
             overload: Overload::new(&plan.overload),
+            coil: Coil::new(plan.coil),
             was_driven: false,
             conducting_ticks: 0,
             without_comms_ticks: 0,
@@ -134,6 +147,7 @@ impl Command {
         self.range = Range::new(&plan.range);
         self.slow_checks.change(&plan.slow);
         self.overload.change(&plan.overload);
+        self.coil.change(plan.coil);
         self.revision = plan.revision;
         counters.count(DriveCounter::Commits);
     }
@@ -141,11 +155,6 @@ impl Command {
     /// Revision of the active parameters.
     pub fn revision(&self) -> Revision {
         self.revision
-    }
-
-    /// The last read-back of the enable line.
-    pub fn line_is_on(&self) -> bool {
-        self.line_is_on
     }
 
     /// Number of the next tick.
@@ -198,6 +207,21 @@ impl Command {
     /// Last readings of supply, motor temperature and joint sensor.
     pub fn slow_readings(&self) -> SlowReadings {
         self.slow_checks.readings()
+    }
+
+    /// The coil of the vibration actuator.
+    pub fn coil(&self) -> &Coil {
+        &self.coil
+    }
+
+    /// Clears the fault, and that of the coil.
+    ///
+    /// # Errors
+    /// [`DriveRefusal::Faulted`] if its cause persists, [`DriveRefusal::Armed`].
+    pub fn clear_fault(&mut self) -> Result<(), DriveRefusal> {
+        self.safety.clear(self.line_is_on)?;
+        self.coil.clear();
+        Ok(())
     }
 
     /// The oldest block queued for the link.
@@ -311,7 +335,10 @@ impl Command {
         permit = self.guarded(permit, slow, fades_left, current_a, counters);
         let share = range::share(fades_left);
         let torque_nm = rendered.torque_nm * share;
-        let outputs = self.drive(permit, torque_nm, rendered.omega_rad_s, current_a);
+        let mut outputs = self.drive(permit, torque_nm, rendered.omega_rad_s, current_a);
+        if self.coil.is_fitted() {
+            outputs.coil = self.drive_coil(permit, inputs, rendered.coil_v, counters);
+        }
         let applied_nm =
             (permit == Permit::Torque && outputs.bridge != Bridge::Float).then_some(torque_nm);
         let sample = self.sample(
@@ -348,6 +375,7 @@ impl Command {
                 enable,
                 bridge,
                 duty: self.motor.duty(bridge),
+                coil: CoilOutput::Asleep,
             };
         }
         let torque_nm = match permit {
@@ -369,6 +397,7 @@ impl Command {
             enable: permit != Permit::Nothing,
             bridge,
             duty: self.motor.duty(bridge),
+            coil: CoilOutput::Asleep,
         }
     }
 }

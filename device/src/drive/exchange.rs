@@ -37,6 +37,8 @@ pub struct Rendered {
     pub torque_nm: f32,
     /// The model's torque before limits, N·m.
     pub model_torque_nm: f32,
+    /// Voltage at the coil of the vibration actuator, V.
+    pub coil_v: f32,
     /// Sample flags, without those of the motor.
     pub flags: SampleFlags,
     /// Phases of the effects.
@@ -44,7 +46,7 @@ pub struct Rendered {
 }
 
 /// Words of a [`Rendered`].
-const WORDS: usize = 7;
+const WORDS: usize = 8;
 
 impl Rendered {
     fn words(&self) -> [u32; WORDS] {
@@ -55,11 +57,22 @@ impl Rendered {
             self.lost_ticks,
             self.torque_nm.to_bits(),
             self.model_torque_nm.to_bits(),
+            self.coil_v.to_bits(),
             u32::from(self.phases.0) << 16 | u32::from(self.flags.0),
         ]
     }
 
-    fn of([tick, count, omega, lost_ticks, torque, model_torque, last]: [u32; WORDS]) -> Self {
+    fn of(words: [u32; WORDS]) -> Self {
+        let [
+            tick,
+            count,
+            omega,
+            lost_ticks,
+            torque,
+            model_torque,
+            coil,
+            last,
+        ] = words;
         let [f0, f1, p0, p1] = last.to_le_bytes();
         Self {
             tick,
@@ -68,6 +81,7 @@ impl Rendered {
             lost_ticks,
             torque_nm: f32::from_bits(torque),
             model_torque_nm: f32::from_bits(model_torque),
+            coil_v: f32::from_bits(coil),
             flags: SampleFlags(u16::from_le_bytes([f0, f1])),
             phases: Phases(u16::from_le_bytes([p0, p1])),
         }
@@ -222,6 +236,7 @@ mod tests {
             lost_ticks: 3,
             torque_nm: f32::MIN_POSITIVE,
             model_torque_nm: 2.0,
+            coil_v: -4.5,
             flags: SampleFlags(0xfedc),
             phases: Phases(0x8123),
         }

@@ -16,7 +16,7 @@ use crepitus_protocol::link::{DriveRefusal, DriveStatus, Order, ToDrive};
 use crepitus_protocol::management::{Action, Identity, ManagementRequest};
 use crepitus_protocol::measured::Measured;
 use crepitus_protocol::telemetry::Block;
-use crepitus_protocol::{Decoder, Fault, Lane, Revision, State};
+use crepitus_protocol::{CoilFault, Decoder, Fault, Lane, Revision, State};
 
 /// Resources shared with the other tasks. The firmware holds a lock while
 /// `work` runs, so `work` is short.
@@ -27,6 +27,14 @@ pub trait Shared {
     /// Owned by the idle loop: pending commits.
     fn commits<R>(&mut self, work: impl FnOnce(&mut Commits) -> R) -> R;
 }
+
+/// State and faults, revision, whether a commit was refused, whether arming waits.
+type Reported = (
+    (State, Option<Fault>, Option<CoilFault>),
+    Revision,
+    bool,
+    bool,
+);
 
 /// The drive's end of the link. Frames are encoded in buffers `P`.
 #[derive(Debug)]
@@ -46,7 +54,7 @@ pub struct LinkTask<P> {
     /// both take long.
     gathered: Option<DriveStatus>,
     /// The state that was reported last.
-    reported: (State, Option<Fault>, Revision, bool, bool),
+    reported: Reported,
 }
 
 impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
@@ -62,7 +70,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             crash_part: None,
             blocks_before_status: 0,
             gathered: None,
-            reported: (State::Disarmed, None, Revision::NONE, false, false),
+            reported: ((State::Disarmed, None, None), Revision::NONE, false, false),
         }
     }
 
@@ -175,11 +183,12 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
                 None
             }
             Some(BlockPiece::Phases(next)) => {
-                let piece = shared.command(|command| {
-                    let phases = command.block()?.phases.get(next..)?;
-                    phases.first_chunk::<PIECE_PHASES>().copied()
+                let (piece, coil) = shared.command(|command| {
+                    let block = command.block()?;
+                    let phases = block.phases.get(next..)?;
+                    Some((phases.first_chunk::<PIECE_PHASES>().copied()?, block.coil))
                 })?;
-                let frame = self.outgoing.phases(unit, &piece)?;
+                let frame = self.outgoing.phases(unit, &piece, coil)?;
                 shared.command(Command::pop_block);
                 self.blocks_before_status = self.blocks_before_status.saturating_sub(1);
                 Some(frame)
@@ -193,11 +202,11 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
         let (outcome, current, queued) = shared.command(|command| {
             let revision = command.revision();
             let queued = command.queued_blocks();
+            let coil_fault = command.coil().fault();
             let safety = command.safety_mut();
             let awaits_comms = safety.awaits_comms();
             let current = (
-                safety.state(),
-                safety.fault(),
+                (safety.state(), safety.fault(), coil_fault),
                 revision,
                 is_refused,
                 awaits_comms,
@@ -267,6 +276,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
                 comms_start: safety.comms_start(),
                 state: safety.state(),
                 fault: safety.fault().map_or(0, Fault::code),
+                coil_fault: command.coil().fault().map_or(0, CoilFault::code),
                 revision: command.revision(),
                 refused,
                 last: self.link.last(),
@@ -322,9 +332,6 @@ fn execute(order: Order, shared: &mut impl Shared) -> Option<Result<(), DriveRef
         // The result of arming comes later.
         Order::Arm => command.arm().err().map(Err),
         Order::Zero => Some(command.zero()),
-        Order::ClearFault => {
-            let line_is_on = command.line_is_on();
-            Some(command.safety_mut().clear(line_is_on))
-        }
+        Order::ClearFault => Some(command.clear_fault()),
     })
 }

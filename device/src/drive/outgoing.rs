@@ -9,7 +9,8 @@ use crepitus_protocol::frame::{self, EncodedFrame, Encoder, FrameBuffer, TooLong
 use crepitus_protocol::link::{COUNTER_BYTES, DriveStatus};
 use crepitus_protocol::management::{Answer, AnswerBytes};
 use crepitus_protocol::telemetry::{
-    BLOCK_SAMPLES, Block, BlockHead, EFFECT_PHASES_BYTES, EffectPhases, SAMPLE_BYTES, Sample,
+    BLOCK_SAMPLES, Block, BlockHead, COIL_CURRENTS, CoilCurrent, EFFECT_PHASES_BYTES, EffectPhases,
+    SAMPLE_BYTES, Sample,
 };
 
 /// Samples per piece: with its head and its phases a block takes thirteen of its twenty
@@ -185,11 +186,13 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
         Ok(())
     }
 
-    /// Encodes phases of the block; returns the finished frame after the last.
+    /// Encodes phases of the block; returns the finished frame after the last, with the
+    /// currents of the coil at its end.
     pub fn phases(
         &mut self,
         unit: &mut impl WordCrc,
         piece: &[EffectPhases; PIECE_PHASES],
+        coil: [CoilCurrent; COIL_CURRENTS],
     ) -> Option<EncodedFrame<P>> {
         let (Some(encoder), Rest::Phases(next)) = (&mut self.current, &mut self.rest) else {
             return None;
@@ -203,6 +206,7 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
         if *next < BLOCK_SAMPLES {
             return None;
         }
+        encoder.push_by(unit, &CoilCurrent::bytes(coil)).ok()?;
         self.finish()
     }
 
@@ -295,7 +299,7 @@ mod tests {
                 }
                 Some(BlockPiece::Phases(next)) => {
                     let piece = block.phases[next..].first_chunk().unwrap();
-                    outgoing.phases(&mut SoftwareCrc, piece)
+                    outgoing.phases(&mut SoftwareCrc, piece, block.coil)
                 }
                 None => outgoing.piece(&mut SoftwareCrc),
             };
@@ -319,6 +323,7 @@ mod tests {
         let mut block = Block {
             first_tick: 300,
             phases: core::array::from_fn(|n| EffectPhases(u16::MAX >> (n % 16))),
+            coil: [-3, 0, 700, i16::MIN].map(CoilCurrent),
             ..Block::default()
         };
         for (sample, n) in block.samples.iter_mut().zip(1_u8..) {

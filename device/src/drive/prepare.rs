@@ -115,6 +115,25 @@ pub struct MotorPlan {
     pub current_limit_a: f32,
 }
 
+/// Bounds of the vibration actuator's coil.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoilPlan {
+    /// Supply of its bridge, V, and its reciprocal.
+    pub supply_v: f32,
+    /// Share of the supply for a volt, 1/V.
+    pub duty_per_volt: f32,
+    /// Reciprocal of its resistance, 1/Ω.
+    pub per_ohm: f32,
+    /// Largest back-EMF, V: the whole stroke at the resonance.
+    pub emf_v: f32,
+    /// Mean square of the voltage from which on the current is compared with it, V².
+    pub compared_v2: f32,
+    /// Least power for a mean square of the voltage, W/V².
+    pub least_power: f32,
+    /// Mean square of the current that is too hot, A².
+    pub most_a2: f32,
+}
+
 /// New coefficients for `render_torque`.
 #[derive(Clone, Copy, Debug)]
 pub struct RenderingPlan {
@@ -149,6 +168,8 @@ pub struct CommandPlan {
     pub slow: SlowPlan,
     /// What gear and motor bear.
     pub overload: OverloadPlan,
+    /// The coil of the vibration actuator, if there is one.
+    pub coil: Option<CoilPlan>,
 }
 
 /// Prepared parameters, for the tasks to apply.
@@ -291,6 +312,7 @@ impl Preparation {
                 range: range(&next),
                 slow: slow(&next),
                 overload: OverloadPlan::new(next.motor.continuous_a, TICK_S),
+                coil: next.effects.vibration_actuator.as_ref().map(CoilPlan::new),
             },
         };
         (self.active, self.values, self.coefficients) = (next, *values, coefficients);

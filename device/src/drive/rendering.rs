@@ -133,6 +133,7 @@ impl Rendering {
             lost_ticks: sampled.lost_ticks,
             torque_nm: shown.torque_nm,
             model_torque_nm: shown.model_torque_nm,
+            coil_v: shown.coil_v,
             flags: with(flags, &shown).with(SampleFlags::LOST, sampled.lost_ticks > 0),
             phases: shown.phases,
         }

@@ -107,7 +107,8 @@ mod tests {
             assert_eq!(Record::of(&torn), None, "{place}");
             let mut torn = slot;
             torn[place..].fill(0xff);
-            assert_eq!(Record::of(&torn), None, "{place}");
+            // A checksum may end as erased flash does.
+            assert!(torn == slot || Record::of(&torn).is_none(), "{place}");
         }
         assert_eq!(Record::of(&[0xff; SLOT_BYTES]), None);
         assert_eq!(Record::of(&[]), None);

@@ -135,6 +135,9 @@ impl Bench {
             comms_enable_is_on: self.enable[1],
             has_tripped: false,
             slow: SlowInput::in_turn(self.drive.next_tick(), 24.0, 25.0, 0.0),
+            // No actuator is connected.
+            coil_a: Some(0.0),
+            coil_has_tripped: false,
         });
         self.enable[0] = outputs.enable;
         let is_powered = self.enable == [true; 2];

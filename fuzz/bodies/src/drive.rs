@@ -16,6 +16,7 @@ use crate::link_inputs;
 use crate::winding::Winding;
 use crepitus_device::Drive;
 use crepitus_device::drive::Boot;
+use crepitus_device::drive::coil::{CoilOutput, LARGEST_COIL_DUTY};
 use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::slow_checks::SlowInput;
@@ -355,8 +356,18 @@ impl Bench {
             } else {
                 SlowInput::in_turn(tick, current_a, current_a, current_a)
             },
+            coil_a: readings.has_current.then_some(current_a),
+            coil_has_tripped: readings.has_tripped,
         };
+        let coil_fault = self.drive.coil_fault();
         let outputs = self.drive.command_motor(&inputs);
+        if let CoilOutput::Driven(duty) = outputs.coil {
+            assert!(duty.abs() <= LARGEST_COIL_DUTY, "{duty}");
+            assert!(outputs.enable && inputs.comms_enable_is_on);
+            assert_eq!(self.drive.state(), State::Armed);
+            assert_eq!(self.drive.coil_fault(), None);
+        }
+        assert!(coil_fault.is_none() || self.drive.coil_fault() == coil_fault);
         if readings.is_idle {
             self.drive.prepare();
         }

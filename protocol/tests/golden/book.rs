@@ -4,13 +4,16 @@ use crate::examples::{self, Example};
 use crate::hex::hex;
 use crate::messages::Tables;
 use crate::{pages, walk};
+use crepitus_protocol::coil::COIL_FAULTS;
 use crepitus_protocol::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
 use crepitus_protocol::fault::FAULTS;
 use crepitus_protocol::frame::{BODY_BYTES, CRC, FRAME_BYTES};
 use crepitus_protocol::host::{Reply, Request};
 use crepitus_protocol::link::{FromDrive, STALE_TICKS, ToDrive};
 use crepitus_protocol::parameters::{Kind, PARAMETER_COUNT, PARAMETERS, When};
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, EFFECT_PHASES_BYTES, SAMPLE_BYTES};
+use crepitus_protocol::telemetry::{
+    BLOCK_SAMPLES, Block, COIL_CURRENTS, EFFECT_PHASES_BYTES, SAMPLE_BYTES,
+};
 use crepitus_protocol::{
     HEARTBEAT_TICKS, LEASE_TICKS, Lane, LimitReason, State, TICKS_PER_S, schema,
 };
@@ -46,6 +49,7 @@ fn the_protocol_is_on_its_page() {
         ),
         ("parameters", parameters()),
         ("faults", faults()),
+        ("coil faults", coil_faults()),
         ("drive counters", counters(&DRIVE_COUNTERS)),
         ("comms counters", counters(&COMMS_COUNTERS)),
         ("examples", short(&examples)),
@@ -80,6 +84,7 @@ fn numbers() -> String {
             "bytes in the phases of a tick",
             EFFECT_PHASES_BYTES.to_string(),
         ),
+        ("currents of the coil in a block", COIL_CURRENTS.to_string()),
         ("parameters", PARAMETER_COUNT.to_string()),
         (
             "ticks from the last fresh heartbeat to no torque",
@@ -232,6 +237,19 @@ fn faults() -> String {
             spec.detector.name(),
             name = spec.name,
             code = spec.fault.code(),
+        );
+    }
+    text
+}
+
+fn coil_faults() -> String {
+    let mut text = "| code | name |\n|---|---|\n".to_owned();
+    for spec in &COIL_FAULTS {
+        let _ = writeln!(
+            text,
+            "| {} | [{name}](faults.md#the-coil) |",
+            spec.fault.code(),
+            name = spec.name,
         );
     }
     text

@@ -13,7 +13,9 @@ use crepitus_protocol::measured::Measured;
 use crepitus_protocol::parameters::PARAMETERS;
 use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
-use crepitus_protocol::telemetry::{BlockFlags, EffectPhases, NO_CURRENT, Sample, SampleFlags};
+use crepitus_protocol::telemetry::{
+    BlockFlags, CoilCurrent, EffectPhases, NO_CURRENT, Sample, SampleFlags,
+};
 use crepitus_protocol::{
     Decoder, Frame, Lane, LimitReason, Nonce, Revision, Session, State, ValueError, Values, frame,
 };
@@ -243,6 +245,7 @@ fn replies() -> Vec<Example> {
         zeroed: true,
         polarity_proven: true,
         measured: MEASURED,
+        coil_fault: 3,
     };
     let answers = [
         Answer::Done,
@@ -363,18 +366,19 @@ fn blocks() -> Vec<Example> {
         flags: BlockFlags::new(State::Armed, true, 3),
         samples,
         phases: core::array::from_fn(|n| EffectPhases(u16::try_from(257 * n).expect("small"))),
+        coil: [-1_200, 5, i16::MIN, 300].map(CoilCurrent),
     };
     let means = "Block { sequence: 65534, first_tick: 20000000000, revision: Revision(300), dropped: 140, \
-                 flags: BlockFlags(30): armed, zeroed, start 3, samples, phases }; sample n has count n - 2, model torque n/4 N·m, \
+                 flags: BlockFlags(30): armed, zeroed, start 3, samples, phases, coil }; sample n has count n - 2, model torque n/4 N·m, \
                  torque -n/2 N·m, current -100 n mA but none in the first, limit reason n modulo 8, energised, \
-                 and slips towards falling angle where n is odd; its effects' phases are 257 n";
+                 and slips towards falling angle where n is odd; its effects' phases are 257 n; the coil has -1200, 5, no and 300 mA";
     vec![
         example(Lane::Telemetry, "block", &block, Some(means)),
         example(
             Lane::Telemetry,
             "block.empty",
             &Block::default(),
-            Some("a Block of zeros"),
+            Some("a Block of zeros, without a current of the coil"),
         ),
     ]
 }
@@ -435,6 +439,7 @@ fn from_drive() -> Vec<Example> {
         comms_start: Some(9),
         state: State::Armed,
         fault: 0,
+        coil_fault: 4,
         revision: Revision(300),
         refused: Some((Revision(301), ValueError::NeedsDisarmed { id: 6 })),
         last: Some(Outcome {

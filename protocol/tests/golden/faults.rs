@@ -2,6 +2,7 @@
 
 use crate::pages;
 use crepitus_protocol::TICKS_PER_S;
+use crepitus_protocol::coil::COIL_FAULTS;
 use crepitus_protocol::fault::{FAULTS, FaultSpec};
 use std::fmt::Write;
 use std::fs;
@@ -9,7 +10,7 @@ use std::path::Path;
 
 #[test]
 fn every_fault_is_on_its_page() {
-    let mut parts = vec![("table".to_owned(), table())];
+    let mut parts = vec![("table".to_owned(), table()), ("coil".to_owned(), coil())];
     for spec in &FAULTS {
         parts.push((spec.name.to_owned(), section(spec)));
     }
@@ -54,6 +55,27 @@ fn table() -> String {
             within(spec),
             code = spec.fault.code(),
             name = spec.name,
+        );
+    }
+    text
+}
+
+/// The faults of the coil, all in one table: they have no pages of their own.
+fn coil() -> String {
+    let mut text =
+        "| code | name | cause | detection | within | to go on |\n|---|---|---|---|---|---|\n"
+            .to_owned();
+    for spec in &COIL_FAULTS {
+        let ms = f64::from(spec.within_ticks) * 1e3 / f64::from(TICKS_PER_S);
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} ticks, {ms} ms | {} |",
+            spec.fault.code(),
+            spec.name,
+            spec.cause,
+            spec.detection,
+            spec.within_ticks,
+            spec.clear,
         );
     }
     text

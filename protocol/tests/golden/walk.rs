@@ -7,11 +7,12 @@ use std::collections::BTreeSet;
 
 /// Fields that are of fixed width, little endian, although their type is not:
 /// the schema does not say so.
-const FIXED: [&str; 4] = [
+const FIXED: [&str; 5] = [
     "Sample.count",
     "Sample.current_ma",
     "SampleFlags",
     "EffectPhases",
+    "CoilCurrent",
 ];
 
 /// Whether this field, or this type, is of fixed width.

@@ -14,6 +14,7 @@ use crate::leg::{CurrentPath, Leg, Terminals};
 use crate::storage::Storage;
 use crate::wire::Wire;
 use crepitus_device::comms::{self, Comms};
+use crepitus_device::drive::coil::CoilOutput;
 use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::plausibility::TRIP_A;
@@ -114,6 +115,12 @@ pub struct Board {
     comms_crash: Option<Head>,
     /// Last command to the bridge.
     bridge: Bridge,
+    /// And to that of the coil.
+    coil: CoilOutput,
+    /// The coil's driver has opened it, until the drive lets it sleep.
+    coil_tripped: bool,
+    /// The converter of the coil's current works.
+    converts_coil: bool,
     /// Parameters that comms stores over a restart.
     storage: Storage,
     comms_has_restarted: bool,
@@ -198,6 +205,9 @@ impl Board {
             drive_crash: None,
             comms_crash: None,
             bridge: Bridge::Float,
+            coil: CoilOutput::Asleep,
+            coil_tripped: false,
+            converts_coil: true,
             storage: Storage::new(start.saved),
             comms_has_restarted: false,
             trips: true,
@@ -254,6 +264,8 @@ impl Board {
             comms_enable_is_on: self.comms_line_reaches_drive && self.comms_line.is_on(),
             has_tripped: self.comparator_tripped,
             slow: self.slow(),
+            coil_a: self.converted_coil(),
+            coil_has_tripped: self.coil_tripped,
         });
         self.execute(outputs);
     }
@@ -284,8 +296,25 @@ impl Board {
         self.converts[path as usize].then(|| single(self.leg.current_a(path)))
     }
 
+    /// The coil's current while it is driven, as the image reads it.
+    fn converted_coil(&self) -> Option<f32> {
+        let is_read = self.converts_coil && self.coil != CoilOutput::Asleep;
+        is_read.then(|| single(self.leg.coil_a()))
+    }
+
+    /// The break of the coil's timer, which needs no program.
+    fn check_coil_driver(&mut self) {
+        if self.coil == CoilOutput::Asleep {
+            self.coil_tripped = false;
+        } else if self.leg.coil_faults().driver_fails {
+            self.coil_tripped = true;
+            self.leg.set_coil(None);
+        }
+    }
+
     /// The comparator behind the monitor's amplifier, which needs no program.
     fn check_comparator(&mut self) {
+        self.check_coil_driver();
         if self.bridge == Bridge::Float {
             self.comparator_tripped = false;
         } else if self.trips && self.leg.current_a(CurrentPath::Monitor).abs() > f64::from(TRIP_A) {
@@ -301,6 +330,10 @@ impl Board {
         if self.bridge == Bridge::Float || !self.drive_line.passes() {
             self.leg.set_terminals(Terminals::Open);
         }
+        self.coil = outputs.coil;
+        if self.coil == CoilOutput::Asleep || !self.coil_is_awake() {
+            self.leg.set_coil(None);
+        }
     }
 
     /// The bridge, as far as both lines enable it.
@@ -310,6 +343,16 @@ impl Board {
             _ => Terminals::Open,
         };
         self.leg.set_terminals(terminals);
+        let duty = match self.coil {
+            CoilOutput::Driven(duty) if self.coil_is_awake() => Some(f64::from(duty)),
+            _ => None,
+        };
+        self.leg.set_coil(duty);
+    }
+
+    /// The gate at the driver's nSLEEP, and the break of its timer.
+    fn coil_is_awake(&self) -> bool {
+        self.drive_line.is_on() && self.comms_line.is_on() && !self.coil_tripped
     }
 
     /// Transfers bytes over the link.
@@ -363,6 +406,9 @@ impl Board {
         // When comms disables its line, that is immediate.
         if !self.comms_line.passes() {
             self.leg.set_terminals(Terminals::Open);
+        }
+        if !self.comms_line.is_on() {
+            self.leg.set_coil(None);
         }
     }
 
@@ -461,6 +507,12 @@ impl Board {
             && !self.comparator_tripped
             && self.drive_line.passes()
             && self.comms_line.passes()
+    }
+
+    /// Whether the coil of the vibration actuator is driven: commanded, and enabled by
+    /// both lines, its driver and its supply.
+    pub fn coil_is_driven(&self) -> bool {
+        self.leg.coil_v().is_some()
     }
 
     /// Level of the enable line of a controller at its gate: true for on.

@@ -21,13 +21,16 @@
 //! recordings are followed to the end of the scene; the motion then slows down
 //! within a tenth of a second, and rests.
 
+mod coil;
 mod sensors;
 #[cfg(test)]
 mod tests;
 
+pub use coil::{COIL_RANGE_A, CoilFaults};
 pub use crepitus_plant::effects::motor::bridge::Terminals;
 pub use sensors::{CurrentPath, CurrentSensor, EncoderWiring, SlowSensors};
 
+use coil::CoilDriver;
 use crepitus_model::Sense;
 use crepitus_plant::chain::Body;
 use crepitus_plant::effects::motor::bridge::Bridge;
@@ -57,6 +60,7 @@ pub struct Leg {
     /// Command to the bridge.
     terminals: Terminals,
     is_supplied: bool,
+    coil: CoilDriver,
     /// Impulse at the hand and charge at the start of the tick.
     begun: (f64, f64),
     felt_nm: f64,
@@ -84,6 +88,7 @@ impl Leg {
             capacitors_v: motor.supply_v,
             terminals: Terminals::Open,
             is_supplied: true,
+            coil: CoilDriver::new(scene),
             felt_nm: 0.0,
             motor_nm: 0.0,
         }
@@ -130,6 +135,24 @@ impl Leg {
             Terminals::Open
         };
         self.plant.actuator_mut().set(terminals);
+        self.plant.set_coil(self.coil.terminals(self.is_supplied));
+    }
+
+    /// Sets the duty of the coil's driver, −1 to 1; `None` lets it sleep.
+    pub fn set_coil(&mut self, duty: Option<f64>) {
+        self.coil.set(duty);
+        self.switch();
+    }
+
+    /// What the sensor of the coil's current shows, A.
+    pub fn coil_a(&self) -> f64 {
+        let coil_a = self.plant.coil_current_a().unwrap_or(0.0);
+        self.coil.shows_a(coil_a, self.is_supplied)
+    }
+
+    /// Voltage at the coil's driver, V; `None` where its outputs are open.
+    pub fn coil_v(&self) -> Option<f64> {
+        self.coil.volts(self.is_supplied)
     }
 
     /// The encoder's counter now, as a 32-bit timer holds it: it wraps.
@@ -230,6 +253,17 @@ impl Leg {
         &mut self.slow_sensors
     }
 
+    /// What is wrong with the coil.
+    pub fn coil_faults(&self) -> &CoilFaults {
+        &self.coil.faults
+    }
+
+    /// Breaks or repairs the coil, its driver or its sensor.
+    pub fn set_coil_faults(&mut self, faults: CoilFaults) {
+        self.coil.faults = faults;
+        self.switch();
+    }
+
     /// Shorts a switch of the bridge, so that a current of this sense flows while
     /// it is open, or repairs it.
     pub fn set_shorted_switch(&mut self, shorted: Option<Sense>) {
@@ -237,7 +271,8 @@ impl Leg {
         self.switch();
     }
 
-    /// Presses or releases the hand-held stop: it opens supply and motor line.
+    /// Presses or releases the hand-held stop: it opens supply and motor line. The coil's
+    /// 5 V come from that supply.
     pub fn press_stop(&mut self, is_pressed: bool) {
         self.plant.actuator_mut().set_line(is_pressed);
         self.set_supply(!is_pressed);

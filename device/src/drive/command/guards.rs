@@ -1,13 +1,15 @@
 //! Checks that withdraw the permit of a tick.
 
 use crate::counters::Counters;
-use crate::drive::command::Command;
+use crate::drive::coil::CoilOutput;
+use crate::drive::command::{Command, Inputs};
 use crate::drive::emf_check;
 use crate::drive::exchange::Rendered;
 use crate::drive::plausibility::{Observation, Plausibility};
 use crate::drive::safety::Permit;
 use crate::drive::sampler::LOST_TICKS;
 use crepitus_protocol::Fault;
+use crepitus_protocol::counters::DriveCounter;
 
 /// Ticks for which the enable line of comms may be off though comms permits torque:
 /// more than the timeout of heartbeats, which says what is the matter.
@@ -113,6 +115,30 @@ impl Command {
         if self.conducting_ticks >= FLOATING_TICKS {
             self.safety.fail(Fault::CurrentWhileFloating, counters);
         }
+    }
+
+    /// Output of the coil: driven with the torque only, so that every fault of the motor,
+    /// the lines and the link silences it. Its own faults leave the motor alone.
+    #[inline(never)]
+    pub(super) fn drive_coil(
+        &mut self,
+        permit: Permit,
+        inputs: &Inputs,
+        coil_v: f32,
+        counters: &Counters,
+    ) -> CoilOutput {
+        let fault_before = self.coil.fault();
+        if self.coil.is_driven() {
+            self.batch.add_coil(inputs.coil_a);
+        }
+        let may = permit == Permit::Torque;
+        let output = self
+            .coil
+            .tick(coil_v, may, inputs.coil_a, inputs.coil_has_tripped);
+        if self.coil.fault() != fault_before {
+            counters.count(DriveCounter::Faults);
+        }
+        output
     }
 
     /// Withdraws the permit if a plausibility check fails.

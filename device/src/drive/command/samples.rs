@@ -59,7 +59,7 @@ impl Command {
 }
 
 /// Rounds and clamps to the range of i16, never [`NO_CURRENT`].
-fn milliamperes(current_a: f32) -> i16 {
+pub(in crate::drive) fn milliamperes(current_a: f32) -> i16 {
     let most = f32::from(i16::MAX);
     let scaled = current_a * 1e3;
     let rounded = (scaled + 0.5_f32.copysign(scaled)).within(most);

@@ -192,6 +192,8 @@ impl Device {
             comms_enable_is_on: self.comms_line,
             has_tripped: readings.has_tripped,
             slow: SlowInput::in_turn(self.tick, 24.0, 25.0, 0.0),
+            coil_a: readings.has_current.then_some(current_a),
+            coil_has_tripped: readings.has_tripped,
         });
         (self.drive_line, self.bridge) = (outputs.enable, outputs.bridge);
         let is_driven = matches!(outputs.bridge, Bridge::Driven(_));

@@ -205,6 +205,9 @@ impl Device {
             comms_enable_is_on: self.comms_line,
             has_tripped: false,
             slow: SlowInput::in_turn(self.drive.next_tick(), 24.0, 25.0, 0.0),
+            // No actuator is connected.
+            coil_a: Some(0.0),
+            coil_has_tripped: false,
         });
         self.drive.prepare();
         self.drive_line = outputs.enable;

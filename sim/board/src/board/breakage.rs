@@ -2,6 +2,7 @@
 
 use super::{Board, Controller, Health, START_TICKS};
 use crate::leg::CurrentPath;
+use crepitus_device::drive::coil::CoilOutput;
 use crepitus_device::drive::motor::Bridge;
 use crepitus_protocol::management::ResetCause;
 
@@ -42,6 +43,7 @@ impl Board {
             Controller::Drive => {
                 self.drive_line.driven = false;
                 self.bridge = Bridge::Float;
+                self.coil = CoilOutput::Asleep;
                 self.up.sender_reset();
             }
             Controller::Comms => {
@@ -66,6 +68,11 @@ impl Board {
     /// Lets the converter of what changes slowly run, or not.
     pub fn set_slow_converter(&mut self, converts: bool) {
         self.converts_slow = converts;
+    }
+
+    /// Sets whether the converter of the coil's current works.
+    pub fn set_coil_converter(&mut self, works: bool) {
+        self.converts_coil = works;
     }
 
     /// Sets whether one of the drive's converters works.

@@ -1,0 +1,277 @@
+//! The coil of the vibration actuator: what its bridge puts out, and the checks that
+//! switch it off.
+//!
+//! A fault of the coil is latched and the motor goes on. The measured current i is
+//! compared with what the voltage V drives through the resistance R, for an inductance
+//! that is not known and a back-EMF of which only the largest is, e = Bl·ω₀·X:
+//!
+//! ```text
+//! short     |i| ≤ 1.3·(V̂ + e)/R + 0.15 A         V̂: the largest |V| of the last milliseconds
+//! open      ⟨V·i⟩ ≥ ⅛·⟨V²⟩/(R + Rm)              ⟨ ⟩: mean over 10 ms
+//! hot       ⟨i²⟩ ≤ 1.25·Ic²                       mean over the model's 10 s
+//! ```
+//!
+//! Rm is what the moving mass adds to R at its resonance, R·ζe/(ζ − ζe). An inductance
+//! only delays the current, so that it exceeds the first bound in no tick, and turns
+//! the power of the second into a smaller one: an eighth is reached where ωL = 2.6·R.
+//! A sensor that is stuck, or that shows the other sign, violates one of the two.
+//!
+//! Not detected: a mass that is stuck or strikes its stops, as its back-EMF is a few
+//! percent of the voltage; a coil whose two wires are swapped, as current and voltage
+//! fit; anything while the command is below 0.08 A.
+
+use crate::drive::prepare::CoilPlan;
+use crepitus_model::Real;
+use crepitus_model::render::effects::vibration_actuator::HEATING_S;
+use crepitus_protocol::{CoilFault, TICK_S};
+
+/// Output of the coil's bridge.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum CoilOutput {
+    /// All switches are open, at once.
+    #[default]
+    Asleep,
+    /// This share of its supply's voltage from the next PWM period on, −1 to 1; positive
+    /// pushes the shell towards growing angle.
+    Driven(f32),
+}
+
+/// The largest duty: the driver brakes for 2 µs on either side of the middle of the
+/// tick, where the currents are converted.
+pub const LARGEST_COIL_DUTY: f32 = 0.92;
+
+/// Ticks without a measured current until the fault.
+const MISSING_TICKS: u8 = 3;
+
+/// Ticks with too much current until the fault.
+const SHORT_TICKS: u8 = 5;
+
+/// Tolerance of the resistance for a cold coil, and of the current's sensor, A.
+const COLD: f32 = 1.3;
+const SHORT_SLACK_A: f32 = 0.15;
+
+/// Share of the largest voltage that is left a tick later: 5 ms, more than L/R of any
+/// such coil.
+const PEAK_KEPT: f32 = 0.99;
+
+/// Share of the way to the means that a tick goes: 10 ms.
+const MEAN_SHARE: f32 = 1.0 / 200.0;
+
+/// Share of the power that a whole coil takes up, below which it does not follow.
+const FOLLOWS_SHARE: f32 = 1.0 / 8.0;
+
+/// Ticks for which it does not follow until the fault.
+const BESIDE_TICKS: u8 = 60;
+
+/// Current that the voltage would drive where it is compared, A: so much that a tenth of
+/// it is above the amplifier's offset.
+const LEAST_A: f32 = 0.08;
+
+/// Share of the current that the voltage would drive, squared, below which there is
+/// none: what the mean still remembers of the current before.
+const NO_CURRENT_SHARE: f32 = 1.0 / 8.0;
+
+/// Mean square of the current that is too hot, as a share of that which may last: above
+/// what the command allows itself, and the sensor's error.
+const HOT_SHARE: f32 = 1.25;
+
+/// Share of the way to the mean square that the heat goes in a tick.
+const HEATING: f32 = (TICK_S / HEATING_S) as f32;
+
+/// Share of the largest back-EMF, squared, above which voltages are compared.
+const EMF_SHARE: f32 = 0.25;
+
+/// The sums of what is compared, and for how long a condition has held.
+#[derive(Clone, Copy, Debug, Default)]
+struct Means {
+    /// Largest voltage of the last milliseconds, V.
+    peak_v: f32,
+    /// Means of V², V·i and i².
+    volts_squared: f32,
+    power_w: f32,
+    current_squared: f32,
+    missing: u8,
+    short: u8,
+    beside: u8,
+}
+
+/// The coil.
+#[derive(Clone, Copy, Debug)]
+pub struct Coil {
+    /// `None`: there is no actuator.
+    plan: Option<CoilPlan>,
+    /// What the plan becomes once the command is silent: one that fades out needs
+    /// the old one.
+    next: Option<Option<CoilPlan>>,
+    fault: Option<CoilFault>,
+    /// Voltages that were put out last and before, V; `None` where it was asleep.
+    last_v: Option<f32>,
+    before_v: f32,
+    means: Means,
+    /// Mean square of the measured current, A².
+    heat_a2: f32,
+}
+
+impl Coil {
+    /// Asleep.
+    pub fn new(plan: Option<CoilPlan>) -> Self {
+        Self {
+            plan,
+            next: None,
+            fault: None,
+            last_v: None,
+            before_v: 0.0,
+            means: Means::default(),
+            heat_a2: 0.0,
+        }
+    }
+
+    /// Another plan, in force as soon as the command is silent.
+    pub fn change(&mut self, plan: Option<CoilPlan>) {
+        self.next = (plan != self.plan).then_some(plan);
+    }
+
+    /// Whether there is anything to do in a tick.
+    #[inline]
+    pub fn is_fitted(&self) -> bool {
+        self.plan.is_some() || self.next.is_some()
+    }
+
+    /// The latched fault.
+    pub fn fault(&self) -> Option<CoilFault> {
+        self.fault
+    }
+
+    /// Clears the fault; the coil stays as warm as it is.
+    pub fn clear(&mut self) {
+        self.fault = None;
+    }
+
+    /// Whether it was driven in the last tick: then there is a current to be measured.
+    #[inline]
+    pub fn is_driven(&self) -> bool {
+        self.last_v.is_some()
+    }
+
+    /// One tick: the output for the command `coil_v`, V, where the coil `may` be driven.
+    /// `current_a` and `has_tripped` are those of the coil since the last output.
+    // Out of line: not every device has one, and its registers are then not saved.
+    #[inline(never)]
+    pub fn tick(
+        &mut self,
+        coil_v: f32,
+        may: bool,
+        current_a: Option<f32>,
+        has_tripped: bool,
+    ) -> CoilOutput {
+        if let Some(next) = self.next
+            && (coil_v == 0.0 || !may)
+        {
+            (self.plan, self.next) = (next, None);
+        }
+        let Some(plan) = self.plan else {
+            return self.sleep();
+        };
+        if let Some(last_v) = self.last_v {
+            let mean_v = 0.5 * (self.before_v + last_v);
+            let found = self.check(&plan, mean_v, current_a, has_tripped);
+            self.fault = self.fault.or(found);
+        } else {
+            self.heat_a2 -= HEATING * self.heat_a2;
+        }
+        if !may || self.fault.is_some() || !coil_v.is_finite() {
+            return self.sleep();
+        }
+        let duty = (coil_v * plan.duty_per_volt).within(LARGEST_COIL_DUTY);
+        // Before the first output its terminals were open.
+        self.before_v = self.last_v.unwrap_or(0.0);
+        self.last_v = Some(duty * plan.supply_v);
+        CoilOutput::Driven(duty)
+    }
+
+    fn sleep(&mut self) -> CoilOutput {
+        (self.last_v, self.means) = (None, Means::default());
+        CoilOutput::Asleep
+    }
+
+    /// Checks of a tick in which it was driven, the most urgent first.
+    #[inline]
+    fn check(
+        &mut self,
+        plan: &CoilPlan,
+        volts: f32,
+        current_a: Option<f32>,
+        has_tripped: bool,
+    ) -> Option<CoilFault> {
+        let means = &mut self.means;
+        let Some(current_a) = current_a.filter(|a| a.is_finite()) else {
+            means.missing = means.missing.saturating_add(1);
+            let missing = means.missing >= MISSING_TICKS;
+            return (has_tripped.then_some(CoilFault::Driver))
+                .or(missing.then_some(CoilFault::CurrentMissing));
+        };
+        means.missing = 0;
+        means.peak_v = volts.abs().at_least(PEAK_KEPT * means.peak_v);
+        let most_a = COLD * plan.per_ohm * (means.peak_v + plan.emf_v) + SHORT_SLACK_A;
+        means.short = held(means.short, current_a.abs() > most_a);
+        let toward = |mean: &mut f32, value: f32| *mean += MEAN_SHARE * (value - *mean);
+        toward(&mut means.volts_squared, volts * volts);
+        toward(&mut means.power_w, volts * current_a);
+        toward(&mut means.current_squared, current_a * current_a);
+        let is_beside = means.volts_squared > plan.compared_v2
+            && means.power_w < plan.least_power * means.volts_squared;
+        means.beside = held(means.beside, is_beside);
+        self.heat_a2 += HEATING * (current_a * current_a - self.heat_a2);
+        if has_tripped {
+            return Some(CoilFault::Driver);
+        }
+        if means.short >= SHORT_TICKS {
+            return Some(CoilFault::Short);
+        }
+        if means.beside >= BESIDE_TICKS {
+            let whole_a2 = means.volts_squared * plan.per_ohm * plan.per_ohm;
+            let is_open = means.current_squared < NO_CURRENT_SHARE * whole_a2;
+            return Some(if is_open {
+                CoilFault::Open
+            } else {
+                CoilFault::CurrentMismatch
+            });
+        }
+        (self.heat_a2 > plan.most_a2).then_some(CoilFault::Hot)
+    }
+}
+
+/// Ticks for which a condition has held, with this one.
+#[inline]
+fn held(ticks: u8, holds: bool) -> u8 {
+    if holds { ticks.saturating_add(1) } else { 0 }
+}
+
+/// Bounds of the checks, from the settings of the actuator.
+impl CoilPlan {
+    /// Of an actuator that is fitted.
+    #[expect(clippy::cast_possible_truncation, reason = "rounded to f32, once")]
+    pub fn new(
+        s: &crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings,
+    ) -> Self {
+        let emf_v = s.force_constant_n_per_a * s.resonance_rad_s() * s.stroke_mm * 1e-3;
+        let least_v = f64::from(LEAST_A) * s.resistance_ohm;
+        let compared_v2 = (f64::from(EMF_SHARE) * emf_v * emf_v).max(least_v * least_v);
+        // R/(R + Rm).
+        let at_resonance = 1.0 - s.electric_damping_ratio() / s.damping_ratio;
+        let least_power = f64::from(FOLLOWS_SHARE) * at_resonance / s.resistance_ohm;
+        let continuous_a2 = s.continuous_current_a * s.continuous_current_a;
+        Self {
+            supply_v: s.supply_v as f32,
+            duty_per_volt: (1.0 / s.supply_v) as f32,
+            per_ohm: (1.0 / s.resistance_ohm) as f32,
+            emf_v: emf_v as f32,
+            compared_v2: compared_v2 as f32,
+            least_power: least_power as f32,
+            most_a2: HOT_SHARE * continuous_a2 as f32,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,239 @@
+use super::*;
+use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
+use std::format;
+
+const SETTINGS: fn() -> VibrationActuatorSettings = VibrationActuatorSettings::default;
+
+/// A coil of R and L in a driver, sampled in the middle of a tick, as the drive sees it.
+struct Rig {
+    coil: Coil,
+    resistance_ohm: f32,
+    inductance_h: f32,
+    current_a: f32,
+    /// What is at the coil now; `None`: open.
+    volts: Option<f32>,
+    ticks: u32,
+}
+
+impl Rig {
+    fn new(settings: &VibrationActuatorSettings) -> Self {
+        Self {
+            coil: Coil::new(Some(CoilPlan::new(settings))),
+            resistance_ohm: settings.resistance_ohm as f32,
+            inductance_h: 2e-4,
+            current_a: 0.0,
+            volts: None,
+            ticks: 0,
+        }
+    }
+
+    /// Half a tick of the coil, exactly.
+    fn half(&mut self) {
+        let Some(volts) = self.volts else {
+            self.current_a = 0.0;
+            return;
+        };
+        let end_a = volts / self.resistance_ohm;
+        let kept = (-2.5e-5 * self.resistance_ohm / self.inductance_h).exp();
+        self.current_a = end_a + kept * (self.current_a - end_a);
+    }
+
+    /// A tick with a command, whose sensor shows `shows` of the current.
+    fn tick(&mut self, coil_v: f32, shows: impl Fn(f32) -> Option<f32>) -> CoilOutput {
+        self.ticks += 1;
+        self.half();
+        let measured = self
+            .coil
+            .is_driven()
+            .then(|| shows(self.current_a))
+            .flatten();
+        let output = self.coil.tick(coil_v, true, measured, false);
+        self.half();
+        self.volts = match output {
+            CoilOutput::Driven(duty) => Some(duty * 5.0),
+            CoilOutput::Asleep => None,
+        };
+        output
+    }
+
+    /// Ticks of a command until a fault, and the fault.
+    fn until(
+        &mut self,
+        command: impl Fn(u32) -> f32,
+        shows: impl Fn(f32) -> Option<f32>,
+    ) -> Option<(u32, CoilFault)> {
+        let begin = self.ticks;
+        (0..200_000).find_map(|n| {
+            self.tick(command(n), &shows);
+            self.coil.fault().map(|fault| (self.ticks - begin, fault))
+        })
+    }
+}
+
+/// Clicks of a few milliseconds, some 30 a second, as of crepitus.
+fn clicks(n: u32) -> f32 {
+    let t = (n % 640) as f32 * 5e-5;
+    2.5 * (-400.0 * t).exp() * (1_500.0 * t).sin()
+}
+
+fn sine(hz: f32, most_v: f32) -> impl Fn(u32) -> f32 {
+    move |n| most_v * (core::f32::consts::TAU * hz * 5e-5 * n as f32).sin()
+}
+
+#[test]
+fn a_whole_coil_is_none_of_all() {
+    for inductance_h in [1e-5, 2e-4, 1e-3] {
+        for share in [0.8, 1.0, 1.4] {
+            let mut rig = Rig::new(&SETTINGS());
+            rig.inductance_h = inductance_h;
+            rig.resistance_ohm *= share;
+            let context = format!("{inductance_h} H, {share}");
+            assert_eq!(rig.until(clicks, Some), None, "{context}");
+            for hz in [15.0, 60.0, 250.0, 500.0] {
+                let begin = rig.ticks;
+                for n in 0..20_000 {
+                    rig.tick(sine(hz, 1.5)(n), Some);
+                }
+                assert_eq!(rig.coil.fault(), None, "{context}, {hz} Hz");
+                assert_eq!(rig.ticks - begin, 20_000);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_duty_is_the_share_of_the_supply_within_what_the_converter_allows() {
+    let mut coil = Coil::new(Some(CoilPlan::new(&SETTINGS())));
+    for (coil_v, duty) in [
+        (0.0, 0.0),
+        (1.25, 0.25),
+        (-2.5, -0.5),
+        (5.0, 0.92),
+        (-9.0, -0.92),
+    ] {
+        let output = coil.tick(coil_v, true, Some(0.0), false);
+        assert_eq!(output, CoilOutput::Driven(duty), "{coil_v}");
+    }
+    for bad in [f32::NAN, f32::INFINITY] {
+        assert_eq!(coil.tick(bad, true, Some(0.0), false), CoilOutput::Asleep);
+    }
+    assert_eq!(coil.tick(1.0, false, Some(0.0), false), CoilOutput::Asleep);
+    assert!(!coil.is_driven());
+    assert_eq!(coil.fault(), None);
+}
+
+#[test]
+fn the_driver_is_believed_at_once_while_it_is_driven() {
+    let mut coil = Coil::new(Some(CoilPlan::new(&SETTINGS())));
+    // Not before: its supply may have come up just now.
+    assert!(matches!(
+        coil.tick(1.0, true, None, true),
+        CoilOutput::Driven(_)
+    ));
+    for current in [Some(0.1), None] {
+        let mut coil = coil;
+        assert_eq!(coil.tick(1.0, true, current, true), CoilOutput::Asleep);
+        assert_eq!(coil.fault(), Some(CoilFault::Driver));
+    }
+}
+
+#[test]
+fn each_fault_is_found_in_its_time_and_stays() {
+    type Break = fn(&mut Rig);
+    type Shows = fn(f32) -> Option<f32>;
+    let whole: Break = |_| {};
+    let cases: [(CoilFault, u32, Break, Shows); 7] = [
+        (CoilFault::CurrentMissing, 3, whole, |_| None),
+        (CoilFault::CurrentMissing, 3, whole, |_| Some(f32::NAN)),
+        (CoilFault::Short, 7, |rig| rig.resistance_ohm *= 0.2, Some),
+        (CoilFault::Short, 5, whole, |_| Some(-3.3)),
+        (CoilFault::Open, 880, whole, |_| Some(0.003)),
+        (CoilFault::CurrentMismatch, 880, whole, |a| Some(-a)),
+        (CoilFault::CurrentMismatch, 880, whole, |_| Some(0.4)),
+    ];
+    for (expected, within, breaks, shows) in cases {
+        let mut rig = Rig::new(&SETTINGS());
+        for n in 0..6_400 {
+            rig.tick(sine(60.0, 2.0)(n), Some);
+        }
+        breaks(&mut rig);
+        // At its peak for a short, which shows as it is driven.
+        let offset = if expected == CoilFault::Short { 80 } else { 0 };
+        let (ticks, fault) = rig.until(|n| sine(60.0, 2.0)(n + offset), shows).unwrap();
+        assert_eq!(fault, expected);
+        assert!(ticks <= within, "{fault:?} after {ticks}");
+        assert_eq!(rig.tick(1.0, Some), CoilOutput::Asleep);
+        for _ in 0..1_000 {
+            assert_eq!(rig.tick(1.0, Some), CoilOutput::Asleep);
+        }
+        assert_eq!(rig.coil.fault(), Some(expected));
+        rig.coil.clear();
+        assert!(matches!(rig.tick(1.0, Some), CoilOutput::Driven(_)));
+    }
+}
+
+#[test]
+fn what_is_quiet_shows_nothing() {
+    let mut rig = Rig::new(&SETTINGS());
+    assert_eq!(rig.until(sine(60.0, 0.1), |_| Some(0.0)), None);
+}
+
+#[test]
+fn a_coil_that_takes_more_than_the_command_believes_gets_hot() {
+    let settings = VibrationActuatorSettings {
+        continuous_current_a: 0.5,
+        ..SETTINGS()
+    };
+    let mut rig = Rig::new(&settings);
+    // 0.56 A rms are 1.25 times the heat: for ever. 0.7 A are twice.
+    assert_eq!(rig.until(sine(50.0, 1.8 * 0.78), Some), None);
+    let (ticks, fault) = rig.until(sine(50.0, 1.8), Some).unwrap();
+    assert_eq!(fault, CoilFault::Hot);
+    assert!(ticks < 120_000, "{ticks}");
+    // It is as warm when it is cleared at once, and cools while it sleeps.
+    rig.coil.clear();
+    assert!(rig.until(sine(50.0, 1.8), Some).unwrap().0 < 200);
+    for _ in 0..100_000 {
+        rig.coil.tick(0.0, false, None, false);
+    }
+    rig.coil.clear();
+    assert!(rig.until(sine(50.0, 1.8), Some).unwrap().0 > 20_000);
+}
+
+#[test]
+fn a_plan_is_exchanged_when_the_command_is_silent_or_nothing_is_driven() {
+    let mut coil = Coil::new(None);
+    assert!(!coil.is_fitted());
+    let five = CoilPlan::new(&SETTINGS());
+    coil.change(Some(five));
+    assert!(coil.is_fitted());
+    assert_eq!(coil.tick(0.0, true, None, false), CoilOutput::Driven(0.0));
+    let ten = CoilPlan::new(&VibrationActuatorSettings {
+        supply_v: 10.0,
+        ..SETTINGS()
+    });
+    coil.change(Some(ten));
+    assert_eq!(
+        coil.tick(1.0, true, Some(0.0), false),
+        CoilOutput::Driven(0.2)
+    );
+    assert_eq!(
+        coil.tick(0.0, true, Some(0.0), false),
+        CoilOutput::Driven(0.0)
+    );
+    assert_eq!(
+        coil.tick(1.0, true, Some(0.0), false),
+        CoilOutput::Driven(0.1)
+    );
+    coil.change(None);
+    assert_eq!(
+        coil.tick(1.0, true, Some(0.0), false),
+        CoilOutput::Driven(0.1)
+    );
+    assert_eq!(coil.tick(1.0, false, Some(0.0), false), CoilOutput::Asleep);
+    assert!(!coil.is_fitted());
+    // One that is the same exchanges nothing.
+    let mut coil = Coil::new(Some(five));
+    coil.change(Some(five));
+    assert_eq!(coil.next, None);
+}
