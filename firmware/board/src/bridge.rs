@@ -23,7 +23,7 @@ use stm32f4xx_hal::pac::TIM1;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
 /// Counts from bottom to top.
-const TOP: u16 = 4_200;
+pub(crate) const TOP: u16 = 4_200;
 const _: () = assert!(2 * TOP as u32 * 20_000 == APB2_TIMER_HZ);
 
 /// Dead time: 50 clocks of 168 MHz, 0.3 µs.

@@ -9,6 +9,7 @@
 //! | supply | a divider by 16 | PC3 | ADC3 | checks |
 //! | temperature | MCP9700 on the motor: 0.5 V and 10 mV/°C | PA2 | ADC3 | checks |
 //! | joint | AS5600 on the hinge: its turn is the reference | PC2 | ADC3 | checks |
+//! | coil | a shunt at the coil of the vibration actuator | PA3 | ADC3, injected | checks, telemetry |
 //!
 //! Each current has an amplifier of 20 V/V across 33 mΩ (INA240A1). Zero is half of the
 //! supply, which is also the converters' reference: 0.66 V/A, ±2.5 A, 1.22 mA a
@@ -27,6 +28,10 @@
 //!             3 clocks of sampling, 12 of conversion
 //! ```
 //!
+//! The coil's current follows the slow input of the tick by itself (JAUTO), its sampling
+//! 0.5 µs after the middle, where its driver brakes. Its amplifier has 20 V/V across
+//! 25 mΩ: 0.5 V/A, ±3.3 A, 1.6 mA a count; positive is the sign of its command.
+//!
 //! Three clocks are enough, as a converter has one channel only: its capacitor still
 //! holds the current of the last conversion. Decision 97 in docs/decisions.md has the
 //! figures.
@@ -34,7 +39,7 @@
 use crate::bridge::QUIET_CLOCKS;
 use crate::raw;
 use crepitus_device::drive::slow_checks::SlowInput;
-use stm32f4xx_hal::gpio::{PA2, PC0, PC1, PC2, PC3};
+use stm32f4xx_hal::gpio::{PA2, PA3, PC0, PC1, PC2, PC3};
 use stm32f4xx_hal::pac::adc1::RegisterBlock as Registers;
 use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, ADC2, ADC3};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
@@ -50,6 +55,9 @@ const SUPPLY: u8 = 13;
 const MOTOR: u8 = 2;
 const JOINT: u8 = 12;
 
+/// PA3.
+const COIL: u8 = 3;
+
 /// Divider of the supply.
 const SUPPLY_SHARE: f32 = 16.0;
 
@@ -62,6 +70,9 @@ const REFERENCE_V: f32 = 3.3;
 
 /// Gain of shunt and amplifier, V/A.
 const VOLTS_PER_AMPERE: f32 = 20.0 * 0.033;
+
+/// That of the coil.
+const COIL_VOLTS_PER_AMPERE: f32 = 20.0 * 0.025;
 
 /// Counts of the whole range.
 const COUNTS: f32 = 4096.0;
@@ -81,6 +92,9 @@ const CONVERSION: u16 = SAMPLING + 12 * CONVERTER_CLOCK;
 pub(crate) const TO_END: u16 = SAMPLES as u16 * CONVERSION;
 pub(crate) const TO_MIDDLE: u16 = u16::midpoint(0, TO_END - CONVERSION + SAMPLING);
 
+/// The slow input and the coil's current: fifteen clocks of sampling each.
+const SLOW_TO_END: u16 = 2 * (15 + 12) * CONVERTER_CLOCK;
+
 /// The most that the trigger is late: three clocks of the converters, and the start
 /// of one timer after another, a store to APB1.
 const LATE: u16 = 3 * CONVERTER_CLOCK + 16;
@@ -88,6 +102,7 @@ const LATE: u16 = 3 * CONVERTER_CLOCK + 16;
 // Nothing switches while they convert.
 const _: () = assert!(TO_MIDDLE <= QUIET_CLOCKS.0);
 const _: () = assert!(TO_END - TO_MIDDLE + LATE <= QUIET_CLOCKS.1);
+const _: () = assert!(SLOW_TO_END <= TO_END);
 
 /// The converters.
 pub struct Converters {
@@ -105,6 +120,7 @@ impl Converters {
         common: &ADC_COMMON,
         pins: (PC0, PC1),
         slow_pins: (PC3, PA2, PC2),
+        coil: PA3,
         rcc: &mut Rcc,
     ) -> Self {
         ADC1::enable(rcc);
@@ -117,18 +133,24 @@ impl Converters {
         slow_pins.0.into_analog();
         slow_pins.1.into_analog();
         slow_pins.2.into_analog();
+        coil.into_analog();
         // 84 MHz / 4 = 21 MHz.
         common.ccr().write(|w| w.adcpre().div4());
         sensor.smpr1().write(|w| w.smp10().cycles3());
         monitor.smpr1().write(|w| w.smp11().cycles3());
         slow.smpr1()
             .write(|w| w.smp12().cycles15().smp13().cycles15());
-        slow.smpr2().write(|w| w.smp2().cycles15());
+        slow.smpr2()
+            .write(|w| w.smp2().cycles15().smp3().cycles15());
         raw::converter_channel(&slow, SUPPLY);
         raw::converter_channel(&sensor, SENSOR);
         raw::converter_channel(&monitor, MONITOR);
-        for (converter, channel) in [(&*sensor, SENSOR), (&*monitor, MONITOR)] {
-            raw::injected_channel(converter, channel, SAMPLES - 1);
+        for (converter, channel, conversions) in [
+            (&*sensor, SENSOR, SAMPLES - 1),
+            (&*monitor, MONITOR, SAMPLES - 1),
+            (&*slow, COIL, 1),
+        ] {
+            raw::injected_channel(converter, channel, conversions);
             converter
                 .cr1()
                 .write(|w| w.scan().set_bit().jauto().set_bit());
@@ -170,6 +192,16 @@ impl Converters {
     /// without new conversions.
     pub fn take_sensor_a(&mut self) -> Option<f32> {
         take_current_a(&self.sensor)
+    }
+
+    /// Takes the current of the coil, A; `None` without a new conversion.
+    pub fn take_coil_a(&mut self) -> Option<f32> {
+        if !self.slow.sr().read().jeoc().bit() {
+            return None;
+        }
+        self.slow.sr().write(|w| w.jeoc().clear());
+        let share = f32::from(self.slow.jdr1().read().jdata().bits()) * (1.0 / COUNTS);
+        Some((share - 0.5) * (REFERENCE_V / COIL_VOLTS_PER_AMPERE))
     }
 
     /// Takes the monitor's current, A.

@@ -2,6 +2,7 @@
 
 use crate::bridge::Bridge;
 use crate::clocks;
+use crate::coil::Coil;
 use crate::converter::Converters;
 use crate::crash::BlackBox;
 use crate::crc_unit::CrcUnit;
@@ -30,7 +31,9 @@ pub struct DriveBoard {
     pub comms_line: OtherLine,
     /// PA8, PB13, PA9, PB14; break on PB12.
     pub bridge: Bridge,
-    /// PC0, PC1; PC3, PA2, PC2.
+    /// PC8, PC9; break on PA6.
+    pub coil: Coil,
+    /// PC0, PC1; PC3, PA2, PC2; PA3.
     pub converters: Converters,
     /// PA0, PA1.
     pub encoder: Encoder,
@@ -68,6 +71,7 @@ impl DriveBoard {
             b.pb12,
             &mut rcc,
         );
+        let coil = Coil::new(chip.TIM8, (c.pc8, c.pc9), a.pa6, &mut rcc);
         let option_bytes = chip.FLASH.optcr().read().bits();
         let (identity, self_test) = identity(Role::Drive, &start, option_bytes);
         Self {
@@ -77,11 +81,13 @@ impl DriveBoard {
             line,
             comms_line: OtherLine::new(b.pb10),
             bridge,
+            coil,
             converters: Converters::new(
                 (chip.ADC1, chip.ADC2, chip.ADC3),
                 &chip.ADC_COMMON,
                 (c.pc0, c.pc1),
                 (c.pc3, a.pa2, c.pc2),
+                a.pa3,
                 &mut rcc,
             ),
             encoder: Encoder::new(chip.TIM5, a.pa0, a.pa1, &mut rcc),

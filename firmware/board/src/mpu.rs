@@ -6,9 +6,9 @@
 //! | 1 RAM | 128 K | read, write |
 //! | 2 CCM RAM, with the stack | 64 K | read, write |
 //! | 3 peripherals of APB and AHB1 | 512 K | read, write |
-//! | 4 TIM1 | 1 K | read |
+//! | 4 TIM1 and TIM8 | 2 K | read |
 //! | 5 ports A to H | 8 K | read |
-//! | 6 TIM1 and ports | 2 × 32 K | write, while `command_motor` sets the outputs |
+//! | 6 both timers and ports | 2 × 32 K | write, while `command_motor` sets the outputs |
 //! | 7 clocks and flash controller | 2 K | read |
 //!
 //! | region of comms | bytes | may |
@@ -21,7 +21,7 @@
 //! | 7 serial number and size of flash | 64 | read |
 //!
 //! The region with the highest number decides. Everything else faults, address 0 and
-//! the aliases of the bits of TIM1 and the ports included: there is no default map.
+//! the aliases of the bits of the timers and the ports included: there is no default map.
 //! Memory types are those of the default map. A violation is a `HardFault`, in which
 //! the MPU is off.
 
@@ -93,7 +93,7 @@ const DRIVE: [Region; REGIONS] = [
     RAM,
     CCM,
     PERIPHERALS,
-    Region::new(0x4001_0000, 1 << 10, READABLE_REGISTERS),
+    Region::new(0x4001_0000, 2 << 10, READABLE_REGISTERS),
     Region::new(0x4002_0000, 8 << 10, READABLE_REGISTERS),
     WRITABLE_OUTPUTS,
     Region::new(0x4002_3800, 2 << 10, READABLE_REGISTERS),
@@ -124,7 +124,7 @@ fn protect(mpu: &MPU, map: &[Region; REGIONS]) {
     raw::mpu_control(mpu, ON);
 }
 
-/// Write access to the registers of bridge and enable line.
+/// Write access to the registers of bridge, coil and enable line.
 pub struct OutputAccess {
     mpu: MPU,
 }

@@ -85,18 +85,24 @@ pub(crate) fn image() -> &'static [u8] {
     }
 }
 
-/// Switches enable line and bridge off. The line has the same pin on both
-/// boards; comms has no bridge, and its timer's clock is off: there the write
-/// has no effect.
+/// Switches enable line, bridge and coil off. The line has the same pin on both
+/// boards; comms has neither of the others, and the clocks of their timers are off: there
+/// these writes have no effect.
 pub(crate) fn outputs_off() {
     // SAFETY: see the table.
-    let (gpio, timer, mpu) = unsafe {
+    let (gpio, timer, coil, mpu) = unsafe {
         let core = cortex_m::Peripherals::steal();
-        (pac::GPIOB::steal(), pac::TIM1::steal(), core.MPU)
+        (
+            pac::GPIOB::steal(),
+            pac::TIM1::steal(),
+            pac::TIM8::steal(),
+            core.MPU,
+        )
     };
     mpu_control(&mpu, 0);
     gpio.bsrr().write(|w| w.br(enable_line::PIN).set_bit());
     timer.bdtr().modify(|_, w| w.moe().clear_bit());
+    coil.bdtr().modify(|_, w| w.moe().clear_bit());
 }
 
 /// Sets a region of the MPU, and selects it.

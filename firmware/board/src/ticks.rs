@@ -6,14 +6,16 @@
 //! TIM4  |          render_torque, at the bottom
 //! TIM3     |       the converters, in the middle of the top: no switching near
 //!           |      command_motor, 3.2 µs later: the currents are converted
+//! TIM8   as TIM1: the driver of the coil
 //! TIM2  ...        µs, for the time between two ticks
 //! ```
 //!
 //! All count the same crystal and are never stopped: ticks continue whatever the
-//! bridge does. The first three start together.
+//! bridge does. The first four start together.
 
 use crate::bridge::Bridge;
 use crate::clocks::APB1_TIMER_HZ;
+use crate::coil::Coil;
 use crate::converter;
 use stm32f4xx_hal::pac::{TIM2, TIM3, TIM4};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
@@ -81,12 +83,14 @@ impl BeginOfTick {
     }
 }
 
-/// Starts the three timers within some clocks of the core: one store after another.
-pub fn start(bridge: &Bridge, middle: &MiddleOfTick, begin: &BeginOfTick) {
+/// Starts the four timers within some clocks of the core: one store after another. That
+/// of the coil last, as nothing is measured against it.
+pub fn start(bridge: &Bridge, middle: &MiddleOfTick, begin: &BeginOfTick, coil: &Coil) {
     cortex_m::interrupt::free(|_| {
         bridge.timer().cr1().modify(|_, w| w.cen().set_bit());
         middle.0.cr1().write(|w| w.cen().set_bit());
         begin.0.cr1().write(|w| w.cen().set_bit());
+        coil.timer().cr1().modify(|_, w| w.cen().set_bit());
     });
 }
 

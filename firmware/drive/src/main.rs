@@ -4,7 +4,7 @@
 //!
 //! | priority | task | interrupt | when | resources of its own |
 //! |---|---|---|---|---|
-//! | 4 | `command_motor` | TIM3 | in the middle of the tick, when the current is converted | bridge, lines, write access to them, converters, clock |
+//! | 4 | `command_motor` | TIM3 | in the middle of the tick, when the current is converted | bridge, coil, lines, write access to them, converters, clock |
 //! | 3 | `render_torque` | TIM4 | every 50 µs | encoder, the model |
 //! | 1 | `link` | DMA2_STREAM6, pended | after each tick, and after each sent frame | the link, watchdog |
 //! | 0 | `idle` | | always | preparation, log |
@@ -31,6 +31,7 @@ use defmt_rtt as _;
 mod app {
     use crate::shared::Parts;
     use board::bridge::Bridge;
+    use board::coil::Coil;
     use board::converter::Converters;
     use board::crash::BlackBox;
     use board::crc_unit::CrcUnit;
@@ -44,6 +45,7 @@ mod app {
     use core::sync::atomic::{AtomicBool, Ordering};
     use crepitus_device::counters::Counters;
     use crepitus_device::drive::Boot;
+    use crepitus_device::drive::coil::CoilOutput;
     use crepitus_device::drive::command::{Command, Inputs};
     use crepitus_device::drive::commits::Commits;
     use crepitus_device::drive::exchange::Exchange;
@@ -94,6 +96,7 @@ mod app {
         line: EnableLine,
         comms_line: OtherLine,
         bridge: Bridge,
+        coil: Coil,
         black_box: BlackBox,
         output_access: OutputAccess,
         begin: BeginOfTick,
@@ -145,6 +148,7 @@ mod app {
             line: board.line,
             comms_line: board.comms_line,
             bridge: board.bridge,
+            coil: board.coil,
             black_box: board.black_box,
             output_access: OutputAccess::protect(cx.core.MPU),
             begin: board.begin,
@@ -159,14 +163,14 @@ mod app {
         // Last, so that the first tick is like the others.
         local
             .output_access
-            .write(|| ticks::start(&local.bridge, &local.middle, &local.begin));
+            .write(|| ticks::start(&local.bridge, &local.middle, &local.begin, &local.coil));
         (shared, local)
     }
 
     #[task(
         binds = TIM3, priority = 4,
         local = [
-            middle, converters, clock, line, comms_line, bridge, output_access, black_box,
+            middle, converters, clock, line, comms_line, bridge, coil, output_access, black_box,
             middles: u8 = 0,
         ],
         shared = [command, command_plan, &exchange, &is_running, &is_link_due, &counters, &checkins]
@@ -181,10 +185,15 @@ mod app {
         if *part.middles >= 2 {
             cx.shared.is_running.store(true, Ordering::Relaxed);
         }
+        let coil_is_driven = part.coil.is_driven();
         let inputs = Inputs {
             current_a: part.converters.take_sensor_a(),
             monitor_a: part.converters.take_monitor_a(),
             slow: part.converters.take_slow(),
+            coil_a: coil_is_driven
+                .then(|| part.converters.take_coil_a())
+                .flatten(),
+            coil_has_tripped: part.coil.has_tripped(),
             interval_us: part.clock.interval_us(),
             enable_is_on: part.line.is_on(),
             comms_enable_is_on: part.comms_line.is_on(),
@@ -199,6 +208,10 @@ mod app {
             match outputs.bridge {
                 motor::Bridge::Float => part.bridge.float(),
                 motor::Bridge::Driven(_) => part.bridge.drive(outputs.duty),
+            }
+            match outputs.coil {
+                CoilOutput::Asleep => part.coil.sleep(),
+                CoilOutput::Driven(duty) => part.coil.drive(duty),
             }
         });
         cx.shared.is_link_due.store(true, Ordering::Relaxed);

@@ -3,7 +3,7 @@
 //! | part | from |
 //! |---|---|
 //! | RCC, PWR, CRC, GPIO, TIM1 to TIM5, TIM8, DMA, IWDG, RNG, DBGMCU | the library |
-//! | FLASH, the break of TIM1, ADC1 to ADC3, USART6, OTG_FS | [`crate::devices`] |
+//! | FLASH, the breaks of TIM1 and TIM8, ADC1 to ADC3, USART6, OTG_FS | [`crate::devices`] |
 //!
 //! Wired: interrupts, the requests of USART6 to DMA2, the trigger outputs of
 //! TIM2, TIM3 and TIM8 to the converters, the encoder's channels to TIM5, the watchdog
@@ -19,7 +19,7 @@ mod waits;
 pub(crate) mod wires;
 
 use crate::devices::adc::{self, Adc, Adcs, Analog};
-use crate::devices::brake::Brake;
+use crate::devices::brake::{self, Brake};
 use crate::devices::flash::Flash;
 use crate::devices::otg::{self, Otg};
 use crate::devices::registers::AsRegisters;
@@ -64,7 +64,8 @@ pub(crate) struct Chip {
     pub(crate) rcc: Arc<Rcc>,
     pub(crate) flash: Arc<Flash>,
     pub(crate) ports: Vec<Arc<Gpio>>,
-    pub(crate) brake: Arc<Brake>,
+    /// Of TIM1 and of TIM8.
+    pub(crate) brakes: [Arc<Brake>; 2],
     pub(crate) adcs: Arc<Adcs>,
     pub(crate) analog: Arc<Analog>,
     pub(crate) pins: Arc<Pins>,
@@ -160,7 +161,11 @@ impl Chip {
         let analog = Arc::new(Analog::new(pins.clone()));
         Self::add_dma(&mut parts, &nets, &dma);
         let adcs = Self::add_adcs(&mut parts, &nets, &rates, &now, &analog);
-        let brake = Self::add_bridge_timer(&mut parts, &nets, &pins);
+        let brakes = [
+            (brake::TIM1, 0x4001_0000, 0, [24, 25, 26, 27]),
+            (brake::TIM8, 0x4001_0400, 1, [43, 44, 45, 46]),
+        ];
+        let brakes = brakes.map(|timer| Self::add_advanced_timer(&mut parts, &nets, &pins, timer));
         let quadrature = Self::add_timers(&mut parts, &nets, &adcs);
         let usart = Self::add_usart(&mut parts, &nets, &rates, &now, &dma[1]);
         let otg = Self::add_otg(&mut parts, &nets, &rates, &now, &pins);
@@ -170,7 +175,7 @@ impl Chip {
             rcc,
             flash,
             ports,
-            brake,
+            brakes,
             adcs,
             analog,
             pins,
@@ -252,22 +257,38 @@ impl Chip {
         adcs
     }
 
-    fn add_bridge_timer(parts: &mut Vec<Part>, nets: &Nets<'_>, pins: &Arc<Pins>) -> Arc<Brake> {
+    /// Its break, address, bit of its clock, and interrupts: break, update, trigger, compare.
+    fn add_advanced_timer(
+        parts: &mut Vec<Part>,
+        nets: &Nets<'_>,
+        pins: &Arc<Pins>,
+        (input, base, bit, [on_break, update, trigger, compare]): (
+            brake::Input,
+            u32,
+            u32,
+            [u16; 4],
+        ),
+    ) -> Arc<Brake> {
         let timer = timer("advanced", 16);
-        for (port, interrupt) in [("irq-up", 25), ("irq-trg", 26), ("irq-cc", 27)] {
+        for (port, interrupt) in [
+            ("irq-up", update),
+            ("irq-trg", trigger),
+            ("irq-cc", compare),
+        ] {
             let connected = timer.connect(port, nets.interrupt(interrupt));
             connected.expect("an advanced timer has it");
         }
         let brake = Arc::new(Brake::new(
+            input,
             registers(&*timer),
             Arc::new(Library(timer)),
-            nets.interrupt(24),
+            nets.interrupt(on_break),
             pins.clone(),
         ));
-        let (clock, gate) = (Clock::Timers2, Gate::apb2(0));
+        let (clock, gate) = (Clock::Timers2, Gate::apb2(bit));
         parts.push(Part::new(
-            "TIM1",
-            0x4001_0000,
+            input.timer,
+            base,
             clock,
             gate,
             brake.clone(),

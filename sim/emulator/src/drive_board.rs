@@ -15,11 +15,15 @@
 //! without dead time. The encoder's edges are evenly spaced in the last six
 //! tenths of a half. The comparator is evaluated as a half ends.
 //!
+//! The driver of the vibration actuator's coil hangs on TIM8 and on the gate of both
+//! enable lines; its nFAULT is at PA6, its current at PA3.
+//!
 //! A pin that is not set up for its wire connects nothing, and
 //! [`DriveBoard::errors`] names it, as it does a shoot-through, a converter
 //! that samples at the wrong time, and the rest of [`BoardError`].
 
 mod access;
+mod coil_driver;
 mod comms_side;
 mod encoder_edges;
 mod half_bridges;
@@ -36,7 +40,9 @@ use crepitus_device::drive::plausibility::TRIP_A;
 use crepitus_scene::Scene;
 use encoder_edges::Edges;
 use half_bridges::Quiet;
-use wiring::{BREAK, COMMS_LINE, JOINT, LINE, LINE_BACK, MONITOR, MOTOR, SENSOR, SUPPLY};
+use wiring::{
+    BREAK, COIL, COIL_FAULT, COMMS_LINE, JOINT, LINE, LINE_BACK, MONITOR, MOTOR, SENSOR, SUPPLY,
+};
 
 pub use comms_side::CommsSide;
 pub use native_comms::NativeComms;
@@ -47,6 +53,9 @@ pub const HALF: Time = Time::from_us(25);
 
 /// Share of the converters' reference per ampere: 33 mΩ, 20 V/V, of 3.3 V.
 const SHARE_PER_A: f64 = 20.0 * 0.033 / 3.3;
+
+/// The same of the coil's: 25 mΩ.
+const COIL_SHARE_PER_A: f64 = 20.0 * 0.025 / 3.3;
 
 /// Faults of the board.
 #[derive(Clone, Copy, Debug, Default)]
@@ -95,6 +104,7 @@ impl<C: CommsSide> DriveBoard<C> {
     pub fn new(image: &Image, scene: &Scene, comms: C) -> Self {
         let mut mcu = Stm32f405::new(image);
         mcu.drive_pin(BREAK, true);
+        mcu.drive_pin(COIL_FAULT, true);
         Self {
             mcu,
             leg: Leg::new(scene),
@@ -151,6 +161,8 @@ impl<C: CommsSide> DriveBoard<C> {
         self.mcu.set_analog(SENSOR, 0.5 + SHARE_PER_A * sensor_a);
         // Wired the other way round.
         self.mcu.set_analog(MONITOR, 0.5 - SHARE_PER_A * monitor_a);
+        let coil_share = 0.5 + COIL_SHARE_PER_A * self.leg.coil_a();
+        self.mcu.set_analog(COIL, coil_share);
         self.show_slow_sensors();
         self.end = self.end.max(begin) + HALF;
         let start = self.end - HALF;
@@ -185,7 +197,9 @@ impl<C: CommsSide> DriveBoard<C> {
     fn check_wiring(&mut self, turned: i32, counter: i32) {
         let quiet = self.quiet.take();
         if !self.is_second {
-            self.quiet = Some(half_bridges::quiet(&self.mcu));
+            let bridge = half_bridges::quiet(&self.mcu);
+            let coil = coil_driver::quiet(&self.mcu);
+            self.quiet = Some(coil.map_or(bridge, |coil| bridge.and(coil)));
         }
         let middle = self.end - HALF;
         let Self {
@@ -194,6 +208,7 @@ impl<C: CommsSide> DriveBoard<C> {
             samplings,
             ..
         } = self;
+        coil_driver::count_on(mcu);
         let now = mcu.now();
         let mut report = |error| {
             if !errors.iter().any(|(_, known)| *known == error) {
@@ -246,6 +261,12 @@ impl<C: CommsSide> DriveBoard<C> {
             Terminals::Open
         };
         self.leg.set_terminals(terminals);
+        let is_awake = line && self.comms.line_is_on();
+        let duty = coil_driver::duty(&self.mcu).filter(|_| is_awake);
+        self.leg.set_coil(duty);
+        // Open drain with a pull-up: high while it sleeps, low if the wire is broken.
+        let fails = self.leg.coil_faults().driver_fails;
+        self.mcu.drive_pin(COIL_FAULT, !fails);
     }
 
     fn check_comparator(&mut self) {

@@ -254,7 +254,9 @@ impl Stm32f405 {
         }
         if self.chip.bus.take_pins_changed() {
             self.connect_encoder();
-            self.chip.brake.pins_changed();
+            for brake in &self.chip.brakes {
+                brake.pins_changed();
+            }
         }
         self.chip.bus.settle();
     }

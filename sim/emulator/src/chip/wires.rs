@@ -6,7 +6,7 @@ use rsemu::core::wire::{Level, Wire, WireId, WireIdAllocator, WireSink, WireSour
 use rsemu::cpu::arm::v7m::ArmV7m;
 use rsemu::dev::stm32::rcc::Rcc;
 use std::cell::Cell;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
 /// Makes wires to a core and to devices.
@@ -20,7 +20,7 @@ pub(crate) struct Nets<'a> {
 /// The interrupt lines that are high, one bit each.
 #[derive(Debug, Default)]
 pub(crate) struct Raised {
-    lines: AtomicU32,
+    lines: AtomicU64,
     /// The exception of each line.
     exceptions: Mutex<Vec<u16>>,
 }
@@ -46,9 +46,9 @@ impl Raised {
 impl WireSink for Raised {
     fn set_level(&self, _: WireId, line: u32, level: Level) {
         if level.is_high() {
-            self.lines.fetch_or(1 << line, Relaxed);
+            self.lines.fetch_or(1_u64 << line, Relaxed);
         } else {
-            self.lines.fetch_and(!(1 << line), Relaxed);
+            self.lines.fetch_and(!(1_u64 << line), Relaxed);
         }
     }
 }
@@ -74,7 +74,7 @@ impl<'a> Nets<'a> {
         let pin = self.core.sink(&format!("irq{number}"), &[id]);
         let pin = pin.expect("the core has this interrupt");
         let place = self.interrupts.get();
-        assert!(place < u32::BITS, "a bit for each line");
+        assert!(place < u64::BITS, "a bit for each line");
         lock(&self.raised.exceptions).push(16 + number);
         self.interrupts.set(place + 1);
         let wire = Wire::builder()

@@ -34,9 +34,25 @@ const LOCKED_1: u32 = 0xff | 3 << 8 | BKE | BKP | AOE;
 /// OSSI, OSSR.
 const LOCKED_2: u32 = 3 << 10;
 
-/// The pin, and its alternate function.
-pub(crate) const PIN: Pin = Pin::new('B', 12);
-const FUNCTION: Mode = Mode::Alternate(1);
+/// The input of a timer: its pin, and the alternate function that connects it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Input {
+    pub(crate) timer: &'static str,
+    pub(crate) pin: Pin,
+    function: Mode,
+}
+
+/// Those of both advanced timers.
+pub(crate) const TIM1: Input = Input {
+    timer: "TIM1",
+    pin: Pin::new('B', 12),
+    function: Mode::Alternate(1),
+};
+pub(crate) const TIM8: Input = Input {
+    timer: "TIM8",
+    pin: Pin::new('A', 6),
+    function: Mode::Alternate(3),
+};
 
 #[derive(Clone, Copy, Debug, Default)]
 struct State {
@@ -48,6 +64,7 @@ struct State {
 
 /// The break.
 pub(crate) struct Brake {
+    input: Input,
     timer: Arc<dyn MemOps>,
     behind: Arc<dyn Peripheral>,
     interrupt: WireSource,
@@ -64,12 +81,14 @@ impl fmt::Debug for Brake {
 
 impl Brake {
     pub(crate) fn new(
+        input: Input,
         timer: Arc<dyn MemOps>,
         behind: Arc<dyn Peripheral>,
         interrupt: WireSource,
         pins: Arc<Pins>,
     ) -> Self {
         Self {
+            input,
             timer,
             behind,
             interrupt,
@@ -98,8 +117,14 @@ impl Brake {
 
     /// Whether the break is active.
     fn is_break_active(&self, bdtr: u32) -> bool {
-        let is_high = lock(&self.state).input && self.pins.mode(PIN) == FUNCTION;
+        let is_connected = self.pins.mode(self.input.pin) == self.input.function;
+        let is_high = lock(&self.state).input && is_connected;
         bdtr & BKE != 0 && is_high == (bdtr & BKP != 0)
+    }
+
+    /// Its pin, and the timer.
+    pub(crate) fn input(&self) -> &Input {
+        &self.input
     }
 
     /// Sets the level at the pin.

@@ -27,7 +27,7 @@ const CR1: u32 = 0x4001_0000;
 const CR2: u32 = 0x4001_0004;
 const CCMR1: u32 = 0x4001_0018;
 const CCER: u32 = 0x4001_0020;
-const CNT: u32 = 0x4001_0024;
+pub(super) const CNT: u32 = 0x4001_0024;
 const ARR: u32 = 0x4001_002c;
 const CCR1: u32 = 0x4001_0034;
 const BDTR: u32 = 0x4001_0044;
@@ -62,6 +62,16 @@ const BOTH: Switches = [Some(true); 2];
 pub(super) struct Quiet {
     pub(super) before: Time,
     pub(super) after: Time,
+}
+
+impl Quiet {
+    /// Where both are.
+    pub(super) fn and(self, other: Self) -> Self {
+        Self {
+            before: self.before.min(other.before),
+            after: self.after.min(other.after),
+        }
+    }
 }
 
 /// TIM1's registers.
@@ -250,11 +260,19 @@ pub(super) fn quiet(mcu: &Stm32f405) -> Quiet {
 
 /// Time since TIM1 was at its bottom, if it runs.
 pub(super) fn phase(mcu: &Stm32f405) -> Option<Time> {
-    let control = word(mcu, CR1);
+    phase_of(mcu, CR1)
+}
+
+/// The same of the advanced timer at this address.
+pub(super) fn phase_of(mcu: &Stm32f405, base: u32) -> Option<Time> {
+    let control = word(mcu, base);
     if control & CEN == 0 {
         return None;
     }
-    let (top, count) = (u64::from(word(mcu, ARR)), u64::from(word(mcu, CNT)));
+    let (top, count) = (
+        u64::from(word(mcu, base + (ARR - CR1))),
+        u64::from(word(mcu, base + (CNT - CR1))),
+    );
     let clocks = if control & DIR == 0 {
         count
     } else {

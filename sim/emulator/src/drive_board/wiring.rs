@@ -4,6 +4,7 @@
 //! that the board names every mismatch, from the time on at which the
 //! bridge's timer runs: that is the last that the image starts.
 
+use super::coil_driver;
 use super::half_bridges::{self, Quiet};
 use crate::mcu::{Mcu, Pin, Sampling};
 use crate::pins::{Mode, PinSetup, Pull};
@@ -33,14 +34,21 @@ pub(super) const SUPPLY: Pin = Pin::new('C', 3);
 pub(super) const MOTOR: Pin = Pin::new('A', 2);
 pub(super) const JOINT: Pin = Pin::new('C', 2);
 
+/// The driver of the coil: its inputs, its nFAULT, and the amplifier of its current.
+pub(super) const COIL_IN1: Pin = Pin::new('C', 8);
+pub(super) const COIL_IN2: Pin = Pin::new('C', 9);
+pub(super) const COIL_FAULT: Pin = Pin::new('A', 6);
+pub(super) const COIL: Pin = Pin::new('A', 3);
+
 /// The converters, from 1 on, and the pins that they convert around the middle of a
 /// tick.
-const CONVERTED: [(u32, Pin); 5] = [
+const CONVERTED: [(u32, Pin); 6] = [
     (1, SENSOR),
     (2, MONITOR),
     (3, SUPPLY),
     (3, MOTOR),
     (3, JOINT),
+    (3, COIL),
 ];
 
 /// Those of the currents.
@@ -78,7 +86,7 @@ const fn wire(pin: Pin, to: &'static str, mode: Mode, pull: Option<Pull>) -> Wir
 }
 
 /// All wires, as docs/hardware.md has them.
-const WIRES: [Wire; 17] = {
+const WIRES: [Wire; 21] = {
     use Mode::{Alternate, Analog, Input, Output};
     const DOWN: Option<Pull> = Some(Pull::Down);
     const UP: Option<Pull> = Some(Pull::Up);
@@ -113,6 +121,25 @@ const WIRES: [Wire; 17] = {
         wire(SUPPLY, "divider of the supply, ADC3 IN13", Analog, None),
         wire(MOTOR, "temperature of the motor, ADC3 IN2", Analog, None),
         wire(JOINT, "sensor of the joint, ADC3 IN12", Analog, None),
+        wire(
+            COIL_IN1,
+            "IN1 of the coil's driver, TIM8 CH3",
+            Alternate(3),
+            DOWN,
+        ),
+        wire(
+            COIL_IN2,
+            "IN2 of the coil's driver, TIM8 CH4",
+            Alternate(3),
+            DOWN,
+        ),
+        wire(
+            COIL_FAULT,
+            "nFAULT of the coil's driver, TIM8 BKIN",
+            Alternate(3),
+            DOWN,
+        ),
+        wire(COIL, "amplifier of the coil, ADC3 IN3", Analog, None),
         wire(COMMS_LINE, "enable line of comms", Input, DOWN),
         wire(Pin::new('A', 0), "encoder A, TIM5 CH1", Alternate(2), UP),
         wire(Pin::new('A', 1), "encoder B, TIM5 CH2", Alternate(2), UP),
@@ -171,6 +198,12 @@ pub enum BoardError {
     /// The timer does not make the bridge's PWM.
     #[error("TIM1 does not make the PWM of the bridge: {what}")]
     Pwm {
+        /// What is wrong.
+        what: &'static str,
+    },
+    /// The timer does not drive the coil's driver as it should.
+    #[error("TIM8 does not make the PWM of the coil's driver: {what}")]
+    CoilPwm {
         /// What is wrong.
         what: &'static str,
     },
@@ -239,6 +272,7 @@ pub(super) fn check(mcu: &Stm32f405, mut report: impl FnMut(BoardError)) {
         }
     }
     half_bridges::check(mcu, &mut report);
+    coil_driver::check(mcu, half_bridges::phase(mcu), &mut report);
     let units = mcu.link_character_units();
     if units.abs_diff(CHARACTER_UNITS) > MOST_OFF_UNITS {
         report(BoardError::Baud { units });

@@ -16,6 +16,7 @@ pub(super) const PARTS: &[Part] = &[
     part("PWR", 0x4000_7000, &[register("CR", 0, POWER).from(0x4000)]),
     part("IWDG", 0x4000_3000, WATCHDOG),
     part("TIM1", 0x4001_0000, TIMER),
+    part("TIM8", 0x4001_0400, TIMER),
     part("TIM2", 0x4000_0000, TIMER_32),
     part("TIM3", 0x4000_0400, TIMER),
     part("TIM4", 0x4000_0800, TIMER),
@@ -158,6 +159,7 @@ const CLOCKS: &[Register] = &[
         0x44,
         &[
             bit("TIM1", 0),
+            bit("TIM8", 1),
             bit("USART6", 5),
             bit("ADC1", 8),
             bit("ADC2", 9),

@@ -1,7 +1,6 @@
 //! The chip as a microcontroller.
 
 use super::{CORE, LINK_FUNCTION, LINK_RECEIVES, LINK_SENDS, Stm32f405};
-use crate::devices::brake;
 use crate::devices::usart::Character;
 use crate::mcu::{Access, Mcu, Pin, Reset, Sampling, Watch};
 use crate::pins::PinSetup;
@@ -70,11 +69,13 @@ impl Mcu for Stm32f405 {
         if let Some(port) = self.port(pin) {
             port.set_external(pin.number(), level);
         }
-        if pin == brake::PIN {
-            self.chip.bus.touch("TIM1");
-            self.chip.brake.set_input(level);
-            self.settle();
+        for brake in &self.chip.brakes {
+            if pin == brake.input().pin {
+                self.chip.bus.touch(brake.input().timer);
+                brake.set_input(level);
+            }
         }
+        self.settle();
     }
 
     fn pin_setup(&self, pin: Pin) -> PinSetup {
@@ -184,7 +185,8 @@ impl Mcu for Stm32f405 {
                     .iter()
                     .any(|adc| adc.uses_unmodelled_features()),
             ),
-            ("TIM1", self.chip.brake.uses_unmodelled_features()),
+            ("TIM1", self.chip.brakes[0].uses_unmodelled_features()),
+            ("TIM8", self.chip.brakes[1].uses_unmodelled_features()),
             ("FLASH", self.chip.flash.uses_unmodelled_features()),
             ("OTG_FS", self.chip.otg.uses_unmodelled_features()),
         ];

@@ -1,5 +1,6 @@
 //! The drive's real image: see each module.
 
+mod actuator;
 mod boot;
 mod budget;
 mod code;

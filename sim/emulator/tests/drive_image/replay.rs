@@ -26,12 +26,16 @@ const SENSOR_DATA: [u32; 4] = [0x4001_204c, 0x4001_203c, 0x4001_2040, 0x4001_204
 const MONITOR_DATA: [u32; 4] = [0x4001_214c, 0x4001_213c, 0x4001_2140, 0x4001_2144];
 const SLOW_SEQUENCE: u32 = 0x4001_2234;
 const SLOW_DATA: u32 = 0x4001_224c;
+/// The injected conversion of the third converter, and the flags of the coil's timer: both
+/// are read while the coil is driven only.
+const COIL_DATA: u32 = 0x4001_223c;
+const COIL_FLAGS: u32 = 0x4001_0410;
 const CLOCK: u32 = 0x4000_0024;
 const LINE: u32 = 0x4002_0410;
 const BREAK_FLAGS: u32 = 0x4001_0010;
 const LINK_CONTROL: u32 = 0x4001_140c;
 const RECEIVED_LEFT: u32 = 0x4002_642c;
-const REGISTERS: [u32; 17] = [
+pub(crate) const REGISTERS: [u32; 19] = [
     ENCODER,
     SENSOR_FLAGS,
     SENSOR_DATA[0],
@@ -44,6 +48,8 @@ const REGISTERS: [u32; 17] = [
     MONITOR_DATA[3],
     SLOW_SEQUENCE,
     SLOW_DATA,
+    COIL_DATA,
+    COIL_FLAGS,
     CLOCK,
     LINE,
     BREAK_FLAGS,
@@ -76,6 +82,13 @@ fn slow(channel: u32, counts: u32) -> SlowInput {
         2 => SlowInput::MotorC((share * 3.3 - 0.5) * 100.0),
         _ => SlowInput::JointTurns(share),
     }
+}
+
+/// As the counts of the coil's current become amperes, in the same arithmetic.
+fn coil_amperes(counts: u32) -> f32 {
+    #[expect(clippy::cast_precision_loss, reason = "twelve bits")]
+    let share = counts as f32 * (1.0 / 4096.0);
+    (share - 0.5) * (3.3 / (20.0 * 0.025))
 }
 
 /// The native drive, led by what the image has read.
@@ -121,6 +134,8 @@ impl Replay<'_> {
                 self.inputs.monitor_a = all.map(|sum| -amperes(sum)).or(self.inputs.monitor_a);
             }
             SLOW_DATA => self.inputs.slow = slow(self.channel, access.value),
+            COIL_DATA => self.inputs.coil_a = Some(coil_amperes(access.value)),
+            COIL_FLAGS => self.inputs.coil_has_tripped = access.value >> 7 & 1 == 1,
             CLOCK => {
                 self.inputs.interval_us = access.value.wrapping_sub(self.clock_us);
                 self.clock_us = access.value;
@@ -263,7 +278,7 @@ fn every_symptom_is_that_of_the_native_drive_bit_for_bit() {
 
 /// Gives the native drive what the image has read, and compares what they have sent: how
 /// many ticks of it armed.
-fn compare(host: &mut Host) -> usize {
+pub(crate) fn compare(host: &mut Host) -> usize {
     let accesses = host.board.mcu_mut().take_accesses();
     let listens = accesses
         .iter()

@@ -38,7 +38,7 @@ preset = "coarse"
 "#;
 
 /// The scene with these effects, besides crepitus and bone shaping.
-fn moving(effects: &str) -> Scene {
+pub(crate) fn moving(effects: &str) -> Scene {
     let mut text = String::from(
         "version = 1\ntitle = \"Everything happens\"\nduration_s = 10.0\n\
          [motion]\nkind = \"velocity-knots\"\n",
@@ -238,12 +238,12 @@ impl Watch for Renderings {
     }
 }
 
-fn tick_of(at: Time) -> u64 {
+pub(crate) fn tick_of(at: Time) -> u64 {
     at.units() / Time::from_us(50).units()
 }
 
 /// Watches the next period.
-fn renderings(host: &mut Host) -> BTreeMap<u64, u64> {
+pub(crate) fn renderings(host: &mut Host) -> BTreeMap<u64, u64> {
     let mut renderings = Renderings::default();
     host.watch(PERIOD_TICKS, &mut renderings);
     renderings.0
@@ -296,7 +296,7 @@ fn a_symptom_adds_no_more_than_its_cycles() {
 }
 
 /// The worst tick of a period.
-fn worst(host: &mut Host) -> u64 {
+pub(crate) fn worst(host: &mut Host) -> u64 {
     let mut cycles = Cycles::default();
     host.watch(PERIOD_TICKS, &mut cycles);
     cycles.worst_busy_cycles()
