@@ -1,5 +1,6 @@
 //! The loops and limits around the joint: shaft in, motor out.
 
+pub mod chirp;
 pub mod current_loop;
 pub mod device_limits;
 pub mod encoder;
