@@ -1,0 +1,50 @@
+//! Means over narrow bands of frequency: the measured impedance, as it is drawn
+//! and as the fit begins from it.
+
+use crate::spectrum::Line;
+use realfft::num_complex::Complex;
+
+/// Bands of an octave.
+const PER_OCTAVE: f64 = 24.0;
+
+/// Lines that lie together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Mean {
+    /// Mean of ω with the weights, rad/s.
+    pub(crate) omega: f64,
+    /// Least squares of volts over amperes, Ω.
+    pub(crate) impedance: Complex<f64>,
+    /// Sum of |I|².
+    pub(crate) weight: f64,
+    /// Sum of |V|².
+    pub(crate) excitation: f64,
+}
+
+/// One after the other; at least one line each.
+pub(crate) fn bands(lines: &[Line]) -> impl Iterator<Item = &[Line]> {
+    lines.chunk_by(|a, b| band_of(a.omega) == band_of(b.omega))
+}
+
+fn band_of(omega: f64) -> f64 {
+    (omega.log2() * PER_OCTAVE).floor()
+}
+
+impl Mean {
+    /// Of the lines of a band.
+    pub(crate) fn of(band: &[Line]) -> Self {
+        let weight: f64 = band.iter().map(|line| line.amperes.norm_sqr()).sum();
+        let together: Complex<f64> = (band.iter())
+            .map(|line| line.volts * line.amperes.conj())
+            .sum();
+        let excitation: f64 = band.iter().map(|line| line.volts.norm_sqr()).sum();
+        let moment: f64 = (band.iter())
+            .map(|line| line.volts.norm_sqr() * line.omega)
+            .sum();
+        Self {
+            omega: moment / excitation,
+            impedance: together / weight,
+            weight,
+            excitation,
+        }
+    }
+}

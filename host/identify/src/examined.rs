@@ -1,0 +1,276 @@
+//! One chirp: its fit, or what it shows instead of an actuator.
+
+use crate::bands::{Mean, bands};
+use crate::estimate::derived;
+use crate::fit::{Fit, Residual};
+use crate::refusal::Refusal;
+use crate::spectrum::{Line, Spectrum};
+use crate::{Band, Series};
+use realfft::num_complex::Complex;
+use std::f64::consts::TAU;
+
+/// Least excitation of a band, as a share of the median of all: that of a linear
+/// chirp over six octaves is 3 %.
+const LEAST_EXCITATION: f64 = 0.01;
+
+/// Least voltage, V rms.
+const LEAST_V: f64 = 0.005;
+
+/// At rest is what has less than this share of the greatest voltage, over this
+/// time, s: at the start, and at the end, where the mass has to calm down.
+const REST_SHARE: f64 = 0.02;
+const REST_S: [f64; 2] = [0.01, 0.15];
+
+/// More is no coil, Ω.
+const OPEN_OHM: f64 = 100.0;
+
+/// The motion is seen from so many standard deviations on, and from this share of
+/// the impedance.
+const SEEN: f64 = 8.0;
+const LEAST_MOTIONAL_SHARE: f64 = 0.01;
+
+/// Distance of the resonance from the ends of the band.
+const FROM_START: f64 = 1.4;
+const FROM_END: f64 = 2.5;
+
+/// Greatest part of the motion's share of the current that may stay unexplained: in a
+/// narrow band, and over all; and the floor of both, as a share of the current.
+const UNEXPLAINED_THERE: f64 = 0.1;
+const UNEXPLAINED: f64 = 0.05;
+const LEAST_UNEXPLAINED: f64 = 0.003;
+
+/// Standard deviations from which a misfit of a narrow band is one.
+const MISFIT: f64 = 6.0;
+
+/// Ratio of the residual to the noise from which there is more than noise.
+const OVER_NOISE: f64 = 1.15;
+
+/// A second resonance counts from this height over its standard deviation and over
+/// the first, and is the cause if it explains this share of the misfit. Stops and
+/// friction reach a fifth.
+const SECOND_DEVIATIONS: f64 = 10.0;
+const SECOND_HEIGHT: f64 = 0.02;
+const SECOND_SHARE: f64 = 0.35;
+
+/// A clipped current is at its limit for this share of the time that it is above 70 %
+/// of it; a sine is within 0.4 % of its amplitude for 11 %.
+const CLIPPED: f64 = 0.2;
+
+/// A chirp that one mass on one spring explains.
+#[derive(Clone, Debug)]
+pub(crate) struct Examined {
+    pub(crate) fit: Fit,
+    pub(crate) means: Vec<Mean>,
+    /// Greatest voltage, V.
+    pub(crate) amplitude_v: f64,
+}
+
+impl Examined {
+    /// Fits a chirp; the mass, if it is known, is for the text of a refusal only.
+    pub(crate) fn of(series: &Series, band: Band, mass_kg: Option<f64>) -> Result<Self, Refusal> {
+        let amplitude_v = at_rest_at_both_ends(series)?;
+        let spectrum = Spectrum::of(series, band);
+        let means: Vec<Mean> = bands(&spectrum.lines).map(Mean::of).collect();
+        is_excited(&means)?;
+        conducts(&spectrum.lines, series)?;
+        let no_resonance = Refusal::NoResonance {
+            from_hz: band.from_hz,
+            to_hz: band.to_hz,
+        };
+        let no_resonance = || clipped(series).unwrap_or_else(|| no_resonance.clone());
+        let fit = Fit::of(&spectrum).ok_or_else(no_resonance)?;
+        let examined = Self {
+            fit,
+            means,
+            amplitude_v,
+        };
+        let coupling = derived(&examined.fit, |z| z.coupling);
+        let is_seen = coupling.half_width * SEEN < 2.0 * coupling.value.abs()
+            && examined.fit.impedance.motional_share().abs() > LEAST_MOTIONAL_SHARE;
+        if !is_seen {
+            return Err(no_resonance());
+        }
+        examined.is_explained(series, mass_kg)?;
+        examined.is_inside(band)?;
+        examined.is_possible()?;
+        Ok(examined)
+    }
+
+    /// Amplitude of the mass at its greatest, m, for a mass in kg.
+    pub(crate) fn excursion_m(&self, mass_kg: f64) -> f64 {
+        let z = &self.fit.impedance;
+        let steps = (1..=400).map(|i| 0.005 * f64::from(i));
+        let reach = steps
+            .map(|step| z.reach(step * z.resonance))
+            .fold(0.0, f64::max);
+        (z.coupling / mass_kg).max(0.0).sqrt() * reach * self.amplitude_v
+    }
+
+    fn is_explained(&self, series: &Series, mass_kg: Option<f64>) -> Result<(), Refusal> {
+        let z = &self.fit.impedance;
+        let residual = &self.fit.residual;
+        let most = |share: f64| f64::max(share * z.motional_share().abs(), LEAST_UNEXPLAINED);
+        let is_systematic =
+            residual.systematic > most(UNEXPLAINED_THERE) && residual.deviations > MISFIT;
+        let is_noisy = residual.beyond_noise > most(UNEXPLAINED)
+            && residual.over_noise.is_none_or(|ratio| ratio > OVER_NOISE);
+        let is_double = residual.second.is_some_and(|second| {
+            second.deviations > SECOND_DEVIATIONS && second.height > SECOND_HEIGHT
+        });
+        if !(is_systematic || is_noisy || is_double) {
+            return Ok(());
+        }
+        Err(clipped(series).unwrap_or_else(|| self.misfit(residual, mass_kg)))
+    }
+
+    fn misfit(&self, residual: &Residual, mass_kg: Option<f64>) -> Refusal {
+        let is_above = |hz: f64| TAU * hz > FROM_END * self.fit.impedance.resonance;
+        let second = residual.second.filter(|second| {
+            second.share > SECOND_SHARE && !(second.is_broad && is_above(second.hz))
+        });
+        if let Some(second) = second {
+            return Refusal::SecondResonance {
+                hz: second.hz,
+                height: 100.0 * second.height,
+                deviations: second.deviations,
+            };
+        }
+        if is_above(residual.systematic_hz) && residual.deviations > MISFIT {
+            return Refusal::NotAnInductance {
+                hz: residual.systematic_hz,
+                share: 100.0 * residual.systematic,
+            };
+        }
+        Refusal::Nonlinear {
+            share: 100.0 * residual.beyond_noise.max(residual.systematic),
+            swing: mass_kg.map_or_else(String::new, |mass_kg| {
+                let mm = 1e3 * self.excursion_m(mass_kg);
+                format!(" (a linear one would swing by ±{mm:.2} mm)")
+            }),
+        }
+    }
+
+    fn is_inside(&self, band: Band) -> Result<(), Refusal> {
+        let hz = self.fit.impedance.resonance.abs() / TAU;
+        if hz < FROM_START * band.from_hz || FROM_END * hz > band.to_hz {
+            return Err(Refusal::AtEdge {
+                resonance_hz: hz,
+                from_hz: band.from_hz,
+                to_hz: band.to_hz,
+                below_hz: hz / FROM_START,
+                above_hz: hz * FROM_END,
+            });
+        }
+        Ok(())
+    }
+
+    fn is_possible(&self) -> Result<(), Refusal> {
+        let z = &self.fit.impedance;
+        // A coil may have next to no inductance: its interval has to reach zero at least.
+        let inductance = derived(&self.fit, |z| z.inductance);
+        let checked = [
+            ("the resistance (Ω)", z.resistance),
+            (
+                "the inductance (mH)",
+                1e3 * (inductance.value + 2.0 * inductance.half_width),
+            ),
+            ("Bl²/m (Ω/s)", z.coupling),
+            ("the flexure's damping ratio", 0.5 * z.damping / z.resonance),
+        ];
+        match checked.into_iter().find(|(_, value)| *value <= 0.0) {
+            Some((what, value)) => Err(Refusal::Negative { what, value }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The greatest voltage, if there is none where the recording begins and ends.
+fn at_rest_at_both_ends(series: &Series) -> Result<f64, Refusal> {
+    let mean = series.volts().iter().sum::<f64>() / series.volts().len() as f64;
+    let rms = |part: &mut dyn Iterator<Item = &f64>, samples: usize| {
+        (part.map(|v| (v - mean).powi(2)).sum::<f64>() / samples as f64).sqrt()
+    };
+    let volts = series.volts();
+    let all_v = rms(&mut volts.iter(), volts.len());
+    if all_v < LEAST_V {
+        return Err(Refusal::NoVoltage { volts: all_v });
+    }
+    let greatest_v = volts
+        .iter()
+        .fold(0.0, |most, v| f64::max(most, (v - mean).abs()));
+    let samples = REST_S.map(|rest_s| {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a small positive number"
+        )]
+        let samples = (rest_s / series.step_s()).ceil() as usize;
+        samples.clamp(1, volts.len())
+    });
+    let begins = rms(&mut volts.iter().take(samples[0]), samples[0]);
+    let ends = rms(&mut volts.iter().rev().take(samples[1]), samples[1]);
+    for (place, volts) in [("begins", begins), ("ends", ends)] {
+        if volts > REST_SHARE * greatest_v {
+            return Err(Refusal::NotAtRest { place, volts });
+        }
+    }
+    Ok(greatest_v)
+}
+
+/// Every band has its part of the voltage.
+fn is_excited(means: &[Mean]) -> Result<(), Refusal> {
+    // A logarithmic chirp has the same in each band.
+    let mut all: Vec<f64> = means.iter().map(|mean| mean.excitation).collect();
+    all.sort_by(f64::total_cmp);
+    let median = all.get(all.len() / 2).copied().unwrap_or(0.0);
+    match means
+        .iter()
+        .find(|mean| mean.excitation < LEAST_EXCITATION * median)
+    {
+        Some(mean) => Err(Refusal::LittleExcitation {
+            hz: mean.omega / TAU,
+            share: 100.0 * LEAST_EXCITATION,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// The current follows the voltage at all, and in its direction.
+fn conducts(lines: &[Line], series: &Series) -> Result<(), Refusal> {
+    let common: Complex<f64> = lines.iter().map(|l| l.amperes * l.volts.conj()).sum();
+    let excitation: f64 = lines.iter().map(|l| l.volts.norm_sqr()).sum();
+    let conductance = common.re / excitation;
+    if conductance.abs() * OPEN_OHM < 1.0 {
+        let rms = |values: &[f64]| {
+            (values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64).sqrt()
+        };
+        return Err(Refusal::CoilOpen {
+            amperes: rms(series.amperes()),
+            volts: rms(series.volts()),
+            limit_ohm: OPEN_OHM,
+        });
+    }
+    if conductance < 0.0 {
+        return Err(Refusal::Reversed {
+            resistance_ohm: 1.0 / conductance,
+        });
+    }
+    Ok(())
+}
+
+/// A current that is cut at a level.
+fn clipped(series: &Series) -> Option<Refusal> {
+    let mut amperes: Vec<f64> = series.amperes().iter().map(|a| a.abs()).collect();
+    amperes.sort_by(f64::total_cmp);
+    // Noise on what is just below the level reaches further.
+    let level = *amperes.get(amperes.len() - amperes.len() / 100 - 1)?;
+    let between = |low: f64, high: f64| {
+        let below = |limit: f64| amperes.partition_point(|a| *a < limit * level);
+        (below(high) - below(low)) as f64
+    };
+    let share = between(0.998, 1.002) / between(0.7, f64::INFINITY).max(1.0);
+    (share > CLIPPED).then_some(Refusal::Clipped {
+        amperes: level,
+        share: 100.0 * share,
+    })
+}

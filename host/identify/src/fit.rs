@@ -1,0 +1,228 @@
+//! The impedance that explains the current, by nonlinear least squares.
+//!
+//! Each line of the spectrum says
+//!
+//! ```text
+//! I(ω) = Y(iω)·V(ω) + noise
+//! ```
+//!
+//! with the noise of the current alone, white and as great in every line: the
+//! voltage is known. So plain least squares over all lines are the most likely
+//! impedance, and σ²·(JᵀJ)⁻¹ is the covariance of its numbers.
+
+use crate::bands::{Mean, bands};
+use crate::impedance::{Impedance, NUMBERS};
+use crate::second::second;
+use crate::spectrum::{Line, Spectrum};
+use crate::start::start;
+use nalgebra::{SMatrix, SVector};
+use realfft::num_complex::Complex;
+
+/// A matrix and a column of the numbers.
+pub(crate) type Square = SMatrix<f64, NUMBERS, NUMBERS>;
+/// See [`Square`].
+pub(crate) type Column = SVector<f64, NUMBERS>;
+
+/// Enough for any start; ten are usual.
+const MOST_STEPS: u32 = 100;
+
+/// Relative gain of a step that ends the fit.
+const SMALLEST_GAIN: f64 = 1e-12;
+
+/// The impedance and how well it is known.
+#[derive(Clone, Debug)]
+pub(crate) struct Fit {
+    pub(crate) impedance: Impedance,
+    /// Covariance of its numbers.
+    pub(crate) covariance: Square,
+    /// Of the current in the band that is not explained.
+    pub(crate) residual: Residual,
+}
+
+/// What of the current is left unexplained.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Residual {
+    /// Its root mean square over that of the current in the band, beyond the noise.
+    pub(crate) beyond_noise: f64,
+    /// Its root mean square over that of the noise; `None` if the noise is unknown.
+    pub(crate) over_noise: Option<f64>,
+    /// Greatest mean over a narrow band, relative to the current there.
+    pub(crate) systematic: f64,
+    /// The same over its standard deviation.
+    pub(crate) deviations: f64,
+    /// Where, Hz.
+    pub(crate) systematic_hz: f64,
+    /// The second resonance that would explain most of it.
+    pub(crate) second: Option<Explained>,
+    /// Noise of a sample of the current, A; from the residual.
+    pub(crate) noise_a: f64,
+}
+
+/// What a second resonance would explain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Explained {
+    /// Where, Hz.
+    pub(crate) hz: f64,
+    /// Height of its hump in the impedance over that of the first.
+    pub(crate) height: f64,
+    /// Height over its standard deviation.
+    pub(crate) deviations: f64,
+    /// Share of the power beyond the noise that it explains.
+    pub(crate) share: f64,
+    /// It is so broad that nothing swings.
+    pub(crate) is_broad: bool,
+}
+
+impl Fit {
+    /// Fits; `None` where nothing moves, so that no resonance can be told.
+    pub(crate) fn of(spectrum: &Spectrum) -> Option<Self> {
+        let lines = &spectrum.lines;
+        let means: Vec<Mean> = bands(lines).map(Mean::of).collect();
+        let mut impedance = start(&means)?;
+        let (mut normal, mut right, mut left) = equations(lines, &impedance);
+        let mut caution = 1e-3;
+        for _ in 0..MOST_STEPS {
+            let mut cautious = normal;
+            for i in 0..NUMBERS {
+                cautious[(i, i)] += caution * normal[(i, i)];
+            }
+            let step = cautious.cholesky()?.solve(&right);
+            let next = stepped(&impedance, &step);
+            let (next_normal, next_right, next_left) = equations(lines, &next);
+            if next_left < left {
+                let gain = (left - next_left) / left;
+                (impedance, normal, right, left) = (next, next_normal, next_right, next_left);
+                caution = (caution / 10.0).max(1e-12);
+                if gain < SMALLEST_GAIN {
+                    break;
+                }
+            } else {
+                caution *= 10.0;
+                if caution > 1e12 {
+                    break;
+                }
+            }
+        }
+        let degrees = (2 * lines.len()).checked_sub(NUMBERS).filter(|n| *n > 0)?;
+        let variance = left / degrees as f64;
+        let residual = Residual::of(spectrum, &impedance, &normal, variance);
+        let covariance =
+            normal.cholesky()?.inverse() * (variance * correlation(lines, &impedance, variance));
+        Some(Self {
+            impedance,
+            covariance,
+            residual,
+        })
+    }
+}
+
+fn stepped(from: &Impedance, step: &Column) -> Impedance {
+    let mut numbers = <[f64; NUMBERS]>::from(*from);
+    for (number, step) in numbers.iter_mut().zip(step.iter()) {
+        *number += step;
+    }
+    numbers.into()
+}
+
+/// JᵀJ, Jᵀr and |r|².
+fn equations(lines: &[Line], impedance: &Impedance) -> (Square, Column, f64) {
+    let (mut normal, mut right, mut left) = (Square::zeros(), Column::zeros(), 0.0);
+    for line in lines {
+        let (admittance, derivatives) = impedance.admittance(line.omega);
+        let residual = line.amperes - admittance * line.volts;
+        left += residual.norm_sqr();
+        let columns = derivatives.map(|derivative| derivative * line.volts);
+        for i in 0..NUMBERS {
+            right[i] += (columns[i].conj() * residual).re;
+            for j in 0..=i {
+                normal[(i, j)] += (columns[i].conj() * columns[j]).re;
+            }
+        }
+    }
+    for i in 0..NUMBERS {
+        for j in 0..i {
+            normal[(j, i)] = normal[(i, j)];
+        }
+    }
+    (normal, right, left)
+}
+
+/// What a narrow band's residual has in common with its voltage.
+struct Common {
+    omega: f64,
+    /// Mean residual for a volt, A/V.
+    admittance: Complex<f64>,
+    /// Its variance over that of a line.
+    variance: f64,
+    /// Current for a volt, A/V.
+    expected: f64,
+}
+
+fn common(band: &[Line], impedance: &Impedance) -> Common {
+    let mean = Mean::of(band);
+    let sum: Complex<f64> = (band.iter())
+        .map(|line| {
+            let residual = line.amperes - impedance.admittance(line.omega).0 * line.volts;
+            residual * line.volts.conj()
+        })
+        .sum();
+    Common {
+        omega: mean.omega,
+        admittance: sum / mean.excitation,
+        variance: 1.0 / mean.excitation,
+        expected: impedance.admittance(mean.omega).0.norm(),
+    }
+}
+
+impl Residual {
+    /// `variance` is that of the real part of a line.
+    fn of(spectrum: &Spectrum, impedance: &Impedance, normal: &Square, variance: f64) -> Self {
+        let lines = &spectrum.lines;
+        let of_current: f64 = lines.iter().map(|line| line.amperes.norm_sqr()).sum();
+        let noise = spectrum.noise_square.unwrap_or(0.0);
+        let beyond = (2.0 * variance - noise).max(0.0) * lines.len() as f64;
+        let worst = bands(lines)
+            .map(|band| common(band, impedance))
+            .max_by(|a, b| {
+                let share = |c: &Common| c.admittance.norm() / c.expected;
+                share(a).total_cmp(&share(b))
+            });
+        let samples = spectrum.samples as f64;
+        Self {
+            beyond_noise: (beyond / of_current).sqrt(),
+            over_noise: spectrum
+                .noise_square
+                .map(|noise| (2.0 * variance / noise).sqrt()),
+            systematic: worst
+                .as_ref()
+                .map_or(0.0, |c| c.admittance.norm() / c.expected),
+            deviations: (worst.as_ref()).map_or(0.0, |c| {
+                c.admittance.norm() / (2.0 * variance * c.variance).sqrt()
+            }),
+            systematic_hz: worst.map_or(0.0, |c| c.omega / std::f64::consts::TAU),
+            second: second(lines, impedance, normal).map(|second| Explained {
+                hz: second.hz,
+                height: second.height,
+                is_broad: second.is_broad,
+                deviations: (second.power / variance).sqrt(),
+                share: second.power / beyond.max(second.power),
+            }),
+            // A line of n samples of noise has n times its variance.
+            noise_a: (2.0 * variance / samples).sqrt(),
+        }
+    }
+}
+
+/// Factor for the covariance where neighbouring lines err together: the mean square
+/// of what narrow bands have in common with the voltage, over that of white noise.
+fn correlation(lines: &[Line], impedance: &Impedance, variance: f64) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for band in bands(lines) {
+        let common = common(band, impedance);
+        sum += common.admittance.norm_sqr() / (2.0 * variance * common.variance);
+        count += 1.0;
+    }
+    // The fit takes its own share of what is common.
+    let free = f64::max(count - 0.5 * NUMBERS as f64, 1.0);
+    (sum / free).max(1.0)
+}

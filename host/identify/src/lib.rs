@@ -1,0 +1,66 @@
+//! # Parameters of an actuator from its coil
+//!
+//! A chirp of voltage moves a mass on a flexure; what the motion induces in the coil
+//! shows in its current. So voltage and current alone tell resistance, inductance,
+//! resonance and damping, and the force constant once the mass is known.
+//!
+//! ```text
+//! volts, amperes ─> Series ─> spectrum ─> start ─> fit ─┬─> refused: why, and what to do
+//!                                                        └─> Actuator: values with intervals ─> chart
+//! ```
+//!
+//! | to find | look in |
+//! |---|---|
+//! | a recording, from CSV or in memory | [`Series`] |
+//! | the equations | `impedance.rs`, `mass.rs` |
+//! | the fit and its intervals | `fit.rs`, [`Estimate`] |
+//! | what is refused | [`Refusal`], `examined.rs` |
+//! | measured and fitted impedance as a picture | [`chart`] |
+//!
+//! What no current shows: a ring that moves as one with the shell. The mass then swings
+//! against both, and the resonance is that of m·M/(m + M). Hence the vice.
+#![forbid(unsafe_code)]
+// Counts become numbers; none comes near 2^53.
+#![allow(clippy::cast_precision_loss)]
+
+mod actuator;
+mod bands;
+pub mod chart;
+mod estimate;
+mod examined;
+mod fit;
+mod impedance;
+mod mass;
+mod refusal;
+mod second;
+mod series;
+mod spectrum;
+mod start;
+
+pub use actuator::{Actuator, MassEvidence, identify};
+pub use estimate::Estimate;
+pub use mass::Weighed;
+pub use refusal::Refusal;
+pub use series::{Current, Hold, Series, SeriesError};
+
+/// Frequencies that are fitted, Hz.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    /// From here.
+    pub from_hz: f64,
+    /// To here.
+    pub to_hz: f64,
+}
+
+impl Band {
+    /// What a chirp covers at full amplitude: without its fades.
+    pub fn of_chirp(from_hz: f64, to_hz: f64) -> Self {
+        /// Of the sweep, at either end.
+        const FADE_SHARE: f64 = 1.0 / 32.0;
+        let fade = (to_hz / from_hz).powf(FADE_SHARE);
+        Self {
+            from_hz: from_hz * fade,
+            to_hz: to_hz / fade,
+        }
+    }
+}

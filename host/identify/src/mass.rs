@@ -1,0 +1,132 @@
+//! What the current alone does not tell: the mass. It shows b = Bl²/m only.
+//!
+//! Either the moving mass is weighed, or a second chirp is played with a known mass Δ
+//! on it. That lowers ω₀² and b by the same ratio
+//!
+//! ```text
+//! ρ = (m + Δ)/m = (ω₀/ω₀')² = b/b'        m = Δ/(ρ − 1)        Bl = √(b·m)
+//! ```
+//!
+//! so that each checks the other.
+
+use crate::estimate::{DEVIATIONS, Estimate, derived, variance};
+use crate::fit::Fit;
+use crate::impedance::Impedance;
+use crate::refusal::Refusal;
+use std::f64::consts::TAU;
+
+/// A mass on a balance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weighed {
+    /// kg.
+    pub mass_kg: f64,
+    /// It is known to ± this share of it, in 95 of 100 cases.
+    pub share: f64,
+}
+
+/// Mass and force constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Split {
+    pub(crate) mass_kg: Estimate,
+    pub(crate) force_constant: Estimate,
+}
+
+/// A difference between two estimates is one beyond this share, whatever the noise.
+const SAME: f64 = 0.02;
+
+/// Least ρ − 1.
+const LEAST_CHANGE: f64 = 0.08;
+
+/// Greatest change of the resistance: 13 K of copper.
+const WARM: f64 = 0.05;
+
+/// With the mass that was weighed.
+pub(crate) fn by_weight(fit: &Fit, weighed: Weighed) -> Split {
+    let mass_kg = Estimate::known(weighed.mass_kg, weighed.share);
+    let of_fit = derived(fit, |z| (z.coupling * weighed.mass_kg).sqrt());
+    let of_mass = 0.5 * weighed.share * of_fit.value;
+    Split {
+        mass_kg,
+        force_constant: Estimate {
+            half_width: of_fit.half_width.hypot(of_mass),
+            ..of_fit
+        },
+    }
+}
+
+/// With a second chirp, with a known mass added.
+pub(crate) fn by_added_mass(fit: &Fit, with: &Fit, added: Weighed) -> Result<Split, Refusal> {
+    is_as_cold(fit, with)?;
+    let (z, z_with) = (fit.impedance, with.impedance);
+    let by_resonance = |z: &Impedance, with: &Impedance| 2.0 * (z.resonance / with.resonance).ln();
+    let by_coupling = |z: &Impedance, with: &Impedance| (z.coupling / with.coupling).ln();
+    let (resonance, coupling) = (by_resonance(&z, &z_with), by_coupling(&z, &z_with));
+    if resonance.exp() - 1.0 < LEAST_CHANGE {
+        return Err(Refusal::AddedMassSmall {
+            without_hz: z.resonance / TAU,
+            with_hz: z_with.resonance / TAU,
+        });
+    }
+    let of_resonance =
+        variance(fit, |z| by_resonance(z, &z_with)) + variance(with, |with| by_resonance(&z, with));
+    let of_coupling =
+        variance(fit, |z| by_coupling(z, &z_with)) + variance(with, |with| by_coupling(&z, with));
+    let most = DEVIATIONS * (of_resonance + of_coupling).sqrt();
+    if (resonance - coupling).abs() > most.hypot(SAME) {
+        return Err(Refusal::AddedMassLoose {
+            by_resonance: resonance.exp(),
+            by_coupling: coupling.exp(),
+        });
+    }
+    // Each as much as it is certain.
+    let weight = of_coupling / (of_resonance + of_coupling);
+    let mass = |z: &Impedance, with: &Impedance, added_kg: f64| {
+        let log = weight * by_resonance(z, with) + (1.0 - weight) * by_coupling(z, with);
+        added_kg / log.exp_m1()
+    };
+    let constant = |z: &Impedance, with: &Impedance, added_kg: f64| {
+        (z.coupling * mass(z, with, added_kg)).sqrt()
+    };
+    // Mass goes with Δ, force constant with its root.
+    let estimate = |of: &dyn Fn(&Impedance, &Impedance, f64) -> f64, power: f64| {
+        let value = of(&z, &z_with, added.mass_kg);
+        let of_fits = variance(fit, |z| of(z, &z_with, added.mass_kg))
+            + variance(with, |with| of(&z, with, added.mass_kg));
+        Estimate {
+            value,
+            half_width: (DEVIATIONS * of_fits.sqrt()).hypot(power * added.share * value),
+        }
+    };
+    Ok(Split {
+        mass_kg: estimate(&mass, 1.0),
+        force_constant: estimate(&constant, 0.5),
+    })
+}
+
+/// Both ways: they have to agree, and the more certain one counts.
+pub(crate) fn agreed(weighed: Split, added: Split) -> Result<Split, Refusal> {
+    let (a, b) = (weighed.mass_kg, added.mass_kg);
+    let most = a.half_width.hypot(b.half_width).hypot(SAME * a.value);
+    if (a.value - b.value).abs() > most {
+        return Err(Refusal::WrongMass {
+            found_g: 1e3 * b.value,
+            weighed_g: 1e3 * a.value,
+        });
+    }
+    Ok(if a.half_width <= b.half_width {
+        weighed
+    } else {
+        added
+    })
+}
+
+fn is_as_cold(fit: &Fit, with: &Fit) -> Result<(), Refusal> {
+    let (first_ohm, second_ohm) = (fit.impedance.resistance, with.impedance.resistance);
+    if (second_ohm / first_ohm - 1.0).abs() > WARM {
+        return Err(Refusal::Warm {
+            first_ohm,
+            second_ohm,
+        });
+    }
+    Ok(())
+}

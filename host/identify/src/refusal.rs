@@ -1,0 +1,206 @@
+//! Why no parameters are proposed.
+
+use crepitus_model::SettingsError;
+
+/// What the recording shows instead of an actuator, and what to do about it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// The voltage does not reach all of the band.
+    #[error(
+        "too little excitation at {hz:.0} Hz: the voltage has less than {share:.0} % there of what it has elsewhere; \
+         play a chirp over the whole band, or name the band that was played with --from-hz and --to-hz"
+    )]
+    LittleExcitation {
+        /// Where, Hz.
+        hz: f64,
+        /// The limit, %.
+        share: f64,
+    },
+    /// No voltage.
+    #[error("no voltage: {volts:.4} V rms; expected the chirp in the column volts")]
+    NoVoltage {
+        /// Its root mean square, V.
+        volts: f64,
+    },
+    /// The recording does not begin and end at rest.
+    #[error(
+        "the recording {place} while the chirp plays ({volts:.3} V rms): record from before its start \
+         until 0.5 s after its end"
+    )]
+    NotAtRest {
+        /// "begins" or "ends".
+        place: &'static str,
+        /// Voltage there, V.
+        volts: f64,
+    },
+    /// No current, or next to none.
+    #[error(
+        "the coil is open, or its current is not measured: {amperes:.4} A rms at {volts:.3} V rms, more than \
+         {limit_ohm:.0} Ω; check the coil's wires and the current sensor"
+    )]
+    CoilOpen {
+        /// Root mean square of the current, A.
+        amperes: f64,
+        /// Of the voltage, V.
+        volts: f64,
+        /// The limit, Ω.
+        limit_ohm: f64,
+    },
+    /// Voltage and current have opposite signs.
+    #[error(
+        "the resistance would be {resistance_ohm:.2} Ω: the sign of the current, or of the voltage, is reversed"
+    )]
+    Reversed {
+        /// R, Ω.
+        resistance_ohm: f64,
+    },
+    /// Nothing moves.
+    #[error(
+        "no resonance between {from_hz:.0} and {to_hz:.0} Hz: the current shows resistance and inductance only; \
+         the mass is stuck, its resonance lies outside the band, or the amplitude is too low to see it"
+    )]
+    NoResonance {
+        /// Start of the band, Hz.
+        from_hz: f64,
+        /// Its end, Hz.
+        to_hz: f64,
+    },
+    /// The resonance is too near an end of the band.
+    #[error(
+        "the resonance at {resonance_hz:.1} Hz lies at the edge of the band of {from_hz:.0} to {to_hz:.0} Hz: \
+         play a chirp that begins below {below_hz:.0} Hz and ends above {above_hz:.0} Hz"
+    )]
+    AtEdge {
+        /// The resonance, Hz.
+        resonance_hz: f64,
+        /// Start of the band, Hz.
+        from_hz: f64,
+        /// Its end, Hz.
+        to_hz: f64,
+        /// Greatest start that would do, Hz.
+        below_hz: f64,
+        /// Least end that would do, Hz.
+        above_hz: f64,
+    },
+    /// The current is cut at a level.
+    #[error(
+        "the current is clipped at {amperes:.3} A ({share:.0} % of the time that it is high): lower the amplitude, \
+         or widen the range of the current sensor"
+    )]
+    Clipped {
+        /// The level, A.
+        amperes: f64,
+        /// Share of the samples above 70 % of it, %.
+        share: f64,
+    },
+    /// A second resonance.
+    #[error(
+        "a second resonance near {hz:.0} Hz, with {height:.0} % of the first one's hump ({deviations:.0} times its \
+         noise): the ring moves; clamp it in a vice, and keep the cable from swinging"
+    )]
+    SecondResonance {
+        /// Where, Hz.
+        hz: f64,
+        /// Height of its hump over that of the first, %.
+        height: f64,
+        /// The height over its standard deviation.
+        deviations: f64,
+    },
+    /// Far above the resonance a coil is more than R and L.
+    #[error(
+        "above the resonance the coil is no resistance with an inductance: near {hz:.0} Hz the current differs by \
+         {share:.1} %; eddy currents or the amplifier's bandwidth do this: take a lower --to-hz"
+    )]
+    NotAnInductance {
+        /// Where the difference is greatest, Hz.
+        hz: f64,
+        /// The difference, %.
+        share: f64,
+    },
+    /// Current that no linear system has.
+    #[error(
+        "the current is not that of a linear actuator: {share:.1} % of it is neither explained nor noise; the mass \
+         probably hits its stops{swing}, or rubs, or the amplifier has a dead time: \
+         lower the amplitude, then look at the flexure"
+    )]
+    Nonlinear {
+        /// Unexplained share, %.
+        share: f64,
+        /// What a linear actuator would do, for people.
+        swing: String,
+    },
+    /// A number that cannot be below zero is.
+    #[error(
+        "{what} would be {value:.4}, below zero: check that volts and amperes were taken at the same time and \
+         with the right scale"
+    )]
+    Negative {
+        /// What, with its unit.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The noise leaves a parameter too uncertain.
+    #[error(
+        "{what} is known to ±{share:.1} % only, expected ±{limit:.0} % or better: play a longer chirp or a higher \
+         amplitude; the noise of the current is {noise_ma:.1} mA"
+    )]
+    Uncertain {
+        /// What.
+        what: &'static str,
+        /// Half width of its interval, %.
+        share: f64,
+        /// The limit, %.
+        limit: f64,
+        /// Noise of a sample, mA.
+        noise_ma: f64,
+    },
+    /// The resistance differs between the two chirps.
+    #[error(
+        "the coil has {first_ohm:.3} Ω without and {second_ohm:.3} Ω with the added mass: let it cool down between \
+         the two chirps"
+    )]
+    Warm {
+        /// R of the first, Ω.
+        first_ohm: f64,
+        /// R of the second, Ω.
+        second_ohm: f64,
+    },
+    /// The added mass changes resonance and coupling differently.
+    #[error(
+        "the added mass lowers the resonance as {by_resonance:.3} times the mass would, and the back-EMF as \
+         {by_coupling:.3} times: it is not rigidly on the moving mass, or the ring moved in its clamp"
+    )]
+    AddedMassLoose {
+        /// (m + Δ)/m from the resonance.
+        by_resonance: f64,
+        /// (m + Δ)/m from the coupling.
+        by_coupling: f64,
+    },
+    /// The added mass does next to nothing.
+    #[error(
+        "the added mass changes the resonance from {without_hz:.2} to {with_hz:.2} Hz only: use a third of the moving \
+         mass or more"
+    )]
+    AddedMassSmall {
+        /// Resonance without it, Hz.
+        without_hz: f64,
+        /// Resonance with it, Hz.
+        with_hz: f64,
+    },
+    /// The mass that was weighed is not the one that moves.
+    #[error(
+        "the added mass says that {found_g:.1} g move, but {weighed_g:.1} g were given: weigh again, and count a \
+         third of the flexure and what of the cable moves"
+    )]
+    WrongMass {
+        /// From the two chirps, g.
+        found_g: f64,
+        /// As given, g.
+        weighed_g: f64,
+    },
+    /// Outside what the device takes.
+    #[error("{0}")]
+    Settings(SettingsError),
+}

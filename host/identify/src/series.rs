@@ -1,0 +1,312 @@
+//! Voltage and current of a coil over time, evenly sampled.
+
+use std::io;
+
+/// Samples per second that are kept: what comes faster is averaged.
+const KEPT_PER_S: f64 = 4000.0;
+
+/// Fewest samples per second, and shortest recording, s.
+const SLOWEST_PER_S: f64 = 500.0;
+const SHORTEST_S: f64 = 0.5;
+
+/// A time may be off by this share of a sample.
+const UNEVEN: f64 = 0.25;
+
+/// Voltage and current of a coil, sample by sample.
+///
+/// Each sample may be the value at an instant or the mean since the last one, as
+/// long as both are taken alike: an average of both over the same time
+/// leaves the impedance between them as it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    step_s: f64,
+    volts: Vec<f64>,
+    amperes: Vec<f64>,
+    hold: Option<Hold>,
+}
+
+/// A voltage that is held from tick to tick: its steps are fast, and show in its
+/// samples at the wrong frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// Time for which a voltage is held, s.
+    pub tick_s: f64,
+    /// What a sample of the current is.
+    pub current: Current,
+}
+
+/// What a sample of a current is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Current {
+    /// Its mean since the last one.
+    Mean,
+    /// The mean of its values at the ticks.
+    Ticks,
+}
+
+impl Hold {
+    /// What of the sampled voltage drives the coil at ω: with x = ω·tick/2, sin(x)/x
+    /// is that of the hold; a mean over the time of a sample, where one over
+    /// ticks is expected, is another such factor.
+    pub(crate) fn factor(&self, omega: f64) -> f64 {
+        let x = 0.5 * omega * self.tick_s;
+        let of_hold = if x > 0.0 { x.sin() / x } else { 1.0 };
+        match self.current {
+            Current::Mean => of_hold * of_hold,
+            Current::Ticks => of_hold,
+        }
+    }
+}
+
+/// Why numbers are no recording of a coil.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SeriesError {
+    /// Not readable as CSV.
+    #[error("cannot be read as CSV: {0}")]
+    Csv(#[from] csv::Error),
+    /// A column is missing.
+    #[error("has no column {name:?}: expected the columns t_s, volts, amperes")]
+    Column {
+        /// Its name.
+        name: &'static str,
+    },
+    /// A field is not a finite number.
+    #[error("line {line}: {column} = {text:?} is not a finite number")]
+    Number {
+        /// Line of the file, from 1.
+        line: u64,
+        /// The column.
+        column: &'static str,
+        /// The field.
+        text: String,
+    },
+    /// Times do not have one distance.
+    #[error(
+        "line {line}: t_s = {time_s} is not evenly spaced: expected {expected_s:.7}; resample the recording"
+    )]
+    Uneven {
+        /// Line of the file, from 1.
+        line: u64,
+        /// The time, s.
+        time_s: f64,
+        /// What it would be, s.
+        expected_s: f64,
+    },
+    /// Voltage and current are of different length, or not finite.
+    #[error("expected as many voltages as currents, all finite")]
+    Unequal,
+    /// Too slow, or no time at all between samples.
+    #[error("one sample every {step_s} s: expected at least {SLOWEST_PER_S} per second")]
+    Slow {
+        /// Time between samples, s.
+        step_s: f64,
+    },
+    /// Too short.
+    #[error("{duration_s:.3} s are too short: expected at least {SHORTEST_S} s")]
+    Short {
+        /// Its length, s.
+        duration_s: f64,
+    },
+}
+
+impl Series {
+    /// Samples at this distance, s.
+    ///
+    /// # Errors
+    /// [`SeriesError`] if they are too few, too slow or not finite.
+    pub fn new(step_s: f64, volts: &[f64], amperes: &[f64]) -> Result<Self, SeriesError> {
+        if volts.len() != amperes.len() || volts.iter().chain(amperes).any(|x| !x.is_finite()) {
+            return Err(SeriesError::Unequal);
+        }
+        if !(step_s > 0.0 && step_s * SLOWEST_PER_S <= 1.000_001) {
+            return Err(SeriesError::Slow { step_s });
+        }
+        let duration_s = step_s * volts.len() as f64;
+        if duration_s < SHORTEST_S {
+            return Err(SeriesError::Short { duration_s });
+        }
+        // Whole samples, at least one.
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a small positive number"
+        )]
+        let together = (1.0 / (step_s * KEPT_PER_S) + 1e-6).clamp(1.0, 1e6) as usize;
+        Ok(Self {
+            step_s: step_s * together as f64,
+            volts: means(volts, together),
+            amperes: means(amperes, together),
+            hold: None,
+        })
+    }
+
+    /// The same, of a voltage that was held.
+    #[must_use]
+    pub fn held(self, hold: Hold) -> Self {
+        Self {
+            hold: Some(hold),
+            ..self
+        }
+    }
+
+    /// How the voltage was held.
+    pub(crate) fn hold(&self) -> Option<Hold> {
+        self.hold
+    }
+
+    /// Reads the columns `t_s`, `volts` and `amperes` of a CSV file.
+    ///
+    /// # Errors
+    /// [`SeriesError`] with the line.
+    pub fn from_csv(file: impl io::Read) -> Result<Self, SeriesError> {
+        const NAMES: [&str; 3] = ["t_s", "volts", "amperes"];
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .from_reader(file);
+        let headers = reader.headers()?.clone();
+        let mut places = [0; 3];
+        for (place, name) in places.iter_mut().zip(NAMES) {
+            *place = (headers.iter().position(|header| header == name))
+                .ok_or(SeriesError::Column { name })?;
+        }
+        let mut columns: [Vec<f64>; 3] = Default::default();
+        let mut lines = Vec::new();
+        for record in reader.records() {
+            let record = record?;
+            let line = record.position().map_or(0, csv::Position::line);
+            for ((values, place), column) in columns.iter_mut().zip(places).zip(NAMES) {
+                let text = record.get(place).unwrap_or_default();
+                match text.parse::<f64>() {
+                    Ok(value) if value.is_finite() => values.push(value),
+                    _ => {
+                        return Err(SeriesError::Number {
+                            line,
+                            column,
+                            text: text.to_owned(),
+                        });
+                    }
+                }
+            }
+            lines.push(line);
+        }
+        let [times_s, volts, amperes] = columns;
+        let step_s = even(&times_s, &lines)?;
+        Self::new(step_s, &volts, &amperes)
+    }
+
+    /// Time between samples, s.
+    pub fn step_s(&self) -> f64 {
+        self.step_s
+    }
+
+    /// Voltages, V.
+    pub fn volts(&self) -> &[f64] {
+        &self.volts
+    }
+
+    /// Currents, A.
+    pub fn amperes(&self) -> &[f64] {
+        &self.amperes
+    }
+
+    /// Length, s.
+    pub fn duration_s(&self) -> f64 {
+        self.step_s * self.volts.len() as f64
+    }
+}
+
+/// The one distance of all times, s.
+fn even(times_s: &[f64], lines: &[u64]) -> Result<f64, SeriesError> {
+    let (Some(first), Some(last)) = (times_s.first(), times_s.last()) else {
+        return Err(SeriesError::Short { duration_s: 0.0 });
+    };
+    let step_s = (last - first) / (times_s.len() - 1).max(1) as f64;
+    for (i, (time_s, line)) in times_s.iter().zip(lines).enumerate() {
+        let expected_s = first + step_s * i as f64;
+        if (time_s - expected_s).abs() > UNEVEN * step_s {
+            return Err(SeriesError::Uneven {
+                line: *line,
+                time_s: *time_s,
+                expected_s,
+            });
+        }
+    }
+    Ok(step_s)
+}
+
+/// Means of so many neighbours.
+fn means(values: &[f64], together: usize) -> Vec<f64> {
+    values
+        .chunks_exact(together)
+        .map(|chunk| chunk.iter().sum::<f64>() / together as f64)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fmt::Write;
+
+    fn csv_of(rows: usize, time_s: impl Fn(usize) -> f64) -> String {
+        let mut text = "amperes,t_s , volts\n".to_owned();
+        for i in 0..rows {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{i},{},{}", time_s(i), 2 * i);
+        }
+        text
+    }
+
+    #[test]
+    fn columns_are_found_by_name_and_fast_samples_averaged() {
+        // Halves of 250 µs.
+        let text = csv_of(8000, |i| 3.0 + 125e-6 * i as f64);
+        let series = Series::from_csv(text.as_bytes()).unwrap();
+        assert!((series.step_s() - 250e-6).abs() < 1e-12);
+        assert_eq!(series.volts().len(), 4000);
+        assert_eq!((series.amperes()[0], series.amperes()[1]), (0.5, 2.5));
+        assert_eq!(series.volts()[1], 5.0);
+        assert!((series.duration_s() - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_held_voltage_is_less_than_its_samples_at_high_frequencies() {
+        let hold = |current| Hold {
+            tick_s: 5e-5,
+            current,
+        };
+        let omega = std::f64::consts::TAU * 500.0;
+        let x = 0.5 * omega * 5e-5;
+        let of_hold = x.sin() / x;
+        assert!((hold(Current::Ticks).factor(omega) - of_hold).abs() < 1e-15);
+        assert!((hold(Current::Mean).factor(omega) - of_hold * of_hold).abs() < 1e-15);
+        assert_eq!(hold(Current::Mean).factor(0.0), 1.0);
+    }
+
+    #[test]
+    fn bad_files_are_refused_with_their_line() {
+        let message = |text: &str| Series::from_csv(text.as_bytes()).unwrap_err().to_string();
+        assert!(message("t_s,volts\n").contains("amperes"));
+        assert!(message("").contains("t_s"));
+        assert!(message("t_s,volts,amperes\n").contains("too short"));
+        let even = csv_of(4000, |i| 250e-6 * i as f64);
+        assert!(Series::from_csv(even.as_bytes()).is_ok());
+        assert!(
+            message(&even.replace("\n7,", "\nseven,")).starts_with("line 9: amperes = \"seven\"")
+        );
+        assert!(message(&even.replace("\n7,", "\nNaN,")).starts_with("line 9"));
+        let late = csv_of(4000, |i| {
+            250e-6 * i as f64 + if i == 7 { 1e-4 } else { 0.0 }
+        });
+        assert!(
+            message(&late).starts_with("line 9: t_s"),
+            "{}",
+            message(&late)
+        );
+        assert!(message(&csv_of(100, |i| 250e-6 * i as f64)).contains("too short"));
+        assert!(message(&csv_of(100, |i| 0.01 * i as f64)).contains("at least 500 per second"));
+        assert!(message(&csv_of(100, |_| 0.0)).contains("at least 500 per second"));
+        assert!(Series::new(1e-3, &[0.0; 900], &[0.0; 901]).is_err());
+        assert!(Series::new(1e-3, &[0.0; 900], &[f64::NAN; 900]).is_err());
+    }
+}
