@@ -10,6 +10,7 @@
 //! | the matrix of hard cases | [`stability`] |
 //! | pictures that explain one hard case each | [`story`] |
 //! | the map of stiffness on a leg | [`coupled`] |
+//! | what the hand gets of the actuator on the shell | [`vibration`] |
 //! | the effects of a scene: influence against cost | [`effects`] |
 
 // Counts become numbers to be drawn; none comes near 2^53.
@@ -20,6 +21,7 @@ pub mod coupled;
 pub mod effects;
 pub mod stability;
 pub mod story;
+pub mod vibration;
 
 pub use crepitus_plot::Picture;
 pub use crepitus_plot::page::Section;

@@ -44,6 +44,7 @@ shipped![
     "fig8-3-cuff",
     "fig8-4-limb",
     "fig8-5-hand",
+    "fig8-6-actuator",
     "fig9-low-speed",
     "gear-friction",
     "backlash-reversal",

@@ -23,6 +23,7 @@ pub(crate) mod serve_sim;
 pub(crate) mod stability;
 pub(crate) mod stop;
 pub(crate) mod stream;
+pub(crate) mod vibration;
 pub(crate) mod zero;
 
 use crate::failure::Failure;
@@ -68,6 +69,7 @@ verbs! {
     Accuracy: accuracy,
     Stability: stability,
     Effects: effects,
+    Vibration: vibration,
     Scenes: scenes,
     Presets: presets,
     Completions: completions,

@@ -6,7 +6,7 @@ use crate::actuator::{Actuator, Commanded, Ideal};
 use crate::boundary::{Boundary, Prescribed, Released};
 use crate::chain::{Chain, Shaft};
 use crate::effect::{Context, Effect, Given, Mounted, Part};
-use crate::effects::{cuff, limb, shell};
+use crate::effects::{cuff, limb, reaction_mass, shell};
 use crate::plant::Plant;
 use crepitus_model::SettingsError;
 
@@ -24,7 +24,8 @@ pub struct Listed {
 /// `released`.
 ///
 /// # Errors
-/// [`SettingsError`] if a number of the motor is out of its range.
+/// [`SettingsError`] if a number of the motor is out of its range, or a coil that cannot
+/// be.
 pub fn assemble(
     listed: &[Listed],
     context: &Context,
@@ -34,6 +35,9 @@ pub fn assemble(
     for Listed { effect, given } in listed {
         if let Part::Actuator(make) = effect.part {
             actuator = make(given, context)?;
+        }
+        if effect.name == reaction_mass::EFFECT.name {
+            reaction_mass::check(given)?;
         }
     }
     Ok(assemble_with(listed, context, released, actuator))

@@ -4,15 +4,17 @@
 //! by: Hann windows that overlap by half, their powers averaged.
 //!
 //! The scale is that of a sine: a steady sine of 1 mN·m shows as 1 mN·m at
-//! its frequency (up to 15 % less between two bins).
+//! its frequency (up to 15 % less between two bins). [`cross`] compares two signals.
 
 // Counts that become numbers; none comes near 2^53.
 #![allow(clippy::cast_precision_loss)]
 
+pub mod cross;
+
 use std::fmt;
 use std::sync::Arc;
 
-use realfft::num_complex::Complex;
+pub use realfft::num_complex::Complex;
 use realfft::{RealFftPlanner, RealToComplex};
 
 /// What is known of the spectrum at the end of a run.

@@ -10,6 +10,7 @@
 //! | the hard cases, and their verdicts | [`stability`] |
 //! | where the device stays quiet on a leg | [`coupled`] |
 //! | influence of each effect on the torque at the hand, and its cost | [`effects`] |
+//! | what the hand gets of the actuator on the shell | [`vibration`] |
 //! | the other symptoms, stepped and by their reference | [`symptoms`] |
 //! | a motion cut into steps | [`sampling`] |
 //! | the true events, their matching, and the errors | [`true_events`], [`matching`], [`event_errors`] |
@@ -27,6 +28,7 @@ pub mod sampling;
 pub mod stability;
 pub mod symptoms;
 pub mod true_events;
+pub mod vibration;
 pub mod watcher;
 
 pub use watcher::{StudyError, Watcher};

@@ -76,6 +76,15 @@ pub const EFFECT: Effect = Effect {
             default: 0.35,
             meaning: "distance of the hand from the knee's axis",
         },
+        ParameterSpec {
+            key: "palm_factor",
+            symbol: "q",
+            unit: "1",
+            min: 0.1,
+            max: 10.0,
+            default: 1.0,
+            meaning: "the numbers of the grip's palm times this",
+        },
     ],
     choices: &[Choice {
         key: "grip",
@@ -85,7 +94,7 @@ pub const EFFECT: Effect = Effect {
     }],
     needs: &[],
     part: Part::Boundary(|given, context, chain| {
-        let [mass, damping, stiffness, lever] = numbers(given);
+        let [mass, damping, stiffness, lever, palm_factor] = numbers(given);
         let square = lever * lever;
         let arm = Arm {
             inertia_kg_m2: mass * square,
@@ -106,7 +115,7 @@ pub const EFFECT: Effect = Effect {
             weight,
             given_j: 0.0,
         });
-        let palm = Palm::of(given.choices[0], lever);
+        let palm = Palm::of(given.choices[0], lever, palm_factor);
         match (palm, lifts) {
             (None, None) => Box::new(Hand { arm, lift: () }),
             (None, Some(lift)) => Box::new(Hand { arm, lift }),

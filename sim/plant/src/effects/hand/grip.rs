@@ -24,14 +24,15 @@ pub(super) struct Palm {
 
 impl Palm {
     /// Of a grip, by its number, at this lever; none for the arm alone.
-    pub(super) fn of(grip: u8, lever_m: f64) -> Option<Self> {
+    /// Its numbers are `factor` times those of the table.
+    pub(super) fn of(grip: u8, lever_m: f64, factor: f64) -> Option<Self> {
         let (kg, n_per_m, ns_per_m) = match grip {
             0 => return None,
             1 => (0.1, 300.0, 10.0),
             2 => (0.2, 600.0, 20.0),
             _ => (0.5, 3_000.0, 60.0),
         };
-        let square = lever_m * lever_m;
+        let square = factor * lever_m * lever_m;
         Some(Self {
             lever_m,
             inertia_kg_m2: kg * square,

@@ -1,0 +1,152 @@
+//! `crepitus vibration`: what the hand gets of the grating, at each step of the chain
+//! from a bare knee to the actuator on the shell.
+
+mod table;
+
+use crate::cli::key_and_value;
+use crate::failure::{Failure, print, print_json};
+use crate::pictures::Pictures;
+use crate::results::{self, footer, report_files};
+use crate::shipped;
+use crate::studying::{Interrupted, Watch};
+use clap::Args;
+use crepitus_scene::scene::MotionKind;
+use crepitus_scene::{Overrides, Scene};
+use crepitus_study::vibration::{Plan, VibrationError, VibrationStudy, run as study_vibration};
+use crepitus_study_pages::{StudyText, vibration as page};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Show what the hand gets of the grating, with the actuator on the shell and without.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus vibration
+  crepitus vibration --speeds 0.1,1 --draws 200
+  crepitus vibration my-scene.toml --set effects.vibration-actuator.gain=0.09
+
+The scene needs a hand that grips a shell with an actuator: crepitus scenes fig8-6-actuator is one. \
+Compared are a bare diseased knee, the motor alone, the actuator, a bone's ringing on it, the \
+actuator on the brace, and the hand on the leg beside the shell: acceleration of the palm from 15 \
+to 500 Hz, its level above the threshold of perception (known to 10 dB), the share of T/r that a \
+shell gets which is held, correlation and lag with the bare knee, and what the coil does. \
+Below are the margins of the loop that the actuator closes over the encoder.
+
+With --draws everything is up to 30 % off at once, that often.")]
+pub(crate) struct Arguments {
+    /// Scene file, or name of a scene that ships.
+    #[arg(default_value = "fig8-6-actuator")]
+    scene: PathBuf,
+
+    /// Speeds of the motion, rad/s; of a scene whose motion is constant.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_values_t = [0.1, 0.5, 1.0])]
+    speeds: Vec<f64>,
+
+    /// How often everything is off at once.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    draws: usize,
+
+    /// Folder for summary.json and report.html [default: out/SCENE-vibration].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Set a key of the scene.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value)]
+    set: Vec<(String, String)>,
+
+    #[command(flatten)]
+    pictures: Pictures,
+}
+
+/// The way of the joint in a run, rad, and the longest that one takes, s.
+const WAY_RAD: f64 = 1.4;
+const LONGEST_S: f64 = 4.0;
+
+/// Studies a scene.
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let plan = Plan {
+        scenes: scenes(arguments)?,
+        draws: arguments.draws,
+    };
+    let out = arguments.out.clone().unwrap_or_else(|| out(&plan));
+    let folder = results::folder(&out)?;
+    let study = study_vibration(&plan, &mut Watch::new()).map_err(failed)?;
+    let html = page::html(&study, &text(&study));
+    let pictures = arguments.pictures.files(|| page::pictures(&study))?;
+    results::write(folder, &out, report_files(html, &study, pictures)?)?;
+    if as_json {
+        return print_json(&json!({ "out": out, "study": study }));
+    }
+    print(&format!(
+        "{}report: {}\n",
+        table::text(&study),
+        out.join("report.html").display()
+    ))
+}
+
+/// The scene at each speed, over the same way.
+fn scenes(arguments: &Arguments) -> Result<Vec<Scene>, Failure> {
+    let read = |set: &[(String, String)]| {
+        let overrides = Overrides {
+            set: [&arguments.set[..], set].concat(),
+            ..Overrides::default()
+        };
+        shipped::scene(&arguments.scene, &overrides)
+    };
+    let as_it_is = read(&[])?;
+    if as_it_is.motion_kind != MotionKind::Constant {
+        return Ok(vec![as_it_is]);
+    }
+    let at = |speed: &f64| {
+        if !(speed.is_finite() && *speed > 0.0) {
+            return Err(Failure::Input(format!(
+                "--speeds: {speed} is no speed; give rad/s above 0"
+            )));
+        }
+        let duration_s = (WAY_RAD / speed).min(LONGEST_S);
+        read(&[
+            ("motion.velocity_rad_s".to_owned(), format!("{speed:?}")),
+            ("motion.from_deg".to_owned(), "20.0".to_owned()),
+            ("duration_s".to_owned(), format!("{duration_s:?}")),
+        ])
+    };
+    arguments.speeds.iter().map(at).collect()
+}
+
+/// `out/<scene>-vibration`.
+fn out(plan: &Plan) -> PathBuf {
+    let file = plan.scenes.first().map(|scene| scene.file.clone());
+    let mut name = file
+        .unwrap_or_default()
+        .file_stem()
+        .unwrap_or_default()
+        .to_owned();
+    name.push("-vibration");
+    Path::new("out").join(name)
+}
+
+fn text(study: &VibrationStudy) -> StudyText {
+    StudyText {
+        title: "What the hand gets".to_owned(),
+        intro: format!(
+            "The fast part of the joint's torque at the hand that grips the shell, at {} speeds.",
+            study.speeds.len()
+        ),
+        notes: vec![
+            "All of it is simulated. The hand's numbers are estimates, and the threshold is known to ±10 dB.".to_owned(),
+        ],
+        tables: Vec::new(),
+        footer: footer(),
+    }
+}
+
+fn failed(error: VibrationError<Interrupted>) -> Failure {
+    match error {
+        VibrationError::Watcher(Interrupted) => {
+            Failure::Work("interrupted: nothing was written".to_owned())
+        }
+        other => Failure::Input(format!(
+            "{other}; crepitus scenes fig8-6-actuator is a scene that has all"
+        )),
+    }
+}

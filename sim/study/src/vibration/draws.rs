@@ -1,0 +1,126 @@
+//! Everything off at once: actuator, shell, seat, cuff and hand, each by up to 30 %.
+
+use super::signals::Kept;
+use super::{BAND_HZ, MOST_LAG_S};
+use crepitus_plant::effect::Part;
+use crepitus_scene::Scene;
+use crepitus_spectrum::cross::Cross;
+use serde::Serialize;
+use std::fmt;
+
+/// How far off each number may be.
+pub const SPREAD: f64 = 0.3;
+
+/// What varies.
+const VARIES: [(&str, &[&str]); 4] = [
+    ("cuff", &["stiffness_nm_per_rad", "damping_nms_per_rad"]),
+    (
+        "shell",
+        &["mass_kg", "seat_stiffness_n_per_m", "seat_damping_ns_per_m"],
+    ),
+    (
+        "reaction-mass",
+        &[
+            "resonance_hz",
+            "damping_ratio",
+            "moving_mass_g",
+            "force_constant_n_per_a",
+            "resistance_ohm",
+        ],
+    ),
+    ("hand", &["palm_factor"]),
+];
+
+/// What comes of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Draws {
+    /// How many.
+    pub count: usize,
+    /// Level over that of the nominal device: the 5 % quantile, the median, the 95 % quantile.
+    pub level: [f64; 3],
+    /// Correlation with the bare knee that 95 % exceed.
+    pub least_correlation: f64,
+}
+
+impl fmt::Display for Draws {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [low, middle, high] = self.level;
+        write!(
+            f,
+            "everything up to 30 % off at once, {} draws: level {low:.2} to {high:.2} times the nominal one in 90 % \
+             (median {middle:.2}), correlation above {:.2} in 95 %",
+            self.count, self.least_correlation
+        )
+    }
+}
+
+/// Numbers from 0 to 1, the same ones in every run.
+struct Random(u64);
+
+impl Random {
+    /// SplitMix64 (Steele, Lea and Flood 2014).
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        #[expect(clippy::cast_precision_loss, reason = "53 bits")]
+        let share = ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64;
+        share
+    }
+}
+
+/// The device as it may be, while its parameters stay those of the nominal one.
+pub(super) fn scenes(scene: &Scene, count: usize) -> Vec<Scene> {
+    let mut random = Random(20);
+    (0..count)
+        .map(|_| {
+            let mut scene = super::Step::Actuator.free(scene);
+            for listed in &mut scene.listed {
+                if matches!(listed.effect.part, Part::Stage(_)) {
+                    continue;
+                }
+                let names = VARIES.iter().find(|(name, _)| *name == listed.effect.name);
+                for key in names.map_or(&[][..], |(_, keys)| keys) {
+                    let place = listed.effect.parameters.iter().position(|p| p.key == *key);
+                    if let Some(number) = place.and_then(|i| listed.given.numbers.get_mut(i)) {
+                        *number *= 1.0 + SPREAD * (2.0 * random.next() - 1.0);
+                    }
+                }
+            }
+            scene
+        })
+        .collect()
+}
+
+/// Compares the draws with the nominal device, and each with a bare knee that shows its
+/// torque.
+pub(super) fn judge(drawn: &[Result<Kept, String>], device: Option<&Kept>) -> Option<Draws> {
+    let device = device?;
+    let (low, high) = BAND_HZ;
+    let mut levels = Vec::new();
+    let mut correlations = Vec::new();
+    for kept in drawn.iter().flatten() {
+        let cross = Cross::new(&device.acceleration, &kept.acceleration, kept.step_s)?;
+        let (nominal, drawn) = cross.rms(low, high, |_| 1.0);
+        levels.push(drawn / nominal);
+        let with_bare = Cross::new(&kept.of_bare_knee, &kept.acceleration, kept.step_s)?;
+        correlations.push(with_bare.likeness(low, high, MOST_LAG_S).correlation);
+    }
+    levels.sort_by(f64::total_cmp);
+    correlations.sort_by(f64::total_cmp);
+    Some(Draws {
+        count: levels.len(),
+        level: [
+            quantile(&levels, 5)?,
+            quantile(&levels, 50)?,
+            quantile(&levels, 95)?,
+        ],
+        least_correlation: quantile(&correlations, 5)?,
+    })
+}
+
+fn quantile(sorted: &[f64], percent: usize) -> Option<f64> {
+    let place = (sorted.len().saturating_sub(1) * percent + 50) / 100;
+    sorted.get(place).copied()
+}
