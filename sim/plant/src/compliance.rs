@@ -27,6 +27,8 @@ pub struct Compliance {
     kind: &'static Kind,
     stiffness: f64,
     damping: f64,
+    /// Torque on the right end where both are at one angle, N·m.
+    preload_nm: f64,
     /// Inertia of its own at the left end.
     inertia_kg_m2: f64,
     /// The body at the left end.
@@ -67,6 +69,7 @@ impl Compliance {
             kind,
             stiffness,
             damping,
+            preload_nm: 0.0,
             inertia_kg_m2,
             inner: start,
             push: Push::default(),
@@ -75,6 +78,12 @@ impl Compliance {
             right_kg_m2: f64::INFINITY,
             longest_s: 0.0,
         }
+    }
+
+    /// With a spring that carries this torque at the start, and is linear about it.
+    #[must_use]
+    pub fn carrying(self, preload_nm: f64) -> Self {
+        Self { preload_nm, ..self }
     }
 
     /// Inertia that its spring moves at the left end: its own, if it has one.
@@ -98,7 +107,7 @@ impl Compliance {
     /// The torque on the right end at mid-step is this plus `slope`·(inner − outer).
     fn spring(&self, step: &Step, outer: &Body) -> (f64, f64) {
         (
-            self.stiffness * (self.inner.angle_rad - outer.angle_rad),
+            self.stiffness * (self.inner.angle_rad - outer.angle_rad) + self.preload_nm,
             0.5 * self.stiffness * step.length_s + self.damping,
         )
     }
@@ -224,7 +233,7 @@ impl Chain for Compliance {
             effect,
             "elastic",
             Account::Stored,
-            0.5 * self.stiffness * turned * turned,
+            0.5 * self.stiffness * turned * turned + self.preload_nm * turned,
         );
         balance.add(effect, "damping", Account::Lost, self.lost_j);
     }

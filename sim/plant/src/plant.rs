@@ -1,7 +1,7 @@
 //! A plant: actuator, chain and boundary, stepped together.
 
 use crate::actuator::{Actuator, Commanded};
-use crate::boundary::{Boundary, MotionStep, Stretch};
+use crate::boundary::{Boundary, MotionStep, Released, Stretch};
 use crate::chain::{Body, Chain, Flow, Impacts, Step, Verdict};
 use crate::energy_balance::EnergyBalance;
 
@@ -87,6 +87,14 @@ impl<A: Actuator> Plant<A> {
     /// Its actuator, for commands between two steps.
     pub fn actuator_mut(&mut self) -> &mut A {
         &mut self.actuator
+    }
+
+    /// From now on nobody holds the right end. What the hand was given and stored is no longer
+    /// in the balance.
+    pub fn release(&mut self) {
+        self.boundary = Box::new(Released);
+        self.chain.attach(0.0);
+        self.start = self.booked();
     }
 
     /// Switches the bridge of the coil.

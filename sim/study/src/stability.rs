@@ -11,12 +11,13 @@
 //! |---|---|
 //! | the cases | [`catalogue`], and their parts: [`case`], [`input`], [`criterion`] |
 //! | the tested solvers | [`subject`] |
-//! | how a case is run and judged | `source`, `observe`, `symptom`, `energy_audit`, `judge` |
+//! | how a case is run and judged | `source`, `observe`, `symptom`, `actuator`, `energy_audit`, `judge` |
 //! | results | [`verdict`], [`matrix`] |
 //! | an input as data, for a joint elsewhere | [`replay`] |
 //! | the file of results | [`cases_table`] |
 //! | runs that explain a case | [`story`] |
 
+mod actuator;
 pub mod case;
 pub mod cases_table;
 pub mod catalogue;

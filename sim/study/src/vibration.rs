@@ -88,12 +88,10 @@ pub struct Measured {
     /// Its level above the threshold of perception, dB; that is known to ±10 dB.
     pub level_db: f64,
     /// Likeness to that on a bare knee whose joint shows this very torque.
-    #[serde(serialize_with = "like")]
-    pub likeness: Option<Likeness>,
+    pub likeness: Option<Like>,
     /// Likeness to that on a bare knee with the same joint, whose events have their own times,
     /// as what the joint does to the leg is another.
-    #[serde(serialize_with = "like")]
-    pub own_likeness: Option<Likeness>,
+    pub own_likeness: Option<Like>,
     /// Share of T/r that arrives at a shell that is held: of what it gets, that which
     /// has the shape of T; none for a bare knee.
     pub share: Option<f64>,
@@ -112,8 +110,20 @@ pub struct Coil {
     pub excursion_mm: f64,
 }
 
-fn like<S: serde::Serializer>(of: &Option<Likeness>, serializer: S) -> Result<S::Ok, S::Error> {
-    of.map(|l| (l.correlation, l.lag_s)).serialize(serializer)
+/// How alike two signals are in the band.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Like {
+    /// Largest correlation, 1 for the same shape.
+    pub correlation: f64,
+    /// By how much the device's lags then, s.
+    pub lag_s: f64,
+}
+
+impl From<Likeness> for Like {
+    fn from(likeness: Likeness) -> Self {
+        let Likeness { correlation, lag_s } = likeness;
+        Self { correlation, lag_s }
+    }
 }
 
 /// Why a scene cannot be studied.
@@ -277,7 +287,7 @@ fn measure(free: &Kept, held: Option<&Kept>, bare: Option<&Kept>) -> Measured {
     });
     let like = |bare: &[f64]| {
         let cross = compared(bare, &free.acceleration)?;
-        Some(cross.likeness(low, high, MOST_LAG_S))
+        Some(cross.likeness(low, high, MOST_LAG_S).into())
     };
     let likeness = like(&free.of_bare_knee);
     let own_likeness = bare.and_then(|bare| like(&bare.acceleration));

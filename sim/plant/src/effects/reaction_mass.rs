@@ -27,7 +27,7 @@
 //! Sources: see [`vibration_actuator`](crepitus_model::render::effects::vibration_actuator),
 //! inductance of the same data sheet; bumpers are an estimate.
 
-use crate::chain::{Body, Chain, Push, Step};
+use crate::chain::{Body, Chain, Push, Step, Weight};
 use crate::effect::{Context, Effect, Given, Mounted, Part, numbers};
 use crate::effects::limb::STANDARD_GRAVITY;
 use crate::energy_balance::{Account, EnergyBalance};
@@ -129,6 +129,11 @@ fn mount(given: &Given, context: &Context, left: Box<dyn Chain>) -> Box<dyn Chai
     let mass_kg = settings.moving_mass_g * 1e-3;
     let omega = settings.resonance_rad_s();
     let left_ratio = settings.damping_ratio - settings.electric_damping_ratio();
+    let weight_n = |angle_rad: f64| {
+        let turned = context.gravity_rad?;
+        Some(mass_kg * STANDARD_GRAVITY * (angle_rad + turned).cos())
+    };
+    let sag_n = weight_n(context.start.angle_rad).unwrap_or(0.0);
     let actuator = ReactionMass {
         mass_kg,
         lever_m,
@@ -141,7 +146,7 @@ fn mount(given: &Given, context: &Context, left: Box<dyn Chain>) -> Box<dyn Chai
         henry: inductance_mh * 1e-3,
         supply_v: settings.supply_v,
         gravity_rad: context.gravity_rad,
-        excursion_m: 0.0,
+        excursion_m: sag_n / settings.stiffness_n_per_m(),
         velocity_m_s: lever_m * context.start.omega_rad_s,
         current_a: 0.0,
         contact_m: None,
@@ -323,6 +328,14 @@ impl Load for ReactionMass {
             self.current_a = 2.0 * current_a - self.current_a;
         }
         self.look_at_stops(slip);
+    }
+
+    fn weight(&self) -> Option<Weight> {
+        let (turned, nm) = (
+            self.gravity_rad?,
+            self.mass_kg * STANDARD_GRAVITY * self.lever_m,
+        );
+        Some(Box::new(move |angle| nm * (angle + turned).cos()))
     }
 
     fn energy(&self, _: &Body, balance: &mut EnergyBalance) {

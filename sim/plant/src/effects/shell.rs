@@ -11,6 +11,9 @@
 //! | seat damping | 20 N·s/m | estimate: a third of critical |
 //! | lever | 0.3 m | estimate: above the ankle |
 //!
+//! The seat is linear about the force with which it carries the leg, or the shell, as the
+//! run begins.
+//!
 //! The hand holds the shell, or the bare leg beside it: then the seat is a low-pass at
 //! 20 Hz for what the shell does.
 
@@ -94,15 +97,11 @@ fn join(
 ) -> Box<dyn Chain> {
     let [mass_kg, stiffness, damping, lever_m] = numbers(given);
     let square = lever_m * lever_m;
-    let seat = |left| -> Box<dyn Chain> {
-        Box::new(Compliance::new(
-            left,
-            context.start,
-            &KIND,
-            stiffness * square,
-            damping * square,
-            0.0,
-        ))
+    let seat = |left: Box<dyn Chain>| -> Box<dyn Chain> {
+        let carried_nm = left.weight().map_or(0.0, |of| of(context.start.angle_rad));
+        let (k, b) = (stiffness * square, damping * square);
+        let seat = Compliance::new(left, context.start, &KIND, k, b, 0.0);
+        Box::new(seat.carrying(carried_nm))
     };
     let shell = Shell {
         inertia_kg_m2: mass_kg * square,
@@ -113,13 +112,12 @@ fn join(
         given_j: 0.0,
         acceleration_m_s2: 0.0,
     };
-    match given.choices[0] {
-        0 => mount(Loaded::on(seat(leg), shell)),
-        _ => {
-            let beside = mount(Loaded::on(Box::new(Loose), shell));
-            Box::new(Branched::new(leg, seat(beside)))
-        }
+    let is_held = given.choices[0] == 0;
+    if is_held {
+        return mount(Loaded::on(seat(leg), shell));
     }
+    let beside = mount(Loaded::on(Box::new(Loose), shell));
+    Box::new(Branched::new(leg, seat(beside)))
 }
 
 /// The shell's mass.

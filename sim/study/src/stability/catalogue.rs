@@ -1,11 +1,12 @@
 //! The catalogue of hard cases as data, in the order of their numbers.
 //!
 //! From H38 to H56 are those that were added to detect planted faults, from H57 on those
-//! of symptoms besides crepitus. A case that
+//! of symptoms besides crepitus, from H76 on those of the vibration actuator. A case that
 //! ends in `L` is the long version of the one before it: hours of simulated
 //! time. To add a case, write a function like its neighbours in the file of its
 //! theme and give it a line in [`all`]; tests, matrix and report follow.
 
+mod actuator;
 mod arithmetic;
 mod commits;
 mod damping;
@@ -114,6 +115,16 @@ pub fn all() -> Vec<Case> {
         symptom_energy::returned_by_muscles(),
         symptom_energy::refused(),
         symptom_walls::pressed_rotor(),
+        actuator::lets_go(),
+        actuator::at_its_stops(),
+        actuator::at_the_rail(),
+        actuator::mean_step(),
+        actuator::crawl(),
+        actuator::hot_coil(),
+        actuator::disarmed(),
+        actuator::gain_ramp(),
+        actuator::all_off(),
+        actuator::lost_samples(),
     ]
 }
 

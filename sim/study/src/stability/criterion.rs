@@ -278,8 +278,50 @@ pub enum Criterion {
         /// At most, J.
         most_j: f64,
     },
+    /// What the vibration actuator does.
+    Actuator {
+        /// What is measured.
+        what: ActuatorMeasure,
+        /// From when, s; without it in the whole run.
+        from_s: Option<f64>,
+        /// At least, in the unit of what is measured.
+        least: f64,
+        /// At most.
+        most: f64,
+    },
     /// Every attempt is refused.
     Refused,
+}
+
+/// What is measured of the vibration actuator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ActuatorMeasure {
+    /// Root mean square of the shell's acceleration, m/s².
+    AccelerationRms,
+    /// Largest excursion of the mass, mm.
+    Excursion,
+    /// Largest voltage, V.
+    Voltage,
+    /// Largest change of the voltage in a tick, V.
+    VoltageStep,
+    /// Root mean square of the current, A.
+    CurrentRms,
+    /// Largest speed of the shaft, rad/s.
+    ShaftSpeed,
+}
+
+impl ActuatorMeasure {
+    /// In words, and the unit.
+    pub fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::AccelerationRms => ("the shell's acceleration", "m/s² rms"),
+            Self::Excursion => ("the mass's excursion", "mm"),
+            Self::Voltage => ("the coil's voltage", "V"),
+            Self::VoltageStep => ("a step of the coil's voltage", "V"),
+            Self::CurrentRms => ("the coil's current", "A rms"),
+            Self::ShaftSpeed => ("the shaft's speed", "rad/s"),
+        }
+    }
 }
 
 impl Criterion {

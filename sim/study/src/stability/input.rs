@@ -1,9 +1,11 @@
 //! The exact input of a joint in a trial, as data.
 
+mod actuator;
 mod device;
 mod symptom;
 mod words;
 
+pub use actuator::{ActuatorRun, Upset};
 pub use device::{Attempt, Change, Fault, Lost, Rendered, Shake};
 pub use symptom::{Pressed, RefusedSymptoms, SymptomRun};
 
@@ -145,6 +147,8 @@ pub enum Input {
     Symptoms(SymptomRun),
     /// A rotor that is pressed into a wall.
     Pressed(Pressed),
+    /// A device with the vibration actuator, on a leg in a hand.
+    Actuator(ActuatorRun),
     /// Settings and steps that must be refused.
     Refusals(Vec<Attempt>),
     /// Symptoms that must be refused.
@@ -225,6 +229,9 @@ impl Input {
                 duration_s, step_s, ..
             })
             | Self::Pressed(Pressed {
+                duration_s, step_s, ..
+            })
+            | Self::Actuator(ActuatorRun {
                 duration_s, step_s, ..
             }) => Some((duration_s, step_s)),
             Self::Encoder {

@@ -1,7 +1,7 @@
 //! Checks a criterion against observations.
 
-use super::criterion::{BALANCE, BOUND_SLACK, Counted, Criterion};
-use super::observation::Observation;
+use super::criterion::{ActuatorMeasure, BALANCE, BOUND_SLACK, Counted, Criterion};
+use super::observation::{ActuatorPart, Observation};
 use super::subject::{Rung, Subject};
 use super::verdict::{Failure, Margin, Verdict};
 use crate::event_errors::EventErrors;
@@ -48,6 +48,27 @@ impl Finding {
             },
         }
     }
+}
+
+/// Checks a measure of the vibration actuator; too little of what should be there is
+/// another motion.
+fn actuator(what: ActuatorMeasure, part: &ActuatorPart, least: f64, most: f64) -> Finding {
+    let rms = |squares: f64| (squares / part.ticks.max(1.0)).sqrt();
+    let found = match what {
+        ActuatorMeasure::AccelerationRms => rms(part.acceleration_squares),
+        ActuatorMeasure::Excursion => 1e3 * part.excursion_m,
+        ActuatorMeasure::Voltage => part.volts,
+        ActuatorMeasure::VoltageStep => part.volts_a_tick,
+        ActuatorMeasure::CurrentRms => rms(part.current_squares),
+        ActuatorMeasure::ShaftSpeed => part.shaft_rad_s,
+    };
+    if part.ticks == 0.0 || found < least {
+        return Finding::Failed(
+            Failure::Broken("the actuator does less than it should"),
+            None,
+        );
+    }
+    number(found, most, what.words().1)
 }
 
 /// Checks the common bounds.
@@ -232,6 +253,18 @@ fn of_symptoms(criterion: &Criterion, seen: &Observation, precision: Precision) 
         }
         Criterion::SpringsReturn { most } => number(of.returned, *most, ""),
         Criterion::NetReturned { most_j } => number(of.net_returned_j, *most_j, "J"),
+        Criterion::Actuator {
+            what,
+            from_s,
+            least,
+            most,
+        } => {
+            let part = match from_s {
+                Some(_) => &seen.actuator.late,
+                None => &seen.actuator.whole,
+            };
+            actuator(*what, part, *least, *most)
+        }
         _ => Finding::Failed(Failure::Broken("no criterion of symptoms"), None),
     }
 }

@@ -172,6 +172,7 @@ fn late_s(trial: &Trial) -> f64 {
             Criterion::TorqueWithin { from_s, .. } | Criterion::TorqueQuiet { from_s, .. } => {
                 Some(*from_s)
             }
+            Criterion::Actuator { from_s, .. } => *from_s,
             _ => None,
         })
         .unwrap_or(0.0)

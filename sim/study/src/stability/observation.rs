@@ -62,6 +62,32 @@ pub(super) struct Observation {
     pub(super) accepted: Vec<&'static str>,
     /// Of symptoms besides crepitus.
     pub(super) symptoms: SymptomsSeen,
+    /// Of the vibration actuator.
+    pub(super) actuator: ActuatorSeen,
+}
+
+/// Observation of the vibration actuator.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ActuatorSeen {
+    pub(super) whole: ActuatorPart,
+    /// From the time that the trial sets.
+    pub(super) late: ActuatorPart,
+    pub(super) last_v: f64,
+}
+
+/// That of a part of the run.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ActuatorPart {
+    pub(super) ticks: f64,
+    pub(super) acceleration_squares: f64,
+    pub(super) current_squares: f64,
+    /// Largest of the shell's acceleration, of the mass's excursion, of the voltage, of its
+    /// change in a tick, and of the shaft's speed.
+    pub(super) acceleration_m_s2: f64,
+    pub(super) excursion_m: f64,
+    pub(super) volts: f64,
+    pub(super) volts_a_tick: f64,
+    pub(super) shaft_rad_s: f64,
 }
 
 /// Observation of symptoms besides crepitus.

@@ -51,6 +51,9 @@ pub(super) fn observe(
     if let Input::Pressed(pressed) = input {
         return Ok(super::pressed::observe(subject, pressed, late_s));
     }
+    if let Input::Actuator(run) = input {
+        return Ok(super::actuator::observe(subject, run, late_s));
+    }
     if let Input::Symptoms(run) = input {
         return super::symptom::observe(subject, run, late_s);
     }

@@ -35,6 +35,7 @@ pub(super) fn motion(input: &Input) -> Motion {
         Input::White { .. }
         | Input::Hand { .. }
         | Input::Pressed(_)
+        | Input::Actuator(_)
         | Input::Refusals(_)
         | Input::SymptomRefusals(_) => Motion::constant(0.0),
     }
@@ -136,6 +137,7 @@ pub(super) fn source<'a, F: Real>(
         | Input::Rendered(_)
         | Input::Symptoms(_)
         | Input::Pressed(_)
+        | Input::Actuator(_)
         | Input::Refusals(_)
         | Input::SymptomRefusals(_) => Box::new(Same {
             step: ShaftStep::default(),

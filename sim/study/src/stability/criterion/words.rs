@@ -226,6 +226,22 @@ fn of_symptoms(criterion: &Criterion, f: &mut fmt::Formatter<'_>) -> fmt::Result
             "the hand gets back at most {} J in any 2 s",
             Plain(*most_j)
         ),
+        Criterion::Actuator {
+            what,
+            from_s,
+            least,
+            most,
+        } => {
+            let (what, unit) = what.words();
+            if let Some(from_s) = from_s {
+                write!(f, "from {} on ", Time(*from_s))?;
+            }
+            if *least > 0.0 {
+                write!(f, "{what} is {} to {} {unit}", Plain(*least), Plain(*most))
+            } else {
+                write!(f, "{what} is at most {} {unit}", Plain(*most))
+            }
+        }
         _ => f.write_str("nothing"),
     }
 }

@@ -123,6 +123,7 @@ impl fmt::Display for Input {
             Self::Rendered(rendered) => write!(f, "{rendered}")?,
             Self::Symptoms(run) => write!(f, "{run}")?,
             Self::Pressed(pressed) => write!(f, "{pressed}")?,
+            Self::Actuator(run) => write!(f, "{run}")?,
             Self::SymptomRefusals(attempts) => {
                 for (i, attempt) in attempts.iter().enumerate() {
                     let comma = if i == 0 { "" } else { ", " };

@@ -1,0 +1,217 @@
+//! The vibration actuator on a leg, with the stages of the drive in its loop.
+
+use super::input::{ActuatorRun, Upset};
+use super::observation::{ActuatorSeen, Observation};
+use super::observe::bits;
+use super::parameter_changes::SLEW_NM_PER_S;
+use super::subject::Subject;
+use crepitus_model::control::device_limits::LimitSettings;
+use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
+use crepitus_model::parameters::Tabled;
+use crepitus_model::render::effects::{EffectSettings, SwitchedEffects, Timing};
+use crepitus_model::render::input_check::{InputCheck, InputLimits};
+use crepitus_model::render::limits::TorqueLimits;
+use crepitus_model::render::position::{Position, Sight};
+use crepitus_model::render::{Pipeline, Seen};
+use crepitus_model::solver::locate::ExactEvents;
+use crepitus_model::{Crepitus, Real, Sample, SettingsError, StepCoefficients};
+use crepitus_plant::encoder::Encoder;
+use crepitus_plant::plant::Coil;
+use crepitus_scene::scene::Precision;
+use crepitus_scene::{Overrides, Scene, Walk};
+use std::path::Path;
+
+/// The stages of the drive.
+type Stages<F> = Pipeline<
+    F,
+    InputCheck<F>,
+    Option<Crepitus<F, ExactEvents>>,
+    SwitchedEffects<F>,
+    TorqueLimits<F>,
+>;
+
+/// Runs it; a scene that is refused is an overflow at 0 s.
+pub(super) fn observe(subject: Subject, run: &ActuatorRun, late_s: f64) -> Observation {
+    let text = run.scene(subject.precision);
+    let parsed = Scene::parse(Path::new("shaken.toml"), &text, &Overrides::default());
+    let seen = parsed.ok().and_then(|scene| {
+        match subject.precision {
+            Precision::F32 => shake::<f32>(run, &scene, late_s),
+            Precision::F64 => shake::<f64>(run, &scene, late_s),
+        }
+        .ok()
+    });
+    seen.unwrap_or_else(|| Observation {
+        step_s: run.step_s,
+        overflow_s: Some(0.0),
+        ..Observation::default()
+    })
+}
+
+fn stages<F: Real>(scene: &Scene, timing: &Timing) -> Result<Stages<F>, SettingsError> {
+    let step_s = timing.step_s;
+    let slew_nm = F::from_f64(SLEW_NM_PER_S * step_s);
+    let encoder = EncoderSettings::default();
+    let joint = match &scene.crepitus {
+        Some(crepitus) => Some(Crepitus::new(
+            StepCoefficients::new(&crepitus.settings, step_s)?,
+            InputLimits::device(step_s),
+            F::from_f64(encoder.rad_per_count()),
+            F::ZERO,
+        )),
+        None => None,
+    };
+    let mut effects = SwitchedEffects::new(slew_nm, timing);
+    let none = EffectSettings::default();
+    let changes = scene.effect_settings().changes(timing, (&none, timing))?;
+    effects.change(&changes, slew_nm);
+    Ok(Pipeline::new(
+        InputCheck::new(&InputLimits::device(step_s), F::from_f64(step_s), F::ZERO),
+        joint,
+        effects,
+        TorqueLimits::armed(F::from_f64(LimitSettings::defaults().torque_nm), slew_nm),
+    ))
+}
+
+fn shake<F: Real>(
+    run: &ActuatorRun,
+    scene: &Scene,
+    late_s: f64,
+) -> Result<Observation, SettingsError> {
+    let encoder_settings = EncoderSettings::default();
+    let timing = Timing {
+        step_s: run.step_s,
+        delay_ticks: MOST_DELAY_TICKS,
+        sight: Sight::of_encoder(&encoder_settings),
+    };
+    let mut stages = stages::<F>(scene, &timing)?;
+    let mut settings = scene.effect_settings();
+    let mut plant = scene.assemble()?;
+    let mut walk = Walk::new(&scene.motion, run.step_s);
+    let encoder = Encoder::new(&encoder_settings);
+    let first = encoder.count(plant.shaft().angle_rad);
+    let omega = F::from_f64(plant.shaft().omega_rad_s);
+    let mut reader = EncoderReader::<F>::new(&encoder_settings, run.step_s, first, omega)?;
+    let names = plant.columns();
+    let place = |name: &str| names.iter().position(|column| *column == name);
+    let places = ["shell_acceleration_m_s2", "excursion_m", "coil_current_a"].map(place);
+    let mut seen = Observation {
+        step_s: run.step_s,
+        ..Observation::default()
+    };
+    let mut watched = Watched {
+        late_s,
+        seen: ActuatorSeen::default(),
+    };
+    let mut row = Vec::new();
+    let (mut is_armed, mut coil_v) = (true, 0.0);
+    let mut done = 0;
+    let mut count = first;
+    let steps = (run.duration_s / run.step_s).round().whole();
+    for n in 1..=steps {
+        let now_s = walk.time_s();
+        while let Some((_, upset)) = run.upsets.get(done).filter(|(at_s, _)| *at_s <= now_s) {
+            done += 1;
+            match upset {
+                Upset::LetsGo => plant.release(),
+                Upset::Disarmed => is_armed = false,
+                Upset::Speed(_) => {}
+                Upset::Gain(gain) => {
+                    let mut next = settings;
+                    if let Some(actuator) = &mut next.vibration_actuator {
+                        actuator.gain = *gain;
+                    }
+                    next.check(None)?;
+                    let changes = next.changes(&timing, (&settings, &timing))?;
+                    let slew_nm = F::from_f64(SLEW_NM_PER_S * run.step_s);
+                    stages.effects.change(&changes, slew_nm);
+                    settings = next;
+                }
+            }
+        }
+        let sample = if run.lost.takes(n, run.step_s) {
+            reader.miss();
+            Sample::Lost
+        } else {
+            count = encoder.count(plant.shaft().angle_rad);
+            Sample::Taken(reader.read(count))
+        };
+        stages.limits.set_energised(is_armed);
+        let shown = stages.tick(
+            &Seen {
+                sample,
+                omega_rad_s: reader.omega_rad_s(),
+                place: Position::at(count),
+                is_driven: is_armed,
+            },
+            |_| {},
+        );
+        plant.command(shown.torque_nm.to_f64(), coil_v);
+        if !is_armed {
+            plant.set_coil(Coil::Open);
+        }
+        coil_v = shown.coil_v.to_f64();
+        walk.advance(&mut plant);
+        row.clear();
+        plant.write(&mut row);
+        let [acceleration, excursion, current] =
+            places.map(|place| place.and_then(|place| row.get(place)).copied());
+        let torque_nm = shown.torque_nm.to_f64();
+        if !(torque_nm.is_finite() && plant.shaft().angle_rad.is_finite()) {
+            seen.overflow_s.get_or_insert(now_s);
+            break;
+        }
+        seen.steps += 1;
+        seen.torque.add(torque_nm);
+        seen.torque_bits.add(bits::<F>(torque_nm));
+        seen.last_torque_nm = torque_nm;
+        watched.add(
+            now_s,
+            [acceleration, excursion, current].map(|value| value.unwrap_or(0.0)),
+            coil_v,
+            plant.shaft().omega_rad_s,
+        );
+    }
+    seen.actuator = watched.finish();
+    Ok(seen)
+}
+
+/// Measures as it goes.
+struct Watched {
+    late_s: f64,
+    seen: ActuatorSeen,
+}
+
+impl Watched {
+    fn add(
+        &mut self,
+        now_s: f64,
+        [m_s2, excursion_m, current_a]: [f64; 3],
+        volts: f64,
+        omega: f64,
+    ) {
+        let seen = &mut self.seen;
+        let stepped = (volts - seen.last_v).abs();
+        seen.last_v = volts;
+        let parts: &mut [_] = if now_s >= self.late_s {
+            &mut [&mut seen.whole, &mut seen.late][..]
+        } else {
+            &mut [&mut seen.whole][..]
+        };
+        for part in parts {
+            part.ticks += 1.0;
+            part.acceleration_squares += m_s2 * m_s2;
+            part.current_squares += current_a * current_a;
+            part.acceleration_m_s2 = part.acceleration_m_s2.max(m_s2.abs());
+            part.excursion_m = part.excursion_m.max(excursion_m.abs());
+            part.volts = part.volts.max(volts.abs());
+            part.volts_a_tick = part.volts_a_tick.max(stepped);
+            part.shaft_rad_s = part.shaft_rad_s.max(omega.abs());
+        }
+    }
+
+    fn finish(self) -> ActuatorSeen {
+        self.seen
+    }
+}
