@@ -176,7 +176,9 @@ impl<E: DeviceEffect<f32>> Measured for Effect<E> {
         if place.rest_rad.is_finite() {
             self.place = place;
         }
+        // What is added to a joint that jumps gets its torque, too.
         let mut shown = Shown {
+            torque_nm: jump_nm,
             jump_nm,
             ..Shown::nothing()
         };

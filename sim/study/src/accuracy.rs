@@ -20,6 +20,7 @@
 //! | orders of convergence, and on motions of other kinds | [`orders`], [`convergence`] |
 //! | limits, and the cheapest rung within them | [`need`], [`mod@answer`] |
 
+pub mod actuator;
 pub mod answer;
 pub mod convergence;
 pub mod held_torque;

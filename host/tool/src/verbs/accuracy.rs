@@ -1,6 +1,7 @@
 //! `crepitus accuracy`: what accuracy costs in time, and the cheapest solver
 //! that is accurate enough, on the host or on the target.
 
+mod actuator;
 mod answer;
 mod orders_table;
 mod page;
@@ -127,6 +128,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             repeats: studied.plan.repeats,
         };
         accuracy::symptoms::add(&mut study, &plan, &mut Watch::new()).map_err(studying::failed)?;
+        accuracy::actuator::add(&mut study, plan.repeats, &mut Watch::new())
+            .map_err(studying::failed)?;
     }
     let by_motion = if is_whole {
         convergence::motions().and_then(|motions| convergence::orders_on(&motions))
@@ -151,10 +154,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             let report = out.unwrap_or_default().join("report.html");
             let target = study.target.as_ref().map(target::table);
             print(&format!(
-                "{}\n{}{}{}\nreport: {}\n",
+                "{}\n{}{}{}{}\nreport: {}\n",
                 table::at_the_tick(&study),
                 orders_table::by_motion(&by_motion),
                 with_a_line_before(&symptoms::table(&study.symptoms)),
+                with_a_line_before(&actuator::table(&study.actuator)),
                 target.map_or_else(String::new, |table| format!("\n{table}")),
                 report.display()
             ))

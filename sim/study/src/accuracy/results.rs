@@ -1,5 +1,6 @@
 //! Results of a study.
 
+use crate::accuracy::actuator::ActuatorPoint;
 use crate::accuracy::orders::Orders;
 use crate::accuracy::point::Point;
 use crate::accuracy::symptoms::SymptomPoint;
@@ -30,6 +31,10 @@ pub struct Study {
     /// they were not studied.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub symptoms: Vec<SymptomPoint>,
+    /// The stage of the vibration actuator, by falling rate and precision; empty if it was
+    /// not studied.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub actuator: Vec<ActuatorPoint>,
     /// The points, by scene, convention, rung, precision and falling step.
     #[serde(skip)]
     pub points: Vec<Point>,

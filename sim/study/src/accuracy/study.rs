@@ -64,6 +64,7 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError
         wall_s: 0.0,
         target: None,
         symptoms: Vec::new(),
+        actuator: Vec::new(),
         points: Vec::new(),
     };
     let mut work = Work {

@@ -1,5 +1,6 @@
 //! The files of a study, and the text of its report.
 
+use super::actuator;
 use super::summary::Summary;
 use super::words;
 use crate::failure::Failure;
@@ -42,6 +43,12 @@ fn text(study: &Study, summary: &Summary<'_>) -> StudyText {
     let mut tables = vec![studied(study, summary)];
     tables.extend(convergence(study));
     tables.extend(refused(study));
+    if !study.actuator.is_empty() {
+        tables.push(Section {
+            title: "The command of the vibration actuator, 15 to 500 Hz".to_owned(),
+            rows: actuator::rows(&study.actuator),
+        });
+    }
     StudyText {
         title: "What accuracy costs in time".to_owned(),
         intro: "Every solver, in single and double precision and at a range of steps, against the event-driven \
