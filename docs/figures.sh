@@ -56,6 +56,11 @@ echo docs/images/z-width.svg
 cargo run --profile dist --features emulator --quiet -- stability --list --long >docs/hard-cases.md
 echo docs/hard-cases.md
 
+# The numbers of the page about what the hand gets are what this prints.
+cargo run --profile dist --features emulator --quiet -- vibration --draws 200 --pictures --out target/figures/vibration >target/figures/vibration.txt
+cp target/figures/vibration/hand-spectrum.svg docs/images/hand-spectrum.svg
+echo docs/images/hand-spectrum.svg
+
 # The numbers of the page about effects are what these print.
 for scene in fig8-5-hand fig9-low-speed; do
     cargo run --profile dist --features emulator --quiet -- effects "$scene" --pictures --out "target/figures/effects-$scene"

@@ -1,6 +1,7 @@
 //! Figures of a plant: the leg, the hand, and the columns of
 //! its effects. A scene without a plant has none of this.
 
+use crepitus_model::parameters::same;
 use crepitus_model::render::effects::{EffectSpec, SPECS};
 use crepitus_scene::trace::Column;
 
@@ -47,9 +48,14 @@ const fn shown(column: &'static str, title: &'static str, axis: &'static str) ->
 
 /// Of an effect of the device.
 const fn stage(spec: &EffectSpec) -> Shown {
+    let axis = if same(spec.unit, "V") {
+        "Voltage (V)"
+    } else {
+        "Torque (N·m)"
+    };
     Shown {
-        is_stage: true,
-        ..shown(spec.column, spec.title, "Torque (N·m)")
+        is_stage: same(spec.unit, "N·m"),
+        ..shown(spec.column, spec.title, axis)
     }
 }
 
@@ -69,7 +75,7 @@ impl Shown {
 }
 
 /// Of the plant.
-const SHOWN: [Shown; 7] = [
+const SHOWN: [Shown; 11] = [
     of_motor("motor_current_a", "Motor current", "Current (A)"),
     of_motor("motor_voltage_v", "Motor voltage", "Voltage (V)"),
     Shown {
@@ -94,6 +100,21 @@ const SHOWN: [Shown; 7] = [
         "limb_torque_nm",
         "Leg: weight and passive moment",
         "Torque (N·m)",
+    ),
+    shown("coil_current_a", "Coil of the actuator", "Current (A)"),
+    Shown {
+        scale: 1e3,
+        ..shown("excursion_m", "Excursion of the reaction mass", "Way (mm)")
+    },
+    shown(
+        "shell_acceleration_m_s2",
+        "Acceleration of the shell",
+        "Acceleration (m/s²)",
+    ),
+    shown(
+        "hand_acceleration_m_s2",
+        "Acceleration of the palm",
+        "Acceleration (m/s²)",
     ),
 ];
 

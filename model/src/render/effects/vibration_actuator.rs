@@ -56,7 +56,7 @@ use crate::parameters::{Tabled, settings};
 use crate::real::Real;
 use crate::render::Shown;
 use crate::render::effects::{
-    DeviceEffect, EffectSpec, Observe, PhaseSpec, Switched, Target, Tick, Timing,
+    DeviceEffect, EffectSpec, Need, Observe, PhaseSpec, Switched, Target, Tick, Timing,
 };
 
 settings! {
@@ -384,7 +384,10 @@ impl<F: Real> DeviceEffect<F> for VibrationActuator<F> {
             column: "vibration_actuator_phase",
             names: &["silent", "acting", "voltage", "excursion", "heat"],
         }),
-        needs: &[],
+        needs: &[Need {
+            effect: "reaction-mass",
+            why: "it is the actuator that is commanded",
+        }],
         parameters: VibrationActuatorSettings::TABLE,
         choices: VibrationActuatorSettings::CHOICES,
         sides: &[],
