@@ -50,21 +50,23 @@ impl Batch {
         }
     }
 
-    /// Adds a tick in which the coil was driven, before its sample: the mean of those
-    /// that were measured is stored with the last of [`COIL_TICKS`].
-    pub fn add_coil(&mut self, current_a: Option<f32>) {
+    /// Adds a tick in which the coil was driven, before its sample. The mean of those that
+    /// were measured is stored with the last of [`COIL_TICKS`], or where the coil goes to
+    /// sleep.
+    pub fn add_coil(&mut self, current_a: Option<f32>, goes_to_sleep: bool) {
+        if let Some(current_a) = current_a {
+            self.coil = (self.coil.0 + current_a, self.coil.1.saturating_add(1));
+        }
+        let ends = self.filled % COIL_TICKS == COIL_TICKS - 1;
+        if !ends && !goes_to_sleep {
+            return;
+        }
+        let (sum, count) = core::mem::take(&mut self.coil);
         let place = (self.blocks.get_mut(self.filling))
             .and_then(|block| block.coil.get_mut(self.filled / COIL_TICKS));
-        let (Some(place), Some(current_a)) = (place, current_a) else {
-            return;
-        };
-        let (sum, count) = match *place {
-            CoilCurrent::NONE => (current_a, 1),
-            _ => (self.coil.0 + current_a, self.coil.1.saturating_add(1)),
-        };
-        self.coil = (sum, count);
-        // In every tick, as the coil may sleep in the next one.
-        *place = CoilCurrent(milliamperes(sum / f32::from(count)));
+        if let Some(place) = place.filter(|_| count > 0) {
+            *place = CoilCurrent(milliamperes(sum / f32::from(count)));
+        }
     }
 
     /// Adds the sample of the next tick, with the phases of the effects.
@@ -203,7 +205,7 @@ mod tests {
             let place = n % BLOCK_SAMPLES;
             if (2..12).contains(&place) {
                 let measured = (place != 7).then_some(place as f32 * 0.1 - 0.5);
-                batch.add_coil(measured);
+                batch.add_coil(measured, place == 11);
             }
             let none = (Sample::default(), EffectPhases::default());
             let flags = BlockFlags::default();

@@ -90,6 +90,9 @@ struct Means {
     volts_squared: f32,
     power_w: f32,
     current_squared: f32,
+    /// Mean square of the measured current over the time that the coil takes to get warm,
+    /// A²; kept while it sleeps.
+    heat_a2: f32,
     missing: u8,
     short: u8,
     beside: u8,
@@ -108,8 +111,6 @@ pub struct Coil {
     last_v: Option<f32>,
     before_v: f32,
     means: Means,
-    /// Mean square of the measured current, A².
-    heat_a2: f32,
 }
 
 impl Coil {
@@ -122,7 +123,6 @@ impl Coil {
             last_v: None,
             before_v: 0.0,
             means: Means::default(),
-            heat_a2: 0.0,
         }
     }
 
@@ -169,15 +169,19 @@ impl Coil {
         {
             (self.plan, self.next) = (next, None);
         }
-        let Some(plan) = self.plan else {
+        let Some(plan) = &self.plan else {
             return self.sleep();
         };
         if let Some(last_v) = self.last_v {
             let mean_v = 0.5 * (self.before_v + last_v);
-            let found = self.check(&plan, mean_v, current_a, has_tripped);
-            self.fault = self.fault.or(found);
+            let found = match current_a.filter(|a| a.is_finite()) {
+                Some(current_a) => self.means.check(plan, mean_v, current_a),
+                None => self.means.miss(),
+            };
+            let tripped = has_tripped.then_some(CoilFault::Driver);
+            self.fault = self.fault.or(tripped).or(found);
         } else {
-            self.heat_a2 -= HEATING * self.heat_a2;
+            self.means.cool();
         }
         if !may || self.fault.is_some() || !coil_v.is_finite() {
             return self.sleep();
@@ -190,54 +194,61 @@ impl Coil {
     }
 
     fn sleep(&mut self) -> CoilOutput {
-        (self.last_v, self.means) = (None, Means::default());
+        self.last_v = None;
+        self.means = Means {
+            heat_a2: self.means.heat_a2,
+            ..Means::default()
+        };
         CoilOutput::Asleep
     }
+}
 
-    /// Checks of a tick in which it was driven, the most urgent first.
+impl Means {
+    /// A tick that was driven without a measured current.
+    #[cold]
+    fn miss(&mut self) -> Option<CoilFault> {
+        self.missing = self.missing.saturating_add(1);
+        (self.missing >= MISSING_TICKS).then_some(CoilFault::CurrentMissing)
+    }
+
+    /// A tick that was not driven.
+    fn cool(&mut self) {
+        self.heat_a2 -= HEATING * self.heat_a2;
+    }
+
+    /// Checks of a tick that was driven with this voltage, the most urgent first.
     #[inline]
-    fn check(
-        &mut self,
-        plan: &CoilPlan,
-        volts: f32,
-        current_a: Option<f32>,
-        has_tripped: bool,
-    ) -> Option<CoilFault> {
-        let means = &mut self.means;
-        let Some(current_a) = current_a.filter(|a| a.is_finite()) else {
-            means.missing = means.missing.saturating_add(1);
-            let missing = means.missing >= MISSING_TICKS;
-            return (has_tripped.then_some(CoilFault::Driver))
-                .or(missing.then_some(CoilFault::CurrentMissing));
-        };
-        means.missing = 0;
-        means.peak_v = volts.abs().at_least(PEAK_KEPT * means.peak_v);
-        let most_a = COLD * plan.per_ohm * (means.peak_v + plan.emf_v) + SHORT_SLACK_A;
-        means.short = held(means.short, current_a.abs() > most_a);
-        let toward = |mean: &mut f32, value: f32| *mean += MEAN_SHARE * (value - *mean);
-        toward(&mut means.volts_squared, volts * volts);
-        toward(&mut means.power_w, volts * current_a);
-        toward(&mut means.current_squared, current_a * current_a);
-        let is_beside = means.volts_squared > plan.compared_v2
-            && means.power_w < plan.least_power * means.volts_squared;
-        means.beside = held(means.beside, is_beside);
-        self.heat_a2 += HEATING * (current_a * current_a - self.heat_a2);
-        if has_tripped {
-            return Some(CoilFault::Driver);
+    fn check(&mut self, plan: &CoilPlan, volts: f32, current_a: f32) -> Option<CoilFault> {
+        self.missing = 0;
+        self.peak_v = volts.abs().at_least(PEAK_KEPT * self.peak_v);
+        let most_a = COLD * plan.per_ohm * (self.peak_v + plan.emf_v) + SHORT_SLACK_A;
+        self.short = held(self.short, current_a.abs() > most_a);
+        let squared = current_a * current_a;
+        self.volts_squared += MEAN_SHARE * (volts * volts - self.volts_squared);
+        self.power_w += MEAN_SHARE * (volts * current_a - self.power_w);
+        self.current_squared += MEAN_SHARE * (squared - self.current_squared);
+        self.heat_a2 += HEATING * (squared - self.heat_a2);
+        let is_beside = self.volts_squared > plan.compared_v2
+            && self.power_w < plan.least_power * self.volts_squared;
+        self.beside = held(self.beside, is_beside);
+        if self.short >= SHORT_TICKS {
+            Some(CoilFault::Short)
+        } else if self.beside >= BESIDE_TICKS {
+            Some(self.does_not_follow(plan))
+        } else {
+            (self.heat_a2 > plan.most_a2).then_some(CoilFault::Hot)
         }
-        if means.short >= SHORT_TICKS {
-            return Some(CoilFault::Short);
+    }
+
+    /// Whether there is no current, or another one.
+    #[cold]
+    fn does_not_follow(&self, plan: &CoilPlan) -> CoilFault {
+        let whole_a2 = self.volts_squared * plan.per_ohm * plan.per_ohm;
+        if self.current_squared < NO_CURRENT_SHARE * whole_a2 {
+            CoilFault::Open
+        } else {
+            CoilFault::CurrentMismatch
         }
-        if means.beside >= BESIDE_TICKS {
-            let whole_a2 = means.volts_squared * plan.per_ohm * plan.per_ohm;
-            let is_open = means.current_squared < NO_CURRENT_SHARE * whole_a2;
-            return Some(if is_open {
-                CoilFault::Open
-            } else {
-                CoilFault::CurrentMismatch
-            });
-        }
-        (self.heat_a2 > plan.most_a2).then_some(CoilFault::Hot)
     }
 }
 

@@ -85,7 +85,8 @@ pub struct Command {
     range: Range,
     slow_checks: SlowChecks,
     overload: Overload,
-    coil: Coil,
+    /// The coil has something to do.
+    has_coil: bool,
     /// The bridge was driven in the previous tick.
     was_driven: bool,
     /// Consecutive ticks with a current while the bridge floats.
@@ -104,6 +105,8 @@ pub struct Command {
     /// Boot counter of the drive.
     start: u16,
     batch: Batch,
+    /// Only where there is one.
+    coil: Coil,
 }
 
 impl Command {
@@ -121,6 +124,7 @@ impl Command {
             range: Range::new(&plan.range),
             slow_checks: SlowChecks::new(&plan.slow),
             overload: Overload::new(&plan.overload),
+            has_coil: plan.coil.is_some(),
             coil: Coil::new(plan.coil),
             was_driven: false,
             conducting_ticks: 0,
@@ -148,6 +152,7 @@ impl Command {
         self.slow_checks.change(&plan.slow);
         self.overload.change(&plan.overload);
         self.coil.change(plan.coil);
+        self.has_coil = self.coil.is_fitted();
         self.revision = plan.revision;
         counters.count(DriveCounter::Commits);
     }
@@ -336,7 +341,7 @@ impl Command {
         let share = range::share(fades_left);
         let torque_nm = rendered.torque_nm * share;
         let mut outputs = self.drive(permit, torque_nm, rendered.omega_rad_s, current_a);
-        if self.coil.is_fitted() {
+        if self.has_coil {
             outputs.coil = self.drive_coil(permit, inputs, rendered.coil_v, counters);
         }
         let applied_nm =

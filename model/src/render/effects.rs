@@ -346,11 +346,12 @@ fn tank<F: Real>(timing: &Timing) -> Tank<F> {
 /// Adds to where it goes.
 #[inline]
 fn give<F: Real>(target: Target, added: F, shown: &mut Shown<F>) {
-    match target {
-        Target::Joint => shown.torque_nm += added,
-        Target::Shell => shown.shell_nm += added,
-        Target::Coil => shown.coil_v += added,
-    }
+    // Each by its value: a choice of the place to add to would keep all of `shown` in
+    // memory, which is over a hundred cycles on the target.
+    let with = |to, was: F| if target == to { was + added } else { was };
+    shown.torque_nm = with(Target::Joint, shown.torque_nm);
+    shown.shell_nm = with(Target::Shell, shown.shell_nm);
+    shown.coil_v = with(Target::Coil, shown.coil_v);
 }
 
 /// A bit for an effect, at its place in the table.

@@ -127,10 +127,7 @@ impl Command {
         coil_v: f32,
         counters: &Counters,
     ) -> CoilOutput {
-        let fault_before = self.coil.fault();
-        if self.coil.is_driven() {
-            self.batch.add_coil(inputs.coil_a);
-        }
+        let (fault_before, was_driven) = (self.coil.fault(), self.coil.is_driven());
         let may = permit == Permit::Torque;
         let output = self
             .coil
@@ -138,6 +135,11 @@ impl Command {
         if self.coil.fault() != fault_before {
             counters.count(DriveCounter::Faults);
         }
+        if was_driven {
+            self.batch
+                .add_coil(inputs.coil_a, output == CoilOutput::Asleep);
+        }
+        self.has_coil = self.coil.is_fitted();
         output
     }
 

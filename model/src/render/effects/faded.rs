@@ -59,23 +59,25 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Faded<F, E> {
         if self.fading_nm == F::ZERO {
             self.last_nm
         } else {
-            self.fade(shown)
+            let fading = self.fade();
+            give(self.target, fading, shown);
+            self.last_nm + fading
         }
     }
 }
 
 impl<F: Real, E> Faded<F, E> {
-    /// Adds what is left of a law that is gone.
+    /// What is left of a law that is gone. What is shown is not lent: it would have to lie in
+    /// memory in every tick.
     #[cold]
-    fn fade(&mut self, shown: &mut Shown<F>) -> F {
+    fn fade(&mut self) -> F {
         let left_nm = (self.fading_nm.abs() - self.slew_nm).at_least(F::ZERO);
         self.fading_nm = if self.fading_nm < F::ZERO {
             -left_nm
         } else {
             left_nm
         };
-        give(self.target, self.fading_nm, shown);
-        self.last_nm + self.fading_nm
+        self.fading_nm
     }
 }
 

@@ -29,11 +29,11 @@ const SHARES: [(Flash, u64); 2] = [(Flash::ZeroWaitStates, 48), (Flash::Modelled
 const MASS: &str = "[effects.reaction-mass]\n";
 
 /// Crepitus and ringing, without the actuator and with it.
-fn off() -> Values {
+pub(crate) fn off() -> Values {
     values(&moving(MASS)).expect("values")
 }
 
-fn on() -> Values {
+pub(crate) fn on() -> Values {
     let effects = [MASS, "[effects.vibration-actuator]\n"].concat();
     let mut values = values(&moving(&effects)).expect("values");
     let (output, _) = crepitus_protocol::parameters::find("bone-shaping.output").expect("a choice");
@@ -42,7 +42,7 @@ fn on() -> Values {
 }
 
 /// The drive, armed on the moving shaft with the mass, without the actuator.
-fn armed(registers: &[u32], flash: Flash) -> Option<Host> {
+pub(crate) fn armed(registers: &[u32], flash: Flash) -> Option<Host> {
     let mut host = Host::timed(&image()?, &moving(MASS), registers, flash);
     host.arm();
     host.run_until_torque();
@@ -176,11 +176,12 @@ fn its_driver_opens_it_without_the_program_and_the_motor_goes_on() {
         };
         host.board.leg_mut().set_coil_faults(faults);
     };
+    // To the beginning of a tick: the program's turn comes after its middle.
+    host.board.to_the_middle();
+    host.board.half(None);
     fails(&mut host, true);
-    host.board.mcu_mut().set_hung(true);
-    host.run(1);
+    host.board.half(None);
     assert!(!outputs_are_on(&host), "by the timer alone");
-    host.board.mcu_mut().set_hung(false);
     host.run(100);
     let after = status(&mut host);
     assert_eq!(after.coil_fault, CoilFault::Driver.code());

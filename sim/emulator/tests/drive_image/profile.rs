@@ -1,9 +1,10 @@
-//! Cycles of `render_torque` by function, with a symptom and without: where they go
-//! is seen before they are saved.
+//! Cycles of the two tasks of every tick by function, with a symptom or the vibration
+//! actuator and without: where they go is seen before they are saved.
 //!
 //! `cargo test -p crepitus-emulator --test drive_image -- --nocapture profile`; all
 //! symptoms with `CREPITUS_LONG` set.
 
+use crate::actuator;
 use crate::budget::RENDER;
 use crate::host::Flash;
 use crate::symptoms::{CASES, Case, PERIOD_TICKS, SYMPTOMS, armed, commit, values_of};
@@ -19,16 +20,19 @@ const LISTED: usize = 18;
 /// Cycles by the address of an instruction.
 type Addresses = BTreeMap<u32, u64>;
 
-/// The cycles of `render_torque` in each tick.
-#[derive(Default)]
+/// Exception of `command_motor`.
+const COMMAND: u16 = 16 + 29;
+
+/// The cycles of a task in each tick.
 struct Profile {
+    exception: u16,
     ticks: BTreeMap<u64, Addresses>,
     all: Addresses,
 }
 
 impl Watch for Profile {
     fn step(&mut self, step: &Step) {
-        if step.exception == RENDER {
+        if step.exception == self.exception {
             let cycles = u64::from(step.cycles);
             let tick = step.at.units() / Time::from_us(50).units();
             *self
@@ -47,6 +51,14 @@ fn sum(addresses: &Addresses) -> u64 {
 }
 
 impl Profile {
+    fn of(exception: u16) -> Self {
+        Self {
+            exception,
+            ticks: BTreeMap::new(),
+            all: Addresses::new(),
+        }
+    }
+
     fn worst(&self) -> &Addresses {
         let worst = self.ticks.values().max_by_key(|addresses| sum(addresses));
         worst.expect("a tick")
@@ -92,9 +104,25 @@ fn where_the_cycles_of_render_torque_go() {
     let all = all.chain([("all", every)]).filter(|_| is_long);
     for (name, cases) in std::iter::once(("no symptom", Vec::new())).chain(all) {
         commit(&mut host, values_of(&cases));
-        let mut profile = Profile::default();
+        let mut profile = Profile::of(RENDER);
         host.watch(PERIOD_TICKS, &mut profile);
         profile.print(name, &lines);
         assert!(profile.ticks.len() as u64 >= PERIOD_TICKS - 1, "{name}");
+    }
+}
+
+#[test]
+fn where_the_cycles_go_without_the_actuator_and_with_it() {
+    let Some(mut host) = actuator::armed(&[], Flash::ZeroWaitStates) else {
+        return;
+    };
+    let lines = Lines::of(&path(Program::Drive).expect("an image"));
+    for (name, values) in [("without", actuator::off()), ("with", actuator::on())] {
+        commit(&mut host, values);
+        for (task, exception) in [("render_torque", RENDER), ("command_motor", COMMAND)] {
+            let mut profile = Profile::of(exception);
+            host.watch(PERIOD_TICKS, &mut profile);
+            profile.print(&format!("{task} {name} the actuator"), &lines);
+        }
     }
 }
