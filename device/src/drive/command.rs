@@ -342,7 +342,13 @@ impl Command {
         let torque_nm = rendered.torque_nm * share;
         let mut outputs = self.drive(permit, torque_nm, rendered.omega_rad_s, current_a);
         if self.has_coil {
-            outputs.coil = self.drive_coil(permit, inputs, rendered.coil_v, counters);
+            outputs.coil = self.drive_coil(
+                permit == Permit::Torque,
+                rendered.coil_v,
+                inputs.coil_a,
+                inputs.coil_has_tripped,
+                counters,
+            );
         }
         let applied_nm =
             (permit == Permit::Torque && outputs.bridge != Bridge::Float).then_some(torque_nm);

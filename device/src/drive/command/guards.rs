@@ -2,7 +2,7 @@
 
 use crate::counters::Counters;
 use crate::drive::coil::CoilOutput;
-use crate::drive::command::{Command, Inputs};
+use crate::drive::command::Command;
 use crate::drive::emf_check;
 use crate::drive::exchange::Rendered;
 use crate::drive::plausibility::{Observation, Plausibility};
@@ -119,25 +119,23 @@ impl Command {
 
     /// Output of the coil: driven with the torque only, so that every fault of the motor,
     /// the lines and the link silences it. Its own faults leave the motor alone.
+    // By value: inputs that are lent would lie in memory in every tick.
     #[inline(never)]
     pub(super) fn drive_coil(
         &mut self,
-        permit: Permit,
-        inputs: &Inputs,
+        may: bool,
         coil_v: f32,
+        coil_a: Option<f32>,
+        has_tripped: bool,
         counters: &Counters,
     ) -> CoilOutput {
         let (fault_before, was_driven) = (self.coil.fault(), self.coil.is_driven());
-        let may = permit == Permit::Torque;
-        let output = self
-            .coil
-            .tick(coil_v, may, inputs.coil_a, inputs.coil_has_tripped);
+        let output = self.coil.tick(coil_v, may, coil_a, has_tripped);
         if self.coil.fault() != fault_before {
             counters.count(DriveCounter::Faults);
         }
         if was_driven {
-            self.batch
-                .add_coil(inputs.coil_a, output == CoilOutput::Asleep);
+            self.batch.add_coil(coil_a, output == CoilOutput::Asleep);
         }
         self.has_coil = self.coil.is_fitted();
         output

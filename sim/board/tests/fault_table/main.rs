@@ -11,6 +11,7 @@ mod support;
 mod blind;
 mod breakage;
 mod case;
+mod coil;
 mod page;
 mod pairs;
 mod provocation;

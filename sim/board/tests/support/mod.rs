@@ -29,9 +29,7 @@ pub(crate) fn scene(text: &str) -> Scene {
 }
 
 /// The paper's joint on a motor whose shaft a hand moves to and fro.
-pub(crate) fn examination() -> Scene {
-    scene(
-        r#"
+const EXAMINATION: &str = r#"
 version = 1
 title = "Passive examination"
 duration_s = 60.0
@@ -53,8 +51,15 @@ preset = "coarse"
 [effects.cuff]
 [effects.limb]
 [effects.hand]
-"#,
-    )
+"#;
+
+pub(crate) fn examination() -> Scene {
+    scene(EXAMINATION)
+}
+
+/// The same with a vibration actuator at the ankle.
+pub(crate) fn with_actuator() -> Scene {
+    scene(&[EXAMINATION, "[effects.shell]\n[effects.reaction-mass]\n"].concat())
 }
 
 /// The accounting of a subscription.
