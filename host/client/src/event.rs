@@ -47,8 +47,7 @@ impl StateChange {
         let key = |s: &Status| {
             (
                 s.state,
-                s.drive_fault,
-                s.comms_fault,
+                (s.drive_fault, s.comms_fault, s.coil_fault),
                 s.drive_present,
                 s.lease,
             )

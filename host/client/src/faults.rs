@@ -1,7 +1,7 @@
 //! Faults as text.
 
-use crepitus_protocol::Fault;
 use crepitus_protocol::fault::Detector;
+use crepitus_protocol::{CoilFault, Fault};
 
 /// A fault's name, detector, cause and remedy.
 pub fn fault_text(code: u8) -> String {
@@ -17,5 +17,23 @@ pub fn fault_text(code: u8) -> String {
     format!(
         "{} (fault {code}, detected by {detector}): {}. Remedy: {}",
         spec.name, spec.cause, spec.clear
+    )
+}
+
+/// The same of a fault of the vibration actuator's coil.
+pub fn coil_fault_text(code: u8) -> String {
+    CoilFault::find(code).map_or_else(
+        || {
+            format!(
+                "fault {code} of the coil, unknown to this tool: install the tool of the device's version"
+            )
+        },
+        |spec| {
+            format!(
+                "{} (fault {code} of the coil, detected by the drive): {}. The vibration actuator is off, the motor \
+                 goes on. Remedy: {}",
+                spec.name, spec.cause, spec.clear
+            )
+        },
     )
 }

@@ -43,7 +43,7 @@
 //! |---|---|
 //! | discovery of devices | [`discovery`] |
 //! | a port: its holder, errors of opening | [`Serial`], [`TransportError`] |
-//! | errors, with remedies | [`Error`], [`Refused`], [`Mismatch`], [`fault_text`] |
+//! | errors, with remedies | [`Error`], [`Refused`], [`Mismatch`], [`fault_text`], [`coil_fault_text`] |
 //! | accounting of received and lost samples | [`Accounting`] |
 //! | parameters as text | [`values`] |
 #![forbid(unsafe_code)]
@@ -75,7 +75,7 @@ pub use accounting::{Accounting, Begin, Gap, Taken};
 pub use client::{Client, Tally};
 pub use errors::{Conflict, Error};
 pub use event::{Arrival, Event, StateChange};
-pub use faults::fault_text;
+pub use faults::{coil_fault_text, fault_text};
 pub use handshake::{Handshake, Mismatch, TOOL_VERSION, Version};
 pub use management::Management;
 pub use reconnect::{Reconnected, Resubscribed};

@@ -83,6 +83,7 @@ struct Bin {
     model: Range,
     torque: Range,
     current: Range,
+    coil: Range,
 }
 
 impl Bin {
@@ -91,6 +92,9 @@ impl Bin {
         self.torque.add(row.torque_nm);
         if let Some(current_a) = row.current_a {
             self.current.add(current_a);
+        }
+        if let Some(coil_a) = row.coil_a {
+            self.coil.add(coil_a);
         }
         self.last = Some(*row);
     }
@@ -109,6 +113,7 @@ impl Bin {
         self.model.members("model_torque_nm", &mut message);
         self.torque.members("torque_nm", &mut message);
         self.current.members("current_a", &mut message);
+        self.coil.members("coil_current_a", &mut message);
         Some((row.time_s, message))
     }
 }
@@ -130,6 +135,10 @@ fn knee_schema() -> Value {
         (
             "current_a",
             "measured current, A; null if it was not measured",
+        ),
+        (
+            "coil_current_a",
+            "current of the vibration actuator's coil, A, means of five ticks; null while it is not driven",
         ),
     ] {
         for part in ["low", "mean", "high"] {

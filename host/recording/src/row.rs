@@ -6,7 +6,7 @@ use serde_json::{Map, Number, Value};
 use std::fmt::Write as _;
 
 /// The columns, with what they mean.
-pub const COLUMNS: [(&str, &str); 13] = [
+pub const COLUMNS: [(&str, &str); 14] = [
     ("tick", "ticks of 50 µs since the drive has started"),
     ("t_s", "time since the first recorded tick, s"),
     ("count", "counts of the encoder since the angle's zero"),
@@ -25,6 +25,11 @@ pub const COLUMNS: [(&str, &str); 13] = [
     (
         "current_a",
         "measured current, A; positive drives towards growing angle; empty if it was not measured",
+    ),
+    (
+        "coil_current_a",
+        "measured current of the vibration actuator's coil, A: the mean of five ticks, the same in each of them; \
+         empty while it is not driven",
     ),
     ("revision", "of the parameters in force"),
     (
@@ -56,6 +61,8 @@ pub struct Row {
     pub torque_nm: f32,
     /// Measured current, A.
     pub current_a: Option<f32>,
+    /// Mean current of the vibration actuator's coil over five ticks, A.
+    pub coil_a: Option<f32>,
     /// Of the parameters in force.
     pub revision: u32,
     /// Phase, limit and the rest.
@@ -92,6 +99,10 @@ impl Row {
         line.push(',');
         if let Some(current_a) = self.current_a {
             line.push_str(numbers.format(current_a));
+        }
+        line.push(',');
+        if let Some(coil_a) = self.coil_a {
+            line.push_str(numbers.format(coil_a));
         }
         let _ = write!(line, ",{},{},", self.revision, self.flags.limit().name());
         self.append_notes(line);

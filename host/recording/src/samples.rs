@@ -2,7 +2,7 @@
 
 use crate::row::Row;
 use crate::shaft::Shaft;
-use crepitus_protocol::telemetry::{BLOCK_TICKS, Block, NO_CURRENT};
+use crepitus_protocol::telemetry::{BLOCK_TICKS, Block, COIL_TICKS, NO_CURRENT};
 use crepitus_protocol::{TICKS_PER_S, Values};
 
 /// Converts samples to rows, with angle and speed from the drive's own
@@ -58,25 +58,31 @@ impl Samples {
         self.next_tick = block.end_tick();
         let begin = self.begin;
         let counts_per_s = counts_per_s(block);
-        block.ticks().map(move |(tick, sample, phases)| {
-            let (angle_rad, omega_rad_s) = self.shaft.see(tick, sample.count, counts_per_s);
-            let since = tick.saturating_sub(begin.tick) + begin.passed;
-            Row {
-                tick,
-                #[expect(clippy::cast_precision_loss, reason = "centuries of ticks")]
-                time_s: since as f64 / f64::from(TICKS_PER_S),
-                count: sample.count,
-                angle_rad,
-                omega_rad_s,
-                model_torque_nm: sample.model_torque_nm,
-                torque_nm: sample.torque_nm,
-                current_a: (sample.current_ma != NO_CURRENT)
-                    .then(|| f32::from(sample.current_ma) * 1e-3),
-                revision: block.revision.0,
-                flags: sample.flags,
-                phases,
-            }
-        })
+        let coil = block.coil.iter();
+        let coil = coil.flat_map(|mean| std::iter::repeat_n(mean.amperes(), COIL_TICKS));
+        block
+            .ticks()
+            .zip(coil)
+            .map(move |((tick, sample, phases), coil_a)| {
+                let (angle_rad, omega_rad_s) = self.shaft.see(tick, sample.count, counts_per_s);
+                let since = tick.saturating_sub(begin.tick) + begin.passed;
+                Row {
+                    tick,
+                    #[expect(clippy::cast_precision_loss, reason = "centuries of ticks")]
+                    time_s: since as f64 / f64::from(TICKS_PER_S),
+                    count: sample.count,
+                    angle_rad,
+                    omega_rad_s,
+                    model_torque_nm: sample.model_torque_nm,
+                    torque_nm: sample.torque_nm,
+                    current_a: (sample.current_ma != NO_CURRENT)
+                        .then(|| f32::from(sample.current_ma) * 1e-3),
+                    coil_a,
+                    revision: block.revision.0,
+                    flags: sample.flags,
+                    phases,
+                }
+            })
     }
 }
 
@@ -92,7 +98,7 @@ mod tests {
     use super::*;
     use crepitus_model::render::effects::Phases;
     use crepitus_protocol::State;
-    use crepitus_protocol::telemetry::{BlockFlags, EffectPhases};
+    use crepitus_protocol::telemetry::{BlockFlags, CoilCurrent, EffectPhases};
 
     #[test]
     fn time_goes_on_where_the_drive_has_restarted() {
@@ -122,6 +128,21 @@ mod tests {
         for (row, n) in samples.rows(&block).zip(0..) {
             assert_eq!((row.tick, row.phases), (40 + n, Phases(1 << (n % 16))));
         }
+    }
+
+    #[test]
+    fn a_row_has_the_mean_current_of_the_coil_in_its_five_ticks() {
+        let block = Block {
+            coil: [-1_250, 0, i16::MIN, 500].map(CoilCurrent),
+            ..Block::default()
+        };
+        let mut samples = Samples::default();
+        let rows: Vec<_> = samples.rows(&block).map(|row| row.coil_a).collect();
+        let means = [Some(-1.25), Some(0.0), None, Some(0.5)];
+        for (row, n) in rows.iter().zip(0..) {
+            assert_eq!(*row, means[n / 5], "{n}");
+        }
+        assert_eq!(rows.len(), 20);
     }
 
     /// No jump from rest that there was not.

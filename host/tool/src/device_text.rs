@@ -1,6 +1,6 @@
 //! Identity, status and faults of a device, as text and as JSON.
 
-use crepitus_client::fault_text;
+use crepitus_client::{coil_fault_text, fault_text};
 use crepitus_protocol::host::Status;
 use crepitus_protocol::management::Identity;
 use serde_json::{Value, json};
@@ -49,6 +49,7 @@ pub(crate) fn faults(status: &Status) -> Vec<String> {
         .into_iter()
         .filter(|code| *code != 0)
         .map(fault_text)
+        .chain((status.coil_fault != 0).then(|| coil_fault_text(status.coil_fault)))
         .collect()
 }
 
@@ -58,6 +59,7 @@ pub(crate) fn status_json(status: &Status) -> Value {
         "state": status.state.name(),
         "drive_fault": status.drive_fault,
         "comms_fault": status.comms_fault,
+        "coil_fault": status.coil_fault,
         "drive_present": status.drive_present,
         "tick": status.tick,
         "uptime_ms": status.uptime_ms,

@@ -2,7 +2,8 @@
 
 use crate::support::golden;
 use crepitus_client::values::{full_name, parse_value, show_value};
-use crepitus_client::{Holder, Refused, RequestKind, TransportError, fault_text};
+use crepitus_client::{Holder, Refused, RequestKind, TransportError, coil_fault_text, fault_text};
+use crepitus_protocol::coil::COIL_FAULTS;
 use crepitus_protocol::fault::FAULTS;
 use crepitus_protocol::host::Refusal;
 use crepitus_protocol::link::DriveRefusal;
@@ -17,6 +18,8 @@ fn every_fault_has_a_remedy() {
         .map(|spec| fault_text(spec.fault.code()))
         .collect();
     lines.push(fault_text(200));
+    lines.extend(COIL_FAULTS.map(|spec| coil_fault_text(spec.fault.code())));
+    lines.push(coil_fault_text(200));
     golden("faults", &lines.join("\n"));
 }
 

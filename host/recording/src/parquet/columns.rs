@@ -27,13 +27,14 @@ const ZSTD: i32 = 3;
 const GROWING: [&str; 2] = ["tick", "count"];
 
 /// Columns of fractions.
-const FLOATS: [&str; 6] = [
+const FLOATS: [&str; 7] = [
     "t_s",
     "angle_rad",
     "omega_rad_s",
     "model_torque_nm",
     "torque_nm",
     "current_a",
+    "coil_current_a",
 ];
 
 /// The type of each column.
@@ -47,6 +48,7 @@ fn type_of(name: &str) -> &'static str {
         "model_torque_nm" => "required float model_torque_nm",
         "torque_nm" => "required float torque_nm",
         "current_a" => "optional float current_a",
+        "coil_current_a" => "optional float coil_current_a",
         "revision" => "required int32 revision (INTEGER(32, false))",
         "phase" => "required binary phase (UTF8)",
         "event" => "required binary event (UTF8)",
@@ -116,16 +118,8 @@ pub(super) fn write<W: Write + Send>(
             "model_torque_nm" => put::<FloatType>(&mut column, rows, |row| row.model_torque_nm)?,
             "torque_nm" => put::<FloatType>(&mut column, rows, |row| row.torque_nm)?,
             "revision" => put::<Int32Type>(&mut column, rows, |row| row.revision.cast_signed())?,
-            "current_a" => {
-                let levels: Vec<_> = rows
-                    .iter()
-                    .map(|row| i16::from(row.current_a.is_some()))
-                    .collect();
-                let values: Vec<_> = rows.iter().filter_map(|row| row.current_a).collect();
-                column
-                    .typed::<FloatType>()
-                    .write_batch(&values, Some(&levels), None)?;
-            }
+            "current_a" => put_known(&mut column, rows, |row| row.current_a)?,
+            "coil_current_a" => put_known(&mut column, rows, |row| row.coil_a)?,
             "phase" => text(&mut column, &word(0))?,
             "event" => text(&mut column, &word(1))?,
             "limit" => text(&mut column, &word(2))?,
@@ -143,6 +137,23 @@ fn put<T: DataType>(
 ) -> Result<()> {
     let values: Vec<_> = rows.iter().map(value).collect();
     column.typed::<T>().write_batch(&values, None, None)?;
+    Ok(())
+}
+
+/// Values that a row need not have.
+fn put_known(
+    column: &mut SerializedColumnWriter<'_>,
+    rows: &[Row],
+    value: impl Fn(&Row) -> Option<f32>,
+) -> Result<()> {
+    let levels: Vec<_> = rows
+        .iter()
+        .map(|row| i16::from(value(row).is_some()))
+        .collect();
+    let values: Vec<_> = rows.iter().filter_map(value).collect();
+    column
+        .typed::<FloatType>()
+        .write_batch(&values, Some(&levels), None)?;
     Ok(())
 }
 
@@ -182,6 +193,9 @@ pub(super) fn read<R: ChunkReader + 'static>(
                 column.get::<Int32Type>(&mut rows, |row, v| row.revision = v.cast_unsigned())?;
             }
             "current_a" => column.get::<FloatType>(&mut rows, |row, v| row.current_a = Some(v))?,
+            "coil_current_a" => {
+                column.get::<FloatType>(&mut rows, |row, v| row.coil_a = Some(v))?;
+            }
             "phase" => texts[0] = column.values::<ByteArrayType>()?.0,
             "event" => texts[1] = column.values::<ByteArrayType>()?.0,
             "limit" => texts[2] = column.values::<ByteArrayType>()?.0,

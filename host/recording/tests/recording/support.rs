@@ -2,7 +2,9 @@
 
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::parameters::id;
-use crepitus_protocol::telemetry::{Block, BlockFlags, NO_CURRENT, Sample, SampleFlags};
+use crepitus_protocol::telemetry::{
+    Block, BlockFlags, CoilCurrent, NO_CURRENT, Sample, SampleFlags,
+};
 use crepitus_protocol::{LimitReason, Revision, State, Values};
 use crepitus_recording::{Begin, Damage, Metadata, ReadError, Recorder, Recording, Row, Samples};
 use std::path::Path;
@@ -31,6 +33,10 @@ pub(crate) fn block(first_tick: u64, revision: u32, dropped: u32, start: u16) ->
                 .with_limit(random.choice(LimitReason::ALL).unwrap_or_default())
                 .with(SampleFlags::BREAK, random.bool())
                 .with(SampleFlags::LATE, random.bool()),
+        }),
+        coil: std::array::from_fn(|n| match i16::try_from((first_tick / 20 + n as u64) % 400) {
+            Ok(ma) if ma > 0 => CoilCurrent(10 * ma - 2_000),
+            _ => CoilCurrent::NONE,
         }),
         ..Block::default()
     }
@@ -164,6 +170,7 @@ pub(crate) fn is_part(some: &[Row], all: &[Row]) -> bool {
                 row.model_torque_nm.to_bits(),
                 row.torque_nm.to_bits(),
                 row.current_a.map(f32::to_bits),
+                row.coil_a.map(f32::to_bits),
                 row.flags,
             )
         };
