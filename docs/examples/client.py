@@ -76,5 +76,5 @@ for number in range(1, 201):
     block = wait_for(b"T" + tag)
     sequence, tick, revision, dropped = (unvarint(block) for _ in range(4))
     assert tick + 20 - first_tick == 20 * number + dropped - dropped_before, "samples are missing from the books"
-print("count %d, model %g N·m, torque %g N·m, %d mA, flags %#06x" % struct.unpack("<iffhH", bytes(block)[-64:-48]))
+print("count %d, model %g N·m, torque %g N·m, %d mA, flags %#06x" % struct.unpack("<iffhH", bytes(block)[-56:-40]))
 arms and request(b"\x08")

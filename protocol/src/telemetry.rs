@@ -4,7 +4,7 @@
 //! the device's effects in the same ticks. Both are of fixed width:
 //!
 //! ```text
-//! block  = head ‖ 20 samples ‖ 20 phases of effects ‖ 4 currents of the coil
+//! block  = head ‖ 4 currents of the coil ‖ 20 samples ‖ 20 phases of effects
 //! sample = count i32 ‖ model torque f32 ‖ torque f32 ‖ current i16 ‖ flags u16     16 bytes, little endian
 //! phases = u16                                                                      2 bytes, little endian
 //! coil   = i16, the mean of 5 ticks in mA                                           2 bytes, little endian
@@ -114,16 +114,6 @@ impl CoilCurrent {
     /// In A.
     pub fn amperes(self) -> Option<f32> {
         (self != Self::NONE).then(|| f32::from(self.0) * 1e-3)
-    }
-
-    /// Encodes a block's as postcard would.
-    #[inline]
-    pub fn bytes([a, b, c, d]: [Self; COIL_CURRENTS]) -> [u8; COIL_BYTES] {
-        let [a0, a1] = a.0.to_le_bytes();
-        let [b0, b1] = b.0.to_le_bytes();
-        let [c0, c1] = c.0.to_le_bytes();
-        let [d0, d1] = d.0.to_le_bytes();
-        [a0, a1, b0, b1, c0, c1, d0, d1]
     }
 }
 
@@ -282,16 +272,22 @@ pub struct Block {
     pub dropped: u32,
     /// Flags.
     pub flags: BlockFlags,
+    /// Currents of the vibration actuator's coil.
+    pub coil: [CoilCurrent; COIL_CURRENTS],
     /// The samples.
     pub samples: [Sample; BLOCK_SAMPLES],
     /// Phases of the device's effects, in the ticks of the samples.
     pub phases: [EffectPhases; BLOCK_SAMPLES],
-    /// Currents of the vibration actuator's coil.
-    pub coil: [CoilCurrent; COIL_CURRENTS],
 }
 
 /// The fields of a block before its samples.
-pub type BlockHead = (u16, u64, Revision, u32, BlockFlags);
+pub type BlockHead = (
+    u16,
+    u64,
+    Revision,
+    u32,
+    (BlockFlags, [CoilCurrent; COIL_CURRENTS]),
+);
 
 impl Block {
     /// Bytes of [`Self::head`], at most.
@@ -304,7 +300,7 @@ impl Block {
             self.first_tick,
             self.revision,
             self.dropped,
-            self.flags,
+            (self.flags, self.coil),
         )
     }
 
@@ -367,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_is_its_head_its_samples_its_phases_and_its_currents_of_the_coil() {
+    fn a_block_is_its_head_with_the_currents_of_the_coil_its_samples_and_its_phases() {
         let mut block = Block {
             sequence: 700,
             first_tick: 1 << 40,
@@ -392,7 +388,6 @@ mod tests {
         for phases in block.phases {
             pieces.extend(phases.bytes());
         }
-        pieces.extend(CoilCurrent::bytes(block.coil));
         assert_eq!(whole, pieces);
         let amperes = block.coil.map(CoilCurrent::amperes);
         assert_eq!(

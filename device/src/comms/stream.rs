@@ -5,9 +5,7 @@ use crate::comms::outbox::Outbox;
 use crepitus_protocol::Lane;
 use crepitus_protocol::frame::{self, EncodedFrame, Encoder, FRAME_BYTES, FrameBuffer};
 use crepitus_protocol::frame::{TooLong, WordCrc};
-use crepitus_protocol::telemetry::{
-    BLOCK_SAMPLES, Block, BlockHead, COIL_BYTES, CoilCurrent, EFFECT_PHASES_BYTES,
-};
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, BlockHead, EFFECT_PHASES_BYTES};
 
 /// The stream of blocks to the host.
 #[derive(Clone, Copy, Debug, Default)]
@@ -56,19 +54,16 @@ fn encode<'a>(
     block: &Block,
     dropped: u32,
 ) -> Result<EncodedFrame<&'a mut FrameBuffer>, TooLong> {
-    let (sequence, first_tick, revision, _, flags) = block.head();
-    let head: BlockHead = (sequence, first_tick, revision, dropped, flags);
+    let (sequence, first_tick, revision, _, end) = block.head();
+    let head: BlockHead = (sequence, first_tick, revision, dropped, end);
     let mut encoder = Encoder::new(buffer, Lane::Telemetry)?;
     encoder.push(frame::write(&head, &mut [0; Block::HEAD_BYTES])?)?;
     for sample in &block.samples {
         encoder.push_by(unit, &sample.bytes())?;
     }
-    let mut bytes = [0; BLOCK_SAMPLES * EFFECT_PHASES_BYTES + COIL_BYTES];
+    let mut bytes = [0; BLOCK_SAMPLES * EFFECT_PHASES_BYTES];
     for (bytes, phases) in bytes.as_chunks_mut().0.iter_mut().zip(&block.phases) {
         *bytes = phases.bytes();
-    }
-    if let Some(end) = bytes.last_chunk_mut() {
-        *end = CoilCurrent::bytes(block.coil);
     }
     encoder.push_by(unit, &bytes)?;
     encoder.finish()
@@ -78,7 +73,7 @@ fn encode<'a>(
 mod tests {
     use super::*;
     use crepitus_protocol::frame::{DELIMITER, SoftwareCrc};
-    use crepitus_protocol::telemetry::{EffectPhases, Sample};
+    use crepitus_protocol::telemetry::{CoilCurrent, EffectPhases, Sample};
 
     #[test]
     fn a_forwarded_block_differs_in_its_count_only() {

@@ -76,6 +76,7 @@ const NO_CURRENT_SHARE: f32 = 1.0 / 8.0;
 const HOT_SHARE: f32 = 1.25;
 
 /// Share of the way to the mean square that the heat goes in a tick.
+#[expect(clippy::cast_possible_truncation, reason = "rounded to f32, once")]
 const HEATING: f32 = (TICK_S / HEATING_S) as f32;
 
 /// Share of the largest back-EMF, squared, above which voltages are compared.
@@ -103,9 +104,10 @@ struct Means {
 pub struct Coil {
     /// `None`: there is no actuator.
     plan: Option<CoilPlan>,
-    /// What the plan becomes once the command is silent: one that fades out needs
-    /// the old one.
-    next: Option<Option<CoilPlan>>,
+    /// What the plan becomes once the command is silent, if it becomes another one: a
+    /// command that fades out needs the old one.
+    next: Option<CoilPlan>,
+    has_next: bool,
     fault: Option<CoilFault>,
     /// Voltages that were put out last and before, V; `None` where it was asleep.
     last_v: Option<f32>,
@@ -119,6 +121,7 @@ impl Coil {
         Self {
             plan,
             next: None,
+            has_next: false,
             fault: None,
             last_v: None,
             before_v: 0.0,
@@ -128,13 +131,13 @@ impl Coil {
 
     /// Another plan, in force as soon as the command is silent.
     pub fn change(&mut self, plan: Option<CoilPlan>) {
-        self.next = (plan != self.plan).then_some(plan);
+        (self.next, self.has_next) = (plan, plan != self.plan);
     }
 
     /// Whether there is anything to do in a tick.
     #[inline]
     pub fn is_fitted(&self) -> bool {
-        self.plan.is_some() || self.next.is_some()
+        self.plan.is_some() || self.has_next
     }
 
     /// The latched fault.
@@ -164,10 +167,8 @@ impl Coil {
         current_a: Option<f32>,
         has_tripped: bool,
     ) -> CoilOutput {
-        if let Some(next) = self.next
-            && (coil_v == 0.0 || !may)
-        {
-            (self.plan, self.next) = (next, None);
+        if self.has_next && (coil_v == 0.0 || !may) {
+            (self.plan, self.has_next) = (self.next, false);
         }
         let Some(plan) = &self.plan else {
             return self.sleep();

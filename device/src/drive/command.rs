@@ -28,6 +28,7 @@ use crepitus_protocol::{Revision, State};
 
 /// Inputs from the peripherals in the middle of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a line by itself")]
 pub struct Inputs {
     /// The current, A, positive towards growing angle: that of the loop. `None`
     /// if its converter has no result.

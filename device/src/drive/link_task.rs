@@ -183,12 +183,11 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
                 None
             }
             Some(BlockPiece::Phases(next)) => {
-                let (piece, coil) = shared.command(|command| {
-                    let block = command.block()?;
-                    let phases = block.phases.get(next..)?;
-                    Some((phases.first_chunk::<PIECE_PHASES>().copied()?, block.coil))
+                let piece = shared.command(|command| {
+                    let phases = command.block()?.phases.get(next..)?;
+                    phases.first_chunk::<PIECE_PHASES>().copied()
                 })?;
-                let frame = self.outgoing.phases(unit, &piece, coil)?;
+                let frame = self.outgoing.phases(unit, &piece)?;
                 shared.command(Command::pop_block);
                 self.blocks_before_status = self.blocks_before_status.saturating_sub(1);
                 Some(frame)

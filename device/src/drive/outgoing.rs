@@ -9,8 +9,7 @@ use crepitus_protocol::frame::{self, EncodedFrame, Encoder, FrameBuffer, TooLong
 use crepitus_protocol::link::{COUNTER_BYTES, DriveStatus};
 use crepitus_protocol::management::{Answer, AnswerBytes};
 use crepitus_protocol::telemetry::{
-    BLOCK_SAMPLES, Block, BlockHead, COIL_CURRENTS, CoilCurrent, EFFECT_PHASES_BYTES, EffectPhases,
-    SAMPLE_BYTES, Sample,
+    BLOCK_SAMPLES, Block, BlockHead, EFFECT_PHASES_BYTES, EffectPhases, SAMPLE_BYTES, Sample,
 };
 
 /// Samples per piece: with its head and its phases a block takes thirteen of its twenty
@@ -186,13 +185,11 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
         Ok(())
     }
 
-    /// Encodes phases of the block; returns the finished frame after the last, with the
-    /// currents of the coil at its end.
+    /// Encodes phases of the block; returns the finished frame after the last.
     pub fn phases(
         &mut self,
         unit: &mut impl WordCrc,
         piece: &[EffectPhases; PIECE_PHASES],
-        coil: [CoilCurrent; COIL_CURRENTS],
     ) -> Option<EncodedFrame<P>> {
         let (Some(encoder), Rest::Phases(next)) = (&mut self.current, &mut self.rest) else {
             return None;
@@ -206,7 +203,6 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
         if *next < BLOCK_SAMPLES {
             return None;
         }
-        encoder.push_by(unit, &CoilCurrent::bytes(coil)).ok()?;
         self.finish()
     }
 
@@ -285,6 +281,7 @@ mod tests {
     use crepitus_protocol::frame::{FRAME_BYTES, Frame, SoftwareCrc};
     use crepitus_protocol::link::FromDrive;
     use crepitus_protocol::management::Identity;
+    use crepitus_protocol::telemetry::CoilCurrent;
 
     type Places = Outgoing<FrameBuffer>;
 
@@ -299,7 +296,7 @@ mod tests {
                 }
                 Some(BlockPiece::Phases(next)) => {
                     let piece = block.phases[next..].first_chunk().unwrap();
-                    outgoing.phases(&mut SoftwareCrc, piece, block.coil)
+                    outgoing.phases(&mut SoftwareCrc, piece)
                 }
                 None => outgoing.piece(&mut SoftwareCrc),
             };

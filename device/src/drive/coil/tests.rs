@@ -235,5 +235,5 @@ fn a_plan_is_exchanged_when_the_command_is_silent_or_nothing_is_driven() {
     // One that is the same exchanges nothing.
     let mut coil = Coil::new(Some(five));
     coil.change(Some(five));
-    assert_eq!(coil.next, None);
+    assert!(!coil.has_next);
 }
