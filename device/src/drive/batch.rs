@@ -202,9 +202,9 @@ mod tests {
         let mut batch = Batch::new(0, 0);
         // Two rounds of all slots; driven from the third tick of a block to its 12th.
         for n in 0..2 * SLOTS * BLOCK_SAMPLES {
-            let place = n % BLOCK_SAMPLES;
+            let place = u8::try_from(n % BLOCK_SAMPLES).unwrap();
             if (2..12).contains(&place) {
-                let measured = (place != 7).then_some(place as f32 * 0.1 - 0.5);
+                let measured = (place != 7).then_some(f32::from(place) * 0.1 - 0.5);
                 batch.add_coil(measured, place == 11);
             }
             let none = (Sample::default(), EffectPhases::default());

@@ -70,14 +70,19 @@ impl Rig {
     }
 }
 
+fn single(n: u32) -> f32 {
+    f32::from(u16::try_from(n).unwrap())
+}
+
 /// Clicks of a few milliseconds, some 30 a second, as of crepitus.
 fn clicks(n: u32) -> f32 {
-    let t = (n % 640) as f32 * 5e-5;
+    let t = single(n % 640) * 5e-5;
     2.5 * (-400.0 * t).exp() * (1_500.0 * t).sin()
 }
 
 fn sine(hz: f32, most_v: f32) -> impl Fn(u32) -> f32 {
-    move |n| most_v * (core::f32::consts::TAU * hz * 5e-5 * n as f32).sin()
+    // All of them have whole periods in 4,000 ticks, 0.2 s.
+    move |n| most_v * (core::f32::consts::TAU * hz * 5e-5 * single(n % 4_000)).sin()
 }
 
 #[test]

@@ -38,18 +38,18 @@ struct Limits {
 const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::ZeroWaitStates,
-        share: 41,
-        commit_share: 52,
-        cold_share: 40,
+        share: 42,
+        commit_share: 54,
+        cold_share: 42,
         render_cycles: 900,
     },
     // About 3 % above what was measured.
     Limits {
         flash: Flash::Modelled,
-        share: 58,
-        commit_share: 71,
-        cold_share: 52,
-        render_cycles: 1_280,
+        share: 60,
+        commit_share: 74,
+        cold_share: 56,
+        render_cycles: 1_310,
     },
 ];
 

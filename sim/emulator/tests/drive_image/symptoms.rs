@@ -216,7 +216,7 @@ const ALL: [All; 2] = [
     All {
         flash: Flash::Modelled,
         share: 82,
-        commit_share: 93,
+        commit_share: 95,
     },
 ];
 
