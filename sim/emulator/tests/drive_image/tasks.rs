@@ -18,7 +18,7 @@ const TICK_UNITS: u64 = 16_800;
 /// measured.
 const COMMAND_CYCLES: u64 = 2_110;
 const RENDER_CYCLES: u64 = 1_250;
-const LINK_CYCLES: u64 = 1_380;
+const LINK_CYCLES: u64 = 1_450;
 
 /// Ticks that are watched.
 const TICKS: u64 = 1_000;
