@@ -6,7 +6,7 @@
 //! that is not known and a back-EMF of which only the largest is, e = Bl·ω₀·X:
 //!
 //! ```text
-//! short     |i| ≤ 1.3·(V̂ + e)/R + 0.15 A         V̂: the largest |V| of the last milliseconds
+//! short     |i| ≤ 1.3·(V̂ + e)/R + 0.15 A, 3.1 A  V̂: the largest |V| of the last milliseconds
 //! open      ⟨V·i⟩ ≥ ⅛·⟨V²⟩/(R + Rm)              ⟨ ⟩: mean over 10 ms
 //! hot       ⟨i²⟩ ≤ 1.25·Ic²                       mean over the model's 10 s
 //! ```
@@ -49,6 +49,9 @@ const SHORT_TICKS: u8 = 5;
 /// Tolerance of the resistance for a cold coil, and of the current's sensor, A.
 const COLD: f32 = 1.3;
 const SHORT_SLACK_A: f32 = 0.15;
+
+/// The most that the sensor can tell from more, A: its range is 3.3 A.
+const SENSOR_A: f32 = 3.1;
 
 /// Share of the largest voltage that is left a tick later: 5 ms, more than L/R of any
 /// such coil.
@@ -223,6 +226,7 @@ impl Means {
         self.missing = 0;
         self.peak_v = volts.abs().at_least(PEAK_KEPT * self.peak_v);
         let most_a = COLD * plan.per_ohm * (self.peak_v + plan.emf_v) + SHORT_SLACK_A;
+        let most_a = most_a.at_most(SENSOR_A);
         self.short = held(self.short, current_a.abs() > most_a);
         let squared = current_a * current_a;
         self.volts_squared += MEAN_SHARE * (volts * volts - self.volts_squared);

@@ -56,14 +56,14 @@ mod tests {
         let parameters = (Revision(7), Values::default());
         let saves = |storage: &mut Storage| (0..100).filter(|_| storage.store(parameters)).count();
         let mut storage = Storage::new(None);
-        assert_eq!(saves(&mut storage), 30);
+        assert_eq!(saves(&mut storage), 14);
         // The newest record is the last of its sector.
         storage.start();
-        assert_eq!(saves(&mut storage), 15);
+        assert_eq!(saves(&mut storage), 7);
         storage.start();
         assert!(storage.store(parameters));
         storage.start();
-        assert_eq!(saves(&mut storage), 14 + 15);
+        assert_eq!(saves(&mut storage), 6 + 7);
         assert_eq!(storage.newest(), Some(parameters));
         storage.start();
         storage.set_works(false);

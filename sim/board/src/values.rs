@@ -291,7 +291,12 @@ mod tests {
                 };
                 values.set(parameter.id, value);
             }
-            if DeviceSettings::of(&values).is_err() {
+            let Ok(settings) = DeviceSettings::of(&values) else {
+                continue;
+            };
+            // A knee has no actuator, which is the brace's, and its file refuses such a ringing.
+            let rings_there = (settings.effects.bone_shaping).is_some_and(|bone| bone.output == 1);
+            if rings_there {
                 continue;
             }
             taken += 1;
