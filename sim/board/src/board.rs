@@ -515,6 +515,11 @@ impl Board {
         self.leg.coil_v().is_some()
     }
 
+    /// Whether the drive commands the coil to be driven, whatever the lines let through.
+    pub fn coil_is_commanded(&self) -> bool {
+        self.coil != CoilOutput::Asleep
+    }
+
     /// Level of the enable line of a controller at its gate: true for on.
     pub fn line_is_on(&self, controller: Controller) -> bool {
         match controller {

@@ -300,8 +300,42 @@ fn whatever_ends_the_torque_silences_the_coil() {
             assert!(!host.device.board().coil_is_driven(), "{name}");
             host.tick();
         }
+        // Not by the gate alone.
+        assert!(!host.device.board().coil_is_commanded(), "{name}");
         assert_eq!(host.device.board().drive().coil_fault(), None, "{name}");
     }
+}
+
+/// By the gate at nSLEEP, as its pins stay as they were.
+#[test]
+fn a_drive_that_hangs_has_its_coil_put_to_sleep_by_comms() {
+    let mut host = ready(&[]);
+    board(&mut host).hang(Controller::Drive);
+    host.run(150);
+    for _ in 0..2_000 {
+        host.tick();
+        let board = host.device.board();
+        assert!(board.coil_is_commanded() && !board.coil_is_driven());
+    }
+}
+
+#[test]
+fn it_is_driven_with_the_torque_and_not_while_arming_pushes() {
+    let mut host = ready(&[]);
+    host.disarm();
+    host.run(200);
+    host.renew_every = Some(1_000);
+    let request = host.request(Operation::Arm);
+    host.say(&request);
+    let mut ticks_before = 0;
+    while host.device.board().drive().state() != State::Armed {
+        assert!(!host.device.board().coil_is_commanded());
+        host.tick();
+        ticks_before += 1;
+    }
+    assert!(ticks_before > 300);
+    host.run(2);
+    assert!(host.device.board().coil_is_driven());
 }
 
 #[test]
