@@ -12,6 +12,7 @@ pub(crate) mod disarm;
 pub(crate) mod doctor;
 pub(crate) mod effects;
 pub(crate) mod export;
+pub(crate) mod identify_actuator;
 pub(crate) mod info;
 pub(crate) mod params;
 pub(crate) mod presets;
@@ -55,6 +56,7 @@ verbs! {
     Info: info,
     Doctor: doctor,
     Params: params,
+    IdentifyActuator: identify_actuator,
     Zero: zero,
     Arm: arm,
     Disarm: disarm,

@@ -1,0 +1,51 @@
+//! Recordings of a bench.
+
+use crate::failure::Failure;
+use clap::{Args, ValueHint};
+use crepitus_identify::Series;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// Which recordings.
+#[derive(Debug, Args)]
+pub(super) struct Recordings {
+    /// Recording of a chirp on a bench: columns t_s, volts, amperes.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    from: PathBuf,
+
+    /// The same with the added mass.
+    #[arg(long, value_name = "FILE", requires = "added_mass_g", value_hint = ValueHint::FilePath)]
+    from_added: Option<PathBuf>,
+}
+
+/// What was measured.
+#[derive(Debug)]
+pub(super) struct Measured {
+    /// Without an added mass.
+    pub(super) bare: Series,
+    /// With it.
+    pub(super) with_added: Option<Series>,
+}
+
+impl Recordings {
+    /// Reads them.
+    pub(super) fn read(&self, needs_second: bool) -> Result<Measured, Failure> {
+        if needs_second && self.from_added.is_none() {
+            return Err(Failure::input(
+                "--added-mass-g needs the recording of the chirp with that mass: --from-added FILE",
+            ));
+        }
+        Ok(Measured {
+            bare: series(&self.from)?,
+            with_added: self.from_added.as_deref().map(series).transpose()?,
+        })
+    }
+}
+
+fn series(path: &Path) -> Result<Series, Failure> {
+    let file =
+        File::open(path).map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
+    Series::from_csv(BufReader::new(file))
+        .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))
+}

@@ -1,0 +1,202 @@
+//! `crepitus identify-actuator` on recordings of a bench.
+
+#[path = "../host/identify/tests/support/mod.rs"]
+mod actuator;
+mod support;
+
+use actuator::{NOMINAL, Simulated};
+use crepitus_model::control::chirp::ChirpSettings;
+use serde_json::Value;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use support::{run, stderr, stdout};
+
+/// An actuator that is none of the data sheet.
+const OURS: Simulated = Simulated {
+    resistance_ohm: 2.1,
+    force_constant: 0.95,
+    mass_kg: 0.052,
+    resonance_hz: 41.0,
+    damping_ratio: 0.08,
+    ..NOMINAL
+};
+
+fn recorded(truth: &Simulated, path: &Path) {
+    let series = truth.played(&ChirpSettings::default(), &mut fastrand::Rng::with_seed(2));
+    let mut text = "t_s,volts,amperes\n".to_owned();
+    for (i, (volts, amperes)) in series.volts().iter().zip(series.amperes()).enumerate() {
+        let time_s = i as f64 * series.step_s();
+        writeln!(text, "{time_s:.5},{volts:.6},{amperes:.4}").unwrap();
+    }
+    fs::write(path, text).unwrap();
+}
+
+fn value<'v>(summary: &'v Value, name: &str) -> &'v Value {
+    let values = summary["values"].as_array().unwrap();
+    values.iter().find(|value| value["name"] == name).unwrap()
+}
+
+#[test]
+fn a_bench_recording_gives_a_table_a_plot_and_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let (csv, out) = (folder.path().join("bench.csv"), folder.path().join("out"));
+    recorded(&OURS, &csv);
+    let [csv, out_name] = [&csv, &out].map(|path| path.to_str().unwrap());
+    let from = ["identify-actuator", "--from", csv, "--moving-mass-g", "52"];
+    let done = run(&[&from[..], &["--out", out_name]].concat());
+    assert!(done.status.success(), "{}", stderr(&done));
+    let text = stdout(&done);
+    let row = |name: &str| text.lines().find(|line| line.contains(name)).unwrap();
+    assert!(
+        row("vibration-actuator.resonance_hz").contains("41.0"),
+        "{text}"
+    );
+    assert!(
+        row("vibration-actuator.resistance_ohm").contains(" 1.800 "),
+        "{text}"
+    );
+    assert!(row("force_constant_n_per_a").contains("weight"), "{text}");
+    assert!(stderr(&done).contains("nothing in the current tells a wrong mass"));
+    let svg = fs::read_to_string(out.join("impedance.svg")).unwrap();
+    assert!(svg.contains("Residual (%)"));
+    // The file and the JSON of the command say the same.
+    let json = run(&[&["--json"][..], &from].concat());
+    let printed: Value = serde_json::from_str(&stdout(&json)).unwrap();
+    let written = fs::read_to_string(out.join("summary.json")).unwrap();
+    let written: Value = serde_json::from_str(&written).unwrap();
+    assert_eq!(printed["identified"], written);
+    assert_eq!(printed["revision"], Value::Null);
+    for (name, truth) in [
+        ("vibration-actuator.resonance_hz", 41.0),
+        (
+            "vibration-actuator.damping_ratio",
+            OURS.whole_damping_ratio(),
+        ),
+        ("vibration-actuator.moving_mass_g", 52.0),
+        ("vibration-actuator.force_constant_n_per_a", 0.95),
+        ("vibration-actuator.resistance_ohm", 2.1),
+        ("damping ratio of the flexure alone", 0.08),
+    ] {
+        let found = value(&written, name)["value"].as_f64().unwrap();
+        assert!(
+            (found / truth - 1.0).abs() < 0.02,
+            "{name}: {found} {truth}"
+        );
+    }
+}
+
+#[test]
+fn a_second_recording_with_an_added_mass_tells_the_mass() {
+    let folder = tempfile::tempdir().unwrap();
+    let (bare, heavier) = (
+        folder.path().join("bare.csv"),
+        folder.path().join("with.csv"),
+    );
+    recorded(&OURS, &bare);
+    recorded(
+        &Simulated {
+            added_kg: 0.025,
+            ..OURS
+        },
+        &heavier,
+    );
+    let [bare, heavier] = [&bare, &heavier].map(|path| path.to_str().unwrap());
+    let added = ["--from-added", heavier, "--added-mass-g", "25"];
+    let both = [&["--json", "identify-actuator", "--from", bare][..], &added].concat();
+    let done = run(&both);
+    assert!(done.status.success(), "{}", stderr(&done));
+    let printed: Value = serde_json::from_str(&stdout(&done)).unwrap();
+    let mass = value(&printed["identified"], "vibration-actuator.moving_mass_g");
+    assert!(
+        (mass["value"].as_f64().unwrap() / 52.0 - 1.0).abs() < 0.03,
+        "{mass}"
+    );
+    assert_eq!(mass["source"], "both chirps");
+    // A mass that was weighed wrongly contradicts it.
+    let wrong = run(&[&both[..], &["--moving-mass-g", "70"]].concat());
+    assert_eq!(wrong.status.code(), Some(1));
+    assert!(
+        stdout(&wrong).contains("70.0 g were given"),
+        "{}",
+        stdout(&wrong)
+    );
+}
+
+#[test]
+fn what_is_refused_has_its_exit_code_and_its_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("open.csv");
+    recorded(
+        &Simulated {
+            is_open: true,
+            ..OURS
+        },
+        &csv,
+    );
+    let csv = csv.to_str().unwrap();
+    let refused = run(&["identify-actuator", "--from", csv, "--moving-mass-g", "52"]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(
+        stderr(&refused).contains("the coil is open"),
+        "{}",
+        stderr(&refused)
+    );
+    for (arguments, text) in [
+        (vec!["--from", csv], "--moving-mass-g"),
+        (vec!["--from", csv, "--moving-mass-g", "-1"], "above 0 g"),
+        (vec!["--from", csv, "--added-mass-g", "20"], "--from-added"),
+        (
+            vec!["--from", csv, "--moving-mass-g", "52", "--to-hz", "5"],
+            "chirp",
+        ),
+        (
+            vec![
+                "--from",
+                csv,
+                "--moving-mass-g",
+                "52",
+                "--mass-tolerance",
+                "50",
+            ],
+            "0 to 20 %",
+        ),
+        (
+            vec!["--from", "nowhere.csv", "--moving-mass-g", "52"],
+            "nowhere.csv",
+        ),
+        (vec!["--from", "Cargo.toml", "--moving-mass-g", "52"], "t_s"),
+    ] {
+        let bad = run(&[&["identify-actuator"][..], &arguments].concat());
+        assert_eq!(bad.status.code(), Some(2), "{arguments:?}");
+        assert!(
+            stderr(&bad).contains(text),
+            "{arguments:?}: {}",
+            stderr(&bad)
+        );
+    }
+}
+
+#[test]
+fn apply_sets_the_parameters_of_the_device() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("bench.csv");
+    recorded(&OURS, &csv);
+    let csv = csv.to_str().unwrap();
+    let done = run(&[
+        "--json",
+        "identify-actuator",
+        "--from",
+        csv,
+        "--moving-mass-g",
+        "52",
+        "--device",
+        "sim",
+        "--apply",
+    ]);
+    assert!(done.status.success(), "{}", stderr(&done));
+    let printed: Value = serde_json::from_str(&stdout(&done)).unwrap();
+    assert!(printed["revision"].as_u64().unwrap() > 0, "{printed}");
+    let in_use = &value(&printed["identified"], "vibration-actuator.resonance_hz")["in_use"];
+    assert_eq!(in_use.as_f64(), Some(35.0));
+}
