@@ -200,3 +200,93 @@ fn apply_sets_the_parameters_of_the_device() {
     let in_use = &value(&printed["identified"], "vibration-actuator.resonance_hz")["in_use"];
     assert_eq!(in_use.as_f64(), Some(35.0));
 }
+
+#[test]
+fn a_simulated_device_plays_the_chirp_and_its_actuator_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let device = ["--device", "sim", "--scene", "actuator-in-a-vice"];
+    let verb = [
+        "--json",
+        "identify-actuator",
+        "--zero",
+        "--moving-mass-g",
+        "52",
+        "--apply",
+    ];
+    let done = run(&[&verb[..], &["--out", out.to_str().unwrap()], &device].concat());
+    assert!(done.status.success(), "{}{}", stdout(&done), stderr(&done));
+    let printed: Value = serde_json::from_str(&stdout(&done)).unwrap();
+    assert!(printed["revision"].as_u64().unwrap() > 0);
+    // What the scene's actuator is, which the device does not know.
+    for (name, truth) in [
+        ("vibration-actuator.resonance_hz", 41.0),
+        ("vibration-actuator.damping_ratio", 0.11),
+        ("vibration-actuator.moving_mass_g", 52.0),
+        ("vibration-actuator.force_constant_n_per_a", 0.95),
+        ("vibration-actuator.resistance_ohm", 2.1),
+        ("inductance", 0.25),
+    ] {
+        let found = value(&printed["identified"], name)["value"]
+            .as_f64()
+            .unwrap();
+        assert!(
+            (found / truth - 1.0).abs() < 0.03,
+            "{name}: {found} {truth}"
+        );
+    }
+    // The recording gives the same again.
+    let csv = out.join("measured.csv");
+    let again = run(&[
+        "--json",
+        "identify-actuator",
+        "--from",
+        csv.to_str().unwrap(),
+        "--moving-mass-g",
+        "52",
+    ]);
+    let again: Value = serde_json::from_str(&stdout(&again)).unwrap();
+    let hz = |printed: &Value| {
+        value(&printed["identified"], "vibration-actuator.resonance_hz")["value"]
+            .as_f64()
+            .unwrap()
+    };
+    assert!((hz(&again) / hz(&printed) - 1.0).abs() < 1e-4);
+}
+
+#[test]
+fn a_device_whose_actuator_is_off_or_too_weak_for_the_chirp_says_so() {
+    let asked = |more: &[&str]| {
+        let verb = [
+            "identify-actuator",
+            "--zero",
+            "--moving-mass-g",
+            "52",
+            "--device",
+            "sim",
+        ];
+        run(&[&verb[..], more].concat())
+    };
+    let off = asked(&[]);
+    assert_eq!(off.status.code(), Some(1));
+    assert!(
+        stderr(&off).contains("vibration-actuator.gain=0"),
+        "{}",
+        stderr(&off)
+    );
+    let loud = asked(&["--scene", "actuator-in-a-vice", "--amplitude-v", "4"]);
+    assert_eq!(loud.status.code(), Some(1));
+    assert!(
+        stderr(&loud).contains("twice its stroke"),
+        "{}",
+        stderr(&loud)
+    );
+    // Nobody says that the mass is fastened: the standard input is empty.
+    let alone = asked(&["--scene", "actuator-in-a-vice", "--added-mass-g", "30"]);
+    assert_eq!(alone.status.code(), Some(1));
+    assert!(
+        stderr(&alone).contains("no second chirp"),
+        "{}",
+        stderr(&alone)
+    );
+}

@@ -7,6 +7,7 @@
 //! the same session and sequence number. A repeated number gets the stored reply
 //! and is not executed again, so a host may always retry after a timeout.
 
+use crate::chirp::PlayedChirp;
 use crate::counters::{COMMS_COUNT, DRIVE_COUNT};
 use crate::crash::{Controller, Part};
 use crate::link::DriveRefusal;
@@ -77,6 +78,10 @@ pub enum Operation {
         /// Which part, from 0 on.
         part: u8,
     },
+    /// Plays a chirp on the coil of the vibration actuator instead of its command, while
+    /// this session has armed the device: to identify it. It ends by itself, and
+    /// with the torque. → [`Answer::Done`] when it begins
+    PlayChirp(PlayedChirp),
 }
 
 /// Reply of comms.

@@ -56,6 +56,7 @@
 extern crate std;
 
 mod array;
+pub mod chirp;
 pub mod coil;
 pub mod counters;
 pub mod crash;

@@ -10,6 +10,7 @@
 //! than the last one, once, and reports the outcome in every [`DriveStatus`];
 //! comms retries a command until the outcome is confirmed.
 
+use crate::chirp::PlayedChirp;
 use crate::counters::DRIVE_COUNT;
 use crate::crash;
 use crate::measured::Measured;
@@ -80,6 +81,8 @@ pub enum Order {
     Zero,
     /// Clears the fault.
     ClearFault,
+    /// Plays a chirp on the coil of the vibration actuator.
+    PlayChirp(PlayedChirp),
 }
 
 /// Message of the drive to comms.
@@ -187,6 +190,15 @@ pub enum DriveRefusal {
     NotZeroed,
     /// The leg is outside the range of motion.
     OutsideRange,
+    /// Only while armed, by the session that has armed.
+    NotArmed,
+    /// There is no vibration actuator, or its coil has a fault.
+    NoActuator,
+    /// The chirp is outside its ranges, above the supply, or would drive the mass
+    /// beyond twice its stroke by the parameters in use.
+    ChirpOutOfRange,
+    /// Another chirp is being played.
+    ChirpPlaying,
 }
 
 #[cfg(test)]

@@ -142,6 +142,8 @@ impl SampleFlags {
     pub const STICK: u16 = 1 << 10;
     /// Rendering was late: the torque is that of the previous tick.
     pub const LATE: u16 = 1 << 11;
+    /// The coil of the vibration actuator plays a chirp; the first such tick is its first.
+    pub const CHIRP: u16 = 1 << 12;
 
     /// Returns the flags with these bits set or cleared.
     #[must_use]

@@ -3,11 +3,12 @@
 use crate::comms::Comms;
 use crate::comms::job::{Job, JobState};
 use crate::comms::sessions::RequestClass;
+use crepitus_protocol::chirp::PlayedChirp;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::crash::{Controller, Part};
 use crepitus_protocol::frame::{self, Frame};
 use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Reply, Request, Status};
-use crepitus_protocol::link::{DriveStatus, Order};
+use crepitus_protocol::link::{DriveRefusal, DriveStatus, Order};
 use crepitus_protocol::management::ManagementRequest;
 use crepitus_protocol::{Fault, Lane, Revision, Session, State, Values};
 
@@ -148,6 +149,7 @@ impl Comms {
             Operation::Zero => self.command(request, Order::Zero),
             Operation::ClearFault => self.clear_fault(request),
             Operation::Arm => self.arm(request),
+            Operation::PlayChirp(chirp) => self.play_chirp(request, *chirp),
         }
     }
 
@@ -262,6 +264,15 @@ impl Comms {
         self.lease.acquire(request.session, self.now_ms, seen_tick);
         self.supervision.request_enable();
         Ok(Started::Pending(JobState::ProveLine))
+    }
+
+    /// Only the holder of the lease: without one nobody watches what moves.
+    fn play_chirp(&mut self, request: &Request, chirp: PlayedChirp) -> StartResult {
+        self.check_lease(request.session)?;
+        if self.lease.holder(self.now_ms).is_none() {
+            return Err(Refusal::Drive(DriveRefusal::NotArmed));
+        }
+        self.command(request, Order::PlayChirp(chirp))
     }
 
     /// Rejects a change while another host holds the lease or a job is pending.

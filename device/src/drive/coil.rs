@@ -23,6 +23,7 @@
 use crate::drive::prepare::CoilPlan;
 use crepitus_model::Real;
 use crepitus_model::render::effects::vibration_actuator::HEATING_S;
+use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::{CoilFault, TICK_S};
 
 /// Output of the coil's bridge.
@@ -81,6 +82,10 @@ const HOT_SHARE: f32 = 1.25;
 /// Share of the way to the mean square that the heat goes in a tick.
 #[expect(clippy::cast_possible_truncation, reason = "rounded to f32, once")]
 const HEATING: f32 = (TICK_S / HEATING_S) as f32;
+
+/// Excursion of a chirp that is played, over the stroke, by the parameters in use: those
+/// of an actuator that is not identified yet may be wrong by half.
+const CHIRP_STROKES: f64 = 2.0;
 
 /// Share of the largest back-EMF, squared, above which voltages are compared.
 const EMF_SHARE: f32 = 0.25;
@@ -151,6 +156,21 @@ impl Coil {
     /// Clears the fault; the coil stays as warm as it is.
     pub fn clear(&mut self) {
         self.fault = None;
+    }
+
+    /// Whether a chirp of this amplitude, V, may be played.
+    ///
+    /// # Errors
+    /// [`DriveRefusal::NoActuator`] without one, and while its fault is latched;
+    /// [`DriveRefusal::ChirpOutOfRange`] above the limit.
+    pub fn check_chirp(&self, amplitude_v: f32) -> Result<(), DriveRefusal> {
+        let plan = self.plan.filter(|_| self.fault.is_none());
+        let plan = plan.ok_or(DriveRefusal::NoActuator)?;
+        if amplitude_v <= plan.most_chirp_v {
+            Ok(())
+        } else {
+            Err(DriveRefusal::ChirpOutOfRange)
+        }
     }
 
     /// Whether it was driven in the last tick: then there is a current to be measured.
@@ -276,6 +296,12 @@ impl CoilPlan {
         // R/(R + Rm).
         let at_resonance = 1.0 - s.electric_damping_ratio() / s.damping_ratio;
         let least_power = f64::from(FOLLOWS_SHARE) * at_resonance / s.resistance_ohm;
+        let ratio = s.damping_ratio;
+        // A steady voltage moves the mass by Bl/(R·k), the resonance 1/(2ζ) times as far.
+        let m_per_v = s.force_constant_n_per_a / (s.resistance_ohm * s.stiffness_n_per_m());
+        let most_m = CHIRP_STROKES * s.stroke_mm * 1e-3;
+        let chirp_v = most_m * (2.0 * ratio).min(1.0) / m_per_v;
+        let supplied_v = f64::from(LARGEST_COIL_DUTY) * s.supply_v;
         let continuous_a2 = s.continuous_current_a * s.continuous_current_a;
         Self {
             supply_v: s.supply_v as f32,
@@ -285,6 +311,7 @@ impl CoilPlan {
             compared_v2: compared_v2 as f32,
             least_power: least_power as f32,
             most_a2: HOT_SHARE * continuous_a2 as f32,
+            most_chirp_v: chirp_v.min(supplied_v) as f32,
         }
     }
 }

@@ -20,6 +20,8 @@ use crate::drive::prepare::{CommandPlan, MotorPlan};
 use crate::drive::range::{self, Range};
 use crate::drive::safety::{Permit, Safety};
 use crate::drive::slow_checks::{SlowChecks, SlowInput, SlowReadings};
+use crepitus_model::control::chirp::Chirp;
+use crepitus_protocol::chirp::PlayedChirp;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::crash::Tick;
 use crepitus_protocol::link::DriveRefusal;
@@ -88,6 +90,8 @@ pub struct Command {
     overload: Overload,
     /// The coil has something to do.
     has_coil: bool,
+    /// It played a chirp in this tick.
+    has_chirped: bool,
     /// The bridge was driven in the previous tick.
     was_driven: bool,
     /// Consecutive ticks with a current while the bridge floats.
@@ -108,6 +112,8 @@ pub struct Command {
     batch: Batch,
     /// Only where there is one.
     coil: Coil,
+    /// What it plays instead of its command.
+    chirp: Option<Chirp>,
 }
 
 impl Command {
@@ -127,6 +133,8 @@ impl Command {
             overload: Overload::new(&plan.overload),
             has_coil: plan.coil.is_some(),
             coil: Coil::new(plan.coil),
+            chirp: None,
+            has_chirped: false,
             was_driven: false,
             conducting_ticks: 0,
             without_comms_ticks: 0,
@@ -153,6 +161,10 @@ impl Command {
         self.slow_checks.change(&plan.slow);
         self.overload.change(&plan.overload);
         self.coil.change(plan.coil);
+        if plan.coil.is_none() {
+            // It would go on with the next actuator.
+            (self.chirp, self.has_chirped) = (None, false);
+        }
         self.has_coil = self.coil.is_fitted();
         self.revision = plan.revision;
         counters.count(DriveCounter::Commits);
@@ -227,6 +239,24 @@ impl Command {
     pub fn clear_fault(&mut self) -> Result<(), DriveRefusal> {
         self.safety.clear(self.line_is_on)?;
         self.coil.clear();
+        Ok(())
+    }
+
+    /// Plays a chirp on the coil from the next tick on, until it is over or there is no torque.
+    ///
+    /// # Errors
+    /// [`DriveRefusal`] says why not.
+    pub fn play_chirp(&mut self, chirp: &PlayedChirp) -> Result<(), DriveRefusal> {
+        if self.safety.state() != State::Armed {
+            return Err(DriveRefusal::NotArmed);
+        }
+        if self.chirp.is_some() {
+            return Err(DriveRefusal::ChirpPlaying);
+        }
+        let settings = chirp.settings();
+        self.coil.check_chirp(settings.amplitude_v)?;
+        let chirp = Chirp::new(&settings).map_err(|_| DriveRefusal::ChirpOutOfRange)?;
+        self.chirp = Some(chirp);
         Ok(())
     }
 

@@ -332,5 +332,6 @@ fn execute(order: Order, shared: &mut impl Shared) -> Option<Result<(), DriveRef
         Order::Arm => command.arm().err().map(Err),
         Order::Zero => Some(command.zero()),
         Order::ClearFault => Some(command.clear_fault()),
+        Order::PlayChirp(chirp) => Some(command.play_chirp(&chirp)),
     })
 }

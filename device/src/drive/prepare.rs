@@ -132,6 +132,8 @@ pub struct CoilPlan {
     pub least_power: f32,
     /// Mean square of the current that is too hot, A².
     pub most_a2: f32,
+    /// Largest amplitude of a chirp, V: twice the stroke, at the resonance.
+    pub most_chirp_v: f32,
 }
 
 /// New coefficients for `render_torque`.

@@ -194,7 +194,8 @@ impl Bench {
                 self.commit(revision, &values);
             }
             4 => {
-                let order = bytes.choice(&[Order::Arm, Order::Zero, Order::ClearFault]);
+                let chirp = Order::PlayChirp(link_inputs::chirp(bytes));
+                let order = bytes.choice(&[Order::Arm, Order::Zero, Order::ClearFault, chirp]);
                 let number = bytes.byte();
                 self.number = if number < 192 {
                     self.number.wrapping_add(1)

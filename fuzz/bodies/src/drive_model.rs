@@ -122,6 +122,7 @@ impl DriveModel {
                     Order::ClearFault => {
                         (self.status.state, self.status.fault) = (State::Disarmed, 0);
                     }
+                    Order::PlayChirp(_) => {}
                 }
                 self.status.last = Some(Outcome {
                     number,

@@ -1,6 +1,7 @@
 //! Messages made of bytes, mostly plausible.
 
 use crate::bytes::Bytes;
+use crepitus_protocol::chirp::PlayedChirp;
 use crepitus_protocol::crash::Controller;
 use crepitus_protocol::host::Operation;
 use crepitus_protocol::management::Action;
@@ -59,10 +60,22 @@ pub(crate) fn operation(bytes: &mut Bytes<'_>, revision: Revision) -> Operation 
         13 => Operation::ClearFault,
         14 => Operation::Subscribe,
         _ if bytes.byte() < 128 => Operation::Unsubscribe,
+        _ if bytes.byte() < 128 => Operation::PlayChirp(chirp(bytes)),
         _ => Operation::ReadCrash {
             controller: bytes.choice(&[Controller::Drive, Controller::Comms]),
             part: bytes.byte() % 32,
         },
+    }
+}
+
+/// A chirp, mostly one that an actuator bears.
+pub(crate) fn chirp(bytes: &mut Bytes<'_>) -> PlayedChirp {
+    let tenth = u16::from(bytes.byte());
+    PlayedChirp {
+        amplitude_mv: 10 * u16::from(bytes.byte()),
+        from_dhz: tenth,
+        to_dhz: 10 + 40 * tenth,
+        duration_ms: 400 + 4 * u16::from(bytes.byte()),
     }
 }
 

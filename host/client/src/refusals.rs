@@ -217,6 +217,24 @@ fn drive_text(
             name_of(id::RANGE_LEAST),
             name_of(id::RANGE_MOST),
         ),
+        DriveRefusal::NotArmed => write!(
+            f,
+            "`{request}` is rejected: only while armed, by the program that has armed the device"
+        ),
+        DriveRefusal::NoActuator => write!(
+            f,
+            "the drive rejects `{request}`: there is no vibration actuator, or its coil has a fault; \
+             `crepitus params set vibration-actuator.render=on` turns it on, `crepitus clear-fault` clears the fault"
+        ),
+        DriveRefusal::ChirpOutOfRange => write!(
+            f,
+            "the drive rejects `{request}`: the amplitude is above 0.92 of the supply, or would drive the mass beyond \
+             twice its stroke by the parameters in use, or a frequency or the duration is out of range; lower it"
+        ),
+        DriveRefusal::ChirpPlaying => write!(
+            f,
+            "the drive rejects `{request}`: another chirp is being played; wait for its end"
+        ),
         _ => write!(
             f,
             "the drive rejects `{request}` for a reason unknown to this tool: \

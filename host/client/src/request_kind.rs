@@ -28,6 +28,7 @@ pub enum RequestKind {
     Subscribe,
     Unsubscribe,
     ReadCrash,
+    PlayChirp,
 }
 
 /// Timeouts of a request, in the transport's time.
@@ -41,7 +42,7 @@ pub(crate) struct Timing {
 
 impl RequestKind {
     /// All kinds.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Hello,
         Self::Stop,
         Self::Reboot,
@@ -58,6 +59,7 @@ impl RequestKind {
         Self::Subscribe,
         Self::Unsubscribe,
         Self::ReadCrash,
+        Self::PlayChirp,
     ];
 
     /// Name for people.
@@ -79,6 +81,7 @@ impl RequestKind {
             Self::Subscribe => "subscribe",
             Self::Unsubscribe => "unsubscribe",
             Self::ReadCrash => "read-crash",
+            Self::PlayChirp => "play-chirp",
         }
     }
 
@@ -103,6 +106,7 @@ impl RequestKind {
             Operation::Subscribe => Self::Subscribe,
             Operation::Unsubscribe => Self::Unsubscribe,
             Operation::ReadCrash { .. } => Self::ReadCrash,
+            Operation::PlayChirp(_) => Self::PlayChirp,
         }
     }
 
@@ -119,7 +123,13 @@ impl RequestKind {
     pub(crate) fn is_job(self) -> bool {
         matches!(
             self,
-            Self::Commit | Self::Save | Self::Zero | Self::Arm | Self::ClearFault | Self::ReadCrash
+            Self::Commit
+                | Self::Save
+                | Self::Zero
+                | Self::Arm
+                | Self::ClearFault
+                | Self::ReadCrash
+                | Self::PlayChirp
         )
     }
 

@@ -8,6 +8,7 @@ use crate::handshake::Handshake;
 use crate::refusals::Refused;
 use crate::request_kind::RequestKind;
 use crate::transport::Transport;
+use crepitus_protocol::chirp::PlayedChirp;
 use crepitus_protocol::crash::{self, Controller, Head, Tick};
 use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Status};
 use crepitus_protocol::management::{self, Action, Role};
@@ -252,6 +253,15 @@ impl<T: Transport> Client<T> {
         self.lease = Lease::None;
         self.watch.due_at = Some(self.now());
         answer!(self, Operation::Disarm, Answer::Done => ())
+    }
+
+    /// Plays a chirp on the coil of the vibration actuator of the device that this host
+    /// has armed. Its ticks have [`SampleFlags::CHIRP`](crepitus_protocol::telemetry::SampleFlags::CHIRP).
+    ///
+    /// # Errors
+    /// [`Refusal`] gives the reason.
+    pub fn play_chirp(&mut self, chirp: PlayedChirp) -> Result<(), Error> {
+        answer!(self, Operation::PlayChirp(chirp), Answer::Done => ())
     }
 
     /// Clears the faults.

@@ -75,10 +75,11 @@ pub struct Row {
 const WORDS: [&str; 4] = ["phase", "event", "limit", "notes"];
 
 /// Names of the notes.
-pub(crate) const NOTES: [(u16, &str); 3] = [
+pub(crate) const NOTES: [(u16, &str); 4] = [
     (SampleFlags::SETTLING, "settling"),
     (SampleFlags::LOST, "lost"),
     (SampleFlags::LATE, "late"),
+    (SampleFlags::CHIRP, "chirp"),
 ];
 
 impl Row {

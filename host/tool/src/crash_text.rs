@@ -79,6 +79,7 @@ fn flags(flags: SampleFlags) -> String {
         (SampleFlags::LATE, "late"),
         (SampleFlags::BREAK, "break"),
         (SampleFlags::STICK, "stick"),
+        (SampleFlags::CHIRP, "chirp"),
     ];
     let mut names: Vec<_> = named
         .into_iter()

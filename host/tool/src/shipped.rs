@@ -75,6 +75,7 @@ shipped![
     "pendulum-mas-4",
     "everything",
     "passive-examination",
+    "actuator-in-a-vice",
 ];
 
 impl Shipped {

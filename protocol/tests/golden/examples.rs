@@ -3,6 +3,7 @@
 
 use crate::hex::hex;
 use crate::management;
+use crepitus_protocol::chirp::PlayedChirp;
 use crepitus_protocol::counters::{COMMS_COUNT, DRIVE_COUNT};
 use crepitus_protocol::crash::{Controller, Part};
 use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Reply, Request, Status};
@@ -94,6 +95,12 @@ pub(crate) fn all() -> Vec<Example> {
 const HOST: Session = Session(0x1234_5678);
 const NONCE: Nonce = Nonce(0x9abc_def0);
 const OTHER: Session = Session(0xcafe);
+const CHIRP: PlayedChirp = PlayedChirp {
+    amplitude_mv: 400,
+    from_dhz: 80,
+    to_dhz: 5_000,
+    duration_ms: 10_000,
+};
 
 /// Half its id for each parameter: no device would take them.
 fn values() -> Values {
@@ -123,6 +130,7 @@ fn operation_name(operation: &Operation) -> &'static str {
         Operation::Subscribe => "subscribe",
         Operation::Unsubscribe => "unsubscribe",
         Operation::Open => "open",
+        Operation::PlayChirp(_) => "play-chirp",
         Operation::ReadCrash { controller, .. } => match controller {
             Controller::Drive => "read-crash.drive",
             Controller::Comms => "read-crash.comms",
@@ -142,6 +150,7 @@ fn requests() -> Vec<Example> {
         Operation::Parameters,
         commit,
         Operation::Save,
+        Operation::PlayChirp(CHIRP),
         Operation::Zero,
         Operation::Arm,
         Operation::Disarm,
@@ -330,6 +339,10 @@ fn refusals() -> Vec<(String, Refusal)> {
         ("aborted", DriveRefusal::Aborted),
         ("not-zeroed", DriveRefusal::NotZeroed),
         ("outside-range", DriveRefusal::OutsideRange),
+        ("not-armed", DriveRefusal::NotArmed),
+        ("no-actuator", DriveRefusal::NoActuator),
+        ("chirp-out-of-range", DriveRefusal::ChirpOutOfRange),
+        ("chirp-playing", DriveRefusal::ChirpPlaying),
     ] {
         all.push((format!("drive.{name}"), Refusal::Drive(refusal)));
     }
@@ -392,6 +405,7 @@ fn to_drive_name(message: &ToDrive) -> &'static str {
             Order::Arm => "command.arm",
             Order::Zero => "command.zero",
             Order::ClearFault => "command.clear-fault",
+            Order::PlayChirp(_) => "command.play-chirp",
         },
         ToDrive::ReadCrash { .. } => "read-crash",
     }
@@ -419,6 +433,7 @@ fn to_drive() -> Vec<Example> {
         command(Order::Arm),
         command(Order::Zero),
         command(Order::ClearFault),
+        command(Order::PlayChirp(CHIRP)),
         ToDrive::ReadCrash { part: 22 },
     ];
     messages

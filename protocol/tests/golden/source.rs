@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-const SOURCES: [&str; 11] = [
+const SOURCES: [&str; 12] = [
+    include_str!("../../src/chirp.rs"),
     include_str!("../../src/counters.rs"),
     include_str!("../../src/crash.rs"),
     include_str!("../../src/host.rs"),

@@ -242,3 +242,28 @@ fn a_plan_is_exchanged_when_the_command_is_silent_or_nothing_is_driven() {
     coil.change(Some(five));
     assert!(!coil.has_next);
 }
+
+#[test]
+fn a_chirp_is_bounded_by_supply_and_stroke() {
+    let most = |settings: &VibrationActuatorSettings| {
+        let coil = Coil::new(Some(CoilPlan::new(settings)));
+        let bears = |mv: u16| coil.check_chirp(f32::from(mv) / 1000.0).is_ok();
+        let most_mv = (1..=12_000).rev().find(|mv| bears(*mv)).unwrap();
+        assert!((1..most_mv).all(bears));
+        f64::from(most_mv) / 1000.0
+    };
+    // Twice 1.6 mm at the resonance: k·2ζ·R/Bl times that.
+    let stiffness = 0.06 * (core::f64::consts::TAU * 35.0).powi(2);
+    let by_stroke = 3.2e-3 * stiffness * 0.26 * 1.8 / 1.1;
+    assert!((most(&SETTINGS()) - by_stroke).abs() < 2e-3);
+    let stiff = VibrationActuatorSettings {
+        resonance_hz: 120.0,
+        ..SETTINGS()
+    };
+    let by_supply = f64::from(LARGEST_COIL_DUTY) * 5.0;
+    assert!((most(&stiff) - by_supply).abs() < 2e-3);
+    assert_eq!(
+        Coil::new(None).check_chirp(0.1),
+        Err(DriveRefusal::NoActuator)
+    );
+}

@@ -130,6 +130,9 @@ impl Command {
         counters: &Counters,
     ) -> CoilOutput {
         let (fault_before, was_driven) = (self.coil.fault(), self.coil.is_driven());
+        let chirp_v = self.chirped(may);
+        self.has_chirped = chirp_v.is_some();
+        let coil_v = chirp_v.unwrap_or(coil_v);
         let output = self.coil.tick(coil_v, may, coil_a, has_tripped);
         if self.coil.fault() != fault_before {
             counters.count(DriveCounter::Faults);
@@ -139,6 +142,17 @@ impl Command {
         }
         self.has_coil = self.coil.is_fitted();
         output
+    }
+
+    /// The voltage of the chirp, if one is played. It ends for good with the torque, and
+    /// with a fault of the coil.
+    fn chirped(&mut self, may: bool) -> Option<f32> {
+        let chirp = self.chirp.as_mut()?;
+        if !may || self.coil.fault().is_some() || chirp.is_over() {
+            self.chirp = None;
+            return None;
+        }
+        Some(chirp.tick())
     }
 
     /// Withdraws the permit if a plausibility check fails.

@@ -53,7 +53,8 @@ impl Command {
                 .flags
                 .with_limit(limit)
                 .with(SampleFlags::ENERGISED, is_energised)
-                .with(SampleFlags::LATE, is_late),
+                .with(SampleFlags::LATE, is_late)
+                .with(SampleFlags::CHIRP, self.has_chirped),
         }
     }
 }

@@ -34,6 +34,10 @@ fn every_refusal_has_a_remedy() {
         DriveRefusal::Aborted,
         DriveRefusal::NotZeroed,
         DriveRefusal::OutsideRange,
+        DriveRefusal::NotArmed,
+        DriveRefusal::NoActuator,
+        DriveRefusal::ChirpOutOfRange,
+        DriveRefusal::ChirpPlaying,
     ];
     let values = [
         ValueError::OutOfRange { id: 2 },

@@ -1,17 +1,20 @@
 //! `crepitus identify-actuator`: parameters of the vibration actuator from its coil's
 //! voltage and current.
 
+mod chirp;
 mod evidence;
+mod played;
 mod recorded;
 mod results;
 mod table;
 
 use crate::cli::DeviceArguments;
 use crate::failure::{Failure, print, print_json, warn};
-use crate::line::{connect, failure};
+use crate::line::{Line, connect, failure};
+use chirp::ChirpArguments;
 use clap::Args;
-use crepitus_identify::{Band, identify};
-use crepitus_model::control::chirp::ChirpSettings;
+use crepitus_client::Client;
+use crepitus_identify::identify;
 use crepitus_model::parameters::Source;
 use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
 use evidence::Masses;
@@ -23,10 +26,11 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
+  crepitus identify-actuator --moving-mass-g 60 --zero --out out/actuator --apply
+  crepitus identify-actuator --added-mass-g 30
+  crepitus identify-actuator --device sim --scene actuator-in-a-vice --zero --moving-mass-g 52
   crepitus identify-actuator --from bench.csv --moving-mass-g 60
-  crepitus identify-actuator --from bench.csv --moving-mass-g 60 --out out/actuator
   crepitus identify-actuator --from bare.csv --from-added heavier.csv --added-mass-g 30
-  crepitus identify-actuator --from bench.csv --moving-mass-g 60 --device /dev/ttyACM0 --apply
 
 Clamp the ring in a vice first, by its outer rim, with the mass free to move: a ring that moves adds a \
 resonance of its own, or, lying loose, replaces the mass m by m·M/(m + M), which no current tells.
@@ -36,6 +40,11 @@ damping, but of force constant and mass only Bl²/m. So either weigh what moves 
 the flexure) and give --moving-mass-g; or play a second chirp with a known mass fastened to it, a third of \
 the moving mass or more, and give --added-mass-g: the shift of the resonance tells the mass. With both, each \
 checks the other.
+
+The device plays the chirp while it is armed, and the motor goes on as ever: let the joint stand still. The actuator \
+has to be on and its own command silent: `crepitus params set vibration-actuator.render=on \
+vibration-actuator.gain=0`. The chirp ends with the torque, by any key of `arm`, a stop or a fault, and is limited \
+to 0.92 of the supply and to twice the stroke by the parameters in use.
 
 FILE is CSV with the columns t_s, volts, amperes: evenly spaced, at least 500 rows a second (faster ones are \
 averaged), from before the chirp until 0.5 s after its end. Any logarithmic or linear chirp from about 8 to \
@@ -50,15 +59,11 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     masses: Masses,
 
-    /// First frequency of the chirp, Hz.
-    #[arg(long, value_name = "HZ", default_value_t = ChirpSettings::default().from_hz)]
-    from_hz: f32,
+    #[command(flatten)]
+    chirp: ChirpArguments,
 
-    /// Last frequency of the chirp, Hz: lower it if the coil has eddy currents.
-    #[arg(long, value_name = "HZ", default_value_t = ChirpSettings::default().to_hz)]
-    to_hz: f32,
-
-    /// Folder for impedance.svg and summary.json.
+    /// Folder for impedance.svg and summary.json, and for measured.csv of a chirp that was played,
+    /// which --from reads again.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
@@ -66,37 +71,56 @@ pub(crate) struct Arguments {
     #[arg(long)]
     apply: bool,
 
+    /// Set the angle's zero before arming: hold the joint straight.
+    #[arg(long, conflicts_with = "from")]
+    zero: bool,
+
     #[command(flatten)]
     device: DeviceArguments,
 }
 
 /// Identifies, prints, and applies if asked to.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let chirp = arguments.chirp()?;
-    let band = Band::of_chirp(f64::from(chirp.from_hz), f64::from(chirp.to_hz));
-    let masses = &arguments.masses;
-    let measured = arguments.recordings.read(masses.needs_second())?;
-    let evidence = masses.evidence(measured.with_added.as_ref())?;
-    let mut client = if arguments.apply || arguments.device.device.is_some() {
-        Some(connect(&arguments.device)?)
-    } else {
-        None
-    };
+    let chirp = arguments.chirp.played()?;
+    let masses = arguments.masses.weighed()?;
+    let files = arguments.recordings.read(masses.added.is_some())?;
+    let needs_device = files.is_none() || arguments.apply || arguments.device.device.is_some();
+    let mut client = needs_device
+        .then(|| connect(&arguments.device))
+        .transpose()?;
     let (in_use, source) = match &mut client {
         None => (VibrationActuatorSettings::default(), "default"),
-        Some(client) => {
-            let (_, values) = client.parameters().map_err(failure)?;
-            (values.read(), "in use")
+        Some(client) => (in_use(client)?, "in use"),
+    };
+    let (measured, is_played) = match (files, &mut client) {
+        (Some(files), _) => (files, false),
+        (None, Some(client)) => {
+            let with_added = masses.added.is_some();
+            (
+                played::measured(client, chirp, arguments.zero, with_added)?,
+                true,
+            )
+        }
+        (None, None) => return Err(Failure::input("expected --from FILE or --device DEVICE")),
+    };
+    let evidence = masses.evidence(measured.with_added.as_ref())?;
+    let found = identify(&measured.bare, arguments.chirp.band(), &evidence)
+        .and_then(|actuator| actuator.settings(&in_use).map(|_| actuator));
+    let files = if is_played { Some(&measured) } else { None };
+    let found = match found {
+        Ok(found) => found,
+        Err(refusal) => {
+            if let Some(out) = arguments.out.as_deref().filter(|_| is_played) {
+                results::write(out, None, files)?;
+            }
+            return Err(Failure::Work(format!("no parameters: {refusal}")));
         }
     };
-    let found = identify(&measured.bare, band, &evidence)
-        .and_then(|actuator| actuator.settings(&in_use).map(|_| actuator))
-        .map_err(|refusal| Failure::Work(format!("no parameters: {refusal}")))?;
-    let rows = table::rows(&found, &in_use, masses.is_weighed());
+    let rows = table::rows(&found, &in_use, masses.moving.is_some());
     let notes = found.notes(&in_use);
     let summary = table::summary(&found, &rows, &notes);
     if let Some(out) = &arguments.out {
-        results::write(out, &found, &summary)?;
+        results::write(out, Some((&found, &summary)), files)?;
     }
     let revision = match &mut client {
         Some(client) if arguments.apply => {
@@ -127,14 +151,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
 }
 
-impl Arguments {
-    fn chirp(&self) -> Result<ChirpSettings, Failure> {
-        let chirp = ChirpSettings {
-            from_hz: self.from_hz,
-            to_hz: self.to_hz,
-            ..ChirpSettings::default()
-        };
-        chirp.check().map_err(Failure::input)?;
-        Ok(chirp)
-    }
+/// The actuator that the device believes in.
+fn in_use(client: &mut Client<Line>) -> Result<VibrationActuatorSettings, Failure> {
+    let (_, values) = client.parameters().map_err(failure)?;
+    Ok(values.read())
 }

@@ -30,22 +30,18 @@ pub(super) struct Masses {
     mass_tolerance: f64,
 }
 
+/// The same, checked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WeighedMasses {
+    /// What moves, if it was weighed: then it is no result.
+    pub(super) moving: Option<Weighed>,
+    /// What is added for a second chirp.
+    pub(super) added: Option<Weighed>,
+}
+
 impl Masses {
-    /// Whether the mass was weighed, so that it is no result.
-    pub(super) fn is_weighed(&self) -> bool {
-        self.moving_mass_g.is_some()
-    }
-
-    /// Whether a second chirp is needed.
-    pub(super) fn needs_second(&self) -> bool {
-        self.added_mass_g.is_some()
-    }
-
-    /// The evidence, with the second recording where there is one.
-    pub(super) fn evidence<'s>(
-        &self,
-        with_added: Option<&'s Series>,
-    ) -> Result<MassEvidence<'s>, Failure> {
+    /// Checks the ranges.
+    pub(super) fn weighed(&self) -> Result<WeighedMasses, Failure> {
         if !(0.0..=20.0).contains(&self.mass_tolerance) {
             return Err(Failure::Input(format!(
                 "--mass-tolerance: expected 0 to 20 %, got {}",
@@ -62,9 +58,20 @@ impl Masses {
                 "--{name}: expected a mass above 0 g, up to 1000 g, got {mass_g}"
             ))),
         };
-        let moving = weighed("moving-mass-g", self.moving_mass_g)?;
-        let added = weighed("added-mass-g", self.added_mass_g)?;
-        match (moving, added.zip(with_added)) {
+        Ok(WeighedMasses {
+            moving: weighed("moving-mass-g", self.moving_mass_g)?,
+            added: weighed("added-mass-g", self.added_mass_g)?,
+        })
+    }
+}
+
+impl WeighedMasses {
+    /// The evidence, with the second recording where there is one.
+    pub(super) fn evidence<'s>(
+        &self,
+        with_added: Option<&'s Series>,
+    ) -> Result<MassEvidence<'s>, Failure> {
+        match (self.moving, self.added.zip(with_added)) {
             (Some(moving), None) => Ok(MassEvidence::Weighed(moving)),
             (None, Some((added, series))) => Ok(MassEvidence::Added(series, added)),
             (Some(moving), Some((added, series))) => {

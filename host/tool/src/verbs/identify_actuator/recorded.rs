@@ -10,12 +10,13 @@ use std::path::{Path, PathBuf};
 /// Which recordings.
 #[derive(Debug, Args)]
 pub(super) struct Recordings {
-    /// Recording of a chirp on a bench: columns t_s, volts, amperes.
+    /// Recording of a chirp on a bench, instead of one that the device plays: columns t_s, volts, amperes.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    from: PathBuf,
+    from: Option<PathBuf>,
 
     /// The same with the added mass.
-    #[arg(long, value_name = "FILE", requires = "added_mass_g", value_hint = ValueHint::FilePath)]
+    #[arg(long, value_name = "FILE", requires = "from", requires = "added_mass_g",
+          value_hint = ValueHint::FilePath)]
     from_added: Option<PathBuf>,
 }
 
@@ -29,17 +30,20 @@ pub(super) struct Measured {
 }
 
 impl Recordings {
-    /// Reads them.
-    pub(super) fn read(&self, needs_second: bool) -> Result<Measured, Failure> {
+    /// Reads them, if files are named.
+    pub(super) fn read(&self, needs_second: bool) -> Result<Option<Measured>, Failure> {
+        let Some(from) = &self.from else {
+            return Ok(None);
+        };
         if needs_second && self.from_added.is_none() {
             return Err(Failure::input(
                 "--added-mass-g needs the recording of the chirp with that mass: --from-added FILE",
             ));
         }
-        Ok(Measured {
-            bare: series(&self.from)?,
+        Ok(Some(Measured {
+            bare: series(from)?,
             with_added: self.from_added.as_deref().map(series).transpose()?,
-        })
+        }))
     }
 }
 
