@@ -85,6 +85,7 @@ pub struct Actuator {
     pub mass_is_checked: bool,
     pub(crate) impedance: Impedance,
     pub(crate) means: Vec<Mean>,
+    pub(crate) misfits: Vec<(f64, f64)>,
 }
 
 /// Identifies an actuator from a chirp.
@@ -117,6 +118,7 @@ pub fn identify(
         unexplained: fit.residual.beyond_noise,
         mass_is_checked: !matches!(evidence, MassEvidence::Weighed(_)),
         impedance: fit.impedance,
+        misfits: fit.misfits.clone(),
         means: examined.means,
     };
     actuator.is_certain()?;

@@ -28,7 +28,10 @@ pub fn figure(actuator: &Actuator) -> Figure {
     let fitted_ohm = points(&|omega, _| fitted(omega).norm());
     let measured_degrees = points(&|_, z| z.arg().to_degrees());
     let fitted_degrees = points(&|omega, _| fitted(omega).arg().to_degrees());
-    let residual = points(&|omega, z| 100.0 * (z - fitted(omega)).norm() / z.norm());
+    // Line by line: between means, the curvature of the hump would show.
+    let residual: Vec<Point> = (actuator.misfits.iter())
+        .map(|(omega, share)| Point::new(omega / TAU, 100.0 * share))
+        .collect();
     let frequencies = || {
         let (first, last) = (measured_ohm.first(), measured_ohm.last());
         let hz = |point: Option<&Point>, otherwise| point.map_or(otherwise, |point| point.x);

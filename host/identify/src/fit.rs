@@ -37,6 +37,8 @@ pub(crate) struct Fit {
     pub(crate) covariance: Square,
     /// Of the current in the band that is not explained.
     pub(crate) residual: Residual,
+    /// ω, rad/s, and the share of the current that is not explained there, by narrow bands.
+    pub(crate) misfits: Vec<(f64, f64)>,
 }
 
 /// What of the current is left unexplained.
@@ -108,10 +110,15 @@ impl Fit {
         let residual = Residual::of(spectrum, &impedance, &normal, variance);
         let covariance =
             normal.cholesky()?.inverse() * (variance * correlation(lines, &impedance, variance));
+        let misfits = bands(lines)
+            .map(|band| common(band, &impedance))
+            .map(|common| (common.omega, common.share()))
+            .collect();
         Some(Self {
             impedance,
             covariance,
             residual,
+            misfits,
         })
     }
 }
@@ -158,6 +165,13 @@ struct Common {
     expected: f64,
 }
 
+impl Common {
+    /// Of the current.
+    fn share(&self) -> f64 {
+        self.admittance.norm() / self.expected
+    }
+}
+
 fn common(band: &[Line], impedance: &Impedance) -> Common {
     let mean = Mean::of(band);
     let sum: Complex<f64> = (band.iter())
@@ -183,19 +197,14 @@ impl Residual {
         let beyond = (2.0 * variance - noise).max(0.0) * lines.len() as f64;
         let worst = bands(lines)
             .map(|band| common(band, impedance))
-            .max_by(|a, b| {
-                let share = |c: &Common| c.admittance.norm() / c.expected;
-                share(a).total_cmp(&share(b))
-            });
+            .max_by(|a, b| a.share().total_cmp(&b.share()));
         let samples = spectrum.samples as f64;
         Self {
             beyond_noise: (beyond / of_current).sqrt(),
             over_noise: spectrum
                 .noise_square
                 .map(|noise| (2.0 * variance / noise).sqrt()),
-            systematic: worst
-                .as_ref()
-                .map_or(0.0, |c| c.admittance.norm() / c.expected),
+            systematic: worst.as_ref().map_or(0.0, Common::share),
             deviations: (worst.as_ref()).map_or(0.0, |c| {
                 c.admittance.norm() / (2.0 * variance * c.variance).sqrt()
             }),
