@@ -144,6 +144,12 @@ fn is_of(effect: &Effect, function: &str) -> bool {
         "crepitus" => "crepitus_model::solver::frozen".to_owned(),
         "encoder" => "crepitus_model::control::encoder".to_owned(),
         "motor" => "crepitus_model::control::current_loop".to_owned(),
+        // Its settings describe the plant's actuator, too.
+        "vibration-actuator" => {
+            "crepitus_model::render::effects::vibration_actuator::VibrationActuator<".to_owned()
+        }
+        // The seat of a shell is one, too.
+        "cuff" => "crepitus_plant::compliance::".to_owned(),
         _ => format!("crepitus_model::render::effects::{file}::"),
     };
     let winding =
@@ -175,7 +181,11 @@ fn an_absent_effect_executes_nothing() {
                 effect.name
             );
         }
-        let absent = count(&folder, &without(effect.name, &EFFECTS), STEPS);
+        let mut rest = without(effect.name, &EFFECTS);
+        if effect.name == "cuff" {
+            rest = without("shell", &rest);
+        }
+        let absent = count(&folder, &rest, STEPS);
         assert_eq!(own(&absent), 0, "{}", effect.name);
     }
 }
@@ -236,5 +246,7 @@ fn costs_add_up() {
         "sum",
         100.0 * sum / whole
     );
-    assert!((sum / whole - 1.0).abs() <= 0.15);
+    // A step that changes its modes is folded again, each time by all parts: whoever changes them
+    // costs that of the others, too.
+    assert!((sum / whole - 1.0).abs() <= 0.2);
 }
