@@ -130,7 +130,7 @@ impl Chirp {
         if self.is_over() {
             return 0.0;
         }
-        let (sine, _) = single::sin_cos(core::f32::consts::TAU * self.turns);
+        let (sine, _) = single::sin_cos_in_range(core::f32::consts::TAU * self.turns);
         let volts = self.amplitude_v * self.window() * sine;
         self.turns += self.frequency_hz * TICK_S;
         if self.turns >= 1.0 {

@@ -30,6 +30,13 @@ pub fn sin_cos(x: f32) -> (f32, f32) {
     } else {
         x
     };
+    sin_cos_in_range(x)
+}
+
+/// [`sin_cos`] for |x| ≤ 6,000 rad, without the loop that reduces what is larger: for an
+/// interrupt, whose loops are bounded.
+#[inline]
+pub fn sin_cos_in_range(x: f32) -> (f32, f32) {
     let quarter_turns = nearest(x * FRAC_2_PI);
     #[expect(clippy::cast_precision_loss, reason = "exact below 2^24")]
     let k = quarter_turns as f32;
