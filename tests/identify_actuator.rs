@@ -25,8 +25,8 @@ const OURS: Simulated = Simulated {
 fn recorded(truth: &Simulated, path: &Path) {
     let series = truth.played(&ChirpSettings::default(), &mut fastrand::Rng::with_seed(2));
     let mut text = "t_s,volts,amperes\n".to_owned();
-    for (i, (volts, amperes)) in series.volts().iter().zip(series.amperes()).enumerate() {
-        let time_s = i as f64 * series.step_s();
+    for (i, (volts, amperes)) in (0_u32..).zip(series.volts().iter().zip(series.amperes())) {
+        let time_s = f64::from(i) * series.step_s();
         writeln!(text, "{time_s:.5},{volts:.6},{amperes:.4}").unwrap();
     }
     fs::write(path, text).unwrap();

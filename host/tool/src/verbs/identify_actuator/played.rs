@@ -1,5 +1,10 @@
 //! A chirp that the device plays, and the current that it measures meanwhile.
 
+#![expect(
+    clippy::cast_precision_loss,
+    reason = "counts of ticks; none comes near 2^53"
+)]
+
 use super::recorded::Measured;
 use crate::failure::Failure;
 use crate::following::{Arming, End, Follower, follow};
