@@ -220,7 +220,7 @@ mod tests {
     fn values_have_the_digits_that_are_known() {
         let shown = |value, half_width| rounded(&Estimate { value, half_width });
         assert_eq!(shown(35.01234, 0.0132), "35.012");
-        assert_eq!(shown(1.79999, 0.00021), "1.80000");
+        assert_eq!(shown(1.799_99, 0.000_21), "1.79999");
         assert_eq!(shown(60.0, 0.6), "60.00");
         assert_eq!(shown(123.4, 25.0), "123");
         assert_eq!(shown(1.25, 0.0), "1.250");
