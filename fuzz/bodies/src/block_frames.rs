@@ -6,11 +6,11 @@
 //! twentieth of the cost.
 
 use crepitus_protocol::frame::{self, CRC, CRC_BYTES, Frame};
-use crepitus_protocol::telemetry::{Block, BlockFlags, TICKS_BYTES};
+use crepitus_protocol::telemetry::{Block, BlockFlags, COIL_BYTES, TICKS_BYTES};
 use crepitus_protocol::{Lane, Revision};
 
-/// Zero bytes of the samples and phases.
-const ZEROS: [u8; TICKS_BYTES] = [0; TICKS_BYTES];
+/// Zero bytes of the samples and phases. The coil's currents are in the head.
+const ZEROS: [u8; TICKS_BYTES - COIL_BYTES] = [0; TICKS_BYTES - COIL_BYTES];
 
 /// First COBS code, lane, tag, the fields before the samples.
 const HEAD_BYTES: usize = 3 + Block::HEAD_BYTES;

@@ -230,12 +230,12 @@ impl Preset {
         }
         for listed in &self.listed {
             let alone = effect_settings(std::slice::from_ref(listed));
-            if let Err(error) = alone.check(None) {
+            if let Err(error) = alone.check_knee(None) {
                 let own = effects.section(listed.effect.name)?;
                 return Err(own.error(error.to_string()));
             }
         }
-        let together = self.effect_settings().check(self.joint());
+        let together = self.effect_settings().check_knee(self.joint());
         together.map_err(|error| effects.error(error.to_string()))
     }
 

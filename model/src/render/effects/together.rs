@@ -25,6 +25,21 @@ impl EffectSettings {
     /// # Errors
     /// The first rule that is broken.
     pub fn check(&self, joint: Option<&Parameters>) -> Result<(), SettingsError> {
+        self.check_knee(joint)?;
+        let rings_there = self.bone_shaping.is_some_and(|bone| bone.output != 0);
+        if rings_there && self.vibration_actuator.is_none() {
+            return Err(SettingsError::Contradiction {
+                reason: "bone-shaping: an output to the actuator needs vibration-actuator",
+            });
+        }
+        Ok(())
+    }
+
+    /// The same of a knee on any brace: what the brace has besides its motor is not known.
+    ///
+    /// # Errors
+    /// The first rule that is broken.
+    pub fn check_knee(&self, joint: Option<&Parameters>) -> Result<(), SettingsError> {
         if let Some(settings) = &self.range_limit {
             RangeLimit::<f64>::check(settings)?;
         }
@@ -51,11 +66,6 @@ impl EffectSettings {
         }
         if let Some(settings) = &self.bone_shaping {
             settings.validate()?;
-            if settings.output != 0 && self.vibration_actuator.is_none() {
-                return Err(SettingsError::Contradiction {
-                    reason: "bone-shaping: an output to the actuator needs vibration-actuator",
-                });
-            }
         }
         if let Some(settings) = &self.friction_compensation {
             settings.validate()?;
