@@ -291,9 +291,9 @@ mod tests {
                 };
                 values.set(parameter.id, value);
             }
-            let Ok(settings) = DeviceSettings::of(&values) else {
+            if DeviceSettings::of(&values).is_err() {
                 continue;
-            };
+            }
             taken += 1;
             let mut saved = knee(&values).unwrap();
             saved.feel = Some("a \"quoted\" \\ é".to_owned());
