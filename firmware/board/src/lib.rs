@@ -33,6 +33,7 @@ pub mod reset_record;
 pub mod bridge;
 #[cfg(target_os = "none")]
 pub mod clocks;
+#[cfg(target_os = "none")]
 pub mod coil;
 #[cfg(target_os = "none")]
 pub mod comms_board;
