@@ -38,7 +38,7 @@ struct Limits {
 const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::ZeroWaitStates,
-        share: 42,
+        share: 45,
         commit_share: 54,
         cold_share: 42,
         render_cycles: 900,

@@ -211,11 +211,11 @@ const ALL: [All; 2] = [
     All {
         flash: Flash::ZeroWaitStates,
         share: 63,
-        commit_share: 70,
+        commit_share: 72,
     },
     All {
         flash: Flash::Modelled,
-        share: 82,
+        share: 84,
         commit_share: 95,
     },
 ];
