@@ -14,7 +14,7 @@ mod signals;
 pub mod tables;
 
 pub use chain::Step;
-pub use draws::{Draws, SPREAD};
+pub use draws::{Draws, SPREAD, WITHIN};
 
 use crate::parallel::{Meter, each};
 use crate::watcher::Watcher;

@@ -2,6 +2,7 @@
 
 use super::signals::Kept;
 use super::{BAND_HZ, MOST_LAG_S};
+use crepitus_model::Real;
 use crepitus_plant::effect::Part;
 use crepitus_scene::Scene;
 use crepitus_spectrum::cross::Cross;
@@ -10,6 +11,9 @@ use std::fmt;
 
 /// How far off each number may be.
 pub const SPREAD: f64 = 0.3;
+
+/// Levels that are asked for, over the nominal one.
+pub const WITHIN: (f64, f64) = (0.6, 1.7);
 
 /// What varies.
 const VARIES: [(&str, &[&str]); 4] = [
@@ -38,6 +42,8 @@ pub struct Draws {
     pub count: usize,
     /// Level over that of the nominal device: the 5 % quantile, the median, the 95 % quantile.
     pub level: [f64; 3],
+    /// Share of them with a level within [`WITHIN`] of the nominal one.
+    pub within: f64,
     /// Correlation with the bare knee that 95 % exceed.
     pub least_correlation: f64,
 }
@@ -48,8 +54,12 @@ impl fmt::Display for Draws {
         write!(
             f,
             "everything up to 30 % off at once, {} draws: level {low:.2} to {high:.2} times the nominal one in 90 % \
-             (median {middle:.2}), correlation above {:.2} in 95 %",
-            self.count, self.least_correlation
+             (median {middle:.2}), within {} to {} times in {:.0} %, correlation above {:.2} in 95 %",
+            self.count,
+            WITHIN.0,
+            WITHIN.1,
+            100.0 * self.within,
+            self.least_correlation
         )
     }
 }
@@ -107,10 +117,14 @@ pub(super) fn judge(drawn: &[Result<Kept, String>], device: Option<&Kept>) -> Op
         let with_bare = Cross::new(&kept.of_bare_knee, &kept.acceleration, kept.step_s)?;
         correlations.push(with_bare.likeness(low, high, MOST_LAG_S).correlation);
     }
+    let (least, most) = WITHIN;
+    let is_within = |level: &&f64| (least..=most).contains(*level);
+    let within = whole(levels.iter().filter(is_within).count()) / whole(levels.len());
     levels.sort_by(f64::total_cmp);
     correlations.sort_by(f64::total_cmp);
     Some(Draws {
         count: levels.len(),
+        within,
         level: [
             quantile(&levels, 5)?,
             quantile(&levels, 50)?,
@@ -118,6 +132,10 @@ pub(super) fn judge(drawn: &[Result<Kept, String>], device: Option<&Kept>) -> Op
         ],
         least_correlation: quantile(&correlations, 5)?,
     })
+}
+
+fn whole(n: usize) -> f64 {
+    f64::from_whole(u64::try_from(n).unwrap_or(u64::MAX))
 }
 
 fn quantile(sorted: &[f64], percent: usize) -> Option<f64> {
