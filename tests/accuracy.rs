@@ -393,7 +393,7 @@ fn the_target_adds_cycles_to_points_summary_and_report() {
     let text = stdout(&output);
     let label = "modelled cycles, 0 wait states; not measured on hardware";
     assert!(
-        text.contains(label) && text.contains("| bone-shaping |"),
+        text.contains(label) && text.contains("| bone-shaping (motor) |"),
         "{text}"
     );
 

@@ -57,7 +57,7 @@ fn the_doctor_finds_nothing_wrong() {
 #[test]
 fn parameters_are_listed_read_and_set() {
     let list: Value = serde_json::from_str(&stdout(&run(&["params", "list", "--json"]))).unwrap();
-    assert_eq!(list.as_array().unwrap().len(), 108);
+    assert_eq!(list.as_array().unwrap().len(), 121);
     assert_eq!(list[4]["name"], "crepitus.static_torque_nm");
     let got = json(&[
         "params",

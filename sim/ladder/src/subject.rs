@@ -152,6 +152,8 @@ mod tests {
                 ("spasticity", "reflex"),
                 ("clasp-knife", "angle"),
                 ("clasp-knife", "torque"),
+                ("bone-shaping", "motor"),
+                ("bone-shaping", "actuator"),
             ]
         );
         let spec = SPECS.iter().find(|spec| spec.name == "spasticity").unwrap();

@@ -152,11 +152,12 @@ impl Words {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_model::render::effects::IS_SYMPTOM;
 
     #[test]
     fn every_symptom_has_a_word_for_each_of_its_phases() {
-        let names = SPECS.iter().filter(|spec| spec.phases.is_some());
-        let names: Vec<&str> = names.map(|spec| spec.name).collect();
+        let symptoms = SPECS.iter().zip(IS_SYMPTOM).filter(|(_, is)| **is);
+        let names: Vec<&str> = symptoms.map(|(spec, _)| spec.name).collect();
         assert_eq!(names, SYMPTOMS.each_ref().map(|words| words.effect));
         for words in &SYMPTOMS {
             let spec = words.spec().expect("an effect");
