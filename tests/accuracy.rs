@@ -415,9 +415,9 @@ fn the_target_adds_cycles_to_points_summary_and_report() {
     }
     let target = &summary(&out)["target"];
     assert_eq!(target["label"], label);
-    // Four rungs, the check, the renderer, the encoder, nine effects and three of them in
+    // Four rungs, the check, the renderer, the encoder, ten effects and four of them in
     // their other form, the current loop.
-    assert_eq!(target["rows"].as_array().unwrap().len(), 20);
+    assert_eq!(target["rows"].as_array().unwrap().len(), 22);
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.contains("On the device’s core") || report.contains("On the device's core"));
     assert!(report.contains(label));
