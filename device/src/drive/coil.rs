@@ -112,8 +112,8 @@ struct Means {
 pub struct Coil {
     /// `None`: there is no actuator.
     plan: Option<CoilPlan>,
-    /// What the plan becomes once the command is silent, if it becomes another one: a
-    /// command that fades out needs the old one.
+    /// The pending plan, applied once the command is zero: a command that fades out needs
+    /// the active one.
     next: Option<CoilPlan>,
     has_next: bool,
     fault: Option<CoilFault>,
@@ -142,7 +142,7 @@ impl Coil {
         (self.next, self.has_next) = (plan, plan != self.plan);
     }
 
-    /// Whether there is anything to do in a tick.
+    /// True if an actuator is configured, or a plan is pending.
     #[inline]
     pub fn is_fitted(&self) -> bool {
         self.plan.is_some() || self.has_next
@@ -158,7 +158,7 @@ impl Coil {
         self.fault = None;
     }
 
-    /// Whether a chirp of this amplitude, V, may be played.
+    /// Checks the amplitude of a chirp, V.
     ///
     /// # Errors
     /// [`DriveRefusal::NoActuator`] without one, and while its fault is latched;
@@ -173,7 +173,7 @@ impl Coil {
         }
     }
 
-    /// Whether it was driven in the last tick: then there is a current to be measured.
+    /// True if the bridge was driven in the last tick, so that the current is valid.
     #[inline]
     pub fn is_driven(&self) -> bool {
         self.last_v.is_some()

@@ -47,12 +47,11 @@ fn a_shell_beside_the_hand_follows_the_leg_as_a_mass_on_its_seat() {
 }
 
 #[test]
-fn a_force_on_the_shell_reaches_the_leg_as_one_on_the_leg_reaches_the_shell() {
-    // Reciprocity: seat (cs + k)/(Ms² + cs + k), whatever the hand is.
+fn a_hand_slows_the_shell_that_it_holds() {
     let hertz = 60.0;
     let omega = TAU * hertz;
     let parts: &[(&str, &[(&str, f64)])] = &[("limb", &[]), ("shell", &[]), ("hand", &[])];
-    let answers = [("shell", "leg"), ("leg", "shell")].map(|(held, other)| {
+    let answers = ["shell", "leg"].map(|held| {
         let mut rig = Build::of(parts)
             .choosing("shell", "hand_on", held)
             .choosing("limb", "passive", "none")
@@ -65,7 +64,6 @@ fn a_force_on_the_shell_reaches_the_leg_as_one_on_the_leg_reaches_the_shell() {
                 shells.push(rig.get("shell_acceleration_m_s2"));
             }
         }
-        println!("torque at the knee, hand on the {held}: the shell, not the {other}");
         amplitude(&shells, hertz)
     });
     // A hand of 0.2 kg on the shell slows it down, on the leg hardly.
