@@ -4,6 +4,7 @@
 //! title = "Lead-pipe rigidity, UPDRS 2"
 //! disorder = "rigidity"            # see Disorder
 //! severity = "UPDRS 2: mild to moderate"
+//! level = "moderate"               # mild, moderate, severe: see Level
 //! feel = "what a hand feels, in one line"
 //! evidence = "estimate"            # sourced, derived, estimate
 //! source = "where the numbers are from, in one line"
@@ -22,7 +23,7 @@
 mod disorder;
 mod shipped;
 
-pub use disorder::{Disorder, Evidence};
+pub use disorder::{Disorder, Evidence, Level};
 pub use shipped::{FILES, Joint, PresetFile, find, joints, shipped};
 
 use crate::document::{Document, Section, quoted};
@@ -57,6 +58,8 @@ pub struct Preset {
     pub disorder: Option<Disorder>,
     /// Grade, in the words of its scale.
     pub severity: Option<String>,
+    /// Severity on the scale that all disorders share.
+    pub level: Option<Level>,
     /// What to feel for.
     pub feel: Option<String>,
     /// How well founded the whole is.
@@ -117,6 +120,8 @@ impl Preset {
         let [title, severity, feel, source] = TEXTS.map(|(key, most)| line(&root, key, most));
         let disorders = Disorder::ALL.map(|d| (d.name(), d));
         let disorder = root.optional_choice("disorder", &disorders)?;
+        let levels = Level::ALL.map(|l| (l.name(), l));
+        let level = root.optional_choice("level", &levels)?;
         let evidence = root.optional_choice("evidence", &evidences())?;
         let section = root.section("effects")?;
         let effects::Effects {
@@ -146,6 +151,7 @@ impl Preset {
             title: title?,
             disorder,
             severity: severity?,
+            level,
             feel: feel?,
             evidence,
             source: source?,
@@ -194,6 +200,7 @@ impl Preset {
             ("title", self.title.as_deref()),
             ("disorder", self.disorder.map(Disorder::name)),
             ("severity", self.severity.as_deref()),
+            ("level", self.level.map(Level::name)),
             ("feel", self.feel.as_deref()),
             ("evidence", self.evidence.map(Evidence::name)),
             ("source", self.source.as_deref()),

@@ -1,4 +1,4 @@
-//! What a preset renders, and how well founded its numbers are.
+//! What a preset renders, how severe it is, and how well founded its numbers are.
 
 /// A group of presets: what an examiner tells apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -74,6 +74,35 @@ impl Disorder {
             Self::Spasticity => Some("MAS 0"),
             Self::Clonus => Some("SCATS 0"),
             _ => None,
+        }
+    }
+}
+
+/// Severity of a preset on one scale for all disorders.
+///
+/// Grades of different scales cannot be compared; an examiner who does not know the knee can
+/// still tell three levels apart. The mapping from a scale to these levels is ours, an
+/// estimate: `docs/symptoms.md` has it as a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Level {
+    /// The lowest grades.
+    Mild,
+    /// The middle of the scale.
+    Moderate,
+    /// The highest grades.
+    Severe,
+}
+
+impl Level {
+    /// All, in ascending order.
+    pub const ALL: [Self; 3] = [Self::Mild, Self::Moderate, Self::Severe];
+
+    /// Name in preset files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mild => "mild",
+            Self::Moderate => "moderate",
+            Self::Severe => "severe",
         }
     }
 }
