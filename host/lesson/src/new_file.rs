@@ -1,0 +1,18 @@
+//! Files that appear whole or not at all.
+
+use std::io;
+use std::path::Path;
+use tempfile::NamedTempFile;
+
+/// A file that is to be renamed into this folder once it is complete.
+///
+/// # Errors
+/// Of the disk.
+pub(crate) fn in_folder(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".crepitus-");
+    // The usual permissions, not those of a temporary file.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
