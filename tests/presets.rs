@@ -171,6 +171,8 @@ fn a_knee_is_saved_and_comes_back_to_the_bit() {
         "The \"knee\" of Monday",
         "--disorder",
         "range-deficit",
+        "--level",
+        "moderate",
     ];
     let saved = knee.json(&save);
     assert_eq!(saved["effects"], json!(["crepitus", "range-limit"]));
@@ -180,6 +182,10 @@ fn a_knee_is_saved_and_comes_back_to_the_bit() {
     assert!(
         first.contains("flexion_limit_deg = 98.76543210987654\n"),
         "{first}"
+    );
+    assert_eq!(
+        knee.json(&["presets", "monday-knee"])["level"],
+        json!("moderate")
     );
 
     knee.done(&["params", "reset"]);
@@ -329,6 +335,10 @@ fn a_file_is_a_preset_a_fragment_or_a_scene() {
             &["limp", "clasp-knife"],
         ),
         (
+            &["params", "save-preset", "x", "--level", "marked"],
+            &["marked", "moderate"],
+        ),
+        (
             &["params", "save-preset", "x", "--feel", "two\nlines"],
             &["`feel`", "one line"],
         ),
@@ -371,6 +381,7 @@ fn the_list_says_what_to_feel_for_and_how_sure_it_is() {
         "\
 Spasticity, MAS 2, as a stretch reflex makes it
   severity  MAS 2: more marked through most of the range, but the part is easily moved
+  level     moderate
   feel for  a fast stretch is answered with a push, a moment late; it pushes back when the hand stops
   evidence  estimate
   source    grades: Bohannon and Smith 1987; gain: McCrea et al. 2003, speed: Levin and Feldman 2003 (elbows); \

@@ -79,35 +79,50 @@ pub fn planned(knees: usize, repeats: usize) -> Vec<usize> {
 /// The order with the fewest repetitions of a kind that keeps as close as possible to this one.
 fn separated(mut rest: Vec<usize>, kinds: &[usize]) -> Vec<usize> {
     let kind = |place: usize| kinds.get(place).copied().unwrap_or(place);
+    let mut counts = vec![0; kinds.len()];
+    for place in &rest {
+        change(&mut counts, kind(*place), |count| count + 1);
+    }
     let mut order = Vec::with_capacity(rest.len());
     let mut last = None;
     while !rest.is_empty() {
-        let best = (0..rest.len()).min_by_key(|&at| {
-            let first = rest.get(at).map(|&place| kind(place));
-            let others = rest.iter().enumerate().filter(|(other, _)| *other != at);
-            let others: Vec<_> = others.map(|(_, &place)| kind(place)).collect();
-            let repetition = usize::from(first.is_some() && first == last);
-            repetition + fewest_repetitions(first, &others)
-        });
+        let cost = |at: &usize| {
+            let first = rest.get(*at).map_or(0, |place| kind(*place));
+            let mut counts = counts.clone();
+            change(&mut counts, first, |count| count - 1);
+            usize::from(last == Some(first)) + fewest_repetitions(first, &counts)
+        };
+        let best = (0..rest.len()).min_by_key(cost);
         let place = rest.remove(best.unwrap_or(0));
+        change(&mut counts, kind(place), |count| count - 1);
         last = Some(kind(place));
         order.push(place);
     }
     order
 }
 
-/// Fewest repetitions with which these kinds can follow a last one.
+fn change(counts: &mut [usize], kind: usize, by: impl Fn(usize) -> usize) {
+    if let Some(count) = counts.get_mut(kind) {
+        *count = by(*count);
+    }
+}
+
+/// Fewest repetitions with which kinds can follow a last one, by how often each is left.
 ///
-/// A kind that occurs `m` times among `n` has at most `n - m` others between its own, so `m - 1 -
-/// (n - m)` of its steps are repetitions, one more if the last one is of that kind.
-fn fewest_repetitions(last: Option<usize>, kinds: &[usize]) -> usize {
-    let repetitions = |kind: &usize| {
-        let own = kinds.iter().filter(|other| *other == kind).count();
-        let own = own + usize::from(last == Some(*kind));
-        let others = kinds.iter().filter(|other| *other != kind).count();
-        own.saturating_sub(1 + others)
+/// A kind that occurs `m` times has the `o` others between its own, so `m - 1 - o` of its steps
+/// are repetitions at least, one more if the last one is of that kind.
+fn fewest_repetitions(last: usize, counts: &[usize]) -> usize {
+    let all: usize = counts.iter().sum();
+    let repetitions = |(kind, count): (usize, &usize)| {
+        let own = count + usize::from(kind == last);
+        own.saturating_sub(1 + all - count)
     };
-    kinds.iter().map(repetitions).max().unwrap_or(0)
+    counts
+        .iter()
+        .enumerate()
+        .map(repetitions)
+        .max()
+        .unwrap_or(0)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The tables of presets in the book are those of the files. `CREPITUS_BLESS=1` writes them.
 
-use crepitus_scene::preset::{Disorder, Preset, shipped};
+use crepitus_scene::preset::{Disorder, Level, Preset, shipped};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -9,17 +9,19 @@ const END: &str = "<!-- end -->";
 
 /// A disorder's presets as a table.
 fn table(disorder: Disorder) -> String {
-    let mut text =
-        String::from("\n| preset | grade | what to feel for | numbers |\n|---|---|---|---|\n");
+    let mut text = String::from(
+        "\n| preset | grade | level | what to feel for | numbers |\n|---|---|---|---|---|\n",
+    );
     let of = |preset: &&Preset| preset.disorder == Some(disorder);
     for preset in shipped().iter().filter(of) {
         let [severity, feel, source] = [&preset.severity, &preset.feel, &preset.source]
             .map(|line| line.as_deref().expect("a shipped preset says what it is"));
         let evidence = preset.evidence.expect("and how well founded").name();
+        let level = preset.level.map_or("–", Level::name);
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "| `{}` | {severity} | {feel} | {evidence}: {source} |",
+            "| `{}` | {severity} | {level} | {feel} | {evidence}: {source} |",
             preset.name
         );
     }

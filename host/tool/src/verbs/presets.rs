@@ -4,7 +4,7 @@ use crate::failure::{Failure, print, print_json, warn};
 use crate::own_presets;
 use clap::Args;
 use crepitus_client::values::show_number;
-use crepitus_scene::preset::{self, Disorder, Evidence, Preset, PresetValue, Setting};
+use crepitus_scene::preset::{self, Disorder, Evidence, Level, Preset, PresetValue, Setting};
 use crepitus_table::Table;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -119,6 +119,7 @@ fn shown(preset: &Preset, file: Option<&Path>) -> String {
     let file = file.map(|file| file.display().to_string());
     for (key, line) in [
         ("severity", preset.severity.as_deref()),
+        ("level", preset.level.map(Level::name)),
         ("feel for", preset.feel.as_deref()),
         ("evidence", preset.evidence.map(Evidence::name)),
         ("source", preset.source.as_deref()),
@@ -203,6 +204,7 @@ fn to_json(preset: &Preset, file: Option<&Path>) -> Value {
         "title": preset.title,
         "disorder": preset.disorder.map(Disorder::name),
         "severity": preset.severity,
+        "level": preset.level.map(Level::name),
         "feel": preset.feel,
         "evidence": preset.evidence.map(Evidence::name),
         "source": preset.source,

@@ -272,6 +272,14 @@ fn mistakes_are_named_with_line_key_and_remedy() {
             "evidence = \"good\"\n[effects.clonus]\n",
             &["`evidence`", "sourced, derived and estimate"],
         ),
+        (
+            "level = \"marked\"\n[effects.clonus]\n",
+            &["line 1: `level`", "mild, moderate and severe"],
+        ),
+        (
+            "level = 2\n[effects.clonus]\n",
+            &["line 1: `level`", "text"],
+        ),
         ("[effects]\n", &["line 1: `effects`", "no effect"]),
         ("[effects.wobble]\n", &["`effects.wobble`", "no such key"]),
         (
@@ -417,5 +425,53 @@ fn a_scene_names_presets_that_have_the_effect() {
     ] {
         let error = scene(effects).unwrap_err().to_string();
         assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+    }
+}
+
+#[test]
+fn a_level_is_read_and_written() {
+    for level in Level::ALL {
+        let text = format!("level = \"{}\"\n\n[effects.texture]\n", level.name());
+        let preset = parse(&text).unwrap();
+        assert_eq!(preset.level, Some(level));
+        assert_eq!(parse(&preset.to_toml()).unwrap().level, Some(level));
+    }
+    assert_eq!(parse("[effects.texture]\n").unwrap().level, None);
+    for preset in shipped() {
+        let again = parse(&preset.to_toml()).unwrap();
+        assert_eq!(again.level, preset.level, "{}", preset.name);
+    }
+}
+
+/// Every grade has the level of the table in `docs/symptoms.md`; kinds have none.
+#[test]
+fn graded_presets_have_the_level_of_their_grade() {
+    use Level::{Mild, Moderate, Severe};
+    let levels = [
+        ("MAS 1:", Mild),
+        ("MAS 1+:", Mild),
+        ("MAS 2:", Moderate),
+        ("MAS 3:", Severe),
+        ("MAS 4:", Severe),
+        ("UPDRS 1:", Mild),
+        ("UPDRS 2:", Moderate),
+        ("UPDRS 3:", Severe),
+        ("UPDRS 4:", Severe),
+        ("SCATS 1:", Mild),
+        ("SCATS 2:", Moderate),
+        ("SCATS 3:", Severe),
+        ("slight:", Mild),
+        ("mild:", Mild),
+        ("moderate", Moderate),
+        ("marked:", Moderate),
+        ("severe:", Severe),
+    ];
+    for preset in shipped() {
+        let severity = preset.severity.as_deref().unwrap();
+        let grade = levels.iter().find(|(word, _)| severity.starts_with(word));
+        assert_eq!(preset.level, grade.map(|(_, l)| *l), "{}", preset.name);
+        let kinds = ["end-feel-", "capsular", "stiff-knee", "-block"];
+        let is_kind = kinds.iter().any(|kind| preset.name.contains(kind));
+        assert_eq!(preset.level.is_none(), is_kind, "{}", preset.name);
     }
 }

@@ -7,7 +7,7 @@ use crate::own_presets;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use crepitus_board::values::knee;
-use crepitus_scene::preset::Disorder;
+use crepitus_scene::preset::{Disorder, Level};
 use serde_json::json;
 
 /// Save the device's knee as a preset of one's own.
@@ -27,6 +27,10 @@ pub(super) struct SavePreset {
     /// Grade, one line.
     #[arg(long)]
     severity: Option<String>,
+
+    /// Level, on the scale that all disorders share.
+    #[arg(long, value_parser = PossibleValuesParser::new(Level::ALL.map(Level::name)))]
+    level: Option<String>,
 
     /// Where the numbers are from, one line.
     #[arg(long)]
@@ -62,6 +66,8 @@ pub(super) fn run(
     preset.title.clone_from(&arguments.title);
     preset.feel.clone_from(&arguments.feel);
     preset.severity.clone_from(&arguments.severity);
+    let wanted = arguments.level.as_deref();
+    preset.level = Level::ALL.into_iter().find(|l| Some(l.name()) == wanted);
     preset.source.clone_from(&arguments.source);
     let wanted = arguments.disorder.as_deref();
     preset.disorder = Disorder::ALL.into_iter().find(|d| Some(d.name()) == wanted);
