@@ -4,7 +4,7 @@
 //! FOLDER/2026-11-24-154205-six-knees-blind/
 //!   session.json      all of it: plan, seed, order, truth, students, answers, notes, recordings
 //!   answers.csv       one line an answer, with the truth
-//!   notes.csv         one line a note
+//!   notes.csv         one line a note; an apostrophe before what a spreadsheet would compute
 //!   trial-01.parquet  recordings, named by trial: the name does not tell the knee
 //!   report.html       the page to print
 //! ```
@@ -262,10 +262,18 @@ fn notes(session: &Session) -> Vec<Vec<String>> {
             note.time_s.to_string(),
             note.trial.to_string(),
             note.by.name().to_owned(),
-            note.text.clone(),
+            as_text(&note.text),
         ]);
     }
     rows
+}
+
+/// A text that a spreadsheet does not take for a formula: an apostrophe comes before it.
+fn as_text(text: &str) -> String {
+    if text.starts_with(['=', '+', '-', '@']) {
+        return format!("'{text}");
+    }
+    text.to_owned()
 }
 
 #[cfg(test)]

@@ -19,12 +19,23 @@ pub struct Section {
     pub rows: Vec<(String, String)>,
 }
 
-/// A page, complete in itself; `style` is what it needs beyond the layout that
+/// A page in English, complete in itself; `style` is what it needs beyond the layout that
 /// all share, `inks` what its charts have beside the palette's.
 pub fn document(title: &str, style: &str, inks: &[Ink], body: &Markup) -> String {
+    document_in("en", title, style, inks, body)
+}
+
+/// A page as [`document`], in the language of this tag, such as `de`.
+pub fn document_in(
+    language: &str,
+    title: &str,
+    style: &str,
+    inks: &[Ink],
+    body: &Markup,
+) -> String {
     let page = html! {
         (DOCTYPE)
-        html lang="en" {
+        html lang=(language) {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
