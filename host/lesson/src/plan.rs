@@ -16,7 +16,8 @@
 //! time_s = 60                      # time for it
 //! ```
 //!
-//! Only `title` and one `[[knee]]` are required. The page sends the same as JSON, its list named
+//! An instruction, target or time of its own is shown with its knee, also in a blind lesson: it must
+//! not give the knee away. Only `title` and one `[[knee]]` are required. The page sends the same as JSON, its list named
 //! `knees`.
 
 use crate::finding::{HEALTHY, Knee};

@@ -244,3 +244,49 @@ fn with_feedback_at_the_end_nothing_is_told_before() {
     let second = SessionFolder::create(&parent, &session).unwrap();
     assert_eq!(second.path(), parent.join("2026-11-24-154205-blind-six-2"));
 }
+
+/// Names the folder in which [`saves_on_a_full_disk`] saves.
+#[cfg(target_os = "linux")]
+const FULL: &str = "CREPITUS_LESSON_FULL_DISK";
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_keeps_what_was_there() {
+    let session = begin(Feedback::Each);
+    let folder = SessionFolder::create(&fresh("full"), &session).unwrap();
+    // No file may grow beyond 2 blocks of 512 bytes: the write fails as on a full disk.
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 2; exec '{}' --ignored --exact saves_on_a_full_disk",
+        std::env::current_exe().unwrap().display()
+    );
+    let output = std::process::Command::new("sh")
+        .args(["-c", &script])
+        .env(FULL, folder.path())
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success() && text.contains("1 passed"),
+        "{text}"
+    );
+    assert_eq!(Session::read(folder.path()).unwrap(), session);
+    let files = fs::read_dir(folder.path()).unwrap();
+    assert_eq!(files.count(), 3);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+#[ignore = "a part of a_full_disk_keeps_what_was_there, in a process of its own"]
+fn saves_on_a_full_disk() {
+    let Some(path) = std::env::var_os(FULL) else {
+        return;
+    };
+    let path = PathBuf::from(path);
+    let (folder, mut session) = SessionFolder::open(&path).unwrap();
+    session.lesson.start().unwrap();
+    let error = folder.save(&session).unwrap_err().to_string();
+    assert!(
+        error.contains("session.json") && error.contains("the disk has room"),
+        "{error}"
+    );
+}

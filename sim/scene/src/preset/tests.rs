@@ -272,14 +272,6 @@ fn mistakes_are_named_with_line_key_and_remedy() {
             "evidence = \"good\"\n[effects.clonus]\n",
             &["`evidence`", "sourced, derived and estimate"],
         ),
-        (
-            "level = \"marked\"\n[effects.clonus]\n",
-            &["line 1: `level`", "mild, moderate and severe"],
-        ),
-        (
-            "level = 2\n[effects.clonus]\n",
-            &["line 1: `level`", "text"],
-        ),
         ("[effects]\n", &["line 1: `effects`", "no effect"]),
         ("[effects.wobble]\n", &["`effects.wobble`", "no such key"]),
         (
@@ -437,6 +429,15 @@ fn a_level_is_read_and_written() {
         assert_eq!(parse(&preset.to_toml()).unwrap().level, Some(level));
     }
     assert_eq!(parse("[effects.texture]\n").unwrap().level, None);
+    for (wrong, part) in [
+        ("\"marked\"", "allowed are mild, moderate and severe"),
+        ("2", "a text in quotes is wanted"),
+    ] {
+        let text = format!("level = {wrong}\n[effects.clonus]\n");
+        let error = parse(&text).unwrap_err().to_string();
+        assert!(error.contains("line 1: `level`"), "{error}");
+        assert!(error.contains(part), "{error}");
+    }
     for preset in shipped() {
         let again = parse(&preset.to_toml()).unwrap();
         assert_eq!(again.level, preset.level, "{}", preset.name);
