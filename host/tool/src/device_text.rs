@@ -30,7 +30,7 @@ pub(crate) fn identity_json(identity: &Identity) -> Value {
 }
 
 /// The chip's serial number: as text if it is printable, else hexadecimal.
-fn serial(identity: &Identity) -> String {
+pub(crate) fn serial(identity: &Identity) -> String {
     let bytes = &identity.serial;
     if bytes.iter().all(u8::is_ascii_graphic) {
         String::from_utf8_lossy(bytes).into_owned()

@@ -37,6 +37,14 @@ impl Failure {
         }
     }
 
+    /// The message.
+    pub(crate) fn into_text(self) -> String {
+        match self {
+            Self::Input(text) | Self::Work(text) => text,
+            Self::Negative | Self::NoReader => String::new(),
+        }
+    }
+
     /// Prints the message and returns the exit code.
     pub(crate) fn report(&self, json: bool) -> ExitCode {
         let (text, code) = match self {

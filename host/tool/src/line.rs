@@ -6,8 +6,8 @@ use crate::shipped;
 use crate::simulated::Simulated;
 use crepitus_client::discovery::{self, Device, DeviceKind};
 use crepitus_client::{Client, Error, Management, RequestKind, Transport, TransportError};
-use crepitus_protocol::ValueError;
 use crepitus_protocol::host::Refusal;
+use crepitus_protocol::{Session, ValueError};
 use crepitus_scene::Overrides;
 use crepitus_sharing::{Program, Shared};
 use std::path::Path;
@@ -67,6 +67,14 @@ pub(crate) fn open(arguments: &DeviceArguments) -> Result<Line, Failure> {
     }
 }
 
+/// The same; a device in this process is not faster than real time.
+pub(crate) fn open_in_real_time(arguments: &DeviceArguments) -> Result<Line, Failure> {
+    Ok(match open(arguments)? {
+        Line::Simulated(simulated) => Line::Simulated(Box::new(simulated.in_real_time())),
+        shared @ Line::Shared(_) => shared,
+    })
+}
+
 /// Opens the connection and performs the handshake.
 pub(crate) fn connect(arguments: &DeviceArguments) -> Result<Client<Line>, Failure> {
     Client::connect(open(arguments)?).map_err(failure)
@@ -107,8 +115,7 @@ pub(crate) fn failure_with(client: &mut Client<Line>, error: Error) -> Failure {
         return failure(error);
     };
     let request = refused.request;
-    let programs = client.transport_mut().programs();
-    let Some(other) = programs.iter().find(|p| p.session == Some(by)) else {
+    let Some(other) = holder(client, by) else {
         return failure(error);
     };
     let way_out = if request == RequestKind::Disarm {
@@ -118,8 +125,14 @@ pub(crate) fn failure_with(client: &mut Client<Line>, error: Error) -> Failure {
     };
     Failure::Work(format!(
         "`{request}` is rejected: {} has armed the device; {way_out}",
-        named(other)
+        named(&other)
     ))
+}
+
+/// The program of a session, if it is connected to the same device.
+pub(crate) fn holder(client: &mut Client<Line>, session: Session) -> Option<Program> {
+    let programs = client.transport_mut().programs();
+    programs.into_iter().find(|p| p.session == Some(session))
 }
 
 /// A program for people.

@@ -1,6 +1,7 @@
 //! `crepitus`: the command line tool. One file a verb, under `verbs`.
 
 mod cli;
+mod clock;
 mod crash_text;
 mod device_command;
 mod device_text;

@@ -1,12 +1,14 @@
 //! A simulated device in this process, or an emulated one, as a transport. Its
-//! time advances only while the host waits.
+//! time advances only while the host waits, as fast as it can or in real time.
 
+use crate::clock::Clock;
 use crepitus_board::{Start, VirtualDevice};
 use crepitus_client::{Transport, TransportError};
 use crepitus_emulator::on_target::{self, NoTarget};
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_scene::Scene;
 use crepitus_usb::cabled::CabledDevice;
+use std::thread::sleep;
 use std::time::Duration;
 
 /// Timeout of a write that the device does not accept, ticks.
@@ -18,7 +20,18 @@ pub(crate) struct Simulated {
     name: String,
     /// The last write was incomplete: send a delimiter first.
     torn: bool,
+    /// Keeps it from being faster than real time.
+    pace: Option<Pace>,
 }
+
+/// Real time, and the ticks of it that are due.
+struct Pace {
+    clock: Clock,
+    due: u64,
+}
+
+/// Wait for a tick that is not due yet.
+const NAP: Duration = Duration::from_micros(500);
 
 impl Simulated {
     /// The device of a scene.
@@ -27,6 +40,7 @@ impl Simulated {
             device: Box::new(VirtualDevice::of(scene, &Start::default())?),
             name: "a simulated device".to_owned(),
             torn: false,
+            pace: None,
         })
     }
 
@@ -38,7 +52,31 @@ impl Simulated {
             device: on_target::device(scene, on_build)?,
             name: "an emulated device".to_owned(),
             torn: false,
+            pace: None,
         })
+    }
+
+    /// The same, not faster than real time.
+    pub(crate) fn in_real_time(mut self) -> Self {
+        self.pace = Some(Pace {
+            clock: Clock::new(),
+            due: 0,
+        });
+        self
+    }
+
+    /// The next tick, when it is due.
+    fn tick(&mut self) {
+        if let Some(pace) = &mut self.pace {
+            while pace.due == 0 {
+                pace.due = pace.clock.due_ticks();
+                if pace.due == 0 {
+                    sleep(NAP);
+                }
+            }
+            pace.due -= 1;
+        }
+        self.device.tick();
     }
 
     fn lost(&self) -> TransportError {
@@ -68,7 +106,7 @@ impl Transport for Simulated {
             if rest.is_empty() {
                 return Ok(());
             }
-            self.device.tick();
+            self.tick();
         }
         self.torn = true;
         Err(TransportError::Stalled {
@@ -96,7 +134,7 @@ impl Transport for Simulated {
                 return Ok(0);
             }
             left -= 1;
-            self.device.tick();
+            self.tick();
         }
     }
 
@@ -107,7 +145,7 @@ impl Transport for Simulated {
 
     fn wait(&mut self, time: Duration) {
         for _ in 0..Self::ticks(time) {
-            self.device.tick();
+            self.tick();
         }
     }
 

@@ -14,6 +14,7 @@ pub(crate) mod effects;
 pub(crate) mod export;
 pub(crate) mod identify_actuator;
 pub(crate) mod info;
+pub(crate) mod panel;
 pub(crate) mod params;
 pub(crate) mod presets;
 pub(crate) mod record;
@@ -52,6 +53,7 @@ macro_rules! verbs {
 // In the order of `--help`.
 verbs! {
     Demo: demo,
+    Panel: panel,
     Devices: devices,
     Info: info,
     Doctor: doctor,

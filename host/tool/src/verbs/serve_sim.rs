@@ -1,6 +1,5 @@
 //! `crepitus serve-sim`: a simulated device as a serial port, or as a USB device, in real time.
 
-mod clock;
 mod port;
 mod usbip;
 

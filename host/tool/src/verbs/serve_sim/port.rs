@@ -1,6 +1,6 @@
 //! The device as a serial port: a pty with a name.
 
-use super::clock::Clock;
+use crate::clock::Clock;
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crepitus_client::discovery::{ServedName, user_folder};

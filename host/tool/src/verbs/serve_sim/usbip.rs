@@ -1,6 +1,6 @@
 //! The device as a USB device, over USB/IP.
 
-use super::clock::Clock;
+use crate::clock::Clock;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
 use crate::safe_text::message;

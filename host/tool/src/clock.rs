@@ -7,13 +7,13 @@ use std::time::{Duration, Instant};
 const MOST_LAG: Duration = Duration::from_millis(200);
 
 /// Keeps simulated time up with real time.
-pub(super) struct Clock {
+pub(crate) struct Clock {
     begun: Instant,
     ticks: u64,
 }
 
 impl Clock {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             begun: Instant::now(),
             ticks: 0,
@@ -21,7 +21,7 @@ impl Clock {
     }
 
     /// Ticks that are due.
-    pub(super) fn due_ticks(&mut self) -> u64 {
+    pub(crate) fn due_ticks(&mut self) -> u64 {
         let per_tick = Duration::from_secs(1) / TICKS_PER_S;
         let elapsed = self.begun.elapsed().as_nanos();
         let now = u64::try_from(elapsed / per_tick.as_nanos()).unwrap_or(u64::MAX);

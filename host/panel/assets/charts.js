@@ -1,0 +1,320 @@
+// Torque, speed and angle over one time axis. uPlot makes axes, grid, cursor
+// and the selection by dragging; the curves are painted here from bins.
+
+import uPlot from "./vendor/uPlot.esm.js";
+import { indexAt } from "./bins.js";
+import { el, setText } from "./dom.js";
+import { Colours, paintEnvelope, paintMark, paintShades } from "./paint.js";
+import { shadesIn } from "./states.js";
+import { number, text } from "./strings.js";
+
+/** The colours of every chart of the page. */
+export const colours = new Colours();
+
+const PANES = [
+  {
+    name: "torque",
+    unit: "N·m",
+    least: 1,
+    curves: [
+      // Below the commanded torque, and wider: where both agree it is a rim.
+      { low: "modelLow", high: "modelHigh", colour: "--model", fill: 0.15, width: 3.5 },
+      { low: "torqueLow", high: "torqueHigh", colour: "--torque", fill: 0.35, width: 1.25 },
+    ],
+  },
+  {
+    name: "speed",
+    unit: "°/s",
+    least: 40,
+    curves: [{ low: "speedLow", high: "speedHigh", colour: "--speed", fill: 0.35, width: 1.5 }],
+  },
+  {
+    name: "angle",
+    unit: "°",
+    least: 20,
+    curves: [{ low: "angleLow", high: "angleHigh", colour: "--angle", fill: 0.35, width: 2 }],
+  },
+];
+
+// The second of two recordings: other colours, and dashes.
+const SECOND = { torque: "--second-torque", speed: "--second-speed", angle: "--second-angle" };
+
+const rootSize = () => Number.parseFloat(getComputedStyle(document.documentElement).fontSize);
+
+/** Charts of bins that share a time axis. */
+export class Charts {
+  /**
+   * `live`: times count back from the right edge, ranges change calmly.
+   * `onRange(from, to)`: a range was dragged.
+   */
+  constructor(host, { live, onRange = null }) {
+    this.host = host;
+    this.live = live;
+    this.onRange = onRange;
+    this.view = { from: -10, to: 0 };
+    this.layers = [];
+    this.shades = [];
+    this.band = null;
+    this.notes = [];
+    this.playhead = null;
+    this.masked = { torque: false, states: false };
+    this.panes = PANES.map((pane, i) => this.makePane(pane, i === PANES.length - 1));
+    new ResizeObserver(() => this.resize()).observe(host);
+    // uPlot keeps the colours of its axes: make it read them again.
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.refresh());
+  }
+
+  makePane(pane, last) {
+    const title = el("h3", { class: `chart-title ${pane.name}` });
+    const masked = el("p", { class: "masked", hidden: true });
+    const box = el("div", { class: "chart" }, masked);
+    this.host.append(el("div", { class: "pane" }, title, box));
+    const font = () => `${Math.round(rootSize() * 0.875)}px system-ui, sans-serif`;
+    const axis = {
+      stroke: () => colours.get("--axis-text"),
+      font: font(),
+      ticks: { stroke: () => colours.get("--grid"), size: 4 },
+      grid: { stroke: () => colours.get("--grid"), width: 1 },
+    };
+    const state = { ...pane, title, masked, box, low: NaN, high: NaN };
+    state.plot = new uPlot(
+      {
+        width: 300,
+        height: 150,
+        pxAlign: false,
+        legend: { show: false },
+        cursor: this.onRange
+          ? { y: false, points: { show: false }, drag: { x: true, y: false, setScale: false } }
+          : { show: false },
+        scales: { x: { time: false }, y: { auto: false } },
+        axes: [
+          {
+            ...axis,
+            show: true,
+            size: last ? rootSize() * 1.6 : 8,
+            space: rootSize() * 5,
+            splits: this.live ? () => this.liveSplits() : undefined,
+            values: (_, splits) => splits.map((t) => (last ? this.timeLabel(t, splits) : "")),
+          },
+          { ...axis, size: rootSize() * 3.6, space: rootSize() * 2, values: (_, s) => s.map((v) => this.valueLabel(v, s)) },
+        ],
+        series: [{}, { paths: () => null, points: { show: false }, auto: false }],
+        hooks: {
+          drawClear: [(u) => this.paintBehind(u, state)],
+          draw: [(u) => this.paintFront(u, state)],
+          setSelect: [(u) => this.selected(u)],
+        },
+      },
+      [
+        [0, 1],
+        [null, null],
+      ],
+      box,
+    );
+    return state;
+  }
+
+  selected(u) {
+    if (!this.onRange || u.select.width < 8) return;
+    const from = u.posToVal(u.select.left, "x");
+    const to = u.posToVal(u.select.left + u.select.width, "x");
+    u.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+    this.onRange(from, to);
+  }
+
+  liveSplits() {
+    const span = this.view.to - this.view.from;
+    const step = span > 15 ? 5 : span > 6 ? 2 : 1;
+    const splits = [];
+    for (let back = Math.floor(span / step) * step; back >= 0; back -= step) splits.push(this.view.to - back);
+    return splits;
+  }
+
+  timeLabel(t, splits) {
+    const step = splits.length > 1 ? splits[1] - splits[0] : 1;
+    if (this.live) return `${number(Math.round(t - this.view.to) || 0)} s`;
+    return `${number(t, Math.max(0, Math.min(6, Math.ceil(-Math.log10(step) - 1e-6))))} s`;
+  }
+
+  valueLabel(v, splits) {
+    const step = splits.length > 1 ? splits[1] - splits[0] : 1;
+    return number(v, Math.max(0, Math.min(4, Math.ceil(-Math.log10(step) - 1e-6))));
+  }
+
+  /** Texts in the chosen language. */
+  retitle() {
+    for (const pane of this.panes) {
+      setText(pane.title, text(`chart.${pane.name}`));
+      setText(pane.masked, text("hidden"));
+    }
+    this.refresh();
+  }
+
+  resize() {
+    const width = Math.floor(this.host.clientWidth);
+    if (width < 50) return;
+    const least = rootSize() * 7;
+    const share = innerHeight > 1200 ? 0.2 : 0.155;
+    const height = Math.round(Math.max(least, Math.min(innerHeight * share, rootSize() * 22)));
+    for (const pane of this.panes) {
+      const extra = pane === this.panes.at(-1) ? rootSize() : 0;
+      pane.plot.setSize({ width, height: height + extra });
+    }
+    this.refresh();
+  }
+
+  /** Draws again what is there. */
+  refresh() {
+    this.draw(this.view.from, this.view.to);
+  }
+
+  /** Draws a range of time; done after the next microtask. */
+  draw(from, to) {
+    if (!(to > from) || !this.host.clientWidth) return;
+    this.view = { from, to };
+    for (const layer of this.layers) {
+      const { columns, begin, end } = layer.bins;
+      const offset = layer.offset ?? 0;
+      // One bin more on either side: curves reach the edges.
+      layer.from = Math.max(begin, indexAt(columns.t, begin, end, from - offset) - 1);
+      layer.to = Math.min(end, indexAt(columns.t, begin, end, to - offset) + 1);
+    }
+    for (const pane of this.panes) {
+      setHidden(pane.masked, !(pane.name === "torque" && this.masked.torque));
+      this.rangeOf(pane);
+      pane.plot.batch(() => {
+        pane.plot.setScale("y", { min: pane.low, max: pane.high });
+        pane.plot.setScale("x", { min: from, max: to });
+      });
+    }
+  }
+
+  rangeOf(pane) {
+    let low = Infinity;
+    let high = -Infinity;
+    for (const layer of this.layers) {
+      for (const curve of pane.curves) {
+        const lows = layer.bins.columns[curve.low];
+        const highs = layer.bins.columns[curve.high];
+        for (let i = layer.from; i < layer.to; i++) {
+          if (lows[i] < low) low = lows[i];
+          if (highs[i] > high) high = highs[i];
+        }
+      }
+    }
+    // The target band is in sight before the hand reaches it.
+    const reach = pane.name === "speed" && this.band ? this.band.low_deg_per_s * 1.2 : NaN;
+    if (reach > 0) {
+      low = Math.min(low, -reach);
+      high = Math.max(high, reach);
+    }
+    if (low > high) {
+      low = -pane.least / 2;
+      high = pane.least / 2;
+    }
+    const span = Math.max(pane.least, (high - low) * 1.12);
+    const middle = (high + low) / 2;
+    const want = { low: middle - span / 2, high: middle + span / 2 };
+    // A live axis that moved with every spike could not be read: it grows at
+    // once, a little further than needed, and shrinks when it is far too large.
+    const tooSmall = !(low >= pane.low && high <= pane.high);
+    const tooLarge = pane.high - pane.low > 2.2 * span;
+    if (this.live && !tooSmall && !tooLarge) return;
+    const more = this.live ? span * 0.08 : 0;
+    pane.low = want.low - more;
+    pane.high = want.high + more;
+  }
+
+  mapOf(u) {
+    const { left, top, width, height } = u.bbox;
+    const { min, max } = u.scales.y;
+    const kx = width / (this.view.to - this.view.from);
+    const ky = height / (max - min);
+    const from = this.view.from;
+    return { x: (t) => left + (t - from) * kx, y: (v) => top + height - (v - min) * ky };
+  }
+
+  clip(u, paint) {
+    const { ctx, bbox } = u;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    paint(ctx, bbox, this.mapOf(u));
+    ctx.restore();
+  }
+
+  paintBehind(u, pane) {
+    if (!this.layers.length) return;
+    this.clip(u, (ctx, box, map) => {
+      const { bins, from, to, offset = 0 } = this.layers[0];
+      const { t, states, marks } = bins.columns;
+      const shades = this.shades;
+      if (!this.masked.states && pane.name === "torque") {
+        const shifted = offset ? { ...map, x: (time) => map.x(time + offset) } : map;
+        const found = (i) => shadesIn(shades, states[i], marks[i]);
+        const fill = (k) => colours.shade(ctx, shades[k].colour, shades[k].pattern);
+        paintShades(ctx, shifted, box, t, bins.length, from, to, shades.length, found, fill);
+      }
+      if (pane.name === "speed" && this.band) this.paintBand(ctx, box, map);
+      ctx.strokeStyle = colours.get("--axis");
+      ctx.lineWidth = devicePixelRatio;
+      const zero = Math.round(map.y(0)) + 0.5;
+      ctx.beginPath();
+      ctx.moveTo(box.left, zero);
+      ctx.lineTo(box.left + box.width, zero);
+      ctx.stroke();
+    });
+  }
+
+  // The examiner's speed counts in either direction.
+  paintBand(ctx, box, map) {
+    const { low_deg_per_s: low, high_deg_per_s: high } = this.band;
+    if (!Number.isFinite(low)) return;
+    for (const sign of [1, -1]) {
+      const a = map.y(sign * low);
+      const b = Number.isFinite(high) ? map.y(sign * high) : sign > 0 ? box.top : box.top + box.height;
+      ctx.globalAlpha = 0.22;
+      ctx.fillStyle = colours.get("--band");
+      ctx.fillRect(box.left, Math.min(a, b), box.width, Math.abs(a - b));
+      ctx.globalAlpha = 0.9;
+      ctx.fillRect(box.left, a - devicePixelRatio / 2, box.width, devicePixelRatio);
+      ctx.fillRect(box.left, b - devicePixelRatio / 2, box.width, devicePixelRatio);
+    }
+    ctx.globalAlpha = 1;
+  }
+
+  paintFront(u, pane) {
+    this.clip(u, (ctx, box, map) => {
+      const scale = devicePixelRatio;
+      this.layers.forEach(({ bins, from, to, offset = 0 }, nth) => {
+        const { columns } = bins;
+        const shifted = offset ? { ...map, x: (time) => map.x(time + offset) } : map;
+        for (const curve of pane.curves) {
+          if (nth > 0 && curve.low === "modelLow") continue;
+          paintEnvelope(ctx, shifted, columns.t, columns[curve.low], columns[curve.high], from, to, {
+            colour: colours.get(nth > 0 ? SECOND[pane.name] : curve.colour),
+            fill: nth > 0 ? 0.12 : curve.fill,
+            width: curve.width * scale,
+            dash: nth > 0 ? [7 * scale, 4 * scale] : null,
+          });
+        }
+      });
+      for (const note of this.notes) {
+        if (note.time_s < this.view.from || note.time_s > this.view.to) continue;
+        const head = pane.name === "torque" ? (note.text.length > 24 ? `${note.text.slice(0, 23)}…` : note.text) : "";
+        paintMark(ctx, map.x(note.time_s), box, colours.get("--note"), scale, head, rootSize() * 0.875 * scale);
+      }
+      if (this.playhead !== null) paintMark(ctx, map.x(this.playhead), box, colours.get("--text"), scale);
+    });
+  }
+
+  /** The width of the plots in device pixels. */
+  pixels() {
+    return Math.max(50, Math.round(this.panes[0].plot.bbox.width));
+  }
+}
+
+function setHidden(element, hidden) {
+  if (element.hidden !== hidden) element.hidden = hidden;
+}

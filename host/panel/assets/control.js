@@ -1,0 +1,153 @@
+// The header: state, who controls, control buttons with the reason why one is
+// disabled, stop, faults.
+
+import { isController, isReplay, isTeacher, latest, on } from "./connection.js";
+import { byId, el, setText } from "./dom.js";
+import { confirmed } from "./dialogs.js";
+import { request, say } from "./report.js";
+import { stop } from "./stop.js";
+import { onLanguage, text, textOr } from "./strings.js";
+import { kneeName } from "./names.js";
+
+let link = "connecting";
+let lastMessage = null;
+
+function stateName() {
+  if (link !== "open") return link;
+  if (isReplay()) return "replay";
+  const status = latest.status;
+  if (!status) return "connecting";
+  return status.link === "lost" ? "device-lost" : status.state;
+}
+
+/** Why a control is disabled, as a key of the texts; null if it is enabled. */
+function reason(name) {
+  const status = latest.status;
+  const state = stateName();
+  if (link !== "open") return "why.no-connection";
+  if (!isTeacher()) return "why.viewer";
+  if (name === "take") return null;
+  if (!isController()) return "why.no-control";
+  if (!status || status.link === "lost") return "why.no-device";
+  const torque = state === "armed" || state === "arming";
+  if (name === "disarm") return torque ? null : "why.no-torque";
+  if (torque) return name === "zero" ? "why.armed" : "why.armed-already";
+  if (name === "arm" && status.faults.some((fault) => !fault.coil)) return "why.fault";
+  if (name === "arm" && !status.zeroed) return "why.zero-first";
+  return null;
+}
+
+/** Why this page cannot change the knee or run a lesson now, in text; "" if it can. */
+export function controlReason() {
+  const key = link !== "open" ? "why.no-connection" : !isTeacher() ? "why.viewer" : isController() ? null : "why.no-control";
+  return key ? text(key) : "";
+}
+
+function showControls() {
+  byId("controls").hidden = isReplay();
+  const grouped = new Map();
+  for (const name of ["take", "zero", "arm", "disarm"]) {
+    const key = reason(name);
+    byId(name).disabled = key !== null;
+    if (key) grouped.set(key, [...(grouped.get(key) ?? []), text(`control.${name}`)]);
+  }
+  const lines = [...grouped].map(([key, names]) => `${names.join(", ")}: ${text(key)}.`);
+  setText(byId("why"), lines.join(" "));
+  setText(byId("take"), text(isController() ? "control.release" : "control.take"));
+  setText(byId("zero-hint"), byId("zero").disabled ? "" : text("control.zero-hint"));
+  const holder = latest.holder;
+  const who = isController() ? "holder.you" : holder?.taken ? "holder.other" : "holder.nobody";
+  const other = latest.status?.other;
+  setText(byId("holder"), other ? text("holder.program", { name: other }) : text(who));
+}
+
+function showState() {
+  const name = stateName();
+  const chip = byId("state");
+  setText(chip, textOr(`device.state.${name}`, name));
+  chip.dataset.state = name;
+  byId("stop").classList.toggle("live", name === "armed" || name === "arming");
+  const source = latest.hello?.source;
+  setText(
+    byId("device"),
+    !source ? "–" : isReplay() ? text("header.file") : [source.name, source.serial].filter(Boolean).join(" · "),
+  );
+  setText(byId("knee-now"), kneeName());
+  showControls();
+}
+
+function pageLink(page) {
+  if (!page) return null;
+  if (!/^https?:\/\//.test(page)) return el("span", null, text("fault.page", { page }));
+  return el("a", { href: page, target: "_blank", rel: "noopener noreferrer" }, text("fault.link"));
+}
+
+let faultsShown = "";
+function showFaults() {
+  const faults = latest.status?.faults ?? [];
+  const shown = JSON.stringify([faults, isController(), document.documentElement.lang]);
+  if (shown === faultsShown) return;
+  faultsShown = shown;
+  const items = faults.map(({ code, coil }) => {
+    const table = coil ? latest.hello?.coil_faults : latest.hello?.faults;
+    const fault = table?.find((entry) => entry.code === code) ?? { code, name: "?", cause: "", remedy: "" };
+    return el(
+      "div",
+      { class: "fault" },
+      el("strong", null, text(coil ? "fault.coil-title" : "fault.title", fault)),
+      el("p", null, text("fault.cause", fault)),
+      el("p", null, text("fault.remedy", fault), " ", pageLink(fault.page)),
+    );
+  });
+  if (items.length && isController()) {
+    items.push(el("button", { type: "button", id: "clear-fault", onclick: () => request("clear-fault") }, text("fault.clear")));
+  }
+  byId("faults").replaceChildren(...items);
+}
+
+async function take() {
+  if (isController()) return request("release");
+  if (latest.holder?.taken && !(await confirmed(text("control.take-over")))) return null;
+  return request("take");
+}
+
+function showMessage() {
+  const message = latest.status?.message ?? null;
+  if (message && message !== lastMessage) say(message);
+  lastMessage = message;
+}
+
+function update() {
+  showState();
+  showFaults();
+}
+
+/** Starts the header. */
+export function startControl() {
+  byId("stop").addEventListener("click", stop);
+  // Captured at the window: no dialog, field or list keeps the key for itself.
+  addEventListener("keydown", (event) => event.key === "Escape" && !event.repeat && stop(), { capture: true });
+  byId("take").addEventListener("click", take);
+  for (const name of ["zero", "arm", "disarm"]) byId(name).addEventListener("click", () => request(name));
+  on("open", () => {
+    link = "open";
+    update();
+  });
+  on("lost", () => {
+    link = "connection-lost";
+    update();
+  });
+  on("refused", () => {
+    link = "refused";
+    update();
+    byId("faults").replaceChildren(el("div", { class: "fault" }, el("strong", null, text("refused"))));
+  });
+  for (const kind of ["hello", "status", "holder", "parameters", "presets", "lesson"]) on(kind, update);
+  on("status", showMessage);
+  onLanguage(() => {
+    faultsShown = "";
+    update();
+  });
+  update();
+}
+

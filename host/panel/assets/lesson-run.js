@@ -1,0 +1,194 @@
+// A running lesson: instruction, time left, answers. What is hidden comes as
+// null from the server; the page has nothing to keep secret.
+
+import { isController, latest } from "./connection.js";
+import { controlReason } from "./control.js";
+import { confirmed } from "./dialogs.js";
+import { el, field, freshId, setText, tick } from "./dom.js";
+import { disorderName, levelName, presetTitle } from "./names.js";
+import { request } from "./report.js";
+import { number, text, textOr } from "./strings.js";
+
+let view = null;
+let trialShown = null;
+let beganAt = null;
+let timer = null;
+
+/** "spasticity, severe" */
+export function kneeText(disorder, level) {
+  const name = disorderName(disorder);
+  return level ? text("answer.knee", { disorder: name, level: levelName(level) }) : name;
+}
+
+const outcome = (is) =>
+  is === null || is === undefined ? null : el("span", { class: `tag ${is ? "yes" : "no"}` }, text(is ? "answer.right" : "answer.wrong"));
+
+async function answer(event) {
+  event.preventDefault();
+  const data = new FormData(view.form);
+  const confidence = Number(data.get("confidence"));
+  if (!data.get("disorder") || !confidence) return setText(view.problem, text("answer.incomplete"));
+  setText(view.problem, "");
+  const ok = await request("lesson-answer", {
+    student: data.get("student"),
+    disorder: data.get("disorder"),
+    level: data.get("level") || null,
+    confidence,
+  });
+  if (!ok) return null;
+  const { lesson } = latest;
+  const due = lesson?.students.find((student) => !answerOf(lesson, student));
+  view.disorder.value = "";
+  view.level.value = "";
+  for (const input of view.confidence) input.checked = false;
+  if (due) view.student.value = due;
+  return due ? view.student.focus() : view.next.focus();
+}
+
+const answerOf = (lesson, student) => lesson.answers.find((one) => one.student === student && one.trial === lesson.trial);
+
+async function end() {
+  const { lesson } = latest;
+  const left = lesson.trial < lesson.trials || lesson.students.some((student) => !answerOf(lesson, student));
+  if (left && !(await confirmed(text("run.end-early")))) return;
+  await request("lesson-end");
+}
+
+function answerForm(lesson) {
+  view.student = el("select", { name: "student" }, ...lesson.students.map((name) => el("option", { value: name }, name)));
+  view.disorder = el(
+    "select",
+    { name: "disorder" },
+    el("option", { value: "" }, text("answer.choose")),
+    ...lesson.choices.disorders.map((name) => el("option", { value: name }, disorderName(name))),
+  );
+  view.level = el(
+    "select",
+    { name: "level" },
+    el("option", { value: "" }, text("answer.no-level")),
+    ...lesson.choices.levels.map((name) => el("option", { value: name }, levelName(name))),
+  );
+  view.confidence = [1, 2, 3, 4, 5].map((value) => el("input", { type: "radio", name: "confidence", value }));
+  view.send = el("button", { class: "primary" }, text("answer.send"));
+  view.problem = el("p", { class: "problem", role: "alert" });
+  view.disorder.addEventListener("change", () => (view.level.disabled = view.disorder.value === "healthy"));
+  view.form = el(
+    "form",
+    { id: "answer-form", class: "card", onsubmit: answer, novalidate: true },
+    el("h3", null, text("answer.title")),
+    el(
+      "div",
+      { class: "row" },
+      field(text("answer.student"), view.student),
+      field(text("answer.disorder"), view.disorder),
+      field(text("answer.level"), view.level),
+    ),
+    el(
+      "fieldset",
+      { class: "choices" },
+      el("legend", null, text("answer.confidence")),
+      ...view.confidence.map((input) => tick(input.value === "1" ? text("answer.low") : input.value === "5" ? text("answer.high") : input.value, input)),
+    ),
+    view.problem,
+    el("div", { class: "row" }, view.send),
+  );
+  return view.form;
+}
+
+/** Builds the view of a running lesson. */
+export function showRun(host, lesson) {
+  view = {
+    trial: el("p", { class: "trial", role: "status" }),
+    progress: el("progress", { "aria-label": text("run.progress"), max: lesson.trials }),
+    instruction: el("p", { class: "instruction" }),
+    facts: el("p"),
+    knee: el("p"),
+    time: el("p", { class: "time-left" }),
+    start: el("button", { type: "button", id: "lesson-start", class: "primary", onclick: () => request("lesson-start") }, text("run.start")),
+    next: el("button", { type: "button", id: "lesson-next", onclick: () => request("lesson-next") }, text("run.next")),
+    end: el("button", { type: "button", id: "lesson-end", onclick: end }, text("run.end")),
+    why: el("p", { class: "hint" }),
+    answers: el("ul", { class: "answers" }),
+  };
+  trialShown = null;
+  const about = [
+    text(lesson.blind ? "setup.blind" : "setup.open"),
+    text(lesson.curves ? "run.curves" : "run.no-curves"),
+    text("run.seed", { seed: lesson.seed }),
+    lesson.stored && text("run.stored", { folder: lesson.stored }),
+  ];
+  const title = freshId("lesson");
+  host.replaceChildren(
+    el(
+      "section",
+      { class: "card", "aria-labelledby": title },
+      el("h2", { id: title }, textOr(`lesson.${lesson.name}.title`, lesson.title)),
+      view.trial,
+      view.progress,
+      view.instruction,
+      view.facts,
+      view.knee,
+      view.time,
+      el("div", { class: "row" }, view.start, view.next, view.end),
+      view.why,
+    ),
+    answerForm(lesson),
+    el("section", { class: "card" }, el("h3", null, text("run.answers")), view.answers),
+    el("p", { class: "hint" }, about.filter(Boolean).join(" · ")),
+  );
+  clearInterval(timer);
+  timer = setInterval(showTime, 500);
+  updateRun(lesson);
+}
+
+function showTime() {
+  const { lesson } = latest;
+  if (!view || !lesson || lesson.ended) return clearInterval(timer);
+  const left = lesson.began && lesson.time_s ? lesson.time_s - (performance.now() - beganAt) / 1000 : null;
+  if (left === null) return setText(view.time, "");
+  const seconds = Math.max(0, Math.ceil(left));
+  const clock = `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
+  return setText(view.time, seconds > 0 ? text("run.left", { clock }) : text("run.over"));
+}
+
+/** Shows where the lesson is. */
+export function updateRun(lesson) {
+  const trial = `${lesson.trial} ${lesson.began}`;
+  if (trial !== trialShown) {
+    trialShown = trial;
+    beganAt = performance.now();
+  }
+  const why = controlReason();
+  setText(view.trial, text("run.trial", { trial: lesson.trial, trials: lesson.trials }));
+  view.progress.value = lesson.trial - (lesson.began ? 0 : 1);
+  setText(view.instruction, lesson.instruction ?? "");
+  view.instruction.hidden = !lesson.instruction;
+  const target = lesson.target ? text("run.target", { target: textOr(`target.${lesson.target}`, lesson.target) }) : "";
+  const time = lesson.time_s ? text("run.time", { seconds: number(lesson.time_s) }) : "";
+  setText(view.facts, [target, time].filter(Boolean).join(" · "));
+  const knee = lesson.knee;
+  setText(view.knee, text("run.knee", { knee: knee ? `${presetTitle(knee.preset)} (${kneeText(knee.disorder, knee.level)})` : text("hidden") }));
+  const all = lesson.students.every((student) => answerOf(lesson, student));
+  view.start.disabled = why !== "" || lesson.began;
+  view.next.disabled = why !== "" || lesson.trial >= lesson.trials;
+  view.end.disabled = why !== "";
+  view.send.disabled = why !== "" || !lesson.began;
+  view.next.classList.toggle("primary", all && lesson.trial < lesson.trials);
+  view.end.classList.toggle("primary", all && lesson.trial >= lesson.trials);
+  setText(view.why, why ? text("run.disabled", { why }) : lesson.began ? (all ? text("run.all-answered") : "") : text("run.not-begun"));
+  showAnswers(lesson);
+  showTime();
+}
+
+function showAnswers(lesson) {
+  view.answers.replaceChildren(
+    ...lesson.students.map((student) => {
+      const given = answerOf(lesson, student);
+      if (!given) return el("li", null, text("answer.none", { student }));
+      const words = text("answer.line", { student, knee: kneeText(given.disorder, given.level), confidence: given.confidence });
+      // Without control the page may be one that students see.
+      const shown = lesson.blind && !isController() ? text("answer.given", { student }) : words;
+      return el("li", null, shown, " ", outcome(given.right));
+    }),
+  );
+}

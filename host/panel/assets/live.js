@@ -1,0 +1,196 @@
+// The live part: each frame of the screen shows the newest bins as curves,
+// numbers and a leg. Everything that is measured about it is in `crepitusStats`.
+
+import { RecentBins } from "./bins.js";
+import { Charts, colours } from "./charts.js";
+import { isReplay, latest, on } from "./connection.js";
+import { byId, el, setText, tick } from "./dom.js";
+import { makeLeg } from "./leg.js";
+import { shadeName, shadesIn, shadesOf } from "./states.js";
+import { number, onLanguage, text } from "./strings.js";
+
+const WINDOWS = [5, 10, 30];
+const BINS_A_SECOND = 200;
+const KEPT = 2000;
+
+const stats = { frames: 0, bins: 0, paints: 0, missing: 0, latencies: [], draws: [] };
+window.crepitusStats = stats;
+
+const bins = new RecentBins(32 * BINS_A_SECOND);
+let charts = null;
+let turnLeg = null;
+let seconds = 10;
+let dirty = false;
+let wordsAt = 0;
+let shades = [];
+
+function keep(list, value) {
+  if (list.length >= KEPT) list.shift();
+  list.push(value);
+}
+
+/** A legend of shades and curves, in text; returns a function that marks what is present. */
+export function makeLegend(host, list) {
+  const items = list.map((shade) => {
+    const swatch = el("i", { class: "swatch", "aria-hidden": "true" });
+    const name = el("span");
+    const item = el("li", { hidden: true }, swatch, name);
+    return { shade, swatch, name, item };
+  });
+  const paint = () => {
+    for (const { shade, swatch, name } of items) {
+      setText(name, shadeName(shade));
+      swatch.style.backgroundImage = `url(${colours.tile(shade.colour, shade.pattern).toDataURL()})`;
+    }
+  };
+  host.replaceChildren(...items.map(({ item }) => item));
+  paint();
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => requestAnimationFrame(paint));
+  return {
+    paint,
+    show(present, now = 0) {
+      items.forEach(({ item }, k) => {
+        item.hidden = !(present & (1 << k));
+        item.classList.toggle("current", (now & (1 << k)) !== 0);
+      });
+    },
+  };
+}
+
+let legend = null;
+
+/** The middle of a bin's range, or NaN. */
+const middle = (low, high) => (low + high) / 2;
+
+// Numbers for people: five times a second is what can be read.
+function showWords(now) {
+  if (now - wordsAt < 200) return;
+  wordsAt = now;
+  const { columns, begin, end } = bins;
+  const last = end - 1;
+  const from = Math.max(begin, end - 20);
+  let torque = NaN;
+  let breaks = 0;
+  for (let i = Math.max(begin, end - BINS_A_SECOND); i < end; i++) breaks += columns.breaks[i];
+  // The largest torque of the last tenth of a second, with its sign: a catch is short.
+  for (let i = from; i < end; i++) {
+    for (const value of [columns.torqueLow[i], columns.torqueHigh[i]]) {
+      if (!(Math.abs(value) <= Math.abs(torque))) torque = Number.isNaN(value) ? torque : value;
+    }
+  }
+  setText(byId("angle"), last < begin ? "–" : number(middle(columns.angleLow[last], columns.angleHigh[last]), 1));
+  setText(byId("speed"), last < begin ? "–" : number(middle(columns.speedLow[last], columns.speedHigh[last])));
+  setText(byId("torque"), bins.masked.torque ? text("hidden") : number(torque, 2));
+  setText(byId("breaks"), bins.masked.states ? text("hidden") : number(breaks));
+  if (!legend) return;
+  let present = 0;
+  if (!bins.masked.states) {
+    for (let i = bins.indexAt(charts.view.from); i < end; i++) {
+      present |= shadesIn(shades, columns.states[i], columns.marks[i]);
+    }
+  }
+  const current = last < begin || bins.masked.states ? 0 : shadesIn(shades, columns.states[last], columns.marks[last]);
+  legend.show(present, current);
+}
+
+function paint(now) {
+  requestAnimationFrame(paint);
+  stats.paints++;
+  if (!dirty || isReplay()) return;
+  dirty = false;
+  const began = performance.now();
+  const { columns, begin, end } = bins;
+  if (end > begin) {
+    const to = columns.t[end - 1] + bins.length / 2;
+    charts.masked = bins.masked;
+    charts.draw(to - seconds, to);
+    turnLeg(middle(columns.angleLow[end - 1], columns.angleHigh[end - 1]));
+  }
+  showWords(now);
+  const arrived = bins.arrived;
+  // uPlot draws in a microtask; after it the pixels are there.
+  queueMicrotask(() => {
+    keep(stats.draws, performance.now() - began);
+    if (arrived) keep(stats.latencies, performance.timeOrigin + performance.now() - arrived);
+  });
+}
+
+function offerWindows() {
+  const host = byId("window-choice");
+  const wish = Number(localStorage.getItem("window"));
+  if (WINDOWS.includes(wish)) seconds = wish;
+  const labels = WINDOWS.map((value) => {
+    const input = el("input", { type: "radio", name: "window", value, checked: value === seconds });
+    input.addEventListener("change", () => {
+      seconds = value;
+      localStorage.setItem("window", value);
+      dirty = true;
+    });
+    return tick(`${value} s`, input);
+  });
+  host.append(...labels);
+}
+
+function showCounters() {
+  const status = latest.status;
+  if (!status) return;
+  const facts = [
+    ["produced", number(status.produced)],
+    ["received", number(status.received)],
+    ["dropped", number(status.dropped)],
+    ["lost", number(status.lost)],
+    ["missing", number(stats.missing)],
+    ["supply", Number.isFinite(status.supply_v) ? `${number(status.supply_v, 1)} V` : "–"],
+    ["motor", Number.isFinite(status.motor_c) ? `${number(status.motor_c)} °C` : "–"],
+  ];
+  const host = byId("counters");
+  if (host.childElementCount !== facts.length) {
+    host.replaceChildren(...facts.map(() => el("div", null, el("dt"), el("dd"))));
+  }
+  facts.forEach(([key, value], i) => {
+    setText(host.children[i].children[0], text(`counters.${key}`));
+    setText(host.children[i].children[1], value);
+  });
+}
+
+/** The charts' target band. */
+export function setBand(band) {
+  charts.band = band;
+  dirty = true;
+}
+
+/** The notes that the charts mark. */
+export function setNotes(notes) {
+  charts.notes = notes;
+  dirty = true;
+}
+
+/** Starts the live part. */
+export function startLive() {
+  charts = new Charts(byId("charts"), { live: true });
+  charts.layers = [{ bins }];
+  turnLeg = makeLeg(byId("leg"));
+  turnLeg(NaN);
+  offerWindows();
+  on("frame", (view) => {
+    const { count, missing } = bins.push(view);
+    stats.frames++;
+    stats.bins += count;
+    stats.missing += missing;
+    dirty = true;
+  });
+  on("hello", (hello) => {
+    shades = charts.shades = shadesOf(hello.states);
+    legend = makeLegend(byId("legend"), shades);
+    bins.clear();
+  });
+  on("status", showCounters);
+  onLanguage(() => {
+    charts.retitle();
+    legend?.paint();
+    showCounters();
+    wordsAt = 0;
+  });
+  charts.retitle();
+  requestAnimationFrame(paint);
+}

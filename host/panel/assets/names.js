@@ -1,0 +1,49 @@
+// Names of knees and disorders as people read them, in the chosen language.
+
+import { latest } from "./connection.js";
+import { text, textOr } from "./strings.js";
+
+/** All presets: those saved since the greeting replace its list. */
+export const presets = () => latest.presets ?? latest.hello?.presets ?? [];
+
+/** A preset by its name. */
+export const presetOf = (name) => presets().find((preset) => preset.name === name);
+
+/** A text of a preset: `title`, `feel` or `severity`. */
+export const presetText = (preset, what) =>
+  preset.own ? preset[what] : textOr(`preset.${preset.name}.${what}`, preset[what]);
+
+/** The title of the preset with this name, or "healthy". */
+export function presetTitle(name) {
+  if (name === "healthy") return text("knee.healthy");
+  const preset = presetOf(name);
+  return preset ? presetText(preset, "title") : name;
+}
+
+/** The heading of a disorder. */
+export function disorderName(name) {
+  if (name === "healthy") return text("knee.healthy");
+  const heading = latest.hello?.disorders.find((disorder) => disorder.name === name)?.heading;
+  return name ? textOr(`disorder.${name}`, heading ?? name) : text("disorder.other");
+}
+
+/** The name of a severity. */
+export const levelName = (level) => (level ? textOr(`level.${level}`, level) : "–");
+
+/** Whether any effect of the knee differs from its default. */
+function isHealthy(parameters) {
+  const byId = new Map(parameters.values);
+  const symptoms = new Set(latest.hello.groups.filter((group) => group.kind === "symptom").map((group) => group.name));
+  return latest.hello.parameters
+    .filter((parameter) => parameter.key === "render" && (symptoms.has(parameter.group) || parameter.group === "crepitus"))
+    .every((parameter) => !byId.get(parameter.id));
+}
+
+/** The name of the knee that the device renders now. */
+export function kneeName() {
+  const parameters = latest.parameters;
+  if (!parameters || !latest.hello) return "–";
+  if (parameters.hidden) return text("hidden");
+  if (parameters.preset) return presetTitle(parameters.preset);
+  return isHealthy(parameters) ? text("knee.healthy") : text("knee.own");
+}

@@ -1,0 +1,149 @@
+// The Recordings tab: the list, and which recordings are open in the player.
+
+import { isReplay, isTeacher, on } from "./connection.js";
+import { byId, el, setText } from "./dom.js";
+import { Player } from "./player.js";
+import { request } from "./report.js";
+import { number, onLanguage, text } from "./strings.js";
+import { onTab } from "./tabs.js";
+
+let view = null;
+let player = null;
+let files = null;
+let first = null;
+let second = null;
+
+function size(bytes) {
+  return bytes >= 1e6 ? `${number(bytes / 1e6, 1)} MB` : `${number(bytes / 1e3)} kB`;
+}
+
+function when(value) {
+  const date = new Date(value);
+  return Number.isNaN(date.getTime()) ? String(value ?? "") : date.toLocaleString(document.documentElement.lang);
+}
+
+async function open(file, asSecond) {
+  const opened = await request("open", { recording: file.id });
+  if (!opened) return;
+  if (asSecond) second = opened;
+  else {
+    first = opened;
+    if (second?.id === opened.id) second = null;
+  }
+  view.player.hidden = false;
+  player.show(first, second);
+  showList();
+  if (!asSecond) view.player.scrollIntoView({ block: "nearest" });
+}
+
+function close(file) {
+  if (second?.id === file.id) second = null;
+  player.show(first, second);
+  showList();
+}
+
+function row(file) {
+  const isFirst = first?.id === file.id;
+  const isSecond = second?.id === file.id;
+  const facts = [
+    Number.isFinite(file.seconds) ? text("recordings.seconds", { seconds: number(file.seconds, 1) }) : null,
+    Number.isFinite(file.rows) ? text("recordings.rows", { rows: number(file.rows) }) : null,
+    Number.isFinite(file.size) ? size(file.size) : null,
+    when(file.when),
+  ];
+  const openButton = el(
+    "button",
+    { type: "button", class: "open", disabled: isFirst, "aria-label": text("recordings.open-name", { name: file.name }), onclick: () => open(file, false) },
+    text("recordings.open"),
+  );
+  const compare = el(
+    "button",
+    {
+      type: "button",
+      class: "compare",
+      disabled: !first || isFirst,
+      "aria-label": text(isSecond ? "recordings.apart-name" : "recordings.compare-name", { name: file.name }),
+      onclick: () => (isSecond ? close(file) : open(file, true)),
+    },
+    text(isSecond ? "recordings.apart" : "recordings.compare"),
+  );
+  const shown = isFirst ? text("recordings.first") : isSecond ? text("recordings.second") : null;
+  return el(
+    "li",
+    { class: "recording", "data-recording": file.id },
+    el("div", null, el("strong", null, file.name), " ", shown && el("span", { class: "tag" }, shown), el("p", { class: "hint" }, facts.filter(Boolean).join(" · "))),
+    el("div", { class: "row" }, openButton, compare),
+  );
+}
+
+function showList() {
+  if (!view) return;
+  // The buttons are made again: keep the focus where it was.
+  const focused = document.activeElement?.closest?.("[data-recording]")?.dataset.recording;
+  const kind = document.activeElement?.classList.contains("compare") ? ".compare" : ".open";
+  view.list.replaceChildren(...(files ?? []).map(row));
+  if (focused) {
+    const again = view.list.querySelector(`[data-recording="${CSS.escape(focused)}"]`);
+    const button = again?.querySelector(kind);
+    (button?.disabled ? again.querySelector("button:not(:disabled)") ?? view.refresh : button)?.focus();
+  }
+  const words = !isTeacher() ? text("recordings.viewer") : files === null ? text("recordings.loading") : files.length ? "" : text("recordings.none");
+  setText(view.words, words);
+  view.refresh.disabled = !isTeacher();
+}
+
+async function load() {
+  if (!isTeacher()) return showList();
+  const ok = await request("recordings");
+  if (ok) files = ok.files ?? [];
+  showList();
+  // A page that replays one file shows it at once.
+  if (isReplay() && files?.length && !first) await open(files[0], false);
+  return null;
+}
+
+function enlarge() {
+  const on = document.body.classList.toggle("enlarged");
+  view.enlarge.setAttribute("aria-pressed", String(on));
+}
+
+function build() {
+  const wasOpen = view !== null && !view.player.hidden;
+  view = {
+    list: el("ul", { class: "recordings-list" }),
+    words: el("p", { class: "hint", role: "status" }),
+    refresh: el("button", { type: "button", onclick: load }, text("recordings.refresh")),
+    enlarge: el("button", { type: "button", class: "enlarge", "aria-pressed": String(document.body.classList.contains("enlarged")), onclick: enlarge }, text("recordings.enlarge")),
+    player: el("div", { class: "player", hidden: !wasOpen }),
+  };
+  view.enlarge.hidden = isReplay();
+  byId("recordings").replaceChildren(
+    view.player,
+    el(
+      "section",
+      { class: "card", "aria-labelledby": "recordings-title" },
+      el("h2", { id: "recordings-title" }, text("recordings.title")),
+      el("div", { class: "row" }, view.refresh, view.enlarge),
+      view.words,
+      view.list,
+    ),
+  );
+  player = new Player(view.player);
+  if (wasOpen && first) player.show(first, second);
+  showList();
+}
+
+/** Starts the Recordings tab. */
+export function startRecordings() {
+  build();
+  on("hello", () => {
+    files = null;
+    build();
+    if (!byId("recordings").hidden || isReplay()) load();
+  });
+  onTab((name) => {
+    if (name === "recordings" && files === null) load();
+    if (name !== "recordings") document.body.classList.remove("enlarged");
+  });
+  onLanguage(build);
+}

@@ -1,0 +1,64 @@
+// Texts for people: one file a language, English where one lacks a text.
+
+const LANGUAGES = { en: "English", de: "Deutsch" };
+const listeners = [];
+let english = {};
+let chosen = {};
+let language = "en";
+
+const load = async (name) => (await fetch(`strings/${name}.json`)).json();
+
+/** Returns the text of a key; `{name}` in it stands for `values.name`. */
+export function text(key, values = {}) {
+  const found = chosen[key] ?? english[key] ?? key;
+  return found.replace(/\{(\w+)\}/g, (whole, name) => values[name] ?? whole);
+}
+
+/** Returns the text of a key, or else a text that the server sent. */
+export const textOr = (key, fallback) => chosen[key] ?? english[key] ?? fallback;
+
+/** A number as this language writes it. */
+export const number = (value, digits = 0) =>
+  Number.isFinite(value)
+    ? value.toLocaleString(language, { minimumFractionDigits: digits, maximumFractionDigits: digits })
+    : "–";
+
+/** A value of any size, with six significant digits at most. */
+export function plain(value) {
+  if (!Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  if (size !== 0 && (size < 1e-3 || size >= 1e6)) return String(Number(value.toPrecision(6)));
+  return value.toLocaleString(language, { maximumSignificantDigits: 6, useGrouping: false });
+}
+
+/** Fills the static texts of a part of the page. */
+export function fillTexts(root = document) {
+  for (const at of root.querySelectorAll("[data-text]")) at.textContent = text(at.dataset.text);
+  for (const at of root.querySelectorAll("[data-label]")) at.setAttribute("aria-label", text(at.dataset.label));
+}
+
+/** Calls this whenever another language is chosen. */
+export const onLanguage = (listener) => listeners.push(listener);
+
+async function choose(name) {
+  chosen = name === "en" ? english : await load(name);
+  language = name;
+  document.documentElement.lang = name;
+  document.title = text("title");
+  fillTexts();
+  for (const listener of listeners) listener();
+}
+
+/** Loads the texts, and offers the languages in this `<select>`. */
+export async function startStrings(select) {
+  const wish = localStorage.getItem("language") ?? navigator.language.slice(0, 2);
+  const name = wish in LANGUAGES ? wish : "en";
+  for (const [value, label] of Object.entries(LANGUAGES)) select.append(new Option(label, value));
+  select.value = name;
+  select.addEventListener("change", () => {
+    localStorage.setItem("language", select.value);
+    choose(select.value);
+  });
+  english = await load("en");
+  await choose(name);
+}

@@ -1,0 +1,98 @@
+//! The files of the page.
+
+/// A file: its path, its type, its content.
+pub(crate) struct Asset {
+    pub(crate) path: &'static str,
+    pub(crate) kind: &'static str,
+    pub(crate) body: &'static [u8],
+}
+
+const HTML: &str = "text/html; charset=utf-8";
+const CSS: &str = "text/css; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+const JSON: &str = "application/json";
+
+macro_rules! assets {
+    ($($kind:ident $file:literal),* $(,)?) => {
+        /// All of them.
+        pub(crate) const ASSETS: &[Asset] = &[$(Asset {
+            path: concat!("/", $file),
+            kind: $kind,
+            body: include_bytes!(concat!("../assets/", $file)),
+        }),*];
+    };
+}
+
+assets![
+    HTML "index.html",
+    CSS "panel.css",
+    SCRIPT "bins.js",
+    SCRIPT "charts.js",
+    SCRIPT "connection.js",
+    SCRIPT "control.js",
+    SCRIPT "dialogs.js",
+    SCRIPT "dom.js",
+    SCRIPT "drawer.js",
+    SCRIPT "knee.js",
+    SCRIPT "leg.js",
+    SCRIPT "lesson.js",
+    SCRIPT "live.js",
+    SCRIPT "main.js",
+    SCRIPT "names.js",
+    SCRIPT "notes.js",
+    SCRIPT "paint.js",
+    SCRIPT "recordings.js",
+    SCRIPT "report.js",
+    SCRIPT "states.js",
+    SCRIPT "stop.js",
+    SCRIPT "strings.js",
+    SCRIPT "tabs.js",
+    SCRIPT "target.js",
+    CSS "vendor/uPlot.min.css",
+    SCRIPT "vendor/uPlot.esm.js",
+    JSON "strings/de.json",
+    JSON "strings/en.json",
+];
+
+/// The file at a path.
+pub(crate) fn find(path: &str) -> Option<&'static Asset> {
+    let path = if path == "/" { "/index.html" } else { path };
+    ASSETS.iter().find(|asset| asset.path == path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+    use std::path::{Path, PathBuf};
+
+    fn files(folder: &Path, found: &mut BTreeSet<PathBuf>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                files(&path, found);
+            } else {
+                found.insert(path);
+            }
+        }
+    }
+
+    #[test]
+    fn every_file_is_served_and_all_are_light() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
+        let mut found = BTreeSet::new();
+        files(&folder, &mut found);
+        // The licence stands in the file that it is of, too.
+        found.retain(|path| path.extension().is_none_or(|e| e != "LICENSE"));
+        let served: BTreeSet<_> = (ASSETS.iter())
+            .map(|asset| folder.join(asset.path.trim_start_matches('/')))
+            .collect();
+        assert_eq!(found, served);
+        // A page has one of the languages.
+        let bytes: usize = (ASSETS.iter())
+            .filter(|asset| asset.path != "/strings/de.json")
+            .map(|asset| asset.body.len())
+            .sum();
+        assert!(bytes <= 300_000, "{bytes}");
+    }
+}

@@ -1,0 +1,162 @@
+//! Bins as bytes, for the page.
+//!
+//! ```text
+//! header   version u8 ‖ kind u8 ‖ bins u16 ‖ number u32 ‖ unix ms f64 ‖ begin s f64 ‖ bin s f64 ‖ missing u32 ‖ masks u32
+//! bin      torque, model, speed, angle: low f32 ‖ high f32 each ‖ states u32 ‖ breaks u16 ‖ marks u16
+//! ```
+//!
+//! All little endian; N·m, rad/s, rad. `number` counts the frames of the live view, which
+//! the page answers; in a trace it is the request's.
+
+use axum::body::Bytes;
+use crepitus_live::{Bin, Span};
+
+/// Version of the layout.
+const VERSION: u8 = 1;
+
+/// Bytes of the header.
+#[cfg(test)]
+pub(crate) const HEADER: usize = 40;
+
+/// Bytes of a bin.
+pub(crate) const BIN: usize = 40;
+
+/// What a frame is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Kind {
+    /// The newest bins; none to keep the connection alive.
+    Live = 1,
+    /// Bins of a recording.
+    Trace = 2,
+}
+
+/// What a page must not see.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Masks {
+    /// Torques.
+    pub(crate) torque: bool,
+    /// States of effects, and breaks.
+    pub(crate) states: bool,
+}
+
+/// A frame's header.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Header {
+    pub(crate) kind: Kind,
+    pub(crate) number: u32,
+    /// Time at which the newest sample had arrived.
+    pub(crate) unix_ms: f64,
+    /// Begin of the first bin.
+    pub(crate) begin_s: f64,
+    /// Length of a bin.
+    pub(crate) bin_s: f64,
+    /// Samples missing since the frame before.
+    pub(crate) missing: u64,
+    pub(crate) masks: Masks,
+}
+
+/// The frame of these bins; what does not fit is left out.
+pub(crate) fn frame(header: &Header, bins: &[Bin]) -> Bytes {
+    let count = u16::try_from(bins.len()).unwrap_or(u16::MAX);
+    let masks = header.masks;
+    let mut out = Vec::with_capacity(40 + bins.len() * BIN);
+    out.extend([VERSION, header.kind as u8]);
+    out.extend(count.to_le_bytes());
+    out.extend(header.number.to_le_bytes());
+    for number in [header.unix_ms, header.begin_s, header.bin_s] {
+        out.extend(number.to_le_bytes());
+    }
+    let missing = u32::try_from(header.missing).unwrap_or(u32::MAX);
+    out.extend(missing.to_le_bytes());
+    let bits = u32::from(masks.torque) | u32::from(masks.states) << 1;
+    out.extend(bits.to_le_bytes());
+    for bin in bins.iter().take(usize::from(count)) {
+        append(&mut out, bin, masks);
+    }
+    Bytes::from(out)
+}
+
+fn append(out: &mut Vec<u8>, bin: &Bin, masks: Masks) {
+    let hidden = |span: Span| if masks.torque { Span::NONE } else { span };
+    for span in [
+        hidden(bin.torque_nm),
+        hidden(bin.model_nm),
+        bin.speed_rad_s,
+        bin.angle_rad,
+    ] {
+        out.extend(span.low.to_le_bytes());
+        out.extend(span.high.to_le_bytes());
+    }
+    let (states, breaks, marks) = if masks.states {
+        // Sticking and slipping would tell crepitus from the others.
+        (0, 0, bin.marks.without_phase())
+    } else {
+        (bin.states, bin.breaks, bin.marks)
+    };
+    out.extend(states.to_le_bytes());
+    out.extend(breaks.to_le_bytes());
+    out.extend(marks.0.to_le_bytes());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_live::Envelope;
+    use crepitus_recording::Row;
+
+    fn header(masks: Masks) -> Header {
+        Header {
+            kind: Kind::Live,
+            number: 7,
+            unix_ms: 1.5,
+            begin_s: 2.5,
+            bin_s: 0.005,
+            missing: 3,
+            masks,
+        }
+    }
+
+    fn a_bin() -> Bin {
+        let mut envelope = Envelope::new(1);
+        envelope.take(&Row {
+            torque_nm: 1.0,
+            model_torque_nm: 2.0,
+            omega_rad_s: 3.0,
+            angle_rad: 4.0,
+            ..Row::default()
+        });
+        Bin {
+            states: 5,
+            breaks: 6,
+            ..envelope.finish().1[0]
+        }
+    }
+
+    #[test]
+    fn a_frame_is_its_header_and_its_bins() {
+        let bytes = frame(&header(Masks::default()), &[a_bin(), a_bin()]);
+        assert_eq!(bytes.len(), HEADER + 2 * BIN);
+        assert_eq!(bytes[..8], [1, 1, 2, 0, 7, 0, 0, 0]);
+        let float = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+        let values: Vec<_> = (0..8).map(|n| float(HEADER + 4 * n)).collect();
+        assert_eq!(values, [1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0]);
+        // It sticks: mark 1.
+        let rest = [5, 0, 0, 0, 6, 0, 1, 0];
+        assert_eq!(bytes[HEADER + 32..HEADER + 40], rest);
+    }
+
+    #[test]
+    fn what_is_masked_is_not_in_the_bytes() {
+        let masks = Masks {
+            torque: true,
+            states: true,
+        };
+        let bytes = frame(&header(masks), &[a_bin()]);
+        let float = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+        assert!((0..4).all(|n| float(HEADER + 4 * n).is_nan()));
+        assert_eq!(float(HEADER + 16), 3.0);
+        assert_eq!(bytes[HEADER + 32..], [0; 8]);
+        assert_eq!(bytes[36], 3);
+    }
+}

@@ -1,0 +1,192 @@
+//! What a page is told first: the tables that it shows, each from its one source.
+
+use crepitus_board::values::{is_effect, is_of_knee, with_preset};
+use crepitus_lesson::plans;
+use crepitus_live::{NAMED, STATES};
+use crepitus_model::render::effects::{IS_SYMPTOM, SPECS};
+use crepitus_protocol::coil::COIL_FAULTS;
+use crepitus_protocol::fault::FAULTS;
+use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter, When};
+use crepitus_protocol::{TICKS_PER_S, Values};
+use crepitus_scene::preset::{self, Disorder, Evidence, Preset};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// The tables. A page's number and role are added for each.
+pub(crate) fn tables(source: &Value, sessions: Option<&Path>) -> Value {
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "source": source,
+        "tick_hz": TICKS_PER_S,
+        "disorders": Disorder::ALL.map(|disorder| json!({
+            "name": disorder.name(),
+            "heading": disorder.heading(),
+            "grade_0": disorder.grade_0(),
+        })),
+        "parameters": PARAMETERS.iter().map(parameter).collect::<Vec<_>>(),
+        "groups": groups(),
+        "states": STATES.map(|state| json!({ "effect": state.effect, "phase": state.phase })),
+        "targets": NAMED,
+        "faults": FAULTS.iter().map(|fault| json!({
+            "code": fault.fault as u8,
+            "name": fault.name,
+            "cause": fault.cause,
+            "remedy": fault.clear,
+            "page": format!("faults.html#{}-{}", fault.fault as u8, fault.name),
+        })).collect::<Vec<_>>(),
+        "coil_faults": COIL_FAULTS.iter().map(|fault| json!({
+            "code": fault.fault as u8,
+            "name": fault.name,
+            "cause": fault.cause,
+            "remedy": fault.clear,
+            "page": "faults.html",
+        })).collect::<Vec<_>>(),
+        "lessons": plans::FILES.iter().filter_map(|file| {
+            // A test reads every one.
+            let plan = file.read().ok()?;
+            Some(json!({
+                "name": file.name,
+                "title": plan.title,
+                "description": plan.description,
+                "knees": plan.knees.len(),
+                "blind": plan.blind,
+            }))
+        }).collect::<Vec<_>>(),
+        "stores": sessions.map(|folder| folder.display().to_string()),
+        "students_max": crepitus_lesson::MOST_STUDENTS,
+    })
+}
+
+/// Presets that ship, and the user's own.
+pub(crate) fn presets(own: &[Preset]) -> Value {
+    let shipped = preset::shipped()
+        .iter()
+        .map(|preset| described(preset, false));
+    let own = own.iter().map(|preset| described(preset, true));
+    shipped.chain(own).collect()
+}
+
+fn described(preset: &Preset, is_own: bool) -> Value {
+    // What it sets: what differs from a knee without effects.
+    let none = with_preset(&Values::default(), &Preset::default(), false);
+    let made = with_preset(&none, preset, false);
+    let values: Vec<_> = (none.iter().zip(made.iter()))
+        .filter(|((_, before), (_, after))| before.to_bits() != after.to_bits())
+        .map(|(_, (parameter, value))| json!([parameter.id, value]))
+        .collect();
+    let effects: Vec<_> = preset.effects().map(|effect| effect.name).collect();
+    json!({
+        "name": preset.name,
+        "title": preset.title,
+        "disorder": preset.disorder.map(Disorder::name),
+        "severity": preset.severity,
+        "level": preset.level.map(preset::Level::name),
+        "feel": preset.feel,
+        "evidence": preset.evidence.map(Evidence::name),
+        "source": preset.source,
+        "own": is_own,
+        "effects": effects,
+        "values": values,
+    })
+}
+
+fn parameter(parameter: &Parameter) -> Value {
+    let (unit, min, max, choices) = match parameter.kind {
+        Kind::Number(spec) => {
+            let unit = Some(spec.unit).filter(|unit| *unit != "1");
+            (unit, Some(spec.min), Some(spec.max), None)
+        }
+        Kind::Choice(choice) => (None, None, None, Some(choice.names)),
+    };
+    json!({
+        "id": parameter.id,
+        "group": parameter.group,
+        "key": parameter.key(),
+        "name": format!("{}.{}", parameter.group, parameter.key()),
+        "unit": unit,
+        "min": min,
+        "max": max,
+        "default": parameter.default(),
+        "choices": choices,
+        "only_disarmed": parameter.when == When::Disarmed,
+        "meaning": parameter.meaning(),
+    })
+}
+
+/// Groups of parameters, in the order of the table.
+fn groups() -> Vec<Value> {
+    let mut names: Vec<&str> = Vec::new();
+    for parameter in &PARAMETERS {
+        if !names.contains(&parameter.group) {
+            names.push(parameter.group);
+        }
+    }
+    let is_symptom = |name: &str| {
+        let spec = SPECS
+            .iter()
+            .zip(IS_SYMPTOM)
+            .find(|(spec, _)| spec.name == name);
+        // The stick-slip object is not in the table of effects.
+        spec.map_or(is_of_knee(name), |(_, is_symptom)| *is_symptom)
+    };
+    let kind = |name: &str| match (is_symptom(name), is_effect(name)) {
+        (true, _) => "symptom",
+        (_, true) => "effect",
+        _ => "brace",
+    };
+    names
+        .into_iter()
+        .map(|name| json!({ "name": name, "kind": kind(name) }))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_fault_has_its_page_in_the_book() {
+        let book = include_str!("../../../docs/faults.md");
+        let tables = tables(&Value::Null, None);
+        for fault in tables["faults"].as_array().unwrap() {
+            let page = fault["page"].as_str().unwrap();
+            let anchor = page.trim_start_matches("faults.html");
+            assert!(book.contains(&format!("({anchor})")), "{page}");
+        }
+    }
+
+    #[test]
+    fn a_preset_lists_what_it_sets() {
+        let presets = presets(&[]);
+        let all = presets.as_array().unwrap();
+        assert_eq!(all.len(), preset::shipped().len());
+        for preset in all {
+            assert!(
+                !preset["values"].as_array().unwrap().is_empty(),
+                "{}",
+                preset["name"]
+            );
+            assert!(!preset["effects"].as_array().unwrap().is_empty());
+        }
+    }
+
+    #[test]
+    fn every_lesson_that_ships_is_listed() {
+        let tables = tables(&Value::Null, None);
+        assert_eq!(
+            tables["lessons"].as_array().unwrap().len(),
+            plans::FILES.len()
+        );
+    }
+
+    #[test]
+    fn each_group_has_its_kind() {
+        let tables = tables(&Value::Null, None);
+        let groups = tables["groups"].as_array().unwrap();
+        let kind = |name: &str| groups.iter().find(|g| g["name"] == name).unwrap()["kind"].clone();
+        assert_eq!(kind("crepitus"), "symptom");
+        assert_eq!(kind("spasticity"), "symptom");
+        assert_eq!(kind("friction-compensation"), "effect");
+        assert_eq!(kind("encoder"), "brace");
+    }
+}

@@ -1,0 +1,520 @@
+//! The thread that has the device: the only one that talks to it.
+//!
+//! It executes the orders of pages one after another, makes frames of the samples, and
+//! disarms when the watchdog of the controlling page expires.
+//!
+//! | part | look in |
+//! |---|---|
+//! | torque on and off, connection | `keeper.rs` |
+//! | parameters and presets | `keeper/knee.rs` |
+//! | lessons | `keeper/lessons.rs` |
+//! | recordings | `keeper/recording.rs` |
+//! | status as a message | `keeper/status.rs` |
+
+mod knee;
+mod lessons;
+mod recording;
+mod status;
+
+use crate::frame::{Header, Kind, Masks, frame};
+use crate::request::{AimAt, Request};
+use crate::shared::{Latest, Order, Outcome, Shared};
+use axum::extract::ws::Utf8Bytes;
+use crepitus_client::{Client, Error, Event, Transport};
+use crepitus_live::{Aim, Envelope, Pace, Target};
+use crepitus_protocol::telemetry::Block;
+use crepitus_protocol::{Revision, Session, TICKS_PER_S, Values};
+use crepitus_recording::Samples;
+use crepitus_scene::preset::Preset;
+use lessons::Held;
+use recording::Recorded;
+use serde_json::{Value, json};
+use status::Speed;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+/// Samples of a bin, 5 ms.
+const ROWS_PER_BIN: u32 = TICKS_PER_S / 200;
+
+/// Interval of frames: 60 a second.
+const FRAME_EVERY: Duration = Duration::from_millis(16);
+
+/// Interval of frames without samples, which keep the watchdog fed.
+const BEAT_EVERY: Duration = Duration::from_millis(50);
+
+/// Interval of the status, and of a target's score.
+const STATUS_EVERY: Duration = Duration::from_millis(500);
+const SCORE_EVERY: Duration = Duration::from_millis(100);
+
+/// Timeout of a poll for events: the longest time that an order waits.
+const POLL: Duration = Duration::from_millis(2);
+
+/// Interval of attempts to connect again.
+const RECONNECT_EVERY: Duration = Duration::from_millis(500);
+
+/// Most characters of a note.
+const MOST_NOTE: usize = 500;
+
+/// Most notes that are kept.
+const MOST_NOTES: usize = 1_000;
+
+/// What the program around the panel knows and can do.
+pub trait Program<T> {
+    /// An error as text for people.
+    fn explain(&self, client: &mut Client<T>, error: Error) -> String;
+
+    /// The program of this session, for people.
+    fn holder(&self, client: &mut Client<T>, session: Session) -> String;
+
+    /// The user's own presets; files that cannot be read are left out.
+    fn own_presets(&self) -> Vec<Preset>;
+
+    /// Saves one of them.
+    ///
+    /// # Errors
+    /// A text for people.
+    fn save_preset(&self, name: &str, preset: &Preset, replace: bool) -> Result<(), String>;
+
+    /// Whether the program has been asked to end.
+    fn has_ended(&self) -> bool;
+}
+
+/// A note on the time line.
+struct Note {
+    time_s: f64,
+    text: String,
+    by: &'static str,
+}
+
+/// The thread that has the device.
+pub(crate) struct Keeper<'p, T> {
+    client: Client<T>,
+    program: &'p dyn Program<T>,
+    shared: Arc<Shared>,
+    inbox: Receiver<Order>,
+    /// Where sessions are stored.
+    sessions: Option<PathBuf>,
+    samples: Samples,
+    /// Parameters of the last block, as far as they are known.
+    in_force: Option<Revision>,
+    values: Values,
+    /// Revision and values committed last.
+    committed: Revision,
+    /// The preset applied last, and the revision that it made.
+    preset: Option<(String, Revision)>,
+    envelope: Envelope,
+    /// Time of the newest sample, s.
+    now_s: f64,
+    missing: u64,
+    frame_number: u32,
+    frame_at: Instant,
+    pace: Option<Pace>,
+    score_at: Instant,
+    recording: Option<Recorded>,
+    /// Files that are being made.
+    sealing: Vec<JoinHandle<Result<(), String>>>,
+    lesson: Option<Held>,
+    notes: Vec<Note>,
+    /// Something that happened by itself.
+    message: Option<String>,
+    status_at: Instant,
+    status_is_due: bool,
+    is_lost: bool,
+    reconnect_at: Instant,
+    speed: Speed,
+}
+
+impl<'p, T: Transport> Keeper<'p, T> {
+    /// Subscribes to the device.
+    ///
+    /// # Errors
+    /// The device does not answer.
+    pub(crate) fn new(
+        mut client: Client<T>,
+        program: &'p dyn Program<T>,
+        shared: Arc<Shared>,
+        inbox: Receiver<Order>,
+        sessions: Option<PathBuf>,
+    ) -> Result<Self, Error> {
+        let (committed, values) = client.parameters()?;
+        client.subscribe()?;
+        let now = Instant::now();
+        let speed = Speed::new(client.now());
+        let mut keeper = Self {
+            client,
+            program,
+            shared,
+            inbox,
+            sessions,
+            samples: Samples::default(),
+            in_force: None,
+            values,
+            committed,
+            preset: None,
+            envelope: Envelope::new(ROWS_PER_BIN),
+            now_s: 0.0,
+            missing: 0,
+            frame_number: 0,
+            frame_at: now,
+            pace: None,
+            score_at: now,
+            recording: None,
+            sealing: Vec::new(),
+            lesson: None,
+            notes: Vec::new(),
+            message: None,
+            status_at: now,
+            status_is_due: true,
+            is_lost: false,
+            reconnect_at: now,
+            speed,
+        };
+        keeper.publish_presets();
+        keeper.publish_parameters();
+        keeper.publish_lesson();
+        keeper.publish_target();
+        Ok(keeper)
+    }
+
+    /// Runs until the program is asked to end; then disarms, and closes what is open.
+    ///
+    /// # Errors
+    /// The device did not disarm.
+    pub(crate) fn run(mut self) -> Result<(), Error> {
+        while !self.program.has_ended() {
+            self.step();
+        }
+        // Torque first, then files.
+        let closed = if self.client.is_armed() {
+            self.client.disarm()
+        } else {
+            Ok(())
+        };
+        self.end_recording();
+        self.save_lesson();
+        self.wait_for_files();
+        if self.is_lost {
+            return Ok(());
+        }
+        closed?;
+        self.client.close().map(|_| ())
+    }
+
+    /// Orders, events, frames: some milliseconds.
+    pub(crate) fn step(&mut self) {
+        while let Ok(Order { request, reply }) = self.inbox.try_recv() {
+            let outcome = self.execute(request);
+            self.status_is_due = true;
+            // The page may be gone.
+            let _ = reply.send(outcome);
+        }
+        if self.client.is_armed() && self.shared.watchdog.has_expired() {
+            self.disarm_by_itself(
+                "the controlling page has not answered for 200 ms: torque is off",
+            );
+        }
+        if self.is_lost {
+            self.try_to_reconnect();
+        } else {
+            self.pump();
+        }
+        self.publish_frame();
+        if self.pace.is_some() && self.score_at.elapsed() >= SCORE_EVERY {
+            self.publish_target();
+        }
+        if self.status_is_due || self.status_at.elapsed() >= STATUS_EVERY {
+            self.publish_status();
+        }
+    }
+
+    fn disarm_by_itself(&mut self, why: &str) {
+        self.message = Some(match self.client.disarm() {
+            Ok(()) => why.to_owned(),
+            Err(error) => format!("{why}; {error}"),
+        });
+        self.status_is_due = true;
+    }
+
+    fn pump(&mut self) {
+        let mut patience = POLL;
+        loop {
+            match self.client.pump(patience) {
+                Ok(Some(event)) => self.take(event),
+                Ok(None) => return,
+                Err(_) => {
+                    self.lost();
+                    return;
+                }
+            }
+            if self.is_lost {
+                return;
+            }
+            patience = Duration::ZERO;
+        }
+    }
+
+    fn take(&mut self, event: Event) {
+        match event {
+            Event::Block(arrival) => {
+                self.missing += arrival.missing;
+                self.block(&arrival.block);
+            }
+            Event::State(_) => self.status_is_due = true,
+            Event::DriveRestarted => self.message = Some("the drive has restarted".to_owned()),
+            Event::Silent(silence) => {
+                self.message = Some(format!(
+                    "no samples for {} ms, but the connection is open",
+                    silence.as_millis()
+                ));
+            }
+            Event::Lost(error) => {
+                self.message = Some(error.to_string());
+                self.lost();
+            }
+            _ => {}
+        }
+    }
+
+    fn lost(&mut self) {
+        self.is_lost = true;
+        self.status_is_due = true;
+        self.reconnect_at = Instant::now();
+    }
+
+    /// One attempt. It never arms.
+    fn try_to_reconnect(&mut self) {
+        if self.reconnect_at.elapsed() < RECONNECT_EVERY {
+            std::thread::sleep(POLL);
+            return;
+        }
+        self.reconnect_at = Instant::now();
+        if let Ok(back) = self.client.reconnect(Duration::ZERO) {
+            self.is_lost = false;
+            self.in_force = None;
+            self.message = Some("connected again; torque is off".to_owned());
+            if let Some(resubscribed) = back.resubscribed {
+                self.resume_recording(resubscribed.begin);
+            }
+            self.reload_parameters();
+            self.status_is_due = true;
+        }
+    }
+
+    fn block(&mut self, block: &Block) {
+        if self.in_force != Some(block.revision) {
+            // Of this revision or a later one: the drive applies it within milliseconds.
+            self.reload_parameters();
+            self.samples.set(&self.values);
+            self.in_force = Some(block.revision);
+            self.announce_parameters(block.revision);
+        }
+        self.record(block);
+        for row in self.samples.rows(block) {
+            self.now_s = row.time_s;
+            self.envelope.take(&row);
+            if let Some(pace) = &mut self.pace {
+                pace.take(&row);
+            }
+        }
+    }
+
+    /// The newest bins, or none to be answered.
+    fn publish_frame(&mut self) {
+        let since = self.frame_at.elapsed();
+        if since < FRAME_EVERY {
+            return;
+        }
+        let (first, bins) = self.envelope.complete();
+        if bins.is_empty() && since < BEAT_EVERY {
+            return;
+        }
+        self.frame_at = Instant::now();
+        self.frame_number = self.frame_number.wrapping_add(1);
+        self.shared.watchdog.made(self.frame_number);
+        let bin_s = self.envelope.bin_s();
+        #[expect(clippy::cast_precision_loss, reason = "years of bins")]
+        let begin_s = first as f64 * bin_s;
+        let header = Header {
+            kind: Kind::Live,
+            number: self.frame_number,
+            unix_ms: unix_ms(),
+            begin_s,
+            bin_s,
+            missing: std::mem::take(&mut self.missing),
+            masks: self.masks(),
+        };
+        // Without a page nobody receives it.
+        let _ = self.shared.frames.send(frame(&header, &bins));
+    }
+
+    /// What pages must not see: in a blind trial the knee.
+    fn masks(&self) -> Masks {
+        let hidden = self.lesson.as_ref().filter(|held| held.is_hidden());
+        Masks {
+            torque: hidden.is_some_and(|held| !held.shows_curves()),
+            states: hidden.is_some(),
+        }
+    }
+
+    /// Executes a request of a page that may make it.
+    fn execute(&mut self, request: Request) -> Outcome {
+        if self.is_lost && request.needs_device() {
+            return Err("the device is not connected: check the cable, then try again".to_owned());
+        }
+        match request {
+            Request::Stop => self.done(Client::stop),
+            Request::Zero => self.done(Client::zero),
+            Request::Arm => self.arm(),
+            Request::Disarm => self.done(Client::disarm),
+            Request::ClearFault => self.done(Client::clear_fault),
+            Request::Save => self.done(Client::save),
+            Request::Apply { preset, add } => self.apply(&preset, add),
+            Request::Set { changes } => self.set(&changes),
+            Request::Reset => self.reset(),
+            Request::SavePreset(what) => self.save_preset(&what),
+            Request::Target { target } => self.set_target(target),
+            Request::Score { running } => self.set_scoring(running),
+            Request::Note { text } => self.add_note(&text),
+            Request::Record { running, name } => self.set_recording(running, &name),
+            Request::LessonBegin(what) => self.begin_lesson(&what),
+            Request::LessonStart => self.start_trial(),
+            Request::LessonAnswer {
+                student,
+                disorder,
+                level,
+                confidence,
+            } => self.answer(&student, &disorder, level.as_deref(), confidence),
+            Request::LessonNext => self.next_trial(),
+            Request::LessonEnd { language } => self.end_lesson(&language),
+            Request::LessonClose => self.close_lesson(),
+            Request::Report { language } => self.report(&language),
+            // Of the server and the archive.
+            Request::Take
+            | Request::Release
+            | Request::Recordings
+            | Request::Open { .. }
+            | Request::Trace { .. } => Err("this is not for the device".to_owned()),
+        }
+    }
+
+    /// A request to the device that has no answer but an error.
+    fn done(&mut self, request: impl FnOnce(&mut Client<T>) -> Result<(), Error>) -> Outcome {
+        let result = request(&mut self.client);
+        result
+            .map(|()| Value::Null)
+            .map_err(|error| self.explained(error))
+    }
+
+    fn explained(&mut self, error: Error) -> String {
+        self.program.explain(&mut self.client, error)
+    }
+
+    fn arm(&mut self) -> Outcome {
+        if self.shared.watchdog.has_expired() {
+            return Err(
+                "the page does not answer quickly enough to be given torque: close other programs, or \
+                 reload it"
+                    .to_owned(),
+            );
+        }
+        self.message = None;
+        self.done(Client::arm)
+    }
+
+    fn set_target(&mut self, target: Option<AimAt>) -> Outcome {
+        let target = match target {
+            None => None,
+            Some(AimAt::Named(name)) => Some(Target::find(&name).ok_or_else(|| {
+                let names: Vec<_> = crepitus_live::NAMED.iter().map(|t| t.name).collect();
+                format!("no target {name:?}: expected one of {}", names.join(", "))
+            })?),
+            Some(AimAt::Beat { beats_per_min }) => Some(own(Aim::Metronome { beats_per_min })?),
+            Some(AimAt::Band {
+                low_deg_per_s,
+                high_deg_per_s,
+            }) => Some(own(Aim::Speed {
+                low_deg_per_s,
+                high_deg_per_s,
+            })?),
+        };
+        self.pace = target.map(Pace::new);
+        self.publish_target();
+        Ok(Value::Null)
+    }
+
+    fn set_scoring(&mut self, running: bool) -> Outcome {
+        let Some(pace) = &mut self.pace else {
+            return Err("no target is chosen: choose one first".to_owned());
+        };
+        pace.set_scoring(running);
+        self.publish_target();
+        Ok(Value::Null)
+    }
+
+    fn publish_target(&mut self) {
+        self.score_at = Instant::now();
+        let target = self.pace.as_ref().map_or(Value::Null, |pace| {
+            let mut text = json!(pace.score());
+            text["target"] = json!(pace.target());
+            text["running"] = json!(pace.is_scoring());
+            text["verdict"] = json!(pace.verdict());
+            text
+        });
+        self.publish(|latest| &mut latest.target, &json!({ "target": target }));
+    }
+
+    fn add_note(&mut self, text: &str) -> Outcome {
+        let text = text.trim();
+        let count = text.chars().count();
+        if !(1..=MOST_NOTE).contains(&count) {
+            return Err(format!(
+                "a note has 1 to {MOST_NOTE} characters, got {count}"
+            ));
+        }
+        self.note_in_lesson(text)?;
+        self.push_note(text, "teacher");
+        Ok(json!({ "time_s": self.now_s }))
+    }
+
+    fn push_note(&mut self, text: &str, by: &'static str) {
+        if self.notes.len() >= MOST_NOTES {
+            return;
+        }
+        let note = Note {
+            time_s: self.now_s,
+            text: text.to_owned(),
+            by,
+        };
+        let message =
+            json!({ "note": { "time_s": note.time_s, "text": note.text, "by": note.by } });
+        self.notes.push(note);
+        let message = Utf8Bytes::from(message.to_string());
+        (self.shared.latest).send_modify(|latest| latest.notes.push(message));
+    }
+
+    /// Publishes a message if it has changed.
+    fn publish(&self, place: impl Fn(&mut Latest) -> &mut Utf8Bytes, message: &Value) {
+        let message = Utf8Bytes::from(message.to_string());
+        self.shared.latest.send_if_modified(|latest| {
+            let place = place(latest);
+            let has_changed = *place != message;
+            if has_changed {
+                *place = message;
+            }
+            has_changed
+        });
+    }
+}
+
+fn own(aim: Aim) -> Result<Target, String> {
+    Target::own(aim).map_err(|error| error.to_string())
+}
+
+/// Now, ms since 1970.
+fn unix_ms() -> f64 {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH);
+    now.unwrap_or_default().as_secs_f64() * 1e3
+}

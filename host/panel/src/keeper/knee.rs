@@ -1,0 +1,162 @@
+//! The knee: presets and parameters. Every change is one commit.
+
+use super::Keeper;
+use crate::hello;
+use crate::request::SavePreset;
+use crate::shared::Outcome;
+use crepitus_board::values::{is_of_knee, knee, with_preset};
+use crepitus_client::{Client, Transport};
+use crepitus_protocol::parameters::PARAMETERS;
+use crepitus_protocol::{Revision, Values};
+use crepitus_scene::preset::{self, Disorder, Preset};
+use serde_json::{Value, json};
+
+/// The knee without a disorder.
+pub(super) const HEALTHY: &str = "healthy";
+
+impl<T: Transport> Keeper<'_, T> {
+    pub(super) fn apply(&mut self, name: &str, add: bool) -> Outcome {
+        self.check_open()?;
+        let preset = self.preset_of(name)?;
+        self.commit(|now| with_preset(now, &preset, add))?;
+        self.preset = (!add).then(|| (name.to_owned(), self.committed));
+        self.publish_parameters();
+        Ok(Value::Null)
+    }
+
+    /// Applies the knee of a trial, which nobody sees.
+    pub(super) fn apply_unseen(&mut self, name: &str) -> Result<(), String> {
+        let preset = self.preset_of(name)?;
+        self.commit(|now| with_preset(now, &preset, false))?;
+        self.preset = Some((name.to_owned(), self.committed));
+        Ok(())
+    }
+
+    /// A preset that ships, one of the user's own, or the healthy knee.
+    fn preset_of(&self, name: &str) -> Result<Preset, String> {
+        if name == HEALTHY {
+            return Ok(Preset::default());
+        }
+        if let Some(preset) = preset::find(name) {
+            return Ok(preset.clone());
+        }
+        let mut own = self.program.own_presets().into_iter();
+        own.find(|preset| preset.name == name).ok_or_else(|| {
+            format!("there is no preset {name:?}: reload the page for the current list")
+        })
+    }
+
+    pub(super) fn set(&mut self, changes: &[(u8, f64)]) -> Outcome {
+        self.check_open()?;
+        let revision = self.client.set(changes);
+        let revision = revision.map_err(|error| self.explained(error))?;
+        self.reload_parameters();
+        Ok(json!({ "revision": revision.0 }))
+    }
+
+    pub(super) fn reset(&mut self) -> Outcome {
+        self.check_open()?;
+        self.commit(|now| {
+            let mut values = *now;
+            for parameter in PARAMETERS.iter().filter(|p| is_of_knee(p.group)) {
+                values.set(parameter.id, parameter.default());
+            }
+            values
+        })?;
+        Ok(Value::Null)
+    }
+
+    /// Commits other values, based on those of now.
+    fn commit(&mut self, change: impl Fn(&Values) -> Values) -> Result<(), String> {
+        let commit = |client: &mut Client<T>| {
+            let (base, now) = client.parameters()?;
+            client.commit(base, &change(&now))
+        };
+        let committed = commit(&mut self.client).map_err(|error| self.explained(error));
+        self.reload_parameters();
+        committed.map(|_| ())
+    }
+
+    pub(super) fn save_preset(&mut self, what: &SavePreset) -> Outcome {
+        self.check_open()?;
+        let mut preset = knee(&self.values)
+            .map_err(|error| format!("the device's parameters are invalid: {error:?}"))?;
+        if preset.effects().next().is_none() {
+            return Err(
+                "every effect of the knee is off, so there is nothing to save: switch one on first"
+                    .to_owned(),
+            );
+        }
+        let some = |text: &str| Some(text.trim().to_owned()).filter(|text| !text.is_empty());
+        preset.title = some(&what.title);
+        preset.feel = some(&what.feel);
+        preset.severity = some(&what.severity);
+        preset.source = some(&what.source);
+        preset.disorder = match &what.disorder {
+            None => None,
+            Some(name) => {
+                let found = Disorder::ALL.into_iter().find(|d| d.name() == name);
+                Some(found.ok_or_else(|| format!("there is no disorder {name:?}"))?)
+            }
+        };
+        self.program
+            .save_preset(&what.name, &preset, what.replace)?;
+        self.publish_presets();
+        Ok(Value::Null)
+    }
+
+    /// Reads the parameters that are committed.
+    pub(super) fn reload_parameters(&mut self) {
+        if let Ok((revision, values)) = self.client.parameters() {
+            (self.committed, self.values) = (revision, values);
+            self.publish_parameters();
+        }
+    }
+
+    /// The recording that is running gets the parameters of a revision.
+    pub(super) fn announce_parameters(&mut self, revision: Revision) {
+        if let Some(recorded) = &mut self.recording {
+            recorded.announce(revision, &self.values);
+        }
+    }
+
+    pub(super) fn publish_presets(&mut self) {
+        let presets = hello::presets(&self.program.own_presets());
+        self.publish(|latest| &mut latest.presets, &json!({ "presets": presets }));
+    }
+
+    pub(super) fn publish_parameters(&mut self) {
+        let message = if self.is_hidden() {
+            json!({ "hidden": true })
+        } else {
+            let values: Vec<_> = self
+                .values
+                .iter()
+                .map(|(p, value)| json!([p.id, value]))
+                .collect();
+            let preset = self.preset.as_ref();
+            let preset = preset.filter(|(_, revision)| *revision == self.committed);
+            json!({
+                "revision": self.committed.0,
+                "values": values,
+                "preset": preset.map(|(name, _)| name),
+            })
+        };
+        self.publish(
+            |latest| &mut latest.parameters,
+            &json!({ "parameters": message }),
+        );
+    }
+
+    fn check_open(&self) -> Result<(), String> {
+        if self.is_hidden() {
+            return Err("a blind trial is running: end the lesson first".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Whether pages must not see which knee it is.
+    pub(super) fn is_hidden(&self) -> bool {
+        (self.lesson.as_ref()).is_some_and(super::Held::is_hidden)
+    }
+}

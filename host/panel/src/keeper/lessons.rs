@@ -1,0 +1,279 @@
+//! Lessons: a list of knees, one after another.
+
+use super::Keeper;
+use super::knee::HEALTHY;
+use super::recording::extension;
+use crate::request::LessonBegin;
+use crate::shared::Outcome;
+use crate::strings::Strings;
+use crepitus_client::Transport;
+use crepitus_lesson::{
+    By, Feedback, Knee, Known, Lesson, MOST_SEED, Plan, Session, SessionFolder, Started, plans,
+    report,
+};
+use crepitus_live::Target;
+use crepitus_scene::preset::Preset;
+use serde_json::{Value, json};
+use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// A lesson that is held, and where it is stored.
+pub(super) struct Held {
+    session: Session,
+    folder: Option<SessionFolder>,
+}
+
+impl Held {
+    /// Whether pages must not see which knee it is.
+    pub(super) fn is_hidden(&self) -> bool {
+        self.session.lesson.began() && self.session.lesson.is_hidden()
+    }
+
+    /// Whether they see the torque all the same.
+    pub(super) fn shows_curves(&self) -> bool {
+        self.session.lesson.plan().curves
+    }
+}
+
+impl<T: Transport> Keeper<'_, T> {
+    pub(super) fn begin_lesson(&mut self, what: &LessonBegin) -> Outcome {
+        if let Some(held) = &self.lesson
+            && !held.session.lesson.ended()
+        {
+            return Err("a lesson is running: end it first".to_owned());
+        }
+        let (name, mut plan) = match (&what.lesson, &what.plan) {
+            (Some(name), None) => {
+                let file = plans::find(name).ok_or_else(|| format!("no lesson {name:?} ships"))?;
+                (name.clone(), file.read().map_err(|e| e.to_string())?)
+            }
+            (None, Some(plan)) => {
+                let plan = Plan::from_json(plan.clone()).map_err(|e| e.to_string())?;
+                (plan.title.clone(), plan)
+            }
+            _ => return Err("expected a lesson or a plan".to_owned()),
+        };
+        if let Some(repeats) = what.repeats {
+            plan.repeats = repeats;
+        }
+        let own = self.program.own_presets();
+        let plan = plan
+            .check(Known {
+                own_preset: &|name| own.iter().find(|p| p.name == name).map(knee_of),
+                target: &|name| Target::find(name).is_some(),
+            })
+            .map_err(|error| error.to_string())?;
+        let seed = match what.seed {
+            Some(seed) => seed,
+            None => drawn_seed()?,
+        };
+        let lesson = Lesson::begin(&name, plan, what.students.clone(), seed)
+            .map_err(|error| error.to_string())?;
+        let now = SystemTime::now().duration_since(UNIX_EPOCH);
+        let started = Started::from_unix(now.unwrap_or_default().as_secs())
+            .ok_or("the computer's clock is wrong: set it first")?;
+        let session = Session::new(started, env!("CARGO_PKG_VERSION").to_owned(), lesson);
+        let folder = match &self.sessions {
+            Some(parent) => {
+                let folder = SessionFolder::create(parent, &session);
+                let folder = folder.map_err(|error| error.to_string())?;
+                folder.save(&session).map_err(|error| error.to_string())?;
+                Some(folder)
+            }
+            None => None,
+        };
+        self.end_recording();
+        self.lesson = Some(Held { session, folder });
+        self.publish_lesson();
+        Ok(json!({ "seed": seed }))
+    }
+
+    /// Applies the knee of the current trial, and records it.
+    pub(super) fn start_trial(&mut self) -> Outcome {
+        let held = self.lesson.as_mut().ok_or(NO_LESSON)?;
+        let mut lesson = held.session.lesson.clone();
+        let preset = lesson.start().map_err(|e| e.to_string())?.preset.clone();
+        let trial = lesson.trial();
+        let target = lesson.view(None).target;
+        self.apply_unseen(&preset)?;
+        if let Some(held) = &mut self.lesson {
+            held.session.lesson = lesson;
+        }
+        if let Some(target) = target.and_then(|name| Target::find(&name)) {
+            let mut pace = crepitus_live::Pace::new(target);
+            pace.set_scoring(true);
+            self.pace = Some(pace);
+            self.publish_target();
+        }
+        self.record_trial(trial)?;
+        self.note_trial(trial);
+        self.publish_parameters();
+        self.changed();
+        Ok(Value::Null)
+    }
+
+    fn record_trial(&mut self, trial: usize) -> Result<(), String> {
+        let folder = self.lesson.as_ref().and_then(|held| held.folder.as_ref());
+        let Some(folder) = folder else {
+            return Ok(());
+        };
+        let file = folder.recording(trial).with_extension(extension());
+        self.begin_recording(&file, &format!("Trial {trial}"))?;
+        if let (Some(held), Some(name)) = (&mut self.lesson, file.file_name()) {
+            held.session.recorded(trial, &name.to_string_lossy());
+        }
+        Ok(())
+    }
+
+    /// On the time line, without a word of the knee.
+    fn note_trial(&mut self, trial: usize) {
+        let text = format!("Trial {trial}");
+        self.push_note(&text, "lesson");
+        if let Some(held) = &mut self.lesson {
+            // Its text is short.
+            let _ = held.session.lesson.note(self.now_s, &text, By::Lesson);
+        }
+    }
+
+    pub(super) fn answer(
+        &mut self,
+        student: &str,
+        disorder: &str,
+        level: Option<&str>,
+        confidence: u8,
+    ) -> Outcome {
+        let now_s = self.now_s;
+        let lesson = self.running_lesson()?;
+        lesson
+            .answer(student, disorder, level, confidence, now_s)
+            .map_err(|error| error.to_string())?;
+        self.publish_parameters();
+        self.changed();
+        Ok(Value::Null)
+    }
+
+    pub(super) fn next_trial(&mut self) -> Outcome {
+        let lesson = self.running_lesson()?;
+        lesson.next_trial().map_err(|error| error.to_string())?;
+        self.end_recording();
+        self.leave_knee();
+        self.changed();
+        Ok(Value::Null)
+    }
+
+    pub(super) fn end_lesson(&mut self, language: &str) -> Outcome {
+        let lesson = self.running_lesson()?;
+        lesson.end().map_err(|error| error.to_string())?;
+        self.end_recording();
+        self.leave_knee();
+        self.changed();
+        let held = self.lesson.as_ref().ok_or(NO_LESSON)?;
+        if let Some(folder) = &held.folder {
+            let strings = Strings::of(language);
+            let written = folder.save_report(&held.session, &|key| strings.text(key));
+            let file = written.map_err(|error| error.to_string())?;
+            return Ok(json!({ "report": file }));
+        }
+        Ok(Value::Null)
+    }
+
+    pub(super) fn close_lesson(&mut self) -> Outcome {
+        let held = self.lesson.as_ref().ok_or(NO_LESSON)?;
+        if !held.session.lesson.ended() {
+            return Err("the lesson is running: end it first".to_owned());
+        }
+        self.lesson = None;
+        self.publish_lesson();
+        Ok(Value::Null)
+    }
+
+    /// Between trials the knee is healthy: the last one could be felt, and read.
+    fn leave_knee(&mut self) {
+        self.pace = None;
+        self.publish_target();
+        if !self.is_lost
+            && let Err(error) = self.apply_unseen(HEALTHY)
+        {
+            self.message = Some(error);
+        }
+        self.publish_parameters();
+    }
+
+    /// The report, as a page that can be opened once.
+    pub(super) fn report(&self, language: &str) -> Outcome {
+        let held = self.lesson.as_ref().ok_or(NO_LESSON)?;
+        let lesson = &held.session.lesson;
+        if lesson.plan().blind && !lesson.ended() && lesson.plan().feedback == Feedback::End {
+            return Err("the answers are judged at the end of the lesson: end it first".to_owned());
+        }
+        if !lesson.ended() {
+            return Err("the lesson is running: end it first".to_owned());
+        }
+        let strings = Strings::of(language);
+        let html = report::report(&held.session, &|key| strings.text(key));
+        let name = self.shared.tickets.offer(html)?;
+        Ok(json!({ "path": format!("/report/{name}") }))
+    }
+
+    /// A teacher's note belongs to the lesson, if there is one.
+    pub(super) fn note_in_lesson(&mut self, text: &str) -> Result<(), String> {
+        let Some(held) = &mut self.lesson else {
+            return Ok(());
+        };
+        let noted = held.session.lesson.note(self.now_s, text, By::Teacher);
+        noted.map_err(|error| error.to_string())?;
+        self.save_lesson();
+        Ok(())
+    }
+
+    fn running_lesson(&mut self) -> Result<&mut Lesson, String> {
+        let held = self.lesson.as_mut().ok_or(NO_LESSON)?;
+        Ok(&mut held.session.lesson)
+    }
+
+    /// Stores the lesson and tells the pages.
+    fn changed(&mut self) {
+        self.save_lesson();
+        self.publish_lesson();
+    }
+
+    pub(super) fn save_lesson(&mut self) {
+        let Some(held) = &self.lesson else {
+            return;
+        };
+        if let Some(folder) = &held.folder
+            && let Err(error) = folder.save(&held.session)
+        {
+            self.message = Some(format!(
+                "{error}; the lesson goes on, and is kept in memory"
+            ));
+            self.status_is_due = true;
+        }
+    }
+
+    pub(super) fn publish_lesson(&mut self) {
+        let lesson = self.lesson.as_ref().map(|held| {
+            let stored = held.folder.as_ref().map(|folder| text_of(folder.path()));
+            held.session.lesson.view(stored.as_deref())
+        });
+        self.publish(|latest| &mut latest.lesson, &json!({ "lesson": lesson }));
+    }
+}
+
+const NO_LESSON: &str = "no lesson is running: begin one first";
+
+fn text_of(path: &Path) -> String {
+    path.display().to_string()
+}
+
+/// What a student has to tell of a preset.
+fn knee_of(preset: &Preset) -> Knee {
+    Knee::from(preset)
+}
+
+/// A seed that nobody has chosen.
+fn drawn_seed() -> Result<u64, String> {
+    let seed = getrandom::u64().map_err(|error| format!("no random numbers: {error}"))?;
+    // Short enough to be written down.
+    Ok(seed % 1_000_000 % MOST_SEED)
+}

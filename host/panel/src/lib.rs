@@ -1,0 +1,49 @@
+//! # The trainer's panel
+//!
+//! A page on localhost: choose a knee, see what the hand does, stop it, hold a lesson.
+//!
+//! ```text
+//!  device ── Client ── keeper ── bins, 60 frames a second ──> server ══ WebSocket ══ pages
+//!                        ↑  └ watchdog <── every frame is answered ──┘
+//!                        └──── orders of the page that has control
+//!                      archive: recordings, read in a thread of its own
+//! ```
+//!
+//! The keeper owns the client and runs in the caller's thread; the server and the archive
+//! have a thread each. `docs/panel.md` lists what could be done to it, and the answers.
+//!
+//! | to find | look in |
+//! |---|---|
+//! | what is served, and to whom | `server.rs`, `guard.rs`, `tokens.rs`, `tickets.rs` |
+//! | the connection of a page | `socket.rs`, `request.rs`, `control.rs` |
+//! | what is done with the device | `keeper.rs` |
+//! | who turns torque off when a page hangs | `watchdog.rs` |
+//! | the layout of frames | `frame.rs` |
+//! | the tables that a page shows | `hello.rs` |
+//! | the page itself | `assets` |
+#![forbid(unsafe_code)]
+#![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+mod archive;
+mod assets;
+mod control;
+mod frame;
+mod guard;
+mod hello;
+mod keeper;
+mod panel;
+mod replay;
+mod request;
+mod server;
+mod shared;
+mod socket;
+mod strings;
+mod tickets;
+#[cfg(feature = "lan")]
+mod tls;
+mod tokens;
+mod watchdog;
+
+pub use keeper::Program;
+pub use panel::{Links, Panel, PanelError, Settings, Source};

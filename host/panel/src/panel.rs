@@ -1,0 +1,221 @@
+//! Starts the panel.
+
+use crate::archive::Archive;
+use crate::guard::Names;
+use crate::hello;
+use crate::keeper::{Keeper, Program};
+use crate::server;
+use crate::shared::{Order, Shared};
+use crate::tokens::Tokens;
+use crepitus_client::{Client, Error, Transport};
+use serde_json::{Value, json};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+
+/// Settings of the panel.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// Port; 0 is any free one.
+    pub port: u16,
+    /// The address at which other computers reach this one, with TLS; none: this computer
+    /// alone.
+    pub lan: Option<IpAddr>,
+    /// Where sessions and recordings are stored; none: nowhere.
+    pub sessions: Option<PathBuf>,
+    /// Recordings to look at.
+    pub recordings: Vec<PathBuf>,
+}
+
+/// What is shown.
+#[derive(Clone, Debug)]
+pub enum Source {
+    /// A device.
+    Device {
+        /// Its name for people.
+        name: String,
+        /// Its serial number.
+        serial: String,
+    },
+    /// Recordings only.
+    Replay,
+}
+
+/// Errors of starting.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PanelError {
+    /// The port cannot be used.
+    #[error(
+        "port {port} of {address} cannot be used: {source}; choose another one with --port (0 is any free one)"
+    )]
+    Port {
+        /// Address.
+        address: IpAddr,
+        /// Port.
+        port: u16,
+        /// Error of the system.
+        source: std::io::Error,
+    },
+    /// The system has no random numbers, or no threads.
+    #[error("the panel cannot start: {0}")]
+    System(String),
+    /// Built without TLS.
+    #[error(
+        "--lan needs TLS, and this crepitus was built without it: build it with `--features lan`"
+    )]
+    NoTls,
+}
+
+/// The links to the page.
+#[derive(Clone, Debug)]
+pub struct Links {
+    /// Whoever has it may control.
+    pub teacher: String,
+    /// Whoever has it may look on, and stop.
+    pub viewer: String,
+    /// SHA-256 of the certificate, if there is one.
+    pub certificate: Option<String>,
+}
+
+/// A panel that is served.
+pub struct Panel {
+    shared: Arc<Shared>,
+    inbox: Receiver<Order>,
+    sessions: Option<PathBuf>,
+    links: Links,
+}
+
+impl Panel {
+    /// Serves the page.
+    ///
+    /// # Errors
+    /// [`PanelError`].
+    pub fn open(settings: Settings, source: &Source) -> Result<Self, PanelError> {
+        let system = |error: &dyn std::fmt::Display| PanelError::System(error.to_string());
+        let tokens = Tokens::draw().map_err(|e| system(&e))?;
+        let address = match settings.lan {
+            None => IpAddr::V4(Ipv4Addr::LOCALHOST),
+            Some(_) => IpAddr::V4(Ipv4Addr::UNSPECIFIED),
+        };
+        let in_use = |source| PanelError::Port {
+            address,
+            port: settings.port,
+            source,
+        };
+        let listener =
+            TcpListener::bind(SocketAddr::new(address, settings.port)).map_err(in_use)?;
+        let port = listener.local_addr().map_err(in_use)?.port();
+        let mut hosts = vec![format!("127.0.0.1:{port}"), format!("localhost:{port}")];
+        let mut first = format!("127.0.0.1:{port}");
+        if let Some(lan) = settings.lan {
+            first = SocketAddr::new(lan, port).to_string();
+            hosts.push(first.clone());
+        }
+        let scheme = if settings.lan.is_some() {
+            "https"
+        } else {
+            "http"
+        };
+        let (orders, inbox) = channel();
+        let (questions, asked) = channel();
+        let tables = hello::tables(&described(source), settings.sessions.as_deref());
+        let shared = Arc::new(Shared::new(tokens.clone(), tables, orders, questions));
+        let archive = Archive::new(settings.recordings, settings.sessions.clone());
+        let named = |name: &str| thread::Builder::new().name(name.to_owned());
+        named("archive")
+            .spawn(move || archive.run(&asked))
+            .map_err(|e| system(&e))?;
+        let router = server::router(shared.clone(), Names { scheme, hosts });
+        let certificate = spawn(listener, router, settings.lan)?;
+        Ok(Self {
+            shared,
+            inbox,
+            sessions: settings.sessions,
+            links: Links {
+                teacher: format!("{scheme}://{first}/#{}", tokens.teacher),
+                viewer: format!("{scheme}://{first}/#{}", tokens.viewer),
+                certificate,
+            },
+        })
+    }
+
+    /// The links to the page.
+    pub fn links(&self) -> &Links {
+        &self.links
+    }
+
+    /// Keeps a device until the program is asked to end.
+    ///
+    /// # Errors
+    /// The device does not answer, or did not disarm at the end.
+    pub fn keep<T: Transport>(
+        self,
+        client: Client<T>,
+        program: &dyn Program<T>,
+    ) -> Result<(), Error> {
+        let Self {
+            shared,
+            inbox,
+            sessions,
+            ..
+        } = self;
+        Keeper::new(client, program, shared, inbox, sessions)?.run()
+    }
+
+    /// Shows recordings until the program is asked to end.
+    pub fn replay(self, has_ended: impl Fn() -> bool) {
+        crate::replay::run(&self.shared, &self.inbox, has_ended);
+    }
+}
+
+fn described(source: &Source) -> Value {
+    match source {
+        Source::Device { name, serial } => {
+            json!({ "kind": "device", "name": name, "serial": serial })
+        }
+        Source::Replay => json!({ "kind": "replay" }),
+    }
+}
+
+/// Starts the server's thread; returns the fingerprint of its certificate.
+fn spawn(
+    listener: TcpListener,
+    router: axum::Router,
+    lan: Option<IpAddr>,
+) -> Result<Option<String>, PanelError> {
+    let system = |error: &dyn std::fmt::Display| PanelError::System(error.to_string());
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .map_err(|e| system(&e))?;
+    #[cfg(feature = "lan")]
+    let identity = lan.map(crate::tls::Identity::new).transpose()?;
+    #[cfg(feature = "lan")]
+    let certificate = identity
+        .as_ref()
+        .map(|identity| identity.fingerprint.clone());
+    #[cfg(not(feature = "lan"))]
+    let certificate = match lan {
+        Some(_) => return Err(PanelError::NoTls),
+        None => None,
+    };
+    thread::Builder::new()
+        .name("server".to_owned())
+        .spawn(move || {
+            let served = runtime.block_on(async {
+                #[cfg(feature = "lan")]
+                if let Some(identity) = identity {
+                    return crate::tls::serve(listener, router, identity).await;
+                }
+                server::serve(listener, router).await
+            });
+            if let Err(error) = served {
+                eprintln!("warning: the panel's page is no longer served: {error}");
+            }
+        })
+        .map_err(|e| system(&e))?;
+    Ok(certificate)
+}

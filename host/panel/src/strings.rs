@@ -1,0 +1,70 @@
+//! Texts of the page, by language: a file each, and nothing else to change for another.
+
+use serde_json::{Map, Value};
+
+/// Languages, with their files; the first is the default.
+pub(crate) const LANGUAGES: [(&str, &str); 2] = [
+    ("en", include_str!("../assets/strings/en.json")),
+    ("de", include_str!("../assets/strings/de.json")),
+];
+
+/// The texts of a language.
+pub(crate) struct Strings {
+    texts: Map<String, Value>,
+}
+
+impl Strings {
+    /// Of this language, or of the default.
+    pub(crate) fn of(language: &str) -> Self {
+        let found = LANGUAGES.iter().find(|(name, _)| *name == language);
+        let (_, text) = found.unwrap_or(&LANGUAGES[0]);
+        // A test reads every file.
+        Self {
+            texts: serde_json::from_str(text).unwrap_or_default(),
+        }
+    }
+
+    /// The text of a key; the key itself if there is none.
+    pub(crate) fn text(&self, key: &str) -> String {
+        let text = self.texts.get(key).and_then(Value::as_str);
+        text.unwrap_or(key).to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    fn keys(language: &str) -> BTreeSet<String> {
+        let texts = Strings::of(language).texts;
+        let is_own = |key: &&String| !key.starts_with("preset.");
+        texts.keys().filter(is_own).cloned().collect()
+    }
+
+    #[test]
+    fn every_language_has_every_text() {
+        let english = keys("en");
+        assert!(english.len() > 100);
+        for (language, text) in LANGUAGES {
+            assert!(
+                serde_json::from_str::<Map<String, Value>>(text).is_ok(),
+                "{language}"
+            );
+            assert_eq!(keys(language), english, "{language}");
+            for (key, text) in Strings::of(language).texts {
+                assert!(text.as_str().is_some_and(|text| !text.is_empty()), "{key}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_report_finds_its_texts() {
+        for (language, _) in LANGUAGES {
+            let strings = Strings::of(language);
+            for key in crepitus_lesson::report::KEYS {
+                assert_ne!(strings.text(key), key, "{language}");
+            }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! `crepitus panel`: the trainer's page.
+
+mod browser;
+mod program;
+
+use crate::cli::DeviceArguments;
+use crate::failure::{Failure, print, print_json, warn};
+use crate::interrupt;
+use crate::line::{Line, failure, open_in_real_time};
+use clap::Args;
+use crepitus_client::Client;
+use crepitus_panel::{Links, Panel, Settings, Source};
+use program::ThisProgram;
+use serde_json::json;
+use std::net::IpAddr;
+use std::path::PathBuf;
+
+/// Open the trainer's panel: a page to choose a knee, see what the hand does, and hold lessons.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus panel                                      the device that is attached
+  crepitus panel --device sim                         without a device
+  crepitus panel --sessions lessons                   lessons and recordings are stored in that folder
+  crepitus panel --replay monday.parquet --replay tuesday.parquet
+  crepitus panel --lan 192.168.1.20 --no-open         for other computers, with TLS
+
+The page is served to this computer alone, under a link with a secret; a second link is for looking on. \
+One page has control and may arm; every page may stop. If the controlling page is closed or does not \
+answer for 200 ms, torque is off.
+
+To see it from another computer, `ssh -L 8080:localhost:8080` with `--port 8080` is safest; --lan serves \
+it to a network with a certificate that browsers warn about.")]
+pub(crate) struct Arguments {
+    /// Port [default: any free one].
+    #[arg(long, default_value_t = 0, hide_default_value = true)]
+    port: u16,
+
+    /// Store sessions and recordings in this folder [default: store nothing].
+    #[arg(long, value_name = "FOLDER")]
+    sessions: Option<PathBuf>,
+
+    /// Show recordings instead of a device; twice to compare two.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["device", "sessions"])]
+    replay: Vec<PathBuf>,
+
+    /// Serve it to the network under this address of this computer, with TLS.
+    #[arg(long, value_name = "ADDRESS")]
+    lan: Option<IpAddr>,
+
+    /// Do not open a browser.
+    #[arg(long)]
+    no_open: bool,
+
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
+/// Serves the panel until Ctrl-C.
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    for file in &arguments.replay {
+        if !file.is_file() {
+            return Err(Failure::Input(format!(
+                "{}: there is no such recording",
+                file.display()
+            )));
+        }
+    }
+    let settings = Settings {
+        port: arguments.port,
+        lan: arguments.lan,
+        sessions: arguments.sessions.clone(),
+        recordings: arguments.replay.clone(),
+    };
+    interrupt::listen();
+    if !arguments.replay.is_empty() {
+        let panel = Panel::open(settings, &Source::Replay).map_err(Failure::input)?;
+        let _opened = announce(&panel, arguments, as_json)?;
+        panel.replay(interrupt::requested);
+        return Ok(());
+    }
+    let mut client = Client::connect(open_in_real_time(&arguments.device)?).map_err(failure)?;
+    if let Line::Simulated(_) = client.transport_mut() {
+        // Its leg begins at the scene's angle, and moves at once: nobody can hold it straight.
+        client.zero().map_err(failure)?;
+    }
+    let source = Source::Device {
+        name: client.port(),
+        serial: crate::device_text::serial(&client.handshake().comms),
+    };
+    let panel = Panel::open(settings, &source).map_err(Failure::input)?;
+    let _opened = announce(&panel, arguments, as_json)?;
+    panel.keep(client, &ThisProgram).map_err(failure)
+}
+
+/// Prints the links and opens the first.
+fn announce(
+    panel: &Panel,
+    arguments: &Arguments,
+    as_json: bool,
+) -> Result<Option<browser::Opened>, Failure> {
+    let Links {
+        teacher,
+        viewer,
+        certificate,
+    } = panel.links();
+    if as_json {
+        print_json(&json!({ "teacher": teacher, "viewer": viewer, "certificate": certificate }))?;
+    } else {
+        print(&format!(
+            "{teacher}\n  this link controls: keep it to yourself\n{viewer}\n  this one is for looking on, \
+             and can stop\nCtrl-C disarms and ends the panel\n"
+        ))?;
+        if let Some(certificate) = certificate {
+            print(&format!(
+                "browsers warn about the certificate; compare its SHA-256 fingerprint:\n  {certificate}\n"
+            ))?;
+        }
+    }
+    if arguments.no_open || as_json {
+        return Ok(None);
+    }
+    match browser::open(teacher) {
+        Ok(opened) => Ok(Some(opened)),
+        Err(error) => {
+            warn(format!(
+                "no browser was opened ({error}): open the first link yourself"
+            ));
+            Ok(None)
+        }
+    }
+}
