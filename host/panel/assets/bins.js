@@ -2,11 +2,29 @@
 // short time, so that no spike is lost. Decoded from frames, kept in columns.
 
 /** Marks of a bin. */
-export const MARK = { stick: 1, slip: 2, limited: 4, energised: 8, settling: 16, lost: 32, late: 64, gap: 128 };
+export const MARK = {
+  stick: 1,
+  slip: 2,
+  limited: 4,
+  energised: 8,
+  settling: 16,
+  lost: 32,
+  late: 64,
+  gap: 128,
+};
 
 const HEADER = 40;
 const DEGREES = 180 / Math.PI;
-const VALUES = ["torqueLow", "torqueHigh", "modelLow", "modelHigh", "speedLow", "speedHigh", "angleLow", "angleHigh"];
+const VALUES = [
+  "torqueLow",
+  "torqueHigh",
+  "modelLow",
+  "modelHigh",
+  "speedLow",
+  "speedHigh",
+  "angleLow",
+  "angleHigh",
+];
 
 function emptyColumns(room) {
   const columns = { t: new Float64Array(room), states: new Uint32Array(room), breaks: new Uint16Array(room) };

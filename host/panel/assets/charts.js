@@ -60,6 +60,7 @@ export class Charts {
     this.masked = { torque: false, states: false };
     this.panes = PANES.map((pane, i) => this.makePane(pane, i === PANES.length - 1));
     new ResizeObserver(() => this.resize()).observe(host);
+    addEventListener("resize", () => this.resize());
     // uPlot keeps the colours of its axes: make it read them again.
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.refresh());
   }
@@ -96,7 +97,12 @@ export class Charts {
             splits: this.live ? () => this.liveSplits() : undefined,
             values: (_, splits) => splits.map((t) => (last ? this.timeLabel(t, splits) : "")),
           },
-          { ...axis, size: rootSize() * 3.6, space: rootSize() * 2, values: (_, s) => s.map((v) => this.valueLabel(v, s)) },
+          {
+            ...axis,
+            size: rootSize() * 3.6,
+            space: rootSize() * 1.5,
+            values: (_, s) => s.map((v) => this.valueLabel(v, s)),
+          },
         ],
         series: [{}, { paths: () => null, points: { show: false }, auto: false }],
         hooks: {
@@ -153,9 +159,10 @@ export class Charts {
   resize() {
     const width = Math.floor(this.host.clientWidth);
     if (width < 50) return;
-    const least = rootSize() * 7;
-    const share = innerHeight > 1200 ? 0.2 : 0.155;
-    const height = Math.round(Math.max(least, Math.min(innerHeight * share, rootSize() * 22)));
+    // Beside the tabs all three fit on one screen, below what stands over them.
+    const beside = this.live && matchMedia("(min-width: 1100px)").matches;
+    const room = beside ? (innerHeight - rootSize() * 28.5) / 3 : innerHeight * 0.16;
+    const height = Math.round(Math.max(rootSize() * (beside ? 5.5 : 7), Math.min(room, rootSize() * 22)));
     for (const pane of this.panes) {
       const extra = pane === this.panes.at(-1) ? rootSize() : 0;
       pane.plot.setSize({ width, height: height + extra });
@@ -302,8 +309,17 @@ export class Charts {
       });
       for (const note of this.notes) {
         if (note.time_s < this.view.from || note.time_s > this.view.to) continue;
-        const head = pane.name === "torque" ? (note.text.length > 24 ? `${note.text.slice(0, 23)}…` : note.text) : "";
-        paintMark(ctx, map.x(note.time_s), box, colours.get("--note"), scale, head, rootSize() * 0.875 * scale);
+        const head =
+          pane.name === "torque" ? (note.text.length > 24 ? `${note.text.slice(0, 23)}…` : note.text) : "";
+        paintMark(
+          ctx,
+          map.x(note.time_s),
+          box,
+          colours.get("--note"),
+          scale,
+          head,
+          rootSize() * 0.875 * scale,
+        );
       }
       if (this.playhead !== null) paintMark(ctx, map.x(this.playhead), box, colours.get("--text"), scale);
     });

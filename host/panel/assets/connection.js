@@ -73,7 +73,8 @@ function open() {
     socket.send(JSON.stringify({ token: sessionStorage.getItem("token") ?? "" }));
     emit("open");
   };
-  socket.onmessage = ({ data }) => (typeof data === "string" ? receiveText(JSON.parse(data)) : receiveFrame(data));
+  socket.onmessage = ({ data }) =>
+    typeof data === "string" ? receiveText(JSON.parse(data)) : receiveFrame(data);
   socket.onclose = () => {
     for (const id of [...waiting.keys()]) settle(id, "reject", new Error("not-connected"));
     if (latest.refused) return;

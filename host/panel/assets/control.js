@@ -39,7 +39,14 @@ function reason(name) {
 
 /** Why this page cannot change the knee or run a lesson now, in text; "" if it can. */
 export function controlReason() {
-  const key = link !== "open" ? "why.no-connection" : !isTeacher() ? "why.viewer" : isController() ? null : "why.no-control";
+  const key =
+    link !== "open"
+      ? "why.no-connection"
+      : !isTeacher()
+        ? "why.viewer"
+        : isController()
+          ? null
+          : "why.no-control";
   return key ? text(key) : "";
 }
 
@@ -70,14 +77,17 @@ function showState() {
   const source = latest.hello?.source;
   setText(
     byId("device"),
-    !source ? "–" : isReplay() ? text("header.file") : [source.name, source.serial].filter(Boolean).join(" · "),
+    !source
+      ? "–"
+      : isReplay()
+        ? text("header.file")
+        : [source.name, source.serial].filter(Boolean).join(" · "),
   );
   setText(byId("knee-now"), kneeName());
   showControls();
 }
 
 function pageLink(page) {
-  if (!page) return null;
   if (!/^https?:\/\//.test(page)) return el("span", null, text("fault.page", { page }));
   return el("a", { href: page, target: "_blank", rel: "noopener noreferrer" }, text("fault.link"));
 }
@@ -96,11 +106,18 @@ function showFaults() {
       { class: "fault" },
       el("strong", null, text(coil ? "fault.coil-title" : "fault.title", fault)),
       el("p", null, text("fault.cause", fault)),
-      el("p", null, text("fault.remedy", fault), " ", pageLink(fault.page)),
+      el("p", null, text("fault.remedy", fault)),
+      fault.page && el("p", { class: "hint" }, pageLink(fault.page)),
     );
   });
   if (items.length && isController()) {
-    items.push(el("button", { type: "button", id: "clear-fault", onclick: () => request("clear-fault") }, text("fault.clear")));
+    items.push(
+      el(
+        "button",
+        { type: "button", id: "clear-fault", onclick: () => request("clear-fault") },
+        text("fault.clear"),
+      ),
+    );
   }
   byId("faults").replaceChildren(...items);
 }
@@ -126,7 +143,9 @@ function update() {
 export function startControl() {
   byId("stop").addEventListener("click", stop);
   // Captured at the window: no dialog, field or list keeps the key for itself.
-  addEventListener("keydown", (event) => event.key === "Escape" && !event.repeat && stop(), { capture: true });
+  addEventListener("keydown", (event) => event.key === "Escape" && !event.repeat && stop(), {
+    capture: true,
+  });
   byId("take").addEventListener("click", take);
   for (const name of ["zero", "arm", "disarm"]) byId(name).addEventListener("click", () => request(name));
   on("open", () => {
@@ -150,4 +169,3 @@ export function startControl() {
   });
   update();
 }
-

@@ -20,8 +20,7 @@ function fill(element, props, children) {
 export const el = (tag, props, ...children) => fill(document.createElement(tag), props, children);
 
 /** Makes an SVG element. */
-export const svg = (tag, props, ...children) =>
-  fill(document.createElementNS(SVG, tag), props, children);
+export const svg = (tag, props, ...children) => fill(document.createElementNS(SVG, tag), props, children);
 
 /** Sets a text only where it differs, so that live regions do not repeat it. */
 export function setText(element, text) {

@@ -36,7 +36,15 @@ function makeRow(parameter) {
     { class: "parameter", "data-parameter": parameter.name },
     el("label", { for: id }, label(parameter)),
     el("span", { class: "value" }, input, el("span", { class: "unit" }, parameter.unit ?? "")),
-    el("p", { class: "hint", id: `${id}-about` }, describe(parameter), el("br"), el("code", null, parameter.name), " ", mark),
+    el(
+      "p",
+      { class: "hint", id: `${id}-about` },
+      describe(parameter),
+      el("br"),
+      el("code", null, parameter.name),
+      " ",
+      mark,
+    ),
   );
   input.addEventListener("input", () => {
     const value = parameter.choices ? Number(input.value) : input.valueAsNumber;
@@ -45,7 +53,8 @@ function makeRow(parameter) {
     else edits.set(parameter.id, value);
     updateDrawer();
   });
-  const words = `${parameter.name} ${label(parameter)} ${parameter.meaning} ${textOr(`group.${parameter.group}`, "")}`.toLowerCase();
+  const words =
+    `${parameter.name} ${label(parameter)} ${parameter.meaning} ${textOr(`group.${parameter.group}`, "")}`.toLowerCase();
   return { parameter, input, mark, root, words };
 }
 
@@ -108,7 +117,12 @@ export function buildDrawer(host) {
     problem: el("span", { class: "problem" }),
   };
   view.bar = el("div", { class: "pending-bar" }, view.apply, view.discard, view.problem);
-  host.replaceChildren(field(text("drawer.search"), view.search), view.found, ...view.groups.map((group) => group.root), view.bar);
+  host.replaceChildren(
+    field(text("drawer.search"), view.search),
+    view.found,
+    ...view.groups.map((group) => group.root),
+    view.bar,
+  );
   search();
   updateDrawer();
 }
@@ -120,7 +134,8 @@ function updateRow(row, why, armed) {
   const known = value !== undefined;
   // What is being typed stays as it is.
   const show = String(pending ? edits.get(parameter.id) : known ? tidy(value) : "");
-  if (document.activeElement !== input && input.value !== show && !(pending && show === "NaN")) input.value = show;
+  if (document.activeElement !== input && input.value !== show && !(pending && show === "NaN"))
+    input.value = show;
   const locked = parameter.only_disarmed && armed;
   input.disabled = why !== "" || locked || !known;
   const differs = known && tidy(value) !== tidy(parameter.default);
@@ -172,6 +187,10 @@ export function updateDrawer() {
   setText(view.apply, text("drawer.apply", { count: edits.size }));
   setText(view.discard, text("drawer.discard"));
   view.apply.disabled = why !== "" || bad.length > 0 || empty;
-  const problem = bad.length ? text("drawer.bad", { name: label(bad[0].parameter) }) : empty ? text("drawer.empty") : why;
+  const problem = bad.length
+    ? text("drawer.bad", { name: label(bad[0].parameter) })
+    : empty
+      ? text("drawer.empty")
+      : why;
   setText(view.problem, problem);
 }

@@ -17,12 +17,20 @@ let view = null;
 const evidenceTag = (evidence) =>
   evidence && el("span", { class: `tag ${evidence}` }, text(`evidence.${evidence}`));
 
-// A grade is what comes before the colon of a severity, or else its title.
+const LEVELS = [null, "mild", "moderate", "severe"];
+const grade = (preset) => presetText(preset, "severity").split(":")[0];
+
+// Where all presets are grades of one scale, the grade is enough of a name; the
+// variant tells apart two of the same grade.
 function choiceName(preset, all) {
-  const short = presetText(preset, "severity").split(":")[0];
-  const twice = all.some((other) => other !== preset && presetText(other, "severity").split(":")[0] === short);
-  return short.length > 28 || twice || preset.own ? presetText(preset, "title") : short;
+  if (preset.own || all.some((other) => !other.own && !other.level)) return presetText(preset, "title");
+  const twice = all.some((other) => other !== preset && grade(other) === grade(preset));
+  const variant = preset.name.split("-").at(-1);
+  return twice ? `${grade(preset)} · ${textOr(`variant.${variant}`, variant)}` : grade(preset);
 }
+
+// Mild before severe; the order of the scale stays within a level.
+const byLevel = (a, b) => LEVELS.indexOf(a.level) - LEVELS.indexOf(b.level);
 
 function describe(card, preset) {
   const source = preset.source ? text("knee.source", { source: preset.source }) : "";
@@ -30,7 +38,14 @@ function describe(card, preset) {
     el("h4", null, presetText(preset, "title")),
     el("p", { class: "feel" }, text("knee.feel", { feel: presetText(preset, "feel") })),
     el("p", null, presetText(preset, "severity")),
-    el("p", { class: "hint" }, evidenceTag(preset.evidence), preset.own && el("span", { class: "tag" }, text("knee.own-preset")), " ", source),
+    el(
+      "p",
+      { class: "hint" },
+      evidenceTag(preset.evidence),
+      preset.own && el("span", { class: "tag" }, text("knee.own-preset")),
+      " ",
+      source,
+    ),
   );
   card.preset = preset;
 }
@@ -59,7 +74,12 @@ function makeCard(disorder, list) {
     { class: "card", "data-disorder": disorder, "aria-labelledby": title },
     el("h3", { id: title }, disorderName(disorder)),
     zero && el("p", { class: "hint" }, textOr(`grade0.${disorder}`, zero)),
-    el("fieldset", { class: "severities" }, el("legend", { class: "hidden" }, text("knee.severity")), ...choices),
+    el(
+      "fieldset",
+      { class: "severities" },
+      el("legend", { class: "hidden" }, text("knee.severity")),
+      ...choices,
+    ),
     card.about,
     el("div", { class: "row" }, card.apply, card.add),
   );
@@ -83,20 +103,35 @@ function healthyCard() {
 
 async function savePreset() {
   const title = el("input", { name: "title", required: true, maxlength: 80 });
-  const name = el("input", { name: "name", required: true, maxlength: 40, pattern: "[a-z0-9]+(-[a-z0-9]+)*" });
+  const name = el("input", {
+    name: "name",
+    required: true,
+    maxlength: 40,
+    pattern: "[a-z0-9]+(-[a-z0-9]+)*",
+  });
   // The name follows the title until it is written by hand.
   let typed = false;
   name.addEventListener("input", () => (typed = true));
   title.addEventListener("input", () => {
-    if (!typed) name.value = title.value.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "").slice(0, 40);
+    if (!typed)
+      name.value = title.value
+        .toLowerCase()
+        .replace(/[^a-z0-9]+/g, "-")
+        .replace(/^-|-$/g, "")
+        .slice(0, 40);
   });
-  const disorders = latest.hello.disorders.map(({ name }) => el("option", { value: name }, disorderName(name)));
+  const disorders = latest.hello.disorders.map(({ name }) =>
+    el("option", { value: name }, disorderName(name)),
+  );
   const data = await askForm(
     text("preset.save-title"),
     [
       field(text("preset.title"), title),
       field(text("preset.name"), name, text("preset.name-hint")),
-      field(text("preset.disorder"), el("select", { name: "disorder" }, el("option", { value: "" }, disorderName("")), disorders)),
+      field(
+        text("preset.disorder"),
+        el("select", { name: "disorder" }, el("option", { value: "" }, disorderName("")), disorders),
+      ),
       field(text("preset.severity"), el("input", { name: "severity", maxlength: 120 })),
       field(text("preset.feel"), el("textarea", { name: "feel", rows: 2, maxlength: 300 })),
       field(text("preset.source"), el("input", { name: "source", maxlength: 300 })),
@@ -125,18 +160,39 @@ function build() {
   if (!latest.hello) return;
   const open = byId("drawer")?.open ?? false;
   const known = latest.hello.disorders.map((disorder) => disorder.name);
-  const groups = known.map((name) => [name, presets().filter((preset) => preset.disorder === name)]);
+  const groups = known.map((name) => [
+    name,
+    presets()
+      .filter((preset) => preset.disorder === name)
+      .sort(byLevel),
+  ]);
   groups.push(["", presets().filter((preset) => !known.includes(preset.disorder))]);
-  cards = [healthyCard(), ...groups.filter(([, list]) => list.length).map(([name, list]) => makeCard(name, list))];
+  cards = [
+    healthyCard(),
+    ...groups.filter(([, list]) => list.length).map(([name, list]) => makeCard(name, list)),
+  ];
   view = {
     why: el("p", { class: "hint" }),
     now: el("p"),
-    reset: el("button", { type: "button", onclick: () => request("reset", {}, text("knee.reset-done")) }, text("knee.reset")),
-    save: el("button", { type: "button", onclick: () => request("save", {}, text("knee.saved")) }, text("knee.save")),
+    reset: el(
+      "button",
+      { type: "button", onclick: () => request("reset", {}, text("knee.reset-done")) },
+      text("knee.reset"),
+    ),
+    save: el(
+      "button",
+      { type: "button", onclick: () => request("save", {}, text("knee.saved")) },
+      text("knee.save"),
+    ),
     preset: el("button", { type: "button", id: "save-preset", onclick: savePreset }, text("preset.save-as")),
     drawer: el("div", { class: "drawer" }),
   };
-  const drawer = el("details", { id: "drawer", open }, el("summary", null, text("drawer.title")), view.drawer);
+  const drawer = el(
+    "details",
+    { id: "drawer", open },
+    el("summary", null, text("drawer.title")),
+    view.drawer,
+  );
   byId("knee").replaceChildren(
     el(
       "div",
@@ -165,7 +221,11 @@ function update() {
   for (const card of cards) {
     card.apply.disabled = why !== "";
     if (card.add) card.add.disabled = why !== "";
-    const current = !hidden && (card.disorder === "healthy" ? kneeName() === text("knee.healthy") : Boolean(preset) && card.preset.name === preset);
+    const current =
+      !hidden &&
+      (card.disorder === "healthy"
+        ? kneeName() === text("knee.healthy")
+        : Boolean(preset) && card.preset.name === preset);
     card.root.classList.toggle("current", current);
     setText(card.apply, text(current ? "knee.applied" : "knee.apply"));
   }

@@ -11,7 +11,10 @@ export function makeLeg(host) {
   const shank = svg(
     "g",
     null,
-    svg("path", { class: "skin", d: "M150 40 C185 42 215 44 250 48 L254 50 C268 38 276 30 284 26 C292 27 292 38 288 50 L280 76 C270 80 262 78 252 76 C215 80 185 86 150 84 Z" }),
+    svg("path", {
+      class: "skin",
+      d: "M150 40 C185 42 215 44 250 48 L254 50 C268 38 276 30 284 26 C292 27 292 38 288 50 L280 76 C270 80 262 78 252 76 C215 80 185 86 150 84 Z",
+    }),
     svg("rect", { class: "brace", x: 156, y: 57, width: 74, height: 10, rx: 5 }),
     svg("rect", { class: "cuff", x: 205, y: 40, width: 16, height: 44, rx: 5 }),
   );
@@ -20,7 +23,10 @@ export function makeLeg(host) {
     "svg",
     { viewBox: "0 0 300 200", role: "img" },
     svg("path", { class: "bench", d: "M6 100 H122 V192" }),
-    svg("path", { class: "skin", d: "M8 30 C50 24 110 34 150 38 C166 40 174 52 173 62 C172 76 162 86 150 86 C110 92 50 100 8 98 Z" }),
+    svg("path", {
+      class: "skin",
+      d: "M8 30 C50 24 110 34 150 38 C166 40 174 52 173 62 C172 76 162 86 150 86 C110 92 50 100 8 98 Z",
+    }),
     svg("path", { class: "straight", d: "M150 62 H292" }),
     shank,
     svg("rect", { class: "brace", x: 66, y: 57, width: 78, height: 10, rx: 5 }),

@@ -8,7 +8,13 @@ import { request, say } from "./report.js";
 import { number, text, textOr } from "./strings.js";
 
 const interval = (kappa) =>
-  kappa ? text("results.interval", { value: number(kappa.value, 2), low: number(kappa.low, 2), high: number(kappa.high, 2) }) : "–";
+  kappa
+    ? text("results.interval", {
+        value: number(kappa.value, 2),
+        low: number(kappa.low, 2),
+        high: number(kappa.high, 2),
+      })
+    : "–";
 
 const confidence = (value) => (Number.isFinite(value) ? number(value, 1) : "–");
 
@@ -32,13 +38,23 @@ function studentTable(summary) {
       "table",
       null,
       el("caption", null, text("results.students")),
-      el("thead", null, el("tr", null, ...columns.map((key) => el("th", { scope: "col" }, text(`results.${key}`))))),
-      el("tbody", null, ...summary.students.map((part) => row(part, part.student)), row(summary.all, text("results.all"))),
+      el(
+        "thead",
+        null,
+        el("tr", null, ...columns.map((key) => el("th", { scope: "col" }, text(`results.${key}`)))),
+      ),
+      el(
+        "tbody",
+        null,
+        ...summary.students.map((part) => row(part, part.student)),
+        row(summary.all, text("results.all")),
+      ),
     ),
   );
 }
 
-const nameOf = (name) => (["mild", "moderate", "severe"].includes(name) ? levelName(name) : disorderName(name));
+const nameOf = (name) =>
+  ["mild", "moderate", "severe"].includes(name) ? levelName(name) : disorderName(name);
 
 function matrix(part, title) {
   const { rows, columns, counts } = part.confusion;
@@ -57,12 +73,24 @@ function matrix(part, title) {
       el(
         "thead",
         null,
-        el("tr", null, el("th", { scope: "col" }, text("results.corner")), ...columns.map((name) => el("th", { scope: "col" }, nameOf(name)))),
+        el(
+          "tr",
+          null,
+          el("th", { scope: "col" }, text("results.corner")),
+          ...columns.map((name) => el("th", { scope: "col" }, nameOf(name))),
+        ),
       ),
       el(
         "tbody",
         null,
-        ...rows.map((name, r) => el("tr", null, el("th", { scope: "row" }, nameOf(name)), ...columns.map((_, c) => cell(counts[r][c], r, c)))),
+        ...rows.map((name, r) =>
+          el(
+            "tr",
+            null,
+            el("th", { scope: "row" }, nameOf(name)),
+            ...columns.map((_, c) => cell(counts[r][c], r, c)),
+          ),
+        ),
       ),
     ),
   );
@@ -80,8 +108,16 @@ async function openReport() {
 export function showResults(host, lesson) {
   const { summary } = lesson;
   const why = controlReason();
-  const report = el("button", { type: "button", class: "primary", id: "report", onclick: openReport }, text("results.report"));
-  const close = el("button", { type: "button", id: "lesson-close", onclick: () => request("lesson-close") }, text("results.close"));
+  const report = el(
+    "button",
+    { type: "button", class: "primary", id: "report", onclick: openReport },
+    text("results.report"),
+  );
+  const close = el(
+    "button",
+    { type: "button", id: "lesson-close", onclick: () => request("lesson-close") },
+    text("results.close"),
+  );
   report.disabled = !isTeacher();
   close.disabled = why !== "";
   const tables = !summary
@@ -96,7 +132,9 @@ export function showResults(host, lesson) {
                 "details",
                 null,
                 el("summary", null, text("results.each")),
-                ...summary.students.map((part) => matrix(part, text("results.matrix", { student: part.student }))),
+                ...summary.students.map((part) =>
+                  matrix(part, text("results.matrix", { student: part.student })),
+                ),
               ),
             ]
           : []),
@@ -106,7 +144,12 @@ export function showResults(host, lesson) {
       "section",
       { class: "card" },
       el("h2", null, text("results.title", { title: textOr(`lesson.${lesson.name}.title`, lesson.title) })),
-      summary && el("p", { class: "trial" }, text("results.total", { right: summary.right, answers: summary.answers })),
+      summary &&
+        el(
+          "p",
+          { class: "trial" },
+          text("results.total", { right: summary.right, answers: summary.answers }),
+        ),
       el("div", { class: "row" }, report, close),
       lesson.stored && el("p", { class: "hint" }, text("run.stored", { folder: lesson.stored })),
       why && el("p", { class: "hint" }, text("results.disabled", { why })),

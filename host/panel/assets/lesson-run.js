@@ -21,7 +21,9 @@ export function kneeText(disorder, level) {
 }
 
 const outcome = (is) =>
-  is === null || is === undefined ? null : el("span", { class: `tag ${is ? "yes" : "no"}` }, text(is ? "answer.right" : "answer.wrong"));
+  is === null || is === undefined
+    ? null
+    : el("span", { class: `tag ${is ? "yes" : "no"}` }, text(is ? "answer.right" : "answer.wrong"));
 
 async function answer(event) {
   event.preventDefault();
@@ -29,15 +31,16 @@ async function answer(event) {
   const confidence = Number(data.get("confidence"));
   if (!data.get("disorder") || !confidence) return setText(view.problem, text("answer.incomplete"));
   setText(view.problem, "");
+  const answered = data.get("student");
   const ok = await request("lesson-answer", {
-    student: data.get("student"),
+    student: answered,
     disorder: data.get("disorder"),
     level: data.get("level") || null,
     confidence,
   });
   if (!ok) return null;
   const { lesson } = latest;
-  const due = lesson?.students.find((student) => !answerOf(lesson, student));
+  const due = lesson?.students.find((student) => student !== answered && !answerOf(lesson, student));
   view.disorder.value = "";
   view.level.value = "";
   for (const input of view.confidence) input.checked = false;
@@ -45,7 +48,8 @@ async function answer(event) {
   return due ? view.student.focus() : view.next.focus();
 }
 
-const answerOf = (lesson, student) => lesson.answers.find((one) => one.student === student && one.trial === lesson.trial);
+const answerOf = (lesson, student) =>
+  lesson.answers.find((one) => one.student === student && one.trial === lesson.trial);
 
 async function end() {
   const { lesson } = latest;
@@ -55,7 +59,11 @@ async function end() {
 }
 
 function answerForm(lesson) {
-  view.student = el("select", { name: "student" }, ...lesson.students.map((name) => el("option", { value: name }, name)));
+  view.student = el(
+    "select",
+    { name: "student" },
+    ...lesson.students.map((name) => el("option", { value: name }, name)),
+  );
   view.disorder = el(
     "select",
     { name: "disorder" },
@@ -87,7 +95,12 @@ function answerForm(lesson) {
       "fieldset",
       { class: "choices" },
       el("legend", null, text("answer.confidence")),
-      ...view.confidence.map((input) => tick(input.value === "1" ? text("answer.low") : input.value === "5" ? text("answer.high") : input.value, input)),
+      ...view.confidence.map((input) =>
+        tick(
+          input.value === "1" ? text("answer.low") : input.value === "5" ? text("answer.high") : input.value,
+          input,
+        ),
+      ),
     ),
     view.problem,
     el("div", { class: "row" }, view.send),
@@ -104,8 +117,16 @@ export function showRun(host, lesson) {
     facts: el("p"),
     knee: el("p"),
     time: el("p", { class: "time-left" }),
-    start: el("button", { type: "button", id: "lesson-start", class: "primary", onclick: () => request("lesson-start") }, text("run.start")),
-    next: el("button", { type: "button", id: "lesson-next", onclick: () => request("lesson-next") }, text("run.next")),
+    start: el(
+      "button",
+      { type: "button", id: "lesson-start", class: "primary", onclick: () => request("lesson-start") },
+      text("run.start"),
+    ),
+    next: el(
+      "button",
+      { type: "button", id: "lesson-next", onclick: () => request("lesson-next") },
+      text("run.next"),
+    ),
     end: el("button", { type: "button", id: "lesson-end", onclick: end }, text("run.end")),
     why: el("p", { class: "hint" }),
     answers: el("ul", { class: "answers" }),
@@ -156,6 +177,7 @@ export function updateRun(lesson) {
   const trial = `${lesson.trial} ${lesson.began}`;
   if (trial !== trialShown) {
     trialShown = trial;
+    view.student.value = lesson.students[0];
     beganAt = performance.now();
   }
   const why = controlReason();
@@ -163,11 +185,18 @@ export function updateRun(lesson) {
   view.progress.value = lesson.trial - (lesson.began ? 0 : 1);
   setText(view.instruction, lesson.instruction ?? "");
   view.instruction.hidden = !lesson.instruction;
-  const target = lesson.target ? text("run.target", { target: textOr(`target.${lesson.target}`, lesson.target) }) : "";
+  const target = lesson.target
+    ? text("run.target", { target: textOr(`target.${lesson.target}`, lesson.target) })
+    : "";
   const time = lesson.time_s ? text("run.time", { seconds: number(lesson.time_s) }) : "";
   setText(view.facts, [target, time].filter(Boolean).join(" · "));
   const knee = lesson.knee;
-  setText(view.knee, text("run.knee", { knee: knee ? `${presetTitle(knee.preset)} (${kneeText(knee.disorder, knee.level)})` : text("hidden") }));
+  setText(
+    view.knee,
+    text("run.knee", {
+      knee: knee ? `${presetTitle(knee.preset)} (${kneeText(knee.disorder, knee.level)})` : text("hidden"),
+    }),
+  );
   const all = lesson.students.every((student) => answerOf(lesson, student));
   view.start.disabled = why !== "" || lesson.began;
   view.next.disabled = why !== "" || lesson.trial >= lesson.trials;
@@ -175,7 +204,16 @@ export function updateRun(lesson) {
   view.send.disabled = why !== "" || !lesson.began;
   view.next.classList.toggle("primary", all && lesson.trial < lesson.trials);
   view.end.classList.toggle("primary", all && lesson.trial >= lesson.trials);
-  setText(view.why, why ? text("run.disabled", { why }) : lesson.began ? (all ? text("run.all-answered") : "") : text("run.not-begun"));
+  setText(
+    view.why,
+    why
+      ? text("run.disabled", { why })
+      : lesson.began
+        ? all
+          ? text("run.all-answered")
+          : ""
+        : text("run.not-begun"),
+  );
   showAnswers(lesson);
   showTime();
 }
@@ -185,7 +223,11 @@ function showAnswers(lesson) {
     ...lesson.students.map((student) => {
       const given = answerOf(lesson, student);
       if (!given) return el("li", null, text("answer.none", { student }));
-      const words = text("answer.line", { student, knee: kneeText(given.disorder, given.level), confidence: given.confidence });
+      const words = text("answer.line", {
+        student,
+        knee: kneeText(given.disorder, given.level),
+        confidence: given.confidence,
+      });
       // Without control the page may be one that students see.
       const shown = lesson.blind && !isController() ? text("answer.given", { student }) : words;
       return el("li", null, shown, " ", outcome(given.right));

@@ -27,7 +27,9 @@ function presetChoice(chosen) {
   const select = el("select", null, el("option", { value: "healthy" }, text("knee.healthy")));
   const known = latest.hello.disorders.map((disorder) => disorder.name);
   for (const disorder of [...known, ""]) {
-    const list = presets().filter((preset) => (disorder ? preset.disorder === disorder : !known.includes(preset.disorder)));
+    const list = presets().filter((preset) =>
+      disorder ? preset.disorder === disorder : !known.includes(preset.disorder),
+    );
     if (!list.length) continue;
     const options = list.map((preset) => el("option", { value: preset.name }, presetText(preset, "title")));
     select.append(el("optgroup", { label: disorderName(disorder) }, ...options));
@@ -43,11 +45,20 @@ function kneeRow(knee, nth) {
   };
   const preset = bind(presetChoice(knee.preset), "preset");
   const instruction = bind(el("input", { value: knee.instruction ?? "", maxlength: 200 }), "instruction");
-  const targets = latest.hello.targets.map((target) => el("option", { value: target.name }, targetName(target)));
-  const target = bind(el("select", null, el("option", { value: "" }, text("target.none")), ...targets), "target");
+  const targets = latest.hello.targets.map((target) =>
+    el("option", { value: target.name }, targetName(target)),
+  );
+  const target = bind(
+    el("select", null, el("option", { value: "" }, text("target.none")), ...targets),
+    "target",
+  );
   target.value = knee.target ?? "";
   const time = bind(el("input", { type: "number", min: 5, max: 3600, value: knee.time_s ?? "" }), "time_s");
-  const remove = el("button", { type: "button", "aria-label": text("plan.remove-nth", { nth: nth + 1 }) }, text("plan.remove"));
+  const remove = el(
+    "button",
+    { type: "button", "aria-label": text("plan.remove-nth", { nth: nth + 1 }) },
+    text("plan.remove"),
+  );
   remove.addEventListener("click", () => {
     entered.knees.splice(nth, 1);
     showKnees();
@@ -81,7 +92,14 @@ function planOf() {
 }
 
 async function begin() {
-  const students = [...new Set(entered.students.split(/[\n,;]+/).map((name) => name.trim()).filter(Boolean))];
+  const students = [
+    ...new Set(
+      entered.students
+        .split(/[\n,;]+/)
+        .map((name) => name.trim())
+        .filter(Boolean),
+    ),
+  ];
   const most = latest.hello.students_max;
   if (!students.length || students.length > most) {
     return setText(view.problem, text("setup.bad-students", { most }));
@@ -100,7 +118,12 @@ async function begin() {
 
 function lessonChoices() {
   const choice = (value, title, about) => {
-    const input = el("input", { type: "radio", name: "lesson", value, checked: entered.lesson === (value || null) });
+    const input = el("input", {
+      type: "radio",
+      name: "lesson",
+      value,
+      checked: entered.lesson === (value || null),
+    });
     input.addEventListener("change", () => {
       entered.lesson = value || null;
       view.plan.hidden = entered.lesson !== null;
@@ -119,7 +142,10 @@ function lessonChoices() {
 }
 
 function bound(input, key) {
-  input.addEventListener("input", () => (entered[key] = input.type === "checkbox" ? input.checked : input.value));
+  input.addEventListener(
+    "input",
+    () => (entered[key] = input.type === "checkbox" ? input.checked : input.value),
+  );
   return input;
 }
 
@@ -139,7 +165,10 @@ function planForm() {
     view.knees.lastElementChild.querySelector("select").focus();
   });
   showKnees();
-  const wide = field(text("plan.title"), bound(el("input", { value: entered.title, maxlength: 80 }), "title"));
+  const wide = field(
+    text("plan.title"),
+    bound(el("input", { value: entered.title, maxlength: 80 }), "title"),
+  );
   wide.classList.add("wide");
   return el(
     "section",
@@ -161,7 +190,11 @@ export function showSetup(host) {
   view = {
     why: el("p", { class: "hint" }),
     problem: el("p", { class: "problem", role: "alert" }),
-    begin: el("button", { type: "button", class: "primary", id: "lesson-begin", onclick: begin }, text("setup.begin")),
+    begin: el(
+      "button",
+      { type: "button", class: "primary", id: "lesson-begin", onclick: begin },
+      text("setup.begin"),
+    ),
   };
   const students = bound(el("textarea", { id: "students", rows: 3 }), "students");
   students.value = entered.students;
@@ -183,11 +216,21 @@ export function showSetup(host) {
       el(
         "div",
         { class: "row" },
-        field(text("setup.seed"), bound(el("input", { inputmode: "numeric", value: entered.seed, size: 12 }), "seed")),
-        field(text("setup.repeats"), bound(el("input", { type: "number", min: 1, max: 20, value: entered.repeats }), "repeats")),
+        field(
+          text("setup.seed"),
+          bound(el("input", { inputmode: "numeric", value: entered.seed, size: 12 }), "seed"),
+        ),
+        field(
+          text("setup.repeats"),
+          bound(el("input", { type: "number", min: 1, max: 20, value: entered.repeats }), "repeats"),
+        ),
       ),
       el("p", { class: "hint" }, text("setup.seed-hint")),
-      el("p", { class: "hint" }, stores ? text("setup.stores", { folder: stores }) : text("setup.stores-nothing")),
+      el(
+        "p",
+        { class: "hint" },
+        stores ? text("setup.stores", { folder: stores }) : text("setup.stores-nothing"),
+      ),
       view.problem,
       el("div", { class: "row" }, view.begin),
       view.why,

@@ -62,6 +62,11 @@ let legend = null;
 /** The middle of a bin's range, or NaN. */
 const middle = (low, high) => (low + high) / 2;
 
+function showSecret(output, secret, value) {
+  output.classList.toggle("secret", secret);
+  setText(output, secret ? text("hidden") : value);
+}
+
 // Numbers for people: five times a second is what can be read.
 function showWords(now) {
   if (now - wordsAt < 200) return;
@@ -78,10 +83,16 @@ function showWords(now) {
       if (!(Math.abs(value) <= Math.abs(torque))) torque = Number.isNaN(value) ? torque : value;
     }
   }
-  setText(byId("angle"), last < begin ? "–" : number(middle(columns.angleLow[last], columns.angleHigh[last]), 1));
-  setText(byId("speed"), last < begin ? "–" : number(middle(columns.speedLow[last], columns.speedHigh[last])));
-  setText(byId("torque"), bins.masked.torque ? text("hidden") : number(torque, 2));
-  setText(byId("breaks"), bins.masked.states ? text("hidden") : number(breaks));
+  setText(
+    byId("angle"),
+    last < begin ? "–" : number(middle(columns.angleLow[last], columns.angleHigh[last]), 1),
+  );
+  setText(
+    byId("speed"),
+    last < begin ? "–" : number(middle(columns.speedLow[last], columns.speedHigh[last])),
+  );
+  showSecret(byId("torque"), bins.masked.torque, number(torque, 2));
+  showSecret(byId("breaks"), bins.masked.states, number(breaks));
   if (!legend) return;
   let present = 0;
   if (!bins.masked.states) {
@@ -89,7 +100,8 @@ function showWords(now) {
       present |= shadesIn(shades, columns.states[i], columns.marks[i]);
     }
   }
-  const current = last < begin || bins.masked.states ? 0 : shadesIn(shades, columns.states[last], columns.marks[last]);
+  const current =
+    last < begin || bins.masked.states ? 0 : shadesIn(shades, columns.states[last], columns.marks[last]);
   legend.show(present, current);
 }
 

@@ -12,6 +12,12 @@ import { startStrings } from "./strings.js";
 import { setReplay, startTabs } from "./tabs.js";
 import { startTarget } from "./target.js";
 
+// What is scrolled to must not end up below the header, which stays in sight.
+const top = document.querySelector(".top");
+new ResizeObserver(() => {
+  document.documentElement.style.setProperty("--top", `${Math.ceil(top.getBoundingClientRect().height)}px`);
+}).observe(top);
+
 await startStrings(byId("language"));
 startTabs();
 startControl();

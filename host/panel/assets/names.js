@@ -33,9 +33,14 @@ export const levelName = (level) => (level ? textOr(`level.${level}`, level) : "
 /** Whether any effect of the knee differs from its default. */
 function isHealthy(parameters) {
   const byId = new Map(parameters.values);
-  const symptoms = new Set(latest.hello.groups.filter((group) => group.kind === "symptom").map((group) => group.name));
+  const symptoms = new Set(
+    latest.hello.groups.filter((group) => group.kind === "symptom").map((group) => group.name),
+  );
   return latest.hello.parameters
-    .filter((parameter) => parameter.key === "render" && (symptoms.has(parameter.group) || parameter.group === "crepitus"))
+    .filter(
+      (parameter) =>
+        parameter.key === "render" && (symptoms.has(parameter.group) || parameter.group === "crepitus"),
+    )
     .every((parameter) => !byId.get(parameter.id));
 }
 

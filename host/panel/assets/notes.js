@@ -49,7 +49,9 @@ function showRecord() {
     );
   }
   setText(host.firstChild, text(recording ? "record.stop" : "record.start"));
-  const words = recording ? text("record.running", { file: recording.file, seconds: number(recording.seconds) }) : "";
+  const words = recording
+    ? text("record.running", { file: recording.file, seconds: number(recording.seconds) })
+    : "";
   setText(host.lastChild, words);
 }
 
@@ -61,8 +63,18 @@ export function startNotes() {
     if (input.value.trim() && (await request("note", { text: input.value.trim() }))) input.value = "";
   });
   addEventListener("keydown", (event) => {
-    const typing = event.target.closest?.("input:not([type=checkbox], [type=radio]), textarea, select, dialog");
-    if (event.key.toLowerCase() !== "n" || typing || event.ctrlKey || event.metaKey || event.altKey || !isTeacher()) return;
+    const typing = event.target.closest?.(
+      "input:not([type=checkbox], [type=radio]), textarea, select, dialog",
+    );
+    if (
+      event.key.toLowerCase() !== "n" ||
+      typing ||
+      event.ctrlKey ||
+      event.metaKey ||
+      event.altKey ||
+      !isTeacher()
+    )
+      return;
     event.preventDefault();
     if (byId("live").hidden) showTab("live");
     byId("note").focus();

@@ -24,7 +24,8 @@ export class Colours {
   /** A fill for a shade: a tint of its colour, with hatches. */
   shade(ctx, name, pattern) {
     const key = `${name} ${pattern}`;
-    if (!this.patterns.has(key)) this.patterns.set(key, ctx.createPattern(this.tile(name, pattern), "repeat"));
+    if (!this.patterns.has(key))
+      this.patterns.set(key, ctx.createPattern(this.tile(name, pattern), "repeat"));
     return this.patterns.get(key);
   }
 

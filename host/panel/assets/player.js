@@ -46,7 +46,12 @@ export class Player {
   }
 
   build() {
-    const button = (key, label, act) => el("button", { type: "button", class: "icon", "aria-label": text(key), title: text(key), onclick: act }, label);
+    const button = (key, label, act) =>
+      el(
+        "button",
+        { type: "button", class: "icon", "aria-label": text(key), title: text(key), onclick: act },
+        label,
+      );
     this.title = el("h2");
     this.about = el("p", { class: "hint" });
     this.legLine = el("div", { class: "leg" });
@@ -61,7 +66,13 @@ export class Player {
       this.request();
     });
     this.offsetField = field(text("player.offset"), this.offsetInput);
-    this.box = el("div", { class: "charts", tabindex: 0, role: "group", "aria-label": text("player.charts"), "aria-describedby": "player-keys" });
+    this.box = el("div", {
+      class: "charts",
+      tabindex: 0,
+      role: "group",
+      "aria-label": text("player.charts"),
+      "aria-describedby": "player-keys",
+    });
     this.states = el("ul", { class: "legend", "aria-label": text("legend") });
     this.names = el("ul", { class: "legend", "aria-label": text("player.names") });
     this.range = el("p", { class: "hint", role: "status" });
@@ -141,7 +152,10 @@ export class Player {
   extent() {
     const { begin_s: begin, end_s: end } = this.first;
     if (!this.second) return [begin, end];
-    return [Math.min(begin, this.second.begin_s + this.offset), Math.max(end, this.second.end_s + this.offset)];
+    return [
+      Math.min(begin, this.second.begin_s + this.offset),
+      Math.max(end, this.second.end_s + this.offset),
+    ];
   }
 
   /** Looks at a range: what is there at once, full detail when it has arrived. */
@@ -179,8 +193,12 @@ export class Player {
       this.showStates();
       this.showPosition();
       const { length } = traces[0];
-      const rate = length > 0 ? text("player.detail", { ms: number(length * 1000, length < 0.001 ? 2 : 1) }) : "";
-      setText(this.range, `${text("player.range", { from: number(this.view.from, 2), to: number(this.view.to, 2) })} ${rate}`);
+      const rate =
+        length > 0 ? text("player.detail", { ms: number(length * 1000, length < 0.001 ? 2 : 1) }) : "";
+      setText(
+        this.range,
+        `${text("player.range", { from: number(this.view.from, 2), to: number(this.view.to, 2) })} ${rate}`,
+      );
     } catch (error) {
       say(errorText(error), true);
     }
@@ -194,7 +212,8 @@ export class Player {
   async trace(recording, from, to) {
     const begin = Math.max(recording.begin_s, from);
     const end = Math.min(recording.end_s, to);
-    if (!(end > begin)) return { columns: decodeTrace(new DataView(new ArrayBuffer(40))).columns, begin: 0, end: 0, length: 0 };
+    if (!(end > begin))
+      return { columns: decodeTrace(new DataView(new ArrayBuffer(40))).columns, begin: 0, end: 0, length: 0 };
     const share = (end - begin) / (to - from);
     const points = Math.max(2, Math.ceil(this.charts.pixels() * share));
     return decodeTrace(await ask("trace", { recording: recording.id, from_s: begin, to_s: end, points }));
@@ -203,7 +222,8 @@ export class Player {
   showStates() {
     const bins = this.charts.layers[0].bins;
     let present = 0;
-    for (let i = bins.begin; i < bins.end; i++) present |= shadesIn(this.shades, bins.columns.states[i], bins.columns.marks[i]);
+    for (let i = bins.begin; i < bins.end; i++)
+      present |= shadesIn(this.shades, bins.columns.states[i], bins.columns.marks[i]);
     this.legend.show(present);
   }
 
@@ -257,7 +277,10 @@ export class Player {
 
   describe() {
     const { first, second } = this;
-    setText(this.title, second ? text("player.two", { first: first.title, second: second.title }) : first.title);
+    setText(
+      this.title,
+      second ? text("player.two", { first: first.title, second: second.title }) : first.title,
+    );
     const facts = (one) =>
       text("player.about", {
         device: one.device ?? "–",
@@ -298,30 +321,64 @@ export class Player {
   showNotes() {
     const notes = this.first.notes ?? [];
     const items = notes.map((note) =>
-      el("li", null, el("button", { type: "button", class: "quiet", onclick: () => this.moveTo(note.time_s) }, `${number(note.time_s, 1)} s · ${note.text}`)),
+      el(
+        "li",
+        null,
+        el(
+          "button",
+          { type: "button", class: "quiet", onclick: () => this.moveTo(note.time_s) },
+          `${number(note.time_s, 1)} s · ${note.text}`,
+        ),
+      ),
     );
-    this.notes.replaceChildren(...(notes.length ? [el("h3", null, text("notes.title")), el("ul", { class: "plain" }, ...items)] : []));
+    this.notes.replaceChildren(
+      ...(notes.length ? [el("h3", null, text("notes.title")), el("ul", { class: "plain" }, ...items)] : []),
+    );
   }
 
   showParameters() {
     const left = new Map(this.first.parameters);
     const right = new Map(this.second?.parameters ?? []);
     const names = [...new Set([...left.keys(), ...right.keys()])].sort();
-    if (!names.length) return this.parameters.replaceChildren(el("p", { class: "hint" }, text("player.defaults")));
+    if (!names.length)
+      return this.parameters.replaceChildren(el("p", { class: "hint" }, text("player.defaults")));
     const value = (map, name) => map.get(name) ?? text("player.default");
-    const head = ["player.parameter", ...(this.second ? [] : ["player.value"])].map((key) => el("th", { scope: "col" }, text(key)));
-    const titles = this.second ? [this.first.title, this.second.title, text("player.same")].map((name) => el("th", { scope: "col" }, name)) : [];
+    const head = ["player.parameter", ...(this.second ? [] : ["player.value"])].map((key) =>
+      el("th", { scope: "col" }, text(key)),
+    );
+    const titles = this.second
+      ? [this.first.title, this.second.title, text("player.same")].map((name) =>
+          el("th", { scope: "col" }, name),
+        )
+      : [];
     const row = (name) => {
       const differs = this.second && value(left, name) !== value(right, name);
-      const more = this.second ? [el("td", null, value(right, name)), el("td", null, text(differs ? "player.differs" : "player.equal"))] : [];
-      return el("tr", { class: differs ? "differs" : null }, el("th", { scope: "row" }, el("code", null, name)), el("td", null, value(left, name)), ...more);
+      const more = this.second
+        ? [
+            el("td", null, value(right, name)),
+            el("td", null, text(differs ? "player.differs" : "player.equal")),
+          ]
+        : [];
+      return el(
+        "tr",
+        { class: differs ? "differs" : null },
+        el("th", { scope: "row" }, el("code", null, name)),
+        el("td", null, value(left, name)),
+        ...more,
+      );
     };
     const title = text(this.second ? "player.parameters-two" : "player.parameters");
     return this.parameters.replaceChildren(
       el(
         "div",
         { class: "scroll", tabindex: 0, role: "group", "aria-label": title },
-        el("table", null, el("caption", null, title), el("thead", null, el("tr", null, ...head, ...titles)), el("tbody", null, ...names.map(row))),
+        el(
+          "table",
+          null,
+          el("caption", null, title),
+          el("thead", null, el("tr", null, ...head, ...titles)),
+          el("tbody", null, ...names.map(row)),
+        ),
       ),
     );
   }

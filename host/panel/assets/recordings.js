@@ -19,7 +19,9 @@ function size(bytes) {
 
 function when(value) {
   const date = new Date(value);
-  return Number.isNaN(date.getTime()) ? String(value ?? "") : date.toLocaleString(document.documentElement.lang);
+  return Number.isNaN(date.getTime())
+    ? String(value ?? "")
+    : date.toLocaleString(document.documentElement.lang);
 }
 
 async function open(file, asSecond) {
@@ -33,7 +35,7 @@ async function open(file, asSecond) {
   view.player.hidden = false;
   player.show(first, second);
   showList();
-  if (!asSecond) view.player.scrollIntoView({ block: "nearest" });
+  if (!asSecond) view.player.scrollIntoView({ block: "start" });
 }
 
 function close(file) {
@@ -53,7 +55,13 @@ function row(file) {
   ];
   const openButton = el(
     "button",
-    { type: "button", class: "open", disabled: isFirst, "aria-label": text("recordings.open-name", { name: file.name }), onclick: () => open(file, false) },
+    {
+      type: "button",
+      class: "open",
+      disabled: isFirst,
+      "aria-label": text("recordings.open-name", { name: file.name }),
+      onclick: () => open(file, false),
+    },
     text("recordings.open"),
   );
   const compare = el(
@@ -71,7 +79,14 @@ function row(file) {
   return el(
     "li",
     { class: "recording", "data-recording": file.id },
-    el("div", null, el("strong", null, file.name), " ", shown && el("span", { class: "tag" }, shown), el("p", { class: "hint" }, facts.filter(Boolean).join(" · "))),
+    el(
+      "div",
+      null,
+      el("strong", null, file.name),
+      " ",
+      shown && el("span", { class: "tag" }, shown),
+      el("p", { class: "hint" }, facts.filter(Boolean).join(" · ")),
+    ),
     el("div", { class: "row" }, openButton, compare),
   );
 }
@@ -85,9 +100,15 @@ function showList() {
   if (focused) {
     const again = view.list.querySelector(`[data-recording="${CSS.escape(focused)}"]`);
     const button = again?.querySelector(kind);
-    (button?.disabled ? again.querySelector("button:not(:disabled)") ?? view.refresh : button)?.focus();
+    (button?.disabled ? (again.querySelector("button:not(:disabled)") ?? view.refresh) : button)?.focus();
   }
-  const words = !isTeacher() ? text("recordings.viewer") : files === null ? text("recordings.loading") : files.length ? "" : text("recordings.none");
+  const words = !isTeacher()
+    ? text("recordings.viewer")
+    : files === null
+      ? text("recordings.loading")
+      : files.length
+        ? ""
+        : text("recordings.none");
   setText(view.words, words);
   view.refresh.disabled = !isTeacher();
 }
@@ -102,31 +123,28 @@ async function load() {
   return null;
 }
 
-function enlarge() {
-  const on = document.body.classList.toggle("enlarged");
-  view.enlarge.setAttribute("aria-pressed", String(on));
-}
-
 function build() {
   const wasOpen = view !== null && !view.player.hidden;
   view = {
     list: el("ul", { class: "recordings-list" }),
     words: el("p", { class: "hint", role: "status" }),
     refresh: el("button", { type: "button", onclick: load }, text("recordings.refresh")),
-    enlarge: el("button", { type: "button", class: "enlarge", "aria-pressed": String(document.body.classList.contains("enlarged")), onclick: enlarge }, text("recordings.enlarge")),
     player: el("div", { class: "player", hidden: !wasOpen }),
   };
-  view.enlarge.hidden = isReplay();
   byId("recordings").replaceChildren(
-    view.player,
     el(
       "section",
       { class: "card", "aria-labelledby": "recordings-title" },
-      el("h2", { id: "recordings-title" }, text("recordings.title")),
-      el("div", { class: "row" }, view.refresh, view.enlarge),
+      el(
+        "div",
+        { class: "dialog-head" },
+        el("h2", { id: "recordings-title" }, text("recordings.title")),
+        view.refresh,
+      ),
       view.words,
       view.list,
     ),
+    view.player,
   );
   player = new Player(view.player);
   if (wasOpen && first) player.show(first, second);
@@ -143,7 +161,6 @@ export function startRecordings() {
   });
   onTab((name) => {
     if (name === "recordings" && files === null) load();
-    if (name !== "recordings") document.body.classList.remove("enlarged");
   });
   onLanguage(build);
 }

@@ -17,7 +17,8 @@ export function say(message, isError = false) {
 }
 
 /** The text of an error. */
-export const errorText = (error) => (error.message === "not-connected" ? text("error.not-connected") : error.message);
+export const errorText = (error) =>
+  error.message === "not-connected" ? text("error.not-connected") : error.message;
 
 /** Sends a request and reports an error; resolves with `ok`, or with null. */
 export async function request(what, more, done) {

@@ -18,10 +18,14 @@ export function text(key, values = {}) {
 export const textOr = (key, fallback) => chosen[key] ?? english[key] ?? fallback;
 
 /** A number as this language writes it. */
-export const number = (value, digits = 0) =>
-  Number.isFinite(value)
-    ? value.toLocaleString(language, { minimumFractionDigits: digits, maximumFractionDigits: digits })
-    : "–";
+export function number(value, digits = 0) {
+  if (!Number.isFinite(value)) return "–";
+  const scale = 10 ** digits;
+  // No "−0.00".
+  const rounded = Math.round(value * scale) / scale || 0;
+  const options = { minimumFractionDigits: digits, maximumFractionDigits: digits };
+  return rounded.toLocaleString(language, options).replace("-", "−");
+}
 
 /** A value of any size, with six significant digits at most. */
 export function plain(value) {
@@ -34,7 +38,8 @@ export function plain(value) {
 /** Fills the static texts of a part of the page. */
 export function fillTexts(root = document) {
   for (const at of root.querySelectorAll("[data-text]")) at.textContent = text(at.dataset.text);
-  for (const at of root.querySelectorAll("[data-label]")) at.setAttribute("aria-label", text(at.dataset.label));
+  for (const at of root.querySelectorAll("[data-label]"))
+    at.setAttribute("aria-label", text(at.dataset.label));
 }
 
 /** Calls this whenever another language is chosen. */

@@ -10,7 +10,10 @@ let replay = false;
 const listeners = [];
 
 const tabOf = (name) => byId(`tab-${name}`);
-const offered = () => NAMES.filter((name) => !(name === "live" && (wide.matches || replay)) && !(replay && name !== "recordings"));
+const offered = () =>
+  NAMES.filter(
+    (name) => !(name === "live" && (wide.matches || replay)) && !(replay && name !== "recordings"),
+  );
 
 /** Calls this with the name of a tab that is shown. */
 export const onTab = (listener) => listeners.push(listener);
@@ -65,5 +68,9 @@ export function startTabs() {
     tabOf(name).focus();
   });
   wide.addEventListener("change", update);
+  byId("enlarge").addEventListener("click", () => {
+    const on = document.body.classList.toggle("enlarged");
+    byId("enlarge").setAttribute("aria-pressed", String(on));
+  });
   update();
 }

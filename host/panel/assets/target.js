@@ -41,7 +41,9 @@ function applyOwn() {
     return setText(view.problem, text(speed ? "target.bad-range" : "target.bad-rate"));
   }
   setText(view.problem, "");
-  const target = speed ? { low_deg_per_s: low, high_deg_per_s: high } : { beats_per_min: view.rate.valueAsNumber };
+  const target = speed
+    ? { low_deg_per_s: low, high_deg_per_s: high }
+    : { beats_per_min: view.rate.valueAsNumber };
   return request("target", { target });
 }
 
@@ -52,7 +54,9 @@ function build() {
     "select",
     { onchange: choose },
     el("option", { value: "" }, text("target.none")),
-    ...targets.map((target) => el("option", { value: target.name }, `${targetName(target)} · ${limits(target)}`)),
+    ...targets.map((target) =>
+      el("option", { value: target.name }, `${targetName(target)} · ${limits(target)}`),
+    ),
     el("option", { value: ":speed" }, text("target.own")),
     el("option", { value: ":metronome" }, text("target.own-metronome")),
   );
@@ -61,19 +65,46 @@ function build() {
   view.high = el("input", { type: "number", min: 1, max: 400, value: view.high?.value ?? 60 });
   view.rate = el("input", { type: "number", min: 20, max: 240, value: view.rate?.value ?? 60 });
   view.set = [0, 1].map(() => el("button", { type: "button", onclick: applyOwn }, text("target.set")));
-  view.own = el("div", { class: "row", hidden: kept !== ":speed" }, field(text("target.low"), view.low), field(text("target.high"), view.high), view.set[0]);
-  view.beats = el("div", { class: "row", hidden: kept !== ":metronome" }, field(text("target.rate"), view.rate), view.set[1]);
+  view.own = el(
+    "div",
+    { class: "row", hidden: kept !== ":speed" },
+    field(text("target.low"), view.low),
+    field(text("target.high"), view.high),
+    view.set[0],
+  );
+  view.beats = el(
+    "div",
+    { class: "row", hidden: kept !== ":metronome" },
+    field(text("target.rate"), view.rate),
+    view.set[1],
+  );
   view.problem = el("p", { class: "problem", role: "alert" });
   view.beat = el("span", { class: "beat", "aria-hidden": "true", hidden: true });
   view.click = el("input", { type: "checkbox", checked: view.click?.checked ?? false, onchange: startAudio });
-  view.clickLabel = el("label", { class: "tick", hidden: true }, view.click, el("span", null, text("target.click")));
+  view.clickLabel = el(
+    "label",
+    { class: "tick", hidden: true },
+    view.click,
+    el("span", null, text("target.click")),
+  );
   view.word = el("p", { class: "verdict", "aria-hidden": "true" });
   view.score = el("p", { class: "score" });
-  view.run = el("button", { type: "button", onclick: () => request("score", { running: !latest.target?.running }) });
+  view.run = el("button", {
+    type: "button",
+    onclick: () => request("score", { running: !latest.target?.running }),
+  });
   view.why = el("p", { class: "hint" });
   byId("target").replaceChildren(
     el("h3", { id: "target-title", class: "hidden" }, text("target.title")),
-    el("div", { class: "target-line" }, field(text("target.title"), view.choice), view.beat, view.word, view.run, view.clickLabel),
+    el(
+      "div",
+      { class: "target-line" },
+      field(text("target.title"), view.choice),
+      view.beat,
+      view.word,
+      view.run,
+      view.clickLabel,
+    ),
     view.own,
     view.beats,
     view.problem,
@@ -124,7 +155,8 @@ function scoreText(state) {
     }),
   ];
   if (state.strokes) parts.push(text("target.strokes", { strokes: number(state.strokes) }));
-  if (state.beats) parts.push(text("target.hits", { hit: number(state.beats_hit), beats: number(state.beats) }));
+  if (state.beats)
+    parts.push(text("target.hits", { hit: number(state.beats_hit), beats: number(state.beats) }));
   return parts.join(" · ");
 }
 
@@ -136,13 +168,14 @@ function update() {
   const metronome = target?.kind === "metronome";
   view.beat.hidden = view.clickLabel.hidden = !metronome;
   const why = controlReason();
-  for (const control of [view.choice, view.low, view.high, view.rate, ...view.set]) control.disabled = why !== "";
+  for (const control of [view.choice, view.low, view.high, view.rate, ...view.set])
+    control.disabled = why !== "";
   view.run.disabled = why !== "" || !target;
   setText(view.run, text(state?.running ? "target.stop" : "target.start"));
   setText(view.why, why || (target ? "" : text("target.hint")));
   const verdict = target && state.verdict ? state.verdict : "none";
   view.word.dataset.verdict = verdict;
-  setText(view.word, target ? text(`verdict.${verdict}`) : "");
+  setText(view.word, verdict === "none" ? "" : text(`verdict.${verdict}`));
   const scored = target && !state.running && Number.isFinite(state.score);
   const score = scored ? `${text("target.score", { score: number(state.score) })} · ` : "";
   setText(view.score, target ? score + scoreText(state) : "");

@@ -456,13 +456,16 @@ impl<'p, T: Transport> Keeper<'p, T> {
 
     fn publish_target(&mut self) {
         self.score_at = Instant::now();
-        let target = self.pace.as_ref().map_or(Value::Null, |pace| {
-            let mut text = json!(pace.score());
-            text["target"] = json!(pace.target());
-            text["running"] = json!(pace.is_scoring());
-            text["verdict"] = json!(pace.verdict());
-            text
-        });
+        let target = match &self.pace {
+            None => json!({ "target": Value::Null }),
+            Some(pace) => {
+                let mut target = json!(pace.score());
+                target["target"] = json!(pace.target());
+                target["running"] = json!(pace.is_scoring());
+                target["verdict"] = json!(pace.verdict());
+                target
+            }
+        };
         self.publish(|latest| &mut latest.target, &json!({ "target": target }));
     }
 
