@@ -21,8 +21,8 @@ export function makeLeg(host) {
   const arc = svg("path", { class: "arc" });
   const drawing = svg(
     "svg",
-    { viewBox: "0 0 300 200", role: "img" },
-    svg("path", { class: "bench", d: "M6 100 H122 V192" }),
+    { viewBox: "0 0 300 212", role: "img" },
+    svg("path", { class: "bench", d: "M6 100 H122 V204" }),
     svg("path", {
       class: "skin",
       d: "M8 30 C50 24 110 34 150 38 C166 40 174 52 173 62 C172 76 162 86 150 86 C110 92 50 100 8 98 Z",

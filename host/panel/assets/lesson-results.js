@@ -7,6 +7,8 @@ import { disorderName, levelName } from "./names.js";
 import { request, say } from "./report.js";
 import { number, text, textOr } from "./strings.js";
 
+const LEVELS = ["mild", "moderate", "severe"];
+
 const interval = (kappa) =>
   kappa
     ? text("results.interval", {
@@ -53,8 +55,8 @@ function studentTable(summary) {
   );
 }
 
-const nameOf = (name) =>
-  ["mild", "moderate", "severe"].includes(name) ? levelName(name) : disorderName(name);
+// Without the explanation behind it: a matrix has little room.
+const nameOf = (name) => (LEVELS.includes(name) ? levelName(name) : disorderName(name).split(/[:(]/)[0].trim());
 
 function matrix(part, title) {
   const { rows, columns, counts } = part.confusion;

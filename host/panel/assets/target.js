@@ -61,9 +61,9 @@ function build() {
     el("option", { value: ":metronome" }, text("target.own-metronome")),
   );
   view.choice.value = kept;
-  view.low = el("input", { type: "number", min: 1, max: 400, value: view.low?.value ?? 20 });
-  view.high = el("input", { type: "number", min: 1, max: 400, value: view.high?.value ?? 60 });
-  view.rate = el("input", { type: "number", min: 20, max: 240, value: view.rate?.value ?? 60 });
+  view.low = el("input", { type: "number", min: 1, max: 600, value: view.low?.value ?? 20 });
+  view.high = el("input", { type: "number", min: 1, max: 600, value: view.high?.value ?? 60 });
+  view.rate = el("input", { type: "number", min: 10, max: 240, value: view.rate?.value ?? 60 });
   view.set = [0, 1].map(() => el("button", { type: "button", onclick: applyOwn }, text("target.set")));
   view.own = el(
     "div",

@@ -10,7 +10,6 @@ use crate::interrupt;
 use crate::line::{Line, failure, failure_with};
 use clap::Args;
 use crepitus_client::{Begin, Client, Event};
-use crepitus_protocol::host::Status;
 use crepitus_protocol::telemetry::Block;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::Duration;
@@ -42,18 +41,23 @@ pub(crate) trait Follower {
 
     /// Called every few milliseconds; returns whether to stop.
     fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure>;
+
+    /// Tells the user that something has happened.
+    fn tell(&mut self, text: &str) {
+        eprintln!("{text}");
+    }
 }
 
 /// Whether to arm, for verbs that can do without.
-#[derive(Args, Clone, Copy, Debug)]
+#[derive(Args, Clone, Copy, Debug, Default)]
 pub(crate) struct Arming {
     /// Arm first, and disarm at the end.
     #[arg(long)]
-    arm: bool,
+    pub(crate) arm: bool,
 
     /// Set the angle's zero before: hold the leg straight.
     #[arg(long)]
-    zero: bool,
+    pub(crate) zero: bool,
 }
 
 impl Arming {
@@ -112,17 +116,22 @@ fn run(
             match event {
                 Event::Block(arrival) => follower.block(client, &arrival.block)?,
                 // What ends an armed device is reported below.
-                Event::State(change) if !arm => warn(&change.now),
-                Event::DriveRestarted => eprintln!("warning: the drive has restarted"),
-                Event::Silent(silence) => eprintln!(
+                Event::State(change) if !arm => {
+                    // Of a device that this program has not armed.
+                    for fault in device_text::faults(&change.now) {
+                        follower.tell(&format!("warning: {fault}"));
+                    }
+                }
+                Event::DriveRestarted => follower.tell("warning: the drive has restarted"),
+                Event::Silent(silence) => follower.tell(&format!(
                     "warning: no samples for {} ms, but the connection is open",
                     silence.as_millis()
-                ),
+                )),
                 Event::Lost(error) => {
-                    eprintln!(
+                    follower.tell(&format!(
                         "warning: {error}; reconnecting for up to {} s",
                         RECONNECT_TIMEOUT.as_secs()
-                    );
+                    ));
                     reconnect(client, arm, follower)?;
                     break;
                 }
@@ -159,7 +168,7 @@ fn reconnect(
     follower: &mut impl Follower,
 ) -> Result<(), Failure> {
     let back = client.reconnect(RECONNECT_TIMEOUT).map_err(failure)?;
-    eprintln!("reconnected");
+    follower.tell("reconnected");
     if let Some(resubscribed) = back.resubscribed {
         follower.resumed(resubscribed.begin)?;
     }
@@ -171,13 +180,6 @@ fn reconnect(
         ));
     }
     Ok(())
-}
-
-/// Prints the faults of a device that this program has not armed.
-fn warn(status: &Status) {
-    for fault in device_text::faults(status) {
-        eprintln!("warning: {fault}");
-    }
 }
 
 #[cfg(test)]

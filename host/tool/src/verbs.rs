@@ -14,6 +14,7 @@ pub(crate) mod effects;
 pub(crate) mod export;
 pub(crate) mod identify_actuator;
 pub(crate) mod info;
+pub(crate) mod monitor;
 pub(crate) mod panel;
 pub(crate) mod params;
 pub(crate) mod presets;
@@ -54,6 +55,7 @@ macro_rules! verbs {
 verbs! {
     Demo: demo,
     Panel: panel,
+    Monitor: monitor,
     Devices: devices,
     Info: info,
     Doctor: doctor,

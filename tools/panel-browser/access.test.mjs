@@ -1,0 +1,91 @@
+// For everybody: axe-core, keyboard alone, sizes from a phone to 4K, light and dark.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { after, before, test } from "node:test";
+import { endAll, openControlling, openLive, startPanel, until, untilState } from "./harness.mjs";
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const WIDTHS = [390, 1280, 3840];
+let panel;
+
+before(async () => {
+  panel = await startPanel();
+});
+after(endAll);
+
+for (const colorScheme of ["light", "dark"]) {
+  for (const width of WIDTHS) {
+    test(`axe finds nothing: ${width} px, ${colorScheme}`, async () => {
+      const viewport = { width, height: width > 2000 ? 2160 : 844 };
+      const page = await openControlling(panel.teacher, { viewport, colorScheme, reducedMotion: "reduce" });
+      for (const tab of ["Live", "Knee", "Lesson", "Recordings"]) {
+        const button = page.getByRole("tab", { name: tab });
+        // Beside the other parts, live has no tab.
+        if (await button.isVisible()) await button.click();
+        if (tab === "Knee") await page.getByText("All parameters").click();
+        // Playwright's own evaluation is not bound by the page's policy.
+        await page.evaluate(AXE);
+        const { violations } = await page.evaluate(() => window.axe.run());
+        const found = violations.map(({ id, nodes }) => `${tab}: ${id}: ${nodes[0].html}`);
+        assert.deepEqual(found, []);
+        const [wide, small] = await page.evaluate(() => {
+          const sizes = [...document.querySelectorAll("body *")]
+            .filter((node) => node.checkVisibility() && [...node.childNodes].some((c) => c.nodeType === 3 && c.data.trim()))
+            .map((node) => [parseFloat(getComputedStyle(node).fontSize), node.outerHTML.slice(0, 80)]);
+          return [document.documentElement.scrollWidth - innerWidth, sizes.filter(([size]) => size < 14)];
+        });
+        assert.ok(wide <= 0, `${tab} is ${wide} px too wide`);
+        assert.deepEqual(small, [], "text below 14 px");
+      }
+      await page.context().close();
+    });
+  }
+}
+
+test("everything can be done without a mouse", async () => {
+  const page = await openLive(panel.teacher);
+  const press = async (name) => {
+    for (let nth = 0; nth < 60; nth++) {
+      await page.keyboard.press("Tab");
+      const focused = await page.evaluate(() => document.activeElement?.textContent.trim() ?? "");
+      if (focused.startsWith(name)) {
+        const outline = await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle);
+        assert.notEqual(outline, "none", `the focus of ${name} is not visible`);
+        await page.keyboard.press("Enter");
+        return;
+      }
+    }
+    assert.fail(`${name} is not reached with Tab`);
+  };
+  await press("Take control");
+  await page.locator("#holder", { hasText: "you" }).waitFor();
+  await page.evaluate(() => document.activeElement.blur());
+  await press("Arm");
+  await untilState(page, "armed");
+  await page.keyboard.press("n");
+  await page.keyboard.type("caught at half");
+  await page.keyboard.press("Enter");
+  await page.locator("#note-list li", { hasText: "caught at half" }).waitFor();
+  await page.keyboard.press("Escape");
+  await untilState(page, "disarmed");
+  await page.locator("#tab-knee").focus();
+  await page.keyboard.press("ArrowRight");
+  await until(page, "the next tab", () => document.activeElement.id === "tab-lesson");
+  await page.context().close();
+});
+
+test("state and faults are announced", async () => {
+  const page = await openLive(panel.viewer);
+  assert.equal(await page.locator("#state").getAttribute("role"), "status");
+  assert.equal(await page.locator("#faults").getAttribute("role"), "alert");
+  await page.context().close();
+});
+
+test("with reduced motion nothing is animated", async () => {
+  const page = await openLive(panel.viewer, { reducedMotion: "reduce" });
+  const animated = await page.evaluate(() => document.getAnimations().length);
+  assert.equal(animated, 0);
+  await page.context().close();
+});

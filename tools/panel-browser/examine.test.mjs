@@ -1,0 +1,98 @@
+// A teacher opens the panel, chooses a knee, arms, looks, and stops.
+
+import assert from "node:assert/strict";
+import { after, test } from "node:test";
+import { endAll, openControlling, openLive, openPage, startPanel, until, untilState } from "./harness.mjs";
+
+after(endAll);
+
+/** Largest torque of the last second on the screen. */
+const largestTorque = async (page, seconds = 3) => {
+  let largest = 0;
+  const last = Date.now() + seconds * 1000;
+  while (Date.now() < last) {
+    const shown = Number((await page.locator("#torque").textContent()).replace("−", "-"));
+    largest = Math.max(largest, Math.abs(shown));
+    await page.waitForTimeout(100);
+  }
+  return largest;
+};
+
+test("choose MAS 2, arm, see the torque follow, stop by key", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  const spasticity = page.locator("#knee .card", { hasText: "Spasticity (modified" });
+  await spasticity.getByRole("radio", { name: /MAS 2.*catch/ }).check({ force: true });
+  await spasticity.getByRole("button", { name: "Apply" }).click();
+  await page.locator("#knee-now", { hasText: "MAS 2" }).waitFor();
+  await page.getByRole("button", { name: "Arm", exact: true }).click();
+  await untilState(page, "armed");
+  // The simulated examiner stretches it at 60 °/s.
+  const spastic = await largestTorque(page, 5);
+  assert.ok(spastic > 0.2, `${spastic} N·m`);
+  // A field that has the focus does not keep the key.
+  await page.locator("#note").focus();
+  const pressed = Date.now();
+  await page.keyboard.press("Escape");
+  await untilState(page, "disarmed");
+  const took = Date.now() - pressed;
+  assert.ok(took < 500, `${took} ms`);
+  assert.ok((await largestTorque(page, 1)) < 0.01);
+  assert.deepEqual(page.problems, []);
+});
+
+test("parameters: changes are collected, sent as one, and marked", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  await page.getByText("All parameters").click();
+  await page.getByLabel("Search parameters").fill("kinetic_torque");
+  const field = page.getByRole("spinbutton", { name: /kinetic_torque_nm/ });
+  await field.fill("0.3");
+  await page.getByRole("button", { name: "Apply changes (1)" }).click();
+  await page.getByText("● differs from the default").first().waitFor();
+  const viewer = await openLive(panel.viewer);
+  await viewer.getByText("All parameters").click();
+  await viewer.getByLabel("Search parameters").fill("kinetic_torque");
+  await until(viewer, "the value", () =>
+    [...document.querySelectorAll("input[type=number]")].some((input) => input.value === "0.3"),
+  );
+  assert.deepEqual([...page.problems, ...viewer.problems], []);
+});
+
+test("a target speed is shown, judged and scored", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  await page.locator("#target select").first().selectOption("slow");
+  await page.getByRole("button", { name: "Start scoring" }).click();
+  await page.getByText(/too fast|right|too slow/).first().waitFor();
+  await page.waitForTimeout(4500);
+  await page.getByRole("button", { name: "Stop scoring" }).click();
+  await page.getByText(/Score \d+ of 100/).waitFor();
+  assert.deepEqual(page.problems, []);
+});
+
+test("another language is one file away", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  await page.locator("#language").selectOption("de");
+  await page.getByRole("tab", { name: "Aufnahmen" }).waitFor();
+  assert.equal(await page.evaluate(() => document.documentElement.lang), "de");
+  await page.reload();
+  await page.getByRole("tab", { name: "Aufnahmen" }).waitFor();
+  // Every text has a translation: no key is left on the page.
+  const text = await page.evaluate(() => document.body.innerText);
+  assert.ok(!/\b[a-z]+\.[a-z-]+\.[a-z-]+\b/.test(text), text);
+});
+
+test("the first curve comes within a second, and frames join", async () => {
+  const panel = await startPanel();
+  await (await openPage(panel.teacher)).close();
+  const began = Date.now();
+  const page = await openLive(panel.teacher);
+  const took = Date.now() - began;
+  assert.ok(took < 1000, `${took} ms`);
+  await page.waitForTimeout(2000);
+  const stats = await page.evaluate(() => window.crepitusStats);
+  assert.equal(stats.missing, 0);
+  assert.ok(stats.bins > 300, `${stats.bins} bins`);
+});

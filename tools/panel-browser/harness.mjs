@@ -1,0 +1,134 @@
+// Starts the panel, a simulated device and a browser; ends them all.
+
+import { spawn } from "node:child_process";
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+
+const here = import.meta.dirname;
+export const CREPITUS = process.env.CREPITUS ?? join(here, "../../target/debug/crepitus");
+const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
+
+const FLAGS = [
+  "--no-sandbox",
+  "--disable-gpu",
+  "--disable-quic",
+  "--no-first-run",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-sync",
+  // As somebody who does name-server tricks would have it.
+  "--host-resolver-rules=MAP rebound.example 127.0.0.1",
+];
+
+const children = new Set();
+const folders = [];
+let browser = null;
+
+/** A folder that is removed at the end. */
+export function folder() {
+  const made = mkdtempSync(join(tmpdir(), "crepitus-panel-"));
+  folders.push(made);
+  return made;
+}
+
+/** Starts the program; resolves when its output has what is waited for. */
+export function start(args, pattern, env = {}) {
+  if (!existsSync(CREPITUS)) throw new Error(`${CREPITUS}: build it first, or set CREPITUS`);
+  const child = spawn(CREPITUS, args, {
+    stdio: ["ignore", "pipe", "inherit"],
+    env: { ...process.env, ...env },
+  });
+  children.add(child);
+  child.on("exit", () => children.delete(child));
+  return new Promise((resolve, reject) => {
+    let text = "";
+    child.stdout.on("data", (data) => {
+      text += data;
+      const found = text.match(pattern);
+      if (found) resolve({ child, found });
+    });
+    child.on("exit", (code) => reject(new Error(`crepitus ${args.join(" ")} ended with ${code}: ${text}`)));
+  });
+}
+
+/** The panel, and its links. */
+export async function startPanel(args = ["--device", "sim"], env = {}) {
+  const own = { CREPITUS_PRESETS: folder(), ...env };
+  const { child, found } = await start(["panel", "--json", ...args], /\{[\s\S]*\n\}/, own);
+  return { child, ...JSON.parse(found[0]) };
+}
+
+/** A simulated device in a process of its own. */
+export async function startDevice(home, args = []) {
+  const env = { XDG_RUNTIME_DIR: home };
+  const { child } = await start(["serve-sim", "--name", "knee", "--json", ...args], /"port"/, env);
+  return child;
+}
+
+/** Ends a process and waits for it. */
+export function end(child, signal = "SIGINT") {
+  return new Promise((resolve) => {
+    if (child.exitCode !== null || child.signalCode !== null) return resolve(child.exitCode);
+    child.on("exit", resolve);
+    return child.kill(signal);
+  });
+}
+
+/** The one browser of a test file. */
+export async function browserOf() {
+  browser ??= await chromium.launch({ executablePath: CHROMIUM, args: FLAGS });
+  return browser;
+}
+
+/** A page of its own context, with its errors in `page.problems`. */
+export async function openPage(link, options = {}) {
+  const context = await (await browserOf()).newContext({ viewport: { width: 1280, height: 900 }, ...options });
+  const page = await context.newPage();
+  page.problems = [];
+  page.on("console", (message) => message.type() === "error" && page.problems.push(message.text()));
+  page.on("pageerror", (error) => page.problems.push(error.message));
+  await page.goto(link);
+  return page;
+}
+
+/** A page that has its first curves. */
+export async function openLive(link, options) {
+  const page = await openPage(link, options);
+  await until(page, "the first bins", () => window.crepitusStats?.bins > 0);
+  return page;
+}
+
+/** A page that has control. */
+export async function openControlling(link, options) {
+  const page = await openLive(link, options);
+  await page.getByRole("button", { name: "Take control" }).click();
+  await page.locator("#holder", { hasText: "you" }).waitFor();
+  return page;
+}
+
+/** Waits until this holds in the page: its policy forbids what Playwright injects for that. */
+export async function until(page, what, condition, argument, timeout = 20_000) {
+  const last = Date.now() + timeout;
+  while (!(await page.evaluate(condition, argument).catch(() => false))) {
+    if (Date.now() > last) {
+      throw new Error(`waited for ${what}; state ${await page.locator("#state").textContent()}`);
+    }
+    await new Promise((resolve) => setTimeout(resolve, 10));
+  }
+}
+
+/** Waits for a state of the device. */
+export function untilState(page, state) {
+  const shows = (wanted) => document.getElementById("state").dataset.state === wanted;
+  return until(page, state, shows, state);
+}
+
+/** Ends everything. */
+export async function endAll() {
+  await browser?.close();
+  browser = null;
+  await Promise.all([...children].map((child) => end(child, "SIGKILL")));
+  for (const made of folders) rmSync(made, { recursive: true, force: true });
+}
