@@ -119,16 +119,35 @@ export async function until(page, what, condition, argument, timeout = 20_000) {
   }
 }
 
+/** Arms. On a busy computer the page may answer too late once: then it is armed again, as a person would. */
+export async function arm(page) {
+  for (let attempt = 1; ; attempt++) {
+    await page.locator("#arm").click();
+    try {
+      return await until(page, "armed", () => document.getElementById("state").dataset.state === "armed", null, 3000);
+    } catch (error) {
+      const said = await page.locator("#message").textContent();
+      if (attempt === 5 || !said.includes("200 ms")) throw error;
+    }
+  }
+}
+
 /** Waits for a state of the device. */
 export function untilState(page, state) {
   const shows = (wanted) => document.getElementById("state").dataset.state === wanted;
   return until(page, state, shows, state);
 }
 
+/** Ends the programs and pages of a test: simulated devices would slow the next one. */
+export async function endTest() {
+  await Promise.all(browser?.contexts().map((context) => context.close()) ?? []);
+  await Promise.all([...children].map((child) => end(child, "SIGKILL")));
+}
+
 /** Ends everything. */
 export async function endAll() {
+  await endTest();
   await browser?.close();
   browser = null;
-  await Promise.all([...children].map((child) => end(child, "SIGKILL")));
   for (const made of folders) rmSync(made, { recursive: true, force: true });
 }

@@ -3,9 +3,10 @@
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
-import { after, test } from "node:test";
-import { endAll, folder, openControlling, openLive, startPanel, until, untilState } from "./harness.mjs";
+import { after, afterEach, test } from "node:test";
+import { arm, endAll, endTest, folder, openControlling, openLive, startPanel, until, untilState } from "./harness.mjs";
 
+afterEach(endTest);
 after(endAll);
 
 test("six knees blind, two students, to the printed report", async () => {
@@ -13,8 +14,7 @@ test("six knees blind, two students, to the printed report", async () => {
   const panel = await startPanel(["--device", "sim", "--sessions", sessions]);
   const page = await openControlling(panel.teacher);
   const viewer = await openLive(panel.viewer);
-  await page.getByRole("button", { name: "Arm", exact: true }).click();
-  await untilState(page, "armed");
+  await arm(page);
   await page.getByRole("tab", { name: "Lesson" }).click();
   await page.getByRole("radio", { name: /Six knees/ }).check({ force: true });
   await page.getByLabel("Pseudonyms").fill("A\nB");
@@ -38,7 +38,9 @@ test("six knees blind, two students, to the printed report", async () => {
       await form.getByRole("button", { name: "Save the answer" }).click();
       await until(page, `the answer of ${student}`, (name) =>
         [...document.querySelectorAll(".answers li")].some((line) =>
-          line.textContent.startsWith(`${name}:`) && line.textContent.includes("confidence")), student);
+          line.textContent.startsWith(`${name}:`) && !line.textContent.includes("no answer")), student);
+      // Nobody sees what another one has answered.
+      if (student === "A") assert.ok(!/spasticity|healthy/i.test(await page.locator(".answers").innerText()));
     }
     // All have answered: now it is told.
     await page.locator(".answers .tag").first().waitFor();
@@ -68,8 +70,7 @@ test("recordings: opened, zoomed to single samples, compared", async () => {
   const sessions = folder();
   const panel = await startPanel(["--device", "sim", "--sessions", sessions]);
   const page = await openControlling(panel.teacher);
-  await page.getByRole("button", { name: "Arm", exact: true }).click();
-  await untilState(page, "armed");
+  await arm(page);
   for (let nth = 0; nth < 2; nth++) {
     await page.getByRole("button", { name: "Record", exact: true }).click();
     await page.getByRole("button", { name: "Stop recording" }).waitFor();

@@ -5,7 +5,7 @@
 
 import { readFileSync } from "node:fs";
 import { WebSocket } from "ws";
-import { end, endAll, openControlling, startPanel, untilState } from "./harness.mjs";
+import { arm, end, endAll, openControlling, startPanel, untilState } from "./harness.mjs";
 
 const at = process.argv.indexOf("--minutes");
 const minutes = at < 0 ? 0 : Number(process.argv[at + 1]);
@@ -38,8 +38,7 @@ function viewer(link) {
 
 const panel = await startPanel();
 const page = await openControlling(panel.teacher);
-await page.getByRole("button", { name: "Arm", exact: true }).click();
-await untilState(page, "armed");
+await arm(page);
 
 /** Ten seconds on the screen. */
 async function screen() {

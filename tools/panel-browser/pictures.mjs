@@ -5,7 +5,7 @@
 
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
-import { endAll, folder, openControlling, startPanel, untilState } from "./harness.mjs";
+import { arm, endAll, folder, openControlling, startPanel, untilState } from "./harness.mjs";
 
 const isBook = process.argv[2] === "--book";
 const out = isBook ? join(import.meta.dirname, "../../docs/images") : (process.argv[2] ?? "out/panel");
@@ -16,8 +16,7 @@ const panel = await startPanel(["--device", "sim", "--sessions", folder()]);
 async function shown(width, colorScheme, show) {
   const height = width > 2000 ? 2160 : width > 1000 ? 900 : 844;
   const page = await openControlling(panel.teacher, { viewport: { width, height }, colorScheme });
-  await page.getByRole("button", { name: "Arm", exact: true }).click();
-  await untilState(page, "armed");
+  await arm(page);
   await show(page);
   await page.context().close();
 }

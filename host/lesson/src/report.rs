@@ -6,7 +6,7 @@
 mod keys;
 mod words;
 
-pub use keys::{KEYS, Key};
+pub use keys::KEYS;
 
 use crate::finding::Finding;
 use crate::lesson::Answer;

@@ -94,13 +94,13 @@ pub struct AnswerView {
     pub student: String,
     /// Trial, from 1.
     pub trial: usize,
-    /// Disorder.
-    pub disorder: Finding,
-    /// Level.
+    /// Disorder; `None` while the knee is hidden: students judge without each other.
+    pub disorder: Option<Finding>,
+    /// Level; `None` while the knee is hidden, and if none was given.
     #[serde(with = "level_name")]
     pub level: Option<Level>,
-    /// Confidence, 1 to 5.
-    pub confidence: u8,
+    /// Confidence, 1 to 5; `None` while the knee is hidden.
+    pub confidence: Option<u8>,
     /// Whether the disorder is right; `None` while it is hidden.
     pub right: Option<bool>,
     /// Whether the level is right; `None` while it is hidden, and where the knee or the answer
@@ -166,9 +166,9 @@ impl Lesson {
         AnswerView {
             student: answer.student.clone(),
             trial: answer.trial,
-            disorder: answer.disorder,
-            level: answer.level,
-            confidence: answer.confidence,
+            disorder: revealed.then_some(answer.disorder),
+            level: answer.level.filter(|_| revealed),
+            confidence: revealed.then_some(answer.confidence),
             right: revealed.then(|| answer.is_right(knee)),
             level_right: answer.is_level_right(knee).filter(|_| revealed),
         }

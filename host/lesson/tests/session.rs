@@ -179,11 +179,13 @@ fn check_files(folder: &SessionFolder, session: &Session) {
 
 /// The report in both languages, kept beside each other.
 fn reports(folder: &SessionFolder, session: &Session) -> [(&'static str, String); 2] {
-    [("en", 0), ("de", 1)].map(|(name, language)| {
+    ["en", "de"].map(|name| {
+        let strings = Path::new(env!("CARGO_MANIFEST_DIR")).join("../panel/assets/strings");
+        let table = fs::read_to_string(strings.join(name).with_extension("json")).unwrap();
+        let table: BTreeMap<String, String> = serde_json::from_str(&table).unwrap();
         let text = |key: &str| {
-            let found = report::KEYS.iter().find(|k| k.key == key);
-            let found = found.unwrap_or_else(|| panic!("{key} has no text"));
-            [found.en, found.de][language].to_owned()
+            assert!(report::KEYS.contains(&key), "{key} is not in the list");
+            table[key].clone()
         };
         let path = folder.save_report(session, &text).unwrap();
         let copy = folder.path().join(format!("report-{name}.html"));

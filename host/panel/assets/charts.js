@@ -83,6 +83,7 @@ export class Charts {
         width: 300,
         height: 150,
         pxAlign: false,
+        padding: [6, rootSize(), 0, 0],
         legend: { show: false },
         cursor: this.onRange
           ? { y: false, points: { show: false }, drag: { x: true, y: false, setScale: false } }

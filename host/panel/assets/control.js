@@ -1,7 +1,7 @@
 // The header: state, who controls, control buttons with the reason why one is
 // disabled, stop, faults.
 
-import { isController, isReplay, isTeacher, latest, on } from "./connection.js";
+import { ask, isController, isReplay, isTeacher, latest, on } from "./connection.js";
 import { byId, el, setText } from "./dom.js";
 import { confirmed } from "./dialogs.js";
 import { request, say } from "./report.js";
@@ -87,9 +87,18 @@ function showState() {
   showControls();
 }
 
-function pageLink(page) {
-  if (!/^https?:\/\//.test(page)) return el("span", null, text("fault.page", { page }));
-  return el("a", { href: page, target: "_blank", rel: "noopener noreferrer" }, text("fault.link"));
+/** The fault's page of the book, read when it is opened. */
+function bookPage(code) {
+  const inside = el("div");
+  const load = async () => {
+    if (inside.childElementCount) return;
+    const page = await ask("fault", { code }).catch((error) => say(error.message, true));
+    if (!page) return;
+    const rows = page.rows.map(([name, value]) => el("div", null, el("dt", null, name), el("dd", null, value)));
+    const paragraphs = page.paragraphs.map((paragraph) => el("p", null, paragraph));
+    inside.replaceChildren(el("dl", { class: "facts" }, ...rows), ...paragraphs);
+  };
+  return el("details", { ontoggle: load }, el("summary", null, text("fault.more")), inside);
 }
 
 let faultsShown = "";
@@ -107,7 +116,7 @@ function showFaults() {
       el("strong", null, text(coil ? "fault.coil-title" : "fault.title", fault)),
       el("p", null, text("fault.cause", fault)),
       el("p", null, text("fault.remedy", fault)),
-      fault.page && el("p", { class: "hint" }, pageLink(fault.page)),
+      coil ? null : bookPage(code),
     );
   });
   if (items.length && isController()) {

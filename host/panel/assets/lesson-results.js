@@ -56,7 +56,8 @@ function studentTable(summary) {
 }
 
 // Without the explanation behind it: a matrix has little room.
-const nameOf = (name) => (LEVELS.includes(name) ? levelName(name) : disorderName(name).split(/[:(]/)[0].trim());
+const nameOf = (name) =>
+  LEVELS.includes(name) ? levelName(name) : disorderName(name).split(/[:(]/)[0].trim();
 
 function matrix(part, title) {
   const { rows, columns, counts } = part.confusion;
@@ -99,7 +100,7 @@ function matrix(part, title) {
 }
 
 async function openReport() {
-  const ok = await request("report");
+  const ok = await request("report", { language: document.documentElement.lang });
   if (!ok) return;
   // A path of this server, never an address that a message could bring in.
   if (!/^\/report\/[\w-]+$/.test(ok.path)) return say(text("results.bad-report"), true);

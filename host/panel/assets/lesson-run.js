@@ -1,17 +1,17 @@
 // A running lesson: instruction, time left, answers. What is hidden comes as
 // null from the server; the page has nothing to keep secret.
 
-import { isController, latest } from "./connection.js";
+import { latest } from "./connection.js";
 import { controlReason } from "./control.js";
 import { confirmed } from "./dialogs.js";
 import { el, field, freshId, setText, tick } from "./dom.js";
 import { disorderName, levelName, presetTitle } from "./names.js";
+import { liveTime } from "./live.js";
 import { request } from "./report.js";
 import { number, text, textOr } from "./strings.js";
 
 let view = null;
 let trialShown = null;
-let beganAt = null;
 let timer = null;
 
 /** "spasticity, severe" */
@@ -19,6 +19,11 @@ export function kneeText(disorder, level) {
   const name = disorderName(disorder);
   return level ? text("answer.knee", { disorder: name, level: levelName(level) }) : name;
 }
+
+const kneeTitle = ({ preset, disorder, level }) =>
+  disorder && disorder !== "healthy"
+    ? `${presetTitle(preset)} (${kneeText(disorder, level)})`
+    : presetTitle(preset);
 
 const outcome = (is) =>
   is === null || is === undefined
@@ -49,13 +54,15 @@ async function answer(event) {
 }
 
 const answerOf = (lesson, student) =>
-  lesson.answers.find((one) => one.student === student && one.trial === lesson.trial);
+  lesson.answers.findLast((one) => one.student === student && one.trial === lesson.trial);
 
 async function end() {
   const { lesson } = latest;
-  const left = lesson.trial < lesson.trials || lesson.students.some((student) => !answerOf(lesson, student));
+  const left =
+    lesson.trial < lesson.trials ||
+    (lesson.blind && lesson.students.some((student) => !answerOf(lesson, student)));
   if (left && !(await confirmed(text("run.end-early")))) return;
-  await request("lesson-end");
+  await request("lesson-end", { language: document.documentElement.lang });
 }
 
 function answerForm(lesson) {
@@ -131,11 +138,12 @@ export function showRun(host, lesson) {
     why: el("p", { class: "hint" }),
     answers: el("ul", { class: "answers" }),
   };
+  view.answerCard = el("section", { class: "card" }, el("h3", null, text("run.answers")), view.answers);
   trialShown = null;
   const about = [
     text(lesson.blind ? "setup.blind" : "setup.open"),
-    text(lesson.curves ? "run.curves" : "run.no-curves"),
-    text("run.seed", { seed: lesson.seed }),
+    lesson.blind && text(lesson.curves ? "run.curves" : "run.no-curves"),
+    lesson.blind && text("run.seed", { seed: lesson.seed }),
     lesson.stored && text("run.stored", { folder: lesson.stored }),
   ];
   const title = freshId("lesson");
@@ -154,7 +162,7 @@ export function showRun(host, lesson) {
       view.why,
     ),
     answerForm(lesson),
-    el("section", { class: "card" }, el("h3", null, text("run.answers")), view.answers),
+    view.answerCard,
     el("p", { class: "hint" }, about.filter(Boolean).join(" · ")),
   );
   clearInterval(timer);
@@ -165,7 +173,7 @@ export function showRun(host, lesson) {
 function showTime() {
   const { lesson } = latest;
   if (!view || !lesson || lesson.ended) return clearInterval(timer);
-  const left = lesson.began && lesson.time_s ? lesson.time_s - (performance.now() - beganAt) / 1000 : null;
+  const left = lesson.began && lesson.time_s ? lesson.time_s - (liveTime() - lesson.began_s) : null;
   if (left === null) return setText(view.time, "");
   const seconds = Math.max(0, Math.ceil(left));
   const clock = `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
@@ -177,8 +185,7 @@ export function updateRun(lesson) {
   const trial = `${lesson.trial} ${lesson.began}`;
   if (trial !== trialShown) {
     trialShown = trial;
-    view.student.value = lesson.students[0];
-    beganAt = performance.now();
+    view.student.value = lesson.students[0] ?? "";
   }
   const why = controlReason();
   setText(view.trial, text("run.trial", { trial: lesson.trial, trials: lesson.trials }));
@@ -194,10 +201,12 @@ export function updateRun(lesson) {
   setText(
     view.knee,
     text("run.knee", {
-      knee: knee ? `${presetTitle(knee.preset)} (${kneeText(knee.disorder, knee.level)})` : text("hidden"),
+      knee: knee ? kneeTitle(knee) : text("hidden"),
     }),
   );
-  const all = lesson.students.every((student) => answerOf(lesson, student));
+  // An open lesson is shown, not answered.
+  const all = lesson.blind ? lesson.students.every((student) => answerOf(lesson, student)) : lesson.began;
+  view.form.hidden = view.answerCard.hidden = !lesson.blind;
   view.start.disabled = why !== "" || lesson.began;
   view.next.disabled = why !== "" || lesson.trial >= lesson.trials;
   view.end.disabled = why !== "";
@@ -209,7 +218,7 @@ export function updateRun(lesson) {
     why
       ? text("run.disabled", { why })
       : lesson.began
-        ? all
+        ? all && lesson.blind
           ? text("run.all-answered")
           : ""
         : text("run.not-begun"),
@@ -223,13 +232,14 @@ function showAnswers(lesson) {
     ...lesson.students.map((student) => {
       const given = answerOf(lesson, student);
       if (!given) return el("li", null, text("answer.none", { student }));
-      const words = text("answer.line", {
-        student,
-        knee: kneeText(given.disorder, given.level),
-        confidence: given.confidence,
-      });
-      // Without control the page may be one that students see.
-      const shown = lesson.blind && !isController() ? text("answer.given", { student }) : words;
+      // The server hides it until all have answered: they judge without each other.
+      const shown = given.disorder
+        ? text("answer.line", {
+            student,
+            knee: kneeText(given.disorder, given.level),
+            confidence: given.confidence,
+          })
+        : text("answer.given", { student });
       return el("li", null, shown, " ", outcome(given.right));
     }),
   );

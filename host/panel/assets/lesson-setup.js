@@ -91,6 +91,11 @@ function planOf() {
   return { title: entered.title.trim() || text("plan.untitled"), blind, curves, feedback, knees };
 }
 
+const isBlind = () =>
+  entered.lesson
+    ? latest.hello.lessons.find((lesson) => lesson.name === entered.lesson)?.blind
+    : entered.blind;
+
 async function begin() {
   const students = [
     ...new Set(
@@ -101,7 +106,7 @@ async function begin() {
     ),
   ];
   const most = latest.hello.students_max;
-  if (!students.length || students.length > most) {
+  if ((!students.length && isBlind()) || students.length > most) {
     return setText(view.problem, text("setup.bad-students", { most }));
   }
   const seed = String(entered.seed).trim();

@@ -13,7 +13,7 @@ const WINDOWS = [5, 10, 30];
 const BINS_A_SECOND = 200;
 const KEPT = 2000;
 
-const stats = { frames: 0, bins: 0, paints: 0, missing: 0, latencies: [], draws: [] };
+const stats = { frames: 0, bins: 0, paints: 0, missing: 0, first: null, latencies: [], draws: [] };
 window.crepitusStats = stats;
 
 const bins = new RecentBins(32 * BINS_A_SECOND);
@@ -122,6 +122,8 @@ function paint(now) {
   const arrived = bins.arrived;
   // uPlot draws in a microtask; after it the pixels are there.
   queueMicrotask(() => {
+    // Since the navigation began.
+    if (end > begin) stats.first ??= performance.now();
     keep(stats.draws, performance.now() - began);
     if (arrived) keep(stats.latencies, performance.timeOrigin + performance.now() - arrived);
   });
@@ -164,6 +166,9 @@ function showCounters() {
     setText(host.children[i].children[1], value);
   });
 }
+
+/** The end of the live time line, s. */
+export const liveTime = () => (bins.end > bins.begin ? bins.columns.t[bins.end - 1] : 0);
 
 /** The charts' target band. */
 export function setBand(band) {

@@ -32,14 +32,12 @@ pub(crate) fn tables(source: &Value, sessions: Option<&Path>) -> Value {
             "name": fault.name,
             "cause": fault.cause,
             "remedy": fault.clear,
-            "page": format!("faults.html#{}-{}", fault.fault as u8, fault.name),
         })).collect::<Vec<_>>(),
         "coil_faults": COIL_FAULTS.iter().map(|fault| json!({
             "code": fault.fault as u8,
             "name": fault.name,
             "cause": fault.cause,
             "remedy": fault.clear,
-            "page": "faults.html",
         })).collect::<Vec<_>>(),
         "lessons": plans::FILES.iter().filter_map(|file| {
             // A test reads every one.
@@ -143,17 +141,6 @@ fn groups() -> Vec<Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn every_fault_has_its_page_in_the_book() {
-        let book = include_str!("../../../docs/faults.md");
-        let tables = tables(&Value::Null, None);
-        for fault in tables["faults"].as_array().unwrap() {
-            let page = fault["page"].as_str().unwrap();
-            let anchor = page.trim_start_matches("faults.html");
-            assert!(book.contains(&format!("({anchor})")), "{page}");
-        }
-    }
 
     #[test]
     fn a_preset_lists_what_it_sets() {

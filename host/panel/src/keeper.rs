@@ -394,6 +394,7 @@ impl<'p, T: Transport> Keeper<'p, T> {
             // Of the server and the archive.
             Request::Take
             | Request::Release
+            | Request::Fault { .. }
             | Request::Recordings
             | Request::Open { .. }
             | Request::Trace { .. } => Err("this is not for the device".to_owned()),

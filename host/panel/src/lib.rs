@@ -19,7 +19,7 @@
 //! | what is done with the device | `keeper.rs` |
 //! | who turns torque off when a page hangs | `watchdog.rs` |
 //! | the layout of frames | `frame.rs` |
-//! | the tables that a page shows | `hello.rs` |
+//! | the tables that a page shows | `hello.rs`, `book.rs` |
 //! | the page itself | `assets` |
 #![forbid(unsafe_code)]
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -27,6 +27,7 @@
 
 mod archive;
 mod assets;
+mod book;
 mod control;
 mod frame;
 mod guard;

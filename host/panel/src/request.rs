@@ -92,6 +92,8 @@ pub(crate) enum Request {
         #[serde(default)]
         language: String,
     },
+    /// The page of the book about a fault.
+    Fault { code: u8 },
     /// The recordings that there are.
     Recordings,
     /// Facts of one.
@@ -185,7 +187,7 @@ impl Request {
     /// Who may make it.
     pub(crate) fn right(&self) -> Right {
         match self {
-            Self::Stop => Right::Anybody,
+            Self::Stop | Self::Fault { .. } => Right::Anybody,
             Self::Take
             | Self::Release
             | Self::Note { .. }
@@ -259,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn only_stop_is_for_everybody() {
+    fn stop_is_for_everybody() {
         assert_eq!(Request::Stop.right(), Right::Anybody);
         assert_eq!(Request::Arm.right(), Right::Control);
         assert_eq!(

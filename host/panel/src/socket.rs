@@ -4,6 +4,7 @@
 //! that hangs delays nobody.
 
 use crate::archive::{Asked, Found, Question};
+use crate::book;
 use crate::control::Page;
 use crate::request::{Message as FromPage, Request, Right};
 use crate::shared::{Latest, Outcome, Shared};
@@ -206,6 +207,9 @@ async fn execute(request: Request, page: Page, role: Role, shared: &Shared) -> O
         Request::Release => {
             leave(page, shared).await;
             Ok(Value::Null)
+        }
+        Request::Fault { code } => {
+            book::fault(code).ok_or_else(|| format!("there is no fault {code}"))
         }
         Request::Recordings => ask(Asked::List, shared).await,
         Request::Open { recording } => ask(Asked::Open { recording }, shared).await,

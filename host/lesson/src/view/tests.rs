@@ -79,6 +79,13 @@ fn answers_are_judged_once_all_have_answered() {
     lesson.answer("A", "clonus", None, 4, 7.0).unwrap();
     let view = lesson.view(None);
     assert_eq!((view.knee, view.answers[0].right), (None, None));
+    // B does not see what A has answered.
+    let answer = &view.answers[0];
+    assert_eq!(answer.student, "A");
+    assert_eq!(
+        (answer.disorder, answer.level, answer.confidence),
+        (None, None, None)
+    );
     lesson
         .answer("B", "spasticity", Some("moderate"), 4, 7.0)
         .unwrap();

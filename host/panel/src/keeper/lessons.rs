@@ -21,6 +21,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 pub(super) struct Held {
     session: Session,
     folder: Option<SessionFolder>,
+    /// Time at which the current trial began, s.
+    began_s: f64,
 }
 
 impl Held {
@@ -83,7 +85,11 @@ impl<T: Transport> Keeper<'_, T> {
             None => None,
         };
         self.end_recording();
-        self.lesson = Some(Held { session, folder });
+        self.lesson = Some(Held {
+            session,
+            folder,
+            began_s: 0.0,
+        });
         self.publish_lesson();
         Ok(json!({ "seed": seed }))
     }
@@ -98,6 +104,7 @@ impl<T: Transport> Keeper<'_, T> {
         self.apply_unseen(&preset)?;
         if let Some(held) = &mut self.lesson {
             held.session.lesson = lesson;
+            held.began_s = self.now_s;
         }
         if let Some(target) = target.and_then(|name| Target::find(&name)) {
             let mut pace = crepitus_live::Pace::new(target);
@@ -254,7 +261,10 @@ impl<T: Transport> Keeper<'_, T> {
     pub(super) fn publish_lesson(&mut self) {
         let lesson = self.lesson.as_ref().map(|held| {
             let stored = held.folder.as_ref().map(|folder| text_of(folder.path()));
-            held.session.lesson.view(stored.as_deref())
+            let mut view = json!(held.session.lesson.view(stored.as_deref()));
+            // On the time line of the frames: a page that is reloaded counts on.
+            view["began_s"] = json!(held.session.lesson.began().then_some(held.began_s));
+            view
         });
         self.publish(|latest| &mut latest.lesson, &json!({ "lesson": lesson }));
     }
