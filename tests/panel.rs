@@ -427,7 +427,19 @@ fn a_blind_lesson_hides_the_knee_until_it_was_named() {
         .collect();
     assert_eq!(trials.len(), 6, "{files:?}");
     let listed = page.ask("recordings", json!({})).unwrap();
-    assert_eq!(listed["files"].as_array().unwrap().len(), 6);
+    let listed = listed["files"].as_array().unwrap();
+    assert_eq!(listed.len(), 6);
+    // A note stands in the recording of its trial, after the time in which it was looked at.
+    let fourth = listed
+        .iter()
+        .find(|file| file["name"].as_str().unwrap().contains("trial-04"));
+    let opened = page
+        .ask("open", json!({ "recording": fourth.unwrap()["id"] }))
+        .unwrap();
+    assert_eq!(opened["notes"].as_array().unwrap().len(), 1, "{opened}");
+    assert_eq!(opened["notes"][0]["text"], "note of 4");
+    let after_s = opened["notes"][0]["time_s"].as_f64().unwrap();
+    assert!((0.5..5.0).contains(&after_s), "{after_s}");
     assert!(panel.end().success());
     let again = names(&session);
     assert!(!again.iter().any(|name| name.starts_with('.')), "{again:?}");

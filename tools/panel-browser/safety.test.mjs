@@ -1,7 +1,9 @@
 // What must not go wrong: who sees and steers, and when torque ends.
 
 import assert from "node:assert/strict";
+import { once } from "node:events";
 import { after, afterEach, test } from "node:test";
+import { connect } from "node:tls";
 import {
   arm, end, endAll, endTest, folder, openControlling, openLive, openPage, startDevice, startPanel, until, untilState,
 } from "./harness.mjs";
@@ -168,4 +170,23 @@ test("a fault says what to do, shows its page of the book, and can be cleared", 
   await page.getByText("Read about it").click();
   await page.getByText("noticed by").waitFor();
   await page.getByRole("button", { name: "Clear fault" }).click();
+});
+
+test("for other computers it is served with TLS, and with the same rules", async () => {
+  const panel = await startPanel(["--device", "sim", "--lan", "127.0.0.1"]);
+  assert.match(panel.teacher, /^https:/);
+  const { hostname, port } = new URL(panel.teacher);
+  const socket = connect({ host: hostname, port, rejectUnauthorized: false });
+  await once(socket, "secureConnect");
+  assert.equal(socket.getPeerCertificate().fingerprint256, panel.certificate);
+  socket.destroy();
+  // Without TLS nothing is answered.
+  await assert.rejects(fetch(`http://${hostname}:${port}/`));
+  const page = await openControlling(panel.teacher, { ignoreHTTPSErrors: true });
+  await arm(page);
+  const rebound = await openPage("about:blank", { ignoreHTTPSErrors: true });
+  const answer = await rebound.goto(`https://rebound.example:${port}/`);
+  assert.equal(answer.status(), 421);
+  await page.keyboard.press("Escape");
+  await untilState(page, "disarmed");
 });

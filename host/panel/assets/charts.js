@@ -41,6 +41,15 @@ const SECOND = { torque: "--second-torque", speed: "--second-speed", angle: "--s
 
 const rootSize = () => Number.parseFloat(getComputedStyle(document.documentElement).fontSize);
 
+/** Decimals that a step needs: 0.25 two, 0.5 one. */
+function decimals(step) {
+  for (let count = 0; count < 6; count++) {
+    const scaled = step * 10 ** count;
+    if (Math.abs(scaled - Math.round(scaled)) < 1e-6 * scaled) return count;
+  }
+  return 6;
+}
+
 /** Charts of bins that share a time axis. */
 export class Charts {
   /**
@@ -140,12 +149,12 @@ export class Charts {
   timeLabel(t, splits) {
     const step = splits.length > 1 ? splits[1] - splits[0] : 1;
     if (this.live) return `${number(Math.round(t - this.view.to) || 0)} s`;
-    return `${number(t, Math.max(0, Math.min(6, Math.ceil(-Math.log10(step) - 1e-6))))} s`;
+    return `${number(t, decimals(step))} s`;
   }
 
   valueLabel(v, splits) {
     const step = splits.length > 1 ? splits[1] - splits[0] : 1;
-    return number(v, Math.max(0, Math.min(4, Math.ceil(-Math.log10(step) - 1e-6))));
+    return number(v, decimals(step));
   }
 
   /** Texts in the chosen language. */

@@ -63,7 +63,7 @@ mod tests {
         for (language, _) in LANGUAGES {
             let strings = Strings::of(language);
             for key in crepitus_lesson::report::KEYS {
-                assert_ne!(strings.text(key), key, "{language}");
+                assert_ne!(strings.text(key), *key, "{language}");
             }
         }
     }

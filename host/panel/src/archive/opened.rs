@@ -1,10 +1,12 @@
 //! A recording that is open.
 
+use crepitus_lesson::{By, Session};
 use crepitus_live::{Bin, Envelope};
 use crepitus_protocol::parameters::{Kind, PARAMETERS};
 use crepitus_protocol::{TICKS_PER_S, Values};
 use crepitus_recording::{Recording, named_values, seconds};
 use serde_json::{Value, json};
+use std::path::Path;
 
 /// Samples of a bin that is kept: a millisecond.
 const ROWS_PER_BIN: u32 = TICKS_PER_S / 1_000;
@@ -96,8 +98,9 @@ impl Opened {
             "seconds": seconds(totals.produced),
             "rows": totals.received,
             "missing": totals.dropped,
-            "breaks": self.breaks,
-            "device": metadata.comms.serial,
+            "events": self.breaks,
+            "device": serial(&metadata.comms.serial),
+            "notes": notes(self.recording.path()),
             "warnings": self.recording.warnings(),
             "parameters": parameters,
             "changes": self.recording.parameters().changes()
@@ -182,6 +185,48 @@ impl Opened {
     }
 }
 
+/// A serial number in hexadecimal, as text if it is one.
+fn serial(hex: &str) -> String {
+    let digits = hex.as_bytes().chunks(2);
+    let bytes: Option<Vec<u8>> = digits
+        .map(|pair| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok())
+        .collect();
+    let text = bytes.filter(|bytes| bytes.iter().all(u8::is_ascii_graphic));
+    let text = text.and_then(|bytes| String::from_utf8(bytes).ok());
+    text.unwrap_or_else(|| hex.to_owned())
+}
+
+/// Notes of the trial that a lesson has recorded in this file, on the file's time line.
+fn notes(file: &Path) -> Vec<Value> {
+    let session = file.parent().and_then(|folder| Session::read(folder).ok());
+    let name = file.file_name().map(|name| name.to_string_lossy());
+    let (Some(session), Some(name)) = (session, name) else {
+        return Vec::new();
+    };
+    let recorded = session.recordings.iter().find(|one| one.file == *name);
+    let Some(trial) = recorded.map(|one| one.trial) else {
+        return Vec::new();
+    };
+    let notes = || {
+        session
+            .lesson
+            .notes()
+            .iter()
+            .filter(|note| note.trial == trial)
+    };
+    // The lesson notes the begin of a trial, which is that of its recording.
+    let Some(begin_s) = notes()
+        .find(|note| note.by == By::Lesson)
+        .map(|note| note.time_s)
+    else {
+        return Vec::new();
+    };
+    notes()
+        .filter(|note| note.by == By::Teacher && note.time_s >= begin_s)
+        .map(|note| json!({ "time_s": note.time_s - begin_s, "text": note.text }))
+        .collect()
+}
+
 /// The tick of a time.
 #[expect(
     clippy::cast_possible_truncation,
@@ -236,6 +281,13 @@ mod tests {
             });
         }
         envelope.finish()
+    }
+
+    #[test]
+    fn a_serial_number_is_shown_as_it_is_written() {
+        assert_eq!(serial("53494d2d434f4d4d532d3031"), "SIM-COMMS-01");
+        assert_eq!(serial("0001ff"), "0001ff");
+        assert_eq!(serial("abc"), "abc");
     }
 
     #[test]

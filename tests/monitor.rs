@@ -1,0 +1,127 @@
+//! `crepitus monitor`, on a terminal.
+#![cfg(target_os = "linux")]
+
+mod support;
+
+use std::io::{Read, Write};
+use std::process::{Command, Stdio};
+use std::sync::{Arc, Mutex};
+use std::thread::{sleep, spawn};
+use std::time::{Duration, Instant};
+use support::served::Served;
+use support::{run, stderr};
+
+/// A program on a terminal of its own, and what it has written so far.
+struct Terminal {
+    child: std::process::Child,
+    shown: Arc<Mutex<String>>,
+}
+
+impl Terminal {
+    /// `script` of util-linux gives it the terminal.
+    fn new(arguments: &str, runtime: Option<&std::path::Path>) -> Self {
+        let program = env!("CARGO_BIN_EXE_crepitus");
+        let mut command = Command::new("script");
+        command
+            .args(["--quiet", "--return", "--command"])
+            .arg(format!("stty rows 40 cols 120; {program} {arguments}"))
+            .arg("/dev/null")
+            .env("TERM", "xterm-256color")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped());
+        if let Some(runtime) = runtime {
+            command.env("XDG_RUNTIME_DIR", runtime);
+        }
+        let mut child = command.spawn().expect("script of util-linux");
+        let shown = Arc::new(Mutex::new(String::new()));
+        let mut out = child.stdout.take().unwrap();
+        let text = shown.clone();
+        spawn(move || {
+            let mut buffer = [0; 4_096];
+            while let Ok(count @ 1..) = out.read(&mut buffer) {
+                let part = String::from_utf8_lossy(&buffer[..count]).into_owned();
+                text.lock().unwrap().push_str(&part);
+            }
+        });
+        Self { child, shown }
+    }
+
+    fn press(&mut self, keys: &str) {
+        let input = self.child.stdin.as_mut().unwrap();
+        input.write_all(keys.as_bytes()).unwrap();
+        input.flush().unwrap();
+    }
+
+    /// Waits for a text; what was shown before is forgotten.
+    fn until(&self, text: &str) {
+        let end = Instant::now() + Duration::from_secs(20);
+        loop {
+            let mut shown = self.shown.lock().unwrap();
+            if let Some(place) = shown.find(text) {
+                shown.drain(..place);
+                return;
+            }
+            assert!(Instant::now() < end, "{text:?} is not on the screen");
+            drop(shown);
+            sleep(Duration::from_millis(10));
+        }
+    }
+
+    fn end(mut self) -> (i32, String) {
+        let code = self.child.wait().unwrap().code().unwrap();
+        sleep(Duration::from_millis(50));
+        let shown = self.shown.lock().unwrap().clone();
+        (code, shown)
+    }
+}
+
+#[test]
+fn it_shows_a_device_and_obeys_keys() {
+    let mut terminal = Terminal::new("monitor --device sim --zero --arm --target medium", None);
+    terminal.until("ARMED");
+    terminal.until("target medium");
+    terminal.press("m");
+    terminal.press("t");
+    terminal.until("ashworth");
+    terminal.press("s");
+    terminal.until("DIS");
+    terminal.press("q");
+    let (code, shown) = terminal.end();
+    assert_eq!(code, 0, "{shown}");
+    // The screen is given back before the marks are printed.
+    let (_, after) = shown
+        .rsplit_once("\u{1b}[?1049l")
+        .expect("the other screen is left");
+    assert!(after.contains("mark 1 at "), "{after}");
+}
+
+#[test]
+fn it_stops_what_another_program_has_armed() {
+    let served = Served::new();
+    let mut armed = served
+        .command(&["arm", "--device", "knee", "--zero", "--for", "20s"])
+        .stdin(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut terminal = Terminal::new("monitor --device knee", Some(served.home.path()));
+    terminal.until("armed by `crepitus arm");
+    terminal.press("d");
+    terminal.until("has armed the device");
+    terminal.press("\u{1b}");
+    terminal.until("DIS");
+    assert!(!armed.wait().unwrap().success(), "it says why it ended");
+    terminal.press("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn without_a_terminal_it_says_what_to_use() {
+    let output = run(&["monitor", "--device", "sim"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("crepitus stream"),
+        "{}",
+        stderr(&output)
+    );
+}
