@@ -361,6 +361,9 @@ fn a_blind_lesson_hides_the_knee_until_it_was_named() {
     assert_eq!(page.ask("lesson-begin", begin).unwrap()["seed"], 7);
     let session = folder.path().join(&names(folder.path())[0]);
     for trial in 1..=6 {
+        // What was revealed of the trial before.
+        viewer.go_on(Duration::from_millis(50));
+        viewer.history.clear();
         page.ask("lesson-start", json!({})).unwrap();
         for page in [&mut page, &mut viewer] {
             page.until("the trial", |page| {
@@ -383,9 +386,23 @@ fn a_blind_lesson_hides_the_knee_until_it_was_named() {
                 }
             }
         }
+        // Nor was it shown for an instant, while the device got it.
+        let shown = viewer
+            .history
+            .iter()
+            .filter(|message| message["parameters"].is_object());
+        for message in shown {
+            assert_eq!(message["parameters"], json!({ "hidden": true }));
+        }
+        let files = page.ask("recordings", json!({})).unwrap()["files"].clone();
+        let id = files[0]["id"].clone();
+        let error = page.ask("open", json!({ "recording": id })).unwrap_err();
+        assert!(error.contains("blind lesson"), "{error}");
         assert!(page.ask("apply", json!({ "preset": "healthy" })).is_err());
         assert!(page.ask("set", json!({ "changes": [] })).is_err());
         let (disorder, level) = truth(&session, trial);
+        page.ask("note", json!({ "text": format!("note of {trial}") }))
+            .unwrap();
         let right =
             json!({ "student": "A", "disorder": disorder, "level": level, "confidence": 4 });
         page.ask("lesson-answer", right).unwrap();
@@ -599,10 +616,9 @@ fn what_cannot_start_says_why() {
             vec!["panel", "--replay", "a", "--device", "sim"],
             "cannot be used with",
         ),
-        #[cfg(not(feature = "lan"))]
         (
-            vec!["panel", "--device", "sim", "--lan", "127.0.0.1"],
-            "--features lan",
+            vec!["panel", "--device", "sim", "--lan", "nowhere"],
+            "invalid IP address",
         ),
     ] {
         let output = run(&arguments);

@@ -167,6 +167,8 @@ pub(crate) struct Page {
     /// The last message of each kind.
     pub(crate) latest: HashMap<String, Value>,
     pub(crate) notes: Vec<Value>,
+    /// All messages but replies.
+    pub(crate) history: Vec<Value>,
     pub(crate) frames: Vec<Frame>,
     replies: HashMap<u64, Value>,
     traces: HashMap<u32, Frame>,
@@ -193,6 +195,7 @@ impl Page {
             socket,
             latest: HashMap::new(),
             notes: Vec::new(),
+            history: Vec::new(),
             frames: Vec::new(),
             replies: HashMap::new(),
             traces: HashMap::new(),
@@ -223,6 +226,7 @@ impl Page {
                     self.replies.insert(id, message);
                     return;
                 }
+                self.history.push(message.clone());
                 for (name, value) in message.as_object().unwrap() {
                     if name == "note" {
                         self.notes.push(value.clone());

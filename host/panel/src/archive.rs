@@ -12,6 +12,7 @@ use opened::Opened;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::Receiver;
+use std::sync::{Arc, Mutex};
 use std::time::UNIX_EPOCH;
 use tokio::sync::oneshot;
 
@@ -57,16 +58,23 @@ pub(crate) struct Archive {
     sessions: Option<PathBuf>,
     /// Files that were listed; the place of one is its number.
     listed: Vec<PathBuf>,
+    /// A folder whose recordings must not be opened.
+    hidden: Arc<Mutex<Option<PathBuf>>>,
     /// The one used last is the last.
     open: Vec<(u32, Opened)>,
 }
 
 impl Archive {
-    pub(crate) fn new(given: Vec<PathBuf>, sessions: Option<PathBuf>) -> Self {
+    pub(crate) fn new(
+        given: Vec<PathBuf>,
+        sessions: Option<PathBuf>,
+        hidden: Arc<Mutex<Option<PathBuf>>>,
+    ) -> Self {
         Self {
             listed: given.clone(),
             given,
             sessions,
+            hidden,
             open: Vec::new(),
         }
     }
@@ -151,6 +159,16 @@ impl Archive {
     }
 
     fn opened(&mut self, number: u32) -> Result<&mut Opened, String> {
+        let hidden = self.hidden.lock().map(|hidden| hidden.clone());
+        let path = self.listed.get(place(number));
+        if let (Ok(Some(folder)), Some(path)) = (hidden, path)
+            && path.starts_with(folder)
+        {
+            return Err(
+                "this recording is of a blind lesson that is running: end the lesson first"
+                    .to_owned(),
+            );
+        }
         let found = self.open.iter().position(|(open, _)| *open == number);
         let opened = if let Some(place) = found {
             self.open.remove(place).1

@@ -117,6 +117,8 @@ pub(crate) struct Keeper<'p, T> {
     /// Files that are being made.
     sealing: Vec<JoinHandle<Result<(), String>>>,
     lesson: Option<Held>,
+    /// Pages do not see the parameters now.
+    hides: bool,
     notes: Vec<Note>,
     /// Something that happened by itself.
     message: Option<String>,
@@ -164,6 +166,7 @@ impl<'p, T: Transport> Keeper<'p, T> {
             recording: None,
             sealing: Vec::new(),
             lesson: None,
+            hides: false,
             notes: Vec::new(),
             message: None,
             status_at: now,
@@ -220,6 +223,10 @@ impl<'p, T: Transport> Keeper<'p, T> {
             self.try_to_reconnect();
         } else {
             self.pump();
+        }
+        if self.hides != self.is_hidden() {
+            self.hides = !self.hides;
+            self.publish_parameters();
         }
         self.publish_frame();
         if self.pace.is_some() && self.score_at.elapsed() >= SCORE_EVERY {
@@ -352,7 +359,8 @@ impl<'p, T: Transport> Keeper<'p, T> {
 
     /// What pages must not see: in a blind trial the knee.
     fn masks(&self) -> Masks {
-        let hidden = self.lesson.as_ref().filter(|held| held.is_hidden());
+        let held = self.lesson.as_ref();
+        let hidden = held.filter(|held| held.is_hidden(self.now_s));
         Masks {
             torque: hidden.is_some_and(|held| !held.shows_curves()),
             states: hidden.is_some(),

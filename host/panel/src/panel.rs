@@ -96,10 +96,7 @@ impl Panel {
     pub fn open(settings: Settings, source: &Source) -> Result<Self, PanelError> {
         let system = |error: &dyn std::fmt::Display| PanelError::System(error.to_string());
         let tokens = Tokens::draw().map_err(|e| system(&e))?;
-        let address = match settings.lan {
-            None => IpAddr::V4(Ipv4Addr::LOCALHOST),
-            Some(_) => IpAddr::V4(Ipv4Addr::UNSPECIFIED),
-        };
+        let address = settings.lan.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST));
         let in_use = |source| PanelError::Port {
             address,
             port: settings.port,
@@ -108,22 +105,29 @@ impl Panel {
         let listener =
             TcpListener::bind(SocketAddr::new(address, settings.port)).map_err(in_use)?;
         let port = listener.local_addr().map_err(in_use)?.port();
-        let mut hosts = vec![format!("127.0.0.1:{port}"), format!("localhost:{port}")];
-        let mut first = format!("127.0.0.1:{port}");
-        if let Some(lan) = settings.lan {
-            first = SocketAddr::new(lan, port).to_string();
-            hosts.push(first.clone());
+        let first = SocketAddr::new(address, port).to_string();
+        let mut hosts = vec![first.clone()];
+        if settings.lan.is_none() {
+            hosts.push(format!("localhost:{port}"));
         }
-        let scheme = if settings.lan.is_some() {
-            "https"
-        } else {
-            "http"
+        let (scheme, usual) = match settings.lan {
+            Some(_) => ("https", 443),
+            None => ("http", 80),
         };
+        if port == usual {
+            // Browsers leave it out.
+            let short: Vec<_> = (hosts.iter())
+                .filter_map(|host| host.strip_suffix(&format!(":{port}")))
+                .map(str::to_owned)
+                .collect();
+            hosts.extend(short);
+        }
         let (orders, inbox) = channel();
         let (questions, asked) = channel();
         let tables = hello::tables(&described(source), settings.sessions.as_deref());
         let shared = Arc::new(Shared::new(tokens.clone(), tables, orders, questions));
-        let archive = Archive::new(settings.recordings, settings.sessions.clone());
+        let sessions = settings.sessions.clone();
+        let archive = Archive::new(settings.recordings, sessions, shared.hidden.clone());
         let named = |name: &str| thread::Builder::new().name(name.to_owned());
         named("archive")
             .spawn(move || archive.run(&asked))

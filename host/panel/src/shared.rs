@@ -16,7 +16,8 @@ use crate::watchdog::PageWatchdog;
 use axum::body::Bytes;
 use axum::extract::ws::Utf8Bytes;
 use serde_json::Value;
-use std::sync::mpsc;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, mpsc};
 use tokio::sync::{broadcast, oneshot, watch};
 
 /// Result of a request: the reply's content, or a text for people.
@@ -66,6 +67,8 @@ pub(crate) struct Shared {
     pub(crate) tickets: Tickets,
     /// What a page is told first.
     pub(crate) hello: Value,
+    /// A folder whose recordings must not be opened: of a blind lesson.
+    pub(crate) hidden: Arc<Mutex<Option<PathBuf>>>,
     pub(crate) orders: mpsc::Sender<Order>,
     pub(crate) questions: mpsc::Sender<Question>,
 }
@@ -85,6 +88,7 @@ impl Shared {
             tokens,
             tickets: Tickets::default(),
             hello,
+            hidden: Arc::default(),
             orders,
             questions,
         }

@@ -157,6 +157,7 @@ impl<T: Transport> Keeper<'_, T> {
 
     /// Whether pages must not see which knee it is.
     pub(super) fn is_hidden(&self) -> bool {
-        (self.lesson.as_ref()).is_some_and(super::Held::is_hidden)
+        let held = self.lesson.as_ref();
+        held.is_some_and(|held| held.is_hidden(self.now_s))
     }
 }

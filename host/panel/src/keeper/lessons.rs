@@ -23,12 +23,25 @@ pub(super) struct Held {
     folder: Option<SessionFolder>,
     /// Time at which the current trial began, s.
     began_s: f64,
+    /// Time at which the healthy knee was applied between two trials, s; none while that of
+    /// a trial is on the device.
+    left_s: Option<f64>,
 }
+
+/// Time in which the torque of a knee that was left has ended: parameters ramp.
+const SETTLED_S: f64 = 1.0;
 
 impl Held {
     /// Whether pages must not see which knee it is.
-    pub(super) fn is_hidden(&self) -> bool {
-        self.session.lesson.began() && self.session.lesson.is_hidden()
+    pub(super) fn is_hidden(&self, now_s: f64) -> bool {
+        let lesson = &self.session.lesson;
+        if lesson.began() {
+            return lesson.is_hidden();
+        }
+        // Between two trials the last one is still felt for a while.
+        let last = lesson.trial() - 1;
+        let is_left = self.left_s.is_some_and(|left_s| now_s > left_s + SETTLED_S);
+        last > 0 && !lesson.is_revealed(last) && !is_left
     }
 
     /// Whether they see the torque all the same.
@@ -89,22 +102,30 @@ impl<T: Transport> Keeper<'_, T> {
             session,
             folder,
             began_s: 0.0,
+            left_s: None,
         });
+        self.hide_recordings();
         self.publish_lesson();
         Ok(json!({ "seed": seed }))
     }
 
     /// Applies the knee of the current trial, and records it.
     pub(super) fn start_trial(&mut self) -> Outcome {
+        let now_s = self.now_s;
         let held = self.lesson.as_mut().ok_or(NO_LESSON)?;
-        let mut lesson = held.session.lesson.clone();
+        let before = (held.session.lesson.clone(), held.left_s);
+        // It is hidden before the device has it.
+        let lesson = &mut held.session.lesson;
         let preset = lesson.start().map_err(|e| e.to_string())?.preset.clone();
         let trial = lesson.trial();
         let target = lesson.view(None).target;
-        self.apply_unseen(&preset)?;
-        if let Some(held) = &mut self.lesson {
-            held.session.lesson = lesson;
-            held.began_s = self.now_s;
+        (held.began_s, held.left_s) = (now_s, None);
+        self.publish_parameters();
+        if let Err(error) = self.apply_unseen(&preset) {
+            if let Some(held) = &mut self.lesson {
+                (held.session.lesson, held.left_s) = before;
+            }
+            return Err(error);
         }
         if let Some(target) = target.and_then(|name| Target::find(&name)) {
             let mut pace = crepitus_live::Pace::new(target);
@@ -190,6 +211,7 @@ impl<T: Transport> Keeper<'_, T> {
             return Err("the lesson is running: end it first".to_owned());
         }
         self.lesson = None;
+        self.hide_recordings();
         self.publish_lesson();
         Ok(Value::Null)
     }
@@ -198,12 +220,32 @@ impl<T: Transport> Keeper<'_, T> {
     fn leave_knee(&mut self) {
         self.pace = None;
         self.publish_target();
-        if !self.is_lost
-            && let Err(error) = self.apply_unseen(HEALTHY)
-        {
-            self.message = Some(error);
+        self.hide_recordings();
+        let left = if self.is_lost {
+            Err("the device is not connected: it still has the last knee".to_owned())
+        } else {
+            self.apply_unseen(HEALTHY)
+        };
+        match (left, &mut self.lesson) {
+            (Ok(()), Some(held)) => held.left_s = Some(self.now_s),
+            (Err(error), _) => self.message = Some(error),
+            _ => {}
         }
         self.publish_parameters();
+    }
+
+    /// The recordings of a blind lesson that is running tell which knee it is.
+    fn hide_recordings(&self) {
+        let held = self.lesson.as_ref();
+        let running = held.filter(|held| {
+            let lesson = &held.session.lesson;
+            lesson.plan().blind && !lesson.ended()
+        });
+        let folder = running.and_then(|held| held.folder.as_ref());
+        let hidden = folder.map(|folder| folder.path().to_owned());
+        if let Ok(mut place) = self.shared.hidden.lock() {
+            *place = hidden;
+        }
     }
 
     /// The report, as a page that can be opened once.
