@@ -100,10 +100,10 @@ impl Panel {
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
         let mut request = format!("GET {path} HTTP/1.1\r\nConnection: close\r\n");
         if !headers.iter().any(|(name, _)| *name == "Host") {
-            request += &format!("Host: {}\r\n", self.host);
+            request = request + "Host: " + &self.host + "\r\n";
         }
         for (name, value) in headers {
-            request += &format!("{name}: {value}\r\n");
+            request = request + name + ": " + value + "\r\n";
         }
         stream.write_all((request + "\r\n").as_bytes()).unwrap();
         let mut answer = Vec::new();

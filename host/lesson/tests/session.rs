@@ -7,6 +7,7 @@ use crepitus_lesson::{
     By, Feedback, Finding, Known, Lesson, Plan, Session, SessionFolder, Started, View, plans,
     report,
 };
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 

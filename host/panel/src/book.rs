@@ -24,16 +24,18 @@ pub(crate) fn fault(code: u8) -> Option<Value> {
                 }
             }
             _ if line.trim().is_empty() => is_open = false,
-            _ => match paragraphs.last_mut().filter(|_| is_open) {
-                Some(paragraph) => {
-                    paragraph.push(' ');
+            _ => {
+                if !is_open {
+                    paragraphs.push(String::new());
+                }
+                is_open = true;
+                if let Some(paragraph) = paragraphs.last_mut() {
+                    if !paragraph.is_empty() {
+                        paragraph.push(' ');
+                    }
                     paragraph.push_str(&plain(line));
                 }
-                None => {
-                    is_open = true;
-                    paragraphs.push(plain(line));
-                }
-            },
+            }
         }
     }
     Some(json!({ "title": title, "rows": rows, "paragraphs": paragraphs }))

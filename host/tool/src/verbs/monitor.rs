@@ -183,7 +183,7 @@ impl Monitor {
     }
 
     fn next_target(&mut self) {
-        let now = self.pace.as_ref().map(|pace| pace.target());
+        let now = self.pace.as_ref().map(Pace::target);
         let place = now.and_then(|now| NAMED.iter().position(|target| *target == now));
         let next = place.map_or(0, |place| place + 1);
         self.pace = NAMED.get(next).copied().map(Pace::new);

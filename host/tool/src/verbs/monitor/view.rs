@@ -127,7 +127,7 @@ impl View {
         .areas(frame.area());
         frame.render_widget(self.head(), head);
         frame.render_widget(
-            Paragraph::new(vec![self.numbers(), self.judged(pace)]),
+            Paragraph::new(vec![self.numbers(), Self::judged(pace)]),
             numbers,
         );
         let [torque, speed, angle] = Layout::vertical([Constraint::Fill(1); 3]).areas(charts);
@@ -205,7 +205,7 @@ impl View {
         .bold()
     }
 
-    fn judged(&self, pace: Option<&Pace>) -> Line<'_> {
+    fn judged(pace: Option<&Pace>) -> Line<'static> {
         let Some(pace) = pace else {
             return Line::from("no target: t chooses one");
         };
