@@ -4,14 +4,16 @@
 //   node pictures.mjs --book           those of the book, into docs/images
 
 import { mkdirSync } from "node:fs";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { arm, endAll, folder, openControlling, startPanel, untilState } from "./harness.mjs";
 
 const isBook = process.argv[2] === "--book";
-const out = isBook ? join(import.meta.dirname, "../../docs/images") : (process.argv[2] ?? "out/panel");
+const out = isBook ? join(import.meta.dirname, "../../docs/images") : resolve(process.argv[2] ?? "out/panel");
 mkdirSync(out, { recursive: true });
 
-const panel = await startPanel(["--device", "sim", "--sessions", folder()]);
+// The page shows where it stores.
+process.chdir(folder());
+const panel = await startPanel(["--device", "sim", "--sessions", "my-lessons"]);
 
 async function shown(width, colorScheme, show) {
   const height = width > 2000 ? 2160 : width > 1000 ? 900 : 844;

@@ -21,7 +21,7 @@ use std::path::PathBuf;
 Examples:
   crepitus panel                                      the device that is attached
   crepitus panel --device sim                         without a device
-  crepitus panel --sessions lessons                   lessons and recordings are stored in that folder
+  crepitus panel --sessions my-lessons                lessons and recordings are stored in that folder
   crepitus panel --replay monday.parquet --replay tuesday.parquet
   crepitus panel --lan 192.168.1.20 --no-open         for other computers, with TLS
 
