@@ -34,23 +34,30 @@ async function answer(event) {
   event.preventDefault();
   const data = new FormData(view.form);
   const confidence = Number(data.get("confidence"));
-  if (!data.get("disorder") || !confidence) return setText(view.problem, text("answer.incomplete"));
+  if (!data.get("disorder") || !confidence) {
+    setText(view.problem, text("answer.incomplete"));
+    return;
+  }
   setText(view.problem, "");
   const answered = data.get("student");
-  const ok = await request("lesson-answer", {
-    student: answered,
-    disorder: data.get("disorder"),
-    level: data.get("level") || null,
-    confidence,
-  });
-  if (!ok) return null;
   const { lesson } = latest;
-  const due = lesson?.students.find((student) => student !== answered && !answerOf(lesson, student));
-  view.disorder.value = "";
-  view.level.value = "";
-  for (const input of view.confidence) input.checked = false;
+  const due = lesson.students.find((student) => student !== answered && !answerOf(lesson, student));
+  // At once: the next student may type before the reply is here.
+  fill("", "", 0);
   if (due) view.student.value = due;
-  return due ? view.student.focus() : view.next.focus();
+  (due ? view.student : view.next).focus();
+  const given = { disorder: data.get("disorder"), level: data.get("level") || null, confidence };
+  if (await request("lesson-answer", { student: answered, ...given })) return;
+  // Nothing that was typed is lost.
+  view.student.value = answered;
+  fill(given.disorder, given.level ?? "", confidence);
+}
+
+/** Fills the form of an answer. */
+function fill(disorder, level, confidence) {
+  view.disorder.value = disorder;
+  view.level.value = level;
+  for (const input of view.confidence) input.checked = Number(input.value) === confidence;
 }
 
 const answerOf = (lesson, student) =>
