@@ -4,25 +4,29 @@
 //! renews: without an answer for [`TIMEOUT`] it disarms. So neither a page that hangs nor
 //! a server that hangs keeps torque on; if that thread hangs, the lease expires.
 
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Longest time without an answer.
 pub(crate) const TIMEOUT: Duration = Duration::from_millis(200);
 
-/// No page controls the device.
-const NOBODY: u64 = 0;
+/// There is no such time.
+const NEVER: u64 = 0;
 
 /// Frames whose times are kept: several seconds of them.
 const FRAMES: usize = 256;
 
-/// Watchdog of the controlling page.
+/// Watchdog of the controlling page: it expires when a frame waits too long for its answer.
+/// Where no frame is made, because the device keeps its thread busy, no answer is missing.
 #[derive(Debug)]
 pub(crate) struct PageWatchdog {
     begun: Instant,
-    /// Time of the last answer, ms.
-    answered_ms: AtomicU64,
-    /// When the last frames were made, ms: an answer to an old one is none.
+    is_controlled: AtomicBool,
+    /// When the oldest frame without an answer was made, ms.
+    waiting_ms: AtomicU64,
+    /// Number of the last frame.
+    latest: AtomicU32,
+    /// When the last frames were made, ms.
     made_ms: [AtomicU64; FRAMES],
 }
 
@@ -30,45 +34,61 @@ impl PageWatchdog {
     pub(crate) fn new() -> Self {
         Self {
             begun: Instant::now(),
-            answered_ms: AtomicU64::new(NOBODY),
-            made_ms: [const { AtomicU64::new(NOBODY) }; FRAMES],
+            is_controlled: AtomicBool::new(false),
+            waiting_ms: AtomicU64::new(NEVER),
+            latest: AtomicU32::new(0),
+            made_ms: [const { AtomicU64::new(NEVER) }; FRAMES],
         }
     }
 
     /// A frame of this number was made now.
     pub(crate) fn made(&self, number: u32) {
+        let now_ms = self.now_ms();
         if let Some(place) = self.place(number) {
-            place.store(self.now_ms(), Ordering::Relaxed);
+            place.store(now_ms, Ordering::Relaxed);
+        }
+        self.latest.store(number, Ordering::Relaxed);
+        if self.waiting_ms.load(Ordering::Relaxed) == NEVER {
+            self.waiting_ms.store(now_ms, Ordering::Relaxed);
         }
     }
 
-    /// The controlling page has answered this frame.
+    /// The controlling page has answered this frame, and with it those before.
     pub(crate) fn answered(&self, number: u32) {
-        let made_ms = self.place(number).map(|ms| ms.load(Ordering::Relaxed));
-        let now_ms = self.now_ms();
-        let is_new = made_ms.is_some_and(|made_ms| {
-            made_ms != NOBODY && now_ms.saturating_sub(made_ms) <= timeout_ms()
-        });
-        // A page that has lost control does not get it back by an answer.
-        if is_new && self.answered_ms.load(Ordering::Relaxed) != NOBODY {
-            self.answered_ms.store(now_ms, Ordering::Relaxed);
-        }
+        let behind = self.latest.load(Ordering::Relaxed).wrapping_sub(number);
+        let next_ms = |number: u32| {
+            let next = self.place(number.wrapping_add(1))?.load(Ordering::Relaxed);
+            (next != NEVER).then_some(next)
+        };
+        let waiting_ms = match usize::try_from(behind) {
+            Ok(0) => Some(NEVER),
+            Ok(1..FRAMES) => next_ms(number),
+            _ => None,
+        };
+        // An answer to a frame that there was not, or long ago, is none.
+        let Some(waiting_ms) = waiting_ms else {
+            return;
+        };
+        self.waiting_ms.store(waiting_ms, Ordering::Relaxed);
     }
 
     /// A page has taken control.
     pub(crate) fn begin(&self) {
-        self.answered_ms.store(self.now_ms(), Ordering::Relaxed);
+        self.waiting_ms.store(NEVER, Ordering::Relaxed);
+        self.is_controlled.store(true, Ordering::Relaxed);
     }
 
     /// No page controls the device any more.
     pub(crate) fn revoke(&self) {
-        self.answered_ms.store(NOBODY, Ordering::Relaxed);
+        self.is_controlled.store(false, Ordering::Relaxed);
     }
 
     /// Whether torque must end.
     pub(crate) fn has_expired(&self) -> bool {
-        let answered_ms = self.answered_ms.load(Ordering::Relaxed);
-        answered_ms == NOBODY || self.now_ms().saturating_sub(answered_ms) > timeout_ms()
+        let waiting_ms = self.waiting_ms.load(Ordering::Relaxed);
+        let is_late =
+            waiting_ms != NEVER && self.now_ms().saturating_sub(waiting_ms) > timeout_ms();
+        is_late || !self.is_controlled.load(Ordering::Relaxed)
     }
 
     fn place(&self, number: u32) -> Option<&AtomicU64> {
@@ -95,6 +115,7 @@ mod tests {
         let watchdog = PageWatchdog::new();
         assert!(watchdog.has_expired(), "nobody controls it");
         watchdog.begin();
+        watchdog.made(1);
         assert!(!watchdog.has_expired());
         sleep(TIMEOUT + Duration::from_millis(20));
         assert!(watchdog.has_expired());
@@ -104,14 +125,32 @@ mod tests {
     fn an_answer_to_an_old_frame_is_none() {
         let watchdog = PageWatchdog::new();
         watchdog.begin();
-        watchdog.made(1);
-        sleep(Duration::from_millis(150));
-        watchdog.made(2);
-        sleep(Duration::from_millis(100));
+        for number in 1..=3 {
+            watchdog.made(number);
+        }
+        sleep(TIMEOUT + Duration::from_millis(20));
         // As a page that hung answers what has piled up.
         watchdog.answered(1);
-        assert!(watchdog.has_expired());
         watchdog.answered(2);
+        assert!(watchdog.has_expired());
+        // Nor is one to a frame that there has not been.
+        watchdog.answered(4);
+        watchdog.answered(u32::MAX);
+        assert!(watchdog.has_expired());
+        watchdog.answered(3);
+        assert!(!watchdog.has_expired());
+    }
+
+    #[test]
+    fn where_nothing_is_asked_no_answer_is_missing() {
+        let watchdog = PageWatchdog::new();
+        watchdog.begin();
+        watchdog.made(1);
+        watchdog.answered(1);
+        // Arming an emulated device takes longer than the timeout.
+        sleep(TIMEOUT + Duration::from_millis(20));
+        assert!(!watchdog.has_expired());
+        watchdog.made(2);
         assert!(!watchdog.has_expired());
     }
 
