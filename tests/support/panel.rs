@@ -307,9 +307,24 @@ impl Page {
         self.until(state, |page| page.status("state") == state);
     }
 
-    /// Arms; the simulated leg was zeroed at its start.
+    /// Arms; the simulated leg was zeroed at its start. While other tests keep the computer
+    /// busy, this page may answer too late: then it arms again.
     pub(crate) fn arm(&mut self) {
-        self.ask("arm", json!({})).unwrap();
-        self.until_state("armed");
+        let was_late = |page: &Self| {
+            let message = page.status("message").as_str().unwrap_or_default();
+            message.contains("200 ms") && page.status("state") == "disarmed"
+        };
+        for _ in 0..5 {
+            if self.ask("arm", json!({})).is_ok() {
+                self.until("an end of arming", |page| {
+                    page.status("state") == "armed" || was_late(page)
+                });
+            }
+            if self.status("state") == "armed" {
+                return;
+            }
+            self.go_on(Duration::from_millis(100));
+        }
+        panic!("not armed: {:?}", self.latest["status"]);
     }
 }
