@@ -1,6 +1,7 @@
 //! Failures of verbs: the message and the exit code.
 
 use crate::safe_text::{message, visible};
+use crepitus_scene::SceneError;
 use serde_json::json;
 use std::fmt::Display;
 use std::io;
@@ -18,6 +19,12 @@ pub(crate) enum Failure {
     Negative,
     /// The reader of stdout has closed it: no message, exit code 1.
     NoReader,
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        Self::input(error)
+    }
 }
 
 impl Failure {

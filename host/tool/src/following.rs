@@ -185,11 +185,11 @@ fn reconnect(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shipped;
     use crate::simulated::Simulated;
     use crepitus_client::Transport;
     use crepitus_protocol::State;
     use crepitus_scene::Overrides;
+    use crepitus_scene::shipped;
     use std::path::Path;
 
     /// Panics once the device is armed.

@@ -2,13 +2,13 @@
 
 use crate::cli::DeviceArguments;
 use crate::failure::Failure;
-use crate::shipped;
 use crate::simulated::Simulated;
 use crepitus_client::discovery::{self, Device, DeviceKind};
 use crepitus_client::{Client, Error, Management, RequestKind, Transport, TransportError};
 use crepitus_protocol::host::Refusal;
 use crepitus_protocol::{Session, ValueError};
 use crepitus_scene::Overrides;
+use crepitus_scene::shipped;
 use crepitus_sharing::{Program, Shared};
 use std::path::Path;
 use std::time::Duration;

@@ -18,7 +18,6 @@ mod results;
 mod safe_text;
 mod sections;
 mod shell;
-mod shipped;
 mod simulated;
 mod status_line;
 mod studying;

@@ -11,6 +11,7 @@
 //! | to find | look in |
 //! |---|---|
 //! | the form of a scene file, its checks and errors | [`scene`], [`error`] |
+//! | the scenes that ship | [`shipped`] |
 //! | a knee with a disorder as a file, and those that ship | [`preset`] |
 //! | the loop, the totals, the summary | [`mod@run`] |
 //! | the motion step by step, for who steps a plant himself | [`walk`] |
@@ -29,6 +30,7 @@ pub mod preset;
 pub mod reference;
 pub mod run;
 pub mod scene;
+pub mod shipped;
 pub mod trace;
 pub mod walk;
 

@@ -12,9 +12,9 @@ use crate::cli::key_and_value;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::pictures::Pictures;
 use crate::results;
-use crate::shipped;
 use crate::studying::{Interrupted, Watch};
 use clap::Args;
+use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, Scene, SceneError};
 use crepitus_study::effects::{
     EffectsError, Plan, Refusal, Tolerance, refusal, run as study_effects,

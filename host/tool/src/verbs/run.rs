@@ -10,9 +10,9 @@ use crate::interrupt;
 use crate::pictures::Pictures;
 use crate::results::{self, footer, report_files};
 use crate::sections::torque_levels;
-use crate::shipped;
 use clap::Args;
 use crepitus_report::{Setup, Text};
+use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, RunError, Scene, Summary, run as runner};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -121,7 +121,7 @@ fn read(arguments: &Arguments) -> Result<Scene, Failure> {
         as_device: arguments.as_device,
         set: arguments.set.clone(),
     };
-    shipped::scene(&arguments.scene, &overrides)
+    Ok(shipped::scene(&arguments.scene, &overrides)?)
 }
 
 /// `--out`, or `out/<scene>`.

@@ -1,8 +1,8 @@
 //! `crepitus scenes [NAME]`.
 
 use crate::failure::{Failure, print, print_json};
-use crate::shipped::{SHIPPED, Shipped};
 use clap::Args;
+use crepitus_scene::shipped::{SHIPPED, Shipped};
 use crepitus_scene::{Overrides, SceneError};
 use crepitus_table::{Cell, Table};
 use std::path::Path;

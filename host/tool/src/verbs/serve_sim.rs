@@ -4,11 +4,11 @@ mod port;
 mod usbip;
 
 use crate::failure::Failure;
-use crate::shipped;
 use clap::{Args, ValueEnum};
 use crepitus_board::{Start, VirtualDevice};
 use crepitus_emulator::on_target;
 use crepitus_scene::Overrides;
+use crepitus_scene::shipped;
 use crepitus_usb::cabled::CabledDevice;
 use std::net::SocketAddr;
 use std::path::PathBuf;

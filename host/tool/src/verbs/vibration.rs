@@ -7,10 +7,10 @@ use crate::cli::key_and_value;
 use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
 use crate::results::{self, footer, report_files};
-use crate::shipped;
 use crate::studying::{Interrupted, Watch};
 use clap::Args;
 use crepitus_scene::scene::MotionKind;
+use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, Scene};
 use crepitus_study::vibration::{Plan, VibrationError, VibrationStudy, run as study_vibration};
 use crepitus_study_pages::{StudyText, vibration as page};
@@ -86,12 +86,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 
 /// The scene at each speed, over the same way.
 fn scenes(arguments: &Arguments) -> Result<Vec<Scene>, Failure> {
-    let read = |set: &[(String, String)]| {
+    let read = |set: &[(String, String)]| -> Result<Scene, Failure> {
         let overrides = Overrides {
             set: [&arguments.set[..], set].concat(),
             ..Overrides::default()
         };
-        shipped::scene(&arguments.scene, &overrides)
+        Ok(shipped::scene(&arguments.scene, &overrides)?)
     };
     let as_it_is = read(&[])?;
     if as_it_is.motion_kind != MotionKind::Constant {

@@ -2,10 +2,10 @@
 
 use super::Arguments;
 use crate::failure::Failure;
-use crate::shipped;
 use crepitus_model::Convention;
 use crepitus_scene::Overrides;
 use crepitus_scene::scene::Precision;
+use crepitus_scene::shipped;
 use crepitus_study::accuracy::study::{FULL_REPEATS, FULL_STEPS_S, QUICK_REPEATS, QUICK_STEPS_S};
 use crepitus_study::accuracy::target::inputs::TICK_S;
 use crepitus_study::accuracy::{Plan, StudyScene, scenes};

@@ -2,10 +2,10 @@
 
 use crate::failure::Failure;
 use crate::own_presets;
-use crate::shipped::{self, Shipped};
 use crepitus_board::values::{with_preset, with_scene};
 use crepitus_protocol::Values;
 use crepitus_scene::preset::{self, Knee, Preset};
+use crepitus_scene::shipped::{self, Shipped};
 use crepitus_scene::{Overrides, Scene};
 use std::path::Path;
 

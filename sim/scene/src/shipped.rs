@@ -1,22 +1,23 @@
 //! The scenes that ship, embedded in the program.
 
-use crate::failure::Failure;
-use crepitus_scene::{Overrides, Scene, SceneError};
+use crate::error::SceneError;
+use crate::scene::{Overrides, Scene, text_of};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// A scene that ships.
-pub(crate) struct Shipped {
+#[derive(Clone, Copy, Debug)]
+pub struct Shipped {
     /// File name without `.toml`.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
     /// The file.
-    pub(crate) text: &'static str,
+    pub text: &'static str,
 }
 
 macro_rules! shipped {
     ($($name:literal),* $(,)?) => {
         /// All of them, in the order of a first visit.
-        pub(crate) const SHIPPED: &[Shipped] = &[$(Shipped {
+        pub const SHIPPED: &[Shipped] = &[$(Shipped {
             name: $name,
             text: include_str!(concat!("../../../scenes/", $name, ".toml")),
         }),*];
@@ -80,25 +81,32 @@ shipped![
 
 impl Shipped {
     /// The scene of this name.
-    pub(crate) fn find(name: &Path) -> Option<&'static Self> {
+    pub fn find(name: &Path) -> Option<&'static Self> {
         let name = name.to_str()?;
         SHIPPED.iter().find(|s| s.name == name)
     }
 
     /// Where the file stands in the repository.
-    pub(crate) fn file(&self) -> PathBuf {
+    pub fn file(&self) -> PathBuf {
         PathBuf::from(format!("scenes/{}.toml", self.name))
     }
 
     /// The scene, read.
-    pub(crate) fn read(&self, overrides: &Overrides) -> Result<Scene, SceneError> {
+    ///
+    /// # Errors
+    /// What the overrides make wrong.
+    pub fn read(&self, overrides: &Overrides) -> Result<Scene, SceneError> {
         Scene::parse(&self.file(), self.text, overrides)
     }
 }
 
 /// The scene of an argument: a file, the name of a scene that ships, or the
 /// summary of a run, which is repeated.
-pub(crate) fn scene(path: &Path, overrides: &Overrides) -> Result<Scene, Failure> {
+///
+/// # Errors
+/// [`SceneError`]: there is no such file and no such name, what [`Scene::read`]
+/// refuses, or a recording that is not the one of that run.
+pub fn scene(path: &Path, overrides: &Overrides) -> Result<Scene, SceneError> {
     if path
         .extension()
         .is_some_and(|extension| extension == "json")
@@ -106,40 +114,52 @@ pub(crate) fn scene(path: &Path, overrides: &Overrides) -> Result<Scene, Failure
         return repeated(path, overrides);
     }
     if path.exists() {
-        return Scene::read(path, overrides).map_err(Failure::input);
+        return Scene::read(path, overrides);
     }
     match Shipped::find(path) {
-        Some(shipped) => shipped.read(overrides).map_err(Failure::input),
-        None => Err(Failure::Input(format!(
-            "{}: there is no such file, and no such scene ships: `crepitus scenes` lists those that do",
-            path.display()
-        ))),
+        Some(shipped) => shipped.read(overrides),
+        None => Err(whole(
+            path,
+            "there is no such file, and no such scene ships: `crepitus scenes` lists those that do",
+        )),
     }
 }
 
 /// The scene of a run, from its summary.
-fn repeated(path: &Path, overrides: &Overrides) -> Result<Scene, Failure> {
-    let no_run = |why: &str| Failure::Input(format!("{}: {why}", path.display()));
-    let text =
-        std::fs::read_to_string(path).map_err(|e| Failure::at(path, "the summary of a run", &e))?;
+fn repeated(path: &Path, overrides: &Overrides) -> Result<Scene, SceneError> {
+    let text = text_of(path)?;
     let summary: Value = serde_json::from_str(&text)
-        .map_err(|e| no_run(&format!("this is not the summary of a run: {e}")))?;
+        .map_err(|e| whole(path, format!("this is not the summary of a run: {e}")))?;
     let (Some(toml), Some(file)) = (summary["scene_as_run"].as_str(), summary["scene"].as_str())
     else {
-        return Err(no_run(
+        return Err(whole(
+            path,
             "this is not the summary of a run: `scene` or `scene_as_run` is missing",
         ));
     };
-    let scene = Scene::parse(Path::new(file), toml, overrides).map_err(Failure::input)?;
+    let scene = Scene::parse(Path::new(file), toml, overrides)?;
     let hash = |value: &Value| value["sha256"].as_str().map(str::to_owned);
     let (then, now) = (hash(&summary["data"]), scene.data.as_ref());
     match (then, now) {
-        (Some(then), Some(now)) if then != now.sha256 => Err(no_run(&format!(
-            "{} has changed since that run: its SHA-256 was {then}, and is {}",
-            now.file.display(),
-            now.sha256
-        ))),
+        (Some(then), Some(now)) if then != now.sha256 => Err(whole(
+            path,
+            format!(
+                "{} has changed since that run: its SHA-256 was {then}, and is {}",
+                now.file.display(),
+                now.sha256
+            ),
+        )),
         _ => Ok(scene),
+    }
+}
+
+/// An error of a whole file.
+fn whole(file: &Path, message: impl Into<String>) -> SceneError {
+    SceneError {
+        file: file.to_owned(),
+        origin: None,
+        key: String::new(),
+        message: message.into(),
     }
 }
 
