@@ -4,12 +4,12 @@
 //! Ctrl-C, SIGTERM, SIGHUP and a panic disarm first. A lost connection is opened again, but the device is
 //! not armed again.
 
-use crate::device_text;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::line::{Line, failure, failure_with};
 use clap::Args;
 use crepitus_client::{Begin, Client, Event};
+use crepitus_connection::device_text;
 use crepitus_protocol::telemetry::Block;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::Duration;
@@ -185,8 +185,8 @@ fn reconnect(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulated::Simulated;
     use crepitus_client::Transport;
+    use crepitus_connection::Simulated;
     use crepitus_protocol::State;
     use crepitus_scene::Overrides;
     use crepitus_scene::shipped;

@@ -1,10 +1,8 @@
 //! `crepitus`: the command line tool. One file a verb, under `verbs`.
 
 mod cli;
-mod clock;
 mod crash_text;
 mod device_command;
-mod device_text;
 mod failure;
 mod following;
 mod interrupt;
@@ -18,7 +16,6 @@ mod results;
 mod safe_text;
 mod sections;
 mod shell;
-mod simulated;
 mod status_line;
 mod studying;
 mod verbs;

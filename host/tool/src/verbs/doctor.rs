@@ -1,11 +1,11 @@
 //! `crepitus doctor`: checks of everything between this program and the motor.
 
 use crate::cli::DeviceArguments;
-use crate::device_text;
 use crate::failure::{Failure, print, print_json};
 use crate::line::{Line, connect};
 use clap::Args;
 use crepitus_client::{Client, Event, RequestKind};
+use crepitus_connection::device_text;
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::host::Status;

@@ -2,15 +2,15 @@
 
 use crate::cli::DeviceArguments;
 use crate::crash_text;
-use crate::device_text;
 use crate::failure::{Failure, print, print_json};
 use crate::line::{Line, failure, manage};
 use clap::Args;
 use crepitus_client::{Client, Error, Handshake};
+use crepitus_connection::device_text;
 use crepitus_protocol::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
 use crepitus_protocol::crash::Controller;
 use crepitus_protocol::host::{Counters, Status};
-use serde_json::{Map, Value, json};
+use serde_json::json;
 use std::fmt::Write as _;
 
 /// Show identity, status and counters of a device.
@@ -89,17 +89,10 @@ fn print_all(
     let status = client.status().map_err(failure)?;
     let counters = client.counters().map_err(failure)?;
     if as_json {
-        return print_json(&json!({
-            "port": client.port(),
-            "comms": device_text::identity_json(&handshake.comms),
-            "drive": handshake.drive.as_ref().map(device_text::identity_json),
-            "status": device_text::status_json(&status),
-            "faults": device_text::faults(&status),
-            "counters": {
-                "drive": counted(&DRIVE_COUNTERS, &counters.drive),
-                "comms": counted(&COMMS_COUNTERS, &counters.comms),
-            },
-        }));
+        let port = client.port();
+        return print_json(&device_text::info_json(
+            &port, handshake, &status, &counters,
+        ));
     }
     let mut text = format!("port    {}\n{}", client.port(), identity_text(handshake));
     text.push_str(&status_text(&status));
@@ -178,12 +171,4 @@ fn counter_table(counters: &Counters) -> String {
         }
     }
     text
-}
-
-fn counted(specs: &[CounterSpec], counts: &[u32]) -> Map<String, Value> {
-    specs
-        .iter()
-        .zip(counts)
-        .map(|(spec, count)| (spec.name.to_owned(), json!(count)))
-        .collect()
 }

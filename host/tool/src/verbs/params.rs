@@ -10,7 +10,8 @@ use crate::line::{Line, connect, failure, failure_with};
 use clap::{Args, Subcommand, ValueHint};
 use crepitus_client::Client;
 use crepitus_client::values::{allowed_text, full_name, parse_value, show_value};
-use crepitus_protocol::parameters::{self, Kind, PARAMETERS, Parameter, When};
+use crepitus_connection::parameters::{described, find, named};
+use crepitus_protocol::parameters::{Kind, PARAMETERS, When};
 use crepitus_protocol::{DeviceSettings, Revision, Values};
 use crepitus_scene::scene::caps_warning;
 use save_preset::SavePreset;
@@ -126,20 +127,6 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
 }
 
-/// The parameter of a name; the error suggests a similar one.
-fn find(name: &str) -> Result<(u8, &'static Parameter), Failure> {
-    parameters::find(name).ok_or_else(|| {
-        let like = PARAMETERS
-            .iter()
-            .map(full_name)
-            .max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)))
-            .unwrap_or_default();
-        Failure::Input(format!(
-            "unknown parameter {name:?}: did you mean {like:?}? `crepitus params list` lists all"
-        ))
-    })
-}
-
 fn list(as_json: bool) -> Result<(), Failure> {
     if as_json {
         let list: Vec<_> = PARAMETERS.iter().map(described).collect();
@@ -163,39 +150,13 @@ fn list(as_json: bool) -> Result<(), Failure> {
     print(&text)
 }
 
-fn described(parameter: &Parameter) -> Value {
-    let (unit, min, max, choices) = match parameter.kind {
-        Kind::Number(spec) => (Some(spec.unit), Some(spec.min), Some(spec.max), None),
-        Kind::Choice(choice) => (None, None, None, Some(choice.names)),
-    };
-    json!({
-        "id": parameter.id,
-        "name": full_name(parameter),
-        "unit": unit,
-        "min": min,
-        "max": max,
-        "choices": choices,
-        "default": named(parameter, parameter.default()),
-        "only_disarmed": parameter.when == When::Disarmed,
-        "meaning": parameter.meaning(),
-    })
-}
-
-/// A number, or the name of a choice.
-fn named(parameter: &Parameter, value: f64) -> Value {
-    match parameter.kind {
-        Kind::Number(_) => json!(value),
-        Kind::Choice(_) => json!(show_value(parameter, value)),
-    }
-}
-
 fn get(device: &DeviceArguments, names: &[String], as_json: bool) -> Result<(), Failure> {
     let wanted: Vec<_> = if names.is_empty() {
         PARAMETERS.iter().map(|p| (p.id, p)).collect()
     } else {
         names
             .iter()
-            .map(|name| find(name))
+            .map(|name| find(name).map_err(Failure::input))
             .collect::<Result<_, _>>()?
     };
     let mut client = connect(device)?;
@@ -233,7 +194,7 @@ fn set(
     let changes = values
         .iter()
         .map(|(name, text)| {
-            let (id, parameter) = find(name)?;
+            let (id, parameter) = find(name).map_err(Failure::input)?;
             let value = parse_value(parameter, text)
                 .map_err(|error| Failure::Input(format!("{name} = {text}: {error}")))?;
             Ok((id, value))

@@ -1,13 +1,14 @@
 //! `params apply`, `reset` and `diff`: many parameters at once.
 
+use super::Done;
 use super::source::Source;
-use super::{Done, named};
 use crate::cli::DeviceArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::line::{connect, failure};
 use clap::builder::PossibleValuesParser;
 use crepitus_board::values::{RENDER, is_of_knee};
 use crepitus_client::values::{full_name, show_value};
+use crepitus_connection::parameters::named;
 use crepitus_protocol::Values;
 use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter};
 use crepitus_table::Table;

@@ -1,9 +1,9 @@
 //! The device as a serial port: a pty with a name.
 
-use crate::clock::Clock;
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crepitus_client::discovery::{ServedName, user_folder};
+use crepitus_connection::Clock;
 use crepitus_usb::cabled::CabledDevice;
 use crepitus_usb::pty::Pty;
 use serde_json::json;

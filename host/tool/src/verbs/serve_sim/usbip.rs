@@ -1,9 +1,9 @@
 //! The device as a USB device, over USB/IP.
 
-use crate::clock::Clock;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
 use crate::safe_text::message;
+use crepitus_connection::Clock;
 use crepitus_usb::usbip::{Event, Server};
 use serde_json::json;
 use std::io::ErrorKind;

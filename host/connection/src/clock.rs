@@ -7,13 +7,18 @@ use std::time::{Duration, Instant};
 const MOST_LAG: Duration = Duration::from_millis(200);
 
 /// Keeps simulated time up with real time.
-pub(crate) struct Clock {
+pub struct Clock {
     begun: Instant,
     ticks: u64,
 }
 
 impl Clock {
-    pub(crate) fn new() -> Self {
+    /// Starts now.
+    #[expect(
+        clippy::new_without_default,
+        reason = "a clock that starts by default would hide when"
+    )]
+    pub fn new() -> Self {
         Self {
             begun: Instant::now(),
             ticks: 0,
@@ -21,7 +26,7 @@ impl Clock {
     }
 
     /// Ticks that are due.
-    pub(crate) fn due_ticks(&mut self) -> u64 {
+    pub fn due_ticks(&mut self) -> u64 {
         let per_tick = Duration::from_secs(1) / TICKS_PER_S;
         let elapsed = self.begun.elapsed().as_nanos();
         let now = u64::try_from(elapsed / per_tick.as_nanos()).unwrap_or(u64::MAX);

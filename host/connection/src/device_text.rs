@@ -1,13 +1,14 @@
 //! Identity, status and faults of a device, as text and as JSON.
 
-use crepitus_client::{coil_fault_text, fault_text};
-use crepitus_protocol::host::Status;
+use crepitus_client::{Handshake, coil_fault_text, fault_text};
+use crepitus_protocol::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
+use crepitus_protocol::host::{Counters, Status};
 use crepitus_protocol::management::Identity;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
 /// Version, schema hash, serial number, cause of the last reset.
-pub(crate) fn identity(identity: &Identity) -> String {
+pub fn identity(identity: &Identity) -> String {
     let [major, minor, patch] = identity.version;
     format!(
         "version {major}.{minor}.{patch}, schema {:016x}, serial {}, started by {}",
@@ -18,7 +19,7 @@ pub(crate) fn identity(identity: &Identity) -> String {
 }
 
 /// The same as JSON.
-pub(crate) fn identity_json(identity: &Identity) -> Value {
+pub fn identity_json(identity: &Identity) -> Value {
     let [major, minor, patch] = identity.version;
     json!({
         "version": format!("{major}.{minor}.{patch}"),
@@ -30,7 +31,7 @@ pub(crate) fn identity_json(identity: &Identity) -> Value {
 }
 
 /// The chip's serial number: as text if it is printable, else hexadecimal.
-pub(crate) fn serial(identity: &Identity) -> String {
+pub fn serial(identity: &Identity) -> String {
     let bytes = &identity.serial;
     if bytes.iter().all(u8::is_ascii_graphic) {
         String::from_utf8_lossy(bytes).into_owned()
@@ -44,7 +45,7 @@ pub(crate) fn serial(identity: &Identity) -> String {
 }
 
 /// The text of each active fault.
-pub(crate) fn faults(status: &Status) -> Vec<String> {
+pub fn faults(status: &Status) -> Vec<String> {
     [status.drive_fault, status.comms_fault]
         .into_iter()
         .filter(|code| *code != 0)
@@ -54,7 +55,7 @@ pub(crate) fn faults(status: &Status) -> Vec<String> {
 }
 
 /// The status as JSON.
-pub(crate) fn status_json(status: &Status) -> Value {
+pub fn status_json(status: &Status) -> Value {
     json!({
         "state": status.state.name(),
         "drive_fault": status.drive_fault,
@@ -73,4 +74,27 @@ pub(crate) fn status_json(status: &Status) -> Value {
         "motor_c": status.measured.motor_c,
         "joint_span_deg": status.measured.joint_cdeg.map(|cdeg| f64::from(cdeg) / 100.0),
     })
+}
+
+/// Port, identities, status, faults and counters as JSON.
+pub fn info_json(port: &str, handshake: &Handshake, status: &Status, counters: &Counters) -> Value {
+    json!({
+        "port": port,
+        "comms": identity_json(&handshake.comms),
+        "drive": handshake.drive.as_ref().map(identity_json),
+        "status": status_json(status),
+        "faults": faults(status),
+        "counters": {
+            "drive": counted(&DRIVE_COUNTERS, &counters.drive),
+            "comms": counted(&COMMS_COUNTERS, &counters.comms),
+        },
+    })
+}
+
+fn counted(specs: &[CounterSpec], counts: &[u32]) -> Map<String, Value> {
+    specs
+        .iter()
+        .zip(counts)
+        .map(|(spec, count)| (spec.name.to_owned(), json!(count)))
+        .collect()
 }

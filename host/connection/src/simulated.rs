@@ -15,7 +15,7 @@ use std::time::Duration;
 const TIMEOUT_TICKS: u64 = 10_000;
 
 /// A device at the end of a virtual USB cable.
-pub(crate) struct Simulated {
+pub struct Simulated {
     device: Box<dyn CabledDevice>,
     name: String,
     /// The last write was incomplete: send a delimiter first.
@@ -35,7 +35,10 @@ const NAP: Duration = Duration::from_micros(500);
 
 impl Simulated {
     /// The device of a scene.
-    pub(crate) fn of(scene: &Scene) -> Result<Self, crepitus_board::VirtualError> {
+    ///
+    /// # Errors
+    /// [`crepitus_board::VirtualError`] if the scene has what no device has.
+    pub fn of(scene: &Scene) -> Result<Self, crepitus_board::VirtualError> {
         Ok(Self {
             device: Box::new(VirtualDevice::of(scene, &Start::default())?),
             name: "a simulated device".to_owned(),
@@ -46,7 +49,10 @@ impl Simulated {
 
     /// The device of a scene, as the firmware's own images on emulated
     /// controllers.
-    pub(crate) fn emulated(scene: &Scene) -> Result<Self, NoTarget> {
+    ///
+    /// # Errors
+    /// [`NoTarget`] without the emulator or the images.
+    pub fn emulated(scene: &Scene) -> Result<Self, NoTarget> {
         let on_build = || eprintln!("building firmware, if it is not up to date");
         Ok(Self {
             device: on_target::device(scene, on_build)?,
@@ -57,7 +63,7 @@ impl Simulated {
     }
 
     /// The same, not faster than real time.
-    pub(crate) fn in_real_time(mut self) -> Self {
+    pub fn in_real_time(mut self) -> Self {
         self.pace = Some(Pace {
             clock: Clock::new(),
             due: 0,

@@ -1,0 +1,57 @@
+//! Parameters by name, and as JSON.
+
+use crepitus_client::values::{full_name, show_value};
+use crepitus_protocol::parameters::{self, Kind, PARAMETERS, Parameter, When};
+use serde_json::{Value, json};
+
+/// No parameter has this name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown parameter {name:?}: did you mean {like:?}? `crepitus params list` lists all")]
+pub struct UnknownParameter {
+    /// The name.
+    pub name: String,
+    /// The most similar one.
+    pub like: String,
+}
+
+/// The parameter of a full name, with its id.
+///
+/// # Errors
+/// [`UnknownParameter`] suggests a similar one.
+pub fn find(name: &str) -> Result<(u8, &'static Parameter), UnknownParameter> {
+    parameters::find(name).ok_or_else(|| UnknownParameter {
+        name: name.to_owned(),
+        like: PARAMETERS
+            .iter()
+            .map(full_name)
+            .max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)))
+            .unwrap_or_default(),
+    })
+}
+
+/// Name, unit, range or choices, default and meaning of a parameter.
+pub fn described(parameter: &Parameter) -> Value {
+    let (unit, min, max, choices) = match parameter.kind {
+        Kind::Number(spec) => (Some(spec.unit), Some(spec.min), Some(spec.max), None),
+        Kind::Choice(choice) => (None, None, None, Some(choice.names)),
+    };
+    json!({
+        "id": parameter.id,
+        "name": full_name(parameter),
+        "unit": unit,
+        "min": min,
+        "max": max,
+        "choices": choices,
+        "default": named(parameter, parameter.default()),
+        "only_disarmed": parameter.when == When::Disarmed,
+        "meaning": parameter.meaning(),
+    })
+}
+
+/// A value: a number, or the name of a choice.
+pub fn named(parameter: &Parameter, value: f64) -> Value {
+    match parameter.kind {
+        Kind::Number(_) => json!(value),
+        Kind::Choice(_) => json!(show_value(parameter, value)),
+    }
+}
