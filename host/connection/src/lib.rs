@@ -25,11 +25,13 @@
 mod clock;
 mod connection;
 pub mod device_text;
+mod input;
 mod open_error;
 pub mod parameters;
 mod simulated;
 
 pub use clock::Clock;
 pub use connection::Connection;
+pub use input::is_input;
 pub use open_error::OpenError;
 pub use simulated::Simulated;

@@ -110,7 +110,8 @@ impl Row {
         line.push('\n');
     }
 
-    pub(crate) fn phase(&self) -> &'static str {
+    /// Phase of the imaginary object: `stick`, `slip+`, `slip-`.
+    pub fn phase(&self) -> &'static str {
         match self.flags.phase_sign() {
             0 => "stick",
             1.. => "slip+",
@@ -118,7 +119,8 @@ impl Row {
         }
     }
 
-    pub(crate) fn event(&self) -> &'static str {
+    /// What happened in the tick: `break`, `stick`, `both`, or nothing.
+    pub fn event(&self) -> &'static str {
         let has = |bit| self.flags.has(bit);
         match (has(SampleFlags::BREAK), has(SampleFlags::STICK)) {
             (false, false) => "",

@@ -4,8 +4,9 @@ use crate::cli::DeviceArguments;
 use crate::failure::Failure;
 use crepitus_client::{Client, Error, Management, RequestKind};
 pub(crate) use crepitus_connection::Connection as Line;
+use crepitus_connection::is_input;
+use crepitus_protocol::Session;
 use crepitus_protocol::host::Refusal;
-use crepitus_protocol::{Session, ValueError};
 use crepitus_scene::{Overrides, shipped};
 use crepitus_sharing::Program;
 
@@ -34,16 +35,7 @@ pub(crate) fn manage(arguments: &DeviceArguments) -> Result<Management<Line>, Fa
 /// parameters are bad input (2).
 pub(crate) fn failure(error: Error) -> Failure {
     let text = error.to_string();
-    let is_input = match error {
-        Error::UnknownParameter { .. } => true,
-        Error::Refused(refused) => match refused.refusal {
-            Refusal::Values(ValueError::NeedsDisarmed { .. }) => false,
-            Refusal::Values(_) => true,
-            _ => false,
-        },
-        _ => false,
-    };
-    if is_input {
+    if is_input(&error) {
         Failure::Input(text)
     } else {
         Failure::Work(text)

@@ -7,7 +7,7 @@ use crate::real::Real;
 ///
 /// A joint starts in stick with θ = 0. Its state can be read between steps;
 /// a step moves it and reports its events in the order of time.
-pub trait StickSlip<F: Real>: 'static {
+pub trait StickSlip<F: Real>: Send + 'static {
     /// Moves the object through one step. `on_event` is called at most
     /// [`EVENTS_PER_STEP`](crate::EVENTS_PER_STEP) times.
     fn step(&mut self, shaft: &ShaftStep<F>, on_event: impl FnMut(Event<F>));

@@ -114,7 +114,7 @@ impl<F: Real, P: Propagate<F>, V: VelocityShape<F>> SlipPath<'_, F, P, V> {
 }
 
 /// Finds the end of a phase.
-pub trait Locate<F: Real>: 'static {
+pub trait Locate<F: Real>: Send + 'static {
     /// The path that the shaft is taken to follow within the step.
     type Shape: VelocityShape<F>;
 

@@ -20,7 +20,7 @@ use crate::real::Real;
 
 /// Moves the object through a slip: J·ẍ + c·ẋ + kr·x = 0 with
 /// x = θ − s·Tk/kr and v = ẋ.
-pub trait Propagate<F: Real>: Sized + 'static {
+pub trait Propagate<F: Real>: Sized + Send + 'static {
     /// The propagator for the parameters and the step of `coefficients`.
     fn new(coefficients: &StepCoefficients<F>) -> Self;
 

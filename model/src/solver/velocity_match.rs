@@ -16,7 +16,7 @@ use crate::solver::locate::{Locate, SlipPath, StickPath, earlier, first_break};
 use crate::solver::propagate::Propagate;
 
 /// Terms of a stick's torque besides the spring's.
-pub trait StickTorque<F: Real>: 'static {
+pub trait StickTorque<F: Real>: Send + 'static {
     /// The part that comes from the object's own motion, N·m.
     fn inertial(coefficients: &StepCoefficients<F>, omega: F, omega_dot: F) -> F;
 }

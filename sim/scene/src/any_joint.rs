@@ -8,7 +8,7 @@ use crepitus_model::{
 };
 
 /// A joint whose rung was chosen while the program runs.
-pub struct AnyJoint<F>(Box<dyn Erased<F>>);
+pub struct AnyJoint<F>(Box<dyn Erased<F> + Send>);
 
 impl<F: Precise> AnyJoint<F> {
     /// The joint that `settings` and `solver` describe; see [`with_joint`].

@@ -21,6 +21,7 @@
 //! takes an effect's values with `preset = "NAME"`; so may a preset, of those before it.
 
 mod disorder;
+mod json;
 mod shipped;
 
 pub use disorder::{Disorder, Evidence, Level};

@@ -4,9 +4,8 @@ use crate::failure::{Failure, print, print_json, warn};
 use crate::own_presets;
 use clap::Args;
 use crepitus_client::values::show_number;
-use crepitus_scene::preset::{self, Disorder, Evidence, Level, Preset, PresetValue, Setting};
+use crepitus_scene::preset::{self, Disorder, Evidence, Level, Preset, Setting};
 use crepitus_table::Table;
-use serde_json::{Map, Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -29,7 +28,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let Some(name) = &arguments.name {
         let (preset, file) = find(name)?;
         return if as_json {
-            print_json(&to_json(&preset, file.as_deref()))
+            print_json(&preset.to_json(file.as_deref()))
         } else {
             print(&shown(&preset, file.as_deref()))
         };
@@ -43,8 +42,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         }
     }
     if as_json {
-        let shipped = preset::shipped().iter().map(|preset| to_json(preset, None));
-        let own = own.iter().map(|(preset, file)| to_json(preset, Some(file)));
+        let shipped = preset::shipped().iter().map(|preset| preset.to_json(None));
+        let own = own.iter().map(|(preset, file)| preset.to_json(Some(file)));
         return print_json(&shipped.chain(own).collect::<Vec<_>>());
     }
     print(&list(&own))
@@ -141,7 +140,7 @@ fn shown(preset: &Preset, file: Option<&Path>) -> String {
             })
             .headed("value")
             .right()
-            .column("unit", |v| unit(v).unwrap_or_default())
+            .column("unit", |v| v.unit().unwrap_or_default())
             .headed("unit")
             .column("evidence", |v| evidence(v.evidence))
             .headed("evidence")
@@ -165,58 +164,4 @@ fn without_evidence(meaning: &str) -> String {
     let (before, rest) = meaning.split_at(begin);
     let after = rest.split_once(')').map_or("", |(_, after)| after);
     format!("{before}{after}")
-}
-
-/// The unit, if there is one to show.
-fn unit(value: &PresetValue) -> Option<&'static str> {
-    match value.setting {
-        Setting::Number(_, spec) => Some(spec.unit).filter(|unit| *unit != "1"),
-        Setting::Option(_) => None,
-    }
-}
-
-fn to_json(preset: &Preset, file: Option<&Path>) -> Value {
-    let effects: Map<String, Value> = preset
-        .effects()
-        .map(|effect| {
-            let settings = preset.settings_of(effect).into_iter();
-            let settings: Map<_, _> = settings
-                .map(|(key, setting)| (key.to_owned(), value_json(setting)))
-                .collect();
-            (effect.name.to_owned(), settings.into())
-        })
-        .collect();
-    let values: Vec<_> = preset
-        .values
-        .iter()
-        .map(|v| {
-            json!({
-                "effect": v.effect,
-                "key": v.key,
-                "value": value_json(v.setting),
-                "unit": unit(v),
-                "evidence": v.evidence.map(Evidence::name),
-            })
-        })
-        .collect();
-    json!({
-        "name": preset.name,
-        "title": preset.title,
-        "disorder": preset.disorder.map(Disorder::name),
-        "severity": preset.severity,
-        "level": preset.level.map(Level::name),
-        "feel": preset.feel,
-        "evidence": preset.evidence.map(Evidence::name),
-        "source": preset.source,
-        "file": file,
-        "effects": effects,
-        "values": values,
-    })
-}
-
-fn value_json(setting: Setting) -> Value {
-    match setting {
-        Setting::Number(x, _) => json!(x),
-        Setting::Option(name) => json!(name),
-    }
 }

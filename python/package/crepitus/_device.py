@@ -1,0 +1,250 @@
+"""Devices: the brace, or its simulation."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import TracebackType
+from typing import Any
+
+from . import _crepitus
+from ._crepitus import Scene
+from ._run import _scene, _whole
+from ._types import Columns, SceneLike
+
+#: What :meth:`Device.info` returns.
+Info = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Stream:
+    """Samples of a device.
+
+    Attributes:
+        samples: Columns, a row a sample of 50 µs (or every n-th): ``t_s``, ``angle_rad``,
+            ``omega_rad_s``, ``model_torque_nm``, ``torque_nm`` (commanded to the motor), ``current_a``,
+            ``phase``, ``limit`` (why the torque is not the model's), …; what was not measured is NaN.
+        books: Samples ``produced`` = ``received`` + ``dropped``; of the latter ``by_device``.
+    """
+
+    samples: Columns = field(repr=False)
+    books: dict[str, int]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A recording of a device: its samples as in :class:`Stream`, and what it says of them.
+
+    Attributes:
+        samples: Columns, a row a sample.
+        books: ``totals``, ``segments``, ``gaps``.
+        metadata: Title, versions and serial numbers of the device.
+        complete: Whether it was ended in order.
+        warnings: What may be wrong with it.
+    """
+
+    samples: Columns = field(repr=False)
+    books: dict[str, Any] = field(repr=False)
+    metadata: dict[str, Any]
+    complete: bool
+    warnings: list[str]
+
+
+def read_recording(path: str | os.PathLike[str]) -> Recording:
+    """Reads a recording that :meth:`Device.record` or ``crepitus record`` wrote, and checks every byte.
+
+    A Parquet file, which a tool with that feature leaves, is read by pandas and polars themselves.
+    """
+    samples, about = _crepitus.read_recording(os.fspath(path))
+    about = json.loads(about)
+    return Recording(
+        samples, about["books"], about["metadata"], about["complete"], about["warnings"]
+    )
+
+
+def parameters() -> dict[str, dict[str, Any]]:
+    """A device's parameters by name: unit, min, max or choices, default, meaning."""
+    return {entry["name"]: entry for entry in json.loads(_crepitus.parameters())}
+
+
+class Device:
+    """A connection to a device, to be used in a ``with`` block: it disarms at the end.
+
+    >>> with Device("sim") as device:
+    ...     device.apply("bone-on-bone")
+    ...     device.zero()
+    ...     device.arm()
+    ...     stream = device.stream(2.0)
+
+    **Torque needs your program.** While the device is armed, one of :meth:`stream`, :meth:`record` or
+    :meth:`wait` must run: 250 ms without them, and the drive turns torque off. A hung program renders
+    nothing; use :meth:`wait` where you would sleep.
+
+    Threads may share a device: a request waits for the one before, but :meth:`stop` ends what another
+    thread does. After ``fork`` a process has to open its own.
+    """
+
+    def __init__(
+        self,
+        name: str | os.PathLike[str] | None = None,
+        scene: SceneLike | None = None,
+        *,
+        real_time: bool = False,
+    ) -> None:
+        """Opens a device.
+
+        Args:
+            name: A port (``/dev/ttyACM0``), the name of a simulated one from ``crepitus serve-sim``, ``sim``
+                (a simulated one in this process), ``emulated`` (the firmware's own images); by default the one that is
+                attached.
+            scene: For ``sim`` and ``emulated``, what sets its leg and parameters: ``passive-examination``
+                by default.
+            real_time: Let ``sim`` and ``emulated`` be no faster than real time.
+
+        Raises:
+            DeviceError: There is no such device, or it does not answer.
+            SceneError: The scene cannot be read.
+        """
+        words = " ".join(["python", *sys.argv[:1]])
+        self._device = _crepitus.Device(
+            None if name is None else os.fspath(name),
+            None if scene is None else _scene(scene),
+            real_time=bool(real_time),
+            program=words,
+        )
+
+    def __enter__(self) -> Device:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Disarms and closes the connection; closing again does nothing."""
+        self._device.close()
+
+    @property
+    def closed(self) -> bool:
+        """Whether it is closed."""
+        return self._device.closed
+
+    @property
+    def armed(self) -> bool:
+        """Whether this connection has armed the device, and it still is."""
+        return self._device.armed
+
+    def info(self) -> Info:
+        """Port, identities, status, faults and counters: what ``crepitus info --json`` prints."""
+        info: Info = json.loads(self._device.info())
+        return info
+
+    def get(self, name: str | None = None) -> Any:
+        """The value of a parameter; without a name all of them by name. See :func:`parameters`."""
+        _, text = self._device.parameters()
+        values: dict[str, Any] = json.loads(text)
+        if name is None:
+            return values
+        if name not in values:
+            raise KeyError(f"{name!r}: crepitus.parameters() lists the parameters")
+        return values[name]
+
+    @property
+    def revision(self) -> int:
+        """Number of the last commit."""
+        revision, _ = self._device.parameters()
+        return revision
+
+    def set(self, values: Mapping[str, float | str | bool]) -> int:
+        """Sets parameters in one commit: all of them take effect between two ticks, or none.
+
+        Args:
+            values: By name, such as ``{"crepitus.static_torque_nm": 0.5, "texture.render": "on"}``.
+
+        Returns:
+            The new revision.
+
+        Raises:
+            ValueError: A name is unknown, or a value out of its range; nothing was set.
+        """
+        return self._device.set_parameters(dict(values))
+
+    def apply(self, knee: SceneLike, *, add: bool = False) -> int:
+        """Applies a preset, a file of one, or the effects of a scene, in one commit.
+
+        Other effects of the knee go off, unless ``add``, which only presets allow. Returns the new revision.
+        """
+        if isinstance(knee, (Scene, Mapping)):
+            return self._device.apply(None, scene=_scene(knee), add=bool(add))
+        return self._device.apply(os.fspath(knee), scene=None, add=bool(add))
+
+    def reset(self, *groups: str) -> int:
+        """Sets these groups of parameters, such as ``crepitus``, to their defaults; returns the new revision."""
+        return self._device.reset(list(groups))
+
+    def save(self) -> None:
+        """Saves the parameters for the next start of the device."""
+        self._device.save()
+
+    def zero(self) -> None:
+        """Sets the angle's zero here: hold the leg straight. Arming needs it."""
+        self._device.zero()
+
+    def arm(self) -> None:
+        """Tests the enable lines, then turns torque on. Raises :class:`DeviceError` if it is refused."""
+        self._device.arm()
+
+    def disarm(self) -> None:
+        """Turns torque off."""
+        self._device.disarm()
+
+    def stop(self) -> None:
+        """Turns torque off at once, whoever has armed the device, also from another thread."""
+        self._device.stop()
+
+    def clear_fault(self) -> None:
+        """Clears the faults; refused while a cause persists."""
+        self._device.clear_fault()
+
+    def wait(self, seconds: float) -> None:
+        """Lets device time pass, and keeps an armed device armed."""
+        self._device.wait(seconds)
+
+    def stream(self, seconds: float, *, every: int = 1) -> Stream:
+        """Receives samples for this long, s of device time.
+
+        Args:
+            seconds: For how long. A simulated device is faster than that.
+            every: Keep only every n-th sample, without a filter.
+
+        Raises:
+            DeviceError: The connection was lost, or an armed device has disarmed by itself.
+            KeyboardInterrupt: After Ctrl-C; the device is disarmed first.
+        """
+        samples, books = self._device.stream(seconds, _whole("every", every))
+        return Stream(samples, json.loads(books))
+
+    def record(
+        self,
+        file: str | os.PathLike[str],
+        seconds: float,
+        *,
+        title: str = "Recording of a device",
+    ) -> dict[str, int] | None:
+        """Records every sample to a file, as ``crepitus record`` does; it must not exist.
+
+        Returns the books; ``None`` if no sample came, and then there is no file. After an error the file
+        holds what came before. Read it with :func:`read_recording` or ``crepitus report``.
+        """
+        books = self._device.record(os.fspath(file), seconds, title)
+        return None if books is None else json.loads(books)
+
+    def __repr__(self) -> str:
+        return repr(self._device)

@@ -1,0 +1,148 @@
+"""The joint alone, for a loop of your own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _crepitus
+from ._crepitus import Scene
+from ._types import Columns, Numbers
+
+
+class Joint:
+    """The stick-slip object on a shaft that you move.
+
+    It starts in stick with no torque. A step of your loop is a turn of the shaft and the speed
+    at its end; what comes back is the torque, N·m, which opposes growing angle if it is above 0.
+
+    >>> joint = Joint("coarse", step_s=5e-5)
+    >>> joint.step(5e-5, 1.0)  # 5e-5 rad in 5e-5 s: 1 rad/s
+    0.02
+    >>> joint.steps(np.full(1000, 5e-5), np.full(1000, 1.0))["torque_nm"].max()
+    0.4
+
+    A call costs microseconds, a step nanoseconds: use :meth:`steps` where the motion is known.
+    """
+
+    def __init__(
+        self,
+        joint: str | Mapping[str, Any] = "coarse",
+        *,
+        convention: str | None = None,
+        restart: str | None = None,
+        solver: str = "exact-events",
+        step_s: float = 5e-5,
+        precision: str = "f64",
+        omega_rad_s: float = 0.0,
+    ) -> None:
+        """Makes a joint.
+
+        Args:
+            joint: The name of a preset with crepitus, or the keys of a scene's ``[effects.crepitus]``:
+                ``{"stiffness_nm_per_rad": 400.0, …}``; what is left out is the paper's.
+            convention: ``frozen``, ``paper`` or ``physical``.
+            restart: ``elastic`` or ``from-kinetic``.
+            solver: A solver with a step.
+            step_s: The step, s.
+            precision: ``f32`` or ``f64``, of the state.
+            omega_rad_s: Speed of the shaft before the first step, rad/s.
+
+        Raises:
+            SceneError: A parameter is unknown or out of its range.
+        """
+        if isinstance(joint, str):
+            effect: dict[str, Any] = {"preset": joint}
+        elif isinstance(joint, Mapping):
+            effect = dict(joint)
+        else:
+            raise TypeError(
+                f"joint: expected the name of a preset or a dict, got {type(joint).__name__}"
+            )
+        if convention is not None:
+            effect["convention"] = convention
+        if restart is not None:
+            effect["restart"] = restart
+        #: Joint, solver and step as a scene: its parameters are in ``scene.toml``.
+        self.scene = Scene(
+            {
+                "version": 1,
+                "title": "A joint",
+                "duration_s": 1.0,
+                "motion": {"kind": "constant", "velocity_rad_s": 0.0},
+                "solver": {"kind": solver, "step_s": step_s, "precision": precision},
+                "effects": {"crepitus": effect},
+            }
+        )
+        self.step_s = float(step_s)
+        self._joint = _crepitus.Joint(self.scene, float(omega_rad_s))
+        # One call less, for a loop that steps by hand.
+        self.step = self._joint.step
+
+    def steps(self, dphi_rad: Numbers, omega_rad_s: Numbers) -> Columns:
+        """Many steps in one call.
+
+        Args:
+            dphi_rad: The shaft's turn in each step, rad.
+            omega_rad_s: Its speed at the end of each step, rad/s.
+
+        Returns:
+            Columns ``torque_nm``, ``phase`` (-1, 0, +1), ``theta_rad``, ``theta_dot_rad_s``: the state
+            after each step.
+
+        Raises:
+            ValueError: The lengths differ, or a number is not finite; then no step was done.
+        """
+        return self._joint.steps(_vector(dphi_rad), _vector(omega_rad_s))
+
+    def follow(self, angle_rad: Numbers) -> Columns:
+        """Moves the shaft along angles, one a step; the first is where it is now.
+
+        The speed at the end of a step is the mean over it, as of a joint whose angle alone is
+        known. Returns what :meth:`steps` returns.
+        """
+        turns = np.diff(_vector(angle_rad))
+        return self.steps(turns, turns / self.step_s)
+
+    def restart(self, torque_nm: float = 0.0, omega_rad_s: float = 0.0) -> None:
+        """Puts the object in stick where the shaft is, showing ``torque_nm`` (at most ±Ts)."""
+        self._joint.restart(torque_nm, omega_rad_s)
+
+    @property
+    def torque_nm(self) -> float:
+        """The torque, N·m."""
+        return self._joint.torque_nm
+
+    @property
+    def phase(self) -> int:
+        """-1, 0 (stick) or +1: the sense of the slip."""
+        return self._joint.phase
+
+    @property
+    def theta_rad(self) -> float:
+        """Angle of the object, rad."""
+        return self._joint.theta_rad
+
+    @property
+    def theta_dot_rad_s(self) -> float:
+        """Velocity of the object, rad/s."""
+        return self._joint.theta_dot_rad_s
+
+    @property
+    def events(self) -> dict[str, int]:
+        """Events since the joint was made, by kind: ``break``, ``stick``, ``reverse``."""
+        breaks, sticks, reverses = self._joint.events
+        return {"break": breaks, "stick": sticks, "reverse": reverses}
+
+    def __repr__(self) -> str:
+        return f"<Joint {self.scene.solver} at {self.step_s} s, {self.torque_nm} N·m>"
+
+
+def _vector(numbers: Numbers) -> npt.NDArray[np.float64]:
+    vector = np.asarray(numbers, dtype=np.float64)
+    if vector.ndim != 1:
+        raise ValueError(f"expected one dimension, got {vector.ndim}")
+    return vector

@@ -1,0 +1,40 @@
+//! Errors as exceptions of the package, which defines them.
+
+use crepitus_scene::SceneError;
+use crepitus_scene::error::Origin;
+use pyo3::PyErr;
+
+mod raised {
+    pyo3::import_exception!(crepitus._errors, SceneError);
+    pyo3::import_exception!(crepitus._errors, RunError);
+    pyo3::import_exception!(crepitus._errors, DeviceError);
+}
+
+/// A scene that cannot be read. The lines of a scene that was made from a dict are
+/// nobody's, so they are left out.
+pub(crate) fn scene(error: SceneError, from_dict: bool) -> PyErr {
+    let error = match error.origin {
+        Some(Origin::Line(_)) if from_dict => SceneError {
+            origin: None,
+            ..error
+        },
+        _ => error,
+    };
+    let line = match &error.origin {
+        Some(Origin::Line(line)) => Some(*line),
+        _ => None,
+    };
+    let text = error.to_string();
+    let file = error.file.display().to_string();
+    raised::SceneError::new_err((text, file, line, error.key, error.message))
+}
+
+/// Failed work of a run or a study.
+pub(crate) fn run(text: String) -> PyErr {
+    raised::RunError::new_err(text)
+}
+
+/// A device that cannot be used, or has refused.
+pub(crate) fn device(text: String) -> PyErr {
+    raised::DeviceError::new_err(text)
+}

@@ -1,0 +1,55 @@
+//! # Crepitus for Python
+//!
+//! The native half of the package `crepitus`: it converts, releases the GIL, and calls
+//! the crates that the tool uses, too.
+//!
+//! ```text
+//!  package/crepitus   what users see: types, docs, dicts
+//!        │ numbers, texts, JSON      ↑ arrays that own their numbers, exceptions
+//!  ┌─────┴───────────────────────────┴─────┐
+//!  │ scene · run · studies · joint · device │  this crate
+//!  └─────┬──────────────────────────────────┘
+//!        crepitus-scene, -study, -connection, -recording
+//! ```
+//!
+//! **What takes time releases the GIL** and looks for signals twenty times a second, so
+//! that Ctrl-C works. A panic becomes an exception; it does not end the interpreter.
+//!
+//! | to find | look in |
+//! |---|---|
+//! | values of Python as TOML | `values.rs` |
+//! | scenes, what ships | `scene.rs`, `shipped.rs` |
+//! | runs, the arrays of a trace | `run.rs`, `columns.rs` |
+//! | studies | `studies.rs` |
+//! | a joint to step by hand | `joint.rs` |
+//! | devices, samples, recordings | `device.rs`, `following.rs`, `samples.rs` |
+
+mod columns;
+mod device;
+mod errors;
+mod following;
+mod joint;
+mod run;
+mod samples;
+mod scene;
+mod shipped;
+mod signals;
+mod studies;
+mod values;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _crepitus(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<scene::Scene>()?;
+    module.add_class::<joint::Joint>()?;
+    module.add_class::<device::Device>()?;
+    module.add_function(wrap_pyfunction!(run::simulate, module)?)?;
+    module.add_function(wrap_pyfunction!(studies::accuracy, module)?)?;
+    module.add_function(wrap_pyfunction!(studies::effects, module)?)?;
+    module.add_function(wrap_pyfunction!(shipped::scenes, module)?)?;
+    module.add_function(wrap_pyfunction!(shipped::presets, module)?)?;
+    module.add_function(wrap_pyfunction!(shipped::parameters, module)?)?;
+    module.add_function(wrap_pyfunction!(samples::read_recording, module)?)
+}

@@ -1,0 +1,84 @@
+//! Studies of a scene, as the tables that the tool writes, in JSON.
+
+use crate::errors;
+use crate::scene::Scene;
+use crate::signals::Signals;
+use crepitus_scene::scene::Precision;
+use crepitus_study::StudyError;
+use crepitus_study::accuracy::points_table::points_table;
+use crepitus_study::accuracy::study::{FULL_REPEATS, FULL_STEPS_S, QUICK_REPEATS, QUICK_STEPS_S};
+use crepitus_study::accuracy::{Plan, StudyScene, run, scenes::standard};
+use crepitus_study::effects::effects_table::effects_table;
+use crepitus_study::effects::{EffectsError, Plan as EffectsPlan, run as run_effects};
+use crepitus_table::Table;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// The shortest and the longest step of a study, s.
+const STEPS_S: std::ops::RangeInclusive<f64> = 1e-7..=1.0;
+
+/// The points of the work-precision study of a scene, or of the standard ones.
+#[pyfunction]
+#[pyo3(signature = (scene, *, steps_s, quick))]
+pub(crate) fn accuracy(
+    py: Python<'_>,
+    scene: Option<&Scene>,
+    steps_s: Option<Vec<f64>>,
+    quick: bool,
+) -> PyResult<String> {
+    let scenes = match scene {
+        Some(scene) => {
+            let studied = StudyScene::of(&scene.checked);
+            let nothing = "the scene has no [effects.crepitus], so there is nothing to solve";
+            vec![studied.ok_or_else(|| scene.refused("effects.crepitus", nothing.to_owned()))?]
+        }
+        None => standard().map_err(|e| errors::run(e.to_string()))?,
+    };
+    let (steps, repeats) = if quick {
+        (QUICK_STEPS_S.to_vec(), QUICK_REPEATS)
+    } else {
+        (FULL_STEPS_S.to_vec(), FULL_REPEATS)
+    };
+    let steps_s = steps_s.unwrap_or(steps);
+    if let Some(bad) = steps_s.iter().find(|step| !STEPS_S.contains(step)) {
+        return Err(PyValueError::new_err(format!(
+            "steps_s: expected steps from {:e} to {} s, got {bad}",
+            STEPS_S.start(),
+            STEPS_S.end()
+        )));
+    }
+    let plan = Plan {
+        scenes,
+        steps_s,
+        precisions: vec![Precision::F32, Precision::F64],
+        repeats,
+    };
+    let study = py.detach(|| {
+        run(&plan, &mut Signals::new()).map_err(|error| match error {
+            StudyError::Watcher(error) => error,
+            other => errors::run(format!("the study failed: {other}")),
+        })
+    })?;
+    json(&points_table(&study.points))
+}
+
+/// What each effect of a scene does to the torque at the hand, and costs.
+#[pyfunction]
+pub(crate) fn effects(py: Python<'_>, scene: &Scene) -> PyResult<String> {
+    let plan = EffectsPlan {
+        scene: scene.checked.clone(),
+        tolerance: None,
+    };
+    let study = py.detach(|| {
+        run_effects(&plan, &mut Signals::new()).map_err(|error| match error {
+            EffectsError::Watcher(error) => error,
+            EffectsError::Refused(refusal) => scene.refused(refusal.key(), refusal.to_string()),
+            other => errors::run(format!("{}: {other}", scene.checked.file.display())),
+        })
+    })?;
+    json(&effects_table(&study.rows))
+}
+
+fn json<R>(table: &Table<'_, R>) -> PyResult<String> {
+    serde_json::to_string(table).map_err(|error| errors::run(error.to_string()))
+}

@@ -1,0 +1,65 @@
+//! A preset as JSON, for programs.
+
+use super::{Disorder, Evidence, Level, Preset, PresetValue, Setting};
+use serde_json::{Map, Value, json};
+use std::path::Path;
+
+impl Preset {
+    /// Texts and grades, every setting of its effects, and the values that its file gives
+    /// with unit and evidence; `file` is where it was read from.
+    pub fn to_json(&self, file: Option<&Path>) -> Value {
+        let effects: Map<String, Value> = self
+            .effects()
+            .map(|effect| {
+                let settings = self.settings_of(effect).into_iter();
+                let settings: Map<_, _> = settings
+                    .map(|(key, setting)| (key.to_owned(), value_json(setting)))
+                    .collect();
+                (effect.name.to_owned(), settings.into())
+            })
+            .collect();
+        let values: Vec<_> = self
+            .values
+            .iter()
+            .map(|v| {
+                json!({
+                    "effect": v.effect,
+                    "key": v.key,
+                    "value": value_json(v.setting),
+                    "unit": v.unit(),
+                    "evidence": v.evidence.map(Evidence::name),
+                })
+            })
+            .collect();
+        json!({
+            "name": self.name,
+            "title": self.title,
+            "disorder": self.disorder.map(Disorder::name),
+            "severity": self.severity,
+            "level": self.level.map(Level::name),
+            "feel": self.feel,
+            "evidence": self.evidence.map(Evidence::name),
+            "source": self.source,
+            "file": file,
+            "effects": effects,
+            "values": values,
+        })
+    }
+}
+
+impl PresetValue {
+    /// The unit, if there is one to show.
+    pub fn unit(&self) -> Option<&'static str> {
+        match self.setting {
+            Setting::Number(_, spec) => Some(spec.unit).filter(|unit| *unit != "1"),
+            Setting::Option(_) => None,
+        }
+    }
+}
+
+fn value_json(setting: Setting) -> Value {
+    match setting {
+        Setting::Number(x, _) => json!(x),
+        Setting::Option(name) => json!(name),
+    }
+}
