@@ -6,8 +6,9 @@ use crate::samples::Samples;
 use crate::scene::Scene;
 use crepitus_board::values::{with_preset, with_scene};
 use crepitus_client::values::{full_name, parse_value, show_number};
-use crepitus_client::{Accounting, Client, Error};
+use crepitus_client::{Accounting, Client, Error, Transport};
 use crepitus_connection::{Connection, OpenError, device_text, parameters};
+use crepitus_protocol::State;
 use crepitus_protocol::parameters::PARAMETERS;
 use crepitus_recording::{Begin, Metadata, RecordError, Recorder};
 use crepitus_scene::preset::{self, Knee};
@@ -29,7 +30,7 @@ const MOST_S: f64 = 86_400.0;
 
 /// A connection to a device. Requests of several threads wait for each other, but `stop`
 /// ends what another thread does.
-#[pyclass(frozen, module = "crepitus._crepitus", subclass)]
+#[pyclass(frozen, module = "crepitus._crepitus")]
 pub(crate) struct Device {
     client: Mutex<Option<Client<Connection>>>,
     /// Of calls of `stop` that wait.
@@ -216,7 +217,10 @@ impl Device {
 
     /// Turns torque off.
     fn disarm(&self, py: Python<'_>) -> PyResult<()> {
-        self.request(py, Client::disarm)
+        self.request(py, |client| {
+            client.disarm()?;
+            settle(client)
+        })
     }
 
     /// Turns torque off at once, whoever has armed the device; ends what another thread
@@ -224,7 +228,10 @@ impl Device {
     fn stop(&self, py: Python<'_>) -> PyResult<()> {
         self.stops.fetch_add(1, Ordering::Relaxed);
         self.stop.store(true, Ordering::Relaxed);
-        let result = self.request(py, Client::stop);
+        let result = self.request(py, |client| {
+            client.stop()?;
+            settle(client)
+        });
         if self.stops.fetch_sub(1, Ordering::Relaxed) == 1 {
             self.stop.store(false, Ordering::Relaxed);
         }
@@ -369,6 +376,19 @@ impl Drop for Device {
             let _ = client.close();
         }
     }
+}
+
+/// The drive's own word that there is no torque takes some milliseconds: waits for it, so
+/// that the next `info` has it.
+fn settle(client: &mut Client<Connection>) -> Result<(), Error> {
+    const TRIES: u32 = 20;
+    for _ in 0..TRIES {
+        if client.status()?.state != State::Armed {
+            break;
+        }
+        client.transport_mut().wait(Duration::from_millis(5));
+    }
+    Ok(())
 }
 
 /// Ends a subscription; an error before it is the one to report.

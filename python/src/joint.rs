@@ -15,7 +15,7 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 const UNWATCHED_STEPS: usize = 100_000;
 
 /// The stick-slip object alone, for a loop of one's own.
-#[pyclass(frozen, module = "crepitus._crepitus", subclass)]
+#[pyclass(frozen, module = "crepitus._crepitus")]
 pub(crate) struct Joint(Mutex<Inner>);
 
 struct Inner {

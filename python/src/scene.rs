@@ -333,6 +333,20 @@ type State = (PathBuf, String, bool, Flags, Vec<(String, String)>);
 
 impl Scene {
     fn changed(&self, changes: Overrides) -> PyResult<Self> {
+        let Overrides {
+            solver: None,
+            step: None,
+            precision: None,
+            as_device: false,
+            set,
+        } = &changes
+        else {
+            return Self::of(self.source.clone(), merged(&self.overrides, changes));
+        };
+        if set.is_empty() {
+            // A recording is not read again.
+            return Ok(self.clone());
+        }
         Self::of(self.source.clone(), merged(&self.overrides, changes))
     }
 }

@@ -6,6 +6,20 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
+__all__ = [
+    "Device",
+    "Joint",
+    "Scene",
+    "__version__",
+    "accuracy",
+    "effects",
+    "parameters",
+    "presets",
+    "read_recording",
+    "scenes",
+    "simulate",
+]
+
 __version__: str
 
 _Columns = dict[str, npt.NDArray[Any]]
@@ -82,6 +96,7 @@ class Scene:
         set: list[tuple[str, str]],
     ) -> Scene: ...
 
+@final
 class Joint:
     def __new__(cls, scene: Scene, omega_rad_s: float) -> Joint: ...
     def step(self, dphi_rad: float, omega_rad_s: float) -> float:
@@ -102,6 +117,7 @@ class Joint:
     @property
     def events(self) -> tuple[int, int, int]: ...
 
+@final
 class Device:
     def __new__(
         cls, name: str | None, scene: Scene | None, *, real_time: bool, program: str

@@ -12,13 +12,13 @@ import numpy.typing as npt
 from ._crepitus import Scene
 
 #: Arrays of one length by column name: what pandas and polars take as a table.
-Columns: TypeAlias = "dict[str, npt.NDArray[Any]]"
+Columns: TypeAlias = dict[str, npt.NDArray[Any]]
 
 #: Floating-point numbers, or what NumPy makes them of.
 Numbers: TypeAlias = npt.ArrayLike
 
 #: A scene: a path, the name of one that ships, a dict, or a :class:`crepitus.Scene`.
-SceneLike: TypeAlias = Union[str, "os.PathLike[str]", Mapping[str, Any], Scene]
+SceneLike: TypeAlias = Union[str, os.PathLike[str], Mapping[str, Any], Scene]
 
 
 def columns_of(rows: list[dict[str, Any]], texts: tuple[str, ...] = ()) -> Columns:
