@@ -106,7 +106,7 @@ impl Joint {
                 speeds.len()
             )));
         }
-        let mut states = States::default();
+        let mut states = States::of(turns.len());
         let mut inner = self.lock()?;
         let work = &mut *inner;
         py.detach(|| {
@@ -271,7 +271,6 @@ impl Rung {
 }
 
 /// The state after each step.
-#[derive(Default)]
 struct States {
     torque_nm: Vec<f64>,
     phase: Vec<i8>,
@@ -280,6 +279,15 @@ struct States {
 }
 
 impl States {
+    fn of(count: usize) -> Self {
+        Self {
+            torque_nm: Vec::with_capacity(count),
+            phase: Vec::with_capacity(count),
+            theta_rad: Vec::with_capacity(count),
+            theta_dot_rad_s: Vec::with_capacity(count),
+        }
+    }
+
     fn push(&mut self, joint: &Rung) {
         self.torque_nm.push(joint.torque_nm());
         self.phase.push(joint.phase());
