@@ -33,6 +33,10 @@ pub(crate) fn manage(arguments: &DeviceArguments) -> Result<Management<Line>, Fa
 
 /// A rejected request is failed work (exit code 1); invalid values and unknown
 /// parameters are bad input (2).
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "used where errors are mapped"
+)]
 pub(crate) fn failure(error: Error) -> Failure {
     let text = error.to_string();
     if is_input(&error) {
