@@ -39,6 +39,20 @@ impl Progress {
         progress
     }
 
+    /// Progress through the runs of a sweep, from 0 to 1.
+    pub(crate) fn of_sweep() -> Self {
+        let mut progress = Self::new(1.0);
+        progress.whole = "sweep";
+        progress
+    }
+
+    /// Progress through a table, from 0 to 1.
+    pub(crate) fn of_table() -> Self {
+        let mut progress = Self::new(1.0);
+        progress.whole = "table";
+        progress
+    }
+
     /// The simulation has reached `time_s`.
     pub(crate) fn reached(&mut self, time_s: f64) {
         if self.begun.elapsed() < SHOW_AFTER {

@@ -26,6 +26,7 @@ pub(crate) mod serve_sim;
 pub(crate) mod stability;
 pub(crate) mod stop;
 pub(crate) mod stream;
+pub(crate) mod sweep;
 pub(crate) mod vibration;
 pub(crate) mod zero;
 
@@ -72,6 +73,7 @@ verbs! {
     Export: export,
     ServeSim: serve_sim,
     Run: run,
+    Sweep: sweep,
     Accuracy: accuracy,
     Stability: stability,
     Effects: effects,

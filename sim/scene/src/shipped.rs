@@ -100,57 +100,103 @@ impl Shipped {
     }
 }
 
-/// The scene of an argument: a file, the name of a scene that ships, or the
-/// summary of a run, which is repeated.
-///
-/// # Errors
-/// [`SceneError`]: there is no such file and no such name, what [`Scene::read`]
-/// refuses, or a recording that is not the one of that run.
-pub fn scene(path: &Path, overrides: &Overrides) -> Result<Scene, SceneError> {
-    if path
-        .extension()
-        .is_some_and(|extension| extension == "json")
-    {
-        return repeated(path, overrides);
+/// Where a scene comes from, not yet read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// The file that errors name, and from which the path of a recording is relative.
+    pub file: PathBuf,
+    /// Its text.
+    pub text: String,
+    /// Of a run that is repeated: its summary, and the SHA-256 of its recording.
+    repeated: Option<(PathBuf, Option<String>)>,
+}
+
+impl Source {
+    /// What an argument names: a file, a scene that ships, or the summary of a run,
+    /// which is repeated.
+    ///
+    /// # Errors
+    /// [`SceneError`]: there is no such file and no such name, or it cannot be read.
+    pub fn find(path: &Path) -> Result<Self, SceneError> {
+        if path
+            .extension()
+            .is_some_and(|extension| extension == "json")
+        {
+            return Self::of_summary(path);
+        }
+        let (file, text) = if path.exists() {
+            (path.to_owned(), text_of(path)?)
+        } else {
+            let shipped = Shipped::find(path).ok_or_else(|| {
+                whole(
+                    path,
+                    "there is no such file, and no such scene ships: `crepitus scenes` lists those that do",
+                )
+            })?;
+            (shipped.file(), shipped.text.to_owned())
+        };
+        Ok(Self::of_text(file, text))
     }
-    if path.exists() {
-        return Scene::read(path, overrides);
+
+    /// The text of a scene; `file` names it.
+    pub const fn of_text(file: PathBuf, text: String) -> Self {
+        Self {
+            file,
+            text,
+            repeated: None,
+        }
     }
-    match Shipped::find(path) {
-        Some(shipped) => shipped.read(overrides),
-        None => Err(whole(
-            path,
-            "there is no such file, and no such scene ships: `crepitus scenes` lists those that do",
-        )),
+
+    /// The scene of a run, from its summary.
+    fn of_summary(path: &Path) -> Result<Self, SceneError> {
+        let text = text_of(path)?;
+        let summary: Value = serde_json::from_str(&text)
+            .map_err(|e| whole(path, format!("this is not the summary of a run: {e}")))?;
+        let (Some(toml), Some(file)) =
+            (summary["scene_as_run"].as_str(), summary["scene"].as_str())
+        else {
+            return Err(whole(
+                path,
+                "this is not the summary of a run: `scene` or `scene_as_run` is missing",
+            ));
+        };
+        let hash = summary["data"]["sha256"].as_str().map(str::to_owned);
+        Ok(Self {
+            file: file.into(),
+            text: toml.to_owned(),
+            repeated: Some((path.to_owned(), hash)),
+        })
+    }
+
+    /// The scene, read and checked.
+    ///
+    /// # Errors
+    /// As [`Scene::parse`]; or the recording is not the one of the run that is repeated.
+    pub fn scene(&self, overrides: &Overrides) -> Result<Scene, SceneError> {
+        let scene = Scene::parse(&self.file, &self.text, overrides)?;
+        let Some((summary, then)) = &self.repeated else {
+            return Ok(scene);
+        };
+        match (then, &scene.data) {
+            (Some(then), Some(now)) if *then != now.sha256 => Err(whole(
+                summary,
+                format!(
+                    "{} has changed since that run: its SHA-256 was {then}, and is {}",
+                    now.file.display(),
+                    now.sha256
+                ),
+            )),
+            _ => Ok(scene),
+        }
     }
 }
 
-/// The scene of a run, from its summary.
-fn repeated(path: &Path, overrides: &Overrides) -> Result<Scene, SceneError> {
-    let text = text_of(path)?;
-    let summary: Value = serde_json::from_str(&text)
-        .map_err(|e| whole(path, format!("this is not the summary of a run: {e}")))?;
-    let (Some(toml), Some(file)) = (summary["scene_as_run"].as_str(), summary["scene"].as_str())
-    else {
-        return Err(whole(
-            path,
-            "this is not the summary of a run: `scene` or `scene_as_run` is missing",
-        ));
-    };
-    let scene = Scene::parse(Path::new(file), toml, overrides)?;
-    let hash = |value: &Value| value["sha256"].as_str().map(str::to_owned);
-    let (then, now) = (hash(&summary["data"]), scene.data.as_ref());
-    match (then, now) {
-        (Some(then), Some(now)) if then != now.sha256 => Err(whole(
-            path,
-            format!(
-                "{} has changed since that run: its SHA-256 was {then}, and is {}",
-                now.file.display(),
-                now.sha256
-            ),
-        )),
-        _ => Ok(scene),
-    }
+/// The scene of an argument, read: [`Source::find`] and [`Source::scene`].
+///
+/// # Errors
+/// Of either.
+pub fn scene(path: &Path, overrides: &Overrides) -> Result<Scene, SceneError> {
+    Source::find(path)?.scene(overrides)
 }
 
 /// An error of a whole file.

@@ -1,0 +1,350 @@
+//! `crepitus sweep SCENE --vary PATH=VALUES …`: many runs of a scene, a row each.
+
+mod estimate;
+mod merge;
+mod progress;
+mod words;
+
+use crate::cli::key_and_value;
+use crate::failure::{Failure, print, print_json, warn};
+use crate::interrupt;
+use clap::Args;
+use crepitus_scene::Overrides;
+use crepitus_scene::shipped::Source;
+use crepitus_sweep::{
+    Axis, Design, Format, Plan, Points, Sampled, Shard, Store, StoreError, TableError, Written,
+    run_all, totals, traced,
+};
+use progress::{End, Progress};
+use serde_json::json;
+use std::num::NonZero;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::thread::available_parallelism;
+use std::time::Instant;
+
+/// Run a scene many times with other values: a table with a row a run.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus sweep low-speed --vary effects.crepitus.static_torque_nm=1:4:lin7 \\
+                           --vary effects.crepitus.stiffness_nm_per_rad=20:200:log5
+  crepitus sweep knee-pass-frozen --vary solver.kind=exact,exact-events,heun --vary solver.step_s=1e-5:1e-3:log9
+  crepitus sweep everything --latin 1000 --seed 7 --vary effects.cuff.stiffness_nm_per_rad=30:300 \\
+                            --vary effects.limb.mass_kg=2:6
+  crepitus sweep everything --sobol 4096 --vary …
+  crepitus sweep low-speed --points saltelli.csv      points of another program
+  crepitus sweep low-speed --vary … --estimate 1e7    what that would cost
+  crepitus sweep low-speed --vary … --shard 3/16      one of 16 parts, on any computer
+  crepitus sweep --merge out/sweep-low-speed          checks that all parts are there: the table
+
+VALUES: FROM:TO:linN or FROM:TO:logN, N values with both ends; a list A,B,C; for --latin and --sobol \
+FROM:TO, FROM:TO:log or a list. A grid runs every combination, the last --vary is the fastest.
+
+The table (sweep.parquet, or sweep.csv) has the number of the point, what was varied, and every number of \
+the run's summary, parameters under the path that they have in a scene. A run that fails is a row with its \
+reason in the column `failure`. Rows do not depend on the number of cores. The same command goes on where \
+it was stopped or killed.")]
+pub(crate) struct Arguments {
+    /// Scene file, name of a scene that ships, or summary.json of a run.
+    #[arg(required_unless_present = "merge", conflicts_with = "merge")]
+    scene: Option<PathBuf>,
+
+    /// A key of the scene and its values; once for each that varies.
+    #[arg(long, value_name = "PATH=VALUES")]
+    vary: Vec<Axis>,
+
+    /// Instead of a grid: N points of a Latin hypercube.
+    #[arg(long, value_name = "N", conflicts_with_all = ["sobol", "points"])]
+    latin: Option<u64>,
+
+    /// Instead of a grid: N points of Sobol's sequence, best a power of two.
+    #[arg(long, value_name = "N", conflicts_with = "points")]
+    sobol: Option<u64>,
+
+    /// Seed of --latin and --sobol.
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    seed: u64,
+
+    /// Instead of --vary: a CSV file with a PATH over each column and a point in each row.
+    #[arg(long, value_name = "FILE", conflicts_with = "vary")]
+    points: Option<PathBuf>,
+
+    /// Set a key of the scene in every run.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = key_and_value)]
+    set: Vec<(String, String)>,
+
+    /// Render as the device does: input check, turn-back guard, slew and torque limits.
+    #[arg(long)]
+    as_device: bool,
+
+    /// Folder of the table [default: out/sweep-SCENE].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Replace another sweep in that folder.
+    #[arg(long)]
+    force: bool,
+
+    /// parquet or csv [default: parquet in programs that are built with it].
+    #[arg(long, value_name = "FORMAT", default_value = Format::DEFAULT.name(), hide_default_value = true)]
+    format: Format,
+
+    /// Run part I of N; `--merge` makes the table when all are done.
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    shard: Option<Shard>,
+
+    /// Also write the trace of each run, as traces/POINT.csv.
+    #[arg(long)]
+    traces: bool,
+
+    /// Threads [default: all cores].
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZero<usize>>,
+
+    /// Run up to a thousand of the points, write nothing, and say what the sweep would cost: all
+    /// of it, or RUNS runs.
+    #[arg(long, value_name = "RUNS", num_args = 0..=1, value_parser = runs, conflicts_with_all = ["shard", "traces"])]
+    estimate: Option<Option<u64>>,
+
+    /// Make the table of a sweep that ran in parts, here or in several folders; it goes into the
+    /// first.
+    #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = ["vary", "points", "latin", "sobol", "shard",
+          "estimate", "out", "traces", "set", "as_device", "force"])]
+    merge: Option<Vec<PathBuf>>,
+}
+
+/// Parses `I/N`.
+fn shard(text: &str) -> Result<Shard, String> {
+    let parts = text.split_once('/');
+    let number = |text: &str| text.trim().parse::<u64>().ok();
+    match parts.and_then(|(i, n)| Some((number(i)?, number(n)?))) {
+        Some((i, n)) => Shard::new(i, n),
+        None => Err("expected I/N, for example 3/16".to_owned()),
+    }
+}
+
+/// Parses a number of runs, also as 1e7.
+fn runs(text: &str) -> Result<u64, String> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "whole and in range"
+    )]
+    match text.parse::<f64>() {
+        Ok(x) if (1.0..=1e15).contains(&x) && x.fract() == 0.0 => Ok(x as u64),
+        _ => Err("expected a number of runs, for example 10000000 or 1e7".to_owned()),
+    }
+}
+
+/// Runs a sweep.
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    if let Some(folders) = &arguments.merge {
+        return merge::run(folders, arguments.format, as_json);
+    }
+    let scene = arguments.scene.as_deref().unwrap_or(Path::new(""));
+    let plan = plan(arguments, scene)?;
+    let threads = arguments.threads.map_or_else(cores, NonZero::get);
+    interrupt::listen();
+    if let Some(runs) = arguments.estimate {
+        return estimate::run(&plan, runs.unwrap_or(plan.runs()), threads, as_json);
+    }
+    let out = arguments.out.clone().unwrap_or_else(|| {
+        let name = scene.file_stem().unwrap_or_default().to_string_lossy();
+        Path::new("out").join(format!("sweep-{name}"))
+    });
+    let mut store = open(&out, &plan, arguments.force)?;
+    if let Some(table) = store.table() {
+        return done(&plan, &table, None, as_json);
+    }
+    let points = arguments
+        .shard
+        .map_or(0..plan.runs(), |shard| shard.points(plan.runs()));
+    let begun = Instant::now();
+    let ran = run_points(arguments, &plan, points, threads, &mut store)?;
+    let ran = Ran {
+        runs: ran,
+        threads,
+        wall_s: begun.elapsed().as_secs_f64(),
+    };
+    if let Some(shard) = arguments.shard {
+        return shard_done(&store, shard, &out, &ran, as_json);
+    }
+    let table = table(&mut store, arguments.format, &out)?;
+    done(&plan, &table, Some(&ran), as_json)
+}
+
+/// What this program has run of a sweep.
+struct Ran {
+    runs: u64,
+    threads: usize,
+    wall_s: f64,
+}
+
+fn cores() -> usize {
+    available_parallelism().map_or(1, NonZero::get)
+}
+
+fn plan(arguments: &Arguments, scene: &Path) -> Result<Plan, Failure> {
+    let overrides = Overrides {
+        as_device: arguments.as_device,
+        set: arguments.set.clone(),
+        ..Overrides::default()
+    };
+    let source = Source::find(scene)?;
+    let sampled = |count| Sampled {
+        axes: arguments.vary.clone(),
+        count,
+        seed: arguments.seed,
+    };
+    let design = match (arguments.latin, arguments.sobol, &arguments.points) {
+        (Some(count), _, _) => Design::latin_hypercube(sampled(count)),
+        (_, Some(count), _) => Design::sobol(sampled(count)),
+        (_, _, Some(file)) => Points::read(file)
+            .map(Design::Listed)
+            .map_err(|e| Failure::Input(format!("{}: {e}", file.display())))
+            .map(Ok)?,
+        _ => Design::grid(arguments.vary.clone()),
+    };
+    let design = design.map_err(Failure::input)?;
+    Ok(Plan::new(source, overrides, design)?)
+}
+
+fn open(out: &Path, plan: &Plan, force: bool) -> Result<Store, Failure> {
+    let store = Store::create(out, plan.identity());
+    match store {
+        Err(StoreError::Another { .. } | StoreError::Unreadable { .. }) if force => {
+            Store::clear(out).map_err(store_failure)?;
+            Store::create(out, plan.identity()).map_err(store_failure)
+        }
+        store => store.map_err(store_failure),
+    }
+}
+
+/// Runs what has no row yet of these points; how many that were.
+fn run_points(
+    arguments: &Arguments,
+    plan: &Plan,
+    points: Range<u64>,
+    threads: usize,
+    store: &mut Store,
+) -> Result<u64, Failure> {
+    let missing = store.missing(points).map_err(store_failure)?;
+    let wanted: u64 = missing.iter().map(|range| range.end - range.start).sum();
+    let folder = match arguments.traces {
+        true => Some(store.traces().map_err(store_failure)?),
+        false => None,
+    };
+    let mut progress = Progress::new(store, wanted);
+    let outcome = run_all(
+        missing,
+        threads,
+        &mut progress,
+        |point, stop| match &folder {
+            Some(folder) => traced(plan, point, folder, stop),
+            None => totals(plan, point, stop),
+        },
+    );
+    let ran = progress.finish().map_err(store_failure)?;
+    match outcome {
+        Ok(()) => Ok(ran),
+        Err(End::Interrupted) => Err(Failure::Work(format!(
+            "interrupted after {ran} of {wanted} runs: the same command goes on from there"
+        ))),
+        Err(End::Store(e)) => Err(store_failure(e)),
+        Err(End::Trace(e)) => Err(Failure::Work(format!(
+            "a trace cannot be written after {ran} of {wanted} runs: {e}: the same command goes on from there"
+        ))),
+    }
+}
+
+/// Makes the table.
+fn table(store: &mut Store, format: Format, out: &Path) -> Result<Written, Failure> {
+    let mut bar = crate::progress::Progress::of_table();
+    let mut go_on = |share| {
+        bar.reached(share);
+        !interrupt::requested()
+    };
+    store.finish(format, &mut go_on).map_err(|e| match e {
+        TableError::Io(e) if e.kind() == std::io::ErrorKind::Interrupted => Failure::Work(
+            "interrupted: all rows are there, and the same command makes the table".to_owned(),
+        ),
+        TableError::Io(e) => Failure::at(out, "writing the table", &e),
+        e => Failure::Work(format!("{}: {e}", out.display())),
+    })
+}
+
+fn store_failure(error: StoreError) -> Failure {
+    match error {
+        StoreError::Io { path, error } => Failure::at(&path, "the rows of a sweep", &error),
+        StoreError::Another { .. } => Failure::Input(format!(
+            "{error}: name another folder with --out, or replace it with --force"
+        )),
+        error => Failure::input(error),
+    }
+}
+
+fn done(plan: &Plan, table: &Written, ran: Option<&Ran>, as_json: bool) -> Result<(), Failure> {
+    if as_json {
+        return print_json(&json!({
+            "table": table.file,
+            "bytes": table.bytes,
+            "runs": plan.runs(),
+            "failed": table.failed,
+            "ran": ran.map_or(0, |r| r.runs),
+            "wall_s": ran.map(|r| r.wall_s),
+            "threads": ran.map(|r| r.threads),
+            "sweep": plan.identity(),
+        }));
+    }
+    if table.failed > 0 {
+        warn(&format!(
+            "{} of {} runs failed: the column `failure` says why",
+            table.failed,
+            plan.runs()
+        ));
+    }
+    let what = match ran {
+        None => format!("{} runs: this sweep is complete already", plan.runs()),
+        Some(ran) => words::ran(plan.runs(), ran),
+    };
+    let size = words::size(table.bytes);
+    print(&format!(
+        "{what}\ntable: {} ({size})\n",
+        table.file.display()
+    ))
+}
+
+fn shard_done(
+    store: &Store,
+    shard: Shard,
+    out: &Path,
+    ran: &Ran,
+    as_json: bool,
+) -> Result<(), Failure> {
+    let runs = store.identity().runs;
+    let missing = store.missing(0..runs).map_err(store_failure)?;
+    let missing: u64 = missing.iter().map(|range| range.end - range.start).sum();
+    let of_shard = shard.points(runs);
+    if as_json {
+        return print_json(&json!({
+            "out": out,
+            "points": [of_shard.start, of_shard.end],
+            "ran": ran.runs,
+            "missing": missing,
+            "wall_s": ran.wall_s,
+            "threads": ran.threads,
+            "sweep": store.identity(),
+        }));
+    }
+    let rest = if missing == 0 {
+        "all parts are here".to_owned()
+    } else {
+        format!("{missing} runs of other parts are not in this folder yet")
+    };
+    print(&format!(
+        "{}\n{rest}\nthe table: crepitus sweep --merge {}\n",
+        words::ran(of_shard.end - of_shard.start, ran),
+        out.display()
+    ))
+}

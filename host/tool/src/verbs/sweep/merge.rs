@@ -1,0 +1,48 @@
+//! `crepitus sweep --merge DIR…`: the table of a sweep that ran in parts.
+
+use super::{store_failure, table, words};
+use crate::failure::{Failure, print, print_json, warn};
+use crate::interrupt;
+use crepitus_sweep::{Format, Store};
+use serde_json::json;
+use std::path::PathBuf;
+
+pub(super) fn run(folders: &[PathBuf], format: Format, as_json: bool) -> Result<(), Failure> {
+    interrupt::listen();
+    let Some((first, others)) = folders.split_first() else {
+        return Err(Failure::Input("--merge: name a folder".to_owned()));
+    };
+    let mut store = Store::open(first).map_err(store_failure)?;
+    let written = match store.table() {
+        Some(written) => written,
+        None => {
+            for other in others {
+                let other = Store::open(other).map_err(store_failure)?;
+                store.take_parts_of(&other).map_err(store_failure)?;
+            }
+            table(&mut store, format, first)?
+        }
+    };
+    let sweep = store.identity();
+    if as_json {
+        return print_json(&json!({
+            "table": written.file,
+            "bytes": written.bytes,
+            "runs": sweep.runs,
+            "failed": written.failed,
+            "sweep": sweep,
+        }));
+    }
+    if written.failed > 0 {
+        warn(&format!(
+            "{} of {} runs failed: the column `failure` says why",
+            written.failed, sweep.runs
+        ));
+    }
+    print(&format!(
+        "all {} runs are there\ntable: {} ({})\n",
+        sweep.runs,
+        written.file.display(),
+        words::size(written.bytes)
+    ))
+}

@@ -1,0 +1,256 @@
+//! What is varied, as a user writes it.
+
+use std::str::FromStr;
+
+/// A key of the scene, and its values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Its name with the tables before it, such as `effects.crepitus.static_torque_nm`.
+    pub path: String,
+    /// What it takes.
+    pub values: Values,
+}
+
+/// The values of an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Numbers of an interval, both ends included.
+    Interval {
+        /// From here.
+        from: f64,
+        /// To here.
+        to: f64,
+        /// Evenly in what.
+        scale: Scale,
+        /// How many of them a grid takes.
+        count: Option<u64>,
+    },
+    /// These, as TOML or plain text.
+    List(Vec<String>),
+}
+
+/// In what values are even.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// The number itself.
+    Linear,
+    /// Its logarithm.
+    Logarithmic,
+}
+
+impl Scale {
+    /// The number at a share of the way, exact at both ends.
+    fn at(self, from: f64, to: f64, share: f64) -> f64 {
+        if share >= 1.0 {
+            return to;
+        }
+        match self {
+            Self::Linear => from + (to - from) * share,
+            Self::Logarithmic => rounded(from * (to / from).powf(share)),
+        }
+        .clamp(from.min(to), from.max(to))
+    }
+}
+
+/// To 12 digits: the last ones of a power differ between computers, which are to have
+/// the same points.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.11e}").parse().unwrap_or(x)
+}
+
+impl Values {
+    /// How many a grid takes; none if that was not said.
+    pub fn count(&self) -> Option<u64> {
+        match self {
+            Self::Interval { count, .. } => *count,
+            Self::List(values) => Some(values.len() as u64),
+        }
+    }
+
+    /// The value of this place in a grid.
+    pub(crate) fn of_grid(&self, place: u64) -> String {
+        match self {
+            Self::Interval { count, .. } => {
+                let last = count.unwrap_or(2).saturating_sub(1).max(1);
+                self.at(share(place, last))
+            }
+            Self::List(values) => listed(values, place),
+        }
+    }
+
+    /// The value at a share of the way: of a list, each has an equal part of it.
+    pub(crate) fn at(&self, share: f64) -> String {
+        match self {
+            Self::Interval {
+                from, to, scale, ..
+            } => format!("{:?}", scale.at(*from, *to, share)),
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                clippy::cast_precision_loss,
+                reason = "a share of a list's length"
+            )]
+            Self::List(values) => listed(values, (share * values.len() as f64) as u64),
+        }
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "below 2^53")]
+fn share(place: u64, last: u64) -> f64 {
+    place as f64 / last as f64
+}
+
+/// The value of this place, or the last one.
+fn listed(values: &[String], place: u64) -> String {
+    let place = usize::try_from(place).unwrap_or(usize::MAX);
+    values
+        .get(place)
+        .or(values.last())
+        .cloned()
+        .unwrap_or_default()
+}
+
+/// Values that an axis cannot take.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct AxisError(String);
+
+fn refuse<T>(message: impl Into<String>) -> Result<T, AxisError> {
+    Err(AxisError(message.into()))
+}
+
+/// `PATH=FROM:TO`, `PATH=FROM:TO:linN`, `PATH=FROM:TO:logN`, `PATH=VALUE,VALUE,…`.
+impl FromStr for Axis {
+    type Err = AxisError;
+
+    fn from_str(text: &str) -> Result<Self, AxisError> {
+        let Some((path, values)) = text.split_once('=') else {
+            return refuse(
+                "expected PATH=VALUES, for example effects.crepitus.static_torque_nm=1:4:lin7",
+            );
+        };
+        let (path, values) = (path.trim(), values.trim());
+        if path.is_empty() || values.is_empty() {
+            return refuse("expected PATH=VALUES; one of the two is empty");
+        }
+        let parts: Vec<_> = values.split(':').map(str::trim).collect();
+        let values = match parts.as_slice() {
+            [_] => list(values)?,
+            [from, to] => interval(from, to, "lin")?,
+            [from, to, scale] => interval(from, to, scale)?,
+            _ => return refuse("expected FROM:TO:linN or FROM:TO:logN; there are more colons"),
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            values,
+        })
+    }
+}
+
+fn list(text: &str) -> Result<Values, AxisError> {
+    let values: Vec<_> = text.split(',').map(|v| v.trim().to_owned()).collect();
+    if values.iter().any(String::is_empty) {
+        return refuse(format!("a value of the list {text:?} is empty"));
+    }
+    if let Some(twice) = (1..values.len()).find(|&i| values[..i].contains(&values[i])) {
+        return refuse(format!("{} is in the list twice", values[twice]));
+    }
+    Ok(Values::List(values))
+}
+
+fn interval(from: &str, to: &str, scale: &str) -> Result<Values, AxisError> {
+    let end = |text: &str| match text.parse::<f64>() {
+        Ok(x) if x.is_finite() => Ok(x),
+        _ => refuse(format!("{text:?} is not a number")),
+    };
+    let (from, to) = (end(from)?, end(to)?);
+    let digits = scale.find(|c: char| c.is_ascii_digit());
+    let (name, count) = scale.split_at(digits.unwrap_or(scale.len()));
+    let scale = match name {
+        "lin" => Scale::Linear,
+        "log" => Scale::Logarithmic,
+        _ => {
+            return refuse(format!(
+                "{name:?} is no scale: expected lin or log, with the number of values for a grid, such as lin11"
+            ));
+        }
+    };
+    let count = match count {
+        "" => None,
+        count => match count.parse::<u64>() {
+            Ok(count) if count >= 2 => Some(count),
+            _ => {
+                return refuse(format!(
+                    "{count:?} values: an interval has at least its 2 ends"
+                ));
+            }
+        },
+    };
+    if from == to {
+        return refuse(format!("both ends are {from}: give one value instead"));
+    }
+    if scale == Scale::Logarithmic && (from <= 0.0 || to <= 0.0) {
+        return refuse(format!(
+            "log needs ends above 0, not {from} and {to}: lin takes any"
+        ));
+    }
+    Ok(Values::Interval {
+        from,
+        to,
+        scale,
+        count,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(text: &str) -> Vec<String> {
+        let axis: Axis = text.parse().unwrap();
+        let count = axis.values.count().unwrap();
+        (0..count).map(|i| axis.values.of_grid(i)).collect()
+    }
+
+    #[test]
+    fn a_grid_has_both_ends_exactly() {
+        assert_eq!(grid("a=1:2:lin3"), ["1.0", "1.5", "2.0"]);
+        assert_eq!(grid("a=0.1:0.7:lin4").first().unwrap(), "0.1");
+        assert_eq!(grid("a=0.1:0.7:lin4").last().unwrap(), "0.7");
+        assert_eq!(grid("a=1e-6:1e-4:log3"), ["1e-6", "1e-5", "0.0001"]);
+        assert_eq!(grid("a=3:-3:lin2"), ["3.0", "-3.0"]);
+        assert_eq!(grid("solver.kind = exact, heun"), ["exact", "heun"]);
+        assert_eq!(grid("a=7"), ["7"]);
+    }
+
+    #[test]
+    fn each_of_a_list_has_an_equal_part() {
+        let axis: Axis = "a=x,y,z".parse().unwrap();
+        let at: Vec<_> = [0.0, 0.3, 0.34, 0.6, 0.67, 0.999, 1.0]
+            .map(|share| axis.values.at(share))
+            .into();
+        assert_eq!(at, ["x", "x", "y", "y", "z", "z", "z"]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        for (text, word) in [
+            ("a", "PATH=VALUES"),
+            ("=1", "empty"),
+            ("a=", "empty"),
+            ("a=1,,2", "empty"),
+            ("a=1,1", "twice"),
+            ("a=1:x", "not a number"),
+            ("a=1:inf", "not a number"),
+            ("a=1:2:cube3", "no scale"),
+            ("a=1:2:lin1", "at least its 2 ends"),
+            ("a=1:2:lin99999999999999999999", "at least"),
+            ("a=0:2:log3", "above 0"),
+            ("a=2:2:lin3", "both ends"),
+            ("a=1:2:lin3:4", "more colons"),
+        ] {
+            let error = text.parse::<Axis>().unwrap_err().to_string();
+            assert!(error.contains(word), "{text}: {error}");
+        }
+    }
+}

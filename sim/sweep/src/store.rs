@@ -1,0 +1,305 @@
+//! The folder of a sweep: what it is (`sweep.json`), rows so far (`parts`), the table.
+
+use crate::parts::{Parts, missing};
+use crate::plan::Identity;
+use crate::row::Row;
+use crate::table::{self, Format, TableError, Written};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{self, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// What is lost of a sweep that is killed.
+const FLUSH_AFTER: Duration = Duration::from_secs(2);
+
+/// Rows that are held at most before they are written.
+const FLUSH_ROWS: usize = 8192;
+
+const ABOUT: &str = "sweep.json";
+const PARTS: &str = "parts";
+const TRACES: &str = "traces";
+
+/// The folder of a sweep.
+#[derive(Debug)]
+pub struct Store {
+    folder: PathBuf,
+    about: About,
+    parts: Parts,
+    /// Rows that are in no part yet.
+    rows: BTreeMap<u64, Row>,
+    flushed: Instant,
+}
+
+/// `sweep.json`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct About {
+    #[serde(flatten)]
+    identity: Identity,
+    /// The table, once it is whole.
+    table: Option<Finished>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Finished {
+    file: String,
+    failed: u64,
+}
+
+/// Why a folder is not the one of a sweep.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// There is none.
+    #[error("{}: this is not the folder of a sweep: sweep.json is missing", .0.display())]
+    None(PathBuf),
+    /// `sweep.json` cannot be read.
+    #[error("{}: sweep.json is not of this version of the program: {why}", folder.display())]
+    Unreadable {
+        /// The folder.
+        folder: PathBuf,
+        /// Why not.
+        why: String,
+    },
+    /// Another sweep is there.
+    #[error("{} has another sweep: {difference}", folder.display())]
+    Another {
+        /// The folder.
+        folder: PathBuf,
+        /// In what they differ.
+        difference: String,
+    },
+    /// The disk.
+    #[error("{}: {error}", path.display())]
+    Io {
+        /// Where.
+        path: PathBuf,
+        /// What.
+        error: io::Error,
+    },
+}
+
+fn at(path: &Path) -> impl FnOnce(io::Error) -> StoreError {
+    let path = path.to_owned();
+    move |error| StoreError::Io { path, error }
+}
+
+impl Store {
+    /// The folder of this sweep, new or with what is there of it.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub fn create(folder: &Path, identity: &Identity) -> Result<Self, StoreError> {
+        match Self::open(folder) {
+            Ok(store) => {
+                if let Some(difference) = difference(&store.about.identity, identity) {
+                    return Err(StoreError::Another {
+                        folder: folder.to_owned(),
+                        difference,
+                    });
+                }
+                fs::create_dir_all(store.parts.folder()).map_err(at(store.parts.folder()))?;
+                Ok(store)
+            }
+            Err(StoreError::None(_)) => {
+                let store = Self::new(
+                    folder,
+                    About {
+                        identity: identity.clone(),
+                        table: None,
+                    },
+                );
+                fs::create_dir_all(store.parts.folder()).map_err(at(store.parts.folder()))?;
+                store.write_about()?;
+                Ok(store)
+            }
+            Err(e) => Err(e),
+        }
+    }
+
+    /// The folder of a sweep.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub fn open(folder: &Path) -> Result<Self, StoreError> {
+        let file = folder.join(ABOUT);
+        let text = match fs::read_to_string(&file) {
+            Err(e) if e.kind() == io::ErrorKind::NotFound => {
+                return Err(StoreError::None(folder.to_owned()));
+            }
+            text => text.map_err(at(&file))?,
+        };
+        let about = serde_json::from_str(&text).map_err(|e| StoreError::Unreadable {
+            folder: folder.to_owned(),
+            why: e.to_string(),
+        })?;
+        Ok(Self::new(folder, about))
+    }
+
+    fn new(folder: &Path, about: About) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            about,
+            parts: Parts::in_folder(folder.join(PARTS)),
+            rows: BTreeMap::new(),
+            flushed: Instant::now(),
+        }
+    }
+
+    /// Removes a sweep from its folder, and nothing else.
+    ///
+    /// # Errors
+    /// If a file of it cannot be removed.
+    pub fn clear(folder: &Path) -> Result<(), StoreError> {
+        let files = [ABOUT, Format::Csv.file(), Format::Parquet.file()];
+        for path in files.map(|name| folder.join(name)) {
+            match fs::remove_file(&path) {
+                Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(at(&path)(e)),
+                _ => {}
+            }
+        }
+        for path in [PARTS, TRACES].map(|name| folder.join(name)) {
+            match fs::remove_dir_all(&path) {
+                Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(at(&path)(e)),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Which sweep it is.
+    pub const fn identity(&self) -> &Identity {
+        &self.about.identity
+    }
+
+    /// The folder of traces, made if it is missing.
+    ///
+    /// # Errors
+    /// If it cannot be made.
+    pub fn traces(&self) -> Result<PathBuf, StoreError> {
+        let traces = self.folder.join(TRACES);
+        fs::create_dir_all(&traces).map_err(at(&traces))?;
+        Ok(traces)
+    }
+
+    /// The table, if the sweep is complete.
+    pub fn table(&self) -> Option<Written> {
+        let table = self.about.table.as_ref()?;
+        let file = self.folder.join(&table.file);
+        Some(Written {
+            bytes: fs::metadata(&file).ok()?.len(),
+            file,
+            failed: table.failed,
+        })
+    }
+
+    /// What of these points has no row yet.
+    ///
+    /// # Errors
+    /// If the parts cannot be listed.
+    pub fn missing(&self, points: Range<u64>) -> Result<Vec<Range<u64>>, StoreError> {
+        let there = self.parts.points().map_err(at(self.parts.folder()))?;
+        Ok(missing(points, &there))
+    }
+
+    /// Takes a row; every other second rows become a part.
+    ///
+    /// # Errors
+    /// If a part cannot be written.
+    pub fn take(&mut self, row: Row) -> Result<(), StoreError> {
+        self.rows.insert(row.index, row);
+        if self.rows.len() >= FLUSH_ROWS || self.flushed.elapsed() >= FLUSH_AFTER {
+            self.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Writes the rows that are in no part yet.
+    ///
+    /// # Errors
+    /// If a part cannot be written.
+    pub fn flush(&mut self) -> Result<(), StoreError> {
+        let rows: Vec<_> = std::mem::take(&mut self.rows).into_values().collect();
+        self.parts.write(&rows).map_err(at(self.parts.folder()))?;
+        self.flushed = Instant::now();
+        Ok(())
+    }
+
+    /// Takes the parts of another folder of the same sweep.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub fn take_parts_of(&self, other: &Self) -> Result<(), StoreError> {
+        if let Some(difference) = difference(self.identity(), other.identity()) {
+            return Err(StoreError::Another {
+                folder: other.folder.clone(),
+                difference,
+            });
+        }
+        fs::create_dir_all(self.parts.folder()).map_err(at(self.parts.folder()))?;
+        self.parts
+            .copy_from(&other.parts)
+            .map_err(at(other.parts.folder()))
+    }
+
+    /// Makes the table, if every row is there, and removes the parts.
+    ///
+    /// # Errors
+    /// [`TableError`].
+    pub fn finish(
+        &mut self,
+        format: Format,
+        progress: &mut dyn FnMut(f64) -> bool,
+    ) -> Result<Written, TableError> {
+        let written = table::write(&self.parts, self.identity(), &self.folder, format, progress)?;
+        self.about.table = Some(Finished {
+            file: format.file().to_owned(),
+            failed: written.failed,
+        });
+        self.write_about().map_err(io::Error::other)?;
+        self.parts.remove()?;
+        Ok(written)
+    }
+
+    fn write_about(&self) -> Result<(), StoreError> {
+        let path = self.folder.join(ABOUT);
+        let write = || -> io::Result<()> {
+            let mut file = tempfile::Builder::new()
+                .prefix(".sweep-")
+                .tempfile_in(&self.folder)?;
+            serde_json::to_writer_pretty(&mut file, &self.about)?;
+            file.write_all(b"\n")?;
+            file.as_file().sync_all()?;
+            file.persist(&path)?;
+            Ok(())
+        };
+        write().map_err(at(&path))
+    }
+}
+
+/// In what two sweeps differ.
+fn difference(there: &Identity, wanted: &Identity) -> Option<String> {
+    if there == wanted {
+        return None;
+    }
+    let pairs = [
+        ("version", &there.crepitus_version, &wanted.crepitus_version),
+        ("scene", &there.scene, &wanted.scene),
+    ];
+    for (what, there, wanted) in pairs {
+        if there != wanted {
+            return Some(format!("its {what} is {there}, not {wanted}"));
+        }
+    }
+    if there.paths != wanted.paths {
+        return Some(format!("it varies {}", there.paths.join(", ")));
+    }
+    if there.runs != wanted.runs {
+        return Some(format!("it has {} runs, not {}", there.runs, wanted.runs));
+    }
+    if there.design_seed != wanted.design_seed {
+        return Some("its points have another seed".to_owned());
+    }
+    Some("another scene text, recording, value or override".to_owned())
+}

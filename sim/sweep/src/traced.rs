@@ -1,0 +1,59 @@
+//! Runs that leave a trace.
+
+use crate::plan::Plan;
+use crate::pool::{Ended, Stop};
+use crate::row::Row;
+use crepitus_scene::output::TraceCsv;
+use crepitus_scene::run::columns;
+use crepitus_scene::trace::EventRecord;
+use crepitus_scene::{Observer, RunError, run};
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+use tempfile::NamedTempFile;
+
+/// Writes each row, and sees whether the run is to end.
+struct Trace<'s> {
+    csv: TraceCsv<BufWriter<NamedTempFile>>,
+    stop: &'s Stop,
+}
+
+impl Observer for Trace<'_> {
+    type Error = Ended;
+
+    fn row(&mut self, values: &[f64]) -> Result<(), Ended> {
+        self.csv.row(values).map_err(Ended::Failed)
+    }
+
+    fn event(&mut self, _: &EventRecord) -> Result<(), Ended> {
+        Ok(())
+    }
+
+    fn progress(&mut self, _: f64) -> Result<(), Ended> {
+        self.stop.check()
+    }
+}
+
+/// Runs a point and writes its trace into `folder`, whole or not at all; the file has the
+/// number of the point as its name.
+///
+/// # Errors
+/// [`Ended`].
+pub fn traced(plan: &Plan, point: u64, folder: &Path, stop: &Stop) -> Result<Row, Ended> {
+    stop.check()?;
+    plan.run(point, |scene| {
+        let failed = |e: io::Error| RunError::Observer(Ended::Failed(e));
+        let file = tempfile::Builder::new()
+            .prefix(".trace-")
+            .tempfile_in(folder)
+            .map_err(failed)?;
+        let csv = TraceCsv::new(BufWriter::new(file), columns(scene)).map_err(failed)?;
+        let mut trace = Trace { csv, stop };
+        let summary = run(scene, &mut trace)?;
+        let mut file = trace.csv.into_inner();
+        file.flush().map_err(failed)?;
+        let file = file.into_inner().map_err(|e| failed(e.into_error()))?;
+        file.persist(folder.join(format!("{point:010}.csv")))
+            .map_err(|e| failed(e.error))?;
+        Ok(summary)
+    })
+}
