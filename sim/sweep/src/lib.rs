@@ -41,4 +41,4 @@ pub use pool::{Ended, Receiver, Stop, run_all, totals};
 pub use row::{Cell, Row};
 pub use store::{Store, StoreError};
 pub use table::{Format, TableError, Written};
-pub use traced::traced;
+pub use traced::{Traces, traced};

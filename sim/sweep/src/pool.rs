@@ -44,7 +44,7 @@ pub enum Ended {
 /// # Errors
 /// The receiver's, or of a run's own file; runs that have begun are abandoned then.
 pub fn run_all<R: Receiver>(
-    ranges: Vec<Range<u64>>,
+    ranges: impl IntoIterator<Item = Range<u64>, IntoIter: Send>,
     threads: usize,
     receiver: &mut R,
     run: impl Fn(u64, &Stop) -> Result<Row, Ended> + Sync,

@@ -4,6 +4,7 @@ use crate::parts::{Parts, missing};
 use crate::plan::Identity;
 use crate::row::Row;
 use crate::table::{self, Format, TableError, Written};
+use crate::traced::Traces;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
@@ -99,7 +100,12 @@ impl Store {
                         difference,
                     });
                 }
-                fs::create_dir_all(store.parts.folder()).map_err(at(store.parts.folder()))?;
+                if store.table().is_some() {
+                    // Killed between the table and this.
+                    store.parts.remove().map_err(at(store.parts.folder()))?;
+                } else {
+                    fs::create_dir_all(store.parts.folder()).map_err(at(store.parts.folder()))?;
+                }
                 Ok(store)
             }
             Err(StoreError::None(_)) => {
@@ -173,14 +179,18 @@ impl Store {
         &self.about.identity
     }
 
-    /// The folder of traces, made if it is missing.
+    /// The folder of traces, made if it is missing, and one for files that are not whole
+    /// yet.
     ///
     /// # Errors
     /// If it cannot be made.
-    pub fn traces(&self) -> Result<PathBuf, StoreError> {
-        let traces = self.folder.join(TRACES);
-        fs::create_dir_all(&traces).map_err(at(&traces))?;
-        Ok(traces)
+    pub fn traces(&self) -> Result<Traces, StoreError> {
+        let folder = self.folder.join(TRACES);
+        fs::create_dir_all(&folder).map_err(at(&folder))?;
+        Ok(Traces {
+            folder,
+            scratch: self.parts.folder().to_owned(),
+        })
     }
 
     /// The table, if the sweep is complete.
@@ -267,7 +277,7 @@ impl Store {
         let write = || -> io::Result<()> {
             let mut file = tempfile::Builder::new()
                 .prefix(".sweep-")
-                .tempfile_in(&self.folder)?;
+                .tempfile_in(self.parts.folder())?;
             serde_json::to_writer_pretty(&mut file, &self.about)?;
             file.write_all(b"\n")?;
             file.as_file().sync_all()?;

@@ -148,7 +148,7 @@ pub fn write(
     let mut count = 0;
     let mut file = tempfile::Builder::new()
         .prefix(".sweep-")
-        .tempfile_in(folder)?;
+        .tempfile_in(parts.folder())?;
     let mut seen = |chunk: &Chunk, share: f64| {
         let reasons = failed
             .map(|field| (0..chunk.rows()).filter(move |&r| !chunk.cell(field, r).is_empty()));

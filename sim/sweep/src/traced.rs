@@ -8,7 +8,7 @@ use crepitus_scene::run::columns;
 use crepitus_scene::trace::EventRecord;
 use crepitus_scene::{Observer, RunError, run};
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::PathBuf;
 use tempfile::NamedTempFile;
 
 /// Writes each row, and sees whether the run is to end.
@@ -33,18 +33,26 @@ impl Observer for Trace<'_> {
     }
 }
 
-/// Runs a point and writes its trace into `folder`, whole or not at all; the file has the
-/// number of the point as its name.
+/// Where traces go.
+#[derive(Clone, Debug)]
+pub struct Traces {
+    /// Each with the number of its point as its name.
+    pub(crate) folder: PathBuf,
+    /// Before they are whole.
+    pub(crate) scratch: PathBuf,
+}
+
+/// Runs a point and writes its trace, whole or not at all.
 ///
 /// # Errors
 /// [`Ended`].
-pub fn traced(plan: &Plan, point: u64, folder: &Path, stop: &Stop) -> Result<Row, Ended> {
+pub fn traced(plan: &Plan, point: u64, to: &Traces, stop: &Stop) -> Result<Row, Ended> {
     stop.check()?;
     plan.run(point, |scene| {
         let failed = |e: io::Error| RunError::Observer(Ended::Failed(e));
         let file = tempfile::Builder::new()
             .prefix(".trace-")
-            .tempfile_in(folder)
+            .tempfile_in(&to.scratch)
             .map_err(failed)?;
         let csv = TraceCsv::new(BufWriter::new(file), columns(scene)).map_err(failed)?;
         let mut trace = Trace { csv, stop };
@@ -52,7 +60,7 @@ pub fn traced(plan: &Plan, point: u64, folder: &Path, stop: &Stop) -> Result<Row
         let mut file = trace.csv.into_inner();
         file.flush().map_err(failed)?;
         let file = file.into_inner().map_err(|e| failed(e.into_error()))?;
-        file.persist(folder.join(format!("{point:010}.csv")))
+        file.persist(to.folder.join(format!("{point:010}.csv")))
             .map_err(|e| failed(e.error))?;
         Ok(summary)
     })

@@ -231,17 +231,18 @@ fn run_points(
 ) -> Result<u64, Failure> {
     let missing = store.missing(points).map_err(store_failure)?;
     let wanted: u64 = missing.iter().map(|range| range.end - range.start).sum();
-    let folder = match arguments.traces {
-        true => Some(store.traces().map_err(store_failure)?),
-        false => None,
+    let traces = if arguments.traces {
+        Some(store.traces().map_err(store_failure)?)
+    } else {
+        None
     };
     let mut progress = Progress::new(store, wanted);
     let outcome = run_all(
         missing,
         threads,
         &mut progress,
-        |point, stop| match &folder {
-            Some(folder) => traced(plan, point, folder, stop),
+        |point, stop| match &traces {
+            Some(traces) => traced(plan, point, traces, stop),
             None => totals(plan, point, stop),
         },
     );

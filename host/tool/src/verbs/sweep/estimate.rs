@@ -7,6 +7,7 @@ use crate::progress;
 use crepitus_sweep::{Format, Parts, Plan, Receiver, Row, run_all, table, totals};
 use serde_json::json;
 use std::io;
+use std::iter::once;
 use std::time::Instant;
 
 /// Runs that are measured.
@@ -23,11 +24,11 @@ pub(super) fn run(plan: &Plan, runs: u64, threads: usize, as_json: bool) -> Resu
     };
     let mut warm = Rows::new(WARM_UP);
     let run = |i: u64, stop: &_| totals(plan, point(i), stop);
-    let warm_up = 0..WARM_UP.min(count);
-    run_all(vec![warm_up], threads, &mut warm, run).map_err(failure)?;
+    let warm_up = WARM_UP.min(count);
+    run_all(once(0..warm_up), threads, &mut warm, run).map_err(failure)?;
     let mut rows = Rows::new(count);
     let begun = Instant::now();
-    run_all(vec![0..count], threads, &mut rows, run).map_err(failure)?;
+    run_all(once(0..count), threads, &mut rows, run).map_err(failure)?;
     let wall_s = begun.elapsed().as_secs_f64();
 
     let failed = rows
@@ -77,7 +78,7 @@ fn usize_to_f64(x: usize) -> f64 {
 fn bytes_of_table(plan: &Plan, rows: Rows) -> Result<u64, Failure> {
     let failed = |e: io::Error| Failure::Work(format!("measuring the size of a table: {e}"));
     let home = tempfile::tempdir().map_err(failed)?;
-    let mut rows = rows.rows;
+    let mut rows = rows.ended;
     rows.sort_by_key(|row| row.index);
     // Those of a sweep that has no others.
     for (index, row) in (0..).zip(&mut rows) {
@@ -97,7 +98,7 @@ fn bytes_of_table(plan: &Plan, rows: Rows) -> Result<u64, Failure> {
 }
 
 struct Rows {
-    rows: Vec<Row>,
+    ended: Vec<Row>,
     wanted: u64,
     bar: progress::Progress,
 }
@@ -105,7 +106,7 @@ struct Rows {
 impl Rows {
     fn new(wanted: u64) -> Self {
         Self {
-            rows: Vec::new(),
+            ended: Vec::new(),
             wanted,
             bar: progress::Progress::of_sweep(),
         }
@@ -129,14 +130,14 @@ impl Receiver for Rows {
     type Error = Interrupted;
 
     fn row(&mut self, row: Row) -> Result<(), Interrupted> {
-        self.rows.push(row);
+        self.ended.push(row);
         Ok(())
     }
 
     #[expect(clippy::cast_precision_loss, reason = "a share for people")]
     fn poll(&mut self) -> Result<(), Interrupted> {
         self.bar
-            .reached(self.rows.len() as f64 / self.wanted.max(1) as f64);
+            .reached(self.ended.len() as f64 / self.wanted.max(1) as f64);
         if interrupt::requested() {
             return Err(Interrupted);
         }

@@ -13,15 +13,14 @@ pub(super) fn run(folders: &[PathBuf], format: Format, as_json: bool) -> Result<
         return Err(Failure::Input("--merge: name a folder".to_owned()));
     };
     let mut store = Store::open(first).map_err(store_failure)?;
-    let written = match store.table() {
-        Some(written) => written,
-        None => {
-            for other in others {
-                let other = Store::open(other).map_err(store_failure)?;
-                store.take_parts_of(&other).map_err(store_failure)?;
-            }
-            table(&mut store, format, first)?
+    let written = if let Some(written) = store.table() {
+        written
+    } else {
+        for other in others {
+            let other = Store::open(other).map_err(store_failure)?;
+            store.take_parts_of(&other).map_err(store_failure)?;
         }
+        table(&mut store, format, first)?
     };
     let sweep = store.identity();
     if as_json {
