@@ -379,7 +379,7 @@ fn an_interrupted_sweep_goes_on() {
 #[test]
 fn the_cost_is_estimated() {
     let home = tempfile::tempdir().unwrap();
-    let arguments = [&["low-speed", "--estimate", "1e7", "--json"], &GRID[..]].concat();
+    let arguments = [&["low-speed", "--estimate=1e7", "--json"], &GRID[..]].concat();
     let told: Value = serde_json::from_str(&done(home.path(), &arguments)).unwrap();
     let number = |name: &str| told[name].as_f64().unwrap();
     assert_eq!(told["measured_runs"], 15);

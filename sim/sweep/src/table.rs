@@ -315,3 +315,6 @@ fn go_on(goes_on: bool) -> io::Result<()> {
 fn share(done: usize, of: usize) -> f64 {
     done as f64 / of.max(1) as f64
 }
+
+#[cfg(all(test, feature = "parquet"))]
+mod tests;

@@ -20,6 +20,7 @@ use serde_json::json;
 use std::num::NonZero;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::thread::available_parallelism;
 use std::time::Instant;
 
@@ -34,7 +35,7 @@ Examples:
                             --vary effects.limb.mass_kg=2:6
   crepitus sweep everything --sobol 4096 --vary …
   crepitus sweep low-speed --points saltelli.csv      points of another program
-  crepitus sweep low-speed --vary … --estimate 1e7    what that would cost
+  crepitus sweep low-speed --vary … --estimate=1e7    what that would cost
   crepitus sweep low-speed --vary … --shard 3/16      one of 16 parts, on any computer
   crepitus sweep --merge out/sweep-low-speed          checks that all parts are there: the table
 
@@ -104,8 +105,15 @@ pub(crate) struct Arguments {
 
     /// Run up to a thousand of the points, write nothing, and say what the sweep would cost: all
     /// of it, or RUNS runs.
-    #[arg(long, value_name = "RUNS", num_args = 0..=1, value_parser = runs, conflicts_with_all = ["shard", "traces"])]
-    estimate: Option<Option<u64>>,
+    #[arg(
+        long,
+        value_name = "RUNS",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "all",
+        conflicts_with_all = ["shard", "traces"]
+    )]
+    estimate: Option<Extent>,
 
     /// Make the table of a sweep that ran in parts, here or in several folders; it goes into the
     /// first.
@@ -124,16 +132,32 @@ fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// Parses a number of runs, also as 1e7.
-fn runs(text: &str) -> Result<u64, String> {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "whole and in range"
-    )]
-    match text.parse::<f64>() {
-        Ok(x) if (1.0..=1e15).contains(&x) && x.fract() == 0.0 => Ok(x as u64),
-        _ => Err("expected a number of runs, for example 10000000 or 1e7".to_owned()),
+/// How many runs are estimated.
+#[derive(Clone, Copy, Debug)]
+enum Extent {
+    /// Those of the sweep.
+    All,
+    /// This many.
+    Runs(u64),
+}
+
+/// `all`, or a number of runs, also as 1e7.
+impl FromStr for Extent {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        if text == "all" {
+            return Ok(Self::All);
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole and in range"
+        )]
+        match text.parse::<f64>() {
+            Ok(x) if (1.0..=1e15).contains(&x) && x.fract() == 0.0 => Ok(Self::Runs(x as u64)),
+            _ => Err("expected a number of runs, for example 10000000 or 1e7"),
+        }
     }
 }
 
@@ -146,8 +170,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let plan = plan(arguments, scene)?;
     let threads = arguments.threads.map_or_else(cores, NonZero::get);
     interrupt::listen();
-    if let Some(runs) = arguments.estimate {
-        return estimate::run(&plan, runs.unwrap_or(plan.runs()), threads, as_json);
+    if let Some(extent) = arguments.estimate {
+        let runs = match extent {
+            Extent::All => plan.runs(),
+            Extent::Runs(runs) => runs,
+        };
+        return estimate::run(&plan, runs, threads, as_json);
     }
     let out = arguments.out.clone().unwrap_or_else(|| {
         let name = scene.file_stem().unwrap_or_default().to_string_lossy();
@@ -299,7 +327,7 @@ fn done(plan: &Plan, table: &Written, ran: Option<&Ran>, as_json: bool) -> Resul
         }));
     }
     if table.failed > 0 {
-        warn(&format!(
+        warn(format!(
             "{} of {} runs failed: the column `failure` says why",
             table.failed,
             plan.runs()

@@ -32,7 +32,7 @@ pub(super) fn run(plan: &Plan, runs: u64, threads: usize, as_json: bool) -> Resu
     let wall_s = begun.elapsed().as_secs_f64();
 
     let failed = rows
-        .rows
+        .ended
         .iter()
         .filter(|row| row.failure().is_some())
         .count();

@@ -33,7 +33,7 @@ pub(super) fn run(folders: &[PathBuf], format: Format, as_json: bool) -> Result<
         }));
     }
     if written.failed > 0 {
-        warn(&format!(
+        warn(format!(
             "{} of {} runs failed: the column `failure` says why",
             written.failed, sweep.runs
         ));

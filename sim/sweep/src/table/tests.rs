@@ -1,0 +1,133 @@
+//! Both forms of a table hold the same.
+
+use super::*;
+use crate::row::{Cell, Row};
+use ::parquet::file::reader::{FileReader, SerializedFileReader};
+use ::parquet::record::Field as Value;
+use std::collections::HashMap;
+use std::fs::{self, File};
+
+fn identity(runs: u64) -> Identity {
+    Identity {
+        crepitus_version: "0".to_owned(),
+        scene: "a".to_owned(),
+        title: "b".to_owned(),
+        paths: vec!["x".to_owned()],
+        runs,
+        design_seed: None,
+        sha256: String::new(),
+    }
+}
+
+/// Rows whose columns come, go, and change from counts to numbers to texts.
+fn rows(random: &mut fastrand::Rng, count: u64) -> Vec<Row> {
+    let row = |index| {
+        let mut cells = vec![("x".to_owned(), Cell::Number(random.f64() - 0.5))];
+        for name in ["n", "mixed", "text.of, \"it\"", "rare"] {
+            match random.u32(..6) {
+                0 => {}
+                1 if name == "rare" => {
+                    cells.push((name.to_owned(), Cell::Number(f64::MIN_POSITIVE)));
+                }
+                _ if name == "rare" => {}
+                2 if name == "mixed" => cells.push((name.to_owned(), Cell::Number(0.1))),
+                _ if name.starts_with("text") => {
+                    let text = format!("ä\n{}", random.u32(..3));
+                    cells.push((name.to_owned(), Cell::Text(text)));
+                }
+                _ => cells.push((name.to_owned(), Cell::Whole(random.i64(..) >> 12))),
+            }
+        }
+        Row { index, cells }
+    };
+    (0..count).map(row).collect()
+}
+
+/// A Parquet file as texts, a map of columns a row.
+fn parquet_rows(file: &Path) -> Vec<HashMap<String, String>> {
+    let reader = SerializedFileReader::new(File::open(file).unwrap()).unwrap();
+    let text = |value: &Value| match value {
+        Value::Null => String::new(),
+        Value::Long(whole) => whole.to_string(),
+        Value::Double(number) => format!("{number:?}"),
+        Value::Str(text) => text.clone(),
+        other => panic!("{other:?}"),
+    };
+    let rows = reader.get_row_iter(None).unwrap();
+    rows.map(|row| {
+        let row = row.unwrap();
+        let columns = row.get_column_iter();
+        columns
+            .map(|(name, value)| (name.clone(), text(value)))
+            .collect()
+    })
+    .collect()
+}
+
+#[test]
+fn parquet_and_csv_hold_the_same_rows_in_the_same_order() {
+    let mut random = fastrand::Rng::with_seed(4);
+    let home = tempfile::tempdir().unwrap();
+    let parts = Parts::in_folder(home.path().join("parts"));
+    fs::create_dir(parts.folder()).unwrap();
+    let rows = rows(&mut random, 500);
+    // In pieces that overlap, and not in their order.
+    for piece in [300..500, 0..120, 100..250, 200..310] {
+        parts.write(&rows[piece]).unwrap();
+    }
+    for format in [Format::Csv, Format::Parquet] {
+        write(&parts, &identity(500), home.path(), format, &mut |_| true).unwrap();
+    }
+    let parquet = parquet_rows(&home.path().join("sweep.parquet"));
+    let mut csv = csv::Reader::from_path(home.path().join("sweep.csv")).unwrap();
+    let header = csv.headers().unwrap().clone();
+    let mut count = 0;
+    for (record, row) in csv.records().zip(&parquet) {
+        let record = record.unwrap();
+        assert_eq!(record[0], count.to_string());
+        let given = &rows[count].cells;
+        assert_eq!(
+            record.iter().filter(|cell| !cell.is_empty()).count(),
+            given.len() + 1
+        );
+        for (name, cell) in header.iter().zip(&record) {
+            let same = match (cell.parse::<f64>(), row[name].parse::<f64>()) {
+                (Ok(a), Ok(b)) => a.to_bits() == b.to_bits(),
+                _ => cell == row[name],
+            };
+            assert!(same, "row {count}, {name}: {cell} and {}", row[name]);
+        }
+        count += 1;
+    }
+    assert_eq!((count, parquet.len()), (500, 500));
+}
+
+#[test]
+fn what_is_missing_is_named_and_an_end_leaves_nothing() {
+    let home = tempfile::tempdir().unwrap();
+    let parts = Parts::in_folder(home.path().join("parts"));
+    fs::create_dir(parts.folder()).unwrap();
+    let rows = rows(&mut fastrand::Rng::with_seed(1), 30);
+    for piece in [0..10, 11..20, 25..30] {
+        parts.write(&rows[piece]).unwrap();
+    }
+    let attempt = |runs, goes_on| {
+        write(
+            &parts,
+            &identity(runs),
+            home.path(),
+            Format::Csv,
+            &mut |_| goes_on,
+        )
+        .unwrap_err()
+        .to_string()
+    };
+    let text = attempt(32, true);
+    assert_eq!(
+        text,
+        "8 of 32 runs are not there: points 10, 20 to 24, 30 to 31"
+    );
+    let text = attempt(10, false);
+    assert!(text.contains("interrupted"), "{text}");
+    assert!(!home.path().join("sweep.csv").exists());
+}
