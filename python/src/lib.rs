@@ -9,7 +9,7 @@
 //!  ┌─────┴───────────────────────────┴─────┐
 //!  │ scene · run · studies · joint · device │  this crate
 //!  └─────┬──────────────────────────────────┘
-//!        crepitus-scene, -study, -connection, -recording
+//!        crepitus-scene, -study, -sweep, -connection, -recording
 //! ```
 //!
 //! **What takes time releases the GIL** and looks for signals twenty times a second, so
@@ -21,6 +21,7 @@
 //! | scenes, what ships | `scene.rs`, `shipped.rs` |
 //! | runs, the arrays of a trace | `run.rs`, `columns.rs` |
 //! | studies | `studies.rs` |
+//! | many runs of a scene | `sweep.rs` |
 //! | a joint to step by hand | `joint.rs` |
 //! | devices, samples, recordings | `device.rs`, `following.rs`, `samples.rs` |
 
@@ -35,6 +36,7 @@ mod scene;
 mod shipped;
 mod signals;
 mod studies;
+mod sweep;
 mod values;
 
 use pyo3::prelude::*;
@@ -48,6 +50,8 @@ fn _crepitus(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(run::simulate, module)?)?;
     module.add_function(wrap_pyfunction!(studies::accuracy, module)?)?;
     module.add_function(wrap_pyfunction!(studies::effects, module)?)?;
+    module.add_function(wrap_pyfunction!(sweep::run_points, module)?)?;
+    module.add_function(wrap_pyfunction!(sweep::run_design, module)?)?;
     module.add_function(wrap_pyfunction!(shipped::scenes, module)?)?;
     module.add_function(wrap_pyfunction!(shipped::presets, module)?)?;
     module.add_function(wrap_pyfunction!(shipped::parameters, module)?)?;

@@ -66,6 +66,16 @@ impl Scene {
         })
     }
 
+    /// Its text before any change.
+    pub(crate) fn text(&self) -> shipped::Source {
+        shipped::Source::of_text(self.source.file.clone(), self.source.text.clone())
+    }
+
+    /// What was changed in it.
+    pub(crate) const fn changes(&self) -> &Overrides {
+        &self.overrides
+    }
+
     /// A refusal in the form of the scene's own errors.
     pub(crate) fn refused(&self, key: &str, message: String) -> PyErr {
         let error = SceneError {

@@ -11,6 +11,7 @@
 simulate a scene                :func:`run`, :class:`Scene`, :class:`Run`
 what ships                      :func:`scenes`, :func:`presets`
 the solver without a step       :func:`reference`
+many runs of a scene            :func:`run_many`, :func:`sweep`
 what accuracy costs             :func:`accuracy`
 what each effect does           :func:`effects`
 a joint in a loop of your own   :class:`Joint`
@@ -31,6 +32,7 @@ from ._joint import Joint
 from ._run import Run, reference, run
 from ._shipped import presets, scenes
 from ._studies import accuracy, effects
+from ._sweep import run_many, sweep
 
 __all__ = [
     "CrepitusError",
@@ -52,5 +54,7 @@ __all__ = [
     "read_recording",
     "reference",
     "run",
+    "run_many",
     "scenes",
+    "sweep",
 ]

@@ -5,7 +5,7 @@
 //! record a *column*: name, kind, then a value a row, or one value for all rows; most
 //! columns of a sweep do not vary, and a table is written column by column.
 
-use crate::row::{Cell, Row};
+use crate::row::Row;
 use std::collections::HashMap;
 use std::fs;
 use std::io::{self, Write};
@@ -85,21 +85,13 @@ impl Kind {
     }
 }
 
-fn text_of(cell: &Cell) -> (Kind, String) {
-    match cell {
-        Cell::Whole(whole) => (Kind::Whole, whole.to_string()),
-        Cell::Number(number) => (Kind::Number, ryu::Buffer::new().format(*number).to_owned()),
-        Cell::Text(text) => (Kind::Text, text.clone()),
-    }
-}
-
 /// The columns of neighbouring rows, in the order in which they first appear.
 fn columns(rows: &[Row]) -> Vec<Column> {
     let mut places: HashMap<&str, usize> = HashMap::new();
     let mut found: Vec<(&str, Kind, Vec<String>)> = Vec::new();
     for (number, row) in rows.iter().enumerate() {
         for (name, cell) in &row.cells {
-            let (kind, text) = text_of(cell);
+            let (kind, text) = (cell.kind(), cell.to_string());
             let place = *places.entry(name).or_insert_with(|| {
                 found.push((name, kind, vec![String::new(); rows.len()]));
                 found.len() - 1
@@ -314,6 +306,7 @@ pub fn missing(wanted: Range<u64>, there: &[Range<u64>]) -> Vec<Range<u64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::row::Cell;
 
     fn row(index: u64) -> Row {
         let mut cells = vec![

@@ -1,8 +1,10 @@
 //! A run as a row: what was varied, and every number of its summary.
 
+use crate::parts::Kind;
 use crepitus_scene::Summary;
 use crepitus_scene::run::EffectSummary;
 use serde_json::{Map, Value};
+use std::fmt;
 
 /// What stands in a column of a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +15,28 @@ pub enum Cell {
     Number(f64),
     /// A name, or a reason.
     Text(String),
+}
+
+impl Cell {
+    /// What its column holds, if all of its cells are like it.
+    pub const fn kind(&self) -> Kind {
+        match self {
+            Self::Whole(_) => Kind::Whole,
+            Self::Number(_) => Kind::Number,
+            Self::Text(_) => Kind::Text,
+        }
+    }
+}
+
+/// Numbers read back to the same bits.
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole(whole) => write!(f, "{whole}"),
+            Self::Number(number) => f.write_str(ryu::Buffer::new().format(*number)),
+            Self::Text(text) => f.write_str(text),
+        }
+    }
 }
 
 /// A run. A column that it does not have is empty.
