@@ -95,6 +95,27 @@ def test_what_is_wrong_is_said() -> None:
         crepitus.sweep("low-speed", {TS: [1.0]}, threads=0)
 
 
+def test_sensitivity_through_files(tool: Tool, tmp_path: Path) -> None:
+    """As docs/sweeps.md has it: SALib chooses the points, the tool runs them, SALib reads the rows."""
+    import polars
+    from SALib.analyze import sobol as analyze
+    from SALib.sample import sobol as sample
+
+    joint = "effects.crepitus."
+    names = [joint + "stiffness_nm_per_rad", joint + "inertia_kg_m2", joint + "damping_nms_per_rad"]
+    problem = {"num_vars": 3, "names": names, "bounds": [[280, 520], [0.007, 0.013], [0, 1e-6]]}
+    points = tmp_path / "points.csv"
+    polars.DataFrame(sample.sample(problem, 64, calc_second_order=False, seed=1), schema=names).write_csv(points)
+    out = tmp_path / "s"
+    done = tool("sweep", "high-speed", "--points", points, "--out", out, "--set", "effects.crepitus.convention=physical")
+    assert done.returncode == 0, done.stderr
+    rows = polars.read_parquet(out / "sweep.parquet").sort("index")
+    indices = analyze.analyze(problem, rows["cycles.frequency_hz"].to_numpy(), calc_second_order=False, seed=1)
+    # f ~ sqrt(kr/J): both alike, and a damping of nothing does nothing.
+    assert abs(indices["S1"][0] - 0.5) < 0.15 and abs(indices["S1"][1] - 0.5) < 0.15
+    assert indices["ST"][2] < 0.01
+
+
 def test_ctrl_c_ends_a_sweep() -> None:
     script = (
         "import crepitus\n"

@@ -11,6 +11,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,6 +84,16 @@ impl Kind {
             _ => Self::Number,
         }
     }
+}
+
+/// A file that is not whole yet; it is removed if it is dropped. What becomes of it can be
+/// read by others, as far as the user's mask allows.
+pub(crate) fn scratch_file(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".part-");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
 }
 
 /// The columns of neighbouring rows, in the order in which they first appear.
@@ -179,9 +190,7 @@ impl Parts {
     }
 
     fn write_part(&self, points: &Range<u64>, columns: &[Column]) -> io::Result<()> {
-        let mut file = tempfile::Builder::new()
-            .prefix(".part-")
-            .tempfile_in(&self.folder)?;
+        let mut file = scratch_file(&self.folder)?;
         {
             let buffered = io::BufWriter::with_capacity(1 << 16, file.as_file_mut());
             let mut writer = csv::WriterBuilder::new()
@@ -257,9 +266,7 @@ impl Parts {
     /// Of either folder.
     pub fn copy_from(&self, other: &Self) -> io::Result<()> {
         for points in other.points()? {
-            let mut copy = tempfile::Builder::new()
-                .prefix(".part-")
-                .tempfile_in(&self.folder)?;
+            let mut copy = scratch_file(&self.folder)?;
             io::copy(&mut fs::File::open(other.file(&points))?, &mut copy)?;
             copy.as_file().sync_data()?;
             copy.persist(self.file(&points))?;

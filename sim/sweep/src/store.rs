@@ -1,6 +1,6 @@
 //! The folder of a sweep: what it is (`sweep.json`), rows so far (`parts`), the table.
 
-use crate::parts::{Parts, missing};
+use crate::parts::{Parts, missing, scratch_file};
 use crate::plan::Identity;
 use crate::row::Row;
 use crate::table::{self, Format, TableError, Written};
@@ -275,9 +275,7 @@ impl Store {
     fn write_about(&self) -> Result<(), StoreError> {
         let path = self.folder.join(ABOUT);
         let write = || -> io::Result<()> {
-            let mut file = tempfile::Builder::new()
-                .prefix(".sweep-")
-                .tempfile_in(self.parts.folder())?;
+            let mut file = scratch_file(self.parts.folder())?;
             serde_json::to_writer_pretty(&mut file, &self.about)?;
             file.write_all(b"\n")?;
             file.as_file().sync_all()?;

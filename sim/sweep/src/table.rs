@@ -3,7 +3,7 @@
 #[cfg(feature = "parquet")]
 mod parquet;
 
-use crate::parts::{Column, Kind, PartError, Parts, missing};
+use crate::parts::{Column, Kind, PartError, Parts, missing, scratch_file};
 use crate::plan::Identity;
 use crate::row::FAILURE;
 use std::collections::HashMap;
@@ -146,9 +146,7 @@ pub fn write(
     let table = table.with_fields(&mut |share| progress(share / 2.0))?;
     let failed = table.fields.iter().position(|f| f.name == FAILURE);
     let mut count = 0;
-    let mut file = tempfile::Builder::new()
-        .prefix(".sweep-")
-        .tempfile_in(parts.folder())?;
+    let mut file = scratch_file(parts.folder())?;
     let mut seen = |chunk: &Chunk, share: f64| {
         let reasons = failed
             .map(|field| (0..chunk.rows()).filter(move |&r| !chunk.cell(field, r).is_empty()));

@@ -1,5 +1,6 @@
 //! Runs that leave a trace.
 
+use crate::parts::scratch_file;
 use crate::plan::Plan;
 use crate::pool::{Ended, Stop};
 use crate::row::Row;
@@ -50,10 +51,7 @@ pub fn traced(plan: &Plan, point: u64, to: &Traces, stop: &Stop) -> Result<Row, 
     stop.check()?;
     plan.run(point, |scene| {
         let failed = |e: io::Error| RunError::Observer(Ended::Failed(e));
-        let file = tempfile::Builder::new()
-            .prefix(".trace-")
-            .tempfile_in(&to.scratch)
-            .map_err(failed)?;
+        let file = scratch_file(&to.scratch).map_err(failed)?;
         let csv = TraceCsv::new(BufWriter::new(file), columns(scene)).map_err(failed)?;
         let mut trace = Trace { csv, stop };
         let summary = run(scene, &mut trace)?;

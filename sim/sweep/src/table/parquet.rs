@@ -16,7 +16,7 @@ use std::mem::take;
 use std::sync::Arc;
 
 /// Rows that are in memory before they are written as a group.
-const GROUP_ROWS: usize = 50_000;
+const GROUP_ROWS: usize = 20_000;
 
 /// Level of zstd: higher ones are slower and hardly smaller.
 const ZSTD: i32 = 3;
