@@ -71,6 +71,9 @@ pub enum StoreError {
         /// In what they differ.
         difference: String,
     },
+    /// Another program has worked on the same points.
+    #[error("{}: another program has finished this sweep meanwhile, and its table is there", .0.display())]
+    Overtaken(PathBuf),
     /// The disk.
     #[error("{}: {error}", path.display())]
     Io {
@@ -231,7 +234,13 @@ impl Store {
     /// If a part cannot be written.
     pub fn flush(&mut self) -> Result<(), StoreError> {
         let rows: Vec<_> = std::mem::take(&mut self.rows).into_values().collect();
-        self.parts.write(&rows).map_err(at(self.parts.folder()))?;
+        self.parts.write(&rows).map_err(|e| {
+            if self.parts.folder().exists() {
+                at(self.parts.folder())(e)
+            } else {
+                StoreError::Overtaken(self.folder.clone())
+            }
+        })?;
         self.flushed = Instant::now();
         Ok(())
     }
