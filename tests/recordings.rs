@@ -4,7 +4,7 @@ mod support;
 
 use std::fs;
 use std::path::Path;
-use support::{crepitus, names, run, shared, stderr, summary};
+use support::{crepitus, csv, names, run, shared, stderr, summary};
 
 /// A scene that plays `file`.
 fn scene(file: &str, duration_s: f64, columns: (&str, &str)) -> String {
@@ -164,4 +164,41 @@ fn a_scene_longer_than_its_recording_is_refused() {
         "{}",
         stderr(&output)
     );
+}
+
+#[test]
+fn a_repeated_gait_cycle_runs_again_bit_for_bit() {
+    let Some(file) = shared("data/raw/opensim_crouch_gait.mot") else {
+        return;
+    };
+    let home = tempfile::tempdir().unwrap();
+    let text = scene(file.to_str().unwrap(), 5.5, ("time", "knee_angle_r"));
+    let text = text.replace("unit = ", "sign = -1\nrepeat = true\nunit = ");
+    let path = home.path().join("scene.toml");
+    fs::write(&path, text).unwrap();
+    let [first, second] = ["first", "second"].map(|name| home.path().join(name));
+    let play = |scene: &Path, out: &Path| {
+        let output = run(&[
+            "run",
+            scene.to_str().unwrap(),
+            "--out",
+            out.to_str().unwrap(),
+        ]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    };
+    play(&path, &first);
+    play(&first.join("summary.json"), &second);
+    for name in ["trace.csv", "events.csv"] {
+        let [a, b] = [&first, &second].map(|folder| fs::read(folder.join(name)).unwrap());
+        assert!(a == b, "{name} differs");
+    }
+    // Flexion is negative in the file, and positive here.
+    let (header, rows) = csv(&first.join("trace.csv"));
+    assert_eq!(header[1], "angle_rad");
+    let angle = |row: usize| rows[row][1].parse::<f64>().unwrap();
+    let (start, end) = (angle(0), angle(rows.len() - 1));
+    assert!(start > 0.9 && end > 0.9, "{start} {end}");
+    // Rows are 50 µs apart, cycles 1 s.
+    let off = (0..20_000).map(|i| (angle(i) - angle(i + 80_000)).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-9);
 }

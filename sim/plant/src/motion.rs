@@ -5,8 +5,10 @@
 //! jump. Periodic motions are computed where they are asked for: no motion
 //! grows with the length of the run, but a recording with its file.
 
+mod cycle;
 mod rest;
 
+pub use cycle::Cycle;
 pub use rest::STOP_S;
 
 use crate::piece::{Curve, Piece, ShaftState};
@@ -24,6 +26,8 @@ pub enum Motion {
     Sequence(Vec<Piece>),
     /// Minimum-jerk strokes there and back with a pause after each, repeated.
     Strokes(Strokes),
+    /// Pieces that are repeated for ever.
+    Cycle(Cycle),
 }
 
 /// A passive examination: from one angle to another and back.
@@ -124,12 +128,6 @@ impl Motion {
     /// A smoothed recording, which goes straight on where it ends, as the
     /// spline does.
     pub fn recording(segments: &[CubicSegment]) -> Self {
-        let piece = |s: &CubicSegment| Piece {
-            start_s: s.start_s,
-            end_s: s.end_s,
-            jump: false,
-            curve: Curve::Polynomial([s.c[0], s.c[1], s.c[2], s.c[3], 0.0, 0.0]),
-        };
         let straight_on = segments.last().map(|last| Piece {
             start_s: last.end_s,
             end_s: f64::INFINITY,
@@ -143,7 +141,12 @@ impl Motion {
                 0.0,
             ]),
         });
-        Self::Sequence(segments.iter().map(piece).chain(straight_on).collect())
+        Self::Sequence(segments.iter().map(of_segment).chain(straight_on).collect())
+    }
+
+    /// A smoothed cycle of a recording, repeated for ever.
+    pub fn repeated(segments: &[CubicSegment]) -> Self {
+        Self::Cycle(Cycle::new(segments.iter().map(of_segment).collect()))
     }
 
     /// The same motion about another angle: every angle is `by_rad` further.
@@ -160,6 +163,7 @@ impl Motion {
                 strokes.from_rad += by_rad;
                 strokes.to_rad += by_rad;
             }
+            Self::Cycle(cycle) => cycle.pieces_mut().iter_mut().for_each(shift),
         }
         self
     }
@@ -183,6 +187,7 @@ impl Motion {
                     })
             }
             Self::Strokes(strokes) => strokes.piece(time_s),
+            Self::Cycle(cycle) => cycle.piece(time_s),
         }
     }
 
@@ -209,6 +214,15 @@ impl Motion {
     /// The shaft just after `time_s`.
     pub fn at(&self, time_s: f64) -> ShaftState {
         self.piece(time_s).at(time_s)
+    }
+}
+
+fn of_segment(s: &CubicSegment) -> Piece {
+    Piece {
+        start_s: s.start_s,
+        end_s: s.end_s,
+        jump: false,
+        curve: Curve::Polynomial([s.c[0], s.c[1], s.c[2], s.c[3], 0.0, 0.0]),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Errors of recordings, with position, cause and remedy.
 
-use super::{AngleUnit, MAX_BYTES, MAX_ROWS, MIN_SAMPLES, Source};
+use super::{AngleUnit, MAX_BYTES, MAX_JOIN_DEG, MAX_ROWS, MIN_SAMPLES, Source};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -204,6 +204,21 @@ pub enum RecordingError {
         duration_s: f64,
         cutoff_hz: f64,
         enough_s: f64,
+    },
+    #[error(
+        "the recording begins at {first_deg:.2} deg and ends at {last_deg:.2} deg: a cycle that is \
+             repeated ends where it began, within {MAX_JOIN_DEG} deg; cut the file to whole cycles, or leave \
+             out repeat"
+    )]
+    NoCycle { first_deg: f64, last_deg: f64 },
+    #[error(
+        "the cycle has {found} samples, to be repeated it needs {needed} (those closer than a 64th \
+             of the cutoff's period, here {cutoff_hz} Hz, count as one)"
+    )]
+    ShortCycle {
+        found: usize,
+        needed: usize,
+        cutoff_hz: f64,
     },
     /// Only samples that were not made by `read` can be so.
     #[error("sample {index} (from 0): {problem}")]

@@ -9,10 +9,13 @@
 //! names the file, line and column; an unusual one is a [`Warning`]. [`smooth`] is a zero-phase
 //! low-pass and an interpolation in one. Both are needed: a recording carries noise that
 //! differentiating amplifies, and a jump of Ω̇ is a jump of torque under the `physical` convention.
+//! [`smooth_cycle`] makes a motion without end of one recorded cycle.
 
 mod csv_file;
+mod cyclic_bands;
 mod error;
 mod opensim_file;
+mod repeat;
 mod smooth;
 mod smoothing_spline;
 mod table;
@@ -25,9 +28,12 @@ mod test_data;
 #[cfg(test)]
 mod test_read;
 #[cfg(test)]
+mod test_repeat;
+#[cfg(test)]
 mod test_smooth;
 
 pub use error::{Place, RecordingError};
+pub use repeat::{MAX_JOIN_DEG, smooth_cycle};
 pub use smooth::{CubicSegment, acceleration_ripple_rad_s2, smooth};
 pub use warning::Warning;
 

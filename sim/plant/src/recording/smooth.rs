@@ -66,6 +66,15 @@ impl CubicSegment {
         (3.0 * c3 * tau + 2.0 * c2) * tau + c1
     }
 
+    /// The segment with every angle multiplied.
+    #[must_use]
+    pub fn scaled(self, by: f64) -> Self {
+        Self {
+            c: self.c.map(|c| by * c),
+            ..self
+        }
+    }
+
     /// The acceleration Ω̇ at a time of the recording, in rad/s².
     pub fn acceleration_rad_s2(&self, time_s: f64) -> f64 {
         let [_, _, c2, c3] = self.c;
@@ -81,15 +90,12 @@ impl CubicSegment {
 /// of the cutoff, and samples that break the promises of [`Samples`].
 pub fn smooth(samples: &Samples, cutoff_hz: f64) -> Result<Vec<CubicSegment>, RecordingError> {
     check(samples)?;
-    let nyquist_hz = samples.nyquist_hz();
-    if !(cutoff_hz > 0.0 && cutoff_hz < nyquist_hz) {
-        return Err(RecordingError::Cutoff {
-            cutoff_hz,
-            nyquist_hz,
-        });
-    }
-    let bin_s = 1.0 / (BINS_PER_PERIOD * cutoff_hz);
-    let knots = average(samples, bin_s);
+    check_cutoff(samples, cutoff_hz)?;
+    let bin_s = bin_s(cutoff_hz);
+    let Samples {
+        time_s, angle_rad, ..
+    } = samples;
+    let knots = average(time_s, angle_rad, &weights(time_s), bin_s);
     if knots.len() < MIN_SAMPLES {
         return Err(RecordingError::TooShort {
             duration_s: samples.duration_s(),
@@ -117,8 +123,25 @@ pub fn acceleration_ripple_rad_s2(segments: &[CubicSegment]) -> f64 {
     segments.iter().map(change).fold(0.0, f64::max)
 }
 
+/// The time over which dense samples are averaged, in s.
+pub(super) fn bin_s(cutoff_hz: f64) -> f64 {
+    1.0 / (BINS_PER_PERIOD * cutoff_hz)
+}
+
+/// A cutoff that the samples hold.
+pub(super) fn check_cutoff(samples: &Samples, cutoff_hz: f64) -> Result<(), RecordingError> {
+    let nyquist_hz = samples.nyquist_hz();
+    if cutoff_hz > 0.0 && cutoff_hz < nyquist_hz {
+        return Ok(());
+    }
+    Err(RecordingError::Cutoff {
+        cutoff_hz,
+        nyquist_hz,
+    })
+}
+
 /// `Samples` can be built by hand, and the solver panics where these fail.
-fn check(samples: &Samples) -> Result<(), RecordingError> {
+pub(super) fn check(samples: &Samples) -> Result<(), RecordingError> {
     let bad = |index, problem| Err(RecordingError::BadSamples { index, problem });
     let Samples {
         time_s, angle_rad, ..
@@ -149,26 +172,33 @@ fn check(samples: &Samples) -> Result<(), RecordingError> {
 }
 
 /// A time and angle that stand for `weight_s` of the recording.
-struct Knot {
-    time_s: f64,
-    angle_rad: f64,
-    weight_s: f64,
+pub(super) struct Knot {
+    pub(super) time_s: f64,
+    pub(super) angle_rad: f64,
+    pub(super) weight_s: f64,
+}
+
+/// Half the time between the neighbours of each sample; at the ends there is one only.
+fn weights(time_s: &[f64]) -> Vec<f64> {
+    let before = time_s.first().into_iter().chain(time_s);
+    let after = time_s.iter().skip(1).chain(time_s.last());
+    before
+        .zip(after)
+        .map(|(before, after)| 0.5 * (after - before))
+        .collect()
 }
 
 /// The means over bins; a bin begins at the first sample that the bin before does not hold.
 /// Where the samples are further apart than a bin, each is its own.
-fn average(samples: &Samples, bin_s: f64) -> Vec<Knot> {
-    let Samples {
-        time_s, angle_rad, ..
-    } = samples;
-    let before = time_s.first().into_iter().chain(time_s);
-    let after = time_s.iter().skip(1).chain(time_s.last());
+pub(super) fn average(
+    time_s: &[f64],
+    angle_rad: &[f64],
+    weight_s: &[f64],
+    bin_s: f64,
+) -> Vec<Knot> {
     let mut knots: Vec<Knot> = Vec::new();
     let mut bin_start_s = f64::NEG_INFINITY;
-    for (((&time_s, &angle_rad), before), after) in
-        time_s.iter().zip(angle_rad).zip(before).zip(after)
-    {
-        let weight_s = 0.5 * (after - before);
+    for ((&time_s, &angle_rad), &weight_s) in time_s.iter().zip(angle_rad).zip(weight_s) {
         match knots.last_mut() {
             Some(knot) if time_s < bin_start_s + bin_s => {
                 knot.weight_s += weight_s;
@@ -227,6 +257,11 @@ fn natural_spline(time_s: &[f64], angle_rad: &[f64]) -> Vec<CubicSegment> {
     acceleration.push(0.0);
     acceleration.reverse();
 
+    cubics(time_s, angle_rad, &acceleration)
+}
+
+/// The cubics between knots with these angles and Ω̇.
+pub(super) fn cubics(time_s: &[f64], angle_rad: &[f64], acceleration: &[f64]) -> Vec<CubicSegment> {
     let knots = time_s.array_windows().zip(angle_rad.array_windows());
     knots
         .zip(acceleration.array_windows())

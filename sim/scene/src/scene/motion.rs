@@ -1,19 +1,15 @@
 //! The `[motion]` table.
 
 use super::data_file::DataFile;
-use crate::document::{Range, Section, Value};
+use super::recorded_motion::recording;
+use crate::document::{Range, Section};
 use crate::error::SceneError;
 use crepitus_plant::Motion;
 use crepitus_plant::motion::{Strokes, VelocityKnot};
-use crepitus_plant::recording::{self, AngleUnit, Source};
 
 /// Angles and velocities of any joint that this could mean.
 const ANY_RAD: Range = Range::closed(-1e6, 1e6);
-const ANY_DEG: Range = Range::closed(-6e7, 6e7);
-
-/// Half-amplitude frequency of the low-pass over a recording, Hz: the 6 Hz
-/// that gait laboratories use (Winter).
-const DEFAULT_CUTOFF_HZ: f64 = 6.0;
+pub(super) const ANY_DEG: Range = Range::closed(-6e7, 6e7);
 
 /// The kinds of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -217,48 +213,4 @@ fn strokes(section: &Section<'_>) -> Result<Motion, SceneError> {
         ));
     }
     Ok(Motion::Strokes(strokes))
-}
-
-/// The motion of a recording, the largest change of its acceleration, and its
-/// file.
-fn recording(
-    section: &Section<'_>,
-    duration_s: f64,
-    warnings: &mut Vec<String>,
-) -> Result<(Motion, f64, DataFile), SceneError> {
-    let file = section.text("file")?;
-    let time_column = section.text("time_column")?;
-    let angle_column = section.text("angle_column")?;
-    let unit = section.choice("unit", &[("deg", AngleUnit::Deg), ("rad", AngleUnit::Rad)])?;
-    let cutoff_hz = section.number_or("cutoff_hz", Range::above(0.0, 1e6), DEFAULT_CUTOFF_HZ)?;
-    let folder = section.file().parent().unwrap_or(section.file());
-    let path = folder.join(file);
-    let samples = recording::read(&Source {
-        path: &path,
-        time_column,
-        angle_column,
-        unit,
-    })
-    .map_err(|e| section.key_error("file", e.to_string()))?;
-    warnings.extend(samples.warnings.iter().map(ToString::to_string));
-    // A duration written with fewer digits than the file's last time is meant.
-    if duration_s > samples.duration_s() * (1.0 + 1e-9) {
-        return Err(section.key_error(
-            "file",
-            format!(
-                "the recording lasts {} s, duration_s is {duration_s}: a scene cannot be longer than its recording",
-                samples.duration_s()
-            ),
-        ));
-    }
-    let segments = recording::smooth(&samples, cutoff_hz)
-        .map_err(|e| section.key_error("cutoff_hz", e.to_string()))?;
-    let ripple = recording::acceleration_ripple_rad_s2(&segments);
-    let data = DataFile::of(&path)
-        .map_err(|e| section.key_error("file", format!("cannot be read: {e}")))?;
-    let offset_deg = section.number_or("offset_deg", ANY_DEG, 0.0)?;
-    // Whoever repeats the run finds it from anywhere.
-    section.note("file", Value::Text(data.file.display().to_string()));
-    let motion = Motion::recording(&segments).shifted(offset_deg.to_radians());
-    Ok((motion, ripple, data))
 }

@@ -118,6 +118,7 @@ fn negated(motion: &Motion) -> Motion {
             to_rad: -strokes.to_rad,
             ..*strokes
         }),
+        Motion::Cycle(_) => panic!("none is among the motions"),
     }
 }
 

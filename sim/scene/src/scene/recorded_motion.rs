@@ -1,0 +1,99 @@
+//! The keys of `[motion]` with `kind = "recording"`.
+//!
+//! ```text
+//! file ─ read ─> samples ─ smooth ─> segments ─ · sign · scale, + offset ─> motion
+//! ```
+//! The spline is linear, so turning and stretching its segments is the same as doing so to the
+//! samples; `sign` alone changes no bit but the sign's.
+
+use super::data_file::DataFile;
+use super::motion::ANY_DEG;
+use crate::document::{Range, Section, Value};
+use crate::error::SceneError;
+use crepitus_plant::Motion;
+use crepitus_plant::recording::{self, AngleUnit, Source};
+
+/// Half-amplitude frequency of the low-pass over a recording, Hz: the 6 Hz
+/// that gait laboratories use (Winter).
+const DEFAULT_CUTOFF_HZ: f64 = 6.0;
+
+/// Factors that a joint's angle could need.
+const SCALE: Range = Range::above(0.0, 100.0);
+
+/// The motion of a recording, the largest change of its acceleration, and its
+/// file.
+pub(super) fn recording(
+    section: &Section<'_>,
+    duration_s: f64,
+    warnings: &mut Vec<String>,
+) -> Result<(Motion, f64, DataFile), SceneError> {
+    let file = section.text("file")?;
+    let time_column = section.text("time_column")?;
+    let angle_column = section.text("angle_column")?;
+    let unit = section.choice("unit", &[("deg", AngleUnit::Deg), ("rad", AngleUnit::Rad)])?;
+    let cutoff_hz = section.number_or("cutoff_hz", Range::above(0.0, 1e6), DEFAULT_CUTOFF_HZ)?;
+    let sign = sign(section)?;
+    let scale = section.number_or("scale", SCALE, 1.0)?;
+    let offset_deg = section.number_or("offset_deg", ANY_DEG, 0.0)?;
+    let repeat = section.flag("repeat")?;
+    let folder = section.file().parent().unwrap_or(section.file());
+    let path = folder.join(file);
+    let samples = recording::read(&Source {
+        path: &path,
+        time_column,
+        angle_column,
+        unit,
+    })
+    .map_err(|e| section.key_error("file", e.to_string()))?;
+    warnings.extend(samples.warnings.iter().map(ToString::to_string));
+    // A duration written with fewer digits than the file's last time is meant.
+    if !repeat && duration_s > samples.duration_s() * (1.0 + 1e-9) {
+        return Err(section.key_error(
+            "file",
+            format!(
+                "the recording lasts {} s, duration_s is {duration_s}: a scene cannot be longer than its recording, \
+                 unless the recording is whole cycles and repeat = true",
+                samples.duration_s()
+            ),
+        ));
+    }
+    let smooth = if repeat {
+        recording::smooth_cycle
+    } else {
+        recording::smooth
+    };
+    let mut segments = smooth(&samples, cutoff_hz).map_err(|e| {
+        let key = match e {
+            recording::RecordingError::NoCycle { .. }
+            | recording::RecordingError::ShortCycle { .. } => "repeat",
+            _ => "cutoff_hz",
+        };
+        section.key_error(key, e.to_string())
+    })?;
+    for segment in &mut segments {
+        *segment = segment.scaled(sign * scale);
+    }
+    let ripple = recording::acceleration_ripple_rad_s2(&segments);
+    let data = DataFile::of(&path)
+        .map_err(|e| section.key_error("file", format!("cannot be read: {e}")))?;
+    // Whoever repeats the run finds it from anywhere.
+    section.note("file", Value::Text(data.file.display().to_string()));
+    let motion = if repeat {
+        Motion::repeated(&segments)
+    } else {
+        Motion::recording(&segments)
+    };
+    Ok((motion.shifted(offset_deg.to_radians()), ripple, data))
+}
+
+/// 1 or −1.
+fn sign(section: &Section<'_>) -> Result<f64, SceneError> {
+    let sign = section.number_or("sign", Range::closed(-1.0, 1.0), 1.0)?;
+    if sign.abs() == 1.0 {
+        return Ok(sign);
+    }
+    Err(section.key_error(
+        "sign",
+        format!("{sign} is not allowed: 1, or -1 where the file counts flexion as negative; scale stretches"),
+    ))
+}

@@ -1,0 +1,224 @@
+//! `sign`, `scale`, `offset_deg` and `repeat` of a recording, as scenes read them.
+
+use crepitus_plant::Motion;
+use crepitus_scene::run::Blind;
+use crepitus_scene::{Overrides, Scene, run};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// A gait-like cycle of 1.1 s at 100 Hz, in degrees, flexion negative.
+fn cycle_deg(t: f64) -> f64 {
+    let turn = std::f64::consts::TAU * t / 1.1;
+    -30.0 + 20.0 * turn.cos() - 12.0 * (2.0 * turn + 0.5).sin()
+}
+
+/// `cycles` cycles as a CSV file.
+fn write(folder: &Path, name: &str, cycles: u32) {
+    let rows = (0..=110 * cycles).fold(String::from("t,angle\n"), |mut text, i| {
+        let t = f64::from(i % 110) * 0.01;
+        let _ = writeln!(text, "{},{}", f64::from(i) / 100.0, cycle_deg(t));
+        text
+    });
+    std::fs::write(folder.join(name), rows).unwrap();
+}
+
+fn scene(folder: &Path, file: &str, duration_s: f64, keys: &str) -> Result<Scene, String> {
+    scene_with(
+        folder,
+        file,
+        duration_s,
+        keys,
+        "kind = \"exact-events\"\nstep_s = 5e-5",
+    )
+}
+
+fn scene_with(
+    folder: &Path,
+    file: &str,
+    duration_s: f64,
+    keys: &str,
+    solver: &str,
+) -> Result<Scene, String> {
+    let text = format!(
+        "version = 1\ntitle = \"x\"\nduration_s = {duration_s:?}\n[motion]\nkind = \"recording\"\n\
+         file = \"{file}\"\ntime_column = \"t\"\nangle_column = \"angle\"\nunit = \"deg\"\n{keys}\n\
+         [solver]\n{solver}\n[effects.crepitus]\npreset = \"coarse\"\n"
+    );
+    Scene::parse(&folder.join("scene.toml"), &text, &Overrides::default())
+        .map_err(|e| e.to_string())
+}
+
+fn states(motion: &Motion, duration_s: f64) -> Vec<[f64; 3]> {
+    (0..1000)
+        .map(|i| motion.at(duration_s * f64::from(i) / 1000.0))
+        .map(|s| [s.phi_rad, s.omega_rad_s, s.omega_dot])
+        .collect()
+}
+
+#[test]
+fn sign_scale_and_offset_act_on_the_angle_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "knee.csv", 2);
+    let read = |keys| {
+        states(
+            &scene(folder.path(), "knee.csv", 2.0, keys).unwrap().motion,
+            2.0,
+        )
+    };
+    let plain = read("");
+    assert_eq!(
+        read("sign = 1\nscale = 1\noffset_deg = 0\nrepeat = false"),
+        plain
+    );
+    let negated: Vec<_> = plain.iter().map(|s| s.map(|x| -x)).collect();
+    assert_eq!(read("sign = -1"), negated, "to the bit");
+    let doubled: Vec<_> = plain.iter().map(|s| s.map(|x| 2.0 * x)).collect();
+    assert_eq!(read("scale = 2"), doubled, "to the bit");
+    for ([phi, omega, omega_dot], [p, o, d]) in read("sign = -1\nscale = 0.7\noffset_deg = 12")
+        .iter()
+        .zip(&plain)
+    {
+        assert!(
+            (phi - (12_f64.to_radians() - 0.7 * p)).abs() < 1e-14,
+            "{phi}"
+        );
+        assert!((omega + 0.7 * o).abs() < 1e-13 && (omega_dot + 0.7 * d).abs() < 1e-11);
+    }
+}
+
+#[test]
+fn a_repeated_cycle_is_the_interior_of_a_long_file() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "cycle.csv", 1);
+    write(folder.path(), "long.csv", 20);
+    let keys = "sign = -1\noffset_deg = 5";
+    let repeated = format!("{keys}\nrepeat = true");
+    let short = scene(folder.path(), "cycle.csv", 22.0, &repeated).unwrap();
+    let long = scene(folder.path(), "long.csv", 22.0, keys).unwrap();
+    let mut worst = [0.0_f64; 3];
+    for i in 0..4_000 {
+        let t = 4.0 + f64::from(i) * 3.3e-3;
+        let (a, b) = (short.motion.at(t), long.motion.at(t));
+        let off = [
+            a.phi_rad - b.phi_rad,
+            a.omega_rad_s - b.omega_rad_s,
+            a.omega_dot - b.omega_dot,
+        ];
+        for (worst, off) in worst.iter_mut().zip(off) {
+            *worst = worst.max(off.abs());
+        }
+    }
+    println!("off by {worst:?}");
+    assert!(
+        worst[0] < 1e-12 && worst[1] < 1e-10 && worst[2] < 1e-8,
+        "{worst:?}"
+    );
+    // Shorter than one cycle is fine, too.
+    scene(folder.path(), "cycle.csv", 0.3, &repeated).unwrap();
+}
+
+#[test]
+fn joints_break_in_every_cycle_alike_under_every_kind_of_solver() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "cycle.csv", 1);
+    let counts = |duration_s, solver| {
+        let scene = scene_with(
+            folder.path(),
+            "cycle.csv",
+            duration_s,
+            "sign = -1\nrepeat = true",
+            solver,
+        );
+        let summary = run(&scene.unwrap(), &mut Blind).unwrap();
+        summary.events.unwrap().breaks
+    };
+    let stepped = "kind = \"exact-events\"\nstep_s = 5e-5";
+    let reference = "kind = \"reference\"";
+    let long = counts(11.0, stepped);
+    assert!(long > 100, "{long:?}");
+    let exact = counts(11.0, reference);
+    assert!(long.abs_diff(exact) <= 1, "{long:?} {exact:?}");
+    let half = counts(5.5, reference);
+    assert!(exact.abs_diff(2 * half) <= 2, "{half:?} {exact:?}");
+}
+
+#[test]
+fn nonsense_is_refused_with_its_key() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "cycle.csv", 1);
+    let half: String = std::fs::read_to_string(folder.path().join("cycle.csv"))
+        .unwrap()
+        .lines()
+        .take(60)
+        .fold(String::new(), |text, line| text + line + "\n");
+    std::fs::write(folder.path().join("half.csv"), half).unwrap();
+    for (file, duration_s, keys, parts) in [
+        ("cycle.csv", 1.0, "scale = 0", ["motion.scale", "above 0"]),
+        ("cycle.csv", 1.0, "scale = -1", ["motion.scale", "above 0"]),
+        ("cycle.csv", 1.0, "scale = nan", ["motion.scale", "above 0"]),
+        (
+            "cycle.csv",
+            1.0,
+            "scale = 1e9",
+            ["motion.scale", "up to 100"],
+        ),
+        ("cycle.csv", 1.0, "sign = 0.5", ["motion.sign", "1, or -1"]),
+        ("cycle.csv", 1.0, "sign = 0", ["motion.sign", "1, or -1"]),
+        (
+            "cycle.csv",
+            1.0,
+            "sign = \"-\"",
+            ["motion.sign", "a number"],
+        ),
+        (
+            "cycle.csv",
+            1.0,
+            "repeat = 3",
+            ["motion.repeat", "true or false"],
+        ),
+        ("cycle.csv", 2.0, "", ["motion.file", "repeat = true"]),
+        (
+            "cycle.csv",
+            1.0,
+            "from_deg = 3",
+            ["motion.from_deg", "offset_deg"],
+        ),
+        (
+            "half.csv",
+            5.0,
+            "repeat = true",
+            ["motion.repeat", "whole cycles"],
+        ),
+        (
+            "cycle.csv",
+            5.0,
+            "repeat = true\ncutoff_hz = 70",
+            ["motion.cutoff_hz", "50.0000"],
+        ),
+    ] {
+        let error = scene(folder.path(), file, duration_s, keys)
+            .map(|_| ())
+            .unwrap_err();
+        for part in parts {
+            assert!(error.contains(part), "{keys}: {error}");
+        }
+    }
+}
+
+#[test]
+fn the_scene_as_run_says_how_the_recording_was_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "cycle.csv", 1);
+    let first = scene(folder.path(), "cycle.csv", 3.0, "sign = -1\nrepeat = true").unwrap();
+    for key in ["sign = -1", "scale = 1", "offset_deg = 0", "repeat = true"] {
+        assert!(first.as_run.contains(key), "{key}: {}", first.as_run);
+    }
+    let again = Scene::parse(
+        Path::new("elsewhere.toml"),
+        &first.as_run,
+        &Overrides::default(),
+    );
+    let again = again.unwrap();
+    assert_eq!(again.motion, first.motion);
+    assert_eq!(again.as_run, first.as_run);
+}
