@@ -2,6 +2,7 @@
 //! the decimals they need.
 
 use crate::number;
+use crate::text::{SIZE, width};
 
 /// See the module.
 #[derive(Clone, Debug)]
@@ -89,6 +90,47 @@ impl Axis {
             powers: from < -2 || to > 5,
             ..Self::logarithmic(low, high, &marks)
         }
+    }
+
+    /// The same range with as many ticks as have room for their labels, to the right, on this many
+    /// CSS pixels.
+    pub(crate) fn fitting(self, px: f64) -> Self {
+        let mut fewer = self;
+        while fewer.ticks.len() > 2 && !fewer.labels_fit(px) {
+            fewer = fewer.thinner();
+        }
+        fewer
+    }
+
+    /// Whether no label touches the next one.
+    fn labels_fit(&self, px: f64) -> bool {
+        /// Between labels, as a share of the letters' size.
+        const GAP: f64 = 0.5 * SIZE;
+        let spans: Vec<(f64, f64)> = self
+            .labels()
+            .map(|(at, label)| (px * self.place(at), 0.5 * width(&label, SIZE)))
+            .collect();
+        spans
+            .array_windows()
+            .all(|[(a, half_a), (b, half_b)]| b - a >= half_a + half_b + GAP)
+    }
+
+    /// The next coarser round step; of a logarithmic axis every second tick.
+    fn thinner(self) -> Self {
+        if self.logarithmic {
+            let ticks = self.ticks.into_iter().step_by(2).collect();
+            return Self { ticks, ..self };
+        }
+        let count = self.ticks.len();
+        let (low, high) = (self.low, self.high);
+        (1..8)
+            .rev()
+            .map(|ticks| Self::linear(low, high, ticks))
+            .find(|axis| axis.ticks.len() < count)
+            .unwrap_or(Self {
+                ticks: self.ticks.into_iter().take(1).collect(),
+                ..Self::linear(low, high, 1)
+            })
     }
 
     /// The ticks with their labels.
@@ -187,6 +229,27 @@ mod tests {
         assert_eq!(labels(&axis), ["10⁻⁴", "10⁻²"]);
         let axis = Axis::decades(3.0, 2e3, 6);
         assert_eq!(labels(&axis), ["10", "100", "1000"]);
+    }
+
+    #[test]
+    fn labels_do_not_touch_on_a_narrow_chart() {
+        for (low, high) in [(0.0, 10.0), (7.301, 7.4234), (-1e4, 2e4), (0.0, 1.0)] {
+            let axis = Axis::linear(low, high, 8);
+            // Wide enough: as it was.
+            assert_eq!(labels(&axis.clone().fitting(900.0)), labels(&axis));
+            for px in [500.0, 300.0, 200.0, 120.0] {
+                let narrow = axis.clone().fitting(px);
+                assert!(
+                    narrow.labels_fit(px) || narrow.ticks.len() <= 2,
+                    "{px}: {narrow:?}"
+                );
+                assert!(!narrow.ticks.is_empty());
+                assert_eq!((narrow.low, narrow.high), (low, high));
+            }
+        }
+        let axis = Axis::decades(1e-12, 1e3, 16);
+        let narrow = axis.clone().fitting(250.0);
+        assert!(narrow.ticks.len() < axis.ticks.len() && narrow.labels_fit(250.0));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::palette::{Ink, PAPER, TEXT};
 use crate::text::SIZE;
 
 /// Size of labels beside curves, CSS pixels.
-const LABEL: f64 = 13.0;
+pub(crate) const LABEL: f64 = 13.0;
 
 /// Where a text has its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,7 +156,7 @@ impl Drawing {
     /// A thin line from a curve to its label.
     pub fn leader(&mut self, from: (f64, f64), to: (f64, f64), ink: Ink) {
         self.push(&html! {
-            path d=(path(&[from, to])) fill="none" stroke-width="0.75" stroke-opacity="0.55" stroke=(ink) {}
+            path d=(path(&[from, to])) fill="none" stroke-width="1" stroke-opacity="0.55" stroke=(ink) {}
         });
     }
 

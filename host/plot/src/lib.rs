@@ -18,6 +18,7 @@
 //! | how lines, signs and colours look | [`CurveStyle`], [`Marker`], [`palette`] |
 //! | a line of any length in bounded memory | [`Thinned`] |
 //! | legends, captions, files | [`Figure`], [`Picture`] |
+//! | widths for a screen and for a journal | [`paper`] |
 //! | the page and its style sheet | [`page`] |
 //! | numbers for people | [`number`] |
 
@@ -35,6 +36,7 @@ pub mod number;
 pub mod page;
 pub mod palette;
 mod panel;
+pub mod paper;
 mod pdf;
 mod picture;
 mod plot;
@@ -49,6 +51,7 @@ pub use figure::{Chart, Figure, Key, Sign};
 pub use layout::Frame;
 pub use marker::Marker;
 pub use panel::{Panel, stack};
+pub use paper::{Column, Paper};
 pub use pdf::PdfError;
 pub use picture::{Picture, pictures};
 pub use plot::{Mark, Plot};

@@ -82,7 +82,8 @@ pub fn stack(total: f64, label: &str, panels: Vec<Panel>) -> Svg {
         if let Some(heading) = panel.heading {
             drawing.text((frame.left, frame.top - 18.0), Anchor::Start, TEXT, heading);
         }
-        let mut plot = Plot::new(panel.x, panel.y, frame, drawing);
+        let x = panel.x.fitting(frame.right - frame.left);
+        let mut plot = Plot::new(x, panel.y, frame, drawing);
         (panel.draw)(&mut plot);
         for (value, name) in &panel.names {
             let (x, y) = plot.at((plot.x().high(), *value));

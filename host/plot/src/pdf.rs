@@ -1,4 +1,4 @@
-//! Pictures as PDF, with the feature `pdf`.
+//! Pictures as PDF, and as SVG without text, with the feature `pdf`.
 
 use crate::picture::Picture;
 
@@ -18,7 +18,7 @@ impl std::fmt::Display for PdfError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::NotBuilt => {
-                f.write_str("this build has no PDF: it takes one with `--features pdf`")
+                f.write_str("this build has no fonts, and so no PDF and no pictures for a paper: build it with `--features pdf`")
             }
             Self::NoFont => {
                 f.write_str("no font is installed: install one, DejaVu Sans for example")
@@ -42,6 +42,31 @@ impl Picture {
     pub fn pdf(&self) -> Result<Vec<u8>, PdfError> {
         convert(&self.svg, true)
     }
+
+    /// The picture with its letters as outlines, in light colours: an SVG that needs no font and
+    /// looks the same in every program. (An embedded font would be smaller, but most programs that
+    /// draw SVG, those of publishers among them, do not read it.)
+    ///
+    /// # Errors
+    /// [`PdfError`] without the feature, or without any font.
+    pub fn outlined(&self) -> Result<String, PdfError> {
+        let drawn = outlines(&self.svg)?;
+        // The size as it is meant, in mm, not in pixels.
+        let size = |svg: &str| {
+            let from = svg.find(" width=\"")?;
+            let height = from + svg.get(from..)?.find(" height=\"")? + " height=\"".len();
+            let end = height + svg.get(height..)?.find('"')? + 1;
+            Some(from..end)
+        };
+        match (size(&self.svg), size(&drawn)) {
+            (Some(meant), Some(written)) => {
+                let mut svg = drawn;
+                svg.replace_range(written, &self.svg[meant]);
+                Ok(svg)
+            }
+            _ => Ok(drawn),
+        }
+    }
 }
 
 #[cfg(not(feature = "pdf"))]
@@ -49,9 +74,39 @@ fn convert(_: &str, _: bool) -> Result<Vec<u8>, PdfError> {
     Err(PdfError::NotBuilt)
 }
 
+#[cfg(not(feature = "pdf"))]
+fn outlines(_: &str) -> Result<String, PdfError> {
+    Err(PdfError::NotBuilt)
+}
+
 #[cfg(feature = "pdf")]
 fn convert(svg: &str, compress: bool) -> Result<Vec<u8>, PdfError> {
-    use svg2pdf::{ConversionOptions, PageOptions, to_pdf, usvg};
+    use svg2pdf::{ConversionOptions, PageOptions, to_pdf};
+
+    let conversion = ConversionOptions {
+        compress,
+        ..ConversionOptions::default()
+    };
+    // A CSS pixel is a 96th of an inch.
+    to_pdf(&tree(svg)?, conversion, PageOptions { dpi: 96.0 })
+        .map_err(|e| PdfError::Refused(e.to_string()))
+}
+
+#[cfg(feature = "pdf")]
+fn outlines(svg: &str) -> Result<String, PdfError> {
+    let written = svg2pdf::usvg::WriteOptions {
+        // Thousandths of a pixel.
+        coordinates_precision: 3,
+        transforms_precision: 6,
+        ..svg2pdf::usvg::WriteOptions::default()
+    };
+    Ok(tree(svg)?.to_string(&written))
+}
+
+/// The picture with every text set in an installed font.
+#[cfg(feature = "pdf")]
+fn tree(svg: &str) -> Result<svg2pdf::usvg::Tree, PdfError> {
+    use svg2pdf::usvg;
 
     /// Fonts with all the letters that charts have.
     const FONTS: [&str; 4] = ["Noto Sans", "DejaVu Sans", "Arial", "Helvetica"];
@@ -70,14 +125,7 @@ fn convert(svg: &str, compress: bool) -> Result<Vec<u8>, PdfError> {
     if let Some(name) = FONTS.into_iter().find(is_there) {
         fonts.set_sans_serif_family(name);
     }
-    let refused = |e: &dyn std::fmt::Display| PdfError::Refused(e.to_string());
-    let tree = usvg::Tree::from_str(svg, &options).map_err(|e| refused(&e))?;
-    let conversion = ConversionOptions {
-        compress,
-        ..ConversionOptions::default()
-    };
-    // A CSS pixel is a 96th of an inch.
-    to_pdf(&tree, conversion, PageOptions { dpi: 96.0 }).map_err(|e| refused(&e))
+    usvg::Tree::from_str(svg, &options).map_err(|e| PdfError::Refused(e.to_string()))
 }
 
 #[cfg(all(test, feature = "pdf"))]

@@ -4,16 +4,19 @@ use maud::{Markup, PreEscaped, html};
 
 use crate::drawing::{Anchor, Drawing, Stroke, Svg, px};
 use crate::figure::{Figure, Key, Sign};
-use crate::palette::{AXIS, Ink, PAPER, TEXT, picture_style};
+use crate::palette::{AXIS, Ink, PAPER, TEXT, picture_style, printed};
+use crate::paper::{MARGIN, print_mm};
 use crate::text::{SIZE, width};
 
 /// One chart as a file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// A name for the file, without extension: `torque`, `zoom-1`.
     pub name: String,
     /// The SVG document. It follows light and dark where it is shown.
     pub svg: String,
+    /// CSS pixels.
+    size: (f64, f64),
 }
 
 /// Every chart of figures, with its legend.
@@ -33,8 +36,6 @@ pub fn pictures<'f>(figures: impl IntoIterator<Item = &'f Figure>) -> Vec<Pictur
     pictures
 }
 
-/// Room at the left, CSS pixels.
-const MARGIN: f64 = 8.0;
 /// Height of the legend above a chart, and of every further line, CSS pixels.
 const LEGEND: f64 = 34.0;
 const LEGEND_LINE: f64 = 22.0;
@@ -64,6 +65,27 @@ impl Picture {
         Self {
             name,
             svg: document.0.replace("><", ">\n<") + "\n",
+            size: (width, height),
+        }
+    }
+
+    /// Width in print, mm: that of a column, unless its smallest letters need more.
+    pub fn print_mm(&self) -> f64 {
+        let sizes = self.svg.split("font-size=\"").skip(1);
+        let sizes = sizes.filter_map(|rest| rest.split_once('"')?.0.parse::<f64>().ok());
+        print_mm(self.size.0, sizes.fold(SIZE, f64::min))
+    }
+
+    /// The same picture with its [width in print](Self::print_mm) in place of pixels, and the inks of
+    /// a paper.
+    #[must_use]
+    pub fn in_print(self) -> Self {
+        let ((width, height), mm) = (self.size, self.print_mm());
+        let pixels = format!("width=\"{width}\" height=\"{height}\"");
+        let size = format!("width=\"{mm}mm\" height=\"{:.3}mm\"", height / width * mm);
+        Self {
+            svg: printed(&self.svg).replacen(&pixels, &size, 1),
+            ..self
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::symptoms::found::Beat;
 use crepitus_model::render::effects::clonus::ClonusSettings;
 use crepitus_plot::palette::{AXIS, TEXT};
 use crepitus_plot::{
-    Axis, Chart, CurveStyle, Figure, Key, Marker, Panel, Plot, Point, Sign, stack,
+    Axis, Chart, CurveStyle, Figure, Key, Marker, Panel, Paper, Plot, Point, Sign, stack,
 };
 
 const HEIGHT: f64 = 190.0;
@@ -14,7 +14,11 @@ const FOOT: f64 = 45.0;
 const TIME: &str = "Time (s)";
 
 /// The figure, if there were beats.
-pub(crate) fn figure(symptom: &Symptom, settings: Option<&ClonusSettings>) -> Option<Figure> {
+pub(crate) fn figure(
+    symptom: &Symptom,
+    settings: Option<&ClonusSettings>,
+    paper: Paper,
+) -> Option<Figure> {
     let beats = &symptom.found.beats;
     let (first, last) = (beats.first()?, beats.last()?);
     let numbers: Vec<Point> = beats
@@ -53,7 +57,7 @@ pub(crate) fn figure(symptom: &Symptom, settings: Option<&ClonusSettings>) -> Op
         name: "beats",
         title: "Beats of clonus",
         legend,
-        charts: vec![Chart::full(stack(WIDTH, label, panels))],
+        charts: vec![Chart::full(stack(paper.width(WIDTH), label, panels))],
         caption: "Each beat over time: its number since the stretch, and how long it was to the \
                   next. The first interval is the longest; from the fourth or fifth beat on the \
                   rhythm is steady."

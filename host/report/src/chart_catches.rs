@@ -5,13 +5,17 @@ use crate::symptoms::Symptom;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_plot::palette::{AXIS, TEXT};
 use crepitus_plot::{
-    Axis, Chart, CurveStyle, Figure, Key, Mark, Marker, Panel, Point, Sign, extent, stack,
+    Axis, Chart, CurveStyle, Figure, Key, Mark, Marker, Panel, Paper, Point, Sign, extent, stack,
 };
 
 const HEIGHT: f64 = 320.0;
 
 /// The figure, if there was a catch.
-pub(crate) fn figure(symptom: &Symptom, settings: Option<&SpasticitySettings>) -> Option<Figure> {
+pub(crate) fn figure(
+    symptom: &Symptom,
+    settings: Option<&SpasticitySettings>,
+    paper: Paper,
+) -> Option<Figure> {
     if symptom.words.effect != "spasticity" {
         return None;
     }
@@ -46,7 +50,7 @@ pub(crate) fn figure(symptom: &Symptom, settings: Option<&SpasticitySettings>) -
         title: "Angle of catch against speed",
         legend,
         charts: vec![Chart::full(stack(
-            WIDTH,
+            paper.width(WIDTH),
             "Knee angle at each catch against the speed of the stretch",
             vec![panel],
         ))],

@@ -3,7 +3,7 @@
 
 use crepitus_plot::number::rounded;
 use crepitus_plot::palette::RANGE;
-use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Sign, stack};
+use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Paper, Sign, stack};
 
 use crate::chart_motion::time_axis;
 use crate::collector::Figures;
@@ -16,14 +16,18 @@ const HEIGHT: f64 = 220.0;
 /// With the numbers of the time.
 const LAST_HEIGHT: f64 = 260.0;
 
-pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
+pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     let plant = figures.plant.as_ref().filter(|p| !p.hand.is_empty())?;
     let has_fast = !plant.fast.is_empty() && !plant.fast.is_zero();
     let mut panels = vec![panel(figures, &plant.hand, true, !has_fast, "Torque (N·m)")];
     if has_fast {
         panels.push(panel(figures, &plant.fast, false, true, "Fast part (N·m)"));
     }
-    let svg = stack(960.0, "Torque at the hand over the whole run", panels);
+    let svg = stack(
+        paper.width(960.0),
+        "Torque at the hand over the whole run",
+        panels,
+    );
     let mut legend = vec![Key::new(Sign::Line(LEG), "hand torque")];
     if figures.bins().is_some() {
         legend = vec![

@@ -3,7 +3,7 @@
 
 use crepitus_plot::number::{count, rounded};
 use crepitus_plot::palette::{ENCODER, LEVEL, OBJECT, SHAFT};
-use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Plot, Point, Sign, Stroke, stack};
+use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Paper, Plot, Point, Sign, Stroke, stack};
 
 use crate::collector::Figures;
 use crate::plant::{Follower, LEG};
@@ -63,7 +63,7 @@ struct Lines {
     intended: Beside,
 }
 
-pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
+pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     if figures.angle.is_empty() && figures.omega.is_empty() {
         return None;
     }
@@ -81,7 +81,7 @@ pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
     } else {
         "Shaft angle and shaft speed over the whole run"
     };
-    let svg = stack(960.0, label, panels(figures, &lines, beside));
+    let svg = stack(paper.width(960.0), label, panels(figures, &lines, beside));
     let (legend, caption) = words(figures, &lines);
     Some(Figure {
         name: "motion",

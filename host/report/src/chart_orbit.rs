@@ -4,7 +4,7 @@
 use crepitus_model::Phase;
 
 use crepitus_plot::palette::{Ink, OBJECT, SHAFT, TORQUE};
-use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Plot, Point, Sign, stack};
+use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Paper, Plot, Point, Sign, stack};
 
 use crate::chart_zoom::{Titled, windows};
 use crate::collector::Figures;
@@ -18,7 +18,7 @@ const X_TITLE: &str = "Shaft angle φ (°)";
 const WHOLE: &str = "The whole run";
 const Y_TITLE: &str = "Object angle θ (mrad)";
 
-pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
+pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     if !figures.has_object {
         return None;
     }
@@ -34,7 +34,7 @@ pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
             continue;
         }
         phases.extend(path.iter().map(|segment| segment.phase));
-        charts.push(path_chart(title, true, &path));
+        charts.push(path_chart(title, (true, paper), &path));
     }
     // Next to one other chart; alone or below two it takes the full width.
     let half = charts.len() == 1;
@@ -43,13 +43,13 @@ pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
         // A few cycles a bin, as in the overview of the torque.
         let cycle = figures.hysteresis.travel() / figures.envelope.breaks().max(1) as f64;
         let both = figures.hysteresis.ranges(3.0 * cycle);
-        charts.push(range_chart(half, &both));
+        charts.push(range_chart((half, paper), &both));
         ranges = Some(both);
     } else {
         let path = figures.whole.orbit.segments(whole.0, whole.1);
         if !path.is_empty() {
             phases.extend(path.iter().map(|segment| segment.phase));
-            charts.push(path_chart(WHOLE.to_owned(), half, &path));
+            charts.push(path_chart(WHOLE.to_owned(), (half, paper), &path));
         }
     }
     if charts.is_empty() {
@@ -93,14 +93,19 @@ fn words(phases: &[Phase], ranges: Option<&[Vec<Range>; 2]>) -> (Vec<Key>, Strin
     (legend, parts.join(" "))
 }
 
-fn chart(heading: String, half: bool, points: &[Point], draw: impl FnOnce(&mut Plot)) -> Chart {
+fn chart(
+    heading: String,
+    (half, paper): (bool, Paper),
+    points: &[Point],
+    draw: impl FnOnce(&mut Plot),
+) -> Chart {
     let (width, height) = if half { HALF } else { FULL };
     let x = Axis::covering(points.iter().map(|p| p.x), if half { 5 } else { 9 });
     let y = Axis::covering(points.iter().map(|p| p.y), 5);
     let panel = Panel::new(height, x, (Y_TITLE, y), draw).x_title(Some(X_TITLE));
     let label = format!("Object angle against shaft angle: {heading}");
     Chart {
-        svg: stack(width, &label, vec![panel]),
+        svg: stack(paper.width(width), &label, vec![panel]),
         heading: Some(heading),
         half,
     }
@@ -111,7 +116,7 @@ fn shown(angle: f64, theta: f64) -> Point {
     Point::new(angle.to_degrees(), 1e3 * theta)
 }
 
-fn path_chart(heading: String, half: bool, path: &[Segment]) -> Chart {
+fn path_chart(heading: String, place: (bool, Paper), path: &[Segment]) -> Chart {
     let lines: Vec<(Phase, Vec<Point>)> = path
         .iter()
         .map(|segment| {
@@ -123,7 +128,7 @@ fn path_chart(heading: String, half: bool, path: &[Segment]) -> Chart {
         .iter()
         .flat_map(|(_, points)| points.clone())
         .collect();
-    chart(heading, half, &all, |plot| {
+    chart(heading, place, &all, |plot| {
         plot.grid();
         for slipping in [true, false] {
             let (ink, width) = if slipping {
@@ -140,7 +145,7 @@ fn path_chart(heading: String, half: bool, path: &[Segment]) -> Chart {
     })
 }
 
-fn range_chart(half: bool, [flexing, extending]: &[Vec<Range>; 2]) -> Chart {
+fn range_chart(place: (bool, Paper), [flexing, extending]: &[Vec<Range>; 2]) -> Chart {
     let edge = |ranges: &[Range], pick: fn(&Range) -> f64| -> Vec<Point> {
         ranges.iter().map(|r| shown(r.angle, pick(r))).collect()
     };
@@ -150,7 +155,7 @@ fn range_chart(half: bool, [flexing, extending]: &[Vec<Range>; 2]) -> Chart {
         .iter()
         .flat_map(|(_, low, high)| [low.clone(), high.clone()].concat())
         .collect();
-    chart(WHOLE.to_owned(), half, &all, |plot| {
+    chart(WHOLE.to_owned(), place, &all, |plot| {
         plot.grid();
         for (ink, low, high) in &edges {
             plot.band(low, high, *ink, 0.25);

@@ -2,7 +2,7 @@
 
 use crepitus_plot::number::rounded;
 use crepitus_plot::palette::{RANGE, TORQUE};
-use crepitus_plot::{Chart, Figure, Key, Panel, Sign, stack};
+use crepitus_plot::{Chart, Figure, Key, Panel, Paper, Sign, stack};
 
 use crate::chart_motion::time_axis;
 use crate::collector::Figures;
@@ -13,7 +13,7 @@ use crate::plant::Shown;
 const WIDTH: f64 = 470.0;
 const HEIGHT: f64 = 230.0;
 
-pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
+pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     let plant = figures.plant.as_ref()?;
     let mut charts = Vec::new();
     let mut still = Vec::new();
@@ -25,7 +25,7 @@ pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
         if course.is_zero() {
             still.push(shown.title);
         } else {
-            charts.push(chart(figures, shown, course));
+            charts.push(chart(figures, shown, course, paper));
         }
     }
     if charts.is_empty() && still.is_empty() {
@@ -66,7 +66,7 @@ pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
     })
 }
 
-fn chart(figures: &Figures, shown: &Shown, course: &Course) -> Chart {
+fn chart(figures: &Figures, shown: &Shown, course: &Course, paper: Paper) -> Chart {
     let time = time_axis(figures, &course.points());
     let panel = Panel::new(HEIGHT, time, (shown.axis, course.axis(4)), |plot| {
         if shown.has_pushes {
@@ -80,7 +80,11 @@ fn chart(figures: &Figures, shown: &Shown, course: &Course) -> Chart {
             figures.draw_marks(plot, true);
         }
     });
-    let svg = stack(WIDTH, shown.title, vec![panel.x_title(Some("Time (s)"))]);
+    let svg = stack(
+        paper.width(WIDTH),
+        shown.title,
+        vec![panel.x_title(Some("Time (s)"))],
+    );
     let heading = match course.shown().beyond {
         Some(beyond) => format!("{}; up to {} beyond the axis", shown.title, rounded(beyond)),
         None => shown.title.to_owned(),

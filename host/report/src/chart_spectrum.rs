@@ -3,7 +3,7 @@
 use crepitus_plot::number::{count, rounded};
 use crepitus_plot::palette::{BAND, Ink, TEXT, TORQUE};
 use crepitus_plot::{
-    Anchor, Axis, Chart, Figure, Key, Panel, Plot, Point, Sign, Svg, extent, stack,
+    Anchor, Axis, Chart, Figure, Key, Panel, Paper, Plot, Point, Sign, Svg, extent, stack,
 };
 
 use crate::collector::Figures;
@@ -58,7 +58,7 @@ impl<'s> Curve<'s> {
     }
 }
 
-pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
+pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     let hand = figures.plant.as_ref().filter(|p| !p.hand.is_empty());
     if !(figures.has_torque || hand.is_some()) || figures.rows == 0 {
         return None;
@@ -96,7 +96,7 @@ pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
     if curves.is_empty() {
         return nothing("Not drawn: the torque does not vibrate.".to_owned());
     }
-    let svg = chart(&curves, hand.is_some());
+    let svg = chart(&curves, hand.is_some(), paper);
     let legend = if hand.is_some() {
         curves
             .iter()
@@ -201,7 +201,7 @@ fn caption(curves: &[Curve], method: &str, (model, names): (bool, bool)) -> Stri
 }
 
 /// The curves; optionally with the RMS of each band above it.
-fn chart(curves: &[Curve], with_numbers: bool) -> Svg {
+fn chart(curves: &[Curve], with_numbers: bool, paper: Paper) -> Svg {
     let points = || curves.iter().flat_map(|curve| &curve.points);
     let (low, high) = extent(points().map(|p| p.y));
     let top = 10_f64.powf(high.log10().ceil());
@@ -247,7 +247,7 @@ fn chart(curves: &[Curve], with_numbers: bool) -> Svg {
         .head(strip, None)
         .right(24.0);
     stack(
-        960.0,
+        paper.width(960.0),
         "Amplitude of the torque against frequency",
         vec![panel],
     )

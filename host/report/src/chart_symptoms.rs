@@ -16,7 +16,8 @@ use crepitus_plot::palette::{
     Ink, OBJECT, SHAFT, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, TEXT, TORQUE,
 };
 use crepitus_plot::{
-    Axis, Chart, CurveStyle, Figure, Key, Mark, Marker, Panel, Plot, Point, Sign, extent, stack,
+    Axis, Chart, CurveStyle, Figure, Key, Mark, Marker, Panel, Paper, Plot, Point, Sign, extent,
+    stack,
 };
 use crepitus_scene::trace::{SymptomEvent, Word};
 
@@ -37,7 +38,7 @@ const MOST_NAMES: usize = 10;
 const STATES: [Ink; 3] = [SLIP_POSITIVE, SLIP_NEGATIVE, STICK];
 
 /// All of them.
-pub(crate) fn figures(figures: &Figures) -> Vec<Figure> {
+pub(crate) fn figures(figures: &Figures, paper: Paper) -> Vec<Figure> {
     let Some(symptoms) = &figures.symptoms else {
         return Vec::new();
     };
@@ -47,18 +48,23 @@ pub(crate) fn figures(figures: &Figures) -> Vec<Figure> {
         together,
     } = symptoms;
     let own = list.iter().flat_map(|symptom| {
-        let catches = chart_catches::figure(symptom, settings.spasticity.as_ref());
-        let beats = chart_beats::figure(symptom, settings.clonus.as_ref());
-        [figure(figures, symptom, settings), catches, beats]
+        let catches = chart_catches::figure(symptom, settings.spasticity.as_ref(), paper);
+        let beats = chart_beats::figure(symptom, settings.clonus.as_ref(), paper);
+        [figure(figures, symptom, settings, paper), catches, beats]
     });
     let own = own.flatten();
     let all = together
         .iter()
-        .filter_map(|together| sum(figures, together, list, settings));
+        .filter_map(|together| sum(figures, together, list, settings, paper));
     own.chain(all).collect()
 }
 
-fn figure(figures: &Figures, symptom: &Symptom, settings: &EffectSettings) -> Option<Figure> {
+fn figure(
+    figures: &Figures,
+    symptom: &Symptom,
+    settings: &EffectSettings,
+    paper: Paper,
+) -> Option<Figure> {
     let Symptom {
         words,
         path,
@@ -71,8 +77,8 @@ fn figure(figures: &Figures, symptom: &Symptom, settings: &EffectSettings) -> Op
     }
     let drawn = limits::of(settings, words.effect, ends(path), &found.met);
     let charts = vec![
-        over_angle(path, &drawn, Some(symptom)),
-        over_time(figures, symptom),
+        over_angle(path, &drawn, Some(symptom), paper),
+        over_time(figures, symptom, paper),
     ];
     Some(Figure {
         name: words.effect,
@@ -96,7 +102,7 @@ fn ink(is_flexing: bool) -> Ink {
     if is_flexing { OBJECT } else { SHAFT }
 }
 
-fn over_angle(path: &Path, drawn: &Drawn, symptom: Option<&Symptom>) -> Chart {
+fn over_angle(path: &Path, drawn: &Drawn, symptom: Option<&Symptom>, paper: Paper) -> Chart {
     let in_degrees = |p: &Point| Point::new(p.x.to_degrees(), p.y);
     let strokes: Vec<(Ink, Vec<Point>)> = path
         .strokes()
@@ -141,7 +147,11 @@ fn over_angle(path: &Path, drawn: &Drawn, symptom: Option<&Symptom>) -> Chart {
     let label = "Resistance against the knee’s angle, with its limits";
     Chart {
         heading: Some("Resistance over the knee’s angle".to_owned()),
-        svg: stack(WIDTH, label, vec![panel.x_title(Some(ANGLE_TITLE))]),
+        svg: stack(
+            paper.width(WIDTH),
+            label,
+            vec![panel.x_title(Some(ANGLE_TITLE))],
+        ),
         half: false,
     }
 }
@@ -199,7 +209,7 @@ fn marker(symptom: &Symptom, word: Word) -> Option<Marker> {
     Marker::ALL.get(place).copied()
 }
 
-fn over_time(figures: &Figures, symptom: &Symptom) -> Chart {
+fn over_time(figures: &Figures, symptom: &Symptom, paper: Paper) -> Chart {
     let Timeline {
         line,
         stays,
@@ -258,7 +268,7 @@ fn over_time(figures: &Figures, symptom: &Symptom) -> Chart {
     let panels = vec![above, below.x_title(Some("Time (s)"))];
     Chart {
         svg: stack(
-            WIDTH,
+            paper.width(WIDTH),
             "Knee angle and resistance over time, with states",
             panels,
         ),
@@ -340,6 +350,7 @@ fn sum(
     together: &Together,
     list: &[Symptom],
     settings: &EffectSettings,
+    paper: Paper,
 ) -> Option<Figure> {
     let line = together.line.points();
     if line.len() < 2 {
@@ -363,7 +374,11 @@ fn sum(
     });
     let label = "Resistance of all symptoms over time";
     let over_time = Chart {
-        svg: stack(WIDTH, label, vec![panel.x_title(Some("Time (s)"))]),
+        svg: stack(
+            paper.width(WIDTH),
+            label,
+            vec![panel.x_title(Some("Time (s)"))],
+        ),
         heading: Some("Resistance over time".to_owned()),
         half: false,
     };
@@ -376,7 +391,7 @@ fn sum(
         name: "together",
         title: "All symptoms together",
         legend: strokes_legend(&together.path),
-        charts: vec![over_angle(&together.path, &drawn, None), over_time],
+        charts: vec![over_angle(&together.path, &drawn, None, paper), over_time],
         caption: format!(
             "The sum of what the symptoms above ask for, before a device limits it: what a hand \
              feels of them at once.{crepitus}"

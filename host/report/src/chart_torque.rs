@@ -6,7 +6,7 @@
 
 use crepitus_plot::number::{count, rounded};
 use crepitus_plot::palette::{RANGE, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, TORQUE};
-use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Plot, Point, Sign, extent, stack};
+use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Paper, Plot, Point, Sign, extent, stack};
 
 use crate::chart_motion::time_axis;
 use crate::collector::Figures;
@@ -18,7 +18,7 @@ const HEIGHT: f64 = 330.0;
 const RANGE_HEIGHT: f64 = 270.0;
 const SHARE_HEIGHT: f64 = 120.0;
 
-pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
+pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     if figures.whole.torque.is_empty() {
         return None;
     }
@@ -69,7 +69,7 @@ pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
             "Torque"
         },
         legend,
-        charts: vec![Chart::full(stack(960.0, label, panels))],
+        charts: vec![Chart::full(stack(paper.width(960.0), label, panels))],
         caption: format!("{caption} {numbers}"),
     })
 }

@@ -6,7 +6,7 @@ use crepitus_model::EventKind;
 
 use crepitus_plot::number::rounded;
 use crepitus_plot::palette::{CURVES, Ink, OBJECT, SHAFT, TORQUE};
-use crepitus_plot::{Axis, Chart, Figure, Key, Marker, Panel, Point, Sign, Svg, stack};
+use crepitus_plot::{Axis, Chart, Figure, Key, Marker, Panel, Paper, Point, Sign, Svg, stack};
 
 use crate::chart_motion::degrees;
 use crate::collector::Figures;
@@ -67,14 +67,14 @@ pub(crate) fn windows(figures: &Figures) -> Vec<Titled<'_>> {
     list
 }
 
-pub(crate) fn figure(figures: &Figures) -> Option<Figure> {
+pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     let windows = windows(figures);
     if windows.is_empty() {
         return None;
     }
     let mut charts = Vec::new();
     for Titled { title, window } in &windows {
-        let svg = chart(figures, window, &format!("A few cycles: {title}"));
+        let svg = chart(figures, window, &format!("A few cycles: {title}"), paper);
         charts.push(Chart {
             heading: Some(title.clone()),
             svg,
@@ -163,7 +163,7 @@ fn inside(points: Vec<Point>, (from, to): (f64, f64)) -> Vec<Point> {
         .collect()
 }
 
-fn chart(figures: &Figures, window: &Window, label: &str) -> Svg {
+fn chart(figures: &Figures, window: &Window, label: &str, paper: Paper) -> Svg {
     let view = window.view();
     let torque = inside(window.torque.points(), view);
     let motor = inside(window.motor.points(), view);
@@ -231,5 +231,5 @@ fn chart(figures: &Figures, window: &Window, label: &str) -> Svg {
         });
         panels.push(panel.x_title(titled(true)));
     }
-    stack(960.0, label, panels)
+    stack(paper.width(960.0), label, panels)
 }

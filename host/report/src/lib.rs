@@ -57,6 +57,6 @@ pub use balance::{Account, Balance, Term as EnergyTerm};
 pub use channels::{Setup, TorqueLevels};
 pub use collector::{Collector, Figures};
 pub use crepitus_plot::page::Section;
-pub use crepitus_plot::{Mark, Picture};
+pub use crepitus_plot::{Column, Mark, Paper, Picture};
 pub use page::{html, pictures};
 pub use text::Text;

@@ -1,6 +1,6 @@
 //! The report of a run.
 
-use crepitus_plot::{Figure, Picture, page};
+use crepitus_plot::{Figure, Paper, Picture, page};
 use maud::{Markup, html};
 
 use crate::balance_table;
@@ -13,7 +13,7 @@ use crate::{
 
 /// The report as one HTML page, complete in itself.
 pub fn html(text: &Text, figures: &Figures) -> String {
-    let drawn = draw(figures);
+    let drawn = draw(figures, Paper::Screen);
     let balance = figures.balance.as_ref().and_then(balance_table::table);
     let mut sections = examined::sections(figures);
     sections.extend(text.sections.iter().cloned());
@@ -50,28 +50,28 @@ pub fn html(text: &Text, figures: &Figures) -> String {
     page::document(&text.title, style, &[], &body)
 }
 
-/// Every chart of the report as a file, with its legend.
-pub fn pictures(figures: &Figures) -> Vec<Picture> {
-    crepitus_plot::pictures(&draw(figures))
+/// Every chart of the report as a file, laid out for this paper, with its legend.
+pub fn pictures(figures: &Figures, paper: Paper) -> Vec<Picture> {
+    crepitus_plot::pictures(&draw(figures, paper))
 }
 
 /// The figures that these data make.
-fn draw(figures: &Figures) -> Vec<Figure> {
+fn draw(figures: &Figures, paper: Paper) -> Vec<Figure> {
     // One row makes no line.
     if figures.rows < 2 {
         return Vec::new();
     }
-    let motion = chart_motion::figure(figures);
+    let motion = chart_motion::figure(figures, paper);
     let others = [
-        chart_torque::figure(figures),
-        chart_hand::figure(figures),
-        chart_zoom::figure(figures),
-        chart_orbit::figure(figures),
-        chart_spectrum::figure(figures),
-        chart_plant::figure(figures),
+        chart_torque::figure(figures, paper),
+        chart_hand::figure(figures, paper),
+        chart_zoom::figure(figures, paper),
+        chart_orbit::figure(figures, paper),
+        chart_spectrum::figure(figures, paper),
+        chart_plant::figure(figures, paper),
         chart_energy::figure(figures),
     ];
-    let symptoms = chart_symptoms::figures(figures);
+    let symptoms = chart_symptoms::figures(figures, paper);
     let others = others.into_iter().flatten();
     motion.into_iter().chain(symptoms).chain(others).collect()
 }

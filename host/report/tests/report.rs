@@ -12,8 +12,8 @@ use std::path::Path;
 
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_report::{
-    Account, Balance, Collector, EnergyTerm, Figures, Mark, Section, Setup, Text, TorqueLevels,
-    html, pictures,
+    Account, Balance, Collector, EnergyTerm, Figures, Mark, Paper, Section, Setup, Text,
+    TorqueLevels, html, pictures,
 };
 use crepitus_scene::trace::Column;
 use fixture::{KINETIC, Motion, Run, STATIC, plant};
@@ -363,7 +363,7 @@ fn a_coupled_run_with_all_effects() {
     ] {
         assert!(page.contains(present), "{present}");
     }
-    let pictures = pictures(&figures);
+    let pictures = pictures(&figures, Paper::Screen);
     for picture in &pictures {
         assert_drawn(&picture.svg);
     }

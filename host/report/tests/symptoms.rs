@@ -9,7 +9,7 @@ mod markup;
 use std::path::Path;
 
 use crepitus_model::render::effects::EffectSettings;
-use crepitus_report::{Collector, Figures, Setup, Text, html, pictures};
+use crepitus_report::{Collector, Figures, Paper, Setup, Text, html, pictures};
 use fixture::symptom::{EXAMINED, Item, STEPPED, ran, scene};
 use markup::{
     assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, charts, count,
@@ -57,7 +57,7 @@ fn page(name: &str, figures: &Figures) -> String {
     for chart in charts(&page) {
         assert!(assert_labels_inside(&chart) > 3);
     }
-    for picture in pictures(figures) {
+    for picture in pictures(figures, Paper::Screen) {
         assert_drawn(&picture.svg);
     }
     page
@@ -153,7 +153,10 @@ fn every_symptom_has_its_pictures_and_words() {
     for (place, (pictured, said)) in EXPECTED.iter().enumerate() {
         let figures = figures(place, STEPPED, true);
         let page = page(&place.to_string(), &figures);
-        let names: Vec<String> = pictures(&figures).into_iter().map(|p| p.name).collect();
+        let names: Vec<String> = pictures(&figures, Paper::Screen)
+            .into_iter()
+            .map(|p| p.name)
+            .collect();
         for name in *pictured {
             assert!(
                 names.iter().any(|n| n == name),
@@ -178,7 +181,7 @@ fn the_reference_has_the_same_pictures() {
         );
         page(&format!("{place}-reference"), &exact);
         let names = |figures: &Figures| -> Vec<String> {
-            let all = pictures(figures).into_iter().map(|p| p.name);
+            let all = pictures(figures, Paper::Screen).into_iter().map(|p| p.name);
             // What a hand feels is known of a stepped run alone.
             all.filter(|name| !["hand", "spectrum", "energy"].contains(&name.as_str()))
                 .collect()

@@ -29,7 +29,7 @@ use crepitus_study::accuracy::Point;
 use crepitus_study::accuracy::symptoms::SymptomPoint;
 use crepitus_study::accuracy::target::OnTarget;
 
-use crate::{Picture, StudyText};
+use crate::{Paper, Picture, StudyText};
 use pair::Study;
 
 /// The report as one HTML page, complete in itself.
@@ -49,13 +49,13 @@ pub fn html(
 
 /// Every diagram as a file of its own, named after what it shows:
 /// `event-time-constant-0-988-frozen-f64`, `target-constant-0-988-frozen-f32`.
-pub fn pictures(points: &[Point]) -> Vec<Picture> {
+pub fn pictures(points: &[Point], paper: Paper) -> Vec<Picture> {
     let study = Study::new(points);
     let mut pictures = Vec::new();
     for pair in &study.pairs {
-        let diagrams = diagram::all(&study, pair)
+        let diagrams = diagram::all(&study, pair, paper)
             .into_iter()
-            .chain(target::diagram(&study, pair));
+            .chain(target::diagram(&study, pair, paper));
         pictures.extend(diagrams.map(|d| Picture::new(d.name, &d.svg, &d.legend, &[])));
     }
     pictures

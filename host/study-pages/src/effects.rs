@@ -17,7 +17,7 @@ mod smallest;
 mod spots;
 mod table;
 
-use crepitus_plot::{Figure, pictures as of_figures};
+use crepitus_plot::{Figure, Paper, pictures as of_figures};
 use crepitus_study::effects::EffectsStudy;
 
 use crate::{Picture, StudyText, story};
@@ -28,19 +28,19 @@ pub fn html(study: &EffectsStudy, text: &StudyText) -> String {
 }
 
 /// Every figure as a file of its own.
-pub fn pictures(study: &EffectsStudy) -> Vec<Picture> {
-    of_figures(&figures(study))
+pub fn pictures(study: &EffectsStudy, paper: Paper) -> Vec<Picture> {
+    of_figures(&figures(study, paper))
 }
 
-fn figures(study: &EffectsStudy) -> Vec<Figure> {
+fn figures(study: &EffectsStudy, paper: Paper) -> Vec<Figure> {
     let felt = study.hand_torque.as_ref().map(story::hand_torque::story);
     let stories = felt
         .into_iter()
         .chain(story::build_up::story(&study.build_up_torques));
-    let charts = influence::figure(study)
+    let charts = influence::figure(study, paper)
         .into_iter()
         .chain(bands::figure(study));
     charts
-        .chain(stories.map(|told| story::figure(&told)))
+        .chain(stories.map(|told| story::figure(&told, paper)))
         .collect()
 }

@@ -22,7 +22,7 @@ mod scale;
 use crepitus_study::stability::Matrix;
 use crepitus_study::stability::story::Stories;
 
-use crate::{Picture, StudyText, story};
+use crate::{Paper, Picture, StudyText, story};
 
 /// The report as one HTML page, complete in itself.
 pub fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText) -> String {
@@ -30,8 +30,8 @@ pub fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText) -> Str
 }
 
 /// The matrix, in brief, and every story as files of their own.
-pub fn pictures(matrix: &Matrix, stories: Option<&Stories>) -> Vec<Picture> {
-    let figures = stories.map(story::figures).unwrap_or_default();
+pub fn pictures(matrix: &Matrix, stories: Option<&Stories>, paper: Paper) -> Vec<Picture> {
+    let figures = stories.map_or_else(Vec::new, |told| story::figures(told, paper));
     let mut pictures = vec![picture::picture(matrix)];
     pictures.extend(crepitus_plot::pictures(&figures));
     pictures

@@ -12,8 +12,8 @@ mod turn_back;
 
 use crepitus_plot::palette::{CURVES, Ink, LEVEL, TEXT};
 use crepitus_plot::{
-    Anchor, Axis, Chart, Figure, Key, Mark, Marker, Panel, Plot, Point, Sign, Stroke, Svg, extent,
-    stack,
+    Anchor, Axis, Chart, Figure, Key, Mark, Marker, Panel, Paper, Plot, Point, Sign, Stroke, Svg,
+    extent, stack,
 };
 use crepitus_study::stability::story::Stories;
 
@@ -32,7 +32,7 @@ const NAMES: f64 = 84.0;
 const INKS: [Ink; 4] = [CURVES[7], CURVES[0], CURVES[2], CURVES[3]];
 
 /// The stories of hard cases as figures of a page, or files.
-pub fn figures(stories: &Stories) -> Vec<Figure> {
+pub fn figures(stories: &Stories, paper: Paper) -> Vec<Figure> {
     [
         implicit_euler::story(&stories.implicit_euler),
         restick_rules::story(&stories.restick_rules),
@@ -40,7 +40,7 @@ pub fn figures(stories: &Stories) -> Vec<Figure> {
         turn_back::story(&stories.turn_back),
     ]
     .iter()
-    .map(figure)
+    .map(|told| figure(told, paper))
     .collect()
 }
 
@@ -144,12 +144,12 @@ fn mark(at: f64, name: &str) -> Mark {
 }
 
 /// The story as a figure of a page, or a file.
-pub(crate) fn figure(story: &Story) -> Figure {
+pub(crate) fn figure(story: &Story, paper: Paper) -> Figure {
     let names = names(story);
     Figure {
         name: story.name,
         title: story.title,
-        charts: vec![Chart::full(chart(story, &names))],
+        charts: vec![Chart::full(chart(story, &names, paper))],
         legend: names
             .into_iter()
             .zip(INKS.into_iter().cycle())
@@ -159,14 +159,14 @@ pub(crate) fn figure(story: &Story) -> Figure {
     }
 }
 
-fn chart(story: &Story, names: &[&str]) -> Svg {
+fn chart(story: &Story, names: &[&str], paper: Paper) -> Svg {
     let next = story.panels.iter().skip(1).map(Some).chain([None]);
     let panels = story.panels.iter().zip(next).map(|(data, next)| {
         // No numbers above a panel with the same axis.
         let numbered = !next.is_some_and(|next| next.x == data.x && data.x.range.is_some());
         panel(data, numbered, names)
     });
-    stack(WIDTH, story.title, panels.collect())
+    stack(paper.width(WIDTH), story.title, panels.collect())
 }
 
 fn panel<'a>(data: &'a PanelData, numbered: bool, names: &'a [&str]) -> Panel<'a> {

@@ -3,7 +3,7 @@
 use crate::story::{PanelData, Scale, Series, Story, figure};
 use crate::{Picture, StudyText};
 use crepitus_plot::page::{self, scrolling};
-use crepitus_plot::{Figure, Mark, pictures as of_figures};
+use crepitus_plot::{Figure, Mark, Paper, pictures as of_figures};
 use crepitus_study::vibration::{AtSpeed, VibrationStudy, tables};
 use maud::html;
 
@@ -28,7 +28,7 @@ pub fn html(study: &VibrationStudy, text: &StudyText) -> String {
                     @if let Some(draws) = &speed.draws { p { (draws) "." } }
                 }
             }
-            @for figure in figures(study) { (page::figure(&figure)) }
+            @for figure in figures(study, Paper::Screen) { (page::figure(&figure)) }
             section.table {
                 h2 { "The loop from the actuator to the encoder and back" }
                 p { "Linear, with the joint always in a stick and a gear without friction." }
@@ -43,14 +43,14 @@ pub fn html(study: &VibrationStudy, text: &StudyText) -> String {
 }
 
 /// Every figure as a file of its own.
-pub fn pictures(study: &VibrationStudy) -> Vec<Picture> {
-    of_figures(&figures(study))
+pub fn pictures(study: &VibrationStudy, paper: Paper) -> Vec<Picture> {
+    of_figures(&figures(study, paper))
 }
 
 /// The least that is drawn, m/s² rms a bin.
 const LEAST_M_S2: f64 = 1e-6;
 
-fn figures(study: &VibrationStudy) -> Vec<Figure> {
+fn figures(study: &VibrationStudy, paper: Paper) -> Vec<Figure> {
     let panels: Vec<PanelData> = study
         .speeds
         .iter()
@@ -67,7 +67,7 @@ fn figures(study: &VibrationStudy) -> Vec<Figure> {
                   device without its actuator, and with it at its gain."
             .to_owned(),
         panels,
-    })]
+    }, paper)]
 }
 
 fn panel(speed: &AtSpeed) -> PanelData {

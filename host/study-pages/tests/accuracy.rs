@@ -16,7 +16,7 @@ use crepitus_study::accuracy::Point;
 use crepitus_study::accuracy::symptoms::SymptomPoint;
 use crepitus_study::accuracy::target::{LABEL, OnTarget, Row};
 use crepitus_study_pages::accuracy::{html, pictures};
-use crepitus_study_pages::{Section, StudyText};
+use crepitus_study_pages::{Paper, Section, StudyText};
 use markup::{
     assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, charts, count,
 };
@@ -173,7 +173,7 @@ fn what_the_target_says_has_its_diagram_and_its_table() {
     assert_eq!(count(&page, "role=\"img\""), 7 * 4 * 2 + 1);
     assert!(page.contains("not measured on hardware"));
     assert!(page.contains("bone-shaping") && page.contains("extremes"));
-    let pictures = pictures(&points);
+    let pictures = pictures(&points, Paper::Screen);
     let names = pictures.iter().filter(|p| p.name.starts_with("target-"));
     let names: Vec<_> = names.map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["target-constant-0-988-frozen-f32"]);
@@ -330,7 +330,7 @@ fn words_are_escaped() {
 
 #[test]
 fn pictures_are_documents_with_their_legend() {
-    let pictures = pictures(&study::all());
+    let pictures = pictures(&study::all(), Paper::Screen);
     assert_eq!(pictures.len(), 56);
     let mut names: Vec<&str> = pictures.iter().map(|p| p.name.as_str()).collect();
     names.sort_unstable();

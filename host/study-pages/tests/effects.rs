@@ -15,7 +15,7 @@ use crepitus_study::effects::results::{Added, Outcome, Ran};
 use crepitus_study::effects::variant::Change;
 use crepitus_study::effects::{Answer, EffectsStudy, HandTorque, Row, VariantTorque};
 use crepitus_study_pages::effects::{html, pictures};
-use crepitus_study_pages::{Section, StudyText};
+use crepitus_study_pages::{Paper, Section, StudyText};
 use markup::{
     assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, charts, count,
 };
@@ -285,7 +285,7 @@ fn words_are_escaped() {
 
 #[test]
 fn pictures_are_documents() {
-    let pictures = pictures(&study());
+    let pictures = pictures(&study(), Paper::Screen);
     let names: Vec<&str> = pictures.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["influence-and-cost", "bands", "hand-torque"]);
     for picture in &pictures {

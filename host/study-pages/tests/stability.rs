@@ -15,7 +15,7 @@ use crepitus_scene::scene::Precision;
 use crepitus_study::stability::story as told;
 use crepitus_study::stability::{Failure, Matrix, Verdict};
 use crepitus_study_pages::stability::{html, pictures};
-use crepitus_study_pages::{Section, StudyText, story};
+use crepitus_study_pages::{Paper, Section, StudyText, story};
 use markup::{
     assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, charts, count,
 };
@@ -137,13 +137,13 @@ fn a_part_of_the_matrix_has_only_its_columns() {
     assert_eq!(count(&page, "class=\"convention\""), 1);
     assert_eq!(count(&page, "class=\"rung"), 12);
     assert!(!page.contains(">f32<"));
-    let picture = pictures(&part, None).remove(0);
+    let picture = pictures(&part, None, Paper::Screen).remove(0);
     assert!(picture.svg.contains("case, f64"));
 
     let empty = html(&Matrix::default(), None, &StudyText::default());
     assert!(empty.contains("There are no cases."));
     assert_balanced(&empty);
-    assert_balanced(&pictures(&Matrix::default(), None)[0].svg);
+    assert_balanced(&pictures(&Matrix::default(), None, Paper::Screen)[0].svg);
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn words_are_escaped() {
     };
     let page = page("escaped", &matrix, None, &text);
     assert!(count(&page, "&lt;script&gt;") > 20);
-    let svg = &pictures(&matrix, None)[0].svg;
+    let svg = &pictures(&matrix, None, Paper::Screen)[0].svg;
     assert!(!svg.contains("<script"));
     assert_drawn(svg);
 }
@@ -180,7 +180,7 @@ fn words_are_escaped() {
 fn pictures_are_documents() {
     let matrix = matrix::whole();
     let stories = told::all().expect("computed");
-    let pictures = pictures(&matrix, Some(&stories));
+    let pictures = pictures(&matrix, Some(&stories), Paper::Screen);
     let names: Vec<&str> = pictures.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names[..3], ["matrix", "implicit-euler", "restick-rules"]);
     for picture in &pictures {
@@ -201,7 +201,7 @@ fn pictures_are_documents() {
 
 #[test]
 fn every_story_has_its_own_name_and_says_what_one_sees() {
-    let figures = story::figures(&told::all().expect("computed"));
+    let figures = story::figures(&told::all().expect("computed"), Paper::Screen);
     let names: Vec<_> = figures.iter().map(|figure| figure.name).collect();
     assert_eq!(
         names,

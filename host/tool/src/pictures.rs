@@ -1,18 +1,23 @@
-//! `--pictures`: each chart of a report as a file of its own.
+//! `--pictures`: each chart of a report as a file of its own, for a screen or for a paper.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, warn};
 use crate::results::Files;
 use clap::Args;
-use crepitus_plot::{PdfError, Picture};
+use crepitus_plot::{Column, Paper, PdfError, Picture};
 use std::str::FromStr;
 
 /// Whether pictures are wanted, and how.
 #[derive(Debug, Args)]
 pub(crate) struct Pictures {
     /// Also write each figure of the report as a file: SVG, or PDF.
-    #[arg(long = "pictures", value_name = "svg|pdf", num_args = 0..=1, require_equals = true,
+    #[arg(id = "pictures", long = "pictures", value_name = "svg|pdf", num_args = 0..=1, require_equals = true,
           default_missing_value = "svg")]
     format: Option<PictureFormat>,
+
+    /// Lay the pictures out for a paper: one column is 88.9 mm wide, two are 182 mm, letters from 7 pt on,
+    /// fonts embedded (PDF) or letters as outlines (SVG).
+    #[arg(long, value_name = "one|two", requires = "pictures", value_parser = column)]
+    column: Option<Column>,
 }
 
 /// The format of the files.
@@ -35,6 +40,16 @@ impl FromStr for PictureFormat {
     }
 }
 
+/// Parses the width of a paper's figures.
+fn column(name: &str) -> Result<Column, String> {
+    match name {
+        "one" | "two" if !Picture::HAS_PDF => Err(PdfError::NotBuilt.to_string()),
+        "one" => Ok(Column::One),
+        "two" => Ok(Column::Two),
+        _ => Err("expected one or two".to_owned()),
+    }
+}
+
 impl Pictures {
     /// Whether they are wanted.
     pub(crate) const fn wanted(&self) -> bool {
@@ -42,20 +57,51 @@ impl Pictures {
     }
 
     /// The files, if they are wanted.
-    pub(crate) fn files(&self, draw: impl FnOnce() -> Vec<Picture>) -> Result<Files, Failure> {
+    pub(crate) fn files(&self, draw: impl FnOnce(Paper) -> Vec<Picture>) -> Result<Files, Failure> {
         let Some(format) = self.format else {
             return Ok(Vec::new());
         };
-        let file = |picture: Picture| match format {
-            PictureFormat::Svg => Ok((format!("{}.svg", picture.name), picture.svg.into())),
-            PictureFormat::Pdf => match picture.pdf() {
-                Ok(pdf) => Ok((format!("{}.pdf", picture.name), pdf)),
-                Err(e) => Err(Failure::Work(format!(
-                    "{}.pdf cannot be made: {e}",
-                    picture.name
-                ))),
-            },
-        };
-        draw().into_iter().map(file).collect()
+        let column = self.column;
+        let drawn = draw(column.map_or(Paper::Screen, Paper::Print));
+        drawn
+            .into_iter()
+            .map(|picture| match column {
+                Some(column) => {
+                    warn_of_width(&picture, column);
+                    file(&picture.in_print(), format, true)
+                }
+                None => file(&picture, format, false),
+            })
+            .collect()
+    }
+}
+
+/// A picture that has to be wider than was asked for is one that cannot be laid out anew.
+fn warn_of_width(picture: &Picture, column: Column) {
+    let mm = picture.print_mm();
+    if mm > column.mm() {
+        warn(format!(
+            "{} is {mm:.0} mm wide: at {} mm its letters would be smaller than {} pt",
+            picture.name,
+            column.mm(),
+            crepitus_plot::paper::SMALLEST_PT
+        ));
+    }
+}
+
+fn file(
+    picture: &Picture,
+    format: PictureFormat,
+    in_print: bool,
+) -> Result<(String, Vec<u8>), Failure> {
+    let (extension, made) = match format {
+        PictureFormat::Svg if in_print => ("svg", picture.outlined().map(String::into_bytes)),
+        PictureFormat::Svg => ("svg", Ok(picture.svg.clone().into())),
+        PictureFormat::Pdf => ("pdf", picture.pdf()),
+    };
+    let name = format!("{}.{extension}", picture.name);
+    match made {
+        Ok(content) => Ok((name, content)),
+        Err(e) => Err(Failure::Work(format!("{name} cannot be made: {e}"))),
     }
 }

@@ -9,7 +9,7 @@ use super::measure::Measure;
 use super::pair::{Pair, Study, is_device_tick};
 use super::{names, steps};
 use crepitus_plot::number::{duration, rounded, scientific};
-use crepitus_plot::{Axis, CurveStyle, Drawing, Key, Panel, Plot, Sign, Svg, stack};
+use crepitus_plot::{Axis, CurveStyle, Drawing, Key, Panel, Paper, Plot, Sign, Svg, stack};
 
 /// CSS pixels.
 const WIDTH: f64 = 560.0;
@@ -28,14 +28,19 @@ pub(crate) struct Diagram {
 }
 
 /// Every diagram of a pair.
-pub(crate) fn all(study: &Study, pair: &Pair) -> Vec<Diagram> {
+pub(crate) fn all(study: &Study, pair: &Pair, paper: Paper) -> Vec<Diagram> {
     let all = Measure::ALL.into_iter();
-    all.flat_map(|measure| side_by_side(study, pair, measure))
+    all.flat_map(|measure| side_by_side(study, pair, measure, paper))
         .collect()
 }
 
 /// One diagram a precision, on the same axes.
-pub(crate) fn side_by_side(study: &Study, pair: &Pair, measure: Measure) -> Vec<Diagram> {
+pub(crate) fn side_by_side(
+    study: &Study,
+    pair: &Pair,
+    measure: Measure,
+    paper: Paper,
+) -> Vec<Diagram> {
     let curves = |precision: &str| -> Vec<Curve> {
         let rungs = study.rungs.iter().copied().enumerate();
         rungs
@@ -65,7 +70,7 @@ pub(crate) fn side_by_side(study: &Study, pair: &Pair, measure: Measure) -> Vec<
         })
         .x_title(Some(COST))
         .right(right);
-        let svg = stack(WIDTH, &label, vec![panel]);
+        let svg = stack(paper.width(WIDTH), &label, vec![panel]);
         diagrams.push(Diagram {
             name: file_name(measure.name(), pair, precision),
             precision,

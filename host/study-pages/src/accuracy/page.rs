@@ -9,7 +9,7 @@ use super::diagram::side_by_side;
 use super::measure::Measure;
 use super::pair::{Pair, Study};
 use super::{left_out, symptom_tables, target, target_table, tick_table};
-use crate::StudyText;
+use crate::{Paper, StudyText};
 use crepitus_plot::{Chart, Figure, page};
 
 const LAYOUT: &str = include_str!("page.css");
@@ -73,7 +73,7 @@ fn diagrams(study: &Study, pair: &Pair) -> Markup {
 }
 
 fn figure(study: &Study, pair: &Pair, measure: Measure) -> Figure {
-    let diagrams = side_by_side(study, pair, measure);
+    let diagrams = side_by_side(study, pair, measure, Paper::Screen);
     // What one precision has, the other has too, but for wrong points.
     let legend = diagrams
         .iter()

@@ -13,7 +13,8 @@ use crepitus_plot::labels::{LINE, spread};
 use crepitus_plot::number::{fixed, rounded, scientific};
 use crepitus_plot::palette::TEXT;
 use crepitus_plot::{
-    Anchor, Axis, Chart, CurveStyle, Drawing, Figure, Frame, Key, Panel, Plot, Sign, extent, stack,
+    Anchor, Axis, Chart, CurveStyle, Drawing, Figure, Frame, Key, Panel, Paper, Plot, Sign, extent,
+    stack,
 };
 
 /// CSS pixels.
@@ -33,7 +34,7 @@ struct Spot<'p> {
 
 /// The figure of a pair; none where nothing was run on the target.
 pub(crate) fn figure(study: &Study, pair: &Pair) -> Option<Figure> {
-    diagram(study, pair).map(|diagram| Figure {
+    diagram(study, pair, Paper::Screen).map(|diagram| Figure {
         name: "target",
         title: "On the device's core",
         legend: diagram.legend,
@@ -48,7 +49,7 @@ pub(crate) fn figure(study: &Study, pair: &Pair) -> Option<Figure> {
 }
 
 /// The same as a drawing.
-pub(crate) fn diagram(study: &Study, pair: &Pair) -> Option<Diagram> {
+pub(crate) fn diagram(study: &Study, pair: &Pair, paper: Paper) -> Option<Diagram> {
     let spots = spots(study, pair);
     if spots.is_empty() {
         return None;
@@ -73,7 +74,7 @@ pub(crate) fn diagram(study: &Study, pair: &Pair) -> Option<Diagram> {
     )
     .x_title(Some(COST))
     .right(names.fold(0.0, f64::max) + 10.0);
-    let svg = stack(WIDTH, &label, vec![panel]);
+    let svg = stack(paper.width(WIDTH), &label, vec![panel]);
     let legend = spots
         .iter()
         .map(|spot| Key::new(Sign::Filled(CurveStyle::of(spot.rung)), spot.name))

@@ -9,7 +9,7 @@ use super::{look, spots};
 use crate::accuracy::measure::Measure;
 use crepitus_plot::number::rounded;
 use crepitus_plot::palette::TEXT;
-use crepitus_plot::{Anchor, Axis, Chart, Figure, Panel, Plot, extent, stack};
+use crepitus_plot::{Anchor, Axis, Chart, Figure, Panel, Paper, Plot, extent, stack};
 
 /// CSS pixels.
 const WIDTH: f64 = 960.0;
@@ -34,7 +34,7 @@ impl Floor {
 }
 
 /// The figure; nothing without a variant that ran.
-pub(super) fn figure(study: &EffectsStudy) -> Option<Figure> {
+pub(super) fn figure(study: &EffectsStudy, paper: Paper) -> Option<Figure> {
     let rows: Vec<(&Row, &Added)> = study
         .rows
         .iter()
@@ -60,7 +60,7 @@ pub(super) fn figure(study: &EffectsStudy) -> Option<Figure> {
         name: "influence-and-cost",
         title: "Influence against cost",
         legend: look::legend(rows.iter().map(|(row, _)| *row)),
-        charts: vec![Chart::full(stack(WIDTH, label, vec![panel]))],
+        charts: vec![Chart::full(stack(paper.width(WIDTH), label, vec![panel]))],
         caption: format!(
             "Up: how much an effect changes the torque at the hand, as the RMS of the difference between the run with \
              it and the run without. Right: what it adds to a step, {CLOCK}. What stands up and to the left gives \

@@ -4,7 +4,7 @@ use crepitus_study::effects::EffectsStudy;
 use maud::html;
 
 use super::{figures, smallest, table};
-use crate::StudyText;
+use crate::{Paper, StudyText};
 use crepitus_plot::page;
 
 /// The page looks like that of the accuracy study, with a wider table.
@@ -24,7 +24,7 @@ pub(super) fn html(study: &EffectsStudy, text: &StudyText) -> String {
         main {
             @if let Some(answer) = &study.answer { (smallest::section(answer)) }
             (table::table(study))
-            @for figure in figures(study) { (page::figure(&figure)) }
+            @for figure in figures(study, Paper::Screen) { (page::figure(&figure)) }
             (page::tables(&text.tables))
             (page::notes(&text.notes))
         }

@@ -5,7 +5,7 @@ use crepitus_study::stability::story::Stories;
 use maud::{Markup, html};
 
 use super::{details, heat_map, look, scale};
-use crate::{StudyText, story};
+use crate::{Paper, StudyText, story};
 use crepitus_plot::page;
 
 const LAYOUT: &str = include_str!("page.css");
@@ -21,7 +21,7 @@ pub(super) fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText)
         main {
             @if matrix.rows.is_empty() { p { "There are no cases." } }
             @else { (how_to_read()) (heat_map::table(matrix)) }
-            @for told in stories.map(story::figures).unwrap_or_default() { (page::figure(&told)) }
+            @for told in stories.map_or_else(Vec::new, |told| story::figures(told, Paper::Screen)) { (page::figure(&told)) }
             (details::cases(matrix))
             (page::tables(&text.tables))
         }

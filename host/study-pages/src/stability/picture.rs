@@ -112,9 +112,9 @@ fn line(row: &Row, columns: &Columns, places: &Places, y: f64) -> Markup {
                 title { (case.id) " " (look::words(found)) }
                 rect fill=(ground) x=(x) y=(y) width=(width) height=(height) {}
                 @if look.must_hold { path d=(format!("M{x} {y}h5l-5 5z")) {} }
-                text x=(x + (0.5 * places.width).floor()) y=(middle) font-size="11" text-anchor="middle" { (look.short) }
+                text x=(x + (0.5 * places.width).floor()) y=(middle) font-size="11.5" text-anchor="middle" { (look.short) }
                 @if look.flagged {
-                    text x=(x + width) y=(y + 8.0) font-size="7.5" text-anchor="end" { (look::FLAG) }
+                    text x=(x + width) y=(y + 8.0) font-size="11.5" text-anchor="end" { (look::FLAG) }
                 }
                 @if look.broken {
                     rect fill="none" stroke=(TEXT) stroke-width="2.5" x=(x) y=(y) width=(width) height=(height) {}
@@ -128,8 +128,8 @@ fn line(row: &Row, columns: &Columns, places: &Places, y: f64) -> Markup {
 fn legend(y: f64) -> Markup {
     let patch = |x: f64, y: f64, Tone { ground, text }: Tone, sign: &str| {
         html! {
-            rect fill=(ground) stroke=(AXIS) stroke-width="0.5" x=(x) y=(y) width="22" height="15" {}
-            text fill=(text) font-size="11" text-anchor="middle" x=(x + 11.0) y=(y + 12.0) { (sign) }
+            rect fill=(ground) stroke=(AXIS) stroke-width="1" x=(x) y=(y) width="22" height="15" {}
+            text fill=(text) font-size="11.5" text-anchor="middle" x=(x + 11.0) y=(y + 12.0) { (sign) }
         }
     };
     let words = |x: f64, y: f64, text: &str| html! { text x=(x) y=(y + 12.0) { (text) } };

@@ -173,7 +173,7 @@ pub(super) fn write(
     };
     let figures = collector.finish();
     let page = crepitus_report::html(&text, &figures);
-    let pictures = pictures.files(|| crepitus_report::pictures(&figures))?;
+    let pictures = pictures.files(|paper| crepitus_report::pictures(&figures, paper))?;
     let files = report_files(page, &summary, pictures)?;
     results::write(folder, out, files)?;
     Ok(summary)

@@ -197,7 +197,7 @@ fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Summary,
     let page = crepitus_report::html(&text, &figures);
     let pictures = arguments
         .pictures
-        .files(|| crepitus_report::pictures(&figures))?;
+        .files(|paper| crepitus_report::pictures(&figures, paper))?;
     let files = report_files(page, &summary, pictures)?;
     results::write(folder, out, files)?;
     Ok(summary)

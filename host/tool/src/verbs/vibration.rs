@@ -72,7 +72,9 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let folder = results::folder(&out)?;
     let study = study_vibration(&plan, &mut Watch::new()).map_err(failed)?;
     let html = page::html(&study, &text(&study));
-    let pictures = arguments.pictures.files(|| page::pictures(&study))?;
+    let pictures = arguments
+        .pictures
+        .files(|paper| page::pictures(&study, paper))?;
     results::write(folder, &out, report_files(html, &study, pictures)?)?;
     if as_json {
         return print_json(&json!({ "out": out, "study": study }));

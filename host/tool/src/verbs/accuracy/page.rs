@@ -26,7 +26,7 @@ pub(super) fn files(
         study.target.as_ref(),
         &text(study, summary),
     );
-    let pictures = pictures.files(|| accuracy::pictures(&study.points))?;
+    let pictures = pictures.files(|paper| accuracy::pictures(&study.points, paper))?;
     let mut files = report_files(page, summary, pictures)?;
     files.push((
         "points.csv".to_owned(),

@@ -16,7 +16,7 @@ pub(super) fn files(
     pictures: &Pictures,
 ) -> Result<Files, Failure> {
     let page = effects::html(study, &text(study, summary));
-    let pictures = pictures.files(|| effects::pictures(study))?;
+    let pictures = pictures.files(|paper| effects::pictures(study, paper))?;
     let mut files = report_files(page, summary, pictures)?;
     files.push((
         "effects.csv".to_owned(),

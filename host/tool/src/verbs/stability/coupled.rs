@@ -147,7 +147,7 @@ fn onsets_and_margins(study: &CoupledStudy) -> String {
 
 fn files(study: &CoupledStudy, summary: &Summary, pictures: &Pictures) -> Result<Files, Failure> {
     let page = coupled::html(study, &words(summary));
-    let pictures = pictures.files(|| coupled::pictures(study))?;
+    let pictures = pictures.files(|_| coupled::pictures(study))?;
     let mut files = report_files(page, summary, pictures)?;
     let margins = [study.presets.as_slice(), &study.extras].concat();
     files.extend([

@@ -18,7 +18,7 @@ pub(super) fn files(
     pictures: &Pictures,
 ) -> Result<Files, Failure> {
     let page = stability::html(matrix, stories, &text(matrix, summary));
-    let pictures = pictures.files(|| stability::pictures(matrix, stories))?;
+    let pictures = pictures.files(|paper| stability::pictures(matrix, stories, paper))?;
     let mut files = report_files(page, summary, pictures)?;
     files.push((
         "cases.csv".to_owned(),
