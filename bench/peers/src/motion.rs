@@ -61,7 +61,7 @@ pub fn recorded_knee() -> Result<Hand, String> {
             path: &path,
             time_column: "time_s",
             angle_column: "knee_flexion_deg",
-            unit: AngleUnit::Deg,
+            unit: Some(AngleUnit::Deg),
         });
         (samples.map_err(|e| e.to_string())?, format!("{FILE}, "))
     } else {

@@ -34,7 +34,7 @@ pub fn body(data: &[u8]) {
         path: on_disk.path(),
         time_column: "t",
         angle_column: "a",
-        unit,
+        unit: Some(unit),
     };
     match recording::read(&source) {
         Err(error) => assert!(!error.to_string().trim().is_empty(), "{error:?}"),

@@ -3,7 +3,7 @@
 use crepitus_plot::number::{count, rounded};
 use crepitus_plot::palette::{BAND, Ink, TEXT, TORQUE};
 use crepitus_plot::{
-    Anchor, Axis, Chart, Figure, Key, Panel, Paper, Plot, Point, Sign, Svg, extent, stack,
+    Anchor, Axis, Chart, Drawing, Figure, Key, Panel, Paper, Plot, Point, Sign, Svg, extent, stack,
 };
 
 use crate::collector::Figures;
@@ -259,8 +259,19 @@ fn names(plot: &mut Plot, curves: &[Curve], to: f64) {
     let frame = plot.frame();
     let height =
         |row: usize| frame.top - STRIP - 10.0 - STRIP_ROW * ((curves.len() - row) as f64 - 0.5);
+    let middle = |low: f64, high: f64| (low * high.min(to)).sqrt();
+    let bands = || BANDS.into_iter().filter(|(low, ..)| *low < to);
+    // Left of the first number there may be room for the short name alone.
+    let room = bands().next().map_or(0.0, |(low, high, ..)| {
+        plot.at((middle(low, high), 1.0)).0 - frame.left - 30.0
+    });
     for (row, curve) in curves.iter().enumerate() {
-        let name = format!("{}, RMS in the band (mN·m)", curve.name);
+        let long = format!("{}, RMS in the band (mN·m)", curve.name);
+        let name = if Drawing::label_width(&long) < room {
+            long
+        } else {
+            format!("{} (mN·m)", curve.name)
+        };
         plot.over.text(
             (frame.left + 4.0, height(row)),
             Anchor::Start,
@@ -268,9 +279,14 @@ fn names(plot: &mut Plot, curves: &[Curve], to: f64) {
             &name,
         );
     }
-    for (low, high, name, _) in BANDS.into_iter().filter(|(low, ..)| *low < to) {
-        let (x, top) = plot.at(((low * high.min(to)).sqrt(), plot.y().high()));
-        plot.over.text((x, top + 12.0), Anchor::Middle, TEXT, name);
+    let mut end = f64::NEG_INFINITY;
+    for (low, high, name, _) in bands() {
+        let (x, top) = plot.at((middle(low, high), plot.y().high()));
+        let half = 0.5 * Drawing::label_width(name);
+        // Below the one before, where the two would touch.
+        let down = if x - half < end + 6.0 { 32.0 } else { 12.0 };
+        end = x + half;
+        plot.over.text((x, top + down), Anchor::Middle, TEXT, name);
         for (row, curve) in curves.iter().enumerate() {
             let rms = rounded(1e3 * curve.spectrum.rms(low, high));
             plot.over

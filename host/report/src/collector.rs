@@ -3,7 +3,7 @@
 //! Memory does not grow with the run: each part has a bound of its own, and
 //! together they stay below a few megabytes.
 
-use crepitus_scene::trace::{EventRecord, SymptomEvent};
+use crepitus_scene::trace::{Column, EventRecord, SymptomEvent};
 
 use crate::balance::Balance;
 use crate::channels::{Channels, Sample, Setup, TorqueLevels};
@@ -11,6 +11,7 @@ use crate::choice::Choice;
 use crate::envelope::Envelope;
 use crate::fast_part::{FastPart, Seen};
 use crate::hysteresis::Hysteresis;
+use crate::overlay::{self, Comparison, Difference, Measured};
 use crate::plant::{Plant, PlantCollector};
 use crate::spectrum::{Spectrum, Welch};
 use crate::symptoms::Symptoms;
@@ -48,6 +49,7 @@ pub struct Collector {
     marks: Vec<Mark>,
     pushes: Vec<(f64, f64)>,
     gaps: Vec<(f64, f64)>,
+    comparisons: Vec<Comparison>,
 }
 
 /// Collected data of a complete run.
@@ -78,9 +80,16 @@ pub struct Figures {
     pub(crate) pushes: Vec<(f64, f64)>,
     /// From the last row before missing ones to the first one after them, s.
     pub(crate) gaps: Vec<(f64, f64)>,
+    /// Measured curves.
+    pub(crate) comparisons: Vec<Comparison>,
 }
 
 impl Figures {
+    /// How far each measured curve is from the run.
+    pub fn differences(&self) -> Vec<Difference> {
+        overlay::differences(&self.comparisons)
+    }
+
     /// Adds where the energy of the plant came from and went.
     pub fn set_balance(&mut self, balance: Balance) {
         self.balance = Some(balance);
@@ -166,7 +175,17 @@ impl Collector {
             marks: Vec::new(),
             pushes: Vec::new(),
             gaps: Vec::new(),
+            comparisons: Vec::new(),
         }
+    }
+
+    /// Compares measured curves with the rows that will come, which have these columns; those
+    /// without a column are left out.
+    pub fn compare(&mut self, measured: Vec<Measured>, columns: &[Column]) {
+        let found = measured
+            .into_iter()
+            .filter_map(|measured| Comparison::new(measured, columns));
+        self.comparisons.extend(found);
     }
 
     /// Takes one row of the trace, in the order of the columns. A value that
@@ -179,6 +198,9 @@ impl Collector {
         let sample = self.channels.sample(values);
         if sample.time.is_nan() {
             return;
+        }
+        for comparison in &mut self.comparisons {
+            comparison.row(sample.time, values);
         }
         self.angle.push(sample.time, sample.angle);
         self.omega.push(sample.time, sample.omega);
@@ -218,6 +240,7 @@ impl Collector {
             // Rather too much is missing than too little.
             *end_s = to_s;
         }
+        self.comparisons.iter_mut().for_each(Comparison::gap);
         self.envelope.gap();
         self.choice.gap();
         self.hysteresis.gap();
@@ -315,6 +338,7 @@ impl Collector {
             marks: self.marks,
             pushes: self.pushes,
             gaps: self.gaps,
+            comparisons: self.comparisons,
         }
     }
 }

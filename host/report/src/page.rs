@@ -5,6 +5,7 @@ use maud::{Markup, html};
 
 use crate::balance_table;
 use crate::collector::Figures;
+use crate::overlay;
 use crate::text::Text;
 use crate::{
     chart_energy, chart_hand, chart_motion, chart_orbit, chart_plant, chart_spectrum,
@@ -15,7 +16,8 @@ use crate::{
 pub fn html(text: &Text, figures: &Figures) -> String {
     let drawn = draw(figures, Paper::Screen);
     let balance = figures.balance.as_ref().and_then(balance_table::table);
-    let mut sections = examined::sections(figures);
+    let mut sections = overlay::sections(&figures.comparisons);
+    sections.extend(examined::sections(figures));
     sections.extend(text.sections.iter().cloned());
     let warned = if text.warnings.len() == 1 {
         "Warning"
@@ -73,7 +75,9 @@ fn draw(figures: &Figures, paper: Paper) -> Vec<Figure> {
     ];
     let symptoms = chart_symptoms::figures(figures, paper);
     let others = others.into_iter().flatten();
-    motion.into_iter().chain(symptoms).chain(others).collect()
+    let overlay = overlay::figure(&figures.comparisons, paper);
+    let first = overlay.into_iter().chain(motion);
+    first.chain(symptoms).chain(others).collect()
 }
 
 fn left_out(figures: &Figures) -> Markup {

@@ -8,6 +8,7 @@ mod following;
 mod interrupt;
 mod keys;
 mod line;
+mod overlay;
 mod own_presets;
 mod pictures;
 mod progress;

@@ -5,6 +5,7 @@ use super::report::{self, in_brief};
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Arming, Follower, follow};
 use crate::line::{Line, failure};
+use crate::overlay::Overlay;
 use crate::pictures::Pictures;
 use crate::progress::Progress;
 use crate::recorded::{Recorded, extension};
@@ -108,7 +109,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 
     let recording =
         crepitus_recording::Recording::open(&file, Damage::Refuse).map_err(Failure::input)?;
-    let summary = report::write(&recording, &out, &arguments.pictures)?;
+    let (summary, _) = report::write(&recording, &out, &arguments.pictures, &Overlay::default())?;
     done(&summary, &out, &file, &client, begun.elapsed(), as_json)
 }
 

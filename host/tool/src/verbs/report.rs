@@ -5,6 +5,7 @@ mod tables;
 
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
+use crate::overlay::{self as measurements, Overlay};
 use crate::pictures::Pictures;
 use crate::progress::Progress;
 use crate::recorded::beside;
@@ -15,7 +16,7 @@ use crepitus_protocol::TICK_S;
 use crepitus_recording::{
     Analysis, ArmingPushes, Damage, History, Recording, RecordingSummary, seconds,
 };
-use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
+use crepitus_report::{Collector, Difference, Mark, Setup, Text, TorqueLevels};
 use crepitus_scene::trace::{Column, ColumnKind};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -53,6 +54,7 @@ const PROGRESS_ROWS: u64 = 1 << 14;
 Examples:
   crepitus report monday.parquet
   crepitus report monday.parquet --out monday-report --pictures
+  crepitus report monday.parquet --overlay bench.csv --overlay-columns t_s=time,torque_nm=T
   crepitus report damaged --salvage
 
 What is missing is said first. A recording that was interrupted is reported up to where it ends; a \
@@ -71,6 +73,9 @@ pub(crate) struct Arguments {
 
     #[command(flatten)]
     pictures: Pictures,
+
+    #[command(flatten)]
+    overlay: Overlay,
 }
 
 /// Reports.
@@ -86,11 +91,15 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .clone()
         .unwrap_or_else(|| beside(&arguments.file, "-report"));
     interrupt::listen();
-    let summary = write(&recording, &out, &arguments.pictures)?;
+    let (summary, differences) = write(&recording, &out, &arguments.pictures, &arguments.overlay)?;
     if as_json {
-        return print_json(&json!({ "out": out, "summary": summary }));
+        let mut printed = json!({ "out": out, "summary": summary });
+        if !differences.is_empty() {
+            printed["overlay"] = json!(differences);
+        }
+        return print_json(&printed);
     }
-    print(&in_brief(&summary, &out))
+    print(&(measurements::in_brief(&differences) + &in_brief(&summary, &out)))
 }
 
 /// Writes `report.html` and `summary.json` of a recording into `out`.
@@ -98,12 +107,14 @@ pub(super) fn write(
     recording: &Recording,
     out: &Path,
     pictures: &Pictures,
-) -> Result<RecordingSummary, Failure> {
+    overlay: &Overlay,
+) -> Result<(RecordingSummary, Vec<Difference>), Failure> {
     let parameters = recording.parameters();
-    let folder = results::folder(out)?;
-    let expected = recording.books().totals.received;
     let symptoms = Symptoms::of(parameters);
     let columns = symptoms.columns();
+    let measured = overlay.read(&columns)?;
+    let folder = results::folder(out)?;
+    let expected = recording.books().totals.received;
     let setup = Setup {
         columns: &columns,
         rows_expected: expected,
@@ -112,6 +123,7 @@ pub(super) fn write(
         effects: symptoms.settings,
     };
     let mut collector = Collector::new(&setup);
+    collector.compare(measured, &columns);
     let mut changes = parameters.changes().peekable();
     let mut changed_at_s = Vec::new();
     let mut previous_s = 0.0;
@@ -176,7 +188,9 @@ pub(super) fn write(
     let pictures = pictures.files(|paper| crepitus_report::pictures(&figures, paper))?;
     let files = report_files(page, &summary, pictures)?;
     results::write(folder, out, files)?;
-    Ok(summary)
+    let differences = figures.differences();
+    measurements::warn_of_nothing(&differences, overlay.file());
+    Ok((summary, differences))
 }
 
 /// The torque levels, if they were the same all the time.

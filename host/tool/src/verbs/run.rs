@@ -7,11 +7,12 @@ mod watch;
 use crate::cli::key_and_value;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
+use crate::overlay::{self, Overlay};
 use crate::pictures::Pictures;
 use crate::results::{self, footer, report_files};
 use crate::sections::torque_levels;
 use clap::Args;
-use crepitus_report::{Setup, Text};
+use crepitus_report::{Difference, Setup, Text};
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, RunError, Scene, Summary, run as runner};
 use serde_json::json;
@@ -26,6 +27,7 @@ Examples:
   crepitus run slow-examination --out /tmp/exam --solver exact --step 1e-3
   crepitus run high-speed --set effects.crepitus.preset=fine --set duration_s=2
   crepitus run passive-examination --as-device
+  crepitus run fig8-5-hand --overlay bench.csv --overlay-columns t_s=time,hand_torque_nm=M
   crepitus run out/high-speed/summary.json
 
 SCENE is a file, the name of a scene that ships, or the summary.json of a run, which is repeated bit \
@@ -45,7 +47,7 @@ pub(crate) struct Arguments {
     force: bool,
 
     /// Write summary.json and events.csv alone: no trace, no report.
-    #[arg(long, conflicts_with_all = ["Pictures", "trace_every"])]
+    #[arg(long, conflicts_with_all = ["Pictures", "Overlay", "trace_every"])]
     no_trace: bool,
 
     /// Another solver: exact, exact-events, reference, … (a wrong name lists them all).
@@ -71,6 +73,9 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     pictures: Pictures,
 
+    #[command(flatten)]
+    overlay: Overlay,
+
     /// Write only every Nth row of the trace.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     trace_every: u64,
@@ -92,9 +97,13 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             out.display()
         );
     }
-    let summary = simulate(&scene, &out, arguments)?;
+    let (summary, differences) = simulate(&scene, &out, arguments)?;
     if as_json {
-        return print_json(&json!({ "out": out, "summary": summary }));
+        let mut printed = json!({ "out": out, "summary": summary });
+        if !differences.is_empty() {
+            printed["overlay"] = json!(differences);
+        }
+        return print_json(&printed);
     }
     for warning in &summary.warnings {
         warn(warning);
@@ -105,9 +114,10 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         ("report", "report.html")
     };
     print(&format!(
-        "{}\n{}\n{what}: {}\n",
+        "{}\n{}\n{}{what}: {}\n",
         summary.title,
         tables::in_brief(&summary),
+        overlay::in_brief(&differences),
         out.join(file).display()
     ))
 }
@@ -155,7 +165,13 @@ fn with_commit(summary: Summary) -> Summary {
 }
 
 /// Runs the scene and writes its files.
-fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Summary, Failure> {
+fn simulate(
+    scene: &Scene,
+    out: &Path,
+    arguments: &Arguments,
+) -> Result<(Summary, Vec<Difference>), Failure> {
+    let columns = runner::columns(scene);
+    let measured = arguments.overlay.read(&columns)?;
     let failed = |e: &std::io::Error| Failure::at(out, "writing the results", e);
     let folder = results::folder(out)?;
     interrupt::listen();
@@ -168,10 +184,10 @@ fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Summary,
         watch.finish().map_err(|e| failed(&e))?;
         results::write(folder, out, vec![results::summary_file(&summary)?])?;
         results::remove_others(out)?;
-        return Ok(summary);
+        return Ok((summary, Vec::new()));
     }
     let setup = Setup {
-        columns: &runner::columns(scene),
+        columns: &columns,
         rows_expected: runner::rows(scene),
         row_step_s: scene.trace_step_s,
         levels: scene.crepitus.map(|c| torque_levels(&c.settings)),
@@ -179,6 +195,7 @@ fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Summary,
     };
     let mut watch = Watch::new(&folder, &setup, scene.duration_s, arguments.trace_every)
         .map_err(|e| failed(&e))?;
+    watch.compare(measured, &columns);
     let summary = crepitus_scene::run(scene, &mut watch).map_err(why)?;
     let mut summary = with_commit(summary);
     runner::measure_costs(scene, &mut summary);
@@ -200,5 +217,7 @@ fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Summary,
         .files(|paper| crepitus_report::pictures(&figures, paper))?;
     let files = report_files(page, &summary, pictures)?;
     results::write(folder, out, files)?;
-    Ok(summary)
+    let differences = figures.differences();
+    overlay::warn_of_nothing(&differences, arguments.overlay.file());
+    Ok((summary, differences))
 }

@@ -59,8 +59,9 @@ pub struct Source<'a> {
     pub time_column: &'a str,
     /// The name of the column with the joint angle.
     pub angle_column: &'a str,
-    /// The unit of the angle column.
-    pub unit: AngleUnit,
+    /// The unit of the angle column; `None` for a column of something else, whose numbers are
+    /// taken as they are.
+    pub unit: Option<AngleUnit>,
 }
 
 /// The unit of a column of angles.
@@ -138,6 +139,35 @@ impl Samples {
         self.median_interval_s()
             .map_or(0.0, |interval_s| 0.5 / interval_s)
     }
+}
+
+/// A column of something else than angles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Values {
+    /// The times since the first row, in s; the first is 0.
+    pub time_s: Vec<f64>,
+    /// The value at each time, as it is in the file.
+    pub value: Vec<f64>,
+    /// Warnings about the file.
+    pub warnings: Vec<Warning>,
+}
+
+/// Reads a column of any unit, with its times.
+///
+/// # Errors
+/// As [`read`], without what is said of angles.
+pub fn read_values(path: &Path, time_column: &str, column: &str) -> Result<Values, RecordingError> {
+    let samples = read(&Source {
+        path,
+        time_column,
+        angle_column: column,
+        unit: None,
+    })?;
+    Ok(Values {
+        time_s: samples.time_s,
+        value: samples.angle_rad,
+        warnings: samples.warnings,
+    })
 }
 
 /// Reads the two columns of `source`.

@@ -108,7 +108,7 @@ impl Header {
                 }
                 "indegrees" => {
                     let Some(unit) = unit(value) else { continue };
-                    if unit != source.unit {
+                    if source.unit.is_some_and(|said| said != unit) {
                         return Err(RecordingError::UnitContradiction {
                             place: Place::line(source.path, line),
                             header: format!("inDegrees={value}"),

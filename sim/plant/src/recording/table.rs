@@ -37,7 +37,17 @@ impl<'a> Table<'a> {
             names_line: line,
             width: names.len(),
             time_index: find(source, line, names, source.time_column, "time_column")?,
-            angle_index: find(source, line, names, source.angle_column, "angle_column")?,
+            angle_index: find(
+                source,
+                line,
+                names,
+                source.angle_column,
+                if source.unit.is_some() {
+                    "angle_column"
+                } else {
+                    "column"
+                },
+            )?,
             first_time_s: 0.0,
             last_time_s: 0.0,
             last_line: line,
@@ -108,16 +118,18 @@ impl<'a> Table<'a> {
         }
 
         let angle = number(cell(self.angle_index), angle_place)?;
-        let unit = self.source.unit;
-        if angle.abs() > unit.limit() {
+        if let Some(unit) = self.source.unit
+            && angle.abs() > unit.limit()
+        {
             return Err(RecordingError::AngleOutOfRange {
                 place: angle_place(),
                 value: angle,
                 unit,
             });
         }
+        let angle_rad = self.source.unit.map_or(angle, |unit| unit.to_rad(angle));
         self.samples.time_s.push(time_s);
-        self.samples.angle_rad.push(unit.to_rad(angle));
+        self.samples.angle_rad.push(angle_rad);
         self.last_time_s = file_time_s;
         self.last_line = line;
         Ok(())
@@ -189,6 +201,7 @@ impl<'a> Table<'a> {
         let Source {
             angle_column, unit, ..
         } = *self.source;
+        let unit = unit?;
         let place = Place::column_of(self.source, angle_column);
         let name = angle_column.to_lowercase();
         let other: &[&str] = match unit {

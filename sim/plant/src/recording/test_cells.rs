@@ -115,7 +115,7 @@ fn the_unit_is_checked_against_the_file() {
         path: &path,
         time_column: "time",
         angle_column: "knee_rad",
-        unit,
+        unit: Some(unit),
     };
     let warnings = read(&source).unwrap().warnings;
     assert!(

@@ -36,7 +36,7 @@ fn read_csv(folder: &Path, name: &str) -> Samples {
         path: &path,
         time_column: "time_s",
         angle_column,
-        unit: AngleUnit::Deg,
+        unit: Some(AngleUnit::Deg),
     })
     .unwrap()
 }
@@ -89,7 +89,7 @@ fn opensim_files_agree_with_their_csv() {
             path: &path,
             time_column: "time",
             angle_column: "knee_angle_r",
-            unit: AngleUnit::Deg,
+            unit: Some(AngleUnit::Deg),
         };
         let samples = read(&source).unwrap();
         let expected = read_csv(&folder, csv);

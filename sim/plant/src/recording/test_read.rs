@@ -17,7 +17,7 @@ pub(super) fn read_unit(
         path: &path,
         time_column: "time",
         angle_column: "knee",
-        unit,
+        unit: Some(unit),
     })
     .map_err(|error| {
         error
@@ -141,7 +141,7 @@ fn files_that_cannot_be_read() {
         path: &missing,
         time_column: "t",
         angle_column: "a",
-        unit: AngleUnit::Deg,
+        unit: Some(AngleUnit::Deg),
     };
     let error = read(&source).unwrap_err();
     assert!(matches!(error, RecordingError::Unreadable { .. }));
@@ -249,7 +249,7 @@ fn columns_that_are_not_there_or_not_clear() {
         path,
         time_column: "knee",
         angle_column: "knee",
-        unit: AngleUnit::Deg,
+        unit: Some(AngleUnit::Deg),
     };
     assert_eq!(
         read(&source).unwrap_err().to_string(),

@@ -42,7 +42,7 @@ pub(super) fn recording(
         path: &path,
         time_column,
         angle_column,
-        unit,
+        unit: Some(unit),
     })
     .map_err(|e| section.key_error("file", e.to_string()))?;
     warnings.extend(samples.warnings.iter().map(ToString::to_string));

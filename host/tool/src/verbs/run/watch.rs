@@ -3,10 +3,10 @@
 
 use crate::interrupt;
 use crate::progress::Progress;
-use crepitus_report::{Collector, Figures, Setup};
+use crepitus_report::{Collector, Figures, Measured, Setup};
 use crepitus_scene::Observer;
 use crepitus_scene::output::{EventsCsv, Folder, TraceCsv};
-use crepitus_scene::trace::{EventRecord, SymptomEvent};
+use crepitus_scene::trace::{Column, EventRecord, SymptomEvent};
 use std::fs::File;
 use std::io::{self, BufWriter};
 
@@ -43,6 +43,11 @@ impl Watch {
             trace_every,
             rows: 0,
         })
+    }
+
+    /// Lays measured curves over the rows that will come.
+    pub(super) fn compare(&mut self, measured: Vec<Measured>, columns: &[Column]) {
+        self.collector.compare(measured, columns);
     }
 
     /// Finishes both files and gives the figures.

@@ -1,0 +1,228 @@
+//! `--overlay`: measured curves over those of a report.
+
+use crate::cli::key_and_value;
+use crate::failure::{Failure, warn};
+use clap::Args;
+use crepitus_plant::recording::{self, RecordingError};
+use crepitus_report::{Difference, Measured, Quantity};
+use crepitus_scene::trace::Column;
+use std::path::{Path, PathBuf};
+
+/// The name of the times, in a trace and in a mapping.
+const TIME: &str = "t_s";
+
+/// Names of curves in a mapping: those of a trace, and angles in degrees. With the factor to the
+/// units of the trace.
+const NAMES: [(&str, Quantity, f64); 7] = [
+    ("angle_rad", Quantity::Angle, 1.0),
+    ("angle_deg", Quantity::Angle, std::f64::consts::PI / 180.0),
+    ("omega_rad_s", Quantity::Velocity, 1.0),
+    (
+        "omega_deg_s",
+        Quantity::Velocity,
+        std::f64::consts::PI / 180.0,
+    ),
+    ("torque_nm", Quantity::Torque, 1.0),
+    ("hand_torque_nm", Quantity::HandTorque, 1.0),
+    ("motor_torque_nm", Quantity::MotorTorque, 1.0),
+];
+
+/// What was measured, and how to read it.
+#[derive(Debug, Default, Args)]
+pub(crate) struct Overlay {
+    /// Lay measured curves over those of the run: a CSV file, or OpenSim's .mot or .sto.
+    #[arg(id = "overlay", long = "overlay", value_name = "FILE")]
+    file: Option<PathBuf>,
+
+    /// Columns of that file by ours: t_s, angle_rad or angle_deg, omega_rad_s or omega_deg_s, torque_nm,
+    /// hand_torque_nm, motor_torque_nm [default: those with these names].
+    #[arg(long, value_name = "OURS=THEIRS", value_delimiter = ',', value_parser = key_and_value, requires = "overlay")]
+    overlay_columns: Vec<(String, String)>,
+
+    /// A factor of a column, -1 where it counts the other way round.
+    #[arg(long, value_name = "OURS=FACTOR", value_delimiter = ',', value_parser = key_and_value, requires = "overlay",
+          allow_hyphen_values = true)]
+    overlay_scale: Vec<(String, String)>,
+
+    /// What is added to a column, after the factor, in the unit of its name.
+    #[arg(long, value_name = "OURS=VALUE", value_delimiter = ',', value_parser = key_and_value, requires = "overlay")]
+    overlay_offset: Vec<(String, String)>,
+
+    /// When the first row of the file was, in the time of the run, s.
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 0.0,
+        requires = "overlay",
+        allow_negative_numbers = true
+    )]
+    overlay_shift: f64,
+}
+
+impl Overlay {
+    /// The measured curves, read before the work; none without `--overlay`. `columns` are those of
+    /// the trace.
+    pub(crate) fn read(&self, columns: &[Column]) -> Result<Vec<Measured>, Failure> {
+        let Some(file) = &self.file else {
+            return Ok(Vec::new());
+        };
+        if !self.overlay_shift.is_finite() {
+            return Err(Failure::Input(
+                "--overlay-shift: expected seconds".to_owned(),
+            ));
+        }
+        let mapped = mapping(&self.overlay_columns)?;
+        let scales = numbers("--overlay-scale", &self.overlay_scale)?;
+        let offsets = numbers("--overlay-offset", &self.overlay_offset)?;
+        let time = mapped.iter().find(|(name, _)| name == TIME);
+        let time = time.map_or(TIME, |(_, column)| column.as_str());
+        let named = mapped.iter().filter(|(name, _)| name != TIME);
+        let wanted: Vec<(&str, &str)> = if named.clone().count() > 0 {
+            named
+                .map(|(ours, theirs)| (ours.as_str(), theirs.as_str()))
+                .collect()
+        } else {
+            NAMES.iter().map(|(name, ..)| (*name, *name)).collect()
+        };
+        let is_mapped = mapped.iter().any(|(name, _)| name != TIME);
+        let mut measured: Vec<Measured> = Vec::new();
+        let mut missing = None;
+        for (ours, theirs) in wanted {
+            let Some((_, quantity, factor)) = NAMES.iter().find(|(name, ..)| *name == ours) else {
+                return Err(unknown("--overlay-columns", ours));
+            };
+            let values = match recording::read_values(file, time, theirs) {
+                Ok(values) => values,
+                // Without a mapping: what the file has.
+                Err(error @ RecordingError::MissingColumn { role: "column", .. }) if !is_mapped => {
+                    missing = Some(error);
+                    continue;
+                }
+                Err(error) => return Err(failed(&error)),
+            };
+            if measured.iter().any(|other| other.quantity == *quantity) {
+                return Err(Failure::Input(format!(
+                    "--overlay: {ours} is named a second time, in another unit: name one of them with --overlay-columns"
+                )));
+            }
+            check(*quantity, ours, columns)?;
+            values.warnings.iter().for_each(warn);
+            let of = |list: &[(String, f64)], or: f64| {
+                list.iter()
+                    .find(|(name, _)| name == ours)
+                    .map_or(or, |(_, x)| *x)
+            };
+            let (scale, offset) = (of(&scales, 1.0), of(&offsets, 0.0));
+            measured.push(Measured {
+                quantity: *quantity,
+                time_s: values
+                    .time_s
+                    .iter()
+                    .map(|t| t + self.overlay_shift)
+                    .collect(),
+                value: values
+                    .value
+                    .iter()
+                    .map(|x| factor * (scale * x + offset))
+                    .collect(),
+            });
+        }
+        match (measured.is_empty(), missing) {
+            (true, Some(error)) => Err(Failure::Input(format!(
+                "--overlay: {error}; name its columns, as in --overlay-columns t_s=time,torque_nm=T"
+            ))),
+            _ => Ok(measured),
+        }
+    }
+}
+
+fn failed(error: &RecordingError) -> Failure {
+    Failure::Input(format!("--overlay: {error}"))
+}
+
+fn unknown(option: &str, name: &str) -> Failure {
+    let names: Vec<&str> = NAMES.iter().map(|(name, ..)| *name).collect();
+    Failure::Input(format!(
+        "{option}: there is no curve {name}: the names and units are {TIME}, {}",
+        names.join(", ")
+    ))
+}
+
+fn mapping(columns: &[(String, String)]) -> Result<Vec<(String, String)>, Failure> {
+    for (i, (name, _)) in columns.iter().enumerate() {
+        if columns.iter().skip(i + 1).any(|(other, _)| other == name) {
+            return Err(Failure::Input(format!(
+                "--overlay-columns: {name} is named twice"
+            )));
+        }
+    }
+    Ok(columns.to_vec())
+}
+
+fn numbers(option: &str, list: &[(String, String)]) -> Result<Vec<(String, f64)>, Failure> {
+    list.iter()
+        .map(|(name, text)| {
+            if !NAMES.iter().any(|(known, ..)| known == name) {
+                return Err(unknown(option, name));
+            }
+            match text.parse::<f64>() {
+                Ok(x) if x.is_finite() && !(option == "--overlay-scale" && x == 0.0) => {
+                    Ok((name.clone(), x))
+                }
+                _ => Err(Failure::Input(format!(
+                    "{option}: {name}={text}: expected a number{}",
+                    if option == "--overlay-scale" {
+                        " other than 0"
+                    } else {
+                        ""
+                    }
+                ))),
+            }
+        })
+        .collect()
+}
+
+/// A curve that the run has, too.
+fn check(quantity: Quantity, ours: &str, columns: &[Column]) -> Result<(), Failure> {
+    let name = quantity.column();
+    if columns.iter().any(|column| column.name == name) {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "--overlay: {ours} has nothing to lie over: the run has no {name} (a hand, a motor or crepitus is not among its \
+         effects)"
+    )))
+}
+
+/// A line for each measured curve.
+pub(crate) fn in_brief(differences: &[Difference]) -> String {
+    differences.iter().fold(String::new(), |text, d| {
+        let known = |x: Option<f64>| x.map_or_else(|| "not known".to_owned(), |x| format!("{x:.5}"));
+        text + &format!(
+            "  measured {}: {} samples compared, {} outside the run; RMS difference {}, correlation {}\n",
+            d.column,
+            d.points,
+            d.outside,
+            known(d.rms_difference),
+            known(d.correlation)
+        )
+    })
+}
+
+/// Says which curves have no sample within the run.
+pub(crate) fn warn_of_nothing(differences: &[Difference], file: Option<&Path>) {
+    for d in differences.iter().filter(|d| d.points == 0) {
+        let file = file.map_or_else(String::new, |file| format!("{}: ", file.display()));
+        warn(format!(
+            "{file}no time of the measured {} lies within the run: shift it with --overlay-shift",
+            d.column
+        ));
+    }
+}
+
+impl Overlay {
+    /// The file.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+}
