@@ -20,6 +20,7 @@ mod shell;
 mod status_line;
 mod studying;
 mod verbs;
+mod wav;
 
 use clap::Parser;
 use cli::Cli;

@@ -128,16 +128,20 @@ impl Overlay {
             });
         }
         match (measured.is_empty(), missing) {
-            (true, Some(error)) => Err(Failure::Input(format!(
-                "--overlay: {error}; name its columns, as in --overlay-columns t_s=time,torque_nm=T"
-            ))),
+            (true, Some(error)) => Err(failed(&error)),
             _ => Ok(measured),
         }
     }
 }
 
 fn failed(error: &RecordingError) -> Failure {
-    Failure::Input(format!("--overlay: {error}"))
+    let hint = match error {
+        RecordingError::MissingColumn { .. } => {
+            "; name the columns as in --overlay-columns t_s=time,torque_nm=T"
+        }
+        _ => "",
+    };
+    Failure::Input(format!("--overlay: {error}{hint}"))
 }
 
 fn unknown(option: &str, name: &str) -> Failure {

@@ -9,6 +9,7 @@ use crate::overlay::Overlay;
 use crate::pictures::Pictures;
 use crate::progress::Progress;
 use crate::recorded::{Recorded, extension};
+use crate::wav::Wav;
 use clap::Args;
 use crepitus_client::{Begin, Client, RequestKind};
 use crepitus_connection::Simulated;
@@ -109,7 +110,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 
     let recording =
         crepitus_recording::Recording::open(&file, Damage::Refuse).map_err(Failure::input)?;
-    let (summary, _) = report::write(&recording, &out, &arguments.pictures, &Overlay::default())?;
+    let extras = report::Extras {
+        pictures: &arguments.pictures,
+        overlay: &Overlay::default(),
+        wav: &Wav::default(),
+    };
+    let summary = report::write(&recording, &out, &extras)?.summary;
     done(&summary, &out, &file, &client, begun.elapsed(), as_json)
 }
 

@@ -11,6 +11,7 @@ use crate::progress::Progress;
 use crate::recorded::beside;
 use crate::results::{self, footer, report_files};
 use crate::sections::torque_levels;
+use crate::wav::{self, Listener, Wav};
 use clap::Args;
 use crepitus_protocol::TICK_S;
 use crepitus_recording::{
@@ -18,6 +19,7 @@ use crepitus_recording::{
 };
 use crepitus_report::{Collector, Difference, Mark, Setup, Text, TorqueLevels};
 use crepitus_scene::trace::{Column, ColumnKind};
+use crepitus_sound::SoundSummary;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use symptoms::Symptoms;
@@ -55,6 +57,7 @@ Examples:
   crepitus report monday.parquet
   crepitus report monday.parquet --out monday-report --pictures
   crepitus report monday.parquet --overlay bench.csv --overlay-columns t_s=time,torque_nm=T
+  crepitus report monday.parquet --wav monday.wav
   crepitus report damaged --salvage
 
 What is missing is said first. A recording that was interrupted is reported up to where it ends; a \
@@ -76,6 +79,24 @@ pub(crate) struct Arguments {
 
     #[command(flatten)]
     overlay: Overlay,
+
+    #[command(flatten)]
+    wav: Wav,
+}
+
+/// What goes into a report beside the recording, and what comes out beside its files.
+#[derive(Debug)]
+pub(super) struct Extras<'a> {
+    pub(super) pictures: &'a Pictures,
+    pub(super) overlay: &'a Overlay,
+    pub(super) wav: &'a Wav,
+}
+
+/// What a report leaves beside its files.
+pub(super) struct Reported {
+    pub(super) summary: RecordingSummary,
+    differences: Vec<Difference>,
+    sound: Option<SoundSummary>,
 }
 
 /// Reports.
@@ -91,28 +112,44 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .clone()
         .unwrap_or_else(|| beside(&arguments.file, "-report"));
     interrupt::listen();
-    let (summary, differences) = write(&recording, &out, &arguments.pictures, &arguments.overlay)?;
+    let extras = Extras {
+        pictures: &arguments.pictures,
+        overlay: &arguments.overlay,
+        wav: &arguments.wav,
+    };
+    let Reported {
+        summary,
+        differences,
+        sound,
+    } = write(&recording, &out, &extras)?;
     if as_json {
         let mut printed = json!({ "out": out, "summary": summary });
+        if let Some(sound) = &sound {
+            printed["sound"] = json!(sound);
+        }
         if !differences.is_empty() {
             printed["overlay"] = json!(differences);
         }
         return print_json(&printed);
     }
-    print(&(measurements::in_brief(&differences) + &in_brief(&summary, &out)))
+    print(
+        &(measurements::in_brief(&differences)
+            + &wav::in_brief(sound.as_ref())
+            + &in_brief(&summary, &out)),
+    )
 }
 
 /// Writes `report.html` and `summary.json` of a recording into `out`.
 pub(super) fn write(
     recording: &Recording,
     out: &Path,
-    pictures: &Pictures,
-    overlay: &Overlay,
-) -> Result<(RecordingSummary, Vec<Difference>), Failure> {
+    extras: &Extras<'_>,
+) -> Result<Reported, Failure> {
     let parameters = recording.parameters();
     let symptoms = Symptoms::of(parameters);
     let columns = symptoms.columns();
-    let measured = overlay.read(&columns)?;
+    let measured = extras.overlay.read(&columns)?;
+    let mut listener = extras.wav.listener(&columns, TICK_S)?;
     let folder = results::folder(out)?;
     let expected = recording.books().totals.received;
     let setup = Setup {
@@ -157,6 +194,11 @@ pub(super) fn write(
         ]);
         values.extend(symptoms.phases(&row));
         collector.row(&values);
+        if let Some(listener) = &mut listener {
+            listener
+                .row(&values)
+                .map_err(|e| Listener::failed(extras.wav.file(), &e))?;
+        }
         if let Some(event) = derived.event {
             collector.event(&event);
         }
@@ -185,12 +227,21 @@ pub(super) fn write(
     };
     let figures = collector.finish();
     let page = crepitus_report::html(&text, &figures);
-    let pictures = pictures.files(|paper| crepitus_report::pictures(&figures, paper))?;
+    let pictures = extras
+        .pictures
+        .files(|paper| crepitus_report::pictures(&figures, paper))?;
     let files = report_files(page, &summary, pictures)?;
+    let sound = listener
+        .map(|listener| listener.finish(&text.title))
+        .transpose()?;
     results::write(folder, out, files)?;
     let differences = figures.differences();
-    measurements::warn_of_nothing(&differences, overlay.file());
-    Ok((summary, differences))
+    measurements::warn_of_nothing(&differences, extras.overlay.file());
+    Ok(Reported {
+        summary,
+        differences,
+        sound,
+    })
 }
 
 /// The torque levels, if they were the same all the time.

@@ -11,10 +11,12 @@ use crate::overlay::{self, Overlay};
 use crate::pictures::Pictures;
 use crate::results::{self, footer, report_files};
 use crate::sections::torque_levels;
+use crate::wav::{self, Listener, Wav};
 use clap::Args;
 use crepitus_report::{Difference, Setup, Text};
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, RunError, Scene, Summary, run as runner};
+use crepitus_sound::SoundSummary;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use watch::{Watch, WatchError};
@@ -27,6 +29,7 @@ Examples:
   crepitus run slow-examination --out /tmp/exam --solver exact --step 1e-3
   crepitus run high-speed --set effects.crepitus.preset=fine --set duration_s=2
   crepitus run passive-examination --as-device
+  crepitus run fig8-5-hand --wav knee.wav --wav-of hand
   crepitus run fig8-5-hand --overlay bench.csv --overlay-columns t_s=time,hand_torque_nm=M
   crepitus run out/high-speed/summary.json
 
@@ -47,7 +50,7 @@ pub(crate) struct Arguments {
     force: bool,
 
     /// Write summary.json and events.csv alone: no trace, no report.
-    #[arg(long, conflicts_with_all = ["Pictures", "Overlay", "trace_every"])]
+    #[arg(long, conflicts_with_all = ["Pictures", "Overlay", "Wav", "trace_every"])]
     no_trace: bool,
 
     /// Another solver: exact, exact-events, reference, … (a wrong name lists them all).
@@ -76,6 +79,9 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     overlay: Overlay,
 
+    #[command(flatten)]
+    wav: Wav,
+
     /// Write only every Nth row of the trace.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     trace_every: u64,
@@ -97,9 +103,16 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             out.display()
         );
     }
-    let (summary, differences) = simulate(&scene, &out, arguments)?;
+    let Results {
+        summary,
+        differences,
+        sound,
+    } = simulate(&scene, &out, arguments)?;
     if as_json {
         let mut printed = json!({ "out": out, "summary": summary });
+        if let Some(sound) = &sound {
+            printed["sound"] = json!(sound);
+        }
         if !differences.is_empty() {
             printed["overlay"] = json!(differences);
         }
@@ -114,10 +127,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         ("report", "report.html")
     };
     print(&format!(
-        "{}\n{}\n{}{what}: {}\n",
+        "{}\n{}\n{}{}{what}: {}\n",
         summary.title,
         tables::in_brief(&summary),
         overlay::in_brief(&differences),
+        wav::in_brief(sound.as_ref()),
         out.join(file).display()
     ))
 }
@@ -142,11 +156,19 @@ fn out_folder(arguments: &Arguments, scene: &Scene) -> PathBuf {
     })
 }
 
+/// What a run leaves beside its files.
+struct Results {
+    summary: Summary,
+    differences: Vec<Difference>,
+    sound: Option<SoundSummary>,
+}
+
 /// Why a run has failed.
-fn why(scene: &Scene, out: &Path, error: RunError<WatchError>) -> Failure {
+fn why(scene: &Scene, out: &Path, wav: &Wav, error: RunError<WatchError>) -> Failure {
     let file = scene.file.display();
     match error {
         RunError::Observer(WatchError::Write(e)) => Failure::at(out, "writing the results", &e),
+        RunError::Observer(WatchError::Sound(e)) => Listener::failed(wav.file(), &e),
         RunError::Observer(WatchError::Interrupted) => {
             Failure::Work("interrupted: nothing was written".to_owned())
         }
@@ -165,17 +187,14 @@ fn with_commit(summary: Summary) -> Summary {
 }
 
 /// Runs the scene and writes its files.
-fn simulate(
-    scene: &Scene,
-    out: &Path,
-    arguments: &Arguments,
-) -> Result<(Summary, Vec<Difference>), Failure> {
+fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Results, Failure> {
     let columns = runner::columns(scene);
     let measured = arguments.overlay.read(&columns)?;
+    let listener = arguments.wav.listener(&columns, scene.trace_step_s)?;
     let failed = |e: &std::io::Error| Failure::at(out, "writing the results", e);
     let folder = results::folder(out)?;
     interrupt::listen();
-    let why = |e| why(scene, out, e);
+    let why = |e| why(scene, out, &arguments.wav, e);
     if arguments.no_trace {
         let mut watch =
             watch::EventsAlone::new(&folder, scene.duration_s).map_err(|e| failed(&e))?;
@@ -184,7 +203,11 @@ fn simulate(
         watch.finish().map_err(|e| failed(&e))?;
         results::write(folder, out, vec![results::summary_file(&summary)?])?;
         results::remove_others(out)?;
-        return Ok((summary, Vec::new()));
+        return Ok(Results {
+            summary,
+            differences: Vec::new(),
+            sound: None,
+        });
     }
     let setup = Setup {
         columns: &columns,
@@ -196,9 +219,11 @@ fn simulate(
     let mut watch = Watch::new(&folder, &setup, scene.duration_s, arguments.trace_every)
         .map_err(|e| failed(&e))?;
     watch.compare(measured, &columns);
+    watch.listen(listener);
     let summary = crepitus_scene::run(scene, &mut watch).map_err(why)?;
     let mut summary = with_commit(summary);
     runner::measure_costs(scene, &mut summary);
+    let listener = watch.listener();
     let mut figures = watch.finish().map_err(|e| failed(&e))?;
     if let Some(balance) = plant::balance(&summary) {
         figures.set_balance(balance);
@@ -216,8 +241,15 @@ fn simulate(
         .pictures
         .files(|paper| crepitus_report::pictures(&figures, paper))?;
     let files = report_files(page, &summary, pictures)?;
+    let sound = listener
+        .map(|listener| listener.finish(&scene.title))
+        .transpose()?;
     results::write(folder, out, files)?;
     let differences = figures.differences();
     overlay::warn_of_nothing(&differences, arguments.overlay.file());
-    Ok((summary, differences))
+    Ok(Results {
+        summary,
+        differences,
+        sound,
+    })
 }

@@ -3,10 +3,12 @@
 
 use crate::interrupt;
 use crate::progress::Progress;
+use crate::wav::Listener;
 use crepitus_report::{Collector, Figures, Measured, Setup};
 use crepitus_scene::Observer;
 use crepitus_scene::output::{EventsCsv, Folder, TraceCsv};
 use crepitus_scene::trace::{Column, EventRecord, SymptomEvent};
+use crepitus_sound::SoundError;
 use std::fs::File;
 use std::io::{self, BufWriter};
 
@@ -14,6 +16,7 @@ pub(super) struct Watch {
     trace: TraceCsv<BufWriter<File>>,
     events: EventsCsv<BufWriter<File>>,
     collector: Collector,
+    listener: Option<Listener>,
     progress: Progress,
     trace_every: u64,
     rows: u64,
@@ -24,6 +27,8 @@ pub(super) struct Watch {
 pub(super) enum WatchError {
     /// The results cannot be written.
     Write(io::Error),
+    /// The sound cannot be made.
+    Sound(SoundError),
     /// Ctrl-C.
     Interrupted,
 }
@@ -39,6 +44,7 @@ impl Watch {
             trace: TraceCsv::new(folder.file("trace.csv")?, setup.columns.to_vec())?,
             events: EventsCsv::new(folder.file("events.csv")?)?,
             collector: Collector::new(setup),
+            listener: None,
             progress: Progress::new(duration_s),
             trace_every,
             rows: 0,
@@ -48,6 +54,16 @@ impl Watch {
     /// Lays measured curves over the rows that will come.
     pub(super) fn compare(&mut self, measured: Vec<Measured>, columns: &[Column]) {
         self.collector.compare(measured, columns);
+    }
+
+    /// Makes a sound of the rows that will come.
+    pub(super) fn listen(&mut self, listener: Option<Listener>) {
+        self.listener = listener;
+    }
+
+    /// The sound of the rows that came.
+    pub(super) fn listener(&mut self) -> Option<Listener> {
+        self.listener.take()
     }
 
     /// Finishes both files and gives the figures.
@@ -63,6 +79,9 @@ impl Observer for Watch {
 
     fn row(&mut self, values: &[f64]) -> Result<(), WatchError> {
         self.collector.row(values);
+        if let Some(listener) = &mut self.listener {
+            listener.row(values).map_err(WatchError::Sound)?;
+        }
         if self.rows.is_multiple_of(self.trace_every) {
             self.trace.row(values).map_err(WatchError::Write)?;
         }

@@ -1,0 +1,253 @@
+//! One value after the other becomes a sound, and the sound a file.
+
+use crate::high_pass::{HIGH_PASS_HZ, HighPass};
+use crate::info_chunk;
+use crate::resampler::{PASSED, Resampler};
+use serde::Serialize;
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// Samples a second of every sound.
+pub const RATE_HZ: u32 = 48_000;
+
+/// The largest sample of a sound, as a share of full scale: −1 dB, so that no converter overshoots
+/// between two samples.
+const PEAK: f64 = 0.891;
+
+/// Values smaller than this, N·m, are rounding noise of a constant: silence.
+const SILENCE_NM: f64 = 1e-9;
+
+/// The longest sound, in samples: 12 hours, what the sizes in a WAV file hold.
+const LONGEST: u64 = 12 * 3600 * RATE_HZ as u64;
+
+/// Why there is no sound.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SoundError {
+    /// The band of the input ends below that of the sound.
+    #[error(
+        "rows {step_s} s apart hold nothing above {HIGH_PASS_HZ} Hz, where a sound begins: shorten the trace's step \
+         (output.trace_step_s) to 5e-5 s, at least to {} s",
+        PASSED / HIGH_PASS_HZ
+    )]
+    TooCoarse {
+        /// From row to row, s.
+        step_s: f64,
+    },
+    /// No row came.
+    #[error("there are no rows to hear")]
+    Nothing,
+    /// A WAV file cannot hold it.
+    #[error("a WAV file holds 12 hours: take a shorter part")]
+    TooLong,
+    /// Of the file, or of the disk that holds the values meanwhile.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// Of the file.
+    #[error("{0}")]
+    Wav(#[from] hound::Error),
+}
+
+/// See the module.
+#[derive(Debug)]
+pub struct Sound {
+    step_s: f64,
+    resampler: Resampler,
+    kept: Kept,
+    first_s: Option<f64>,
+    rows: u64,
+    missing: u64,
+    last: f64,
+}
+
+/// The sound so far, high-passed, on disk.
+#[derive(Debug)]
+struct Kept {
+    high_pass: HighPass,
+    file: BufWriter<File>,
+    samples: u64,
+    peak_nm: f64,
+}
+
+impl Kept {
+    fn take(&mut self, value: f64) -> Result<(), SoundError> {
+        let value = self.high_pass.next(value);
+        self.peak_nm = self.peak_nm.max(value.abs());
+        self.samples += 1;
+        if self.samples > LONGEST {
+            return Err(SoundError::TooLong);
+        }
+        Ok(self.file.write_all(&value.to_le_bytes())?)
+    }
+}
+
+/// A sound as a file that is not in its place yet.
+#[derive(Debug)]
+pub struct WrittenSound {
+    file: NamedTempFile,
+    /// Its level and length.
+    pub summary: SoundSummary,
+}
+
+/// What a sound is, for people and machines.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SoundSummary {
+    /// Its file.
+    pub file: PathBuf,
+    /// Samples a second.
+    pub rate_hz: u32,
+    /// Its length, s.
+    pub duration_s: f64,
+    /// The lowest and the highest frequency in it, Hz.
+    pub band_hz: [f64; 2],
+    /// The torque of full scale, N·m; none of a silent sound.
+    pub full_scale_nm: Option<f64>,
+    /// The largest torque above 30 Hz, N·m.
+    pub peak_nm: f64,
+    /// Rows that were missing, as silence would be: the last value holds.
+    pub missing_rows: u64,
+}
+
+impl SoundSummary {
+    /// The level, in words.
+    pub fn level(&self) -> String {
+        match self.full_scale_nm {
+            Some(nm) => format!("full scale is {nm:.5} N·m"),
+            None => "silence: the torque has nothing above 30 Hz".to_owned(),
+        }
+    }
+}
+
+impl Sound {
+    /// Of values that come at this step, s.
+    ///
+    /// # Errors
+    /// A step too long for any sound; no place for temporary files.
+    pub fn new(step_s: f64) -> Result<Self, SoundError> {
+        if !(step_s > 0.0 && PASSED / step_s > HIGH_PASS_HZ) {
+            return Err(SoundError::TooCoarse { step_s });
+        }
+        let rate_hz = f64::from(RATE_HZ);
+        Ok(Self {
+            step_s,
+            resampler: Resampler::new(1.0 / step_s, rate_hz),
+            kept: Kept {
+                high_pass: HighPass::new(rate_hz),
+                file: BufWriter::new(tempfile::tempfile()?),
+                samples: 0,
+                peak_nm: 0.0,
+            },
+            first_s: None,
+            rows: 0,
+            missing: 0,
+            last: 0.0,
+        })
+    }
+
+    /// Takes the torque at a time. Where rows are missing, or a value is not finite, the last one
+    /// holds; a row before its time (the last of a run may be) is left out.
+    ///
+    /// # Errors
+    /// A full disk; more than a WAV file holds.
+    pub fn row(&mut self, time_s: f64, torque_nm: f64) -> Result<(), SoundError> {
+        let value = if torque_nm.is_finite() {
+            torque_nm
+        } else {
+            self.last
+        };
+        let first_s = *self.first_s.get_or_insert(time_s);
+        let place = (time_s - first_s) / self.step_s;
+        while (self.rows as f64) < place - 0.5 {
+            self.missing += 1;
+            self.push(self.last)?;
+        }
+        if (self.rows as f64) > place + 0.25 {
+            return Ok(());
+        }
+        self.push(value)
+    }
+
+    fn push(&mut self, value: f64) -> Result<(), SoundError> {
+        self.last = value;
+        self.rows += 1;
+        let kept = &mut self.kept;
+        self.resampler.push(value, &mut |y| kept.take(y))
+    }
+
+    /// Writes the sound beside `file`, with a line on what it is.
+    ///
+    /// # Errors
+    /// No row; what writing a file meets.
+    pub fn write(self, file: &Path, title: &str) -> Result<WrittenSound, SoundError> {
+        let Self {
+            resampler,
+            mut kept,
+            missing,
+            step_s,
+            ..
+        } = self;
+        resampler.finish(&mut |y| kept.take(y))?;
+        if kept.samples == 0 {
+            return Err(SoundError::Nothing);
+        }
+        let rate_hz = f64::from(RATE_HZ);
+        let is_silent = kept.peak_nm < SILENCE_NM;
+        let summary = SoundSummary {
+            file: file.to_owned(),
+            rate_hz: RATE_HZ,
+            duration_s: kept.samples as f64 / rate_hz,
+            band_hz: [HIGH_PASS_HZ, PASSED * rate_hz.min(1.0 / step_s)],
+            full_scale_nm: (!is_silent).then_some(kept.peak_nm / PEAK),
+            peak_nm: if is_silent { 0.0 } else { kept.peak_nm },
+            missing_rows: missing,
+        };
+        let scale = summary.full_scale_nm.map_or(0.0, |nm| 1.0 / nm);
+        let folder = file
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        let mut out = NamedTempFile::new_in(folder.unwrap_or(Path::new(".")))?;
+        let specification = hound::WavSpec {
+            channels: 1,
+            sample_rate: RATE_HZ,
+            bits_per_sample: 16,
+            sample_format: hound::SampleFormat::Int,
+        };
+        let mut wav = hound::WavWriter::new(BufWriter::new(out.as_file_mut()), specification)?;
+        let mut values = kept
+            .file
+            .into_inner()
+            .map_err(io::IntoInnerError::into_error)?;
+        values.seek(SeekFrom::Start(0))?;
+        let mut values = BufReader::new(values);
+        let mut bytes = [0; 8];
+        for _ in 0..kept.samples {
+            values.read_exact(&mut bytes)?;
+            let share = f64::from_le_bytes(bytes) * scale;
+            // At most 0.891 of the range.
+            #[expect(clippy::cast_possible_truncation, reason = "within ±29,195")]
+            wav.write_sample((share * f64::from(i16::MAX)).round() as i16)?;
+        }
+        wav.finalize()?;
+        let comment = format!("torque above {HIGH_PASS_HZ} Hz, {}", summary.level());
+        let software = concat!("crepitus ", env!("CARGO_PKG_VERSION"));
+        info_chunk::append(
+            out.as_file_mut(),
+            &[(b"INAM", title), (b"ICMT", &comment), (b"ISFT", software)],
+        )?;
+        out.as_file().sync_all()?;
+        Ok(WrittenSound { file: out, summary })
+    }
+}
+
+impl WrittenSound {
+    /// Moves the file into place, over an earlier one.
+    ///
+    /// # Errors
+    /// A place that cannot be written.
+    pub fn persist(self) -> io::Result<SoundSummary> {
+        self.file.persist(&self.summary.file)?;
+        Ok(self.summary)
+    }
+}
