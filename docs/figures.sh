@@ -71,3 +71,17 @@ cargo run --profile dist --features emulator --quiet -- effects tardieu-fast --o
     --set effects.range-limit.flexion_limit_deg=75 --set effects.lead-pipe.torque_nm=1.2 --set effects.cogwheel.torque_nm=2 \
     --set effects.spasticity.form=catch --set effects.clasp-knife.onset_deg=30 --set effects.clonus.hold_deg=60 \
     --set effects.texture.pitch_deg=1.5
+
+# The page about figures for a paper: letters as outlines, so with the feature that has fonts. One run stands in for a
+# measurement of another.
+paper() {
+    cargo run --profile dist --features pdf --quiet -- run slow-examination "$@"
+}
+paper --pictures --column one --out target/figures/paper >/dev/null
+cp target/figures/paper/zoom-1.svg docs/images/paper-zoom.svg
+echo docs/images/paper-zoom.svg
+paper --set duration_s=0.4 --set effects.crepitus.convention=physical --out target/figures/stand-in --force >/dev/null
+paper --set duration_s=0.4 --overlay target/figures/stand-in/trace.csv --overlay-columns torque_nm=torque_nm \
+    --pictures --column one --out target/figures/overlay --force
+cp target/figures/overlay/overlay.svg docs/images/paper-overlay.svg
+echo docs/images/paper-overlay.svg

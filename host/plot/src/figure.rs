@@ -54,6 +54,8 @@ pub struct Key {
 pub enum Sign {
     /// A line.
     Line(Ink),
+    /// A dashed line.
+    Dashed(Ink),
     /// A filled patch.
     Patch(Ink),
     /// A character.
@@ -68,7 +70,7 @@ impl Sign {
     /// CSS pixels.
     pub(crate) fn width(self) -> f64 {
         match self {
-            Self::Line(_) | Self::Patch(_) | Self::Mark(_) => 18.0,
+            Self::Line(_) | Self::Dashed(_) | Self::Patch(_) | Self::Mark(_) => 18.0,
             Self::Curve(_) | Self::Filled(_) => 44.0,
         }
     }

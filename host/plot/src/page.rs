@@ -124,6 +124,7 @@ fn key(key: Key) -> Markup {
         li {
             @match key.sign {
                 Sign::Line(ink) => span.line style={ "border-color:var(--" (ink.name) ")" } {},
+                Sign::Dashed(ink) => span.line style={ "border-style:dashed;border-color:var(--" (ink.name) ")" } {},
                 Sign::Patch(ink) => span.swatch style={ "background:var(--" (ink.name) ")" } {},
                 Sign::Mark(mark) => span.mark { (mark) },
                 Sign::Curve(style) => (style.inline(false)),

@@ -101,6 +101,13 @@ fn entries(legend: &[Key], total: f64) -> (Markup, f64) {
         }
         match *sign {
             Sign::Line(ink) => drawing.line(&[(x, y), (x + 18.0, y)], Stroke::new(ink, 2.5)),
+            Sign::Dashed(ink) => drawing.line(
+                &[(x, y), (x + 18.0, y)],
+                Stroke {
+                    dashes: "5 3",
+                    ..Stroke::new(ink, 2.5)
+                },
+            ),
             Sign::Patch(ink) => drawing.push(&html! {
                 rect x=(px(x)) y=(y - 6.5) width="18" height="13" fill=(ink) stroke=(AXIS) {}
             }),

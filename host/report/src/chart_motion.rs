@@ -182,7 +182,7 @@ fn words(figures: &Figures, lines: &Lines) -> (Vec<Key>, String) {
         );
     }
     if intended {
-        legend.push(Key::new(Sign::Line(LEVEL), "intended by the hand"));
+        legend.push(Key::new(Sign::Dashed(LEVEL), "intended by the hand"));
         caption.push_str(" The dashed line is the motion that the hand drives the leg toward.");
     }
     if leg || intended {
