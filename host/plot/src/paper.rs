@@ -74,6 +74,14 @@ impl Paper {
             Self::Print(column) => column.px() - MARGIN,
         }
     }
+
+    /// Width of a chart whose names need the room of two columns, CSS pixels.
+    pub fn wide(self, screen_px: f64) -> f64 {
+        match self {
+            Self::Screen => screen_px,
+            Self::Print(_) => Column::Two.px() - MARGIN,
+        }
+    }
 }
 
 /// Width in print of a picture with this width and smallest letter, both CSS pixels, in mm: the
@@ -97,6 +105,10 @@ mod tests {
                 assert_eq!(print_mm(width, LABEL), column.mm());
             }
             assert_eq!(Paper::Print(column).width(470.0), 460.0);
+            assert_eq!(
+                print_mm(Paper::Print(column).wide(960.0) + MARGIN, LABEL),
+                182.0
+            );
         }
         assert_eq!(Paper::Screen.width(470.0), 470.0);
         assert_eq!(print_mm(958.0, 13.0), 182.0);

@@ -11,6 +11,7 @@ use std::cell::RefCell;
 use std::path::Path;
 
 use crepitus_model::render::effects::EffectSettings;
+use crepitus_plot::Column as PaperColumn;
 use crepitus_report::{
     Account, Balance, Collector, EnergyTerm, Figures, Mark, Paper, Section, Setup, Text,
     TorqueLevels, html, pictures,
@@ -18,7 +19,8 @@ use crepitus_report::{
 use crepitus_scene::trace::Column;
 use fixture::{KINETIC, Motion, Run, STATIC, plant};
 use markup::{
-    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, charts, count,
+    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, assert_printable,
+    charts, count,
 };
 
 /// A run of this motion, with as many rows as it announces.
@@ -362,6 +364,17 @@ fn a_coupled_run_with_all_effects() {
         "of the hand torque is at",
     ] {
         assert!(page.contains(present), "{present}");
+    }
+    for column in PaperColumn::ALL {
+        for picture in pictures(&figures, Paper::Print(column)) {
+            assert_printable(&picture);
+            let is_bars = picture.name == "energy";
+            assert!(
+                is_bars || picture.print_mm() <= column.mm(),
+                "{}",
+                picture.name
+            );
+        }
     }
     let pictures = pictures(&figures, Paper::Screen);
     for picture in &pictures {

@@ -74,7 +74,7 @@ impl Resampler {
     ) -> Result<(), E> {
         if self.window.is_empty() && self.gone == 0 {
             // As if it had always been so.
-            let before = self.reach.ceil() as i64;
+            let before = whole(self.reach.ceil());
             self.window.extend((0..before).map(|_| value));
         }
         self.window.push_back(value);
@@ -86,7 +86,7 @@ impl Resampler {
         let Some(last) = self.window.back().copied() else {
             return Ok(());
         };
-        let after = self.reach.ceil() as i64 + 1;
+        let after = whole(self.reach.ceil()) + 1;
         self.window.extend((0..after).map(|_| last));
         self.give(after as f64, out)
     }
@@ -104,8 +104,8 @@ impl Resampler {
             if at + before_end > (self.window.len() - 1) as f64 + 1e-9 {
                 return Ok(());
             }
-            let first = (at - self.reach).ceil().max(0.0) as usize;
-            let last = (at + self.reach).floor() as usize;
+            let first = whole((at - self.reach).ceil());
+            let last = whole((at + self.reach).floor());
             let values = self.window.range(first..=last.min(self.window.len() - 1));
             // Divided by the weights: a constant stays one at every phase, where the bare kernel
             // would turn it into a faint tone at the slower rate.
@@ -118,7 +118,7 @@ impl Resampler {
             out(sum / weights)?;
             self.made += 1;
             let due = (self.made as f64 * self.ratio + padding - self.gone as f64) - self.reach;
-            for _ in 1..(due.floor().max(1.0) as u64) {
+            for _ in 1..whole(due.floor()) {
                 if self.window.pop_front().is_some() {
                     self.gone += 1;
                 }
@@ -129,12 +129,22 @@ impl Resampler {
     /// The kernel at a distance in input values.
     fn kernel(&self, distance: f64) -> f64 {
         let place = distance * self.crossings * FINENESS as f64;
-        let index = place as usize;
+        let index = whole(place);
         match self.table.get(index..index + 2) {
             Some([a, b]) => a + (b - a) * (place - index as f64),
             _ => 0.0,
         }
     }
+}
+
+/// A count from a number that is one, or that is rounded down; below zero, zero.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "saturating, and far less than 2^53"
+)]
+fn whole(x: f64) -> usize {
+    x as usize
 }
 
 fn sinc(x: f64) -> f64 {
@@ -185,7 +195,7 @@ mod tests {
 
     /// Largest difference from a signal, a tenth of a second away from both ends.
     fn off(found: &[f64], to_hz: f64, value: impl Fn(f64) -> f64) -> f64 {
-        let margin = (0.1 * to_hz) as usize;
+        let margin = whole(0.1 * to_hz);
         (margin..found.len() - margin)
             .map(|i| (found[i] - value(i as f64 / to_hz)).abs())
             .fold(0.0, f64::max)
@@ -199,7 +209,7 @@ mod tests {
             let slower = f64::min(from_hz, 48_000.0);
             for share in [0.01, 0.2, 0.4] {
                 let sine = |t: f64| (TAU * share * slower * t + 0.3).sin();
-                let count = (0.6 * from_hz) as u32;
+                let count = u32::try_from(whole(0.6 * from_hz)).unwrap();
                 let found = resampled(from_hz, 48_000.0, count, sine);
                 let off = off(&found, 48_000.0, sine);
                 assert!(off < 1e-4, "{from_hz} Hz, {share}: {off}");

@@ -14,8 +14,8 @@ fn heard(
 ) -> (SoundSummary, Vec<f64>) {
     let file = folder.join("sound.wav");
     let mut sound = Sound::new(step_s).unwrap();
-    for i in 0..(duration_s / step_s).round() as u32 {
-        let t = f64::from(i) * step_s;
+    let times = (0_u32..).map(|i| f64::from(i) * step_s);
+    for t in times.take_while(|t| *t < duration_s - 0.5 * step_s) {
         sound.row(t, torque(t)).unwrap();
     }
     let written = sound.write(&file, "A test").unwrap();

@@ -16,9 +16,10 @@ use crepitus_study::accuracy::Point;
 use crepitus_study::accuracy::symptoms::SymptomPoint;
 use crepitus_study::accuracy::target::{LABEL, OnTarget, Row};
 use crepitus_study_pages::accuracy::{html, pictures};
-use crepitus_study_pages::{Paper, Section, StudyText};
+use crepitus_study_pages::{Column, Paper, Section, StudyText};
 use markup::{
-    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, charts, count,
+    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, assert_printable,
+    charts, count,
 };
 
 fn text(title: &str) -> StudyText {
@@ -330,6 +331,12 @@ fn words_are_escaped() {
 
 #[test]
 fn pictures_are_documents_with_their_legend() {
+    for column in Column::ALL {
+        for picture in pictures(&study::all(), Paper::Print(column)) {
+            assert_printable(&picture);
+            assert_eq!(picture.print_mm(), column.mm(), "{}", picture.name);
+        }
+    }
     let pictures = pictures(&study::all(), Paper::Screen);
     assert_eq!(pictures.len(), 56);
     let mut names: Vec<&str> = pictures.iter().map(|p| p.name.as_str()).collect();

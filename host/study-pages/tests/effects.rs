@@ -15,9 +15,10 @@ use crepitus_study::effects::results::{Added, Outcome, Ran};
 use crepitus_study::effects::variant::Change;
 use crepitus_study::effects::{Answer, EffectsStudy, HandTorque, Row, VariantTorque};
 use crepitus_study_pages::effects::{html, pictures};
-use crepitus_study_pages::{Paper, Section, StudyText};
+use crepitus_study_pages::{Column, Paper, Section, StudyText};
 use markup::{
-    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, charts, count,
+    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, assert_printable,
+    charts, count,
 };
 
 fn ran(rms_nm: f64, ns: f64) -> Outcome {
@@ -285,6 +286,12 @@ fn words_are_escaped() {
 
 #[test]
 fn pictures_are_documents() {
+    for column in Column::ALL {
+        for picture in pictures(&study(), Paper::Print(column)) {
+            assert_printable(&picture);
+            assert!(picture.print_mm() <= Column::Two.mm(), "{}", picture.name);
+        }
+    }
     let pictures = pictures(&study(), Paper::Screen);
     let names: Vec<&str> = pictures.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["influence-and-cost", "bands", "hand-torque"]);

@@ -15,9 +15,10 @@ use crepitus_scene::scene::Precision;
 use crepitus_study::stability::story as told;
 use crepitus_study::stability::{Failure, Matrix, Verdict};
 use crepitus_study_pages::stability::{html, pictures};
-use crepitus_study_pages::{Paper, Section, StudyText, story};
+use crepitus_study_pages::{Column, Paper, Section, StudyText, story};
 use markup::{
-    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, charts, count,
+    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, assert_printable,
+    charts, count,
 };
 
 fn text(title: &str) -> StudyText {
@@ -171,6 +172,9 @@ fn words_are_escaped() {
     };
     let page = page("escaped", &matrix, None, &text);
     assert!(count(&page, "&lt;script&gt;") > 20);
+    let printed = pictures(&matrix, None, Paper::Print(Column::One)).remove(0);
+    assert_printable(&printed);
+    assert_eq!(printed.print_mm(), Column::Two.mm());
     let svg = &pictures(&matrix, None, Paper::Screen)[0].svg;
     assert!(!svg.contains("<script"));
     assert_drawn(svg);

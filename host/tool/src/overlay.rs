@@ -36,27 +36,28 @@ pub(crate) struct Overlay {
 
     /// Columns of that file by ours: t_s, angle_rad or angle_deg, omega_rad_s or omega_deg_s, torque_nm,
     /// hand_torque_nm, motor_torque_nm [default: those with these names].
-    #[arg(long, value_name = "OURS=THEIRS", value_delimiter = ',', value_parser = key_and_value, requires = "overlay")]
-    overlay_columns: Vec<(String, String)>,
+    #[arg(id = "overlay-columns", long = "overlay-columns", value_name = "OURS=THEIRS", value_delimiter = ',', value_parser = key_and_value, requires = "overlay")]
+    columns: Vec<(String, String)>,
 
     /// A factor of a column, -1 where it counts the other way round.
-    #[arg(long, value_name = "OURS=FACTOR", value_delimiter = ',', value_parser = key_and_value, requires = "overlay",
+    #[arg(id = "overlay-scale", long = "overlay-scale", value_name = "OURS=FACTOR", value_delimiter = ',', value_parser = key_and_value, requires = "overlay",
           allow_hyphen_values = true)]
-    overlay_scale: Vec<(String, String)>,
+    scales: Vec<(String, String)>,
 
     /// What is added to a column, after the factor, in the unit of its name.
-    #[arg(long, value_name = "OURS=VALUE", value_delimiter = ',', value_parser = key_and_value, requires = "overlay")]
-    overlay_offset: Vec<(String, String)>,
+    #[arg(id = "overlay-offset", long = "overlay-offset", value_name = "OURS=VALUE", value_delimiter = ',', value_parser = key_and_value, requires = "overlay")]
+    offsets: Vec<(String, String)>,
 
     /// When the first row of the file was, in the time of the run, s.
     #[arg(
-        long,
+        id = "overlay-shift",
+        long = "overlay-shift",
         value_name = "SECONDS",
         default_value_t = 0.0,
         requires = "overlay",
         allow_negative_numbers = true
     )]
-    overlay_shift: f64,
+    shift_s: f64,
 }
 
 impl Overlay {
@@ -66,14 +67,14 @@ impl Overlay {
         let Some(file) = &self.file else {
             return Ok(Vec::new());
         };
-        if !self.overlay_shift.is_finite() {
+        if !self.shift_s.is_finite() {
             return Err(Failure::Input(
                 "--overlay-shift: expected seconds".to_owned(),
             ));
         }
-        let mapped = mapping(&self.overlay_columns)?;
-        let scales = numbers("--overlay-scale", &self.overlay_scale)?;
-        let offsets = numbers("--overlay-offset", &self.overlay_offset)?;
+        let mapped = mapping(&self.columns)?;
+        let scales = numbers("--overlay-scale", &self.scales)?;
+        let offsets = numbers("--overlay-offset", &self.offsets)?;
         let time = mapped.iter().find(|(name, _)| name == TIME);
         let time = time.map_or(TIME, |(_, column)| column.as_str());
         let named = mapped.iter().filter(|(name, _)| name != TIME);
@@ -115,11 +116,7 @@ impl Overlay {
             let (scale, offset) = (of(&scales, 1.0), of(&offsets, 0.0));
             measured.push(Measured {
                 quantity: *quantity,
-                time_s: values
-                    .time_s
-                    .iter()
-                    .map(|t| t + self.overlay_shift)
-                    .collect(),
+                time_s: values.time_s.iter().map(|t| t + self.shift_s).collect(),
                 value: values
                     .value
                     .iter()

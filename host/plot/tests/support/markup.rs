@@ -172,3 +172,34 @@ pub fn charts(page: &str) -> impl Iterator<Item = String> {
         .collect();
     parts.into_iter()
 }
+
+/// A picture can be printed at its width: labels inside, letters of at least 7 pt, lines of at least
+/// half a point.
+pub fn assert_printable(picture: &crepitus_plot::Picture) {
+    use crepitus_plot::paper::{SMALLEST_PT, THINNEST_PT};
+    let name = &picture.name;
+    let mm = picture.print_mm();
+    let svg = picture.clone().in_print().svg;
+    assert!(svg.contains(&format!("width=\"{mm}mm\"")), "{name}");
+    assert_labels_inside(&svg);
+    let numbers = |key: &str| -> Vec<f64> {
+        let parts = svg.split(&format!(" {key}=\"")).skip(1);
+        parts
+            .filter_map(|rest| rest.split_once('"')?.0.parse().ok())
+            .collect()
+    };
+    let view = svg.split_once("viewBox=\"0 0 ").expect("a view box").1;
+    let across: f64 = view
+        .split(' ')
+        .next()
+        .expect("a width")
+        .parse()
+        .expect("a number");
+    let pt_per_px = mm * 72.0 / 25.4 / across;
+    for (key, least_pt) in [("font-size", SMALLEST_PT), ("stroke-width", THINNEST_PT)] {
+        for px in numbers(key) {
+            let pt = px * pt_per_px;
+            assert!(pt > least_pt - 1e-9, "{name}: {key} of {pt} pt");
+        }
+    }
+}

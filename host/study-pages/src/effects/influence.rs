@@ -60,7 +60,7 @@ pub(super) fn figure(study: &EffectsStudy, paper: Paper) -> Option<Figure> {
         name: "influence-and-cost",
         title: "Influence against cost",
         legend: look::legend(rows.iter().map(|(row, _)| *row)),
-        charts: vec![Chart::full(stack(paper.width(WIDTH), label, vec![panel]))],
+        charts: vec![Chart::full(stack(paper.wide(WIDTH), label, vec![panel]))],
         caption: format!(
             "Up: how much an effect changes the torque at the hand, as the RMS of the difference between the run with \
              it and the run without. Right: what it adds to a step, {CLOCK}. What stands up and to the left gives \
