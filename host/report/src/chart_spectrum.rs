@@ -4,6 +4,7 @@ use crepitus_plot::number::{count, rounded};
 use crepitus_plot::palette::{BAND, Ink, TEXT, TORQUE};
 use crepitus_plot::{
     Anchor, Axis, Chart, Drawing, Figure, Key, Panel, Paper, Plot, Point, Sign, Svg, extent, stack,
+    text,
 };
 
 use crate::collector::Figures;
@@ -11,6 +12,8 @@ use crate::plant::LEG;
 use crate::spectrum::{Spectrum, Welch};
 
 /// Room above the plot, CSS pixels: at its foot, and for a row of numbers.
+/// Right of the axes, for the last name, CSS pixels.
+const ROOM: f64 = 22.0;
 const STRIP: f64 = 4.0;
 const STRIP_ROW: f64 = 22.0;
 
@@ -245,7 +248,7 @@ fn chart(curves: &[Curve], with_numbers: bool, paper: Paper) -> Svg {
     let panel = panel
         .x_title(Some("Frequency (Hz)"))
         .head(strip, None)
-        .right(24.0);
+        .right(ROOM + 2.0);
     stack(
         paper.width(960.0),
         "Amplitude of the torque against frequency",
@@ -282,7 +285,8 @@ fn names(plot: &mut Plot, curves: &[Curve], to: f64) {
     let mut end = f64::NEG_INFINITY;
     for (low, high, name, _) in bands() {
         let (x, top) = plot.at((middle(low, high), plot.y().high()));
-        let half = 0.5 * Drawing::label_width(name);
+        let half = 0.5 * text::width(name, text::SIZE);
+        let x = x.min(frame.right + ROOM - half);
         // Below the one before, where the two would touch.
         let down = if x - half < end + 6.0 { 32.0 } else { 12.0 };
         end = x + half;

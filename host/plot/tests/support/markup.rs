@@ -183,7 +183,8 @@ pub fn assert_printable(picture: &crepitus_plot::Picture) {
     assert!(svg.contains(&format!("width=\"{mm}mm\"")), "{name}");
     assert_labels_inside(&svg);
     let numbers = |key: &str| -> Vec<f64> {
-        let parts = svg.split(&format!(" {key}=\"")).skip(1);
+        let key = format!(" {key}=\"");
+        let parts = svg.split(&key).skip(1);
         parts
             .filter_map(|rest| rest.split_once('"')?.0.parse().ok())
             .collect()

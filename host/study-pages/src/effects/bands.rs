@@ -13,7 +13,7 @@ use crepitus_plot::{Anchor, Axis, Chart, Drawing, Figure, Stroke, extent};
 /// CSS pixels.
 const WIDTH: f64 = 950.0;
 const NAMES: f64 = 220.0;
-const COLUMN: f64 = 238.0;
+const COLUMN: f64 = 236.0;
 const GAP: f64 = 7.0;
 const HEAD: f64 = 32.0;
 const LINE: f64 = 26.0;
