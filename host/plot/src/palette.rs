@@ -70,6 +70,8 @@ pub const LEVEL: Ink = Ink::new("level", "#454d54", "#b4bcc4");
 pub const SHAFT: Ink = Ink::new("shaft", "#c95000", "#f2933f").in_print(PRINTED[1]);
 /// The imaginary object; the angle in the overview.
 pub const OBJECT: Ink = Ink::new("object", "#0072b2", "#56b4e9").in_print(PRINTED[0]);
+/// The torque of the motor; in a paper darker than the shading that it is drawn on.
+pub const MOTOR: Ink = Ink::new("motor", "#ba5993", "#dc92bc").in_print("#a8437f");
 /// Encoder data.
 pub const ENCODER: Ink = Ink::new("encoder", "#c07ba0", "#d79dbd").in_print(PRINTED[3]);
 /// Stick.
@@ -94,7 +96,7 @@ pub const CURVES: [Ink; 8] = [
     Ink::new("blue", "#0067a8", "#4a90e2").in_print(PRINTED[0]),
 ];
 
-const PAGE: [Ink; 14] = [
+const PAGE: [Ink; 15] = [
     TEXT,
     AXIS,
     GRID,
@@ -104,6 +106,7 @@ const PAGE: [Ink; 14] = [
     LEVEL,
     SHAFT,
     OBJECT,
+    MOTOR,
     ENCODER,
     STICK,
     SLIP_POSITIVE,
@@ -249,6 +252,8 @@ mod tests {
             // And from the paper.
             assert!(lightness("#ffffff") - lightness(a) > 25.0, "{a}");
         }
+        // And the motor's from the shading of a stick.
+        assert!(lightness(STICK.print) - lightness(MOTOR.print) > 25.0);
         // The colours of a screen would not do: red and blue are one grey.
         assert!((lightness(SHAFT.light) - lightness(OBJECT.light)).abs() < 5.0);
         // The matrices keep white.

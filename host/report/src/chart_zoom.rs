@@ -5,7 +5,7 @@
 use crepitus_model::EventKind;
 
 use crepitus_plot::number::rounded;
-use crepitus_plot::palette::{CURVES, Ink, OBJECT, SHAFT, TORQUE};
+use crepitus_plot::palette::{MOTOR, OBJECT, SHAFT, TORQUE};
 use crepitus_plot::{Axis, Chart, Figure, Key, Marker, Panel, Paper, Point, Sign, Svg, stack};
 
 use crate::chart_motion::degrees;
@@ -18,9 +18,6 @@ use crate::window::Window;
 const TORQUE_HEIGHT: f64 = 290.0;
 const HAND_HEIGHT: f64 = 150.0;
 const VELOCITY_HEIGHT: f64 = 235.0;
-
-/// The torque of the motor.
-const MOTOR: Ink = CURVES[3];
 
 /// A window with the words that say which one it is.
 pub(crate) struct Titled<'w> {

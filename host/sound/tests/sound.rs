@@ -31,7 +31,9 @@ fn heard(
 /// Frequency and amplitude of the strongest line, and the strongest of what is not within 20 Hz.
 fn lines(samples: &[f64]) -> [(f64, f64); 2] {
     let mut welch = Welch::new(1.0 / f64::from(RATE_HZ), samples.len() as u64).unwrap();
-    samples.iter().for_each(|sample| welch.push(*sample));
+    for sample in samples {
+        welch.push(*sample);
+    }
     let spectrum = welch.finish().unwrap();
     let mut all: Vec<(f64, f64)> = (0..)
         .zip(&spectrum.amplitudes)
