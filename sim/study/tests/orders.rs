@@ -190,7 +190,7 @@ fn recorded_knees_have_the_same_orders() {
             path: &folder.join(name).with_extension("csv"),
             time_column: "time_s",
             angle_column: "knee_flexion_deg",
-            unit: AngleUnit::Deg,
+            unit: Some(AngleUnit::Deg),
         };
         let samples = read(&source).unwrap();
         let motion = Motion::recording(&smooth(&samples, 6.0).unwrap());

@@ -95,7 +95,7 @@ fn check_ticks(host: &Host, words: &[u32]) {
     for tick in &ticks {
         let same = shown
             .iter()
-            .find(|(number, _)| *number == tick.number.into());
+            .find(|(number, _)| *number == u64::from(tick.number));
         if let Some((_, sample)) = same {
             assert_eq!(tick.sample, *sample);
             compared += 1;
@@ -120,7 +120,7 @@ fn a_fault_leaves_registers_stack_and_the_last_ticks() {
     assert_eq!(pc, at);
     // It was to return to what it interrupted.
     assert_eq!(lr & 0xffff_ff00, 0xffff_ff00, "{lr:#x}");
-    assert_eq!(xpsr & 0x1ff, RENDER.into());
+    assert_eq!(xpsr & 0x1ff, u32::from(RENDER));
     assert!(CCM.contains(&sp), "{sp:#x}");
     assert_eq!((cfsr, hfsr), (UNDEFINSTR, FORCED));
     assert_eq!(head.stack[5..8], [lr, pc, xpsr]);

@@ -162,7 +162,7 @@ mod tests {
                 path: &file,
                 time_column: "time_s",
                 angle_column: "knee_flexion_deg",
-                unit: AngleUnit::Deg,
+                unit: Some(AngleUnit::Deg),
             };
             if let Ok(samples) = read(&source) {
                 let motion = Motion::recording(&smooth(&samples, 6.0).unwrap());
