@@ -1,66 +1,18 @@
-//! # Parameters of an actuator from its coil
+//! # Parameters of hardware from its recordings
 //!
-//! A chirp of voltage moves a mass on a flexure; what the motion induces in the coil
-//! shows in its current. So voltage and current alone tell resistance, inductance,
-//! resonance and damping, and the force constant once the mass is known.
+//! | what | from what | look in |
+//! |---|---|---|
+//! | the vibration actuator: resistance, resonance, force constant | voltage and current of its coil | [`actuator`] |
+//! | the brace: friction, inertia, backlash, cuffs | a known weight that swings in it, as `crepitus record` writes it | [`brace`] |
 //!
-//! ```text
-//! volts, amperes ─> Series ─> spectrum ─> start ─> fit ─┬─> refused: why, and what to do
-//!                                                        └─> Actuator: values with intervals ─> chart
-//! ```
-//!
-//! | to find | look in |
-//! |---|---|
-//! | a recording, from CSV or in memory | [`Series`] |
-//! | the equations | `impedance.rs`, `mass.rs` |
-//! | the fit and its intervals | `fit.rs`, [`Estimate`] |
-//! | what is refused | [`Refusal`], `examined.rs` |
-//! | measured and fitted impedance as a picture | [`chart`] |
-//!
-//! What no current shows: a ring that moves as one with the shell. The mass then swings
-//! against both, and the resonance is that of m·M/(m + M). Hence the vice.
+//! Both give values with 95 % intervals ([`Estimate`]), or a refusal that says what the
+//! recording shows instead and what to do about it.
 #![forbid(unsafe_code)]
 // Counts become numbers; none comes near 2^53.
 #![allow(clippy::cast_precision_loss)]
 
-mod actuator;
-mod bands;
-pub mod chart;
+pub mod actuator;
+pub mod brace;
 mod estimate;
-mod examined;
-mod fit;
-mod impedance;
-mod mass;
-mod refusal;
-mod second;
-mod series;
-mod spectrum;
-mod start;
 
-pub use actuator::{Actuator, MassEvidence, identify};
 pub use estimate::Estimate;
-pub use mass::Weighed;
-pub use refusal::Refusal;
-pub use series::{Current, Hold, Series, SeriesError};
-
-/// Frequencies that are fitted, Hz.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Band {
-    /// From here.
-    pub from_hz: f64,
-    /// To here.
-    pub to_hz: f64,
-}
-
-impl Band {
-    /// What a chirp covers at full amplitude: without its fades.
-    pub fn of_chirp(from_hz: f64, to_hz: f64) -> Self {
-        /// Of the sweep, at either end.
-        const FADE_SHARE: f64 = 1.0 / 32.0;
-        let fade = (to_hz / from_hz).powf(FADE_SHARE);
-        Self {
-            from_hz: from_hz * fade,
-            to_hz: to_hz / fade,
-        }
-    }
-}

@@ -2,7 +2,7 @@
 
 mod support;
 
-use crepitus_identify::{MassEvidence, Weighed, chart, identify};
+use crepitus_identify::actuator::{MassEvidence, Weighed, chart, identify};
 use crepitus_model::control::chirp::ChirpSettings;
 use crepitus_plot::pictures;
 use support::{NOMINAL, band};

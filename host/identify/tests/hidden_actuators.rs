@@ -3,7 +3,8 @@
 
 mod support;
 
-use crepitus_identify::{Actuator, Estimate, MassEvidence, Refusal, Weighed, identify};
+use crepitus_identify::Estimate;
+use crepitus_identify::actuator::{Actuator, MassEvidence, Refusal, Weighed, identify};
 use crepitus_model::control::chirp::ChirpSettings;
 use support::{Simulated, band};
 

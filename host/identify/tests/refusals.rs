@@ -2,7 +2,7 @@
 
 mod support;
 
-use crepitus_identify::{Actuator, MassEvidence, Refusal, Series, Weighed, identify};
+use crepitus_identify::actuator::{Actuator, MassEvidence, Refusal, Series, Weighed, identify};
 use crepitus_model::control::chirp::ChirpSettings;
 use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
 use support::{NOMINAL, Ring, Simulated, band};

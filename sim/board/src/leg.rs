@@ -122,6 +122,11 @@ impl Leg {
         self.counter.turn_to(self.plant.shaft().angle_rad);
     }
 
+    /// From now on nobody holds the leg, whatever the scene's motion.
+    pub fn release(&mut self) {
+        self.plant.release();
+    }
+
     /// Sets the command to the bridge.
     pub fn set_terminals(&mut self, terminals: Terminals) {
         self.terminals = terminals;

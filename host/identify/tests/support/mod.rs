@@ -3,7 +3,7 @@
 
 #![allow(dead_code, reason = "each test program uses its part")]
 
-use crepitus_identify::{Band, Current, Hold, Series};
+use crepitus_identify::actuator::{Band, Current, Hold, Series};
 use crepitus_model::control::chirp::{Chirp, ChirpSettings};
 
 /// Samples of the simulation in a tick of 50 µs, and ticks in a sample of telemetry.

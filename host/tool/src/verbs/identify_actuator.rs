@@ -14,7 +14,7 @@ use crate::line::{Line, connect, failure};
 use chirp::ChirpArguments;
 use clap::Args;
 use crepitus_client::Client;
-use crepitus_identify::identify;
+use crepitus_identify::actuator::identify;
 use crepitus_model::parameters::Source;
 use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
 use evidence::Masses;

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use clap::Args;
-use crepitus_identify::Band;
+use crepitus_identify::actuator::Band;
 use crepitus_model::control::chirp::ChirpSettings;
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_protocol::chirp::PlayedChirp;

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use clap::Args;
-use crepitus_identify::{MassEvidence, Series, Weighed};
+use crepitus_identify::actuator::{MassEvidence, Series, Weighed};
 
 /// Masses as they were weighed.
 #[derive(Debug, Args)]

@@ -11,7 +11,7 @@ use crate::following::{Arming, End, Follower, follow};
 use crate::interrupt;
 use crate::line::{Line, failure, failure_with};
 use crepitus_client::Client;
-use crepitus_identify::{Current, Hold, Series};
+use crepitus_identify::actuator::{Current, Hold, Series};
 use crepitus_model::control::chirp::Chirp;
 use crepitus_protocol::chirp::PlayedChirp;
 use crepitus_protocol::telemetry::{

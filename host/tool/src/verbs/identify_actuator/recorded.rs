@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use clap::{Args, ValueHint};
-use crepitus_identify::Series;
+use crepitus_identify::actuator::Series;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};

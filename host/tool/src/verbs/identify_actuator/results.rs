@@ -3,7 +3,7 @@
 use super::recorded::Measured;
 use crate::failure::Failure;
 use crate::results::{Files, folder, summary_file, write as write_files};
-use crepitus_identify::{Actuator, Series, chart};
+use crepitus_identify::actuator::{Actuator, Series, chart};
 use crepitus_plot::pictures;
 use serde_json::Value;
 use std::fmt::Write;

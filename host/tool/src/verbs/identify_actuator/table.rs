@@ -1,7 +1,8 @@
 //! Identified parameters beside those in use, as a table, as JSON and as a commit.
 
 use crate::failure::Failure;
-use crepitus_identify::{Actuator, Estimate};
+use crepitus_identify::Estimate;
+use crepitus_identify::actuator::Actuator;
 use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
 use crepitus_protocol::parameters::find;
 use crepitus_table::Table;

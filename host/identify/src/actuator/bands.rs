@@ -1,7 +1,7 @@
 //! Means over narrow bands of frequency: the measured impedance, as it is drawn
 //! and as the fit begins from it.
 
-use crate::spectrum::Line;
+use crate::actuator::spectrum::Line;
 use realfft::num_complex::Complex;
 
 /// Bands of an octave.

@@ -6,9 +6,9 @@
 //! the least squares of that single column, with what the first resonance can take over
 //! projected away, is a closed form: no second fit is needed to see one.
 
-use crate::fit::{Column, Square};
-use crate::impedance::{Impedance, NUMBERS};
-use crate::spectrum::Line;
+use crate::actuator::fit::{Column, Square};
+use crate::actuator::impedance::{Impedance, NUMBERS};
+use crate::actuator::spectrum::Line;
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
 

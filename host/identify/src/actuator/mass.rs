@@ -9,10 +9,11 @@
 //!
 //! so that each checks the other.
 
-use crate::estimate::{DEVIATIONS, Estimate, derived, variance};
-use crate::fit::Fit;
-use crate::impedance::Impedance;
-use crate::refusal::Refusal;
+use crate::actuator::derived::{derived, variance};
+use crate::actuator::fit::Fit;
+use crate::actuator::impedance::Impedance;
+use crate::actuator::refusal::Refusal;
+use crate::estimate::{DEVIATIONS, Estimate};
 use std::f64::consts::TAU;
 
 /// A mass on a balance.

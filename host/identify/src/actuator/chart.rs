@@ -1,6 +1,6 @@
 //! Measured and fitted impedance, and what is left between them, as a figure.
 
-use crate::Actuator;
+use crate::actuator::Actuator;
 use crepitus_plot::number::rounded;
 use crepitus_plot::palette::{OBJECT, SHAFT};
 use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Point, Sign, stack};

@@ -1,11 +1,11 @@
 //! One chirp: its fit, or what it shows instead of an actuator.
 
-use crate::bands::{Mean, bands};
-use crate::estimate::derived;
-use crate::fit::{Fit, Residual};
-use crate::refusal::Refusal;
-use crate::spectrum::{Line, Spectrum};
-use crate::{Band, Series};
+use crate::actuator::bands::{Mean, bands};
+use crate::actuator::derived::derived;
+use crate::actuator::fit::{Fit, Residual};
+use crate::actuator::refusal::Refusal;
+use crate::actuator::spectrum::{Line, Spectrum};
+use crate::actuator::{Band, Series};
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
 

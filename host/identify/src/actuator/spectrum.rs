@@ -1,6 +1,6 @@
 //! The lines of voltage and current within the band that the chirp covers.
 
-use crate::{Band, Series};
+use crate::actuator::{Band, Series};
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 

@@ -1,8 +1,8 @@
 //! Where the fit begins: resonance and damping on a grid, the rest by linear
 //! least squares, since the impedance is linear in R, L and b.
 
-use crate::bands::Mean;
-use crate::impedance::Impedance;
+use crate::actuator::bands::Mean;
+use crate::actuator::impedance::Impedance;
 use nalgebra::{Matrix3, Vector3};
 use realfft::num_complex::Complex;
 

@@ -10,11 +10,11 @@
 //! voltage is known. So plain least squares over all lines are the most likely
 //! impedance, and σ²·(JᵀJ)⁻¹ is the covariance of its numbers.
 
-use crate::bands::{Mean, bands};
-use crate::impedance::{Impedance, NUMBERS};
-use crate::second::second;
-use crate::spectrum::{Line, Spectrum};
-use crate::start::start;
+use crate::actuator::bands::{Mean, bands};
+use crate::actuator::impedance::{Impedance, NUMBERS};
+use crate::actuator::second::second;
+use crate::actuator::spectrum::{Line, Spectrum};
+use crate::actuator::start::start;
 use nalgebra::{SMatrix, SVector};
 use realfft::num_complex::Complex;
 

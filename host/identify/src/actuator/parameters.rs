@@ -1,0 +1,194 @@
+//! The parameters of an actuator.
+
+use crate::actuator::bands::Mean;
+use crate::actuator::derived::derived;
+use crate::actuator::examined::Examined;
+use crate::actuator::fit::Fit;
+use crate::actuator::impedance::Impedance;
+use crate::actuator::mass::{Split, Weighed, agreed, by_added_mass, by_weight};
+use crate::actuator::refusal::Refusal;
+use crate::actuator::{Band, Series};
+use crate::estimate::Estimate;
+use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
+use std::f64::consts::TAU;
+
+/// m/s².
+const STANDARD_GRAVITY: f64 = 9.806_65;
+
+/// A parameter that is less certain than ± this share is not proposed.
+const MOST_UNCERTAIN: f64 = 0.05;
+
+/// What tells the mass: one of both, or both, which then check each other.
+#[derive(Clone, Copy, Debug)]
+pub enum MassEvidence<'s> {
+    /// It was weighed.
+    Weighed(Weighed),
+    /// A second chirp, with this mass added.
+    Added(&'s Series, Weighed),
+    /// Both.
+    Both(Weighed, &'s Series, Weighed),
+}
+
+impl MassEvidence<'_> {
+    /// The mass, if it was weighed.
+    fn known_kg(&self) -> Option<f64> {
+        match self {
+            Self::Weighed(weighed) | Self::Both(weighed, ..) => Some(weighed.mass_kg),
+            Self::Added(..) => None,
+        }
+    }
+
+    fn split(&self, fit: &Fit, band: Band) -> Result<Split, Refusal> {
+        let known_kg = self.known_kg();
+        let with_added = |with: &Series, added: Weighed| {
+            let with = Examined::of(with, band, known_kg.map(|kg| kg + added.mass_kg))?;
+            by_added_mass(fit, &with.fit, added)
+        };
+        match *self {
+            Self::Weighed(weighed) => Ok(by_weight(fit, weighed)),
+            Self::Added(with, added) => with_added(with, added),
+            Self::Both(weighed, with, added) => {
+                agreed(by_weight(fit, weighed), with_added(with, added)?)
+            }
+        }
+    }
+}
+
+/// An actuator as its coil's current shows it.
+#[derive(Clone, Debug)]
+pub struct Actuator {
+    /// Resistance of the coil and of what feeds it, Ω.
+    pub resistance_ohm: Estimate,
+    /// Inductance of the coil, H.
+    pub inductance_h: Estimate,
+    /// Resonance of the mass on its flexure, Hz.
+    pub resonance_hz: Estimate,
+    /// Damping ratio of the flexure alone.
+    pub mechanical_damping_ratio: Estimate,
+    /// Damping ratio with the coil connected: what the stage's parameter means.
+    pub damping_ratio: Estimate,
+    /// Moving mass, kg.
+    pub moving_mass_kg: Estimate,
+    /// Force constant, N/A.
+    pub force_constant_n_per_a: Estimate,
+    /// Time by which the current lags the voltage in the recording, s.
+    pub delay_s: Estimate,
+    /// Amplitude of the mass at its greatest, m.
+    pub excursion_m: f64,
+    /// Greatest voltage, V.
+    pub amplitude_v: f64,
+    /// Noise of a sample of the current, A.
+    pub noise_a: f64,
+    /// Root mean square of the current that is neither explained nor noise, over that of
+    /// the current.
+    pub unexplained: f64,
+    /// Whether a second chirp has told the mass; else it is as good as the balance.
+    pub mass_is_checked: bool,
+    pub(crate) impedance: Impedance,
+    pub(crate) means: Vec<Mean>,
+    pub(crate) misfits: Vec<(f64, f64)>,
+}
+
+/// Identifies an actuator from a chirp.
+///
+/// # Errors
+/// [`Refusal`]: what the recording shows instead.
+pub fn identify(
+    series: &Series,
+    band: Band,
+    evidence: &MassEvidence<'_>,
+) -> Result<Actuator, Refusal> {
+    let examined = Examined::of(series, band, evidence.known_kg())?;
+    let fit = &examined.fit;
+    let split = evidence.split(fit, band)?;
+    let actuator = Actuator {
+        resistance_ohm: derived(fit, |z| z.resistance),
+        inductance_h: derived(fit, |z| z.inductance),
+        resonance_hz: derived(fit, |z| z.resonance / TAU),
+        mechanical_damping_ratio: derived(fit, |z| 0.5 * z.damping / z.resonance),
+        // The coil's current brakes the mass: Bl²/R beside c.
+        damping_ratio: derived(fit, |z| {
+            0.5 * (z.damping + z.coupling / z.resistance) / z.resonance
+        }),
+        moving_mass_kg: split.mass_kg,
+        force_constant_n_per_a: split.force_constant,
+        delay_s: derived(fit, |z| z.delay),
+        excursion_m: examined.excursion_m(split.mass_kg.value),
+        amplitude_v: examined.amplitude_v,
+        noise_a: fit.residual.noise_a,
+        unexplained: fit.residual.beyond_noise,
+        mass_is_checked: !matches!(evidence, MassEvidence::Weighed(_)),
+        impedance: fit.impedance,
+        misfits: fit.misfits.clone(),
+        means: examined.means,
+    };
+    actuator.is_certain()?;
+    Ok(actuator)
+}
+
+impl Actuator {
+    /// The settings of the stage with these parameters, and all others as they are in use.
+    ///
+    /// # Errors
+    /// [`Refusal::Settings`] where the device would reject them.
+    pub fn settings(
+        &self,
+        in_use: &VibrationActuatorSettings,
+    ) -> Result<VibrationActuatorSettings, Refusal> {
+        let proposed = VibrationActuatorSettings {
+            resonance_hz: self.resonance_hz.value,
+            damping_ratio: self.damping_ratio.value,
+            moving_mass_g: 1e3 * self.moving_mass_kg.value,
+            force_constant_n_per_a: self.force_constant_n_per_a.value,
+            resistance_ohm: self.resistance_ohm.value,
+            ..*in_use
+        };
+        proposed.check().map_err(Refusal::Settings)?;
+        Ok(proposed)
+    }
+
+    /// What a person should know who takes these parameters.
+    pub fn notes(&self, in_use: &VibrationActuatorSettings) -> Vec<String> {
+        let mut notes = Vec::new();
+        if !self.mass_is_checked {
+            notes.push(
+                "nothing in the current tells a wrong mass: force constant and mass are as good as the mass that was \
+                 given; a second chirp with an added mass would check it"
+                    .to_owned(),
+            );
+        }
+        let sag_m = STANDARD_GRAVITY / (TAU * self.resonance_hz.value).powi(2);
+        let (excursion_mm, sag_mm) = (1e3 * self.excursion_m, 1e3 * sag_m);
+        if excursion_mm + sag_mm > in_use.stroke_mm {
+            notes.push(format!(
+                "the mass swings by ±{excursion_mm:.2} mm and sags by {sag_mm:.2} mm, more than stroke_mm = {}, but \
+                 does not hit a stop: is stroke_mm right?",
+                in_use.stroke_mm
+            ));
+        }
+        notes
+    }
+
+    fn is_certain(&self) -> Result<(), Refusal> {
+        let checked = [
+            ("the resistance", self.resistance_ohm),
+            ("the resonance", self.resonance_hz),
+            ("the damping ratio", self.damping_ratio),
+            ("the moving mass", self.moving_mass_kg),
+            ("the force constant", self.force_constant_n_per_a),
+        ];
+        let uncertain = checked
+            .into_iter()
+            // Not below the limit, NaN included.
+            .find(|(_, estimate)| !matches!(estimate.share(), share if share <= MOST_UNCERTAIN));
+        match uncertain {
+            Some((what, estimate)) => Err(Refusal::Uncertain {
+                what,
+                share: 100.0 * estimate.share(),
+                limit: 100.0 * MOST_UNCERTAIN,
+                noise_ma: 1e3 * self.noise_a,
+            }),
+            None => Ok(()),
+        }
+    }
+}

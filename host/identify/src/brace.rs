@@ -1,0 +1,57 @@
+//! # Parameters of the brace from a weight that swings in it
+//!
+//! A bar of known mass is strapped into the cuffs, lifted and let go of. It is known in
+//! N·m what gravity does to it, so what friction, gap and cuffs do to its swing, as the
+//! encoder at the motor sees it, comes out in absolute units; and what the motor does,
+//! if it is on, whose current is recorded with every sample.
+//!
+//! ```text
+//! Recording ─> swings ─> start ─> fit ─┬─> Refusal: what it shows instead, what to do
+//!  + Weight     whole?   guesses       └─> Brace: each Quantity with its interval,
+//!                                           or why it is not visible ─> chart, page, scene
+//! ```
+//!
+//! | to find | look in |
+//! |---|---|
+//! | the equations | `model.rs` |
+//! | what is compared, and the intervals | `fit.rs`, `prior.rs` |
+//! | where a swing begins and ends | `swing.rs` |
+//! | the quantities, and where each stands in a scene | [`Quantity`] |
+//! | what is visible, and what is refused | `visible.rs`, `plausible.rs`, [`Refusal`] |
+//!
+//! ```
+//! use crepitus_identify::brace::{Recording, Refusal, TORQUE_DEVIATION, Weight, identify};
+//!
+//! let weight = Weight::new(2.5, 0.25, None, 0.005);
+//! let nothing = Recording {
+//!     samples: Vec::new(),
+//!     tick_s: 5e-5,
+//!     rad_per_count: 36e-6,
+//!     torque_constant_nm_per_a: 0.0389,
+//!     gear_ratio: 86.0,
+//! };
+//! let refused = identify(&[nothing], &weight, TORQUE_DEVIATION);
+//! assert!(matches!(refused, Err(Refusal::Short { .. })));
+//! ```
+
+pub mod chart;
+mod fit;
+mod found;
+mod model;
+mod numbers;
+pub mod page;
+mod plausible;
+mod prior;
+mod quantity;
+mod recording;
+mod refusal;
+pub mod scene;
+mod start;
+mod swing;
+mod visible;
+
+pub use found::{Brace, Result as QuantityResult, Shown, identify};
+pub use prior::TORQUE_DEVIATION;
+pub use quantity::Quantity;
+pub use recording::{GRAVITY, Measured, Recording, Sample, Weight};
+pub use refusal::Refusal;

@@ -1,0 +1,414 @@
+//! What the encoder sees of a weight that swings in the brace.
+//!
+//! ```text
+//! motor, gear          gap           brace      cuffs      weight
+//!   τ ─> [J_r] ──────[  β  ]──────── [J_b] ──[ k, b ]──── [J_w] ── −M·sin φ − B·Ω
+//!    F + μ·|τ|
+//! ```
+//!
+//! J_r·Ω̇_r = τ − (F + μ|τ|)·sgn Ω_r − N,  J_b·Ω̇_b = N − P,  J_w·Ω̇_w = P − B·Ω_w − M·sin(φ_w − φ₀)
+//!
+//! with P = k(φ_b − φ_w) + b(Ω_b − Ω_w), and N the force of the teeth: zero inside the
+//! gap, never pulling. Friction is set-valued: at rest it is what holds the rotor. Where
+//! the gap closes, rotor and brace go on together, and their impulse is kept.
+//!
+//! Runge-Kutta of the fourth order between the events, which are located within a
+//! step: so the angle is a smooth function of the numbers, and can be differentiated
+//! by differences.
+
+use crate::brace::numbers::Numbers;
+
+/// Length of a step, s; the current is averaged over it.
+pub(crate) const STEP_S: f64 = 2.5e-4;
+
+/// Changes of mode in one step, after which the rest of the step is done in the last one.
+const MOST_CHANGES: u32 = 24;
+
+/// Angles and velocities of rotor, brace and weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct State {
+    pub(crate) angle: [f64; 3],
+    pub(crate) omega: [f64; 3],
+}
+
+const ROTOR: usize = 0;
+const BRACE: usize = 1;
+const WEIGHT: usize = 2;
+
+impl State {
+    fn moved(&self, by: f64, rate: &Self) -> Self {
+        Self {
+            angle: std::array::from_fn(|i| self.angle[i] + by * rate.angle[i]),
+            omega: std::array::from_fn(|i| self.omega[i] + by * rate.omega[i]),
+        }
+    }
+}
+
+/// What friction and teeth do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Mode {
+    /// Sense of the rotor's motion; `None`: friction holds it.
+    sliding: Option<f64>,
+    /// Which side of the gap is closed: the sign of φ_r − φ_b; `None`: neither.
+    contact: Option<f64>,
+}
+
+/// How a swing begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Begin {
+    /// Angle of the rotor, rad.
+    pub(crate) angle_rad: f64,
+    /// Velocity of the rotor, rad/s.
+    pub(crate) omega_rad_s: f64,
+    /// Deflection of the cuffs, φ_b − φ_w, beyond that of a steady motion, rad.
+    pub(crate) deflection_rad: f64,
+    /// Its rate, rad/s.
+    pub(crate) deflection_rad_s: f64,
+}
+
+/// The brace in one step.
+struct Step<'n> {
+    n: &'n Numbers,
+    /// Where the weight hangs at rest, rad.
+    hang_rad: f64,
+    /// Torque of the motor, N·m, and what friction can hold.
+    torque: f64,
+    limit: f64,
+}
+
+impl Step<'_> {
+    /// Torque of the cuffs on the brace.
+    fn pull(&self, x: &State) -> f64 {
+        -self.n.stiffness_nm * (x.angle[BRACE] - x.angle[WEIGHT])
+            - self.n.damping_nms * (x.omega[BRACE] - x.omega[WEIGHT])
+    }
+
+    fn rate(&self, x: &State, mode: Mode) -> State {
+        let n = self.n;
+        let pull = self.pull(x);
+        let weight = (-pull
+            - n.viscous_nms * x.omega[WEIGHT]
+            - n.moment_nm * (x.angle[WEIGHT] - self.hang_rad).sin())
+            / n.weight_kg_m2;
+        let driven = |sense: f64| self.torque - sense * self.limit;
+        let (rotor, brace) = match (mode.contact, mode.sliding) {
+            (Some(_), Some(sense)) => {
+                let both = (driven(sense) + pull) / (n.rotor_kg_m2 + n.brace_kg_m2);
+                (both, both)
+            }
+            (Some(_), None) => (0.0, 0.0),
+            (None, Some(sense)) => (driven(sense) / n.rotor_kg_m2, pull / n.brace_kg_m2),
+            (None, None) => (0.0, pull / n.brace_kg_m2),
+        };
+        State {
+            angle: x.omega,
+            omega: [rotor, brace, weight],
+        }
+    }
+
+    fn after(&self, x: &State, mode: Mode, h: f64) -> State {
+        let a = self.rate(x, mode);
+        let b = self.rate(&x.moved(0.5 * h, &a), mode);
+        let c = self.rate(&x.moved(0.5 * h, &b), mode);
+        let d = self.rate(&x.moved(h, &c), mode);
+        x.moved(h / 6.0, &a)
+            .moved(h / 3.0, &b)
+            .moved(h / 3.0, &c)
+            .moved(h / 6.0, &d)
+    }
+
+    /// How far each event is away; the mode ends where one is below zero.
+    fn margins(&self, x: &State, mode: Mode) -> [f64; 2] {
+        let pull = self.pull(x);
+        let friction = match (mode.sliding, mode.contact) {
+            (Some(sense), _) => sense * x.omega[ROTOR],
+            (None, Some(_)) => self.limit - (self.torque + pull).abs(),
+            (None, None) => self.limit - self.torque.abs(),
+        };
+        let teeth = match mode.contact {
+            None => 0.5 * self.n.gap_rad - (x.angle[ROTOR] - x.angle[BRACE]).abs(),
+            Some(side) => side * (self.n.brace_kg_m2 * self.rate(x, mode).omega[BRACE] - pull),
+        };
+        [friction, teeth]
+    }
+
+    /// The mode after the end of one.
+    fn change(&self, x: &mut State, mode: &mut Mode, event: usize) {
+        if event == 0 {
+            match mode.sliding {
+                Some(_) => {
+                    x.omega[ROTOR] = 0.0;
+                    if mode.contact.is_some() {
+                        x.omega[BRACE] = 0.0;
+                    }
+                    let net = self.net(x, *mode);
+                    mode.sliding = (net.abs() > self.limit).then(|| net.signum());
+                }
+                None => mode.sliding = Some(self.net(x, *mode).signum()),
+            }
+            return;
+        }
+        match mode.contact {
+            Some(_) => mode.contact = None,
+            None => {
+                let n = self.n;
+                let side = (x.angle[ROTOR] - x.angle[BRACE]).signum();
+                let both = (n.rotor_kg_m2 * x.omega[ROTOR] + n.brace_kg_m2 * x.omega[BRACE])
+                    / (n.rotor_kg_m2 + n.brace_kg_m2);
+                x.angle[ROTOR] = x.angle[BRACE] + side * 0.5 * n.gap_rad;
+                x.omega[ROTOR] = both;
+                x.omega[BRACE] = both;
+                mode.contact = Some(side);
+                if both != 0.0 {
+                    mode.sliding = Some(both.signum());
+                }
+            }
+        }
+    }
+
+    /// What acts on the rotor besides friction.
+    fn net(&self, x: &State, mode: Mode) -> f64 {
+        self.torque
+            + if mode.contact.is_some() {
+                self.pull(x)
+            } else {
+                0.0
+            }
+    }
+
+    /// One whole step.
+    fn go(&self, x: &mut State, mode: &mut Mode) {
+        let mut left = STEP_S;
+        for _ in 0..MOST_CHANGES {
+            let before = self.margins(x, *mode);
+            // A step of the torque can end a mode at once; a gap that has just opened, or
+            // a motion that has just begun, is at zero and goes on.
+            let at_once = match (before[0] < 0.0, before[1] < 0.0) {
+                (true, _) if mode.sliding.is_none() => Some(0),
+                (_, true) if mode.contact.is_some() => Some(1),
+                _ => None,
+            };
+            if let Some(event) = at_once {
+                self.change(x, mode, event);
+                continue;
+            }
+            let next = self.after(x, *mode, left);
+            let after = self.margins(&next, *mode);
+            let first = (0..2)
+                .filter(|event| after[*event] < 0.0)
+                .map(|event| {
+                    (
+                        self.end(x, *mode, event, before[event], after[event], left),
+                        event,
+                    )
+                })
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((at, event)) = first else {
+                *x = next;
+                return;
+            };
+            *x = self.after(x, *mode, at);
+            self.change(x, mode, event);
+            left -= at;
+            if left <= 1e-12 {
+                return;
+            }
+        }
+        *x = self.after(x, *mode, left);
+    }
+
+    /// When a margin passes zero: regula falsi (Illinois).
+    fn end(&self, x: &State, mode: Mode, event: usize, low: f64, high: f64, length: f64) -> f64 {
+        let (mut a, mut b) = ((0.0, low.max(0.0)), (length, high));
+        for _ in 0..30 {
+            let at = if a.1 - b.1 > 0.0 {
+                a.0 + (b.0 - a.0) * a.1 / (a.1 - b.1)
+            } else {
+                f64::midpoint(a.0, b.0)
+            };
+            // From zero on, the root that counts is the later one.
+            let at = if a.1 == 0.0 {
+                f64::midpoint(a.0, b.0)
+            } else {
+                at
+            };
+            let margin = self.margins(&self.after(x, mode, at), mode)[event];
+            if margin < 0.0 {
+                b = (at, margin);
+                a.1 *= 0.5;
+            } else {
+                a = (at, margin);
+                b.1 *= 0.5;
+            }
+            if b.0 - a.0 < 1e-9 * STEP_S || margin.abs() < 1e-13 {
+                break;
+            }
+        }
+        b.0
+    }
+}
+
+/// The rotor's angle after each step, rad, with the motor's torque in each, N·m: as the
+/// current should give it.
+pub(crate) fn swing(
+    numbers: &Numbers,
+    hang_rad: f64,
+    begin: &Begin,
+    torques_nm: &[f64],
+) -> Vec<f64> {
+    let step = |nominal_nm: f64| {
+        let torque = numbers.torque_scale * nominal_nm;
+        Step {
+            n: numbers,
+            hang_rad,
+            torque,
+            limit: numbers.friction_nm + numbers.load_loss * torque.abs(),
+        }
+    };
+    let (mut x, mut mode) = start(
+        numbers,
+        &step(torques_nm.first().copied().unwrap_or(0.0)),
+        begin,
+    );
+    (torques_nm.iter())
+        .map(|nominal_nm| {
+            step(*nominal_nm).go(&mut x, &mut mode);
+            x.angle[ROTOR]
+        })
+        .collect()
+}
+
+/// In passing: rotor and brace turn together, the cuffs are bent by what they transmit.
+fn start(n: &Numbers, step: &Step<'_>, begin: &Begin) -> (State, Mode) {
+    let sense = begin.omega_rad_s.signum();
+    let (angle, omega) = (begin.angle_rad, begin.omega_rad_s);
+    let sum = n.rotor_kg_m2 + n.brace_kg_m2 + n.weight_kg_m2;
+    let dry = step.torque - sense * step.limit;
+    // The acceleration of all as one body, about where the weight is.
+    let fall = -n.moment_nm * (angle - step.hang_rad).sin() - n.viscous_nms * omega;
+    let together = (dry + fall) / sum;
+    // What the teeth do to the brace: the rotor's share of that is its own.
+    let teeth = dry - n.rotor_kg_m2 * together;
+    let side = if teeth >= 0.0 { 1.0 } else { -1.0 };
+    // The cuffs transmit what accelerates the weight beyond its fall.
+    let transmitted = n.weight_kg_m2 * together - fall;
+    let brace = angle - side * 0.5 * n.gap_rad;
+    let bent = transmitted / n.stiffness_nm + begin.deflection_rad;
+    (
+        State {
+            angle: [angle, brace, brace - bent],
+            omega: [omega, omega, omega - begin.deflection_rad_s],
+        },
+        Mode {
+            sliding: Some(sense),
+            contact: Some(side),
+        },
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const N: Numbers = Numbers {
+        friction_nm: 0.5,
+        load_loss: 0.3,
+        viscous_nms: 0.05,
+        rotor_kg_m2: 0.05,
+        brace_kg_m2: 0.01,
+        gap_rad: 0.0175,
+        stiffness_nm: 120.0,
+        damping_nms: 1.0,
+        moment_nm: 6.0,
+        weight_kg_m2: 0.2,
+        torque_scale: 1.0,
+    };
+
+    fn begin(angle_rad: f64, omega_rad_s: f64) -> Begin {
+        Begin {
+            angle_rad,
+            omega_rad_s,
+            deflection_rad: 0.0,
+            deflection_rad_s: 0.0,
+        }
+    }
+
+    /// Without friction, gap and compliance a small swing is a sine of √(M/J).
+    #[test]
+    fn a_small_swing_without_losses_is_a_sine() {
+        let n = Numbers {
+            friction_nm: 0.0,
+            viscous_nms: 0.0,
+            gap_rad: 1e-4,
+            stiffness_nm: 2000.0,
+            ..N
+        };
+        // At once lost motion is harmless where the weight drives a rotor with friction; here
+        // there is none, and the gap is 1e-4.
+        let omega = (6.0_f64 / 0.26).sqrt();
+        let angles = swing(&n, 0.0, &begin(0.0, 0.02 * omega), &vec![0.0; 8000]);
+        for (i, angle) in angles.iter().enumerate() {
+            let t = (i + 1) as f64 * STEP_S;
+            assert!(
+                (angle - 0.02 * (omega * t).sin()).abs() < 3e-4,
+                "{t} {angle}"
+            );
+        }
+    }
+
+    /// A half swing of a dry pendulum loses 2F/M: here by the energy, M(cos a − cos b) = F(a + b).
+    #[test]
+    fn dry_friction_takes_its_share_of_each_half_swing() {
+        let n = Numbers {
+            viscous_nms: 0.0,
+            stiffness_nm: 2000.0,
+            gap_rad: 1e-4,
+            ..N
+        };
+        let angles = swing(&n, 0.0, &begin(0.0, 5.0), &vec![0.0; 16000]);
+        let turns: Vec<f64> = angles
+            .windows(3)
+            .filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0)
+            .map(|w| w[1].abs())
+            .collect();
+        assert!(turns.len() >= 2, "{turns:?}");
+        for pair in turns.windows(2) {
+            let lost = 6.0 * (pair[1].cos() - pair[0].cos());
+            let expected = 0.5 * (pair[0] + pair[1]);
+            assert!((lost / expected - 1.0).abs() < 0.02, "{turns:?}");
+        }
+    }
+
+    /// The angle is smooth in the numbers: differences of twice the step give the same slope.
+    #[test]
+    fn the_angle_is_smooth_in_every_number() {
+        let base = [
+            0.5, 0.3, 0.05, 0.05, 0.01, 0.0175, 120.0, 1.0, 6.0, 0.2, 1.0,
+        ];
+        let torques: Vec<f64> = (0..12000)
+            .map(|i| {
+                if i < 6000 {
+                    0.0
+                } else {
+                    0.4 * f64::from(i).sin()
+                }
+            })
+            .collect();
+        let angles = |numbers: [f64; 11]| swing(&numbers.into(), 0.1, &begin(0.1, 5.0), &torques);
+        for place in 0..11 {
+            let slope = |share: f64| {
+                let (mut up, mut down) = (base, base);
+                up[place] *= 1.0 + share;
+                down[place] *= 1.0 - share;
+                let (up, down) = (angles(up), angles(down));
+                let slopes = up.iter().zip(&down).map(|(u, d)| (u - d) / share);
+                slopes.collect::<Vec<_>>()
+            };
+            let (a, b) = (slope(1e-5), slope(2e-5));
+            let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|x| x * x).sum::<f64>().sqrt();
+            let differ = norm(&mut a.iter().zip(&b).map(|(a, b)| a - b));
+            let whole = norm(&mut a.iter().copied());
+            assert!(differ < 0.1 * whole + 1e-9, "{place}: {differ} of {whole}");
+        }
+    }
+}

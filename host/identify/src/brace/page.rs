@@ -1,0 +1,50 @@
+//! The result as one HTML page, complete in itself.
+
+use crate::brace::{Brace, QuantityResult, chart};
+use crepitus_plot::page::{document, figure, footer, notes};
+use maud::html;
+
+/// The page.
+pub fn html(brace: &Brace, title: &str, last_line: &str) -> String {
+    let (swings, seconds) = brace.swung();
+    let body = html! {
+        header {
+            p.kicker { "Crepitus · identified brace" }
+            h1 { (title) }
+            p.description {
+                (swings) " swings, " (format!("{seconds:.1}")) " s. What the fit leaves of the angle is "
+                (format!("{:.4}", brace.rms_rad.to_degrees())) "° rms, of swings up to "
+                (format!("{:.0}", brace.amplitude_rad.to_degrees())) "°."
+            }
+        }
+        main {
+            section.table {
+                h2 { "Values, with 95 % intervals" }
+                table {
+                    thead { tr { th { "quantity" } th { "parameter" } th { "value" } th { "unit" } } }
+                    tbody {
+                        @for shown in &brace.shown {
+                            tr {
+                                td { (shown.quantity.name()) }
+                                td { code { (shown.quantity.effect()) "." (shown.quantity.spec().key) } }
+                                @match &shown.result {
+                                    QuantityResult::Seen(estimate) => {
+                                        td { (format!("{:.5} ± {:.5}", estimate.value, estimate.half_width)) }
+                                        td { (shown.quantity.spec().unit) }
+                                    }
+                                    QuantityResult::NotVisible { why } => {
+                                        td colspan="2" { "not visible in this recording: " (why) }
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            (figure(&chart::figure(brace)))
+            (notes(&brace.notes))
+        }
+        (footer(last_line))
+    };
+    document(title, "", &[], &body)
+}

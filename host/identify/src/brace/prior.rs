@@ -1,0 +1,55 @@
+//! What is known before a recording: of the weight what a person has measured, of the
+//! brace what braces are like.
+//!
+//! The second is so wide that a recording that shows a quantity overrules it; what a
+//! recording does not show stays as uncertain as it is here, and is not reported.
+
+use crate::brace::numbers::{NUMBERS, place};
+use crate::brace::recording::Weight;
+
+/// Standard deviation of a motor's torque constant by its data sheet, as a share: ±10 %
+/// are usual.
+pub const TORQUE_DEVIATION: f64 = 0.05;
+
+/// Mean and standard deviation of each number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Prior {
+    pub(crate) mean: [f64; NUMBERS],
+    pub(crate) deviation: [f64; NUMBERS],
+}
+
+/// A brace with a gearmotor for a knee: means of data sheets, deviations that hold anything
+/// that could be one.
+const BRACE: [(usize, f64, f64); 8] = [
+    (place::FRICTION, 0.5, 3.0),
+    (place::LOAD_LOSS, 0.3, 0.3),
+    (place::VISCOUS, 0.1, 1.0),
+    (place::ROTOR, 0.05, 0.2),
+    (place::BRACE, 0.01, 0.02),
+    (place::GAP, 0.0175, 0.05),
+    (place::STIFFNESS, 120.0, 300.0),
+    (place::DAMPING, 1.0, 3.0),
+];
+
+impl Prior {
+    /// With this weight, and a torque for an ampere that is known to this share.
+    pub(crate) fn of(weight: &Weight, torque_deviation: f64) -> Self {
+        let mut prior = Self {
+            mean: [0.0; NUMBERS],
+            deviation: [1.0; NUMBERS],
+        };
+        for (at, mean, deviation) in BRACE {
+            (prior.mean[at], prior.deviation[at]) = (mean, deviation);
+        }
+        for (at, measured) in [
+            (place::MOMENT, weight.moment_nm),
+            (place::WEIGHT, weight.inertia_kg_m2),
+        ] {
+            prior.mean[at] = measured.value;
+            prior.deviation[at] = measured.value * measured.deviation;
+        }
+        prior.mean[place::TORQUE_SCALE] = 1.0;
+        prior.deviation[place::TORQUE_SCALE] = torque_deviation;
+        prior
+    }
+}

@@ -1,0 +1,77 @@
+//! What the estimator gets: samples of a device, and what a person knows of the weight.
+
+/// A sample of a recorded device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Tick of the drive.
+    pub tick: u64,
+    /// Count of the encoder.
+    pub count: i32,
+    /// Measured current of the motor, A; positive drives towards growing angle. `None` where
+    /// it was not measured: the bridge was open.
+    pub current_a: Option<f32>,
+    /// The drive has rejected the encoder's count.
+    pub is_lost: bool,
+}
+
+/// One recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// In the order of their ticks; ticks may be missing.
+    pub samples: Vec<Sample>,
+    /// Length of a tick, s.
+    pub tick_s: f64,
+    /// Angle of the joint for a count, rad.
+    pub rad_per_count: f64,
+    /// Torque constant of the motor as the device believes it, N·m/A.
+    pub torque_constant_nm_per_a: f64,
+    /// Turns of the motor for one of the joint.
+    pub gear_ratio: f64,
+}
+
+impl Recording {
+    /// Torque at the joint for an ampere without losses, N·m/A.
+    pub(crate) fn nm_per_a(&self) -> f64 {
+        self.torque_constant_nm_per_a * self.gear_ratio
+    }
+}
+
+/// A number that was measured by other means, with its standard deviation as a share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// The number.
+    pub value: f64,
+    /// Standard deviation over the value.
+    pub deviation: f64,
+}
+
+/// The weight in the cuffs: a bar, a dummy leg, a sandbag on a board.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weight {
+    /// Moment about the axis when it is horizontal, N·m: mass times g times lever.
+    pub moment_nm: Measured,
+    /// Inertia about the axis, kg·m².
+    pub inertia_kg_m2: Measured,
+}
+
+/// Standard gravity, m/s².
+pub const GRAVITY: f64 = 9.806_65;
+
+impl Weight {
+    /// A mass with its centre at a lever from the axis, and its inertia about the axis; a
+    /// small one has m·l². `deviation` is that of mass and lever together, and
+    /// twice that of the inertia, in which the lever counts twice.
+    pub fn new(mass_kg: f64, lever_m: f64, inertia_kg_m2: Option<f64>, deviation: f64) -> Self {
+        let inertia = inertia_kg_m2.unwrap_or(mass_kg * lever_m * lever_m);
+        Self {
+            moment_nm: Measured {
+                value: mass_kg * GRAVITY * lever_m,
+                deviation,
+            },
+            inertia_kg_m2: Measured {
+                value: inertia,
+                deviation: 2.0 * deviation,
+            },
+        }
+    }
+}

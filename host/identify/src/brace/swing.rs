@@ -1,0 +1,351 @@
+//! Where in a recording a weight swings freely.
+//!
+//! ```text
+//!  held   ╲    ╱‾╲          at rest
+//! ‾‾‾‾‾‾‾‾╎╲  ╱   ╲  ╱‾╲___________
+//!         ╎ ╲╱     ╲╱     ╎
+//!         ╎ ▲ from here   ╎ to here
+//! ```
+//!
+//! A swing begins where the weight first passes through after its release, when nobody
+//! touches it any more and the gear's teeth are surely in contact, and ends at rest. The
+//! release is the turning point that is farthest from rest.
+
+use crate::brace::model::STEP_S;
+use crate::brace::recording::{Recording, Sample};
+use crate::brace::refusal::Refusal;
+
+/// For so long nothing turns in a rest, s: more than a weight needs to cross the gap.
+const REST_S: f64 = 0.35;
+
+/// Turning less than this in a rest, rad.
+const STILL_RAD: f64 = 2e-3;
+
+/// A motion back of this size is a turning point, rad.
+const TURN_RAD: f64 = 4e-3;
+
+/// Amplitude that a swing needs, rad.
+const AMPLITUDE_RAD: f64 = 0.1;
+
+/// Missing samples that a recording may have, as a share, and in a row.
+const MISSING_SHARE: f64 = 0.02;
+const MISSING_IN_A_ROW: u64 = 400;
+
+/// Rest that is kept at the end of a swing, s.
+const TAIL_S: f64 = 0.05;
+
+/// A count further from its neighbours than this motion in a tick is a jump, rad/s.
+const FASTEST_RAD_S: f64 = 40.0;
+
+/// A free swing, step by step.
+#[derive(Clone, Debug)]
+pub(crate) struct Swing {
+    /// Which recording.
+    pub(crate) recording: usize,
+    /// Time of its first angle in the recording, s.
+    pub(crate) begins_s: f64,
+    /// Angle of the rotor as each step begins, and as the last one ends, rad; NaN where no
+    /// sample is.
+    pub(crate) angles_rad: Vec<f64>,
+    /// Torque of the motor in each step, N·m, as its current should give it.
+    pub(crate) torques_nm: Vec<f64>,
+    /// Velocity as it begins, rad/s.
+    pub(crate) omega_rad_s: f64,
+    /// Turning points after that, rad.
+    pub(crate) turns_rad: Vec<f64>,
+    /// Steps at the turning points.
+    pub(crate) turn_steps: Vec<usize>,
+}
+
+impl Swing {
+    /// Root mean square of the motor's torque while it swings, N·m.
+    pub(crate) fn torque_rms_nm(&self) -> f64 {
+        let squares: f64 = self.torques_nm.iter().map(|t| t * t).sum();
+        (squares / self.torques_nm.len().max(1) as f64).sqrt()
+    }
+}
+
+/// Steps of a recording: angle as each begins, and mean torque in it.
+struct Steps {
+    angles: Vec<f64>,
+    torques: Vec<f64>,
+}
+
+/// The free swings of a recording.
+pub(crate) fn swings(place: usize, recording: &Recording) -> Result<Vec<Swing>, Refusal> {
+    let steps = Steps::of(recording)?;
+    let filled = filled(&steps.angles);
+    let extent = extent(&filled);
+    if extent < AMPLITUDE_RAD {
+        return Err(Refusal::NoMotion {
+            degrees: extent.to_degrees(),
+            expected: AMPLITUDE_RAD.to_degrees(),
+        });
+    }
+    let mut found = Vec::new();
+    let mut most_turns = 0;
+    let (motions, goes_on) = motions(&filled);
+    for (from, to) in motions {
+        let turns = turns(&filled, from, to);
+        most_turns = most_turns.max(turns.len());
+        found.extend(steps.swing(place, &filled, (from, to), &turns));
+    }
+    if found.is_empty() {
+        let duration_s = filled.len() as f64 * STEP_S;
+        return Err(if goes_on {
+            Refusal::NotToRest
+        } else if most_turns < 2 {
+            Refusal::NoReversal { duration_s }
+        } else {
+            Refusal::NoSwing {
+                amplitude: AMPLITUDE_RAD.to_degrees(),
+            }
+        });
+    }
+    Ok(found)
+}
+
+impl Steps {
+    fn of(recording: &Recording) -> Result<Self, Refusal> {
+        let samples = &recording.samples;
+        let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
+            return Err(Refusal::Short { duration_s: 0.0 });
+        };
+        whole(recording, first, last)?;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a small positive number"
+        )]
+        let ticks = (STEP_S / recording.tick_s).round().max(1.0) as u64;
+        #[expect(clippy::cast_possible_truncation, reason = "steps of a recording")]
+        let count = ((last.tick - first.tick) / ticks) as usize;
+        let mut angles = vec![f64::NAN; count + 1];
+        let mut sums = vec![(0.0, 0.0); count + 1];
+        for sample in samples {
+            let since = sample.tick - first.tick;
+            #[expect(clippy::cast_possible_truncation, reason = "steps of a recording")]
+            let step = (since / ticks) as usize;
+            // Half a count: the encoder counts the edges below.
+            if since.is_multiple_of(ticks) && !sample.is_lost {
+                let count = sample.count.wrapping_sub(first.count);
+                angles[step] = (f64::from(count) + 0.5) * recording.rad_per_count;
+            }
+            if let Some(amperes) = sample.current_a {
+                sums[step].0 += f64::from(amperes) * recording.nm_per_a();
+            }
+            sums[step].1 += 1.0;
+        }
+        let torques = sums
+            .iter()
+            .map(|(sum, n)| if *n > 0.0 { sum / n } else { 0.0 });
+        Ok(Self {
+            torques: torques.collect(),
+            angles,
+        })
+    }
+
+    /// The free swing in a motion, if it has one.
+    fn swing(
+        &self,
+        recording: usize,
+        filled: &[f64],
+        (from, to): (usize, usize),
+        turns: &[usize],
+    ) -> Option<Swing> {
+        let rest = *filled.get(to)?;
+        let amplitude = |step: usize| (filled[step] - rest).abs();
+        // The release is a turning point, or where the motion begins.
+        let released = std::iter::once(from)
+            .chain(turns.iter().copied())
+            .max_by(|a, b| amplitude(*a).total_cmp(&amplitude(*b)))?;
+        let turns: Vec<usize> = turns.iter().copied().filter(|t| *t > released).collect();
+        let [first, _, ..] = turns.as_slice() else {
+            return None;
+        };
+        if amplitude(released) < AMPLITUDE_RAD {
+            return None;
+        }
+        // Half way from the release to the first turning point it is fastest.
+        let half = f64::midpoint(filled[released], filled[*first]);
+        let begin = (released..*first)
+            .find(|step| (filled[*step] - half) * (filled[released] - half) <= 0.0)?;
+        const AROUND: usize = 20;
+        if begin < AROUND {
+            return None;
+        }
+        let omega =
+            (filled[begin + AROUND] - filled[begin - AROUND]) / (2.0 * AROUND as f64 * STEP_S);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a small positive number"
+        )]
+        let end = (to + (TAIL_S / STEP_S) as usize).min(filled.len() - 1);
+        Some(Swing {
+            recording,
+            begins_s: begin as f64 * STEP_S,
+            angles_rad: self.angles[begin..=end].to_vec(),
+            torques_nm: self.torques[begin..end].to_vec(),
+            omega_rad_s: omega,
+            turns_rad: turns.iter().map(|t| filled[*t]).collect(),
+            turn_steps: turns.iter().map(|t| t - begin).collect(),
+        })
+    }
+}
+
+/// Refuses a recording with too little in it, or with counts that no shaft makes.
+fn whole(recording: &Recording, first: &Sample, last: &Sample) -> Result<(), Refusal> {
+    /// A release, two turning points and a rest take longer.
+    const SHORTEST_S: f64 = 1.5;
+    let samples = &recording.samples;
+    let mut missing = 0;
+    let mut longest = 0;
+    let most = FASTEST_RAD_S * recording.tick_s / recording.rad_per_count;
+    for pair in samples.windows(2) {
+        let (before, after) = (&pair[0], &pair[1]);
+        if after.tick <= before.tick {
+            return Err(Refusal::NotInOrder { tick: after.tick });
+        }
+        let ticks = after.tick - before.tick;
+        missing += ticks - 1 + u64::from(after.is_lost);
+        longest = longest.max(ticks - 1);
+        let moved = f64::from(after.count.wrapping_sub(before.count)).abs();
+        if moved > most * ticks as f64 {
+            return Err(Refusal::Jump {
+                time_s: (after.tick - first.tick) as f64 * recording.tick_s,
+                degrees: (moved * recording.rad_per_count).to_degrees(),
+            });
+        }
+    }
+    frozen(recording)?;
+    let all = last.tick - first.tick + 1;
+    let duration_s = all as f64 * recording.tick_s;
+    if duration_s < SHORTEST_S {
+        return Err(Refusal::Short { duration_s });
+    }
+    let share = missing as f64 / all as f64;
+    if share > MISSING_SHARE || longest > MISSING_IN_A_ROW {
+        return Err(Refusal::Missing {
+            share: 100.0 * share,
+            longest_ms: 1e3 * longest as f64 * recording.tick_s,
+            limit: 100.0 * MISSING_SHARE,
+            limit_ms: 1e3 * MISSING_IN_A_ROW as f64 * recording.tick_s,
+        });
+    }
+    Ok(())
+}
+
+/// Refuses counts that stop in mid-motion: friction takes longer to stop a rotor.
+fn frozen(recording: &Recording) -> Result<(), Refusal> {
+    /// Ticks of motion before, and of standstill after.
+    const TICKS: usize = 200;
+    /// Slower is a turning point, rad/s: friction stops more than that within the ticks.
+    const SLOWEST_RAD_S: f64 = 0.6;
+    let samples = &recording.samples;
+    let window_s = TICKS as f64 * recording.tick_s;
+    let least = SLOWEST_RAD_S * window_s / recording.rad_per_count;
+    let mut at = TICKS;
+    while at + TICKS < samples.len() {
+        // The longest stretch of one count from here on.
+        let stands = samples[at..]
+            .iter()
+            .take_while(|s| s.count == samples[at].count)
+            .count();
+        let moved = f64::from(samples[at].count.wrapping_sub(samples[at - TICKS].count)).abs();
+        // At an even speed half of the way lies in each half of the time.
+        let late = f64::from(
+            samples[at]
+                .count
+                .wrapping_sub(samples[at - TICKS / 2].count),
+        )
+        .abs();
+        if stands > TICKS && moved > least && late > 0.4 * moved {
+            let since = samples[at].tick.saturating_sub(samples[0].tick);
+            return Err(Refusal::Frozen {
+                time_s: since as f64 * recording.tick_s,
+                speed_deg_s: (moved * recording.rad_per_count / window_s).to_degrees(),
+            });
+        }
+        at += stands.max(1);
+    }
+    Ok(())
+}
+
+/// The angles, with the last one where none is.
+fn filled(angles: &[f64]) -> Vec<f64> {
+    let mut last = angles.iter().copied().find(|a| !a.is_nan()).unwrap_or(0.0);
+    angles
+        .iter()
+        .map(|angle| {
+            if !angle.is_nan() {
+                last = *angle;
+            }
+            last
+        })
+        .collect()
+}
+
+fn extent(angles: &[f64]) -> f64 {
+    let (low, high) = angles
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), a| {
+            (low.min(*a), high.max(*a))
+        });
+    high - low
+}
+
+/// From where to where the shaft turns, between two rests; and whether it still turns in the
+/// end.
+fn motions(angles: &[f64]) -> (Vec<(usize, usize)>, bool) {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small positive number"
+    )]
+    let rest = (REST_S / STEP_S) as usize;
+    let mut found = Vec::new();
+    let mut begun: Option<usize> = None;
+    let mut at = 0;
+    while at + rest < angles.len() {
+        let window = &angles[at..=at + rest];
+        let is_still = extent(window) < STILL_RAD;
+        match (is_still, begun) {
+            (false, None) => begun = Some(at),
+            (true, Some(from)) => {
+                found.push((from, at));
+                begun = None;
+            }
+            _ => {}
+        }
+        at += 10;
+    }
+    (found, begun.is_some())
+}
+
+/// Turning points between two steps.
+fn turns(angles: &[f64], from: usize, to: usize) -> Vec<usize> {
+    let mut found = Vec::new();
+    let (mut low, mut high) = (from, from);
+    let mut sense = 0.0;
+    for step in from..=to {
+        if angles[step] > angles[high] {
+            high = step;
+        }
+        if angles[step] < angles[low] {
+            low = step;
+        }
+        if sense >= 0.0 && angles[high] - angles[step] > TURN_RAD {
+            if sense > 0.0 {
+                found.push(high);
+            }
+            (sense, low) = (-1.0, step);
+        } else if sense <= 0.0 && angles[step] - angles[low] > TURN_RAD {
+            if sense < 0.0 {
+                found.push(low);
+            }
+            (sense, high) = (1.0, step);
+        }
+    }
+    found
+}
