@@ -20,6 +20,11 @@ fn draft() {
     let mut fitting = 0.0;
     for n in 0..20 {
         let truth = Truth::hidden(&mut random);
+        if let Ok(only) = std::env::var("ONLY") {
+            if only.parse::<i32>().unwrap() != n {
+                continue;
+            }
+        }
         let recordings = [truth.recorded(false), truth.recorded(true)];
         let t = std::time::Instant::now();
         let found = identify(&recordings, &truth.given(), TORQUE_DEVIATION);

@@ -1,12 +1,12 @@
 //! The brace as its recordings show it.
 
 use crate::Estimate;
-use crate::brace::fit::Fit;
+use crate::brace::fit::{Fit, GOOD_ENOUGH};
 use crate::brace::prior::Prior;
 use crate::brace::quantity::Quantity;
 use crate::brace::recording::{Recording, Weight};
 use crate::brace::refusal::Refusal;
-use crate::brace::swing::{Swing, swings};
+use crate::brace::swing::{Passing, Swing, swings};
 use crate::brace::{plausible, visible};
 
 /// What recordings say of a quantity.
@@ -76,15 +76,11 @@ pub fn identify(
     torque_deviation: f64,
 ) -> std::result::Result<Brace, Refusal> {
     plausible::given(weight, torque_deviation)?;
-    let mut all = Vec::new();
-    for (place, recording) in recordings.iter().enumerate() {
-        all.extend(swings(place, recording)?);
-    }
     let Some(recording) = recordings.first() else {
         return Err(Refusal::Short { duration_s: 0.0 });
     };
     let prior = Prior::of(weight, torque_deviation);
-    let fit = Fit::of(&all, recordings.len(), &prior).ok_or(Refusal::Singular)?;
+    let (all, fit) = best(recordings, &prior)?;
     let amplitude_rad = plausible::amplitude_rad(&all, &fit);
     plausible::is_explained(&all, &fit, amplitude_rad)?;
     plausible::is_possible(&fit, &prior)?;
@@ -101,4 +97,34 @@ pub fn identify(
         swings: all,
         fit,
     })
+}
+
+/// The swings from where they begin best, and their fit.
+fn best(
+    recordings: &[Recording],
+    prior: &Prior,
+) -> std::result::Result<(Vec<Swing>, Fit), Refusal> {
+    let mut best: Option<(Vec<Swing>, Fit)> = None;
+    for passing in Passing::ALL {
+        let mut all = Vec::new();
+        for (place, recording) in recordings.iter().enumerate() {
+            all.extend(swings(place, recording, passing)?);
+        }
+        let Some(fit) = Fit::of(&all, recordings.len(), prior) else {
+            continue;
+        };
+        if best
+            .as_ref()
+            .is_none_or(|(_, least)| fit.rms_rad < least.rms_rad)
+        {
+            best = Some((all, fit));
+        }
+        if best
+            .as_ref()
+            .is_some_and(|(_, fit)| fit.rms_rad < GOOD_ENOUGH)
+        {
+            break;
+        }
+    }
+    best.ok_or(Refusal::Singular)
 }

@@ -19,7 +19,7 @@
 use crate::brace::numbers::Numbers;
 
 /// Length of a step, s; the current is averaged over it.
-pub(crate) const STEP_S: f64 = 2.5e-4;
+pub(crate) const STEP_S: f64 = 5e-4;
 
 /// Changes of mode in one step, after which the rest of the step is done in the last one.
 const MOST_CHANGES: u32 = 24;
@@ -346,7 +346,7 @@ mod tests {
         // At once lost motion is harmless where the weight drives a rotor with friction; here
         // there is none, and the gap is 1e-4.
         let omega = (6.0_f64 / 0.26).sqrt();
-        let angles = swing(&n, 0.0, &begin(0.0, 0.02 * omega), &vec![0.0; 8000]);
+        let angles = swing(&n, 0.0, &begin(0.0, 0.02 * omega), &vec![0.0; 4000]);
         for (i, angle) in angles.iter().enumerate() {
             let t = (i + 1) as f64 * STEP_S;
             assert!(
@@ -365,7 +365,7 @@ mod tests {
             gap_rad: 1e-4,
             ..N
         };
-        let angles = swing(&n, 0.0, &begin(0.0, 5.0), &vec![0.0; 16000]);
+        let angles = swing(&n, 0.0, &begin(0.0, 5.0), &vec![0.0; 8000]);
         let turns: Vec<f64> = angles
             .windows(3)
             .filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0)
@@ -385,9 +385,9 @@ mod tests {
         let base = [
             0.5, 0.3, 0.05, 0.05, 0.01, 0.0175, 120.0, 1.0, 6.0, 0.2, 1.0,
         ];
-        let torques: Vec<f64> = (0..12000)
+        let torques: Vec<f64> = (0..6000)
             .map(|i| {
-                if i < 6000 {
+                if i < 3000 {
                     0.0
                 } else {
                     0.4 * f64::from(i).sin()

@@ -65,6 +65,22 @@ impl Swing {
     }
 }
 
+/// Where a swing begins. The cuffs may still ring of the release, and the teeth be apart: what
+/// explains more is better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Passing {
+    /// Where the shaft turns most evenly.
+    Even,
+    /// Where it is fastest.
+    Fastest,
+    /// Just before it turns slowly.
+    Late,
+}
+
+impl Passing {
+    pub(crate) const ALL: [Self; 3] = [Self::Even, Self::Fastest, Self::Late];
+}
+
 /// Steps of a recording: angle as each begins, and mean torque in it.
 struct Steps {
     angles: Vec<f64>,
@@ -72,7 +88,11 @@ struct Steps {
 }
 
 /// The free swings of a recording.
-pub(crate) fn swings(place: usize, recording: &Recording) -> Result<Vec<Swing>, Refusal> {
+pub(crate) fn swings(
+    place: usize,
+    recording: &Recording,
+    passing: Passing,
+) -> Result<Vec<Swing>, Refusal> {
     let steps = Steps::of(recording)?;
     let filled = filled(&steps.angles);
     let extent = extent(&filled);
@@ -88,7 +108,7 @@ pub(crate) fn swings(place: usize, recording: &Recording) -> Result<Vec<Swing>, 
     for (from, to) in motions {
         let turns = turns(&filled, from, to);
         most_turns = most_turns.max(turns.len());
-        found.extend(steps.swing(place, &filled, (from, to), &turns));
+        found.extend(steps.swing((place, passing), &filled, (from, to), &turns));
     }
     if found.is_empty() {
         let duration_s = filled.len() as f64 * STEP_S;
@@ -148,7 +168,7 @@ impl Steps {
     /// The free swing in a motion, if it has one.
     fn swing(
         &self,
-        recording: usize,
+        (recording, passing): (usize, Passing),
         filled: &[f64],
         (from, to): (usize, usize),
         turns: &[usize],
@@ -166,16 +186,7 @@ impl Steps {
         if amplitude(released) < AMPLITUDE_RAD {
             return None;
         }
-        // Half way from the release to the first turning point it is fastest.
-        let half = f64::midpoint(filled[released], filled[*first]);
-        let begin = (released..*first)
-            .find(|step| (filled[*step] - half) * (filled[released] - half) <= 0.0)?;
-        const AROUND: usize = 20;
-        if begin < AROUND {
-            return None;
-        }
-        let omega =
-            (filled[begin + AROUND] - filled[begin - AROUND]) / (2.0 * AROUND as f64 * STEP_S);
+        let (begin, omega) = passes(passing, filled, released, *first)?;
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -192,6 +203,41 @@ impl Steps {
             turn_steps: turns.iter().map(|t| t - begin).collect(),
         })
     }
+}
+
+/// Where between a release and the first turning point a swing begins, and how fast the shaft
+/// turns there: at half of the greatest speed or more.
+fn passes(passing: Passing, angles: &[f64], released: usize, first: usize) -> Option<(usize, f64)> {
+    /// Steps that are looked at before and after, and from one to the next.
+    const BEFORE: usize = 60;
+    const AFTER: usize = 120;
+    const APART: usize = 10;
+    let speed = |at: usize| {
+        let (from, to) = (at - APART, at + APART);
+        (angles[to] - angles[from]) / ((to - from) as f64 * STEP_S)
+    };
+    let places =
+        || (released.max(BEFORE)..first.min(angles.len().saturating_sub(AFTER))).step_by(5);
+    let fastest = places().map(|at| speed(at).abs()).fold(0.0, f64::max);
+    let uneven = |at: usize| {
+        // What a parabola through both ends and the middle leaves.
+        let span = &angles[at - BEFORE..at + AFTER];
+        let (a, b, c) = (span[0], span[span.len() / 2], span[span.len() - 1]);
+        let half = (span.len() / 2) as f64;
+        let squares = span.iter().enumerate().map(|(i, angle)| {
+            let x = i as f64 / half - 1.0;
+            let parabola = b + 0.5 * (c - a) * x + 0.5 * (a + c - 2.0 * b) * x * x;
+            (angle - parabola).powi(2)
+        });
+        squares.sum::<f64>()
+    };
+    let mut fast = places().filter(|at| speed(*at).abs() >= 0.5 * fastest);
+    let at = match passing {
+        Passing::Even => fast.min_by(|a, b| uneven(*a).total_cmp(&uneven(*b))),
+        Passing::Fastest => fast.find(|at| speed(*at).abs() >= fastest),
+        Passing::Late => fast.last(),
+    };
+    at.map(|at| (at, speed(at)))
 }
 
 /// Refuses a recording with too little in it, or with counts that no shaft makes.
@@ -318,7 +364,7 @@ fn motions(angles: &[f64]) -> (Vec<(usize, usize)>, bool) {
             }
             _ => {}
         }
-        at += 10;
+        at += 5;
     }
     (found, begun.is_some())
 }
