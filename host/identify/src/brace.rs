@@ -30,7 +30,7 @@
 //!     torque_constant_nm_per_a: 0.0389,
 //!     gear_ratio: 86.0,
 //! };
-//! let refused = identify(&[nothing], &weight, TORQUE_DEVIATION);
+//! let refused = identify(&[nothing], &weight, TORQUE_DEVIATION, &mut |_| true);
 //! assert!(matches!(refused, Err(Refusal::Short { .. })));
 //! ```
 

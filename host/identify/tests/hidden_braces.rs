@@ -27,7 +27,7 @@ fn draft() {
         }
         let recordings = [truth.recorded(false), truth.recorded(true)];
         let t = std::time::Instant::now();
-        let found = identify(&recordings, &truth.given(), TORQUE_DEVIATION);
+        let found = identify(&recordings, &truth.given(), TORQUE_DEVIATION, &mut |_| true);
         fitting += t.elapsed().as_secs_f64();
         let brace = match found {
             Ok(brace) => brace,

@@ -12,6 +12,7 @@ pub(crate) mod disarm;
 pub(crate) mod doctor;
 pub(crate) mod effects;
 pub(crate) mod export;
+pub(crate) mod identify;
 pub(crate) mod identify_actuator;
 pub(crate) mod info;
 pub(crate) mod monitor;
@@ -61,6 +62,7 @@ verbs! {
     Info: info,
     Doctor: doctor,
     Params: params,
+    Identify: identify,
     IdentifyActuator: identify_actuator,
     Zero: zero,
     Arm: arm,

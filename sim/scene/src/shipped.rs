@@ -77,6 +77,7 @@ shipped![
     "everything",
     "passive-examination",
     "actuator-in-a-vice",
+    "weight-in-the-brace",
 ];
 
 impl Shipped {

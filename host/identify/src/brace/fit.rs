@@ -111,8 +111,14 @@ struct Equations {
 }
 
 impl Fit {
-    /// Fits all swings; `None` if the equations have no solution.
-    pub(crate) fn of(swings: &[Swing], recordings: usize, prior: &Prior) -> Option<Self> {
+    /// Fits all swings; `None` if the equations have no solution,
+    /// or `progress` returns false.
+    pub(crate) fn of(
+        swings: &[Swing],
+        recordings: usize,
+        prior: &Prior,
+        progress: &mut dyn FnMut(f64) -> bool,
+    ) -> Option<Self> {
         let mut problem = Problem {
             swings,
             recordings,
@@ -122,7 +128,12 @@ impl Fit {
         };
         // Teeth that touch once more or less are another valley: the deepest counts.
         let mut best: Option<(f64, DVector<f64>)> = None;
-        for start in problem.starts() {
+        let starts = problem.starts();
+        let count = starts.len() as f64;
+        for (at, start) in starts.into_iter().enumerate() {
+            if !progress(at as f64 / count) {
+                return None;
+            }
             let Some((left, vector)) = problem.climbed_down(start) else {
                 continue;
             };

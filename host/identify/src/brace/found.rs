@@ -66,7 +66,8 @@ impl Brace {
 }
 
 /// Identifies a brace from recordings of one weight that swings in it. `torque_deviation` is
-/// the standard deviation of the motor's torque constant, as a share.
+/// the standard deviation of the motor's torque constant, as a share. `progress` gets the share of
+/// the work that is done, and ends it by returning false.
 ///
 /// # Errors
 /// [`Refusal`]: what the recordings show instead.
@@ -74,13 +75,14 @@ pub fn identify(
     recordings: &[Recording],
     weight: &Weight,
     torque_deviation: f64,
+    progress: &mut dyn FnMut(f64) -> bool,
 ) -> std::result::Result<Brace, Refusal> {
     plausible::given(weight, torque_deviation)?;
     let Some(recording) = recordings.first() else {
         return Err(Refusal::Short { duration_s: 0.0 });
     };
     let prior = Prior::of(weight, torque_deviation);
-    let (all, fit) = best(recordings, &prior)?;
+    let (all, fit) = best(recordings, &prior, progress)?;
     let amplitude_rad = plausible::amplitude_rad(&all, &fit);
     plausible::is_explained(&all, &fit, amplitude_rad)?;
     plausible::is_possible(&fit, &prior)?;
@@ -103,6 +105,7 @@ pub fn identify(
 fn best(
     recordings: &[Recording],
     prior: &Prior,
+    progress: &mut dyn FnMut(f64) -> bool,
 ) -> std::result::Result<(Vec<Swing>, Fit), Refusal> {
     let mut best: Option<(Vec<Swing>, Fit)> = None;
     for passing in Passing::ALL {
@@ -110,9 +113,17 @@ fn best(
         for (place, recording) in recordings.iter().enumerate() {
             all.extend(swings(place, recording, passing)?);
         }
-        let Some(fit) = Fit::of(&all, recordings.len(), prior) else {
-            continue;
-        };
+        let part = passing as u8;
+        let parts = f64::from(u8::try_from(Passing::ALL.len()).unwrap_or(u8::MAX));
+        let mut goes_on = true;
+        let fit = Fit::of(&all, recordings.len(), prior, &mut |share| {
+            goes_on &= progress((f64::from(part) + share) / parts);
+            goes_on
+        });
+        if !goes_on {
+            return Err(Refusal::Interrupted);
+        }
+        let Some(fit) = fit else { continue };
         if best
             .as_ref()
             .is_none_or(|(_, least)| fit.rms_rad < least.rms_rad)

@@ -146,6 +146,9 @@ pub enum Refusal {
         /// Its unit.
         unit: &'static str,
     },
+    /// The caller has ended it.
+    #[error("interrupted")]
+    Interrupted,
     /// The equations have no solution.
     #[error(
         "the fit has no solution: the recording does not tell its numbers apart; record again, with torque"

@@ -1,0 +1,151 @@
+//! `crepitus identify`: friction, inertia, backlash and cuffs of the brace from recordings of a
+//! weight that swings in it.
+
+mod recordings;
+mod results;
+mod table;
+
+use crate::failure::{Failure, print, print_json, warn};
+use crate::interrupt;
+use crate::progress::Progress;
+use crate::results::folder;
+use clap::{Args, ValueHint};
+use crepitus_identify::brace::{Refusal, Weight, identify};
+use serde_json::json;
+use std::path::PathBuf;
+
+/// Identify the brace: friction, inertia, backlash, cuff stiffness from recordings of a swinging weight.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  crepitus record swing --for 15s
+  crepitus record armed --for 15s --arm
+  crepitus identify swing armed --weight-kg 2.5 --lever-m 0.25 --weight-inertia-kg-m2 0.23 --out out/brace
+  crepitus identify swing --weight-kg 2.5 --lever-m 0.25 --scene-out brace.toml
+  crepitus record swing --device sim --scene weight-in-the-brace --for 8s
+
+What to record: clamp the upper half of the brace with its axis level, strap a bar with a weight into the cuffs \
+of the lower half, as if it were the leg, and choose it so heavy that it swings four times or more. Begin to record, lift \
+it by 50 to 70 degrees, hold it still, let go without pushing, and do not touch it until it has hung still for a second. \
+Several releases may stand in one recording.
+
+Without torque this shows dry and viscous friction, inertias, backlash and cuffs, all by the weight's moment in N·m. What the \
+gear loses under load, and the torque constant, need another recording with --arm while the device pushes and brakes: \
+crepitus params set crepitus.render=off lead-pipe.render=on lead-pipe.torque_nm=0.3 lead-pipe.elastic_nm_per_rad=3 \
+lead-pipe.neutral_deg=60, with the zero set 60 degrees from where the weight hangs. Compared with the motor's \
+torque, the weight is checked, too.
+
+A quantity that a recording does not show is not reported; the text says why and what to do. Intervals are those of 95 %. \
+Exit code 1: the recordings are not those of a weight that swings freely; the text says why.")]
+pub(crate) struct Arguments {
+    /// Recordings of one weight in one brace, as `crepitus record` writes them.
+    #[arg(required = true, value_hint = ValueHint::FilePath)]
+    recordings: Vec<PathBuf>,
+
+    /// Mass of bar and weight, kg.
+    #[arg(long, value_name = "KG")]
+    weight_kg: f64,
+
+    /// Distance of their centre of mass from the axis, m.
+    #[arg(long, value_name = "M")]
+    lever_m: f64,
+
+    /// Their inertia about the axis, kg·m² [default: mass times the lever's square].
+    #[arg(long, value_name = "KG_M2")]
+    weight_inertia_kg_m2: Option<f64>,
+
+    /// 95 % interval of the weight's moment, ± %; its inertia is taken to be known half as well.
+    #[arg(long, value_name = "PERCENT", default_value_t = 1.0)]
+    weight_tolerance: f64,
+
+    /// 95 % interval of the motor's torque constant, ± %.
+    #[arg(long, value_name = "PERCENT", default_value_t = 10.0)]
+    torque_tolerance: f64,
+
+    /// Folder for report.html, residual.svg and identified.json.
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    out: Option<PathBuf>,
+
+    /// File for the identified values as [effects.…] tables of a scene; it must not exist.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    scene_out: Option<PathBuf>,
+}
+
+/// Standard deviation, as a share, of a 95 % interval in percent.
+fn deviation(option: &str, percent: f64) -> Result<f64, Failure> {
+    if percent > 0.0 && percent <= 50.0 {
+        Ok(percent / 196.0)
+    } else {
+        Err(Failure::Input(format!(
+            "{option}: expected a number above 0, up to 50 %, got {percent}"
+        )))
+    }
+}
+
+impl Arguments {
+    fn weight(&self) -> Result<Weight, Failure> {
+        let given = [
+            ("--weight-kg", Some(self.weight_kg)),
+            ("--lever-m", Some(self.lever_m)),
+            ("--weight-inertia-kg-m2", self.weight_inertia_kg_m2),
+        ];
+        for (option, value) in given {
+            if value.is_some_and(|value| !(value.is_finite() && value > 0.0)) {
+                let value = value.unwrap_or_default();
+                return Err(Failure::Input(format!(
+                    "{option}: expected a number above 0, got {value}"
+                )));
+            }
+        }
+        Ok(Weight::new(
+            self.weight_kg,
+            self.lever_m,
+            self.weight_inertia_kg_m2,
+            deviation("--weight-tolerance", self.weight_tolerance)?,
+        ))
+    }
+}
+
+/// Identifies, prints, writes.
+pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let weight = arguments.weight()?;
+    let torque_deviation = deviation("--torque-tolerance", arguments.torque_tolerance)?;
+    if let Some(file) = &arguments.scene_out {
+        results::is_free(file)?;
+    }
+    interrupt::listen();
+    let recordings = recordings::read(&arguments.recordings)?;
+    let out = arguments.out.as_deref();
+    let prepared = out.map(folder).transpose()?;
+    let mut progress = Progress::of_study();
+    let found = identify(&recordings, &weight, torque_deviation, &mut |share| {
+        progress.reached(share);
+        !interrupt::requested()
+    });
+    drop(progress);
+    let brace = found.map_err(|refusal| match refusal {
+        Refusal::Interrupted => Failure::Work("interrupted: nothing was written".to_owned()),
+        refusal => Failure::Work(format!("nothing is identified: {refusal}")),
+    })?;
+    let summary = table::summary(&brace, &weight);
+    if let (Some(out), Some(folder)) = (out, prepared) {
+        results::write(out, folder, &brace, &summary)?;
+    }
+    if let Some(file) = &arguments.scene_out {
+        results::write_scene(file, &brace)?;
+    }
+    if as_json {
+        return print_json(
+            &json!({ "identified": summary, "out": out, "scene": arguments.scene_out }),
+        );
+    }
+    brace.notes.iter().for_each(warn);
+    print(&table::text(&brace))?;
+    if let Some(out) = out {
+        print(&format!("report: {}\n", out.join(results::PAGE).display()))?;
+    }
+    match &arguments.scene_out {
+        Some(file) => print(&format!("tables of a scene: {}\n", file.display())),
+        None => Ok(()),
+    }
+}
