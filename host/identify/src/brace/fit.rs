@@ -111,49 +111,55 @@ struct Equations {
 }
 
 impl Fit {
-    /// Fits all swings; `None` if the equations have no solution,
-    /// or `progress` returns false.
-    pub(crate) fn of(
-        swings: &[Swing],
-        recordings: usize,
-        prior: &Prior,
-        progress: &mut dyn FnMut(f64) -> bool,
-    ) -> Option<Self> {
-        let mut problem = Problem {
+    /// Fits all swings from the guess; `None` if the equations have no solution.
+    pub(crate) fn of(swings: &[Swing], recordings: usize, prior: &Prior) -> Option<Self> {
+        Problem::of(swings, recordings, prior).fitted(|problem| vec![problem.start()])
+    }
+
+    /// The same from other starts.
+    pub(crate) fn around(swings: &[Swing], recordings: usize, prior: &Prior) -> Option<Self> {
+        Problem::of(swings, recordings, prior).fitted(Problem::around)
+    }
+
+    /// Standard deviation of a number.
+    pub(crate) fn deviation(&self, at: usize) -> f64 {
+        self.covariance[(at, at)].max(0.0).sqrt()
+    }
+}
+
+impl<'s> Problem<'s> {
+    fn of(swings: &'s [Swing], recordings: usize, prior: &Prior) -> Self {
+        Self {
             swings,
             recordings,
             prior: *prior,
             horizon: 0,
             weight: 1.0 / FIRST_DEVIATION.powi(2),
-        };
+        }
+    }
+
+    /// The deepest valley from these starts, and how well each number is known there.
+    fn fitted(mut self, starts: impl Fn(&Self) -> Vec<DVector<f64>>) -> Option<Fit> {
         // Teeth that touch once more or less are another valley: the deepest counts.
         let mut best: Option<(f64, DVector<f64>)> = None;
-        let starts = problem.starts();
-        let count = starts.len() as f64;
-        for (at, start) in starts.into_iter().enumerate() {
-            if !progress(at as f64 / count) {
-                return None;
-            }
-            let Some((left, vector)) = problem.climbed_down(start) else {
+        for start in starts(&self) {
+            let Some((left, vector)) = self.climbed_down(start) else {
                 continue;
             };
             if best.as_ref().is_none_or(|(least, _)| left < *least) {
                 best = Some((left, vector));
             }
-            if best.as_ref().is_some_and(|(left, _)| *left < GOOD_ENOUGH) {
-                break;
-            }
         }
         let (_, mut vector) = best?;
         // The weight of the data against what was known before follows from what is left.
         for _ in 0..3 {
-            let deviation = effective_deviation(&problem.residuals(&vector));
-            problem.weight = 1.0 / deviation.powi(2);
-            vector = problem.descend(vector, MOST_STEPS, SMALLEST_GAIN)?;
+            let deviation = effective_deviation(&self.residuals(&vector));
+            self.weight = 1.0 / deviation.powi(2);
+            vector = self.descend(vector, MOST_STEPS, SMALLEST_GAIN)?;
         }
-        let equations = problem.equations(&vector, true);
+        let equations = self.equations(&vector, true);
         let inverse = equations.normal.clone().cholesky()?.inverse();
-        let mut covariance = &inverse * problem.information(&vector) * &inverse;
+        let mut covariance = &inverse * self.information(&vector) * &inverse;
         // What each half swing does to each number: errors of a model have the same sign from
         // one to the next, so they add up.
         let mut pulls = DVector::zeros(inverse.nrows());
@@ -167,31 +173,24 @@ impl Fit {
             covariance.row_mut(i).scale_mut(more);
             covariance.column_mut(i).scale_mut(more);
         }
-        let residuals = problem.residuals(&vector);
+        let residuals = self.residuals(&vector);
         let to_numbers = DMatrix::from_fn(NUMBERS, covariance.nrows(), |i, j| {
-            problem
+            self
                 .slopes(&vector, i)
                 .into_iter()
                 .filter(|(at, _)| *at == j)
                 .map(|(_, s)| s)
                 .sum::<f64>()
         });
-        Some(Self {
-            numbers: std::array::from_fn(|i| problem.number(&vector, i)),
+        Some(Fit {
+            numbers: std::array::from_fn(|i| self.number(&vector, i)),
             covariance: &to_numbers * covariance * to_numbers.transpose(),
-            hangs_rad: (0..recordings).map(|r| vector[NUMBERS + r]).collect(),
+            hangs_rad: (0..self.recordings).map(|r| vector[NUMBERS + r]).collect(),
             rms_rad: rms(&residuals),
             residuals,
         })
     }
 
-    /// Standard deviation of a number.
-    pub(crate) fn deviation(&self, at: usize) -> f64 {
-        self.covariance[(at, at)].max(0.0).sqrt()
-    }
-}
-
-impl Problem<'_> {
     /// From a start to the least of all steps, by way of shorter swings; with what is left,
     /// rad rms.
     fn climbed_down(&mut self, mut vector: DVector<f64>) -> Option<(f64, DVector<f64>)> {
@@ -211,17 +210,17 @@ impl Problem<'_> {
         Some((rms(&self.residuals(&vector)), vector))
     }
 
-    /// The guess, and others about it.
-    fn starts(&self) -> Vec<DVector<f64>> {
+    /// Starts about the guess.
+    fn around(&self) -> Vec<DVector<f64>> {
         let guess = self.start();
-        let around = AROUND.iter().map(|factors| {
+        let moved = AROUND.iter().map(|factors| {
             let mut start = guess.clone();
             for (at, factor) in factors {
                 start[*at] *= factor;
             }
             start
         });
-        std::iter::once(guess.clone()).chain(around).collect()
+        moved.collect()
     }
 
     fn own(&self, swing: usize) -> usize {

@@ -107,34 +107,39 @@ fn best(
     prior: &Prior,
     progress: &mut dyn FnMut(f64) -> bool,
 ) -> std::result::Result<(Vec<Swing>, Fit), Refusal> {
+    /// Fits: one for each beginning, and two more.
+    const FITS: f64 = 5.0;
     let mut best: Option<(Vec<Swing>, Fit)> = None;
+    let is_good = |best: &Option<(Vec<Swing>, Fit)>| {
+        (best.as_ref()).is_some_and(|(_, fit)| fit.rms_rad < GOOD_ENOUGH)
+    };
     for passing in Passing::ALL {
+        if is_good(&best) {
+            break;
+        }
+        if !progress(f64::from(passing as u8) / FITS) {
+            return Err(Refusal::Interrupted);
+        }
         let mut all = Vec::new();
         for (place, recording) in recordings.iter().enumerate() {
             all.extend(swings(place, recording, passing)?);
         }
-        let part = passing as u8;
-        let parts = f64::from(u8::try_from(Passing::ALL.len()).unwrap_or(u8::MAX));
-        let mut goes_on = true;
-        let fit = Fit::of(&all, recordings.len(), prior, &mut |share| {
-            goes_on &= progress((f64::from(part) + share) / parts);
-            goes_on
-        });
-        if !goes_on {
-            return Err(Refusal::Interrupted);
-        }
-        let Some(fit) = fit else { continue };
-        if best
-            .as_ref()
-            .is_none_or(|(_, least)| fit.rms_rad < least.rms_rad)
+        if let Some(fit) = Fit::of(&all, recordings.len(), prior)
+            && (best.as_ref()).is_none_or(|(_, least)| fit.rms_rad < least.rms_rad)
         {
             best = Some((all, fit));
         }
-        if best
-            .as_ref()
-            .is_some_and(|(_, fit)| fit.rms_rad < GOOD_ENOUGH)
+    }
+    if let Some((all, least)) = &mut best
+        && least.rms_rad >= GOOD_ENOUGH
+    {
+        if !progress(3.0 / FITS) {
+            return Err(Refusal::Interrupted);
+        }
+        if let Some(fit) = Fit::around(all, recordings.len(), prior)
+            && fit.rms_rad < least.rms_rad
         {
-            break;
+            *least = fit;
         }
     }
     best.ok_or(Refusal::Singular)

@@ -34,11 +34,15 @@ pub(crate) fn result(
     recording: &Recording,
 ) -> Result {
     let at = quantity.place();
+    let unit = unit(quantity, recording);
+    let value = unit * fit.numbers[at];
+    let (share, least) = quantity.model_error();
+    let of_model = f64::max(share * value.abs(), least);
+    let of_data = DEVIATIONS * fit.deviation(at) * unit;
     let estimate = Estimate {
-        value: fit.numbers[at],
-        half_width: DEVIATIONS * fit.deviation(at),
-    }
-    .times(unit(quantity, recording));
+        value,
+        half_width: of_data.hypot(of_model),
+    };
     let (share, absolute) = quantity.widest();
     let widest = f64::max(share * estimate.value.abs(), absolute);
     let is_narrow = estimate.half_width <= widest;
