@@ -38,8 +38,9 @@ const OWN: usize = 4;
 /// Their deviation before: the bend of the cuffs beyond a steady one.
 const OWN_DEVIATION: [f64; OWN] = [0.1, 3.0, 5e-3, 0.3];
 
-/// Parts of a swing that are fitted, one after the other, s.
-const HORIZONS_S: [f64; 4] = [0.7, 1.6, 3.5, f64::INFINITY];
+/// Parts of a swing that are fitted, one after the other, s: its beginning, and all.
+const EARLY_S: [f64; 2] = [0.7, 1.6];
+const LATE_S: [f64; 2] = [3.5, f64::INFINITY];
 
 /// Most steps in each, and the relative gain that ends them; and of the whole in the end.
 const EARLY_STEPS: u32 = 12;
@@ -48,7 +49,7 @@ const MOST_STEPS: u32 = 30;
 const SMALLEST_GAIN: f64 = 1e-6;
 
 /// Other starts: factors for some numbers.
-const AROUND: [[(usize, f64); 3]; 2] = [
+const AROUND: [[(usize, f64); 3]; 5] = [
     [
         (place::ROTOR, 1.4),
         (place::STIFFNESS, 1.6),
@@ -59,11 +60,26 @@ const AROUND: [[(usize, f64); 3]; 2] = [
         (place::STIFFNESS, 0.7),
         (place::GAP, 0.7),
     ],
+    [
+        (place::ROTOR, 0.7),
+        (place::STIFFNESS, 1.4),
+        (place::GAP, 0.6),
+    ],
+    [
+        (place::ROTOR, 1.4),
+        (place::DAMPING, 0.6),
+        (place::BRACE, 1.6),
+    ],
+    [
+        (place::GAP, 0.5),
+        (place::DAMPING, 1.5),
+        (place::BRACE, 0.6),
+    ],
 ];
 
 /// With this left no other start is tried, rad rms: a count of the usual encoder is 36 µrad, and
 /// leaves 10.
-pub(crate) const GOOD_ENOUGH: f64 = 1.5e-5;
+pub(crate) const GOOD_ENOUGH: f64 = 2e-5;
 
 /// Deviation of an angle before it is known, rad, and the least: of a count.
 const FIRST_DEVIATION: f64 = 2e-3;
@@ -100,6 +116,8 @@ struct Problem<'s> {
     horizon: usize,
     /// Weight of a residual, 1/rad².
     weight: f64,
+    /// Derivatives by differences to one side.
+    is_rough: bool,
 }
 
 struct Equations {
@@ -113,12 +131,36 @@ struct Equations {
 impl Fit {
     /// Fits all swings from the guess; `None` if the equations have no solution.
     pub(crate) fn of(swings: &[Swing], recordings: usize, prior: &Prior) -> Option<Self> {
-        Problem::of(swings, recordings, prior).fitted(|problem| vec![problem.start()])
+        let mut problem = Problem::of(swings, recordings, prior);
+        let guess = problem.start();
+        let near = problem.near(guess)?;
+        problem.whole(near)
     }
 
-    /// The same from other starts.
-    pub(crate) fn around(swings: &[Swing], recordings: usize, prior: &Prior) -> Option<Self> {
-        Problem::of(swings, recordings, prior).fitted(Problem::around)
+    /// The beginnings of all swings from many starts: what is left, rad rms, and where to go
+    /// on.
+    pub(crate) fn candidates(
+        swings: &[Swing],
+        recordings: usize,
+        prior: &Prior,
+    ) -> Vec<(f64, DVector<f64>)> {
+        let mut problem = Problem::of(swings, recordings, prior);
+        (problem.starts().into_iter())
+            .filter_map(|start| {
+                let near = problem.near(start)?;
+                Some((rms(&problem.residuals(&near)), near))
+            })
+            .collect()
+    }
+
+    /// Goes on from one of these.
+    pub(crate) fn from(
+        swings: &[Swing],
+        recordings: usize,
+        prior: &Prior,
+        near: DVector<f64>,
+    ) -> Option<Self> {
+        Problem::of(swings, recordings, prior).whole(near)
     }
 
     /// Standard deviation of a number.
@@ -135,22 +177,15 @@ impl<'s> Problem<'s> {
             prior: *prior,
             horizon: 0,
             weight: 1.0 / FIRST_DEVIATION.powi(2),
+            is_rough: false,
         }
     }
 
-    /// The deepest valley from these starts, and how well each number is known there.
-    fn fitted(mut self, starts: impl Fn(&Self) -> Vec<DVector<f64>>) -> Option<Fit> {
-        // Teeth that touch once more or less are another valley: the deepest counts.
-        let mut best: Option<(f64, DVector<f64>)> = None;
-        for start in starts(&self) {
-            let Some((left, vector)) = self.climbed_down(start) else {
-                continue;
-            };
-            if best.as_ref().is_none_or(|(least, _)| left < *least) {
-                best = Some((left, vector));
-            }
-        }
-        let (_, mut vector) = best?;
+    /// The whole of all swings from a fit of their beginnings, and how well each number is known.
+    fn whole(mut self, near: DVector<f64>) -> Option<Fit> {
+        let mut vector = self.along(near, &LATE_S)?;
+        self.weight = 1.0 / LEAST_DEVIATION.powi(2);
+        vector = self.descend(vector, MOST_STEPS, EARLY_GAIN)?;
         // The weight of the data against what was known before follows from what is left.
         for _ in 0..3 {
             let deviation = effective_deviation(&self.residuals(&vector));
@@ -175,8 +210,7 @@ impl<'s> Problem<'s> {
         }
         let residuals = self.residuals(&vector);
         let to_numbers = DMatrix::from_fn(NUMBERS, covariance.nrows(), |i, j| {
-            self
-                .slopes(&vector, i)
+            self.slopes(&vector, i)
                 .into_iter()
                 .filter(|(at, _)| *at == j)
                 .map(|(_, s)| s)
@@ -191,11 +225,18 @@ impl<'s> Problem<'s> {
         })
     }
 
-    /// From a start to the least of all steps, by way of shorter swings; with what is left,
-    /// rad rms.
-    fn climbed_down(&mut self, mut vector: DVector<f64>) -> Option<(f64, DVector<f64>)> {
+    /// From a start to the fit of the beginnings.
+    fn near(&mut self, start: DVector<f64>) -> Option<DVector<f64>> {
+        self.is_rough = true;
+        let near = self.along(start, &EARLY_S);
+        self.is_rough = false;
+        near
+    }
+
+    /// From a shorter part of the swings to a longer one.
+    fn along(&mut self, mut vector: DVector<f64>, horizons_s: &[f64]) -> Option<DVector<f64>> {
         self.weight = 1.0 / FIRST_DEVIATION.powi(2);
-        for horizon_s in HORIZONS_S {
+        for horizon_s in horizons_s {
             #[expect(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,
@@ -205,13 +246,11 @@ impl<'s> Problem<'s> {
             self.horizon = horizon;
             vector = self.descend(vector, EARLY_STEPS, EARLY_GAIN)?;
         }
-        self.weight = 1.0 / LEAST_DEVIATION.powi(2);
-        vector = self.descend(vector, MOST_STEPS, EARLY_GAIN)?;
-        Some((rms(&self.residuals(&vector)), vector))
+        Some(vector)
     }
 
-    /// Starts about the guess.
-    fn around(&self) -> Vec<DVector<f64>> {
+    /// The guess, and starts about it.
+    fn starts(&self) -> Vec<DVector<f64>> {
         let guess = self.start();
         let moved = AROUND.iter().map(|factors| {
             let mut start = guess.clone();
@@ -220,7 +259,7 @@ impl<'s> Problem<'s> {
             }
             start
         });
-        moved.collect()
+        std::iter::once(guess.clone()).chain(moved).collect()
     }
 
     fn own(&self, swing: usize) -> usize {
@@ -332,8 +371,12 @@ impl<'s> Problem<'s> {
     }
 
     fn residual(&self, vector: &DVector<f64>, swing_at: usize) -> Vec<f64> {
+        self.compared(&self.simulate(vector, swing_at), swing_at)
+    }
+
+    /// Measured minus simulated.
+    fn compared(&self, simulated: &[f64], swing_at: usize) -> Vec<f64> {
         let measured = self.swings[swing_at].angles_rad.iter().step_by(STRIDE);
-        let simulated = self.simulate(vector, swing_at);
         measured.zip(simulated).map(|(m, s)| m - s).collect()
     }
 
@@ -371,7 +414,8 @@ impl<'s> Problem<'s> {
         }
         let mut blocks = Vec::new();
         for swing_at in 0..self.swings.len() {
-            let residual = self.residual(vector, swing_at);
+            let base = self.simulate(vector, swing_at);
+            let residual = self.compared(&base, swing_at);
             let recording = NUMBERS + self.swings[swing_at].recording;
             let own = self.own(swing_at);
             let places: Vec<usize> = (0..NUMBERS)
@@ -380,7 +424,7 @@ impl<'s> Problem<'s> {
                 .collect();
             let columns: Vec<Vec<f64>> = places
                 .iter()
-                .map(|at| self.slope(vector, swing_at, *at))
+                .map(|at| self.slope(vector, swing_at, *at, &base))
                 .collect();
             let is_good = |r: usize| !residual[r].is_nan();
             for (i, a) in places.iter().zip(&columns) {
@@ -433,14 +477,10 @@ impl<'s> Problem<'s> {
         }
     }
 
-    /// Derivative of a swing's angles by one entry, by differences to both sides.
-    fn slope(&self, vector: &DVector<f64>, swing_at: usize, at: usize) -> Vec<f64> {
+    /// Derivative of a swing's angles by one entry, by differences from `base` or to both sides.
+    fn slope(&self, vector: &DVector<f64>, swing_at: usize, at: usize, base: &[f64]) -> Vec<f64> {
         if at == place::MOMENT {
-            return self
-                .simulate(vector, swing_at)
-                .iter()
-                .map(|_| 0.0)
-                .collect();
+            return vec![0.0; base.len()];
         }
         let step = 1e-4 * self.scale(at);
         let moved = |by: f64| {
@@ -448,15 +488,16 @@ impl<'s> Problem<'s> {
             moved[at] += by;
             self.simulate(&moved, swing_at)
         };
-        let low = if at < NUMBERS && vector[at] - step < LEAST[at] {
-            0.0
+        let up = moved(step);
+        let is_at_end = at < NUMBERS && vector[at] - step < LEAST[at];
+        let (down, way) = if self.is_rough || is_at_end {
+            (base.to_vec(), step)
         } else {
-            step
+            (moved(-step), 2.0 * step)
         };
-        let (up, down) = (moved(step), moved(-low));
         up.iter()
             .zip(down)
-            .map(|(up, down)| (up - down) / (step + low))
+            .map(|(up, down)| (up - down) / way)
             .collect()
     }
 

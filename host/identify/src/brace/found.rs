@@ -102,45 +102,74 @@ pub fn identify(
 }
 
 /// The swings from where they begin best, and their fit.
+///
+/// A fit from the guess is enough where it leaves no more than whole counts do. Else teeth may
+/// touch once more or less in it than in truth, which no small step repairs: many starts
+/// are followed a short way, and the best of them to the end.
 fn best(
     recordings: &[Recording],
     prior: &Prior,
     progress: &mut dyn FnMut(f64) -> bool,
 ) -> std::result::Result<(Vec<Swing>, Fit), Refusal> {
-    /// Fits: one for each beginning, and two more.
-    const FITS: f64 = 5.0;
-    let mut best: Option<(Vec<Swing>, Fit)> = None;
-    let is_good = |best: &Option<(Vec<Swing>, Fit)>| {
-        (best.as_ref()).is_some_and(|(_, fit)| fit.rms_rad < GOOD_ENOUGH)
+    /// Of the starts.
+    const FOLLOWED: usize = 5;
+    let count = recordings.len();
+    let mut watch = |share: f64| {
+        if progress(share) {
+            Ok(())
+        } else {
+            Err(Refusal::Interrupted)
+        }
     };
-    for passing in Passing::ALL {
-        if is_good(&best) {
-            break;
-        }
-        if !progress(f64::from(passing as u8) / FITS) {
-            return Err(Refusal::Interrupted);
-        }
-        let mut all = Vec::new();
-        for (place, recording) in recordings.iter().enumerate() {
-            all.extend(swings(place, recording, passing)?);
-        }
-        if let Some(fit) = Fit::of(&all, recordings.len(), prior)
+    let from = |passing| -> std::result::Result<Vec<Swing>, Refusal> {
+        let each = recordings.iter().enumerate();
+        let found = each.map(|(place, recording)| swings(place, recording, passing));
+        Ok(found.collect::<std::result::Result<Vec<_>, _>>()?.concat())
+    };
+    watch(0.0)?;
+    let even = from(Passing::Even)?;
+    let mut best = Fit::of(&even, count, prior).map(|fit| (even, fit));
+    if best
+        .as_ref()
+        .is_some_and(|(_, fit)| fit.rms_rad < GOOD_ENOUGH)
+    {
+        return best.ok_or(Refusal::Singular);
+    }
+    watch(0.2)?;
+    let others = Passing::ALL
+        .into_iter()
+        .map(from)
+        .collect::<std::result::Result<Vec<_>, _>>()?;
+    let near = in_parallel(&others, |all| Fit::candidates(all, count, prior));
+    let mut starts: Vec<_> = (others.iter().zip(near))
+        .flat_map(|(all, near)| near.into_iter().map(move |(rms, near)| (rms, near, all)))
+        .collect();
+    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    starts.truncate(FOLLOWED);
+    watch(0.5)?;
+    let fits = in_parallel(&starts, |(_, near, all)| {
+        Fit::from(all, count, prior, near.clone())
+    });
+    for ((_, _, all), fit) in starts.iter().zip(fits) {
+        if let Some(fit) = fit
             && (best.as_ref()).is_none_or(|(_, least)| fit.rms_rad < least.rms_rad)
         {
-            best = Some((all, fit));
-        }
-    }
-    if let Some((all, least)) = &mut best
-        && least.rms_rad >= GOOD_ENOUGH
-    {
-        if !progress(3.0 / FITS) {
-            return Err(Refusal::Interrupted);
-        }
-        if let Some(fit) = Fit::around(all, recordings.len(), prior)
-            && fit.rms_rad < least.rms_rad
-        {
-            *least = fit;
+            best = Some(((*all).clone(), fit));
         }
     }
     best.ok_or(Refusal::Singular)
+}
+
+/// Does a piece of work for each item, each in a thread of its own.
+fn in_parallel<T: Sync, R: Send + Default>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    std::thread::scope(|scope| {
+        let work = &work;
+        let threads: Vec<_> = (items.iter())
+            .map(|item| scope.spawn(move || work(item)))
+            .collect();
+        // A thread that has panicked has found nothing.
+        (threads.into_iter())
+            .map(|thread| thread.join().unwrap_or_default())
+            .collect()
+    })
 }

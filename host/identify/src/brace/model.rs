@@ -385,12 +385,12 @@ mod tests {
         let base = [
             0.5, 0.3, 0.05, 0.05, 0.01, 0.0175, 120.0, 1.0, 6.0, 0.2, 1.0,
         ];
-        let torques: Vec<f64> = (0..6000)
+        let torques: Vec<f64> = (0..4000)
             .map(|i| {
-                if i < 3000 {
+                if i < 2000 {
                     0.0
                 } else {
-                    0.4 * f64::from(i).sin()
+                    0.4 * (0.02 * f64::from(i)).sin()
                 }
             })
             .collect();

@@ -16,6 +16,9 @@ const SOME_TORQUE_NM: f64 = 0.1;
 /// An interval that is narrower than before by this share was seen in the recording.
 const NARROWED: f64 = 0.7;
 
+/// What the fit leaves of the angle, rad rms, that doubles the error of the model.
+const MORE_RAD: f64 = 2e-4;
+
 /// In units of the quantity's table.
 fn unit(quantity: Quantity, recording: &Recording) -> f64 {
     match quantity {
@@ -37,7 +40,9 @@ pub(crate) fn result(
     let unit = unit(quantity, recording);
     let value = unit * fit.numbers[at];
     let (share, least) = quantity.model_error();
-    let of_model = f64::max(share * value.abs(), least);
+    // A motion that the model explains less well has more of what it leaves out.
+    let more = 1.0 + fit.rms_rad / MORE_RAD;
+    let of_model = more * f64::max(share * value.abs(), least);
     let of_data = DEVIATIONS * fit.deviation(at) * unit;
     let estimate = Estimate {
         value,

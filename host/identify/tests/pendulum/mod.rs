@@ -49,12 +49,17 @@ impl Pendulum {
         for tick in 0..400_000_u64 {
             let spring = -self.spring_nm * angle[0];
             let brake = -self.brake_nm * (omega[0] / 0.05).clamp(-1.0, 1.0);
-            let torque = if tick > held_ticks { spring + brake } else { 0.0 };
+            let torque = if tick > held_ticks {
+                spring + brake
+            } else {
+                0.0
+            };
             let ma = (1e3 * torque / NM_PER_A + 3.0 * (random.f64() - 0.5)).round();
             samples.push(Sample {
                 tick: 77 + tick,
                 count: (angle[0] / RAD_PER_COUNT).floor() as i32,
-                current_a: (self.spring_nm > 0.0 || self.brake_nm > 0.0).then_some((1e-3 * ma) as f32),
+                current_a: (self.spring_nm > 0.0 || self.brake_nm > 0.0)
+                    .then_some((1e-3 * ma) as f32),
                 is_lost: false,
             });
             for _ in 0..STEPS {
@@ -75,10 +80,18 @@ impl Pendulum {
                 if omega[0].abs() < 1e-5 && driven.abs() <= self.stiction * coulomb {
                     omega[0] = 0.0;
                 } else {
-                    let sense = if omega[0].abs() < 1e-5 { driven.signum() } else { omega[0].signum() };
+                    let sense = if omega[0].abs() < 1e-5 {
+                        driven.signum()
+                    } else {
+                        omega[0].signum()
+                    };
                     let next = omega[0] + H * (driven - sense * coulomb) / self.rotor_kg_m2;
                     // Friction does not turn the motion round.
-                    omega[0] = if next * omega[0] < 0.0 && driven.abs() <= coulomb { 0.0 } else { next };
+                    omega[0] = if next * omega[0] < 0.0 && driven.abs() <= coulomb {
+                        0.0
+                    } else {
+                        next
+                    };
                 }
                 omega[1] += H * (teeth - cuffs) / self.brace_kg_m2;
                 if tick > held_ticks {
