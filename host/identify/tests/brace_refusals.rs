@@ -1,5 +1,7 @@
 //! Recordings that do not show a brace, and what is said of them.
 
+#![allow(clippy::cast_possible_truncation, reason = "counts are small")]
+
 mod braces;
 #[path = "../../../sim/board/tests/support/mod.rs"]
 mod support;
@@ -17,7 +19,7 @@ fn found(recordings: &[Recording], weight: &Weight) -> Result<Brace, Refusal> {
 
 fn refused(recording: Recording) -> Refusal {
     let found = found(&[recording], &TRUTH.given());
-    let refusal = found.err().expect("refused");
+    let refusal = found.expect_err("refused");
     println!("{refusal}");
     refusal
 }
@@ -142,7 +144,7 @@ fn a_gap_in_the_ticks() {
 
 #[test]
 fn a_leg_in_the_brace() {
-    let it = TRUTH.recorded_with(false, "passive = \"riener-edrich\"", 9.0);
+    let it = TRUTH.recorded_with(false, "passive = \"riener-edrich\"", 9);
     let refusal = refused(it);
     assert!(
         matches!(

@@ -97,12 +97,12 @@ fn counted(seed: u64, stiction: f64, braces: usize) -> (usize, usize) {
 
 #[test]
 fn soft_teeth_and_a_noisy_current_are_within_the_intervals() {
-    let (inside, outside) = counted(3, 1.0, 4);
+    let (inside, outside) = counted(101, 1.0, 4);
     assert!(inside >= 30 && outside <= 1, "{inside} {outside}");
 }
 
 #[test]
 fn a_friction_that_is_greater_at_rest_is_within_the_intervals() {
-    let (inside, outside) = counted(4, 1.3, 4);
+    let (inside, outside) = counted(102, 1.3, 4);
     assert!(inside >= 28 && outside <= 2, "{inside} {outside}");
 }

@@ -30,7 +30,7 @@ use crate::brace::swing::Swing;
 use nalgebra::{DMatrix, DVector};
 
 /// Steps from one compared angle to the next: 2 ms.
-const STRIDE: usize = 4;
+pub(crate) const STRIDE: usize = 4;
 
 /// Numbers of a swing's own.
 const OWN: usize = 4;

@@ -148,21 +148,20 @@ impl Step<'_> {
             }
             return;
         }
-        match mode.contact {
-            Some(_) => mode.contact = None,
-            None => {
-                let n = self.n;
-                let side = (x.angle[ROTOR] - x.angle[BRACE]).signum();
-                let both = (n.rotor_kg_m2 * x.omega[ROTOR] + n.brace_kg_m2 * x.omega[BRACE])
-                    / (n.rotor_kg_m2 + n.brace_kg_m2);
-                x.angle[ROTOR] = x.angle[BRACE] + side * 0.5 * n.gap_rad;
-                x.omega[ROTOR] = both;
-                x.omega[BRACE] = both;
-                mode.contact = Some(side);
-                if both != 0.0 {
-                    mode.sliding = Some(both.signum());
-                }
-            }
+        if mode.contact.is_some() {
+            mode.contact = None;
+            return;
+        }
+        let n = self.n;
+        let side = (x.angle[ROTOR] - x.angle[BRACE]).signum();
+        let both = (n.rotor_kg_m2 * x.omega[ROTOR] + n.brace_kg_m2 * x.omega[BRACE])
+            / (n.rotor_kg_m2 + n.brace_kg_m2);
+        x.angle[ROTOR] = x.angle[BRACE] + side * 0.5 * n.gap_rad;
+        x.omega[ROTOR] = both;
+        x.omega[BRACE] = both;
+        mode.contact = Some(side);
+        if both != 0.0 {
+            mode.sliding = Some(both.signum());
         }
     }
 

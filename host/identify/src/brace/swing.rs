@@ -235,7 +235,7 @@ fn passes(passing: Passing, angles: &[f64], released: usize, first: usize) -> Op
     let at = match passing {
         Passing::Even => fast.min_by(|a, b| uneven(*a).total_cmp(&uneven(*b))),
         Passing::Fastest => fast.find(|at| speed(*at).abs() >= fastest),
-        Passing::Late => fast.last(),
+        Passing::Late => fast.next_back(),
     };
     at.map(|at| (at, speed(at)))
 }

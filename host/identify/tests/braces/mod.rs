@@ -143,10 +143,10 @@ damping_nms_per_rad = {viscous_nms}
 
     /// A recording of one release, held for 0.4 s before, until it has hung still for a second.
     pub(crate) fn recorded(&self, is_armed: bool) -> Recording {
-        self.recorded_with(is_armed, "passive = \"none\"", 9.0)
+        self.recorded_with(is_armed, "passive = \"none\"", 9)
     }
 
-    pub(crate) fn recorded_with(&self, is_armed: bool, limb: &str, longest_s: f64) -> Recording {
+    pub(crate) fn recorded_with(&self, is_armed: bool, limb: &str, longest_s: u64) -> Recording {
         let mut host = Host::new(&scene(&self.scene(limb)), &Start::default());
         host.run(2_000);
         let believed = 0.0389 / self.torque_scale;
@@ -162,7 +162,7 @@ damping_nms_per_rad = {viscous_nms}
         host.run(8_000);
         host.device.board_mut().leg_mut().release();
         let mut still = 0;
-        for _ in 0..(longest_s / TICK_S) as u64 / 100 {
+        for _ in 0..200 * longest_s {
             host.run(100);
             let shaft = host.device.board().leg().shaft();
             still = if shaft.omega_rad_s.abs() < 1e-6 {

@@ -5,6 +5,11 @@
 //! On purpose it has what the estimator's model has not: teeth that give way, a friction that is
 //! greater at rest, and noise of the current sensor.
 
+#![allow(
+    clippy::cast_possible_truncation,
+    reason = "counts and milliamperes are small"
+)]
+
 use crepitus_identify::brace::{Recording, Sample};
 
 /// A pendulum.
@@ -42,7 +47,7 @@ impl Pendulum {
         const H: f64 = TICK_S / STEPS as f64;
         let held_ticks = 8_000;
         // Rotor, brace, weight; the weight is held at the release.
-        let mut angle = [-self.release_rad + 0.0; 3];
+        let mut angle = [-self.release_rad; 3];
         let mut omega = [0.0_f64; 3];
         let mut samples = Vec::new();
         let mut still = 0;
