@@ -14,10 +14,10 @@
 //! | to find | look in |
 //! |---|---|
 //! | the equations | `model.rs` |
-//! | what is compared, and the intervals | `fit.rs`, `prior.rs` |
-//! | where a swing begins and ends | `swing.rs` |
+//! | what is compared, and the intervals | `problem.rs`, `prior.rs`, `fit.rs` |
+//! | where a swing begins and ends | `swing.rs`, `passing.rs` |
 //! | the quantities, and where each stands in a scene | [`Quantity`] |
-//! | what is visible, and what is refused | `visible.rs`, `plausible.rs`, [`Refusal`] |
+//! | what is visible, and what is refused | `visible.rs`, `whole.rs`, `plausible.rs`, [`Refusal`] |
 //!
 //! ```
 //! use crepitus_identify::brace::{Recording, Refusal, TORQUE_DEVIATION, Weight, identify};
@@ -40,15 +40,19 @@ mod found;
 mod model;
 mod numbers;
 pub mod page;
+mod passing;
 mod plausible;
 mod prior;
+mod problem;
 mod quantity;
 mod recording;
 mod refusal;
+mod residuals;
 pub mod scene;
 mod start;
 mod swing;
 mod visible;
+mod whole;
 
 pub use found::{Brace, Result as QuantityResult, Shown, identify};
 pub use prior::TORQUE_DEVIATION;

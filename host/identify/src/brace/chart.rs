@@ -1,7 +1,7 @@
 //! Measured and simulated angle of each swing, and what is left between them, as a figure.
 
 use crate::brace::Brace;
-use crate::brace::fit::{RESIDUAL_S, STRIDE};
+use crate::brace::problem::{RESIDUAL_S, STRIDE};
 use crepitus_plot::palette::{OBJECT, SHAFT};
 use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Point, Sign, stack};
 

@@ -2,11 +2,12 @@
 
 use crate::Estimate;
 use crate::brace::fit::{Fit, GOOD_ENOUGH};
+use crate::brace::passing::Passing;
 use crate::brace::prior::Prior;
 use crate::brace::quantity::Quantity;
 use crate::brace::recording::{Recording, Weight};
 use crate::brace::refusal::Refusal;
-use crate::brace::swing::{Passing, Swing, swings};
+use crate::brace::swing::{Swing, swings};
 use crate::brace::{plausible, visible};
 
 /// What recordings say of a quantity.
@@ -91,11 +92,14 @@ pub fn identify(
         quantity,
         result: visible::result(quantity, &fit, &prior, &all, recording),
     });
+    let is_torque_seen = (shown.iter()).any(|shown| {
+        shown.quantity == Quantity::TorqueConstant && matches!(shown.result, Result::Seen(_))
+    });
     Ok(Brace {
         shown: shown.into(),
         rms_rad: fit.rms_rad,
         amplitude_rad,
-        notes: visible::notes(&fit, &prior, &all),
+        notes: visible::notes(&fit, &prior, is_torque_seen),
         swings: all,
         fit,
     })

@@ -4,6 +4,9 @@ use crate::brace::{Brace, QuantityResult, chart};
 use crepitus_plot::page::{document, figure, footer, notes};
 use maud::html;
 
+/// Words stand left.
+const LAYOUT: &str = "section.table th, section.table td { text-align: left }";
+
 /// The page.
 pub fn html(brace: &Brace, title: &str, last_line: &str) -> String {
     let (swings, seconds) = brace.swung();
@@ -29,7 +32,8 @@ pub fn html(brace: &Brace, title: &str, last_line: &str) -> String {
                                 td { code { (shown.quantity.effect()) "." (shown.quantity.spec().key) } }
                                 @match &shown.result {
                                     QuantityResult::Seen(estimate) => {
-                                        td { (format!("{:.5} ± {:.5}", estimate.value, estimate.half_width)) }
+                                        @let (value, half_width) = estimate.rounded();
+                                        td { (value) " ± " (half_width) }
                                         td { (shown.quantity.spec().unit) }
                                     }
                                     QuantityResult::NotVisible { why } => {
@@ -46,5 +50,5 @@ pub fn html(brace: &Brace, title: &str, last_line: &str) -> String {
         }
         (footer(last_line))
     };
-    document(title, "", &[], &body)
+    document(title, LAYOUT, &[], &body)
 }

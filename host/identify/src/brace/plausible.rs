@@ -1,8 +1,9 @@
 //! Checks of a fit: whether it explains the motion, and what a person has given.
 
-use crate::brace::fit::{Fit, RESIDUAL_S};
+use crate::brace::fit::Fit;
 use crate::brace::numbers::{LEAST, MOST, place};
 use crate::brace::prior::Prior;
+use crate::brace::problem::RESIDUAL_S;
 use crate::brace::recording::Weight;
 use crate::brace::refusal::Refusal;
 use crate::brace::swing::Swing;
@@ -98,11 +99,15 @@ pub(crate) fn is_possible(fit: &Fit, prior: &Prior) -> Result<(), Refusal> {
     Ok(())
 }
 
+/// What else makes a weight contradict itself.
+const INERTIA: &str = "; or its inertia is not the one given: only a small weight on a light bar has mass times the lever's square, any \
+                       other needs --weight-inertia-kg-m2";
+
 /// Rejects a fit that has to bend what was given.
 pub(crate) fn agrees(fit: &Fit, prior: &Prior) -> Result<(), Refusal> {
     let checked = [
-        (place::MOMENT, "the weight's moment", "N·m", ""),
-        (place::WEIGHT, "the weight's inertia", "kg·m²", ""),
+        (place::MOMENT, "the weight's moment", "N·m", INERTIA),
+        (place::WEIGHT, "the weight's inertia", "kg·m²", INERTIA),
         (
             place::TORQUE_SCALE,
             "the motor's torque over what its current should give",

@@ -12,8 +12,10 @@
 //! release is the turning point that is farthest from rest.
 
 use crate::brace::model::STEP_S;
-use crate::brace::recording::{Recording, Sample};
+use crate::brace::passing::{Passing, passes};
+use crate::brace::recording::Recording;
 use crate::brace::refusal::Refusal;
+use crate::brace::whole::whole;
 
 /// For so long nothing turns in a rest, s: more than a weight needs to cross the gap.
 const REST_S: f64 = 0.35;
@@ -27,15 +29,8 @@ const TURN_RAD: f64 = 4e-3;
 /// Amplitude that a swing needs, rad.
 const AMPLITUDE_RAD: f64 = 0.1;
 
-/// Missing samples that a recording may have, as a share, and in a row.
-const MISSING_SHARE: f64 = 0.02;
-const MISSING_IN_A_ROW: u64 = 400;
-
 /// Rest that is kept at the end of a swing, s.
 const TAIL_S: f64 = 0.05;
-
-/// A count further from its neighbours than this motion in a tick is a jump, rad/s.
-const FASTEST_RAD_S: f64 = 40.0;
 
 /// A free swing, step by step.
 #[derive(Clone, Debug)]
@@ -63,22 +58,6 @@ impl Swing {
         let squares: f64 = self.torques_nm.iter().map(|t| t * t).sum();
         (squares / self.torques_nm.len().max(1) as f64).sqrt()
     }
-}
-
-/// Where a swing begins. The cuffs may still ring of the release, and the teeth be apart: what
-/// explains more is better.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Passing {
-    /// Where the shaft turns most evenly.
-    Even,
-    /// Where it is fastest.
-    Fastest,
-    /// Just before it turns slowly.
-    Late,
-}
-
-impl Passing {
-    pub(crate) const ALL: [Self; 3] = [Self::Even, Self::Fastest, Self::Late];
 }
 
 /// Steps of a recording: angle as each begins, and mean torque in it.
@@ -203,119 +182,6 @@ impl Steps {
             turn_steps: turns.iter().map(|t| t - begin).collect(),
         })
     }
-}
-
-/// Where between a release and the first turning point a swing begins, and how fast the shaft
-/// turns there: at half of the greatest speed or more.
-fn passes(passing: Passing, angles: &[f64], released: usize, first: usize) -> Option<(usize, f64)> {
-    /// Steps that are looked at before and after, and from one to the next.
-    const BEFORE: usize = 60;
-    const AFTER: usize = 120;
-    const APART: usize = 10;
-    let speed = |at: usize| {
-        let (from, to) = (at - APART, at + APART);
-        (angles[to] - angles[from]) / ((to - from) as f64 * STEP_S)
-    };
-    let places =
-        || (released.max(BEFORE)..first.min(angles.len().saturating_sub(AFTER))).step_by(5);
-    let fastest = places().map(|at| speed(at).abs()).fold(0.0, f64::max);
-    let uneven = |at: usize| {
-        // What a parabola through both ends and the middle leaves.
-        let span = &angles[at - BEFORE..at + AFTER];
-        let (a, b, c) = (span[0], span[span.len() / 2], span[span.len() - 1]);
-        let half = (span.len() / 2) as f64;
-        let squares = span.iter().enumerate().map(|(i, angle)| {
-            let x = i as f64 / half - 1.0;
-            let parabola = b + 0.5 * (c - a) * x + 0.5 * (a + c - 2.0 * b) * x * x;
-            (angle - parabola).powi(2)
-        });
-        squares.sum::<f64>()
-    };
-    let mut fast = places().filter(|at| speed(*at).abs() >= 0.5 * fastest);
-    let at = match passing {
-        Passing::Even => fast.min_by(|a, b| uneven(*a).total_cmp(&uneven(*b))),
-        Passing::Fastest => fast.find(|at| speed(*at).abs() >= fastest),
-        Passing::Late => fast.next_back(),
-    };
-    at.map(|at| (at, speed(at)))
-}
-
-/// Refuses a recording with too little in it, or with counts that no shaft makes.
-fn whole(recording: &Recording, first: &Sample, last: &Sample) -> Result<(), Refusal> {
-    /// A release, two turning points and a rest take longer.
-    const SHORTEST_S: f64 = 1.5;
-    let samples = &recording.samples;
-    let mut missing = 0;
-    let mut longest = 0;
-    let most = FASTEST_RAD_S * recording.tick_s / recording.rad_per_count;
-    for pair in samples.windows(2) {
-        let (before, after) = (&pair[0], &pair[1]);
-        if after.tick <= before.tick {
-            return Err(Refusal::NotInOrder { tick: after.tick });
-        }
-        let ticks = after.tick - before.tick;
-        missing += ticks - 1 + u64::from(after.is_lost);
-        longest = longest.max(ticks - 1);
-        let moved = f64::from(after.count.wrapping_sub(before.count)).abs();
-        if moved > most * ticks as f64 {
-            return Err(Refusal::Jump {
-                time_s: (after.tick - first.tick) as f64 * recording.tick_s,
-                degrees: (moved * recording.rad_per_count).to_degrees(),
-            });
-        }
-    }
-    frozen(recording)?;
-    let all = last.tick - first.tick + 1;
-    let duration_s = all as f64 * recording.tick_s;
-    if duration_s < SHORTEST_S {
-        return Err(Refusal::Short { duration_s });
-    }
-    let share = missing as f64 / all as f64;
-    if share > MISSING_SHARE || longest > MISSING_IN_A_ROW {
-        return Err(Refusal::Missing {
-            share: 100.0 * share,
-            longest_ms: 1e3 * longest as f64 * recording.tick_s,
-            limit: 100.0 * MISSING_SHARE,
-            limit_ms: 1e3 * MISSING_IN_A_ROW as f64 * recording.tick_s,
-        });
-    }
-    Ok(())
-}
-
-/// Refuses counts that stop in mid-motion: friction takes longer to stop a rotor.
-fn frozen(recording: &Recording) -> Result<(), Refusal> {
-    /// Ticks of motion before, and of standstill after.
-    const TICKS: usize = 200;
-    /// Slower is a turning point, rad/s: friction stops more than that within the ticks.
-    const SLOWEST_RAD_S: f64 = 0.6;
-    let samples = &recording.samples;
-    let window_s = TICKS as f64 * recording.tick_s;
-    let least = SLOWEST_RAD_S * window_s / recording.rad_per_count;
-    let mut at = TICKS;
-    while at + TICKS < samples.len() {
-        // The longest stretch of one count from here on.
-        let stands = samples[at..]
-            .iter()
-            .take_while(|s| s.count == samples[at].count)
-            .count();
-        let moved = f64::from(samples[at].count.wrapping_sub(samples[at - TICKS].count)).abs();
-        // At an even speed half of the way lies in each half of the time.
-        let late = f64::from(
-            samples[at]
-                .count
-                .wrapping_sub(samples[at - TICKS / 2].count),
-        )
-        .abs();
-        if stands > TICKS && moved > least && late > 0.4 * moved {
-            let since = samples[at].tick.saturating_sub(samples[0].tick);
-            return Err(Refusal::Frozen {
-                time_s: since as f64 * recording.tick_s,
-                speed_deg_s: (moved * recording.rad_per_count / window_s).to_degrees(),
-            });
-        }
-        at += stands.max(1);
-    }
-    Ok(())
 }
 
 /// The angles, with the last one where none is.

@@ -116,25 +116,23 @@ fn why(quantity: Quantity, uncertain: &str, torque_nm: f64, fit: &Fit) -> String
     }
 }
 
-/// What a person should know.
-pub(crate) fn notes(fit: &Fit, prior: &Prior, swings: &[Swing]) -> Vec<String> {
-    let mut notes = Vec::new();
-    if torque_rms(swings) < SOME_TORQUE_NM {
-        notes.push(
-            "nothing here checks the weight: if moment and inertia are off by one factor, so is every value in N·m; a release \
-             with --arm compares them with the motor's torque"
+/// What a person should know, where the torque constant is visible or not.
+pub(crate) fn notes(fit: &Fit, prior: &Prior, is_torque_seen: bool) -> Vec<String> {
+    if !is_torque_seen {
+        return vec![
+            "nothing here checks the weight: if moment and inertia are off by one factor, so is every value in N·m; a \
+             release with --arm compares them with the motor's torque"
                 .to_owned(),
-        );
-        return notes;
+        ];
     }
     let at = place::TORQUE_SCALE;
     let off = fit.numbers[at] - 1.0;
-    if off.abs() > DEVIATIONS * prior.deviation[at] {
-        notes.push(format!(
-            "by the weight the motor gives {:+.0} % of torque: either its torque constant is off by that, or the weight's \
-             moment, and then every value in N·m is too",
-            100.0 * off
-        ));
+    if off.abs() <= DEVIATIONS * prior.deviation[at] {
+        return Vec::new();
     }
-    notes
+    vec![format!(
+        "by the weight the motor gives {:+.0} % of torque: either its torque constant is off by that, or the weight's \
+         moment, and then every value in N·m is too",
+        100.0 * off
+    )]
 }

@@ -9,17 +9,8 @@ use std::fmt::Write;
 fn value(shown: &Shown) -> [String; 2] {
     match &shown.result {
         QuantityResult::Seen(estimate) => {
-            let place = estimate.half_width.abs().log10().floor();
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "0 to 9"
-            )]
-            let decimals = (1.0 - place).clamp(0.0, 9.0) as usize;
-            [
-                format!("{:.decimals$}", estimate.value),
-                format!("± {:.decimals$}", estimate.half_width),
-            ]
+            let (value, half_width) = estimate.rounded();
+            [value, format!("± {half_width}")]
         }
         QuantityResult::NotVisible { .. } => ["not visible".to_owned(), String::new()],
     }

@@ -1,0 +1,59 @@
+//! Where a swing begins.
+
+use crate::brace::model::STEP_S;
+
+/// Where a swing begins. The cuffs may still ring of the release, and the teeth be apart: what
+/// explains more is better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Passing {
+    /// Where the shaft turns most evenly.
+    Even,
+    /// Where it is fastest.
+    Fastest,
+    /// Just before it turns slowly.
+    Late,
+}
+
+impl Passing {
+    pub(crate) const ALL: [Self; 3] = [Self::Even, Self::Fastest, Self::Late];
+}
+
+/// Where between a release and the first turning point a swing begins, and how fast the shaft
+/// turns there: at half of the greatest speed or more.
+pub(crate) fn passes(
+    passing: Passing,
+    angles: &[f64],
+    released: usize,
+    first: usize,
+) -> Option<(usize, f64)> {
+    /// Steps that are looked at before and after, and from one to the next.
+    const BEFORE: usize = 60;
+    const AFTER: usize = 120;
+    const APART: usize = 10;
+    let speed = |at: usize| {
+        let (from, to) = (at - APART, at + APART);
+        (angles[to] - angles[from]) / ((to - from) as f64 * STEP_S)
+    };
+    let places =
+        || (released.max(BEFORE)..first.min(angles.len().saturating_sub(AFTER))).step_by(5);
+    let fastest = places().map(|at| speed(at).abs()).fold(0.0, f64::max);
+    let uneven = |at: usize| {
+        // What a parabola through both ends and the middle leaves.
+        let span = &angles[at - BEFORE..at + AFTER];
+        let (a, b, c) = (span[0], span[span.len() / 2], span[span.len() - 1]);
+        let half = (span.len() / 2) as f64;
+        let squares = span.iter().enumerate().map(|(i, angle)| {
+            let x = i as f64 / half - 1.0;
+            let parabola = b + 0.5 * (c - a) * x + 0.5 * (a + c - 2.0 * b) * x * x;
+            (angle - parabola).powi(2)
+        });
+        squares.sum::<f64>()
+    };
+    let mut fast = places().filter(|at| speed(*at).abs() >= 0.5 * fastest);
+    let at = match passing {
+        Passing::Even => fast.min_by(|a, b| uneven(*a).total_cmp(&uneven(*b))),
+        Passing::Fastest => fast.find(|at| speed(*at).abs() >= fastest),
+        Passing::Late => fast.next_back(),
+    };
+    at.map(|at| (at, speed(at)))
+}

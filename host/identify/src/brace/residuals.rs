@@ -1,0 +1,33 @@
+//! How large residuals are, and how many of them count.
+
+use crate::brace::fit::LEAST_DEVIATION;
+
+pub(crate) fn rms(residuals: &[Vec<f64>]) -> f64 {
+    let all = residuals.iter().flatten().filter(|r| !r.is_nan());
+    let (sum, n) = all.fold((0.0, 0.0), |(sum, n), r| (sum + r * r, n + 1.0));
+    if n > 0.0 { f64::sqrt(sum / n) } else { 0.0 }
+}
+
+/// Deviation with which an angle counts: as if so many fewer had been compared as
+/// neighbours err together.
+pub(crate) fn effective_deviation(residuals: &[Vec<f64>]) -> f64 {
+    let all = rms(residuals).max(LEAST_DEVIATION);
+    let at = |lag: usize| -> f64 {
+        let (mut sum, mut n) = (0.0, 0.0);
+        for swing in residuals {
+            for (a, b) in swing.iter().zip(swing.iter().skip(lag)) {
+                if !a.is_nan() && !b.is_nan() {
+                    (sum, n) = (sum + a * b, n + 1.0);
+                }
+            }
+        }
+        if n > 0.0 { sum / n } else { 0.0 }
+    };
+    let zero = at(0).max(1e-30);
+    let longest = residuals.iter().map(Vec::len).max().unwrap_or(1) / 4;
+    let correlated: f64 = (1..longest)
+        .map(|lag| at(lag) / zero)
+        .take_while(|rho| *rho > 0.05)
+        .sum();
+    all * (1.0 + 2.0 * correlated).sqrt()
+}
