@@ -8,7 +8,7 @@ mod support;
 
 use braces::{Truth, WEIGHED};
 use crepitus_identify::brace::{
-    Brace, Quantity, QuantityResult, Recording, Refusal, TORQUE_DEVIATION, Weight, identify,
+    Brace, Quantity, QuantityResult, Recording, Refusal, Sample, TORQUE_DEVIATION, Weight, identify,
 };
 
 const TRUTH: Truth = Truth::NOMINAL;
@@ -32,6 +32,48 @@ fn good() -> Recording {
 #[test]
 fn the_good_one_is_accepted() {
     assert!(found(&[good()], &TRUTH.given()).is_ok());
+}
+
+/// A hand lifts the weight again, in a second and without a pause before or after, and lets go.
+#[test]
+fn several_releases_in_one_recording() {
+    let one = good();
+    let mut it = one.clone();
+    // Without what was held before the release.
+    let from = 8_000;
+    for _ in 0..2 {
+        let last = it.samples[it.samples.len() - 1];
+        let (a, b) = (f64::from(last.count), f64::from(one.samples[from].count));
+        let lifted = (1..=20_000_u32).map(|n| {
+            let share = 0.5 - 0.5 * (std::f64::consts::PI * f64::from(n) / 20_000.0).cos();
+            Sample {
+                tick: last.tick + u64::from(n),
+                count: (a + (b - a) * share) as i32,
+                ..last
+            }
+        });
+        let again = (one.samples[from..].iter()).map(|sample| Sample {
+            tick: sample.tick - one.samples[from].tick + last.tick + 20_001,
+            ..*sample
+        });
+        let more: Vec<Sample> = lifted.chain(again).collect();
+        it.samples.extend(more);
+    }
+    let begun = std::time::Instant::now();
+    let brace = found(&[it], &TRUTH.given()).expect("accepted");
+    println!("{:?} for {:?}", begun.elapsed(), brace.swung());
+    assert_eq!(brace.swung().0, 3);
+    for quantity in [
+        Quantity::Friction,
+        Quantity::Backlash,
+        Quantity::CuffStiffness,
+    ] {
+        let estimate = brace.value(quantity).expect("visible");
+        assert!(
+            estimate.holds(TRUTH.value(quantity)),
+            "{quantity:?} {estimate:?}"
+        );
+    }
 }
 
 #[test]
@@ -63,7 +105,7 @@ fn a_hand_that_never_reverses() {
     }
     // Long enough.
     let last = it.samples[it.samples.len() - 1];
-    let more = (1..100_000).map(|n| crepitus_identify::brace::Sample {
+    let more = (1..100_000).map(|n| Sample {
         tick: last.tick + n,
         ..last
     });
