@@ -1,12 +1,12 @@
 //! A scene: its text, what was changed in it, and what came of both.
 
 use crate::{errors, values};
-use crepitus_scene::shipped::{self, Shipped};
+use crepitus_scene::shipped::Source;
 use crepitus_scene::{Overrides, SceneError};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyType};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Stands for the file of a scene without one.
 const DICT: &str = "<dict>";
@@ -18,62 +18,24 @@ const TEXT: &str = "<toml>";
 #[pyclass(frozen, module = "crepitus")]
 #[derive(Clone)]
 pub(crate) struct Scene {
-    source: Source,
-    overrides: Overrides,
+    pub(crate) source: Source,
+    /// Made from a dict: its lines are nobody's.
+    pub(crate) is_dict: bool,
+    pub(crate) overrides: Overrides,
     pub(crate) checked: crepitus_scene::Scene,
 }
 
-/// The text before any change, and the file that names it.
-#[derive(Clone)]
-struct Source {
-    file: PathBuf,
-    text: String,
-    is_dict: bool,
-}
-
 impl Scene {
-    fn of(source: Source, overrides: Overrides) -> PyResult<Self> {
-        let checked = crepitus_scene::Scene::parse(&source.file, &source.text, &overrides)
-            .map_err(|error| errors::scene(error, source.is_dict))?;
+    fn of(source: Source, is_dict: bool, overrides: Overrides) -> PyResult<Self> {
+        let checked = source
+            .scene(&overrides)
+            .map_err(|error| errors::scene(error, is_dict))?;
         Ok(Self {
             source,
+            is_dict,
             overrides,
             checked,
         })
-    }
-
-    /// A file, the name of a scene that ships, or the `summary.json` of a run.
-    fn at(path: &Path, overrides: Overrides) -> PyResult<Self> {
-        let failed = |error: SceneError| errors::scene(error, false);
-        let checked = shipped::scene(path, &overrides).map_err(failed)?;
-        let text = if path.extension().is_some_and(|e| e == "json") {
-            let unchanged = shipped::scene(path, &Overrides::default()).map_err(failed)?;
-            unchanged.as_run
-        } else if let (false, Some(shipped)) = (path.exists(), Shipped::find(path)) {
-            shipped.text.to_owned()
-        } else {
-            std::fs::read_to_string(path)?
-        };
-        let source = Source {
-            file: checked.file.clone(),
-            text,
-            is_dict: false,
-        };
-        Ok(Self {
-            source,
-            overrides,
-            checked,
-        })
-    }
-
-    /// Its text before any change.
-    pub(crate) fn text(&self) -> shipped::Source {
-        shipped::Source::of_text(self.source.file.clone(), self.source.text.clone())
-    }
-
-    /// What was changed in it.
-    pub(crate) const fn changes(&self) -> &Overrides {
-        &self.overrides
     }
 
     /// A refusal in the form of the scene's own errors.
@@ -84,7 +46,7 @@ impl Scene {
             key: key.to_owned(),
             message,
         };
-        errors::scene(error, self.source.is_dict)
+        errors::scene(error, self.is_dict)
     }
 }
 
@@ -115,27 +77,24 @@ fn overrides(
 
 /// Both changes: where they touch the same key, the later one counts.
 fn merged(first: &Overrides, then: Overrides) -> Overrides {
-    let sets = |key: &str| {
-        let (table, _) = key.split_once('.').unwrap_or((key, ""));
-        then.set
-            .iter()
-            .any(|(path, _)| path == key || path == table)
-    };
-    let kept = |flag: &Option<String>, key| flag.clone().filter(|_| !sets(key));
-    let mut set = first.set.clone();
-    let solver = then.solver.or_else(|| kept(&first.solver, "solver.kind"));
-    let step = then.step.or_else(|| kept(&first.step, "solver.step_s"));
-    let precision = then
-        .precision
-        .or_else(|| kept(&first.precision, "solver.precision"));
-    let as_device = then.as_device || (first.as_device && !sets("device"));
-    set.extend(then.set);
-    Overrides {
-        solver,
-        step,
-        precision,
-        as_device,
-        set,
+    let mut both = first.clone();
+    forget(&mut both, then.set.iter().map(|(path, _)| path.as_str()));
+    both.solver = then.solver.or(both.solver);
+    both.step = then.step.or(both.step);
+    both.precision = then.precision.or(both.precision);
+    both.as_device |= then.as_device;
+    both.set.extend(then.set);
+    both
+}
+
+/// Takes away the flags that would count more than a value at one of these keys.
+pub(crate) fn forget<'p>(overrides: &mut Overrides, paths: impl Iterator<Item = &'p str>) {
+    for path in paths {
+        let is = |key: &str| path == key || path == "solver";
+        overrides.solver.take_if(|_| is("solver.kind"));
+        overrides.step.take_if(|_| is("solver.step_s"));
+        overrides.precision.take_if(|_| is("solver.precision"));
+        overrides.as_device &= path != "device";
     }
 }
 
@@ -158,13 +117,9 @@ impl Scene {
             return scene.get().changed(changes);
         }
         if let Ok(dict) = source.cast::<PyDict>() {
-            let source = Source {
-                file: DICT.into(),
-                text: toml::to_string(&values::table(dict)?)
-                    .map_err(|error| PyTypeError::new_err(error.to_string()))?,
-                is_dict: true,
-            };
-            return Self::of(source, changes);
+            let text = toml::to_string(&values::table(dict)?)
+                .map_err(|error| PyTypeError::new_err(error.to_string()))?;
+            return Self::of(Source::of_text(DICT.into(), text), true, changes);
         }
         if !source.is_instance_of::<PyString>() && !source.hasattr("__fspath__")? {
             let kind = source.get_type().name()?;
@@ -172,7 +127,9 @@ impl Scene {
                 "a scene is a path, the name of one that ships, a dict or a Scene, not {kind}"
             )));
         }
-        Self::at(&source.extract::<PathBuf>()?, changes)
+        let path: PathBuf = source.extract()?;
+        let source = Source::find(&path).map_err(|error| errors::scene(error, false))?;
+        Self::of(source, false, changes)
     }
 
     /// A scene from TOML text; `file` names it in errors, and is the place from which a
@@ -180,12 +137,8 @@ impl Scene {
     #[classmethod]
     #[pyo3(signature = (text, file=None))]
     fn from_toml(_: &Bound<'_, PyType>, text: String, file: Option<PathBuf>) -> PyResult<Self> {
-        let source = Source {
-            file: file.unwrap_or_else(|| TEXT.into()),
-            text,
-            is_dict: false,
-        };
-        Self::of(source, Overrides::default())
+        let file = file.unwrap_or_else(|| TEXT.into());
+        Self::of(Source::of_text(file, text), false, Overrides::default())
     }
 
     /// This scene with another solver, step (s), precision, as the device renders it, or
@@ -308,7 +261,7 @@ impl Scene {
         );
         let source = &self.source;
         let (file, text) = (source.file.clone(), source.text.clone());
-        Ok((rebuild, (file, text, source.is_dict, flags, o.set.clone())))
+        Ok((rebuild, (file, text, self.is_dict, flags, o.set.clone())))
     }
 
     #[staticmethod]
@@ -327,14 +280,7 @@ impl Scene {
             as_device,
             set,
         };
-        Self::of(
-            Source {
-                file,
-                text,
-                is_dict,
-            },
-            overrides,
-        )
+        Self::of(Source::of_text(file, text), is_dict, overrides)
     }
 }
 
@@ -351,12 +297,20 @@ impl Scene {
             set,
         } = &changes
         else {
-            return Self::of(self.source.clone(), merged(&self.overrides, changes));
+            return Self::of(
+                self.source.clone(),
+                self.is_dict,
+                merged(&self.overrides, changes),
+            );
         };
         if set.is_empty() {
             // A recording is not read again.
             return Ok(self.clone());
         }
-        Self::of(self.source.clone(), merged(&self.overrides, changes))
+        Self::of(
+            self.source.clone(),
+            self.is_dict,
+            merged(&self.overrides, changes),
+        )
     }
 }

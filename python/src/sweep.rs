@@ -1,7 +1,7 @@
 //! Many runs of a scene on all cores, a row each, as columns.
 
 use crate::errors;
-use crate::scene::Scene;
+use crate::scene::{Scene, forget};
 use crate::signals::Signals;
 use crate::values;
 use crepitus_sweep::axis::Values;
@@ -140,8 +140,11 @@ fn run<'py>(
         .or_else(|| available_parallelism().ok())
         .map_or(1, NonZero::get);
     let rows = py.detach(|| -> PyResult<Vec<Row>> {
-        let plan = Plan::new(scene.text(), scene.changes().clone(), design)
-            .map_err(|error| errors::scene(error, false))?;
+        let mut overrides = scene.overrides.clone();
+        // What is varied counts more than what was changed before.
+        forget(&mut overrides, design.paths().into_iter());
+        let plan = Plan::new(scene.source.clone(), overrides, design)
+            .map_err(|error| errors::scene(error, scene.is_dict))?;
         let mut rows = Rows {
             ended: Vec::new(),
             signals: Signals::new(),

@@ -16,6 +16,8 @@ __all__ = [
     "parameters",
     "presets",
     "read_recording",
+    "run_design",
+    "run_points",
     "scenes",
     "simulate",
 ]
