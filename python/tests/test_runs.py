@@ -195,3 +195,46 @@ def test_a_fork_runs_the_same() -> None:
         os._exit(0 if same else 1)
     _, status = os.waitpid(child, 0)
     assert os.waitstatus_to_exitcode(status) == 0
+
+
+AT_EXIT = """
+import threading, time, crepitus
+works = [
+    lambda: crepitus.run("slow-examination", set={"duration_s": 36000.0, "solver.step_s": 1e-5}, trace=False),
+    lambda: crepitus.Device("sim", real_time=True).wait(60.0),
+    lambda: crepitus.run_many("slow-examination", {"duration_s": [1e4] * 100}),
+    lambda: crepitus.effects(crepitus.Scene("everything").set("duration_s", 100.0)),
+]
+for work in works:
+    threading.Thread(target=work, daemon=True).start()
+time.sleep(0.5)
+print("end", flush=True)
+"""
+
+
+def test_the_interpreter_ends_while_threads_work() -> None:
+    words = [sys.executable, "-c", AT_EXIT]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=20)
+    assert (done.stdout, done.stderr, done.returncode) == ("end\n", "", 0)
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="no /proc here")
+def test_nothing_leaks() -> None:
+    def resident_mb() -> float:
+        with open("/proc/self/statm") as statm:
+            return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+    def work(times: int) -> None:
+        for _ in range(times):
+            crepitus.run("slow-examination", set={"duration_s": 2.0})
+            crepitus.Joint().steps([1e-5] * 1000, [0.2] * 1000)
+            with pytest.raises(crepitus.SceneError):
+                crepitus.Scene({})
+            with crepitus.Device("sim") as device:
+                device.stream(0.02)
+
+    work(20)
+    before = resident_mb()
+    work(100)
+    # A leaked trace is 2 MB, a hundred of them 200 MB.
+    assert resident_mb() - before < 20.0
