@@ -144,3 +144,43 @@ impl Transport for Connection {
         self.transport().name()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_client::Client;
+    use crepitus_scene::{Overrides, shipped};
+
+    fn scene() -> Result<Scene, SceneError> {
+        shipped::scene(Path::new("passive-examination"), &Overrides::default())
+    }
+
+    #[test]
+    fn a_simulated_device_answers() {
+        let connection = Connection::open(Some("sim"), "a test", scene).unwrap();
+        let client = Client::connect(connection).unwrap();
+        assert_eq!(client.port(), "a simulated device");
+    }
+
+    #[test]
+    fn the_scene_of_a_port_is_not_read() {
+        let no_scene = || -> Result<Scene, SceneError> { panic!("for a port") };
+        let error = Connection::open(Some("/no/such/port"), "a test", no_scene).err();
+        assert!(matches!(error, Some(OpenError::Transport(_))), "{error:?}");
+        let error = Connection::open(Some("nobody-serves-this"), "a test", no_scene).err();
+        assert!(
+            matches!(error, Some(OpenError::Unknown { .. })),
+            "{error:?}"
+        );
+    }
+
+    #[test]
+    fn a_scene_that_no_device_has_is_refused() {
+        let physical = || shipped::scene(Path::new("knee-pass-physical"), &Overrides::default());
+        let error = Connection::open(Some("sim"), "a test", physical).err();
+        assert!(matches!(error, Some(OpenError::Simulated(_))), "{error:?}");
+        let none = || shipped::scene(Path::new("no-such-scene"), &Overrides::default());
+        let error = Connection::open(Some("sim"), "a test", none).err();
+        assert!(matches!(error, Some(OpenError::Scene(_))), "{error:?}");
+    }
+}

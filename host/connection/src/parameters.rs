@@ -55,3 +55,19 @@ pub fn named(parameter: &Parameter, value: f64) -> Value {
         Kind::Choice(_) => json!(show_value(parameter, value)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_found_and_a_misspelt_one_is_corrected() {
+        for parameter in &PARAMETERS {
+            let (id, found) = find(&full_name(parameter)).unwrap();
+            assert_eq!((id, found.id), (parameter.id, parameter.id));
+            assert_eq!(described(parameter)["id"], parameter.id);
+        }
+        let error = find("crepitus.static_torqe_nm").unwrap_err();
+        assert_eq!(error.like, "crepitus.static_torque_nm");
+    }
+}
