@@ -2,22 +2,24 @@
 
 use crate::errors;
 use crate::following::{failure, follow};
+use crate::knee::knee;
+use crate::received::{books_json, not_recorded, recorded, unsubscribed};
 use crate::samples::Samples;
 use crate::scene::Scene;
 use crepitus_board::values::{with_preset, with_scene};
 use crepitus_client::values::{full_name, parse_value, show_number};
-use crepitus_client::{Accounting, Client, Error, Transport};
+use crepitus_client::{Client, Error, Transport};
 use crepitus_connection::{Connection, OpenError, device_text, parameters};
 use crepitus_protocol::State;
 use crepitus_protocol::parameters::PARAMETERS;
-use crepitus_recording::{Begin, Metadata, RecordError, Recorder};
-use crepitus_scene::preset::{self, Knee};
-use crepitus_scene::shipped::{self, Shipped};
-use crepitus_scene::{Overrides, Preset};
+use crepitus_recording::{Metadata, Recorder};
+use crepitus_scene::Overrides;
+use crepitus_scene::preset::Knee;
+use crepitus_scene::shipped;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyInt};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process;
@@ -391,73 +393,6 @@ fn settle(client: &mut Client<Connection>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Ends a subscription; an error before it is the one to report.
-fn unsubscribed(client: &mut Client<Connection>, result: PyResult<()>) -> PyResult<()> {
-    let ended = if client.is_connected() {
-        client.unsubscribe().map_err(failure)
-    } else {
-        Ok(())
-    };
-    result.and(ended)
-}
-
-fn recorded(
-    client: &mut Client<Connection>,
-    recorder: &mut Recorder,
-    time: Duration,
-    stop: &AtomicBool,
-) -> PyResult<()> {
-    let begin = client.subscribe().map_err(failure)?;
-    let begin = Begin {
-        first_tick: begin.first_tick,
-        dropped: begin.dropped,
-        start: begin.start,
-    };
-    recorder.subscribed(begin).map_err(not_recorded)?;
-    let mut announced = None;
-    follow(client, time, stop, |client, block| {
-        if announced != Some(block.revision) {
-            let (revision, values) = client.parameters().map_err(failure)?;
-            recorder.announce(revision, &values);
-            announced = Some(block.revision);
-        }
-        recorder.block(block).map_err(not_recorded)?;
-        recorder.flush().map_err(not_recorded)
-    })
-}
-
-fn books_json(accounting: &Accounting) -> Value {
-    json!({
-        "produced": accounting.produced(),
-        "received": accounting.received(),
-        "dropped": accounting.dropped(),
-        "by_device": accounting.dropped_by_device(),
-    })
-}
-
-/// A preset that ships, a file of either kind, or a scene that ships: the first of this
-/// name.
-fn knee(what: &Path) -> PyResult<Knee> {
-    if let Some(preset) = what.to_str().and_then(preset::find) {
-        return Ok(Knee::Preset(Box::<Preset>::new(preset.clone())));
-    }
-    let failed = |error| errors::scene(error, false);
-    if what.exists() {
-        return Knee::read(what).map_err(failed);
-    }
-    match Shipped::find(what) {
-        Some(shipped) => shipped
-            .read(&Overrides::default())
-            .map(|scene| Knee::Scene(Box::new(scene)))
-            .map_err(failed),
-        None => Err(PyValueError::new_err(format!(
-            "{}: there is no such file, no such preset and no such scene: crepitus.presets() and crepitus.scenes() \
-             list those that ship",
-            what.display()
-        ))),
-    }
-}
-
 fn not_opened(error: OpenError) -> PyErr {
     match error {
         OpenError::Scene(error) => errors::scene(error, false),
@@ -476,10 +411,6 @@ fn not_opened(error: OpenError) -> PyErr {
         ),
         error => errors::device(error.to_string()),
     }
-}
-
-fn not_recorded(error: RecordError) -> PyErr {
-    errors::device(error.to_string())
 }
 
 fn duration(seconds: f64) -> PyResult<Duration> {

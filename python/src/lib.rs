@@ -23,13 +23,16 @@
 //! | studies | `studies.rs` |
 //! | many runs of a scene | `sweep.rs` |
 //! | a joint to step by hand | `joint.rs` |
-//! | devices, samples, recordings | `device.rs`, `following.rs`, `samples.rs` |
+//! | devices, what they are given | `device.rs`, `knee.rs` |
+//! | samples, recordings | `following.rs`, `received.rs`, `samples.rs` |
 
 mod columns;
 mod device;
 mod errors;
 mod following;
 mod joint;
+mod knee;
+mod received;
 mod run;
 mod samples;
 mod scene;

@@ -1,0 +1,32 @@
+//! What a device may be given: a preset, or the effects of a scene.
+
+use crate::errors;
+use crepitus_scene::preset::{self, Knee};
+use crepitus_scene::shipped::Shipped;
+use crepitus_scene::{Overrides, Preset};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::path::Path;
+
+/// A preset that ships, a file of either kind, or a scene that ships: the first of this
+/// name.
+pub(crate) fn knee(what: &Path) -> PyResult<Knee> {
+    if let Some(preset) = what.to_str().and_then(preset::find) {
+        return Ok(Knee::Preset(Box::<Preset>::new(preset.clone())));
+    }
+    let failed = |error| errors::scene(error, false);
+    if what.exists() {
+        return Knee::read(what).map_err(failed);
+    }
+    match Shipped::find(what) {
+        Some(shipped) => shipped
+            .read(&Overrides::default())
+            .map(|scene| Knee::Scene(Box::new(scene)))
+            .map_err(failed),
+        None => Err(PyValueError::new_err(format!(
+            "{}: there is no such file, no such preset and no such scene: crepitus.presets() and crepitus.scenes() \
+             list those that ship",
+            what.display()
+        ))),
+    }
+}
