@@ -4,8 +4,9 @@
 //! |---|---|---|
 //! | the vibration actuator: resistance, resonance, force constant | voltage and current of its coil | [`actuator`] |
 //! | the brace: friction, inertia, backlash, cuffs | a known weight that swings in it, as `crepitus record` writes it | [`brace`] |
+//! | the motor's torque constant | the current that moves a hanging weight slowly up and down | [`hanging`] |
 //!
-//! Both give values with 95 % intervals ([`Estimate`]), or a refusal that says what the
+//! All give values with 95 % intervals ([`Estimate`]), or a refusal that says what the
 //! recording shows instead and what to do about it.
 #![forbid(unsafe_code)]
 // Counts become numbers; none comes near 2^53.
@@ -14,5 +15,6 @@
 pub mod actuator;
 pub mod brace;
 mod estimate;
+pub mod hanging;
 
 pub use estimate::Estimate;

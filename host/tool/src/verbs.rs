@@ -4,6 +4,7 @@
 
 pub(crate) mod accuracy;
 pub(crate) mod arm;
+pub(crate) mod calibrate;
 pub(crate) mod clear_fault;
 pub(crate) mod completions;
 pub(crate) mod demo;
@@ -62,6 +63,7 @@ verbs! {
     Info: info,
     Doctor: doctor,
     Params: params,
+    Calibrate: calibrate,
     Identify: identify,
     IdentifyActuator: identify_actuator,
     Zero: zero,

@@ -1,0 +1,419 @@
+//! The fit of torque constant, losses and friction to the mean currents, and their intervals.
+
+use super::way::Mean;
+use crate::Estimate;
+use crate::estimate::DEVIATIONS;
+use nalgebra::{SMatrix, SVector};
+
+/// K/M in 1/A, μ, F/M, φ₀, c·M.
+type Numbers = SVector<f64, 5>;
+type Square = SMatrix<f64, 5, 5>;
+
+/// Means in either sense that a fit needs at least.
+const LEAST_MEANS: usize = 12;
+
+/// The least way of the load: the greatest less the least of |sin|.
+const LEAST_LOAD: f64 = 0.25;
+
+/// Around the hanging weight the teeth of the gear change sides: left out, rad.
+const LEFT_OUT_RAD: f64 = 0.07;
+
+/// Allowances of the 95 % intervals for a brace that is otherwise than the model: share of K, of F, and μ.
+const MODEL: [f64; 3] = [0.01, 0.03, 0.015];
+
+/// Why there is no torque constant.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// Too little motion.
+    #[error(
+        "the weight was moved over {up} degrees one way and {down} back, {LEAST_MEANS} each are needed: it is too heavy for the motor, \
+         or the brace is at a stop"
+    )]
+    Short {
+        /// Whole degrees away.
+        up: usize,
+        /// Whole degrees back.
+        down: usize,
+    },
+    /// The load hardly changes.
+    #[error(
+        "the weight's torque changed by {share:.0} % of its greatest only, 25 % are needed: begin with the weight hanging, not held aside"
+    )]
+    Flat {
+        /// In percent.
+        share: f64,
+    },
+    /// The currents are not those of a weight.
+    #[error(
+        "the currents are not those of a weight that is lifted and let down: the fit leaves {residual_a:.3} A of {greatest_a:.3} A; \
+         did something else touch the arm, or does the weight swing on its hook?"
+    )]
+    Misfit {
+        /// Root mean square of what the fit leaves, A.
+        residual_a: f64,
+        /// The greatest mean current, A.
+        greatest_a: f64,
+    },
+    /// No motor, gear or weight is like this.
+    #[error(
+        "the fit ends at {what}, which no brace has: is a weight on the arm at all, and is the polarity proven?"
+    )]
+    Implausible {
+        /// Which.
+        what: &'static str,
+    },
+}
+
+/// What the weight shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Torque at the joint for one ampere, without losses, N·m/A.
+    pub nm_per_a: Estimate,
+    /// Share of the motor's torque that the gear loses.
+    pub load_loss: Estimate,
+    /// Dry friction, N·m, with the viscous one at the speed of the motion.
+    pub friction_nm: Estimate,
+    /// Encoder's angle at which the weight hangs, rad.
+    pub hangs_rad: Estimate,
+    /// Root mean square of what the fit leaves, A.
+    pub residual_a: f64,
+    /// Angle, measured and fitted current, of each mean.
+    pub curve: Vec<[f64; 3]>,
+    /// Whether the load was large enough to tell what gives way in the brace; else it is an assumption, and the interval wider.
+    pub tells_stiffness: bool,
+}
+
+/// The current of a mean, A.
+fn current_a(n: &Numbers, mean: &Mean) -> f64 {
+    let [scale, loss, friction, hangs, gives] = [n[0], n[1], n[2], n[3], n[4]];
+    let mut load = (mean.angle_rad - hangs).sin();
+    // What gives way is small: this converges by its cube.
+    for _ in 0..3 {
+        load = (mean.angle_rad - gives * load - hangs).sin();
+    }
+    let torque = load + friction * mean.sense;
+    let share = 1.0 - loss * torque.signum() * mean.sense;
+    torque / (scale * share)
+}
+
+/// Finds the numbers. `moment_nm` is the weight's when it is horizontal, with its 95 % interval; `hangs_rad` about where it hangs;
+/// `nm_per_a` about the torque for an ampere, from which the search begins.
+///
+/// # Errors
+/// [`Refusal`]: what the currents show instead.
+pub fn found(
+    means: &[Mean],
+    moment_nm: Estimate,
+    hangs_rad: f64,
+    nm_per_a: f64,
+) -> Result<Found, Refusal> {
+    let count = |sense: f64| means.iter().filter(|m| m.sense * sense > 0.0).count();
+    let away = means.first().map_or(1.0, |mean| mean.sense);
+    let (up, down) = (count(away), count(-away));
+    if up.min(down) < LEAST_MEANS {
+        return Err(Refusal::Short { up, down });
+    }
+    let moment = moment_nm.value;
+    // Stiffer than 100 N·m/rad, softer than rigid.
+    let gives = 0.005 * moment;
+    let prior = Numbers::from([nm_per_a / moment, 0.25, 0.4 / moment, hangs_rad, gives]);
+    let weights = Numbers::from([0.0, 0.25_f64.powi(-2), 0.0, 0.0, gives.powi(-2)]);
+    let mut numbers = prior;
+    let mut used: Vec<Mean> = means.to_vec();
+    // The first time with all, then without what is near where the weight hangs.
+    for _ in 0..2 {
+        numbers = fitted(&used, numbers, &prior, &weights);
+        used = means
+            .iter()
+            .filter(|m| (m.angle_rad - numbers[3]).abs() > LEFT_OUT_RAD)
+            .copied()
+            .collect();
+    }
+    let numbers = fitted(&used, numbers, &prior, &weights);
+    let loads = used.iter().map(|m| (m.angle_rad - numbers[3]).sin().abs());
+    let (least, most) = loads.fold((1.0_f64, 0.0_f64), |(a, b), x| (a.min(x), b.max(x)));
+    if most - least < LEAST_LOAD {
+        return Err(Refusal::Flat {
+            share: 100.0 * (most - least),
+        });
+    }
+    let residuals: Vec<f64> = used
+        .iter()
+        .map(|m| m.current_a - current_a(&numbers, m))
+        .collect();
+    let square: f64 = residuals.iter().map(|r| r * r).sum();
+    let residual_a = (square / residuals.len() as f64).sqrt();
+    let greatest_a = used.iter().map(|m| m.current_a.abs()).fold(0.0, f64::max);
+    for (what, is) in [
+        (
+            "no torque for an ampere",
+            !(numbers[0] * moment > 0.05 && numbers[0].is_finite()),
+        ),
+        (
+            "a loss of more than 70 % or less than none",
+            !(-0.1..0.7).contains(&numbers[1]),
+        ),
+        ("friction of less than none", numbers[2] < -0.02),
+        (
+            "a friction that is greater than the weight",
+            numbers[2] > 0.9,
+        ),
+        (
+            "a weight that hangs somewhere else",
+            (numbers[3] - hangs_rad).abs() > 1.0,
+        ),
+    ] {
+        if is {
+            return Err(Refusal::Implausible { what });
+        }
+    }
+    if residual_a > 0.06 * greatest_a {
+        return Err(Refusal::Misfit {
+            residual_a,
+            greatest_a,
+        });
+    }
+    let (covariance, data) = covariance(&used, &numbers, &weights, &residuals);
+    let half = |at: usize| DEVIATIONS * covariance[(at, at)].max(0.0).sqrt();
+    let together = |parts: [f64; 3]| parts.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let by_weight = moment_nm.share();
+    let (scale, friction) = (numbers[0] * moment, numbers[2] * moment);
+    Ok(Found {
+        nm_per_a: Estimate {
+            value: scale,
+            half_width: together([half(0) * moment, scale * by_weight, scale * MODEL[0]]),
+        },
+        load_loss: Estimate {
+            value: numbers[1],
+            half_width: together([half(1), MODEL[2], 0.0]),
+        },
+        friction_nm: Estimate {
+            value: friction,
+            half_width: together([half(2) * moment, friction * by_weight, friction * MODEL[1]]),
+        },
+        hangs_rad: Estimate {
+            value: numbers[3],
+            half_width: half(3),
+        },
+        residual_a,
+        curve: used
+            .iter()
+            .map(|m| [m.angle_rad, m.current_a, current_a(&numbers, m)])
+            .collect(),
+        tells_stiffness: data > 4.0 * weights[4],
+    })
+}
+
+/// Slopes of the current in each number.
+fn slopes(numbers: &Numbers, mean: &Mean) -> Numbers {
+    Numbers::from_fn(|at, _| {
+        let step = 1e-6 * numbers[at].abs().max(1e-2);
+        let (mut less, mut more) = (*numbers, *numbers);
+        less[at] -= step;
+        more[at] += step;
+        (current_a(&more, mean) - current_a(&less, mean)) / (2.0 * step)
+    })
+}
+
+/// About the noise of a mean, A: only how much the assumptions weigh depends on it.
+const NOISE_A: f64 = 0.005;
+
+/// Gauss and Newton with a damping that falls, as Levenberg and Marquardt do.
+fn fitted(means: &[Mean], from: Numbers, prior: &Numbers, weights: &Numbers) -> Numbers {
+    let cost = |n: &Numbers| {
+        let misfit: f64 = means
+            .iter()
+            .map(|m| (m.current_a - current_a(n, m)).powi(2))
+            .sum();
+        misfit / NOISE_A.powi(2) + (n - prior).component_mul(&(n - prior)).dot(weights)
+    };
+    let mut numbers = from;
+    let mut best = cost(&numbers);
+    let mut damping = 1e-3;
+    for _ in 0..100 {
+        let mut normal = Square::from_diagonal(weights);
+        let mut pull = (prior - numbers).component_mul(weights);
+        for mean in means {
+            let slope = slopes(&numbers, mean) / NOISE_A;
+            normal += slope * slope.transpose();
+            pull += slope * ((mean.current_a - current_a(&numbers, mean)) / NOISE_A);
+        }
+        let damped = normal + Square::from_diagonal(&(normal.diagonal() * damping));
+        let Some(step) = damped.lu().solve(&pull) else {
+            break;
+        };
+        let tried = numbers + step;
+        let value = cost(&tried);
+        if value < best {
+            let is_done = best - value < 1e-9 * best;
+            (numbers, best, damping) = (tried, value, damping * 0.3);
+            if is_done {
+                break;
+            }
+        } else {
+            damping *= 10.0;
+            if damping > 1e9 {
+                break;
+            }
+        }
+    }
+    numbers
+}
+
+/// Covariance of the numbers with the noise that is left, and how much the data say of what gives way.
+fn covariance(
+    means: &[Mean],
+    numbers: &Numbers,
+    weights: &Numbers,
+    residuals: &[f64],
+) -> (Square, f64) {
+    let free = (residuals.len() as f64 - 5.0).max(1.0);
+    let square: f64 = residuals.iter().map(|r| r * r).sum();
+    // Neighbours err alike: as many fewer means count.
+    let pairs: f64 = residuals.windows(2).map(|w| w[0] * w[1]).sum();
+    let alike = (pairs / square.max(1e-30)).clamp(0.0, 0.95);
+    let noise = (square / free).max(1e-8) * (1.0 + alike) / (1.0 - alike);
+    let data = means
+        .iter()
+        .map(|m| slopes(numbers, m))
+        .fold(Square::zeros(), |sum, s| sum + s * s.transpose())
+        / noise;
+    let all = data + Square::from_diagonal(weights);
+    let others = all.remove_row(4).remove_column(4);
+    let to = all.column(4).remove_row(4);
+    let hidden = others.lu().solve(&to).map_or(0.0, |x| to.dot(&x));
+    let of_gives = all[(4, 4)] - weights[4] - hidden;
+    (
+        all.try_inverse()
+            .unwrap_or_else(|| Square::from_diagonal_element(f64::INFINITY)),
+        of_gives,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MOMENT: Estimate = Estimate {
+        value: 1.5,
+        half_width: 0.015,
+    };
+
+    /// Means by bisection of the balance of torques: shares nothing with the fit.
+    fn simulated(
+        constant: f64,
+        loss: f64,
+        friction: f64,
+        stiffness: f64,
+        arc_deg: i32,
+    ) -> Vec<Mean> {
+        let weight_at = |angle: f64| {
+            let (mut low, mut high) = (angle - 0.3, angle + 0.3);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if stiffness * (angle - middle) > MOMENT.value * (middle - 0.1).sin() {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            low
+        };
+        let mean = |deg: i32, sense: f64| {
+            let angle_rad = f64::from(deg).to_radians() + 0.1;
+            let load = MOMENT.value * (weight_at(angle_rad) - 0.1).sin();
+            let (mut low, mut high) = (-5.0, 5.0);
+            for _ in 0..60 {
+                let i: f64 = 0.5 * (low + high);
+                let lost = (friction + loss * (constant * i).abs()) * sense;
+                if constant * i - lost < load {
+                    low = i;
+                } else {
+                    high = i;
+                }
+            }
+            Mean {
+                angle_rad,
+                current_a: low,
+                sense,
+            }
+        };
+        let up = (-3..arc_deg).map(|deg| mean(deg, 1.0));
+        let down = (2..arc_deg).rev().map(|deg| mean(deg, -1.0));
+        up.chain(down).collect()
+    }
+
+    #[test]
+    fn what_was_put_in_comes_out() {
+        for (constant, loss, friction, stiffness) in [
+            (3.33, 0.3, 0.5, 120.0),
+            (2.5, 0.1, 0.2, 60.0),
+            (4.2, 0.4, 0.6, 1e4),
+            (3.33, 0.0, 0.1, 300.0),
+        ] {
+            let found = found(
+                &simulated(constant, loss, friction, stiffness, 90),
+                MOMENT,
+                0.3,
+                3.33,
+            )
+            .unwrap();
+            assert!(found.nm_per_a.holds(constant), "{constant} {found:?}");
+            assert!(found.load_loss.holds(loss), "{loss} {found:?}");
+            assert!(found.friction_nm.holds(friction), "{friction} {found:?}");
+            assert!(found.nm_per_a.share() < 0.03, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_weight_that_is_given_wrongly_scales_all() {
+        let means = simulated(3.33, 0.3, 0.5, 120.0, 90);
+        let heavier = Estimate {
+            value: 3.0,
+            half_width: 0.03,
+        };
+        let wrong = found(&means, heavier, 0.3, 3.33).unwrap();
+        assert!(
+            (wrong.nm_per_a.value / 6.66 - 1.0).abs() < 0.03,
+            "{wrong:?}"
+        );
+    }
+
+    #[test]
+    fn a_short_arc_has_a_wide_interval() {
+        let share = |arc| {
+            found(&simulated(3.33, 0.3, 0.5, 120.0, arc), MOMENT, 0.3, 3.33)
+                .unwrap()
+                .nm_per_a
+                .share()
+        };
+        assert!(share(30) > share(90), "{} {}", share(30), share(90));
+    }
+
+    #[test]
+    fn what_is_no_weight_is_refused() {
+        let weight = simulated(3.33, 0.3, 0.5, 120.0, 90);
+        assert!(matches!(
+            found(&weight[..20], MOMENT, 0.0, 3.33),
+            Err(Refusal::Short { .. })
+        ));
+        let constant: Vec<_> = weight
+            .iter()
+            .map(|m| Mean {
+                current_a: m.sense * 0.2,
+                ..*m
+            })
+            .collect();
+        let refused = found(&constant, MOMENT, 0.1, 3.33);
+        assert!(refused.is_err(), "{refused:?}");
+        let noisy: Vec<_> = weight
+            .iter()
+            .zip(0..)
+            .map(|(m, n)| Mean {
+                current_a: m.current_a + 0.3 * f64::from(n % 7 - 3),
+                ..*m
+            })
+            .collect();
+        assert!(found(&noisy, MOMENT, 0.0, 3.33).is_err());
+    }
+}

@@ -1,0 +1,161 @@
+//! What a step has found.
+
+use super::step::Step;
+use crepitus_identify::Estimate;
+use crepitus_model::parameters::ParameterSpec;
+use std::fmt::Write;
+
+/// Whether it is as it should be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// As it should be.
+    Good,
+    /// Not as it should be: the exit code tells.
+    Bad,
+    /// The step could not tell.
+    Unknown,
+    /// The step was left out.
+    Skipped,
+}
+
+impl Verdict {
+    /// For people and files.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Bad => "bad",
+            Self::Unknown => "unknown",
+            Self::Skipped => "skipped",
+        }
+    }
+}
+
+/// A number that was found.
+#[derive(Clone, Debug)]
+pub(super) struct Value {
+    pub(super) name: &'static str,
+    pub(super) value: f64,
+    /// Half width of its 95 % interval; none if it is a count.
+    pub(super) half_width: Option<f64>,
+    pub(super) unit: &'static str,
+}
+
+impl Value {
+    /// Value, interval and unit.
+    pub(super) fn text(&self) -> String {
+        let Self { value, unit, .. } = self;
+        match self.half_width {
+            Some(half_width) => {
+                let (value, half) = Estimate {
+                    value: *value,
+                    half_width,
+                }
+                .rounded();
+                format!("{value} ± {half} {unit}")
+            }
+            None => format!("{value:.2} {unit}"),
+        }
+    }
+}
+
+/// What a step has found.
+#[derive(Clone, Debug)]
+pub(super) struct Finding {
+    /// None of the connection itself.
+    pub(super) step: Option<Step>,
+    pub(super) verdict: Verdict,
+    pub(super) values: Vec<Value>,
+    pub(super) remarks: Vec<String>,
+    /// What to do if it is not good.
+    pub(super) remedy: Option<String>,
+    /// Full names of parameters, and what they should be.
+    pub(super) proposals: Vec<(String, f64)>,
+    /// Angle, rad, measured and fitted current, A, of the hanging weight.
+    pub(super) curve: Vec<[f64; 3]>,
+}
+
+impl Finding {
+    /// Nothing yet.
+    pub(super) fn new(step: impl Into<Option<Step>>, verdict: Verdict) -> Self {
+        Self {
+            step: step.into(),
+            verdict,
+            values: Vec::new(),
+            remarks: Vec::new(),
+            remedy: None,
+            proposals: Vec::new(),
+            curve: Vec::new(),
+        }
+    }
+
+    /// A step that was left out.
+    pub(super) fn skipped(step: Step, why: &str) -> Self {
+        Self::new(step, Verdict::Skipped).remark(why)
+    }
+
+    /// With a number.
+    pub(super) fn value(
+        mut self,
+        name: &'static str,
+        value: f64,
+        half_width: Option<f64>,
+        unit: &'static str,
+    ) -> Self {
+        self.values.push(Value {
+            name,
+            value,
+            half_width,
+            unit,
+        });
+        self
+    }
+
+    /// With an estimate of what is a parameter somewhere.
+    pub(super) fn estimate(
+        self,
+        name: &'static str,
+        found: &Estimate,
+        spec: &ParameterSpec,
+    ) -> Self {
+        self.value(name, found.value, Some(found.half_width), spec.unit)
+    }
+
+    /// With a sentence.
+    pub(super) fn remark(mut self, text: impl Into<String>) -> Self {
+        self.remarks.push(text.into());
+        self
+    }
+
+    /// With what to do.
+    pub(super) fn remedy(mut self, text: impl Into<String>) -> Self {
+        self.remedy = Some(text.into());
+        self
+    }
+
+    /// With a value for a parameter.
+    pub(super) fn propose(mut self, name: &str, value: f64) -> Self {
+        self.proposals.push((name.to_owned(), value));
+        self
+    }
+
+    /// Of the step, for people and files.
+    pub(super) fn name(&self) -> &'static str {
+        self.step.map_or("connect", Step::name)
+    }
+
+    /// For people.
+    pub(super) fn text(&self) -> String {
+        let mut text = format!("{}: {}\n", self.name(), self.verdict.name());
+        // Writing to a String cannot fail.
+        for value in &self.values {
+            let _ = writeln!(text, "  {}  {}", value.name, value.text());
+        }
+        for remark in &self.remarks {
+            let _ = writeln!(text, "  {remark}");
+        }
+        if let Some(remedy) = &self.remedy {
+            let _ = writeln!(text, "  to do: {remedy}");
+        }
+        text
+    }
+}

@@ -1,0 +1,125 @@
+//! What a calibration leaves: a table, JSON, files, and changes of parameters.
+
+use super::finding::Finding;
+use super::page;
+use crate::failure::Failure;
+use crate::results::{Files, footer, write as write_files};
+use crepitus_client::values::{full_name, show_number};
+use crepitus_connection::parameters::find;
+use crepitus_plot::pictures;
+use crepitus_protocol::parameters::{Kind, Parameter};
+use crepitus_scene::output::Folder;
+use crepitus_table::Table;
+use serde_json::{Value as Json, json};
+use std::fmt::Write;
+use std::path::Path;
+
+/// The page.
+pub(super) const PAGE: &str = "report.html";
+
+/// A parameter, and what it should be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Change {
+    pub(super) parameter: &'static Parameter,
+    pub(super) value: f64,
+}
+
+/// What all steps propose; where two propose the same, the first. Within the parameter's range, with four digits.
+pub(super) fn changes(findings: &[Finding]) -> Result<Vec<Change>, Failure> {
+    let mut changes: Vec<Change> = Vec::new();
+    for (name, value) in findings.iter().flat_map(|finding| &finding.proposals) {
+        let (id, parameter) = find(name).map_err(Failure::input)?;
+        if changes.iter().all(|change| change.parameter.id != id) {
+            let value = match parameter.kind {
+                Kind::Number(spec) => four_digits(*value).clamp(spec.min, spec.max),
+                Kind::Choice(_) => *value,
+            };
+            changes.push(Change { parameter, value });
+        }
+    }
+    Ok(changes)
+}
+
+/// More are never known.
+fn four_digits(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+/// The summary for people.
+pub(super) fn text(findings: &[Finding], changes: &[Change]) -> String {
+    let mut text = "\n".to_owned();
+    text.push_str(
+        &Table::of(findings)
+            .people("step", |finding| finding.name())
+            .people("result", |finding| finding.verdict.name())
+            .people("found", |finding| {
+                finding.values.first().map_or(String::new(), |value| {
+                    format!("{} {}", value.name, value.text())
+                })
+            })
+            .to_text(),
+    );
+    for change in changes {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{}={}",
+            full_name(change.parameter),
+            show_number(change.value)
+        );
+    }
+    text
+}
+
+/// As JSON.
+pub(super) fn summary(findings: &[Finding], changes: &[Change], revision: Option<u32>) -> Json {
+    let steps: Vec<Json> = findings
+        .iter()
+        .map(|finding| {
+            let values: Vec<Json> = (finding.values.iter())
+                .map(|v| json!({ "name": v.name, "value": v.value, "half_width": v.half_width, "unit": v.unit }))
+                .collect();
+            json!({
+                "step": finding.name(),
+                "result": finding.verdict.name(),
+                "values": values,
+                "remarks": finding.remarks,
+                "remedy": finding.remedy,
+            })
+        })
+        .collect();
+    let parameters: Vec<Json> = changes
+        .iter()
+        .map(|change| json!({ "name": full_name(change.parameter), "value": change.value }))
+        .collect();
+    json!({
+        "crepitus_version": env!("CARGO_PKG_VERSION"),
+        "steps": steps,
+        "parameters": parameters,
+        "revision": revision,
+    })
+}
+
+/// Writes page, JSON and pictures.
+pub(super) fn write(
+    out: &Path,
+    folder: Folder,
+    findings: &[Finding],
+    changes: &[Change],
+    summary: &Json,
+) -> Result<(), Failure> {
+    let json = serde_json::to_string_pretty(summary)
+        .map_err(|error| Failure::Work(format!("the calibration cannot be written: {error}")))?;
+    let figure = page::figure(findings);
+    let mut files: Files = vec![
+        (
+            PAGE.to_owned(),
+            page::html(findings, changes, figure.as_ref(), &footer()).into(),
+        ),
+        ("calibration.json".to_owned(), (json + "\n").into()),
+    ];
+    for picture in pictures(&figure) {
+        files.push((format!("{}.svg", picture.name), picture.svg.into()));
+    }
+    write_files(folder, out, files)
+}
