@@ -21,8 +21,18 @@ impl Served {
 
     /// In a folder that is there.
     pub(crate) fn at(home: tempfile::TempDir) -> Self {
+        Self::of(home, &[])
+    }
+
+    /// With the leg and the parameters of a scene.
+    pub(crate) fn with_scene(scene: &str) -> Self {
+        Self::of(tempfile::tempdir().unwrap(), &["--scene", scene])
+    }
+
+    fn of(home: tempfile::TempDir, more: &[&str]) -> Self {
         let mut child = crepitus()
             .args(["serve-sim", "--name", "knee"])
+            .args(more)
             .env("XDG_RUNTIME_DIR", home.path())
             .stdout(Stdio::piped())
             .spawn()

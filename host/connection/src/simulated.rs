@@ -39,12 +39,8 @@ impl Simulated {
     /// # Errors
     /// [`crepitus_board::VirtualError`] if the scene has what no device has.
     pub fn of(scene: &Scene) -> Result<Self, crepitus_board::VirtualError> {
-        Ok(Self {
-            device: Box::new(VirtualDevice::of(scene, &Start::default())?),
-            name: "a simulated device".to_owned(),
-            torn: false,
-            pace: None,
-        })
+        let device = Box::new(VirtualDevice::of(scene, &Start::default())?);
+        Ok(Self::cabled(device).named("a simulated device"))
     }
 
     /// The device of a scene, as the firmware's own images on emulated
@@ -54,12 +50,22 @@ impl Simulated {
     /// [`NoTarget`] without the emulator or the images.
     pub fn emulated(scene: &Scene) -> Result<Self, NoTarget> {
         let on_build = || eprintln!("building firmware, if it is not up to date");
-        Ok(Self {
-            device: on_target::device(scene, on_build)?,
-            name: "an emulated device".to_owned(),
+        Ok(Self::cabled(on_target::device(scene, on_build)?).named("an emulated device"))
+    }
+
+    /// A device at the end of a virtual cable, such as one that breaks on purpose.
+    pub fn cabled(device: Box<dyn CabledDevice>) -> Self {
+        Self {
+            device,
+            name: "a device on a virtual cable".to_owned(),
             torn: false,
             pace: None,
-        })
+        }
+    }
+
+    fn named(mut self, name: &str) -> Self {
+        name.clone_into(&mut self.name);
+        self
     }
 
     /// The same, not faster than real time.

@@ -78,6 +78,7 @@ shipped![
     "passive-examination",
     "actuator-in-a-vice",
     "weight-in-the-brace",
+    "weight-on-the-arm",
 ];
 
 impl Shipped {

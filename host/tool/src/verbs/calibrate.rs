@@ -126,9 +126,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         findings.push(finding);
     }
     let changes = results::changes(&findings)?;
-    let is_bad = findings
-        .iter()
-        .any(|finding| finding.verdict == Verdict::Bad);
+    let is_any = |verdict| {
+        findings
+            .iter()
+            .any(|finding: &Finding| finding.verdict == verdict)
+    };
+    let (is_bad, is_unknown) = (is_any(Verdict::Bad), is_any(Verdict::Unknown));
     let revision = if arguments.apply && !is_bad && !changes.is_empty() {
         Some(applied(&mut client, &changes)?)
     } else {
@@ -151,7 +154,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             print(&format!("report: {}\n", out.join(results::PAGE).display()))?;
         }
     }
-    if is_bad {
+    if is_bad || is_unknown {
         Err(Failure::Negative)
     } else {
         Ok(())

@@ -38,7 +38,7 @@ fn pushed(client: &mut Client<Line>) -> Result<Finding, Failure> {
                     .remark("the drive refused to arm: its push moved the encoder the wrong way (encoder-polarity)")
                     .remedy(
                         "if the step range is good, flexion counts up: swap the motor's two wires, behind the shunts, and nothing else; if \
-                         range found the angle falling in flexion, swap A and B of the encoder and nothing else",
+                         range found the angle falling in flexion, swap A and B of the encoder and nothing else; then take the step zero again",
                     ));
             }
             let faults = device_text::faults(&status);

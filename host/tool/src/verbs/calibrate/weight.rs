@@ -35,6 +35,17 @@ pub(super) struct Known {
 }
 
 impl Known {
+    /// A mass at a lever, with the share by which their product may be off.
+    #[cfg(test)]
+    pub(super) const fn new(kg: f64, lever_m: f64, share: f64) -> Self {
+        Self {
+            kg,
+            lever_m,
+            inertia_kg_m2: None,
+            share,
+        }
+    }
+
     /// Torque about the axis when it is horizontal, N·m.
     pub(super) fn moment_nm(&self) -> Estimate {
         let value = self.kg * GRAVITY * self.lever_m;
