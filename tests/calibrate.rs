@@ -219,7 +219,7 @@ fn what_is_refused_has_its_exit_code_and_its_reason() {
         ),
         (&["--weight-kg", "2", "--yes"], 2, "--lever-m"),
         (
-            &["--weight-kg", "-2", "--lever-m", "0.2", "--yes"],
+            &["--weight-kg", "0", "--lever-m", "0.2", "--yes"],
             2,
             "--weight-kg",
         ),

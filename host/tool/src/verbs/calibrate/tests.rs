@@ -18,6 +18,7 @@ use crepitus_usb::host::CdcHost;
 use crepitus_usb::usbip::{Event, Server};
 use std::error::Error;
 use std::path::Path;
+use std::time::Duration;
 
 /// What the weight of the scene `weight-on-the-arm` is.
 const WEIGHT: Known = Known::new(0.61, 0.25, 0.01);
@@ -59,11 +60,7 @@ impl CabledDevice for Breaking {
 }
 
 /// A device with a weight on its arm, and these values of the scene; it breaks after so many ticks with torque.
-fn device(settings: &[(&str, f64)], after: u64, how: fn(&mut Board)) -> Client<Line> {
-    let set = settings
-        .iter()
-        .map(|(path, value)| ((*path).to_owned(), value.to_string()))
-        .collect();
+fn device(set: Vec<(String, String)>, after: u64, how: fn(&mut Board)) -> Client<Line> {
     let overrides = Overrides {
         set,
         ..Overrides::default()
@@ -87,7 +84,10 @@ fn device(settings: &[(&str, f64)], after: u64, how: fn(&mut Board)) -> Client<L
 }
 
 fn whole(settings: &[(&str, f64)]) -> Client<Line> {
-    device(settings, u64::MAX, |_| {})
+    let set = settings
+        .iter()
+        .map(|(path, value)| ((*path).to_owned(), value.to_string()));
+    device(set.collect(), u64::MAX, |_| {})
 }
 
 fn number(finding: &Finding, name: &str) -> (f64, f64) {
@@ -157,9 +157,35 @@ fn hidden_devices_are_found() {
     assert!(20 * inside >= 19 * all, "{inside} of {all}");
 }
 
+/// The other clamping: the upper half level, the weight hangs at 90° of flexion and is lifted into extension.
+#[test]
+fn a_weight_that_is_lifted_into_extension_shows_the_same() {
+    let level = [
+        ("effects.limb.posture", "\"sitting\""),
+        ("effects.motor.torque_constant_nm_per_a", "0.0365"),
+    ];
+    let set = level.map(|(path, value)| (path.to_owned(), value.to_owned()));
+    let mut client = device(set.to_vec(), u64::MAX, |_| {});
+    believe(&mut client, 0.0389);
+    // The zero of the straight joint, from which the weight falls; until it hangs still.
+    client.zero().expect("a zero");
+    client.transport_mut().wait(Duration::from_secs(15));
+    let finding = hanging::found(&mut client, &WEIGHT).expect("an experiment");
+    let (value, half_width) = number(&finding, "torque constant");
+    assert!(
+        (value - 0.0365).abs() <= half_width && half_width < 0.0015,
+        "{}",
+        finding.text()
+    );
+    let (friction, half_width) = number(&finding, "dry friction at 8 deg/s");
+    assert!((friction - 0.38).abs() <= half_width, "{}", finding.text());
+    let (arc, _) = number(&finding, "moved by");
+    assert!(arc > 45.0, "{}", finding.text());
+}
+
 #[test]
 fn a_reversed_polarity_is_refused_by_the_drive() {
-    let mut client = device(&[], 0, |board| {
+    let mut client = device(Vec::new(), 0, |board| {
         board.leg_mut().set_encoder_wiring(EncoderWiring::Swapped)
     });
     zero::found(&mut client).expect("a zero");
@@ -188,7 +214,7 @@ fn a_reversed_polarity_is_refused_by_the_drive() {
 fn a_fault_in_the_middle_ends_the_torque_and_restores_the_parameters() {
     let unplug: fn(&mut Board) =
         |board| board.leg_mut().set_encoder_wiring(EncoderWiring::Unplugged);
-    let mut client = device(&[], 80_000, unplug);
+    let mut client = device(Vec::new(), 80_000, unplug);
     zero::found(&mut client).expect("a zero");
     let before = client.parameters().expect("parameters").1;
     let Err(Failure::Work(text)) = hanging::found(&mut client, &WEIGHT) else {
