@@ -32,7 +32,7 @@ impl Verdict {
 
 /// A number that was found.
 #[derive(Clone, Debug)]
-pub(super) struct Value {
+pub(super) struct Number {
     pub(super) name: &'static str,
     pub(super) value: f64,
     /// Half width of its 95 % interval; none if it is a count.
@@ -40,7 +40,7 @@ pub(super) struct Value {
     pub(super) unit: &'static str,
 }
 
-impl Value {
+impl Number {
     /// Value, interval and unit.
     pub(super) fn text(&self) -> String {
         let Self { value, unit, .. } = self;
@@ -64,7 +64,7 @@ pub(super) struct Finding {
     /// None of the connection itself.
     pub(super) step: Option<Step>,
     pub(super) verdict: Verdict,
-    pub(super) values: Vec<Value>,
+    pub(super) values: Vec<Number>,
     pub(super) remarks: Vec<String>,
     /// What to do if it is not good.
     pub(super) remedy: Option<String>,
@@ -101,7 +101,7 @@ impl Finding {
         half_width: Option<f64>,
         unit: &'static str,
     ) -> Self {
-        self.values.push(Value {
+        self.values.push(Number {
             name,
             value,
             half_width,

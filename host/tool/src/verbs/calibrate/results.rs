@@ -50,7 +50,7 @@ pub(super) fn text(findings: &[Finding], changes: &[Change]) -> String {
     let mut text = "\n".to_owned();
     text.push_str(
         &Table::of(findings)
-            .people("step", |finding| finding.name())
+            .people("step", Finding::name)
             .people("result", |finding| finding.verdict.name())
             .people("found", |finding| {
                 finding.values.first().map_or(String::new(), |value| {

@@ -8,7 +8,7 @@ use crate::line::Line;
 use crepitus_board::board::Board;
 use crepitus_board::leg::EncoderWiring;
 use crepitus_board::{Start, VirtualDevice};
-use crepitus_client::Client;
+use crepitus_client::{Client, Transport};
 use crepitus_connection::Simulated;
 use crepitus_protocol::State;
 use crepitus_protocol::parameters::find;
@@ -186,7 +186,7 @@ fn a_weight_that_is_lifted_into_extension_shows_the_same() {
 #[test]
 fn a_reversed_polarity_is_refused_by_the_drive() {
     let mut client = device(Vec::new(), 0, |board| {
-        board.leg_mut().set_encoder_wiring(EncoderWiring::Swapped)
+        board.leg_mut().set_encoder_wiring(EncoderWiring::Swapped);
     });
     zero::found(&mut client).expect("a zero");
     let finding = polarity::found(&mut client).expect("an answer");
