@@ -258,6 +258,15 @@ fn what_is_refused_has_its_exit_code_and_its_reason() {
             stderr(&done)
         );
     }
+    // A zero that was set while the joint moved is none.
+    let moving = ["--yes", "--device", "sim", "--scene", "passive-examination"];
+    let done = calibrate("zero,polarity", &[&moving]);
+    assert_eq!(done.status.code(), Some(1));
+    let text = stdout(&done);
+    assert!(
+        text.contains("zero: bad") && text.contains("polarity: skipped"),
+        "{text}"
+    );
     // Without a zero nothing is armed.
     let done = calibrate("torque-constant", &[&WEIGHT, &ARM]);
     assert_eq!(done.status.code(), Some(1));

@@ -121,7 +121,13 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     show(&first, as_json)?;
     findings.push(first);
     for step in steps.into_iter().filter(|_| goes_on) {
-        let finding = taken(step, &mut client, &person, weight.as_ref())?;
+        let has_bad_zero =
+            |finding: &Finding| finding.step == Some(Step::Zero) && finding.verdict == Verdict::Bad;
+        let finding = if step.needs_zero() && findings.iter().any(has_bad_zero) {
+            Finding::skipped(step, "the zero is bad, and angles count from it")
+        } else {
+            taken(step, &mut client, &person, weight.as_ref())?
+        };
         show(&finding, as_json)?;
         findings.push(finding);
     }
