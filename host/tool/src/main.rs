@@ -13,6 +13,7 @@ mod own_presets;
 mod pictures;
 mod progress;
 mod recorded;
+mod reported;
 mod results;
 mod safe_text;
 mod sections;

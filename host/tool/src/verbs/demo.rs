@@ -1,7 +1,7 @@
 //! `crepitus demo`: the whole chain in one process, from the host's library to
 //! the simulated leg.
 
-use super::report::{self, in_brief};
+use super::report;
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Arming, Follower, follow};
 use crate::line::{Line, failure};
@@ -9,6 +9,7 @@ use crate::overlay::Overlay;
 use crate::pictures::Pictures;
 use crate::progress::Progress;
 use crate::recorded::{Recorded, extension};
+use crate::reported::Reported;
 use crate::wav::Wav;
 use clap::Args;
 use crepitus_client::{Begin, Client, RequestKind};
@@ -115,8 +116,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         overlay: &Overlay::default(),
         wav: &Wav::default(),
     };
-    let summary = report::write(&recording, &out, &extras)?.summary;
-    done(&summary, &out, &file, &client, begun.elapsed(), as_json)
+    let reported = report::write(&recording, &out, &extras)?;
+    done(&reported, &out, &file, &client, begun.elapsed(), as_json)
 }
 
 /// Creates the folder and removes an earlier recording.
@@ -216,7 +217,7 @@ fn examination_text(client: &Client<Line>, made: &[(&'static str, f64, Revision)
 }
 
 fn done(
-    summary: &RecordingSummary,
+    reported: &Reported<RecordingSummary>,
     out: &Path,
     file: &Path,
     client: &Client<Line>,
@@ -230,12 +231,12 @@ fn done(
             "out": out,
             "device_s": device_s,
             "wall_s": wall_s,
-            "summary": summary,
+            "summary": reported.summary,
         }));
     }
     print(&format!(
         "{}recording: {}\n{device_s:.1} s of device time took {wall_s:.1} s in all\n",
-        in_brief(summary, out),
+        report::text(reported, out),
         file.display()
     ))
 }

@@ -5,22 +5,21 @@ mod tables;
 
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
-use crate::overlay::{self as measurements, Overlay};
+use crate::overlay::{self, Overlay};
 use crate::pictures::Pictures;
 use crate::progress::Progress;
 use crate::recorded::beside;
+use crate::reported::Reported;
 use crate::results::{self, footer, report_files};
 use crate::sections::torque_levels;
-use crate::wav::{self, Listener, Wav};
+use crate::wav::{Listener, Wav};
 use clap::Args;
 use crepitus_protocol::TICK_S;
 use crepitus_recording::{
     Analysis, ArmingPushes, Damage, History, Recording, RecordingSummary, seconds,
 };
-use crepitus_report::{Collector, Difference, Mark, Setup, Text, TorqueLevels};
+use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
 use crepitus_scene::trace::{Column, ColumnKind};
-use crepitus_sound::SoundSummary;
-use serde_json::json;
 use std::path::{Path, PathBuf};
 use symptoms::Symptoms;
 
@@ -84,7 +83,7 @@ pub(crate) struct Arguments {
     wav: Wav,
 }
 
-/// What goes into a report beside the recording, and what comes out beside its files.
+/// Options of a report: pictures, measured curves, a sound.
 #[derive(Debug)]
 pub(super) struct Extras<'a> {
     pub(super) pictures: &'a Pictures,
@@ -92,14 +91,7 @@ pub(super) struct Extras<'a> {
     pub(super) wav: &'a Wav,
 }
 
-/// What a report leaves beside its files.
-pub(super) struct Reported {
-    pub(super) summary: RecordingSummary,
-    differences: Vec<Difference>,
-    sound: Option<SoundSummary>,
-}
-
-/// Reports.
+/// Writes the report of a recording.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let damage = if arguments.salvage {
         Damage::Salvage
@@ -117,26 +109,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         overlay: &arguments.overlay,
         wav: &arguments.wav,
     };
-    let Reported {
-        summary,
-        differences,
-        sound,
-    } = write(&recording, &out, &extras)?;
+    let reported = write(&recording, &out, &extras)?;
     if as_json {
-        let mut printed = json!({ "out": out, "summary": summary });
-        if let Some(sound) = &sound {
-            printed["sound"] = json!(sound);
-        }
-        if !differences.is_empty() {
-            printed["overlay"] = json!(differences);
-        }
-        return print_json(&printed);
+        return print_json(&reported.json(&out));
     }
-    print(
-        &(measurements::in_brief(&differences)
-            + &wav::in_brief(sound.as_ref())
-            + &in_brief(&summary, &out)),
-    )
+    print(&text(&reported, &out))
 }
 
 /// Writes `report.html` and `summary.json` of a recording into `out`.
@@ -144,7 +121,7 @@ pub(super) fn write(
     recording: &Recording,
     out: &Path,
     extras: &Extras<'_>,
-) -> Result<Reported, Failure> {
+) -> Result<Reported<RecordingSummary>, Failure> {
     let parameters = recording.parameters();
     let symptoms = Symptoms::of(parameters);
     let columns = symptoms.columns();
@@ -236,7 +213,7 @@ pub(super) fn write(
         .transpose()?;
     results::write(folder, out, files)?;
     let differences = figures.differences();
-    measurements::warn_of_nothing(&differences, extras.overlay.file());
+    overlay::warn_of_nothing(&differences, extras.overlay.file());
     Ok(Reported {
         summary,
         differences,
@@ -255,8 +232,14 @@ fn levels(parameters: &History) -> Option<TorqueLevels> {
     sets.all(|other| other == Some(first)).then_some(first)
 }
 
-/// A few lines.
-pub(crate) fn in_brief(s: &RecordingSummary, out: &Path) -> String {
+/// The printed text of a report, for people.
+pub(super) fn text(reported: &Reported<RecordingSummary>, out: &Path) -> String {
+    let brief = in_brief(&reported.summary);
+    reported.text(&brief, "report", &out.join("report.html"))
+}
+
+/// The summary in a few lines.
+fn in_brief(s: &RecordingSummary) -> String {
     let warnings = s.warnings.iter().fold(String::new(), |text, warning| {
         text + "  note: " + warning + "\n"
     });
@@ -268,7 +251,7 @@ pub(crate) fn in_brief(s: &RecordingSummary, out: &Path) -> String {
     });
     format!(
         "{}\n{warnings}  {:.3} s, {:.3} s of it armed, with {} breaks and {} sticks\n{torque}  \
-         {} samples produced = {} received + {} dropped\nreport: {}\n",
+         {} samples produced = {} received + {} dropped\n",
         s.title,
         s.duration_s,
         s.armed_s,
@@ -276,7 +259,6 @@ pub(crate) fn in_brief(s: &RecordingSummary, out: &Path) -> String {
         s.sticks,
         s.telemetry.produced,
         s.telemetry.received,
-        s.telemetry.dropped,
-        out.join("report.html").display()
+        s.telemetry.dropped
     )
 }

@@ -9,15 +9,14 @@ use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
 use crate::overlay::{self, Overlay};
 use crate::pictures::Pictures;
+use crate::reported::Reported;
 use crate::results::{self, footer, report_files};
 use crate::sections::torque_levels;
-use crate::wav::{self, Listener, Wav};
+use crate::wav::{Listener, Wav};
 use clap::Args;
-use crepitus_report::{Difference, Setup, Text};
+use crepitus_report::{Setup, Text};
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, RunError, Scene, Summary, run as runner};
-use crepitus_sound::SoundSummary;
-use serde_json::json;
 use std::path::{Path, PathBuf};
 use watch::{Watch, WatchError};
 
@@ -103,21 +102,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             out.display()
         );
     }
-    let Results {
-        summary,
-        differences,
-        sound,
-    } = simulate(&scene, &out, arguments)?;
+    let reported = simulate(&scene, &out, arguments)?;
     if as_json {
-        let mut printed = json!({ "out": out, "summary": summary });
-        if let Some(sound) = &sound {
-            printed["sound"] = json!(sound);
-        }
-        if !differences.is_empty() {
-            printed["overlay"] = json!(differences);
-        }
-        return print_json(&printed);
+        return print_json(&reported.json(&out));
     }
+    let summary = &reported.summary;
     for warning in &summary.warnings {
         warn(warning);
     }
@@ -126,14 +115,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     } else {
         ("report", "report.html")
     };
-    print(&format!(
-        "{}\n{}\n{}{}{what}: {}\n",
-        summary.title,
-        tables::in_brief(&summary),
-        overlay::in_brief(&differences),
-        wav::in_brief(sound.as_ref()),
-        out.join(file).display()
-    ))
+    let brief = format!("{}\n{}\n", summary.title, tables::in_brief(summary));
+    print(&reported.text(&brief, what, &out.join(file)))
 }
 
 /// The scene that the arguments name, with their overrides.
@@ -156,15 +139,8 @@ fn out_folder(arguments: &Arguments, scene: &Scene) -> PathBuf {
     })
 }
 
-/// What a run leaves beside its files.
-struct Results {
-    summary: Summary,
-    differences: Vec<Difference>,
-    sound: Option<SoundSummary>,
-}
-
-/// Why a run has failed.
-fn why(scene: &Scene, out: &Path, wav: &Wav, error: RunError<WatchError>) -> Failure {
+/// The failure of a run, for people.
+fn failure(scene: &Scene, out: &Path, wav: &Wav, error: RunError<WatchError>) -> Failure {
     let file = scene.file.display();
     match error {
         RunError::Observer(WatchError::Write(e)) => Failure::at(out, "writing the results", &e),
@@ -187,23 +163,27 @@ fn with_commit(summary: Summary) -> Summary {
 }
 
 /// Runs the scene and writes its files.
-fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Results, Failure> {
+fn simulate(
+    scene: &Scene,
+    out: &Path,
+    arguments: &Arguments,
+) -> Result<Reported<Summary>, Failure> {
     let columns = runner::columns(scene);
     let measured = arguments.overlay.read(&columns)?;
     let listener = arguments.wav.listener(&columns, scene.trace_step_s)?;
     let failed = |e: &std::io::Error| Failure::at(out, "writing the results", e);
     let folder = results::folder(out)?;
     interrupt::listen();
-    let why = |e| why(scene, out, &arguments.wav, e);
+    let failed_run = |e| failure(scene, out, &arguments.wav, e);
     if arguments.no_trace {
         let mut watch =
             watch::EventsAlone::new(&folder, scene.duration_s).map_err(|e| failed(&e))?;
-        let summary = crepitus_scene::run(scene, &mut watch).map_err(why)?;
+        let summary = crepitus_scene::run(scene, &mut watch).map_err(failed_run)?;
         let summary = with_commit(summary);
         watch.finish().map_err(|e| failed(&e))?;
         results::write(folder, out, vec![results::summary_file(&summary)?])?;
         results::remove_others(out)?;
-        return Ok(Results {
+        return Ok(Reported {
             summary,
             differences: Vec::new(),
             sound: None,
@@ -220,7 +200,7 @@ fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Results,
         .map_err(|e| failed(&e))?;
     watch.compare(measured, &columns);
     watch.listen(listener);
-    let summary = crepitus_scene::run(scene, &mut watch).map_err(why)?;
+    let summary = crepitus_scene::run(scene, &mut watch).map_err(failed_run)?;
     let mut summary = with_commit(summary);
     runner::measure_costs(scene, &mut summary);
     let listener = watch.listener();
@@ -247,7 +227,7 @@ fn simulate(scene: &Scene, out: &Path, arguments: &Arguments) -> Result<Results,
     results::write(folder, out, files)?;
     let differences = figures.differences();
     overlay::warn_of_nothing(&differences, arguments.overlay.file());
-    Ok(Results {
+    Ok(Reported {
         summary,
         differences,
         sound,
