@@ -44,6 +44,13 @@ pub struct Stroke {
 }
 
 impl Stroke {
+    /// The dotted line of a moment.
+    pub(crate) const MOMENT: Self = Self {
+        ink: TEXT,
+        width: 1.0,
+        dashes: "2 3",
+    };
+
     /// A full line.
     pub fn new(ink: Ink, width: f64) -> Self {
         Self {

@@ -2,6 +2,7 @@
 //! cut.
 
 use crate::panel::Panel;
+use crate::strip::Strip;
 use crate::text::{LINE, SIZE, lines, width};
 
 /// The inside of a pair of axes, CSS pixels of the whole chart.
@@ -28,24 +29,26 @@ const FOOT_WITHOUT_NUMBERS: f64 = 6.0;
 pub(crate) const GAP: f64 = 8.0;
 const EDGE: f64 = 3.0;
 
-/// Frames of panels one above the other; all begin and end at the same x.
-pub(crate) fn frames(total: f64, panels: &[Panel]) -> Vec<Frame> {
+/// Frames of panels one above the other, with the strips above them, and the height of all; all begin
+/// and end at the same x.
+pub(crate) fn frames(total: f64, panels: &[Panel]) -> (Vec<(Frame, Strip)>, f64) {
     let most = |room: fn(&Panel) -> f64| panels.iter().map(room).fold(0.0, f64::max).ceil();
-    let (left, right) = (most(left), most(right));
+    let left = most(left);
+    let right = (total - most(right)).max(left + 1.0);
     let mut top = 0.0;
-    panels
-        .iter()
-        .map(|panel| {
-            let frame = Frame {
-                left,
-                top: top + panel.head + TOP,
-                right: (total - right).max(left + 1.0),
-                bottom: top + panel.head + panel.height - foot(panel),
-            };
-            top += panel.head + panel.height;
-            frame
-        })
-        .collect()
+    let frames = panels.iter().map(|panel| {
+        let strip = panel.strip(right - left);
+        let head = panel.head + strip.height();
+        let frame = Frame {
+            left,
+            top: top + head + TOP,
+            right,
+            bottom: top + head + panel.height - foot(panel),
+        };
+        top += head + panel.height;
+        (frame, strip)
+    });
+    (frames.collect(), top)
 }
 
 /// Lines of the title of y; half of it may stand beyond each end.

@@ -41,6 +41,7 @@ mod pdf;
 mod picture;
 mod plot;
 mod simplify;
+mod strip;
 pub mod text;
 mod thinned;
 

@@ -4,7 +4,8 @@ use crate::axis::Axis;
 use crate::drawing::{Anchor, Drawing, Stroke, Svg};
 use crate::layout::{Frame, GAP, TICK, frames, y_title};
 use crate::palette::{AXIS, TEXT};
-use crate::plot::Plot;
+use crate::plot::{Mark, Plot};
+use crate::strip::Strip;
 use crate::text::{LINE, SIZE, width};
 
 /// One pair of axes, and what draws between them.
@@ -18,6 +19,7 @@ pub struct Panel<'d> {
     pub(crate) y_title: &'d str,
     pub(crate) right: f64,
     pub(crate) names: Vec<(f64, String)>,
+    moments: Vec<Mark>,
     draw: Box<dyn FnOnce(&mut Plot) + 'd>,
 }
 
@@ -39,6 +41,7 @@ impl<'d> Panel<'d> {
             y_title,
             right: 16.0,
             names: Vec::new(),
+            moments: Vec::new(),
             draw: Box::new(draw),
         }
     }
@@ -71,17 +74,32 @@ impl<'d> Panel<'d> {
         self.names = names;
         self
     }
+
+    /// Names of moments in a strip above the axes, which makes room for them; in rows, where they
+    /// would touch. [`Plot::moments`] draws their lines.
+    #[must_use]
+    pub fn moments(mut self, marks: Vec<Mark>) -> Self {
+        self.moments = marks;
+        self
+    }
+
+    /// The strip of a panel whose axes are this wide, CSS pixels.
+    pub(crate) fn strip(&self, width: f64) -> Strip {
+        Strip::of(&self.moments, &self.x, width)
+    }
 }
 
 /// Draws panels one above the other, on one width.
 pub fn stack(total: f64, label: &str, panels: Vec<Panel>) -> Svg {
-    let height = panels.iter().map(|panel| panel.head + panel.height).sum();
+    let (frames, height) = frames(total, &panels);
     let mut drawing = Drawing::default();
-    for (frame, panel) in frames(total, &panels).into_iter().zip(panels) {
+    for ((frame, strip), panel) in frames.into_iter().zip(panels) {
         let titles = y_title(&panel);
         if let Some(heading) = panel.heading {
-            drawing.text((frame.left, frame.top - 18.0), Anchor::Start, TEXT, heading);
+            let y = frame.top - strip.height() - 18.0;
+            drawing.text((frame.left, y), Anchor::Start, TEXT, heading);
         }
+        strip.draw(frame, &mut drawing);
         let x = panel.x.fitting(frame.right - frame.left);
         let mut plot = Plot::new(x, panel.y, frame, drawing);
         (panel.draw)(&mut plot);

@@ -1,12 +1,11 @@
 //! Drawing between a pair of axes, in the units of the data.
 
 use crate::axis::Axis;
-use crate::drawing::{Anchor, Drawing, Stroke};
+use crate::drawing::{Drawing, Stroke};
 use crate::layout::Frame;
 use crate::marker::Marker;
 use crate::palette::{GRID, Ink, LEVEL, PAPER, TEXT};
 use crate::simplify::simplify;
-use crate::text::LINE;
 use crate::thinned::Point;
 
 /// Of a stretch that must be seen, CSS pixels.
@@ -167,38 +166,14 @@ impl Plot {
         self.over.sign(self.at(at), marker, ink);
     }
 
-    /// Thin lines at moments, in this panel with or without their names, which
-    /// stand at the top, below each other where they would touch.
-    pub fn moments(&mut self, marks: &[Mark], named: bool) {
-        let mut ends: Vec<f64> = Vec::new();
+    /// Thin dotted lines at moments; [`Panel::moments`](crate::Panel::moments) names them.
+    pub fn moments(&mut self, marks: &[Mark]) {
         let (low, high) = (self.x.low(), self.x.high());
-        for Mark { at, name } in marks.iter().filter(|mark| (low..=high).contains(&mark.at)) {
-            let (x, bottom) = self.at((*at, self.y.low()));
-            let top = self.frame.top;
-            self.over.line(
-                &[(x, top), (x, bottom)],
-                Stroke {
-                    dashes: "2 3",
-                    ..Stroke::new(TEXT, 1.0)
-                },
-            );
-            let long = Drawing::label_width(name);
-            let Frame { left, right, .. } = self.frame;
-            if !named || name.is_empty() || long > right - left {
-                continue;
-            }
-            // Right of its line, or as near as the edges let it.
-            let start = (x + 5.0).min(right - long);
-            let row = ends
-                .iter()
-                .position(|end| *end < start - 5.0)
-                .unwrap_or(ends.len());
-            let y = top + LINE * (row as f64 + 0.6);
-            if y + LINE < bottom {
-                ends.resize(ends.len().max(row + 1), 0.0);
-                ends[row] = start + long;
-                self.over.label((start, y), Anchor::Start, TEXT, name);
-            }
+        let inside = marks.iter().filter(|mark| (low..=high).contains(&mark.at));
+        for mark in inside {
+            let (x, bottom) = self.at((mark.at, self.y.low()));
+            self.over
+                .line(&[(x, self.frame.top), (x, bottom)], Stroke::MOMENT);
         }
     }
 }
@@ -226,60 +201,17 @@ mod tests {
     }
 
     #[test]
-    fn names_of_moments_do_not_touch_and_stay_inside() {
+    fn moments_outside_have_no_line() {
         let mut plot = plot();
-        let mark = |at, name: &str| Mark {
+        let mark = |at| Mark {
             at,
-            name: name.to_owned(),
+            name: "a change".to_owned(),
         };
-        plot.moments(
-            &[
-                mark(5.0, "first"),
-                mark(5.1, "second"),
-                mark(9.9, "third"),
-                mark(99.0, "never"),
-            ],
-            true,
-        );
-        let out = plot.over.finish();
-        assert_eq!(out.matches("<path").count(), 3);
-        let place = |name: &str| {
-            let (before, _) = out.split_once(name).expect("a name");
-            let tag = before.rsplit_once("<text").expect("a text").1;
-            let number = |key: &str| {
-                let rest = tag.split_once(key).expect("an attribute").1;
-                rest.split_once('"')
-                    .expect("its end")
-                    .0
-                    .parse::<f64>()
-                    .expect("a number")
-            };
-            (number("x=\""), number("y=\""))
-        };
-        assert_eq!(place("first").0, 505.0);
-        assert!(place("second").1 > place("first").1 + 12.0);
-        let end = place("third").0 + Drawing::label_width("third");
-        assert!(end <= 900.0 && place("third").1 == place("first").1);
-        // Too long for this side of its line, and for the whole panel.
-        let long = "a name so long that it takes more than half of the panel, and some more";
-        let mut plot = self::plot();
-        plot.moments(&[mark(6.0, long), mark(7.0, &long.repeat(3))], true);
+        plot.moments(&[mark(5.0), mark(99.0)]);
         let out = plot.over.finish();
         assert_eq!(
             (out.matches("<path").count(), out.matches("<text").count()),
-            (2, 1)
-        );
-        let start = out
-            .split_once("x=\"")
-            .expect("a text")
-            .1
-            .split_once('"')
-            .expect("its end")
-            .0;
-        let start: f64 = start.parse().expect("a number");
-        assert!(
-            start >= 100.0 && start + Drawing::label_width(long) <= 900.01,
-            "{start}"
+            (1, 0)
         );
     }
 }

@@ -5,7 +5,7 @@ use crate::symptoms::Symptom;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_plot::palette::{AXIS, TEXT};
 use crepitus_plot::{
-    Axis, Chart, CurveStyle, Figure, Key, Mark, Marker, Panel, Paper, Point, Sign, extent, stack,
+    Axis, Chart, CurveStyle, Figure, Key, Mark, Marker, Panel, Paper, Point, Sign, stack,
 };
 
 const HEIGHT: f64 = 320.0;
@@ -26,21 +26,21 @@ pub(crate) fn figure(
     }
     let law = settings.map(|settings| Law::of(settings, 1.2 * fastest));
     let line = law.iter().flat_map(|law| &law.line);
-    let (low, high) = extent(caught.iter().chain(line).map(|p| p.y));
-    // Room for a name at the top.
-    let y = Axis::covering([low, high + 0.15 * (high - low)], 6);
+    let y = Axis::covering(caught.iter().chain(line).map(|p| p.y), 6);
     let x = Axis::linear(0.0, 1.2 * fastest, 9);
     let panel = Panel::new(HEIGHT, x, ("Knee angle, flexion (°)", y), |plot| {
         plot.grid();
         if let Some(law) = &law {
             plot.line(&law.line, AXIS, WIDE);
-            plot.moments(&law.marks, true);
+            plot.moments(&law.marks);
         }
         for point in &caught {
             plot.mark((point.x, point.y), Marker::Circle, TEXT);
         }
     });
-    let panel = panel.x_title(Some("Speed of the stretch (°/s)"));
+    let panel = panel
+        .x_title(Some("Speed of the stretch (°/s)"))
+        .moments(law.iter().flat_map(|law| law.marks.clone()).collect());
     let mut legend = vec![Key::new(Sign::Filled(CurveStyle::NEUTRAL), "a catch")];
     if law.is_some() {
         legend.push(Key::new(Sign::Line(AXIS), "where the settings put it"));

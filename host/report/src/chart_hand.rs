@@ -118,8 +118,13 @@ fn panel<'f>(
             course.draw(plot, bins, LEG);
             plot.grid();
         }
-        figures.draw_marks(plot, first);
+        figures.draw_marks(plot);
     })
     .x_title(last.then_some("Time (s)"))
     .right(levels::ROOM)
+    .moments(if first {
+        figures.marks.clone()
+    } else {
+        Vec::new()
+    })
 }

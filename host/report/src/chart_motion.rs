@@ -107,18 +107,14 @@ fn panels<'f>(figures: &'f Figures, lines: &'f Lines, beside: bool) -> Vec<Panel
     let time = time_axis(figures, if angle.is_empty() { speed } else { angle });
     let of_hand = |plot: &mut Plot, line: &[Point]| plot.stroke(line, Stroke::dashed(LEVEL, 1.5));
     let angles = axis(&[angle, &leg.angle, &intended.angle], None, 5);
-    let mut panels = vec![Panel::new(
-        HEIGHT,
-        time.clone(),
-        ("Angle (°)", angles),
-        move |plot| {
-            plot.grid();
-            plot.line(angle, OBJECT, 1.75);
-            plot.line(&leg.angle, LEG, 1.5);
-            of_hand(plot, &intended.angle);
-            figures.draw_marks(plot, true);
-        },
-    )];
+    let angles = Panel::new(HEIGHT, time.clone(), ("Angle (°)", angles), move |plot| {
+        plot.grid();
+        plot.line(angle, OBJECT, 1.75);
+        plot.line(&leg.angle, LEG, 1.5);
+        of_hand(plot, &intended.angle);
+        figures.draw_marks(plot);
+    });
+    let mut panels = vec![angles.moments(figures.marks.clone())];
     // With zero: a steady speed should look steady.
     let speeds = axis(&[speed, encoder, &leg.speed, &intended.speed], Some(0.0), 5);
     let height = if beside { HEIGHT } else { HEIGHT + FOOT };
@@ -129,7 +125,7 @@ fn panels<'f>(figures: &'f Figures, lines: &'f Lines, beside: bool) -> Vec<Panel
         plot.line(speed, SHAFT, 1.5);
         plot.line(&leg.speed, LEG, 1.5);
         of_hand(plot, &intended.speed);
-        figures.draw_marks(plot, false);
+        figures.draw_marks(plot);
     });
     panels.push(speeds.x_title((!beside).then_some("Time (s)")));
     if beside {
@@ -138,7 +134,7 @@ fn panels<'f>(figures: &'f Figures, lines: &'f Lines, beside: bool) -> Vec<Panel
             plot.grid();
             plot.line(&leg.ahead, LEG, 1.5);
             of_hand(plot, &intended.ahead);
-            figures.draw_marks(plot, false);
+            figures.draw_marks(plot);
         });
         panels.push(ahead.x_title(Some("Time (s)")));
     }

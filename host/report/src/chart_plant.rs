@@ -77,14 +77,17 @@ fn chart(figures: &Figures, shown: &Shown, course: &Course, paper: Paper) -> Cha
         if shown.has_pushes {
             figures.draw_motor_marks(plot);
         } else {
-            figures.draw_marks(plot, true);
+            figures.draw_marks(plot);
         }
     });
-    let svg = stack(
-        paper.width(WIDTH),
-        shown.title,
-        vec![panel.x_title(Some("Time (s)"))],
-    );
+    let panel = panel
+        .x_title(Some("Time (s)"))
+        .moments(if shown.has_pushes {
+            figures.motor_marks()
+        } else {
+            figures.marks.clone()
+        });
+    let svg = stack(paper.width(WIDTH), shown.title, vec![panel]);
     let heading = match course.shown().beyond {
         Some(beyond) => format!("{}; up to {} beyond the axis", shown.title, rounded(beyond)),
         None => shown.title.to_owned(),

@@ -122,7 +122,7 @@ fn over_angle(path: &Path, drawn: &Drawn, symptom: Option<&Symptom>, paper: Pape
     let marks = drawn.marks.iter().map(|mark| mark.at);
     let also = marks.chain(drawn.also_deg.iter().copied());
     let x = Axis::covering(all.iter().map(|p| p.x).chain(also), 9);
-    let y = torque_axis(all.iter().map(|p| p.y), !drawn.marks.is_empty());
+    let y = torque_axis(all.iter().map(|p| p.y));
     let panel = Panel::new(HEIGHT, x, (TORQUE_TITLE, y), |plot| {
         for (ink, low, high) in &bands {
             plot.band(low, high, *ink, 0.25);
@@ -138,7 +138,7 @@ fn over_angle(path: &Path, drawn: &Drawn, symptom: Option<&Symptom>, paper: Pape
         for (ink, points) in &strokes {
             plot.line(points, *ink, 1.75);
         }
-        plot.moments(&drawn.marks, true);
+        plot.moments(&drawn.marks);
         if let Some(symptom) = symptom {
             let at = |event: &SymptomEvent| event.angle_rad.to_degrees();
             signs(plot, symptom, at);
@@ -150,17 +150,19 @@ fn over_angle(path: &Path, drawn: &Drawn, symptom: Option<&Symptom>, paper: Pape
         svg: stack(
             paper.width(WIDTH),
             label,
-            vec![panel.x_title(Some(ANGLE_TITLE))],
+            vec![
+                panel
+                    .x_title(Some(ANGLE_TITLE))
+                    .moments(drawn.marks.clone()),
+            ],
         ),
         half: false,
     }
 }
 
-/// With zero, and with room at the top for names.
-fn torque_axis(nm: impl Iterator<Item = f64>, has_names: bool) -> Axis {
-    let (low, high) = extent(nm.chain([0.0]));
-    let room = if has_names { 0.15 * (high - low) } else { 0.0 };
-    Axis::covering([low, high + room], 6)
+/// An axis of torque that includes zero.
+fn torque_axis(nm: impl Iterator<Item = f64>) -> Axis {
+    Axis::covering(nm.chain([0.0]), 6)
 }
 
 /// Whether an event begins something: of these a chart over time says the names.
@@ -235,7 +237,7 @@ fn over_time(figures: &Figures, symptom: &Symptom, paper: Paper) -> Chart {
         shade(plot);
         plot.grid();
         plot.line(&angle, OBJECT, 1.75);
-        figures.draw_marks(plot, true);
+        figures.draw_marks(plot);
     });
     let named: Vec<Mark> = events
         .iter()
@@ -246,17 +248,19 @@ fn over_time(figures: &Figures, symptom: &Symptom, paper: Paper) -> Chart {
             Some(Mark { at, name })
         })
         .collect();
-    let is_named = (1..=MOST_NAMES).contains(&named.len());
-    let y = torque_axis(line.iter().map(|p| p.y), is_named);
+    let named = if named.len() > MOST_NAMES {
+        Vec::new()
+    } else {
+        named
+    };
+    let y = torque_axis(line.iter().map(|p| p.y));
     let below = Panel::new(TIME_HEIGHT, time, (TORQUE_TITLE, y), |plot| {
         shade(plot);
         plot.grid();
         plot.line(&line, TORQUE, 1.5);
-        if is_named {
-            plot.moments(&named, true);
-        }
+        plot.moments(&named);
         signs(plot, symptom, |event| event.time_s);
-        figures.draw_marks(plot, false);
+        figures.draw_marks(plot);
     });
     let heading = match symptom.timeline.until_s() {
         Some(until_s) => format!(
@@ -265,7 +269,10 @@ fn over_time(figures: &Figures, symptom: &Symptom, paper: Paper) -> Chart {
         ),
         None => "Resistance over time".to_owned(),
     };
-    let panels = vec![above, below.x_title(Some("Time (s)"))];
+    let panels = vec![
+        above.moments(figures.marks.clone()),
+        below.x_title(Some("Time (s)")).moments(named.clone()),
+    ];
     Chart {
         svg: stack(
             paper.width(WIDTH),
@@ -364,20 +371,24 @@ fn sum(
         marks: marks.collect(),
         ..Drawn::default()
     };
-    let y = torque_axis(line.iter().map(|p| p.y), false);
+    let y = torque_axis(line.iter().map(|p| p.y));
     let (from_s, to_s) = extent(line.iter().map(|p| p.x));
     let time = Axis::linear(from_s, to_s, 9);
     let panel = Panel::new(TIME_HEIGHT, time, (TORQUE_TITLE, y), |plot| {
         plot.grid();
         plot.line(&line, TORQUE, 1.5);
-        figures.draw_marks(plot, true);
+        figures.draw_marks(plot);
     });
     let label = "Resistance of all symptoms over time";
     let over_time = Chart {
         svg: stack(
             paper.width(WIDTH),
             label,
-            vec![panel.x_title(Some("Time (s)"))],
+            vec![
+                panel
+                    .x_title(Some("Time (s)"))
+                    .moments(figures.marks.clone()),
+            ],
         ),
         heading: Some("Resistance over time".to_owned()),
         half: false,

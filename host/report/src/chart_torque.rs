@@ -86,12 +86,13 @@ fn line<'f>(figures: &'f Figures, torque: &'f [Point]) -> Panel<'f> {
         plot.grid();
         levels::draw(plot, &levels);
         plot.line(torque, TORQUE, 1.5);
-        figures.draw_marks(plot, true);
+        figures.draw_marks(plot);
     });
     panel
         .x_title(Some("Time (s)"))
         .names(names)
         .right(levels::ROOM)
+        .moments(figures.marks.clone())
 }
 
 fn range<'f>(figures: &'f Figures, torque: &[Point]) -> Vec<Panel<'f>> {
@@ -122,7 +123,7 @@ fn range<'f>(figures: &'f Figures, torque: &[Point]) -> Vec<Panel<'f>> {
             plot.grid();
             levels::draw(plot, &levels);
             plot.line(&mean, TORQUE, 1.5);
-            figures.draw_marks(plot, true);
+            figures.draw_marks(plot);
         },
     );
     let below = Panel::new(
@@ -132,11 +133,14 @@ fn range<'f>(figures: &'f Figures, torque: &[Point]) -> Vec<Panel<'f>> {
         move |plot| {
             draw_shares(plot, &bins);
             plot.grid();
-            figures.draw_marks(plot, false);
+            figures.draw_marks(plot);
         },
     );
     vec![
-        above.names(names).right(levels::ROOM),
+        above
+            .names(names)
+            .right(levels::ROOM)
+            .moments(figures.marks.clone()),
         below.x_title(Some("Time (s)")),
     ]
 }

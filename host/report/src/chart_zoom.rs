@@ -194,13 +194,18 @@ fn chart(figures: &Figures, window: &Window, label: &str, paper: Paper) -> Svg {
             }
         }
         if motor.is_empty() {
-            figures.draw_marks(plot, true);
+            figures.draw_marks(plot);
         } else {
             figures.draw_motor_marks(plot);
         }
     });
     let panel = panel.x_title(titled(!figures.has_object && !feels));
-    let mut panels = vec![panel.names(names).right(levels::ROOM)];
+    let marks = if motor.is_empty() {
+        figures.marks.clone()
+    } else {
+        figures.motor_marks()
+    };
+    let mut panels = vec![panel.names(names).right(levels::ROOM).moments(marks)];
     if feels {
         let fast = inside(window.hand_fast.points(), view);
         let y = Axis::covering(fast.iter().map(|p| p.y), 3);
@@ -209,7 +214,7 @@ fn chart(figures: &Figures, window: &Window, label: &str, paper: Paper) -> Svg {
             shade(plot, spans);
             plot.grid();
             plot.line(&fast, LEG, 1.5);
-            figures.draw_marks(plot, false);
+            figures.draw_marks(plot);
         });
         panels.push(panel.x_title(titled(!figures.has_object)));
     }
@@ -224,7 +229,7 @@ fn chart(figures: &Figures, window: &Window, label: &str, paper: Paper) -> Svg {
             // Wider: while the object sticks it covers the shaft.
             plot.line(&shaft, SHAFT, 4.0);
             plot.line(&object, OBJECT, 1.5);
-            figures.draw_marks(plot, false);
+            figures.draw_marks(plot);
         });
         panels.push(panel.x_title(titled(true)));
     }

@@ -96,10 +96,11 @@ impl Figures {
     }
 
     /// Draws on a panel over time where rows are missing and when parameters
-    /// changed, after the lines; the first panel of a chart names it.
-    pub(crate) fn draw_marks(&self, plot: &mut Plot, named: bool) {
+    /// changed, after the lines; the first panel of a chart names the changes, by
+    /// [`Panel::moments`](crepitus_plot::Panel::moments).
+    pub(crate) fn draw_marks(&self, plot: &mut Plot) {
         plot.blank(&self.gaps);
-        plot.moments(&self.marks, named);
+        plot.moments(&self.marks);
     }
 
     /// Shades on a panel of the motor's torque when it was pushed.
@@ -112,17 +113,19 @@ impl Figures {
         plot.shade(seen.copied(), RANGE);
     }
 
-    /// As [`draw_marks`](Self::draw_marks), and names the pushes that begin
-    /// there.
-    pub(crate) fn draw_motor_marks(&self, plot: &mut Plot) {
+    /// Changes of parameters, and beginnings of pushes: the moments of a panel of the motor's torque.
+    pub(crate) fn motor_marks(&self) -> Vec<Mark> {
         let pushes = self.pushes.iter().map(|(from, _)| Mark {
             at: *from,
             name: "arming: polarity test".to_owned(),
         });
-        let mut marks: Vec<Mark> = pushes.chain(self.marks.iter().cloned()).collect();
-        marks.sort_by(|a, b| a.at.total_cmp(&b.at));
+        pushes.chain(self.marks.iter().cloned()).collect()
+    }
+
+    /// As [`draw_marks`](Self::draw_marks), with the beginnings of pushes.
+    pub(crate) fn draw_motor_marks(&self, plot: &mut Plot) {
         plot.blank(&self.gaps);
-        plot.moments(&marks, true);
+        plot.moments(&self.motor_marks());
     }
 
     /// How many bins of a [`Course`](crate::course::Course) to draw as one,

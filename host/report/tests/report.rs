@@ -507,12 +507,13 @@ fn every_chart_over_time_says_when_parameters_changed() {
             over_time.filter(|chart| chart.contains("whole run") || chart.contains("Motor torque"))
         {
             charts += 1;
-            // Named once, and a line in each panel.
+            // Named once, above the panels; a line in each panel, and from the first up to the name.
             let panels = count(&chart, "rotate(-90");
-            let of_push = usize::from(chart.contains("Motor torque"));
+            let marks = 2 + usize::from(chart.contains("Motor torque"));
+            let in_panels = 2 * panels + marks - 2;
             assert_eq!(
                 count(&chart, "stroke-dasharray=\"2 3\""),
-                2 * panels + of_push,
+                in_panels + marks,
                 "{chart:.200}"
             );
             assert_eq!(
