@@ -38,15 +38,21 @@ impl Strip {
         inside.sort_by(|a, b| a.at.total_cmp(&b.at));
         // Where the last name of each row ends.
         let mut ends: Vec<f64> = Vec::new();
-        let mut names = Vec::new();
+        let mut names: Vec<Name> = Vec::new();
         for mark in inside {
             let line = width * x.place(mark.at);
             let long = Drawing::label_width(&mark.name);
             if long > width {
                 continue;
             }
-            // Right of its line, or as near as the edge lets it.
-            let start = (line + GAP).min(width - long);
+            // Right of its line; at the edge left of it, unless it would cover the line before.
+            let (right, left) = (line + GAP, line - GAP - long);
+            let before = names.last().map_or(0.0, |name| name.line + GAP);
+            let start = if right + long > width && left >= before {
+                left
+            } else {
+                right.min(width - long)
+            };
             // Its line must not cross a name in a row below.
             let is_free = |row: &usize| ends[*row..].iter().all(|end| *end < start.min(line) - GAP);
             let row = (0..ends.len()).find(is_free).unwrap_or(ends.len());
@@ -122,8 +128,12 @@ mod tests {
         ]);
         assert_eq!(rows(&strip), [("first", 0), ("second", 1), ("third", 0)]);
         assert_eq!(strip.names[0].start, 405.0);
+        // Left of its line at the edge, over it where an earlier line is in the way.
+        let end = |name: &Name| name.start + Drawing::label_width(&name.text);
         let third = &strip.names[2];
-        assert!(third.start + Drawing::label_width("third") <= WIDTH);
+        assert!((end(third) - (third.line - GAP)).abs() < 1e-9);
+        let near = self::strip(&[(9.7, "one"), (9.9, "beside")]);
+        assert!((end(&near.names[1]) - WIDTH).abs() < 1e-9);
         assert_eq!(strip.height(), 2.0 * LINE);
         assert_eq!(self::strip(&[]).height(), 0.0);
     }
