@@ -6,14 +6,14 @@ use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The rows of a trace, by column.
+/// Rows of a trace, by column.
 pub(crate) struct Trace {
     columns: Vec<Column>,
     numbers: Vec<Vec<f64>>,
 }
 
 impl Trace {
-    /// With memory for `rows` rows, so that no column moves while it grows.
+    /// Creates columns with memory for `rows` rows, so that none is reallocated.
     pub(crate) fn new(columns: Vec<Column>, rows: u64) -> PyResult<Self> {
         let mut numbers = vec![Vec::new(); columns.len()];
         let count = usize::try_from(rows).unwrap_or(usize::MAX);
@@ -41,7 +41,8 @@ impl Trace {
         }
     }
 
-    /// Numbers are handed over as they are; phases and whole numbers become integers.
+    /// Converts to a dict of arrays. Numbers are handed over without a copy; phases and whole
+    /// numbers become integers.
     pub(crate) fn into_dict(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let dict = PyDict::new(py);
         for (column, numbers) in self.columns.iter().zip(self.numbers) {
@@ -64,7 +65,7 @@ impl Trace {
     }
 }
 
-/// The events of a run, by column, as `events.csv` has them; NaN where that is empty.
+/// Events of a run, by column, as `events.csv` has them; NaN where that is empty.
 #[derive(Default)]
 pub(crate) struct Events {
     time_s: Vec<f64>,
@@ -114,7 +115,8 @@ impl Events {
     }
 }
 
-/// Names as an array of texts of one width: 4 bytes a character, so not wider than needed.
+/// Converts names to an array of fixed-width texts, no wider than needed: each character takes 4
+/// bytes.
 pub(crate) fn words<'py>(py: Python<'py>, words: &[&'static str]) -> Bound<'py, PyAny> {
     match words.iter().map(|w| w.chars().count()).max().unwrap_or(0) {
         0..=8 => fixed::<8>(py, words),

@@ -27,7 +27,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// The longest time of one call, s: a day.
+/// Longest duration of one call, s: a day.
 const MOST_S: f64 = 86_400.0;
 
 /// A connection to a device. Requests of several threads wait for each other, but `stop`
@@ -35,10 +35,10 @@ const MOST_S: f64 = 86_400.0;
 #[pyclass(frozen, module = "crepitus._crepitus")]
 pub(crate) struct Device {
     client: Mutex<Option<Client<Connection>>>,
-    /// Of calls of `stop` that wait.
+    /// Number of pending calls of `stop`.
     stops: AtomicU32,
     stop: AtomicBool,
-    /// The process that has opened it.
+    /// Id of the process that opened it.
     process: u32,
 }
 
@@ -94,13 +94,13 @@ impl Device {
         })
     }
 
-    /// Whether it is closed.
+    /// Whether the connection is closed.
     #[getter]
     fn closed(&self, py: Python<'_>) -> bool {
         py.detach(|| self.lock().is_none())
     }
 
-    /// Port, identities, status, faults and counters (JSON).
+    /// Returns port, identities, status, faults and counters (JSON).
     fn info(&self, py: Python<'_>) -> PyResult<String> {
         self.request(py, |client| {
             let status = client.status()?;
@@ -110,7 +110,7 @@ impl Device {
         })
     }
 
-    /// Revision and values of the parameters (JSON).
+    /// Returns revision and values of the parameters (JSON).
     fn parameters(&self, py: Python<'_>) -> PyResult<(u32, String)> {
         let (revision, values) = self.request(py, Client::parameters)?;
         let values: Map<String, Value> = values
@@ -145,7 +145,7 @@ impl Device {
             .map(|revision| revision.0)
     }
 
-    /// Applies the knee of a scene, or of what this path or name means; returns the new
+    /// Applies the knee of a scene, or of a path or name of a preset or scene; returns the new
     /// revision.
     #[pyo3(signature = (what, *, scene, add))]
     fn apply(
@@ -245,7 +245,7 @@ impl Device {
         self.request(py, Client::clear_fault)
     }
 
-    /// Whether this connection has armed it, and it still is.
+    /// Whether this connection has armed the device, and it is still armed.
     #[getter]
     fn armed(&self, py: Python<'_>) -> PyResult<bool> {
         self.work(py, |client| Ok(client.is_armed()))
@@ -257,7 +257,8 @@ impl Device {
         self.work(py, |client| follow(client, time, &self.stop, |_, _| Ok(())))
     }
 
-    /// Samples of this long, every n-th of them, and the books (JSON).
+    /// Streams samples for a duration, s, every n-th of them; returns them with the accounting
+    /// (JSON).
     fn stream<'py>(
         &self,
         py: Python<'py>,
@@ -290,8 +291,8 @@ impl Device {
         Ok((samples.into_dict(py)?, books))
     }
 
-    /// Records every sample of this long; returns the books (JSON), or nothing if no
-    /// sample came, and then there is no file either.
+    /// Records every sample for a duration, s; returns the accounting (JSON), or `None` if no
+    /// sample came, and then there is no file.
     fn record(
         &self,
         py: Python<'_>,
@@ -328,13 +329,13 @@ impl Device {
 }
 
 impl Device {
-    /// The client; never waits with the GIL.
+    /// Locks the client; callers must have released the GIL.
     fn lock(&self) -> MutexGuard<'_, Option<Client<Connection>>> {
         // A panic has ended a request; the lease then ends the torque.
         self.client.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Works with the client of an open device, without the GIL.
+    /// Runs `work` with the client of an open device, without the GIL.
     fn work<T: Send>(
         &self,
         py: Python<'_>,
@@ -380,8 +381,8 @@ impl Drop for Device {
     }
 }
 
-/// The drive's own word that there is no torque takes some milliseconds: waits for it, so
-/// that the next `info` has it.
+/// Waits until the drive reports that torque is off, which takes some milliseconds, so that the
+/// next `info` has it.
 fn settle(client: &mut Client<Connection>) -> Result<(), Error> {
     const TRIES: u32 = 20;
     for _ in 0..TRIES {

@@ -1,4 +1,4 @@
-//! Errors as exceptions of the package, which defines them.
+//! Conversion of errors to the exceptions of the package.
 
 use crepitus_scene::SceneError;
 use crepitus_scene::error::Origin;
@@ -10,8 +10,8 @@ mod raised {
     pyo3::import_exception!(crepitus._errors, DeviceError);
 }
 
-/// A scene that cannot be read. The lines of a scene that was made from a dict are
-/// nobody's, so they are left out.
+/// Returns a `SceneError`. Line numbers of a scene that was made from a dict are left out: its user
+/// has not written the text.
 pub(crate) fn scene(error: SceneError, from_dict: bool) -> PyErr {
     let error = match error.origin {
         Some(Origin::Line(_)) if from_dict => SceneError {
@@ -29,12 +29,12 @@ pub(crate) fn scene(error: SceneError, from_dict: bool) -> PyErr {
     raised::SceneError::new_err((text, file, line, error.key, error.message))
 }
 
-/// Failed work of a run or a study.
+/// Returns a `RunError` for a failed run or study.
 pub(crate) fn run(text: String) -> PyErr {
     raised::RunError::new_err(text)
 }
 
-/// A device that cannot be used, or has refused.
+/// Returns a `DeviceError` for a device that cannot be used, or has refused.
 pub(crate) fn device(text: String) -> PyErr {
     raised::DeviceError::new_err(text)
 }

@@ -15,7 +15,8 @@ use std::time::Duration;
 /// Timeout of a poll for events; signals are checked between polls.
 const POLL_TIMEOUT: Duration = Duration::from_millis(20);
 
-/// A request's error: values that no device takes are a `ValueError`, all else a `DeviceError`.
+/// Converts the error of a request: values that no device accepts are a `ValueError`, all else a
+/// `DeviceError`.
 pub(crate) fn failure(error: Error) -> PyErr {
     let text = error.to_string();
     if is_input(&error) {
@@ -25,8 +26,8 @@ pub(crate) fn failure(error: Error) -> PyErr {
     }
 }
 
-/// Follows the device for this long. `on_block` gets every block of a subscription;
-/// `stop` of another thread ends it early. After an error an armed device is disarmed.
+/// Follows the device for a duration. `on_block` gets every block of a subscription; `stop` of
+/// another thread ends it early. After an error an armed device is disarmed.
 pub(crate) fn follow(
     client: &mut Client<Connection>,
     time: Duration,
@@ -73,7 +74,7 @@ fn run(
     Ok(())
 }
 
-/// Why an armed device has disarmed by itself.
+/// Returns the exception of an armed device that has disarmed by itself.
 fn disarmed(client: &mut Client<Connection>) -> PyErr {
     let status = match client.status() {
         Ok(status) => status,

@@ -1,4 +1,4 @@
-//! A joint that Python steps.
+//! Joint that a Python program steps.
 
 use crate::scene::Scene;
 use crate::signals::Signals;
@@ -11,10 +11,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-/// Steps between two looks for Ctrl-C.
+/// Steps between two checks for Ctrl-C.
 const UNWATCHED_STEPS: usize = 100_000;
 
-/// The stick-slip object alone, for a loop of one's own.
+/// Stick-slip object alone, for a simulation loop in Python.
 #[pyclass(frozen, module = "crepitus._crepitus")]
 pub(crate) struct Joint(Mutex<Inner>);
 
@@ -32,7 +32,7 @@ struct Counts {
     reverses: u64,
 }
 
-/// In either precision; inputs and outputs are f64.
+/// Joint in either precision; inputs and outputs are f64.
 enum Rung {
     Single(AnyJoint<f32>),
     Double(AnyJoint<f64>),
@@ -40,7 +40,7 @@ enum Rung {
 
 #[pymethods]
 impl Joint {
-    /// The joint of a scene, at a shaft that moves with `omega_rad_s`.
+    /// Creates the joint of a scene, at a shaft that moves with `omega_rad_s`, rad/s.
     #[new]
     fn new(scene: &Scene, omega_rad_s: f64) -> PyResult<Self> {
         let Some(crepitus) = &scene.checked.crepitus else {
@@ -78,8 +78,8 @@ impl Joint {
         })))
     }
 
-    /// One step: the shaft turns by `dphi_rad`, and has `omega_rad_s` at its end. Returns
-    /// the torque, N·m.
+    /// Advances by one step, in which the shaft turns by `dphi_rad` and has `omega_rad_s` at its
+    /// end. Returns the torque, N·m.
     fn step(&self, dphi_rad: f64, omega_rad_s: f64) -> PyResult<f64> {
         finite("dphi_rad", dphi_rad)?;
         finite("omega_rad_s", omega_rad_s)?;
@@ -88,7 +88,7 @@ impl Joint {
         Ok(inner.joint.torque_nm())
     }
 
-    /// Many steps; the state after each as arrays.
+    /// Advances by many steps; returns the state after each as arrays.
     fn steps<'py>(
         &self,
         py: Python<'py>,
@@ -145,13 +145,13 @@ impl Joint {
         Ok(())
     }
 
-    /// The torque, N·m.
+    /// Torque, N·m.
     #[getter]
     fn torque_nm(&self) -> PyResult<f64> {
         Ok(self.lock()?.joint.torque_nm())
     }
 
-    /// -1, 0 (stick) or +1.
+    /// Phase: 0 in stick, -1 or +1 in slip.
     #[getter]
     fn phase(&self) -> PyResult<i8> {
         Ok(self.lock()?.joint.phase())
@@ -182,7 +182,8 @@ impl Joint {
 }
 
 impl Joint {
-    /// Waiting would hold the GIL that the other thread may need.
+    /// Locks the joint; fails if another thread uses it, since waiting would hold the GIL that the
+    /// other may need.
     fn lock(&self) -> PyResult<MutexGuard<'_, Inner>> {
         match self.0.try_lock() {
             Ok(inner) => Ok(inner),
@@ -270,7 +271,7 @@ impl Rung {
     }
 }
 
-/// The state after each step.
+/// States after each step, by column.
 struct States {
     torque_nm: Vec<f64>,
     phase: Vec<i8>,
@@ -315,7 +316,7 @@ fn finite(name: &str, x: f64) -> PyResult<()> {
     }
 }
 
-/// The numbers of an array, all of them finite: nothing is half done.
+/// Returns the numbers of an array; rejects it if one is not finite, before any step is done.
 fn numbers(name: &str, array: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
     let numbers: Vec<f64> = array.as_array().iter().copied().collect();
     match numbers.iter().position(|x| !x.is_finite()) {

@@ -1,4 +1,4 @@
-//! What a device may be given: a preset, or the effects of a scene.
+//! Knees for a device: a preset, or the effects of a scene.
 
 use crate::errors;
 use crepitus_scene::preset::{self, Knee};
@@ -8,8 +8,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::path::Path;
 
-/// A preset that ships, a file of either kind, or a scene that ships: the first of this
-/// name.
+/// Finds a knee by name: a preset that ships, a file of either kind, or a scene that ships, in this
+/// order.
 pub(crate) fn knee(what: &Path) -> PyResult<Knee> {
     if let Some(preset) = what.to_str().and_then(preset::find) {
         return Ok(Knee::Preset(Box::<Preset>::new(preset.clone())));

@@ -1,4 +1,4 @@
-//! What a subscription gives: recordings, books.
+//! Recordings and accounting of a subscription.
 
 use crate::errors;
 use crate::following::{failure, follow};
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// Ends a subscription; an error before it is the one to report.
+/// Ends a subscription; an earlier error takes precedence.
 pub(crate) fn unsubscribed(client: &mut Client<Connection>, result: PyResult<()>) -> PyResult<()> {
     let ended = if client.is_connected() {
         client.unsubscribe().map_err(failure)
@@ -20,7 +20,7 @@ pub(crate) fn unsubscribed(client: &mut Client<Connection>, result: PyResult<()>
     result.and(ended)
 }
 
-/// Records for this long.
+/// Records for a duration.
 pub(crate) fn recorded(
     client: &mut Client<Connection>,
     recorder: &mut Recorder,
@@ -46,7 +46,7 @@ pub(crate) fn recorded(
     })
 }
 
-/// Sums of samples.
+/// Returns the accounting of samples as JSON.
 pub(crate) fn books_json(accounting: &Accounting) -> Value {
     json!({
         "produced": accounting.produced(),
@@ -56,7 +56,7 @@ pub(crate) fn books_json(accounting: &Accounting) -> Value {
     })
 }
 
-/// An error of the file.
+/// Converts an error of the recording file.
 pub(crate) fn not_recorded(error: RecordError) -> PyErr {
     errors::device(error.to_string())
 }

@@ -49,7 +49,7 @@ impl<const ROWS: bool> Observer for Collector<ROWS> {
 
 type Results<'py> = (Option<Bound<'py, PyDict>>, Bound<'py, PyDict>, String);
 
-/// Trace, events and summary (JSON) of a scene.
+/// Simulates a scene; returns trace, events and summary (JSON).
 #[pyfunction]
 #[pyo3(signature = (scene, *, trace, trace_every, costs))]
 pub(crate) fn simulate<'py>(

@@ -11,7 +11,8 @@ use pyo3::types::PyDict;
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Rows by column, with the names of a recording's columns. What was not measured is NaN.
+/// Samples by column, with the names of a recording's columns. A value that was not measured is
+/// NaN.
 #[derive(Default)]
 pub(crate) struct Samples {
     tick: Vec<u64>,
@@ -74,7 +75,7 @@ impl Samples {
     }
 }
 
-/// The samples of a recording, and its title, devices and books (JSON).
+/// Reads a recording; returns its samples, and title, devices and accounting (JSON).
 #[pyfunction]
 pub(crate) fn read_recording(
     py: Python<'_>,

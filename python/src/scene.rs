@@ -1,4 +1,4 @@
-//! A scene: its text, what was changed in it, and what came of both.
+//! Scene with overrides.
 
 use crate::{errors, values};
 use crepitus_scene::shipped::Source;
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyType};
 use std::path::PathBuf;
 
-/// Stands for the file of a scene without one.
+/// File name of a scene without a file.
 const DICT: &str = "<dict>";
 const TEXT: &str = "<toml>";
 
@@ -19,7 +19,7 @@ const TEXT: &str = "<toml>";
 #[derive(Clone)]
 pub(crate) struct Scene {
     pub(crate) source: Source,
-    /// Made from a dict: its lines are nobody's.
+    /// Whether it was made from a dict, so that errors name no lines.
     pub(crate) is_dict: bool,
     pub(crate) overrides: Overrides,
     pub(crate) checked: crepitus_scene::Scene,
@@ -38,7 +38,7 @@ impl Scene {
         })
     }
 
-    /// A refusal in the form of the scene's own errors.
+    /// Returns an error in the form of the scene's own ones.
     pub(crate) fn refused(&self, key: &str, message: String) -> PyErr {
         let error = SceneError {
             file: self.checked.file.clone(),
@@ -50,7 +50,7 @@ impl Scene {
     }
 }
 
-/// Changes as the tool's flags have them. Numbers are checked by the scene.
+/// Returns overrides like those of the tool's flags. The scene checks the numbers.
 fn overrides(
     solver: Option<String>,
     step: Option<f64>,
@@ -75,7 +75,7 @@ fn overrides(
     })
 }
 
-/// Both changes: where they touch the same key, the later one counts.
+/// Merges overrides; the later ones win.
 fn merged(first: &Overrides, then: Overrides) -> Overrides {
     let mut both = first.clone();
     forget(&mut both, then.set.iter().map(|(path, _)| path.as_str()));
@@ -87,7 +87,7 @@ fn merged(first: &Overrides, then: Overrides) -> Overrides {
     both
 }
 
-/// Takes away the flags that would count more than a value at one of these keys.
+/// Removes the flags that would take precedence over a value at one of these keys.
 pub(crate) fn forget<'p>(overrides: &mut Overrides, paths: impl Iterator<Item = &'p str>) {
     for path in paths {
         let is = |key: &str| path == key || path == "solver";
@@ -182,7 +182,7 @@ impl Scene {
         &self.checked.title
     }
 
-    /// What it shows.
+    /// Description, if there is one.
     #[getter]
     fn description(&self) -> Option<&str> {
         self.checked.description.as_deref()
@@ -218,7 +218,7 @@ impl Scene {
         self.checked.effects().iter().map(|e| e.name).collect()
     }
 
-    /// What may be wrong with it.
+    /// Warnings about questionable values.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.checked.warnings.clone()
@@ -249,7 +249,7 @@ impl Scene {
         hasher.finish()
     }
 
-    /// For `pickle` and `copy`: other processes get the text, not the file.
+    /// Supports `pickle` and `copy`: other processes get the text, not the file.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, State)> {
         let rebuild = py.get_type::<Self>().getattr("_rebuilt")?;
         let o = &self.overrides;

@@ -1,4 +1,4 @@
-//! What ships: scenes, presets, and a device's parameters, as JSON.
+//! Scenes and presets that ship, and the parameters of a device, as JSON.
 
 use crate::errors;
 use crepitus_connection::parameters::described;
@@ -8,7 +8,7 @@ use crepitus_scene::{Overrides, preset};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 
-/// The scenes that ship.
+/// Returns the scenes that ship.
 #[pyfunction]
 pub(crate) fn scenes() -> PyResult<String> {
     let scenes = SHIPPED
@@ -31,14 +31,14 @@ pub(crate) fn scenes() -> PyResult<String> {
     Ok(Value::Array(scenes).to_string())
 }
 
-/// The presets that ship.
+/// Returns the presets that ship.
 #[pyfunction]
 pub(crate) fn presets() -> String {
     let presets = preset::shipped().iter().map(|preset| preset.to_json(None));
     Value::Array(presets.collect()).to_string()
 }
 
-/// A device's parameters.
+/// Returns the parameters of a device.
 #[pyfunction]
 pub(crate) fn parameters() -> String {
     Value::Array(PARAMETERS.iter().map(described).collect()).to_string()

@@ -1,13 +1,13 @@
-//! Ctrl-C during long work.
+//! Signal handling during long work, for Ctrl-C.
 
 use pyo3::prelude::*;
 use std::time::{Duration, Instant};
 
-/// Looking for signals takes the GIL, so not more often than this.
+/// Interval of checks, each of which takes the GIL.
 const INTERVAL: Duration = Duration::from_millis(50);
 
-/// Runs Python's signal handlers now and then. Python does so on its main thread only;
-/// elsewhere nothing happens.
+/// Periodic check of Python's signal handlers. Python runs them on its main thread only; elsewhere
+/// nothing happens.
 pub(crate) struct Signals {
     next: Instant,
 }
@@ -19,7 +19,8 @@ impl Signals {
         }
     }
 
-    /// Returns what a handler raised: after Ctrl-C, `KeyboardInterrupt`.
+    /// Runs the handlers, if the interval has passed; returns the exception that one raised,
+    /// `KeyboardInterrupt` after Ctrl-C.
     pub(crate) fn check(&mut self) -> PyResult<()> {
         let now = Instant::now();
         if now < self.next {

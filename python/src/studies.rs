@@ -14,10 +14,10 @@ use crepitus_table::Table;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The shortest and the longest step of a study, s.
+/// Range of the step of a study, s.
 const STEPS_S: std::ops::RangeInclusive<f64> = 1e-7..=1.0;
 
-/// The points of the work-precision study of a scene, or of the standard ones.
+/// Runs the work-precision study of a scene, or of the standard ones; returns its points.
 #[pyfunction]
 #[pyo3(signature = (scene, *, steps_s, quick))]
 pub(crate) fn accuracy(
@@ -62,7 +62,8 @@ pub(crate) fn accuracy(
     json(&points_table(&study.points))
 }
 
-/// What each effect of a scene does to the torque at the hand, and costs.
+/// Runs the study of effects: the change of the torque at the hand by each effect of a scene, and
+/// its cost.
 #[pyfunction]
 pub(crate) fn effects(py: Python<'_>, scene: &Scene) -> PyResult<String> {
     let plan = EffectsPlan {

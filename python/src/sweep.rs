@@ -19,13 +19,13 @@ use std::iter::once;
 use std::num::NonZero;
 use std::thread::available_parallelism;
 
-/// Collects rows, and looks for Ctrl-C.
+/// Receiver that collects rows and checks for Ctrl-C.
 struct Rows {
     ended: Vec<Row>,
     signals: Signals,
 }
 
-/// Why a sweep ended.
+/// Exception that ended a sweep.
 struct Ended(PyErr);
 
 impl From<io::Error> for Ended {
@@ -47,7 +47,7 @@ impl Receiver for Rows {
     }
 }
 
-/// Points that another program has chosen: a list of values for each key.
+/// Runs points that another program has chosen, a list of values for each key.
 #[pyfunction]
 #[pyo3(signature = (scene, points, *, threads))]
 pub(crate) fn run_points<'py>(
@@ -77,7 +77,7 @@ pub(crate) fn run_points<'py>(
     run(py, scene, Design::Listed(points), threads)
 }
 
-/// Points of a grid, a Latin hypercube or Sobol's sequence.
+/// Runs the points of a grid, a Latin hypercube or Sobol's sequence.
 #[pyfunction]
 #[pyo3(signature = (scene, vary, *, latin, sobol, seed, threads))]
 pub(crate) fn run_design<'py>(
@@ -108,7 +108,7 @@ pub(crate) fn run_design<'py>(
     run(py, scene, design, threads)
 }
 
-/// `"1:4:lin7"`, or a list of values.
+/// Converts `"1:4:lin7"` or a list of values to an axis.
 fn axis(path: String, object: &Bound<'_, PyAny>) -> PyResult<Axis> {
     if let Ok(text) = object.cast::<PyString>() {
         let text = format!("{path}={}", text.to_str()?);
@@ -157,8 +157,8 @@ fn run<'py>(
     into_dict(py, rows)
 }
 
-/// Columns in the order in which they first appear. Numbers that a run does not have are
-/// NaN, texts are empty.
+/// Converts rows to columns, in the order in which they first appear. A missing number is NaN, a
+/// missing text empty.
 fn into_dict(py: Python<'_>, rows: Vec<Row>) -> PyResult<Bound<'_, PyDict>> {
     let count = rows.len();
     let mut places: HashMap<String, usize> = HashMap::new();

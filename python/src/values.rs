@@ -1,19 +1,20 @@
-//! Values of Python as TOML.
+//! Conversion of Python values to TOML.
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use toml::{Table, Value};
 
-/// More levels than any scene has: a list that contains itself ends here.
+/// Most levels of nesting, more than any scene has; ends the conversion of a list that contains
+/// itself.
 const MOST_LEVELS: usize = 32;
 
-/// The table of a dict.
+/// Converts a dict to a table.
 pub(crate) fn table(dict: &Bound<'_, PyDict>) -> PyResult<Table> {
     table_at(dict, "", 0)
 }
 
-/// The value at a key.
+/// Converts the value at a key.
 pub(crate) fn value(object: &Bound<'_, PyAny>, key: &str) -> PyResult<Value> {
     value_at(object, key, 0)
 }
@@ -77,7 +78,7 @@ fn value_at(object: &Bound<'_, PyAny>, key: &str, level: usize) -> PyResult<Valu
     )))
 }
 
-/// A text, or a path as one.
+/// Returns a text, or a path as text.
 fn text(object: &Bound<'_, PyAny>) -> PyResult<String> {
     if object.hasattr("__fspath__")? {
         return object.call_method0("__fspath__")?.extract();

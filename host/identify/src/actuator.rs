@@ -39,19 +39,19 @@ pub use parameters::{Actuator, MassEvidence, identify};
 pub use refusal::Refusal;
 pub use series::{Current, Hold, Series, SeriesError};
 
-/// Frequencies that are fitted, Hz.
+/// Frequency band of the fit, Hz.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band {
-    /// From here.
+    /// Lower end, Hz.
     pub from_hz: f64,
-    /// To here.
+    /// Upper end, Hz.
     pub to_hz: f64,
 }
 
 impl Band {
-    /// What a chirp covers at full amplitude: without its fades.
+    /// Returns the band that a chirp covers at full amplitude, without its fades.
     pub fn of_chirp(from_hz: f64, to_hz: f64) -> Self {
-        /// Of the sweep, at either end.
+        /// Length of a fade, as a share of the sweep.
         const FADE_SHARE: f64 = 1.0 / 32.0;
         let fade = (to_hz / from_hz).powf(FADE_SHARE);
         Self {

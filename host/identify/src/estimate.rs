@@ -1,19 +1,19 @@
-//! A value with its interval.
+//! Value with a 95 % confidence interval.
 
 /// Standard deviations to either side that hold 95 % of a normal distribution.
-pub(crate) const DEVIATIONS: f64 = 1.959_964;
+pub const DEVIATIONS: f64 = 1.959_964;
 
-/// A value and the half width of its 95 % interval, in its unit.
+/// A value and the half width of its 95 % confidence interval, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The most likely value.
+    /// Estimated value.
     pub value: f64,
-    /// The truth is within ± this in 95 of 100 cases.
+    /// Half width of the 95 % confidence interval.
     pub half_width: f64,
 }
 
 impl Estimate {
-    /// A value known to ± a share of it.
+    /// Returns a value with a half width that is a share of it.
     pub(crate) fn known(value: f64, share: f64) -> Self {
         Self {
             value,
@@ -21,17 +21,17 @@ impl Estimate {
         }
     }
 
-    /// The half width as a share of the value.
+    /// Returns the half width as a share of the value.
     pub fn share(&self) -> f64 {
         (self.half_width / self.value).abs()
     }
 
-    /// Whether a value lies in the interval.
+    /// Returns whether a value lies in the interval.
     pub fn holds(&self, value: f64) -> bool {
         (value - self.value).abs() <= self.half_width
     }
 
-    /// Value and half width as text, to the second digit of the half width.
+    /// Formats value and half width, to the second digit of the half width.
     pub fn rounded(&self) -> (String, String) {
         let place = self.half_width.abs().log10().floor();
         #[expect(
@@ -46,7 +46,7 @@ impl Estimate {
         )
     }
 
-    /// Both times a factor: another unit.
+    /// Multiplies value and half width by a factor, to convert the unit.
     #[must_use]
     pub fn times(&self, factor: f64) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! A high-pass of second order, Butterworth, by the bilinear transform.
+//! Second-order Butterworth high-pass filter, by the bilinear transform.
 //!
 //! ```text
 //! H(s) = s² / (s² + √2 s + 1)     −3 dB at the corner, 12 dB an octave below it
@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 /// Corner of the high-pass, Hz.
 pub const HIGH_PASS_HZ: f64 = 30.0;
 
-/// The filter and its state, in transposed direct form II.
+/// High-pass filter in transposed direct form II.
 #[derive(Debug)]
 pub(crate) struct HighPass {
     b: [f64; 3],
@@ -32,7 +32,7 @@ impl HighPass {
         }
     }
 
-    /// The next value; the filter begins as if the first one had been there for ever.
+    /// Filters the next value. The filter starts in the steady state of the first one.
     pub(crate) fn next(&mut self, x: f64) -> f64 {
         let [b0, b1, b2] = self.b;
         let [s1, s2] = self.state.unwrap_or([-b0 * x, b2 * x]);

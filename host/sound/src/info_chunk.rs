@@ -1,4 +1,4 @@
-//! The `LIST INFO` chunk of a WAV file: what the sound is, for programs that show it.
+//! `LIST INFO` chunk of a WAV file: title, comment and software, for programs that show them.
 //!
 //! Source: Microsoft and IBM, "Multimedia Programming Interface and Data Specifications 1.0", 1991,
 //! chapter 2, INFO list chunk.

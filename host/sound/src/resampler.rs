@@ -1,4 +1,4 @@
-//! Evenly spaced values at another rate: convolution with a windowed sinc.
+//! Sampling rate conversion by convolution with a windowed sinc.
 //!
 //! ```text
 //! y(t) = Σ xₙ·h(t − n/f) / Σ h(t − n/f)     h(t) = sinc(2·fc·t)·w(t),  w: Kaiser, ±64 zero crossings of the sinc
@@ -7,7 +7,7 @@
 //! would be an alias or an image, is 90 dB down. `h` is tabled finely and interpolated linearly
 //! (−115 dB). Any ratio will do, since traces have any step.
 //!
-//! Before the first value and after the last the signal is taken to stay as it is.
+//! Before the first value and after the last the signal is held constant.
 //!
 //! Source: Smith, "Digital audio resampling", CCRMA; Kaiser's β and width as in Oppenheim and
 //! Schafer, "Discrete-Time Signal Processing", 7.6.
@@ -15,34 +15,34 @@
 use std::collections::VecDeque;
 use std::f64::consts::PI;
 
-/// Zero crossings on either side.
+/// Zero crossings of the kernel on either side.
 const CROSSINGS: usize = 64;
 
-/// Table entries from one zero crossing to the next.
+/// Table entries per zero crossing.
 const FINENESS: usize = 1024;
 
-/// Of the Kaiser window, for 90 dB: 0.1102·(90 − 8.7).
+/// β of the Kaiser window for 90 dB: 0.1102·(90 − 8.7).
 const BETA: f64 = 8.96;
 
-/// Up to here the slower rate is passed, as a share of it.
+/// Upper end of the passband, as a share of the slower rate.
 pub(crate) const PASSED: f64 = 0.45;
 
 /// Middle of the transition, as a share of the slower rate.
 const CUTOFF: f64 = 0.475;
 
-/// See the module.
+/// Streaming resampler; see the module.
 #[derive(Debug)]
 pub(crate) struct Resampler {
-    /// Input values an output value.
+    /// Input values per output value.
     ratio: f64,
-    /// Output values so far.
+    /// Number of output values so far.
     made: u64,
-    /// The last values of the input, and the number of those before them.
+    /// Last values of the input, and the number of those before them.
     window: VecDeque<f64>,
     gone: u64,
     /// Half the width of the kernel, in input values.
     reach: f64,
-    /// Zero crossings an input value.
+    /// Zero crossings per input value.
     crossings: f64,
     table: Vec<f64>,
 }
@@ -66,7 +66,7 @@ impl Resampler {
         }
     }
 
-    /// Takes the next value, and gives out those that are known now.
+    /// Takes the next value; passes the output values that are complete to `out`.
     pub(crate) fn push<E>(
         &mut self,
         value: f64,
@@ -81,7 +81,7 @@ impl Resampler {
         self.give(self.reach, out)
     }
 
-    /// The values up to the last one that was taken.
+    /// Passes the remaining output values, up to the time of the last input value, to `out`.
     pub(crate) fn finish<E>(mut self, out: &mut impl FnMut(f64) -> Result<(), E>) -> Result<(), E> {
         let Some(last) = self.window.back().copied() else {
             return Ok(());
@@ -91,7 +91,8 @@ impl Resampler {
         self.give(after as f64, out)
     }
 
-    /// Gives out what lies this far before the end of the window.
+    /// Passes the output values that lie at least `before_end` input values before the end of the
+    /// window to `out`.
     fn give<E>(
         &mut self,
         before_end: f64,
@@ -126,7 +127,7 @@ impl Resampler {
         }
     }
 
-    /// The kernel at a distance in input values.
+    /// Returns the kernel at a distance in input values.
     fn kernel(&self, distance: f64) -> f64 {
         let place = distance * self.crossings * FINENESS as f64;
         let index = whole(place);
@@ -137,7 +138,7 @@ impl Resampler {
     }
 }
 
-/// A count from a number that is one, or that is rounded down; below zero, zero.
+/// Converts a number to a count, rounded down; negative numbers give 0.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -155,7 +156,7 @@ fn sinc(x: f64) -> f64 {
     }
 }
 
-/// Kaiser's window at a distance from its middle, 1 at the end.
+/// Returns the Kaiser window at a distance from its middle; 1 is its end.
 fn kaiser(x: f64) -> f64 {
     if x > 1.0 {
         return 0.0;
@@ -163,7 +164,7 @@ fn kaiser(x: f64) -> f64 {
     bessel_i0(BETA * (1.0 - x * x).max(0.0).sqrt()) / bessel_i0(BETA)
 }
 
-/// I₀, by its series, which has positive terms only.
+/// Returns the modified Bessel function I₀, by its series, which has positive terms only.
 fn bessel_i0(x: f64) -> f64 {
     let (mut sum, mut term) = (1.0, 1.0);
     for k in 1..60 {
@@ -193,7 +194,7 @@ mod tests {
         out
     }
 
-    /// Largest difference from a signal, a tenth of a second away from both ends.
+    /// Returns the largest difference from a signal, 0.1 s away from both ends.
     fn off(found: &[f64], to_hz: f64, value: impl Fn(f64) -> f64) -> f64 {
         let margin = whole(0.1 * to_hz);
         (margin..found.len() - margin)

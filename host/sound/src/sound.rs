@@ -1,4 +1,4 @@
-//! One value after the other becomes a sound, and the sound a file.
+//! Conversion of torque samples to a normalised WAV file.
 
 use crate::high_pass::{HIGH_PASS_HZ, HighPass};
 use crate::info_chunk;
@@ -9,48 +9,48 @@ use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Samples a second of every sound.
+/// Sampling rate of every sound, Hz.
 pub const RATE_HZ: u32 = 48_000;
 
-/// The largest sample of a sound, as a share of full scale: −1 dB, so that no converter overshoots
-/// between two samples.
+/// Peak level of a sound, as a share of full scale: −1 dB, so that no converter overshoots between
+/// two samples.
 const PEAK: f64 = 0.891;
 
-/// Values smaller than this, N·m, are rounding noise of a constant: silence.
+/// Peak torque below which a sound is silence, N·m: rounding noise of a constant.
 const SILENCE_NM: f64 = 1e-9;
 
-/// The longest sound, in samples: 12 hours, what the sizes in a WAV file hold.
+/// Longest sound, in samples: 12 hours, which the size fields of a WAV file hold.
 const LONGEST: u64 = 12 * 3600 * RATE_HZ as u64;
 
-/// Why there is no sound.
+/// Error of making a sound.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SoundError {
-    /// The band of the input ends below that of the sound.
+    /// The rows are too far apart for any frequency of a sound.
     #[error(
         "rows {step_s} s apart hold nothing above {HIGH_PASS_HZ} Hz, where a sound begins: shorten the trace's step \
          (output.trace_step_s) to 5e-5 s, at least to {} s",
         PASSED / HIGH_PASS_HZ
     )]
     TooCoarse {
-        /// From row to row, s.
+        /// Time from row to row, s.
         step_s: f64,
     },
-    /// No row came.
+    /// No row was given.
     #[error("there are no rows to hear")]
     Nothing,
-    /// A WAV file cannot hold it.
+    /// The sound is longer than a WAV file holds.
     #[error("a WAV file holds 12 hours: take a shorter part")]
     TooLong,
-    /// Of the file, or of the disk that holds the values meanwhile.
+    /// The file, or the temporary one, cannot be written.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// Of the file.
+    /// The WAV format cannot be written.
     #[error("{0}")]
     Wav(#[from] hound::Error),
 }
 
-/// See the module.
+/// Sound of a torque, sample by sample.
 #[derive(Debug)]
 pub struct Sound {
     step_s: f64,
@@ -62,7 +62,7 @@ pub struct Sound {
     last: f64,
 }
 
-/// The sound so far, high-passed, on disk.
+/// High-passed samples so far, in a temporary file.
 #[derive(Debug)]
 struct Kept {
     high_pass: HighPass,
@@ -83,35 +83,35 @@ impl Kept {
     }
 }
 
-/// A sound as a file that is not in its place yet.
+/// A written sound file that is not in its place yet.
 #[derive(Debug)]
 pub struct WrittenSound {
     file: NamedTempFile,
-    /// Its level and length.
+    /// Level, length and band.
     pub summary: SoundSummary,
 }
 
-/// What a sound is, for people and machines.
+/// Level, length and band of a sound.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SoundSummary {
-    /// Its file.
+    /// Path of the file.
     pub file: PathBuf,
-    /// Samples a second.
+    /// Sampling rate, Hz.
     pub rate_hz: u32,
-    /// Its length, s.
+    /// Duration, s.
     pub duration_s: f64,
-    /// The lowest and the highest frequency in it, Hz.
+    /// Lower and upper end of the band, Hz.
     pub band_hz: [f64; 2],
-    /// The torque of full scale, N·m; none of a silent sound.
+    /// Torque at full scale, N·m; none for a silent sound.
     pub full_scale_nm: Option<f64>,
-    /// The largest torque above 30 Hz, N·m.
+    /// Peak torque above 30 Hz, N·m; 0 for a silent sound.
     pub peak_nm: f64,
-    /// Rows that were missing, as silence would be: the last value holds.
+    /// Number of missing rows, in which the last value holds: silence.
     pub missing_rows: u64,
 }
 
 impl SoundSummary {
-    /// The level, in words.
+    /// Returns the level as text.
     pub fn level(&self) -> String {
         match self.full_scale_nm {
             Some(nm) => format!("full scale is {nm:.5} N·m"),
@@ -121,10 +121,10 @@ impl SoundSummary {
 }
 
 impl Sound {
-    /// Of values that come at this step, s.
+    /// Creates a sound of values that are `step_s` apart, s.
     ///
     /// # Errors
-    /// A step too long for any sound; no place for temporary files.
+    /// [`SoundError::TooCoarse`], or [`SoundError::Io`] if no temporary file can be created.
     pub fn new(step_s: f64) -> Result<Self, SoundError> {
         if !(step_s > 0.0 && PASSED / step_s > HIGH_PASS_HZ) {
             return Err(SoundError::TooCoarse { step_s });
@@ -146,11 +146,11 @@ impl Sound {
         })
     }
 
-    /// Takes the torque at a time. Where rows are missing, or a value is not finite, the last one
-    /// holds; a row before its time (the last of a run may be) is left out.
+    /// Takes the torque, N·m, at a time, s. Where rows are missing, or a value is not finite, the
+    /// last one holds. A row that comes early, as the last of a run may, is left out.
     ///
     /// # Errors
-    /// A full disk; more than a WAV file holds.
+    /// [`SoundError::Io`] or [`SoundError::TooLong`].
     pub fn row(&mut self, time_s: f64, torque_nm: f64) -> Result<(), SoundError> {
         let value = if torque_nm.is_finite() {
             torque_nm
@@ -176,10 +176,11 @@ impl Sound {
         self.resampler.push(value, &mut |y| kept.take(y))
     }
 
-    /// Writes the sound beside `file`, with a line on what it is.
+    /// Writes the sound to a temporary file in the folder of `file`, with title and level in its
+    /// `INFO` chunk.
     ///
     /// # Errors
-    /// No row; what writing a file meets.
+    /// [`SoundError::Nothing`] without rows, or an error of writing.
     pub fn write(self, file: &Path, title: &str) -> Result<WrittenSound, SoundError> {
         let Self {
             resampler,
@@ -245,7 +246,7 @@ impl WrittenSound {
     /// Moves the file into place, over an earlier one.
     ///
     /// # Errors
-    /// A place that cannot be written.
+    /// If the file cannot be moved.
     pub fn persist(self) -> io::Result<SoundSummary> {
         self.file.persist(&self.summary.file)?;
         Ok(self.summary)

@@ -1,13 +1,13 @@
-//! What is varied, as a user writes it.
+//! Axes of a sweep, as a user writes them: `PATH=VALUES`.
 
 use std::str::FromStr;
 
 /// A key of the scene, and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Its name with the tables before it, such as `effects.crepitus.static_torque_nm`.
+    /// Name of the key with the tables before it, such as `effects.crepitus.static_torque_nm`.
     pub path: String,
-    /// What it takes.
+    /// Its values.
     pub values: Values,
 }
 
@@ -16,30 +16,30 @@ pub struct Axis {
 pub enum Values {
     /// Numbers of an interval, both ends included.
     Interval {
-        /// From here.
+        /// First end.
         from: f64,
-        /// To here.
+        /// Second end; may be the smaller one.
         to: f64,
-        /// Evenly in what.
+        /// Spacing.
         scale: Scale,
-        /// How many of them a grid takes.
+        /// Number of values in a grid.
         count: Option<u64>,
     },
-    /// These, as TOML or plain text.
+    /// Listed values, as TOML or plain text.
     List(Vec<String>),
 }
 
-/// In what values are even.
+/// Spacing of the values of an interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// The number itself.
+    /// Even in the number.
     Linear,
-    /// Its logarithm.
+    /// Even in its logarithm.
     Logarithmic,
 }
 
 impl Scale {
-    /// The number at a share of the way, exact at both ends.
+    /// Returns the number at a share of the interval, 0 to 1; exact at both ends.
     fn at(self, from: f64, to: f64, share: f64) -> f64 {
         if share >= 1.0 {
             return to;
@@ -52,14 +52,14 @@ impl Scale {
     }
 }
 
-/// To 12 digits: the last ones of a power differ between computers, which are to have
-/// the same points.
+/// Rounds to 12 digits: the last ones of a power differ between computers, which need the same
+/// points.
 fn rounded(x: f64) -> f64 {
     format!("{x:.11e}").parse().unwrap_or(x)
 }
 
 impl Values {
-    /// How many a grid takes; none if that was not said.
+    /// Returns the number of values in a grid; none if it was not given.
     pub fn count(&self) -> Option<u64> {
         match self {
             Self::Interval { count, .. } => *count,
@@ -67,7 +67,7 @@ impl Values {
         }
     }
 
-    /// The value of this place in a grid.
+    /// Returns the value at an index of a grid.
     pub(crate) fn of_grid(&self, place: u64) -> String {
         match self {
             Self::Interval { count, .. } => {
@@ -78,7 +78,8 @@ impl Values {
         }
     }
 
-    /// The value at a share of the way: of a list, each has an equal part of it.
+    /// Returns the value at a share of the axis, 0 to 1; the values of a list have equal parts of
+    /// it.
     pub(crate) fn at(&self, share: f64) -> String {
         match self {
             Self::Interval {
@@ -100,7 +101,7 @@ fn share(place: u64, last: u64) -> f64 {
     place as f64 / last as f64
 }
 
-/// The value of this place, or the last one.
+/// Returns the value at an index, or the last one.
 fn listed(values: &[String], place: u64) -> String {
     let place = usize::try_from(place).unwrap_or(usize::MAX);
     values
@@ -110,7 +111,7 @@ fn listed(values: &[String], place: u64) -> String {
         .unwrap_or_default()
 }
 
-/// Values that an axis cannot take.
+/// Error of an invalid axis.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct AxisError(String);

@@ -1,4 +1,4 @@
-//! Which points of the axes are run.
+//! Experimental designs: the points of the axes that are run.
 
 mod latin;
 mod points;
@@ -8,11 +8,11 @@ pub use points::{Points, PointsError};
 
 use crate::axis::Axis;
 
-/// More runs than anybody has time for, and few enough to count exactly.
+/// Most runs of a sweep: more than anybody has time for, and few enough to count exactly.
 pub const MOST_RUNS: u64 = 1_000_000_000;
 
-/// How points are chosen. Each is a function of its number, so that any part of a
-/// sweep can be run anywhere.
+/// Design of a sweep. Each point is a function of its number, so that any part of a sweep can be
+/// run anywhere.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Design {
     /// Every combination; the last axis is the fastest.
@@ -21,31 +21,31 @@ pub enum Design {
     LatinHypercube(Sampled),
     /// Sobol's sequence with a digital shift.
     Sobol(Sampled),
-    /// Those of a file.
+    /// The points of a file.
     Listed(Points),
 }
 
-/// Points drawn by a seed.
+/// Axes, number and seed of sampled points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampled {
-    /// What is varied.
+    /// Varied axes.
     pub axes: Vec<Axis>,
-    /// How many points.
+    /// Number of points.
     pub count: u64,
-    /// Which ones.
+    /// Seed; another one gives other points.
     pub seed: u64,
 }
 
-/// Axes that do not make a design.
+/// Reason why axes make no design.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DesignError {
-    /// Nothing is varied.
+    /// No axis was given.
     #[error("nothing is varied: give --vary PATH=VALUES at least once, or --points FILE")]
     NoAxis,
     /// A key is varied twice.
     #[error("{0} is varied twice")]
     Twice(String),
-    /// A grid needs numbers of values.
+    /// An interval of a grid has no number of values.
     #[error(
         "{0}: a grid needs to know how many values: FROM:TO:linN or FROM:TO:logN; --latin and --sobol do not"
     )]
@@ -62,13 +62,13 @@ pub enum DesignError {
         most = sobol::MOST_AXES
     )]
     TooManyAxes {
-        /// How many were given.
+        /// Number of given axes.
         given: usize,
     },
 }
 
 impl Design {
-    /// Every combination of the axes' values.
+    /// Creates a grid: every combination of the axes' values.
     ///
     /// # Errors
     /// [`DesignError`].
@@ -88,7 +88,7 @@ impl Design {
         Ok(Self::Grid(axes))
     }
 
-    /// A Latin hypercube.
+    /// Creates a Latin hypercube.
     ///
     /// # Errors
     /// [`DesignError`].
@@ -97,7 +97,7 @@ impl Design {
         Ok(Self::LatinHypercube(sampled))
     }
 
-    /// Sobol's sequence.
+    /// Creates a design of Sobol's sequence.
     ///
     /// # Errors
     /// [`DesignError`].
@@ -111,7 +111,7 @@ impl Design {
         Ok(Self::Sobol(sampled))
     }
 
-    /// How many runs it has.
+    /// Returns the number of runs.
     pub fn runs(&self) -> u64 {
         match self {
             Self::Grid(axes) => axes.iter().filter_map(|a| a.values.count()).product(),
@@ -120,7 +120,7 @@ impl Design {
         }
     }
 
-    /// The keys that it varies.
+    /// Returns the keys that the design varies.
     pub fn paths(&self) -> Vec<&str> {
         match self {
             Self::Grid(axes) => paths(axes),
@@ -129,7 +129,7 @@ impl Design {
         }
     }
 
-    /// The seed of points that are drawn.
+    /// Returns the seed of sampled points.
     pub const fn seed(&self) -> Option<u64> {
         match self {
             Self::LatinHypercube(sampled) | Self::Sobol(sampled) => Some(sampled.seed),
@@ -137,7 +137,7 @@ impl Design {
         }
     }
 
-    /// The values of a point, as TOML or plain text, in the order of [`Self::paths`].
+    /// Returns the values of a point, as TOML or plain text, in the order of [`Self::paths`].
     pub fn point(&self, number: u64) -> Vec<String> {
         match self {
             Self::Grid(axes) => {
@@ -205,7 +205,7 @@ fn product(axes: &[Axis]) -> String {
         .join(" · ")
 }
 
-/// SplitMix64 over words: each bit of the result depends on each of theirs.
+/// Hashes words by SplitMix64: each bit of the result depends on each of theirs.
 fn hash(words: &[u64]) -> u64 {
     words.iter().fold(0, |state, word| {
         let mut z = (state ^ word).wrapping_add(0x9e37_79b9_7f4a_7c15);

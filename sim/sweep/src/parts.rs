@@ -1,5 +1,5 @@
-//! Rows on their way to a table: files that appear whole or not at all, so that a
-//! sweep goes on where it was killed, and that several computers write into one folder.
+//! Part files of a sweep: rows in files that appear whole or not at all, so that a killed sweep can
+//! be resumed and several computers can write into one folder.
 //!
 //! A part has the rows of neighbouring points, which its name tells. It is CSV with a
 //! record a *column*: name, kind, then a value a row, or one value for all rows; most
@@ -13,10 +13,10 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// What a column holds.
+/// Kind of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Counts.
+    /// Integers.
     Whole,
     /// Numbers.
     Number,
@@ -24,28 +24,28 @@ pub enum Kind {
     Text,
 }
 
-/// A column of a part: texts of its cells, empty where there is none.
+/// Column of a part, with its cells as text; a missing cell is empty.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
     /// Its name.
     pub name: String,
-    /// What it holds.
+    /// Kind of its cells.
     pub kind: Kind,
-    /// A cell a row.
+    /// Its cells.
     pub cells: Cells,
 }
 
 /// The cells of a column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Cells {
-    /// The same in every row.
+    /// One value for every row.
     Constant(String),
-    /// One a row.
+    /// One value per row.
     Each(Vec<String>),
 }
 
 impl Cells {
-    /// The cell of a row.
+    /// Returns the cell of a row.
     pub fn get(&self, row: usize) -> &str {
         match self {
             Self::Constant(text) => text,
@@ -75,7 +75,7 @@ impl Kind {
             .map(|(kind, _)| *kind)
     }
 
-    /// The kind of a column with cells of both.
+    /// Returns the kind of a column with cells of both kinds.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         match (self, other) {
@@ -86,8 +86,8 @@ impl Kind {
     }
 }
 
-/// A file that is not whole yet; it is removed if it is dropped. What becomes of it can be
-/// read by others, as far as the user's mask allows.
+/// Creates a temporary file, which is removed if it is dropped. Once persisted it can be read by
+/// others, as far as the user's mask allows.
 pub(crate) fn scratch_file(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".part-");
@@ -96,7 +96,7 @@ pub(crate) fn scratch_file(folder: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// The columns of neighbouring rows, in the order in which they first appear.
+/// Returns the columns of neighbouring rows, in the order in which they first appear.
 fn columns(rows: &[Row]) -> Vec<Column> {
     let mut places: HashMap<&str, usize> = HashMap::new();
     let mut found: Vec<(&str, Kind, Vec<String>)> = Vec::new();
@@ -126,13 +126,13 @@ fn columns(rows: &[Row]) -> Vec<Column> {
     found.into_iter().map(column).collect()
 }
 
-/// The folder of parts.
+/// Folder of the part files.
 #[derive(Clone, Debug)]
 pub struct Parts {
     folder: PathBuf,
 }
 
-/// A part that is no part.
+/// Error of a damaged part file.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {why}: remove it, and the sweep runs its points again", file.display())]
 pub struct PartError {
@@ -141,12 +141,12 @@ pub struct PartError {
 }
 
 impl Parts {
-    /// The parts in this folder, which need not exist.
+    /// Names the folder, which need not exist.
     pub const fn in_folder(folder: PathBuf) -> Self {
         Self { folder }
     }
 
-    /// Where they are.
+    /// Returns the folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
@@ -156,7 +156,7 @@ impl Parts {
             .join(format!("{:010}-{:010}.csv", points.start, points.end))
     }
 
-    /// The points of each part, in their order.
+    /// Lists the points of each part, in their order.
     ///
     /// # Errors
     /// If the folder cannot be read.
@@ -174,10 +174,10 @@ impl Parts {
         Ok(found)
     }
 
-    /// Writes rows of any points; those that are neighbours become a part.
+    /// Writes rows; those of neighbouring points become one part.
     ///
     /// # Errors
-    /// If the disk does not take them; then no part of them is there by half.
+    /// If a part cannot be written; no incomplete part is left then.
     pub fn write(&self, rows: &[Row]) -> io::Result<()> {
         let is_next = |a: &Row, b: &Row| b.index == a.index + 1;
         for rows in rows.chunk_by(is_next) {
@@ -217,10 +217,10 @@ impl Parts {
         Ok(())
     }
 
-    /// The columns of a part.
+    /// Reads the columns of a part.
     ///
     /// # Errors
-    /// If the file is not what was written.
+    /// [`PartError`] if the file is damaged or cannot be read.
     pub fn read(&self, points: &Range<u64>) -> Result<Vec<Column>, PartError> {
         let file = self.file(points);
         let refuse = |why: String| PartError {
@@ -263,7 +263,7 @@ impl Parts {
     /// Copies the parts of another folder, each whole or not at all.
     ///
     /// # Errors
-    /// Of either folder.
+    /// If a part cannot be read or written.
     pub fn copy_from(&self, other: &Self) -> io::Result<()> {
         for points in other.points()? {
             let mut copy = scratch_file(&self.folder)?;
@@ -274,7 +274,7 @@ impl Parts {
         Ok(())
     }
 
-    /// Removes all of them.
+    /// Removes the folder with all parts.
     ///
     /// # Errors
     /// If the folder cannot be removed.
@@ -286,14 +286,14 @@ impl Parts {
     }
 }
 
-/// The points that the name of a part tells.
+/// Parses the points from the name of a part.
 fn points_of(name: &str) -> Option<Range<u64>> {
     let (first, end) = name.strip_suffix(".csv")?.split_once('-')?;
     let points = first.parse().ok()?..end.parse().ok()?;
     (points.start < points.end).then_some(points)
 }
 
-/// What of `wanted` no part of `there` (in order) has.
+/// Returns the ranges of `wanted` that no part of `there` covers. `there` is sorted by its starts.
 pub fn missing(wanted: Range<u64>, there: &[Range<u64>]) -> Vec<Range<u64>> {
     let mut gaps = Vec::new();
     let mut next = wanted.start;

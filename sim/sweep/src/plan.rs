@@ -1,4 +1,4 @@
-//! A sweep: a scene, and the points of it that are run.
+//! Plan of a sweep: a scene, its overrides and a design.
 
 use crate::design::Design;
 use crate::row::Row;
@@ -11,7 +11,7 @@ use std::fmt::Write;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// A sweep. Two programs that have the same one have the same rows.
+/// Plan of a sweep. Equal plans have equal rows, on any computer.
 #[derive(Clone, Debug)]
 pub struct Plan {
     source: Source,
@@ -20,7 +20,7 @@ pub struct Plan {
     identity: Identity,
 }
 
-/// What a sweep is known by: another one in its place is refused.
+/// Identity of a sweep; a folder with another one is refused.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// Version of the program: other versions may have other numbers.
@@ -29,17 +29,18 @@ pub struct Identity {
     pub scene: String,
     /// Its title.
     pub title: String,
-    /// Keys that are varied.
+    /// Varied keys.
     pub paths: Vec<String>,
-    /// How many runs.
+    /// Number of runs.
     pub runs: u64,
-    /// Seed of points that are drawn.
+    /// Seed of sampled points.
     pub design_seed: Option<u64>,
     /// SHA-256 of scene, overrides, recording and points.
     pub sha256: String,
 }
 
-/// One of `of` parts of a sweep: disjoint, together everything, as even as they can be.
+/// Part `number` of `of` of a sweep. The parts are disjoint, complete and of sizes that differ by
+/// at most one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: u64,
@@ -47,10 +48,10 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Part `number`, from 1, of `of`.
+    /// Creates shard `number`, from 1, of `of`.
     ///
     /// # Errors
-    /// A text, if there is no such part.
+    /// A text, if `number` is not in 1 to `of`.
     pub fn new(number: u64, of: u64) -> Result<Self, String> {
         if (1..=of).contains(&number) {
             Ok(Self { number, of })
@@ -61,7 +62,7 @@ impl Shard {
         }
     }
 
-    /// Its points, of this many.
+    /// Returns the points of the shard, of a sweep with `runs` points.
     pub fn points(self, runs: u64) -> Range<u64> {
         let upto = |part: u64| {
             let point = u128::from(runs) * u128::from(part) / u128::from(self.of);
@@ -72,11 +73,11 @@ impl Shard {
 }
 
 impl Plan {
-    /// A sweep of a scene. The scene is read and checked as it is; and some of the points,
-    /// so that a misspelt key is an error and not a table of failed runs.
+    /// Creates the plan of a scene. Checks the scene, and some of the points, so that a misspelt
+    /// key is an error and not a table of failed runs.
     ///
     /// # Errors
-    /// What is wrong with the scene, or with every point that was tried.
+    /// [`SceneError`] of the scene, or of the first point if every point that was tried is invalid.
     pub fn new(source: Source, overrides: Overrides, design: Design) -> Result<Self, SceneError> {
         let scene = source.scene(&overrides)?;
         let mut plan = Self {
@@ -98,26 +99,26 @@ impl Plan {
         Ok(plan)
     }
 
-    /// What it is known by.
+    /// Returns the identity.
     pub const fn identity(&self) -> &Identity {
         &self.identity
     }
 
-    /// How many runs.
+    /// Returns the number of runs.
     pub const fn runs(&self) -> u64 {
         self.identity.runs
     }
 
-    /// The scene of a point.
+    /// Returns the scene of a point.
     ///
     /// # Errors
-    /// What the values of the point make wrong.
+    /// [`SceneError`] if the values of the point are invalid.
     pub fn scene(&self, point: u64) -> Result<Scene, SceneError> {
         let values = self.design.point(point);
         self.scene_with(self.design.paths().into_iter().zip(values))
     }
 
-    /// Runs a point by `run`. What goes wrong with the run is a row, too.
+    /// Runs a point by `run`. A failed run gives a row with its reason.
     ///
     /// # Errors
     /// Those of the observer.
@@ -159,9 +160,9 @@ impl Plan {
         self.source.scene(&overrides)
     }
 
-    /// The error of the first point, if no point of some is a scene.
+    /// Rejects a plan if none of some points is a valid scene; the error is that of the first.
     fn check_points(&self) -> Result<(), SceneError> {
-        /// Points that are tried, from all over the sweep.
+        /// Number of points that are tried, spread over the sweep.
         const TRIED: u64 = 64;
         let tried = TRIED.min(self.runs());
         let points = (0..tried).map(|i| i * (self.runs() / tried.max(1)));

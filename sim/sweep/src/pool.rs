@@ -1,4 +1,4 @@
-//! Runs on all cores; rows come as they end, nearly in the order of their points.
+//! Thread pool of a sweep; rows come as runs end, nearly in the order of their points.
 
 use crate::plan::Plan;
 use crate::row::Row;
@@ -12,25 +12,25 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-/// How often the caller is asked while no run ends.
+/// Poll interval of the receiver while no run ends.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// Rows that wait for the caller, per core.
+/// Capacity of the queue of finished rows, per thread.
 const WAITING: usize = 64;
 
-/// Who gets the rows.
+/// Receiver of rows.
 pub trait Receiver {
-    /// Why it cannot go on.
+    /// Error that ends the sweep.
     type Error: From<io::Error>;
 
-    /// A run that has ended.
+    /// Takes the row of a run.
     fn row(&mut self, row: Row) -> Result<(), Self::Error>;
 
-    /// Called at least 20 times a second.
+    /// Polls for events of the caller, at least 20 times a second.
     fn poll(&mut self) -> Result<(), Self::Error>;
 }
 
-/// Why a run gave no row.
+/// Reason why a run gave no row.
 #[derive(Debug)]
 pub enum Ended {
     /// [`Stop`] was set.
@@ -39,7 +39,7 @@ pub enum Ended {
     Failed(io::Error),
 }
 
-/// Runs the points of `ranges` on `threads` threads, by `run`.
+/// Runs the points of `ranges` by `run` on `threads` threads, at least one.
 ///
 /// # Errors
 /// The receiver's, or of a run's own file; runs that have begun are abandoned then.
@@ -92,12 +92,12 @@ fn receive<R: Receiver>(
     }
 }
 
-/// Whether the runs are to end.
+/// Stop flag of the runs.
 #[derive(Debug, Default)]
 pub struct Stop(AtomicBool);
 
 impl Stop {
-    /// An error if they are.
+    /// Returns an error if the flag is set.
     ///
     /// # Errors
     /// [`Ended::Stopped`].
@@ -110,7 +110,7 @@ impl Stop {
     }
 }
 
-/// Sees nothing of a run but whether it is to end.
+/// Observer that only checks the stop flag.
 struct Unseen<'s>(&'s Stop);
 
 impl Observer for Unseen<'_> {
@@ -130,7 +130,7 @@ impl Observer for Unseen<'_> {
     }
 }
 
-/// Runs a point for its totals.
+/// Runs a point without a trace.
 ///
 /// # Errors
 /// [`Ended::Stopped`].

@@ -1,4 +1,4 @@
-//! A run as a row: what was varied, and every number of its summary.
+//! Row of a run: the varied values, and every number of its summary.
 
 use crate::parts::Kind;
 use crepitus_scene::Summary;
@@ -6,19 +6,19 @@ use crepitus_scene::run::EffectSummary;
 use serde_json::{Map, Value};
 use std::fmt;
 
-/// What stands in a column of a row.
+/// Value of a cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// A count.
+    /// Integer.
     Whole(i64),
-    /// A number.
+    /// Number.
     Number(f64),
-    /// A name, or a reason.
+    /// Text.
     Text(String),
 }
 
 impl Cell {
-    /// What its column holds, if all of its cells are like it.
+    /// Returns the kind of the cell.
     pub const fn kind(&self) -> Kind {
         match self {
             Self::Whole(_) => Kind::Whole,
@@ -28,7 +28,7 @@ impl Cell {
     }
 }
 
-/// Numbers read back to the same bits.
+/// Formats the cell; a number is read back to the same bits.
 impl fmt::Display for Cell {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -39,20 +39,20 @@ impl fmt::Display for Cell {
     }
 }
 
-/// A run. A column that it does not have is empty.
+/// Row of a run. A column that it does not have is empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// The number of its point.
+    /// Number of its point.
     pub index: u64,
-    /// Names of columns with what stands in them.
+    /// Cells, with the names of their columns.
     pub cells: Vec<(String, Cell)>,
 }
 
-/// The column of the reason why a run failed; empty if it did not.
+/// Column with the reason of a failed run; empty for a run that succeeded.
 pub const FAILURE: &str = "failure";
 
-/// Parts of a summary that are the same for every run, that stand elsewhere, or that
-/// depend on the computer: no result.
+/// Entries of a summary that are no result: the same for every run, in another column, or dependent
+/// on the computer.
 const LEFT_OUT: [&str; 9] = [
     "summary_version",
     "scene_version",
@@ -66,7 +66,7 @@ const LEFT_OUT: [&str; 9] = [
 ];
 
 impl Row {
-    /// The reason why the run failed.
+    /// Returns the reason of a failed run.
     pub fn failure(&self) -> Option<&str> {
         self.cells.iter().find_map(|(name, cell)| match cell {
             Cell::Text(reason) if name == FAILURE => Some(reason.as_str()),
@@ -74,7 +74,7 @@ impl Row {
         })
     }
 
-    /// The row of a point before it is run.
+    /// Creates the row of a point, with the varied values.
     pub(crate) fn of_point(
         index: u64,
         paths: &[&str],
@@ -93,7 +93,7 @@ impl Row {
         Self { index, cells }
     }
 
-    /// Adds what came of it.
+    /// Adds the numbers of the summary, or the reason of the failure.
     pub(crate) fn add(&mut self, outcome: Result<Summary, String>) {
         match outcome {
             Ok(summary) => {
@@ -105,7 +105,7 @@ impl Row {
         }
     }
 
-    /// A cell, unless what was varied stands there already.
+    /// Adds a cell, unless the column has a varied value.
     fn put(&mut self, name: String, cell: Cell) {
         if !self.cells.iter().any(|(other, _)| *other == name) {
             self.cells.push((name, cell));
@@ -113,7 +113,7 @@ impl Row {
     }
 }
 
-/// A value as it was given: a number if it is one.
+/// Converts a given value to a cell: a number if it is one.
 fn given(value: &str) -> Cell {
     match value.parse::<f64>() {
         Ok(number) => Cell::Number(number),
@@ -121,7 +121,7 @@ fn given(value: &str) -> Cell {
     }
 }
 
-/// The columns of a summary. Parameters have the path that they have in a scene.
+/// Returns the cells of a summary. Parameters have their path in a scene as name.
 fn numbers(summary: &Summary) -> Vec<(String, Cell)> {
     let mut cells = Vec::with_capacity(96);
     for effect in &summary.effects {
@@ -163,7 +163,7 @@ fn flatten(path: &str, table: Map<String, Value>, cells: &mut Vec<(String, Cell)
     }
 }
 
-/// Terms of a balance have their texts as a name; a list of texts becomes one.
+/// Flattens a list: terms of an energy balance are named by their texts, texts are joined.
 fn flatten_list(path: &str, items: Vec<Value>, cells: &mut Vec<(String, Cell)>) {
     let mut texts = Vec::new();
     for item in items {

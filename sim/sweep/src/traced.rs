@@ -1,4 +1,4 @@
-//! Runs that leave a trace.
+//! Runs with a trace file each.
 
 use crate::parts::scratch_file;
 use crate::plan::Plan;
@@ -12,7 +12,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 use tempfile::NamedTempFile;
 
-/// Writes each row, and sees whether the run is to end.
+/// Observer that writes each row and checks the stop flag.
 struct Trace<'s> {
     csv: TraceCsv<BufWriter<NamedTempFile>>,
     stop: &'s Stop,
@@ -34,12 +34,12 @@ impl Observer for Trace<'_> {
     }
 }
 
-/// Where traces go.
+/// Folders of traces.
 #[derive(Clone, Debug)]
 pub struct Traces {
-    /// Each with the number of its point as its name.
+    /// Complete traces, named by the number of their point.
     pub(crate) folder: PathBuf,
-    /// Before they are whole.
+    /// Incomplete files.
     pub(crate) scratch: PathBuf,
 }
 

@@ -4,15 +4,15 @@
 use crate::actuator::spectrum::Line;
 use realfft::num_complex::Complex;
 
-/// Bands of an octave.
+/// Number of bands per octave.
 const PER_OCTAVE: f64 = 24.0;
 
-/// Lines that lie together.
+/// Weighted mean of the lines of a band.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Mean {
-    /// Mean of ω with the weights, rad/s.
+    /// Mean angular frequency, weighted by |I|², rad/s.
     pub(crate) omega: f64,
-    /// Least squares of volts over amperes, Ω.
+    /// Least-squares impedance V/I, Ω.
     pub(crate) impedance: Complex<f64>,
     /// Sum of |I|².
     pub(crate) weight: f64,
@@ -20,7 +20,7 @@ pub(crate) struct Mean {
     pub(crate) excitation: f64,
 }
 
-/// One after the other; at least one line each.
+/// Splits lines into bands; each has at least one line.
 pub(crate) fn bands(lines: &[Line]) -> impl Iterator<Item = &[Line]> {
     lines.chunk_by(|a, b| band_of(a.omega) == band_of(b.omega))
 }
@@ -30,7 +30,7 @@ fn band_of(omega: f64) -> f64 {
 }
 
 impl Mean {
-    /// Of the lines of a band.
+    /// Returns the mean of a band.
     pub(crate) fn of(band: &[Line]) -> Self {
         let weight: f64 = band.iter().map(|line| line.amperes.norm_sqr()).sum();
         let together: Complex<f64> = (band.iter())

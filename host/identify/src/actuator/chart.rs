@@ -1,4 +1,4 @@
-//! Measured and fitted impedance, and what is left between them, as a figure.
+//! Figure of the measured and the fitted impedance, with the residual.
 
 use crate::actuator::Actuator;
 use crepitus_plot::number::rounded;
@@ -12,7 +12,7 @@ const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 240.0;
 const LOW_HEIGHT: f64 = 190.0;
 
-/// The figure: magnitude, phase, residual.
+/// Draws magnitude, phase and residual.
 pub fn figure(actuator: &Actuator) -> Figure {
     let z = &actuator.impedance;
     let fitted = |omega: f64| {

@@ -1,10 +1,10 @@
-//! What follows from a fit, with its interval.
+//! Quantities derived from a fit, with first-order error propagation.
 
 use crate::actuator::fit::Fit;
 use crate::actuator::impedance::{Impedance, NUMBERS};
 use crate::estimate::{DEVIATIONS, Estimate};
 
-/// A quantity that follows from a fit, with its first-order interval.
+/// Returns a function of the fitted parameters with its 95 % confidence interval, to first order.
 pub(crate) fn derived(fit: &Fit, of: impl Fn(&Impedance) -> f64) -> Estimate {
     Estimate {
         value: of(&fit.impedance),
@@ -12,7 +12,7 @@ pub(crate) fn derived(fit: &Fit, of: impl Fn(&Impedance) -> f64) -> Estimate {
     }
 }
 
-/// Variance of such a quantity.
+/// Returns the variance of a function of the fitted parameters, to first order.
 pub(crate) fn variance(fit: &Fit, of: impl Fn(&Impedance) -> f64) -> f64 {
     let numbers = <[f64; NUMBERS]>::from(fit.impedance);
     let mut gradient = nalgebra::SVector::<f64, NUMBERS>::zeros();

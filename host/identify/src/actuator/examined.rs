@@ -1,4 +1,4 @@
-//! One chirp: its fit, or what it shows instead of an actuator.
+//! Fit of one chirp, and the checks that reject it.
 
 use crate::actuator::bands::{Mean, bands};
 use crate::actuator::derived::derived;
@@ -16,33 +16,33 @@ const LEAST_EXCITATION: f64 = 0.01;
 /// Least voltage, V rms.
 const LEAST_V: f64 = 0.005;
 
-/// At rest is what has less than this share of the greatest voltage, over this
-/// time, s: at the start, and at the end, where the mass has to calm down.
+/// Voltage of a coil at rest, as a share of the greatest one; and time at rest, s, that is checked
+/// at the start, and at the end, where the mass has to settle.
 const REST_SHARE: f64 = 0.02;
 const REST_S: [f64; 2] = [0.01, 0.15];
 
-/// More is no coil, Ω.
+/// Largest resistance of a coil, Ω.
 const OPEN_OHM: f64 = 100.0;
 
-/// The motion is seen from so many standard deviations on, and from this share of
-/// the impedance.
+/// Least motional impedance that counts as motion: in standard deviations, and as a share of the
+/// impedance.
 const SEEN: f64 = 8.0;
 const LEAST_MOTIONAL_SHARE: f64 = 0.01;
 
-/// Distance of the resonance from the ends of the band.
+/// Least distance of the resonance from the ends of the band, as a frequency ratio.
 const FROM_START: f64 = 1.4;
 const FROM_END: f64 = 2.5;
 
-/// Greatest part of the motion's share of the current that may stay unexplained: in a
-/// narrow band, and over all; and the floor of both, as a share of the current.
+/// Largest residual, as a share of the motional current: in a narrow band, and over all; and the
+/// floor of both, as a share of the current.
 const UNEXPLAINED_THERE: f64 = 0.1;
 const UNEXPLAINED: f64 = 0.05;
 const LEAST_UNEXPLAINED: f64 = 0.003;
 
-/// Standard deviations from which a misfit of a narrow band is one.
+/// Least misfit of a narrow band that counts, standard deviations.
 const MISFIT: f64 = 6.0;
 
-/// Ratio of the residual to the noise from which there is more than noise.
+/// Residual over noise from which the residual has a systematic part.
 const OVER_NOISE: f64 = 1.15;
 
 /// A second resonance counts from this height over its standard deviation and over
@@ -56,17 +56,17 @@ const SECOND_SHARE: f64 = 0.35;
 /// of it; a sine is within 0.4 % of its amplitude for 11 %.
 const CLIPPED: f64 = 0.2;
 
-/// A chirp that one mass on one spring explains.
+/// A chirp that a single resonance explains.
 #[derive(Clone, Debug)]
 pub(crate) struct Examined {
     pub(crate) fit: Fit,
     pub(crate) means: Vec<Mean>,
-    /// Greatest voltage, V.
+    /// Peak voltage, V.
     pub(crate) amplitude_v: f64,
 }
 
 impl Examined {
-    /// Fits a chirp; the mass, if it is known, is for the text of a refusal only.
+    /// Fits a chirp and checks the fit. `mass_kg` only serves the text of a refusal.
     pub(crate) fn of(series: &Series, band: Band, mass_kg: Option<f64>) -> Result<Self, Refusal> {
         let amplitude_v = at_rest_at_both_ends(series)?;
         let spectrum = Spectrum::of(series, band);
@@ -96,7 +96,7 @@ impl Examined {
         Ok(examined)
     }
 
-    /// Amplitude of the mass at its greatest, m, for a mass in kg.
+    /// Returns the peak excursion, m, of a mass in kg.
     pub(crate) fn excursion_m(&self, mass_kg: f64) -> f64 {
         let z = &self.fit.impedance;
         let steps = (1..=400).map(|i| 0.005 * f64::from(i));
@@ -184,7 +184,7 @@ impl Examined {
     }
 }
 
-/// The greatest voltage, if there is none where the recording begins and ends.
+/// Rejects a recording that does not begin and end at rest; returns the peak voltage, V.
 fn at_rest_at_both_ends(series: &Series) -> Result<f64, Refusal> {
     let mean = series.volts().iter().sum::<f64>() / series.volts().len() as f64;
     let rms = |part: &mut dyn Iterator<Item = &f64>, samples: usize| {
@@ -217,7 +217,7 @@ fn at_rest_at_both_ends(series: &Series) -> Result<f64, Refusal> {
     Ok(greatest_v)
 }
 
-/// Every band has its part of the voltage.
+/// Rejects a voltage that does not excite every band.
 fn is_excited(means: &[Mean]) -> Result<(), Refusal> {
     // A logarithmic chirp has the same in each band.
     let mut all: Vec<f64> = means.iter().map(|mean| mean.excitation).collect();
@@ -235,7 +235,7 @@ fn is_excited(means: &[Mean]) -> Result<(), Refusal> {
     }
 }
 
-/// The current follows the voltage at all, and in its direction.
+/// Rejects an open coil and a reversed current.
 fn conducts(lines: &[Line], series: &Series) -> Result<(), Refusal> {
     let common: Complex<f64> = lines.iter().map(|l| l.amperes * l.volts.conj()).sum();
     let excitation: f64 = lines.iter().map(|l| l.volts.norm_sqr()).sum();
@@ -258,7 +258,7 @@ fn conducts(lines: &[Line], series: &Series) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// A current that is cut at a level.
+/// Detects a current that is clipped at a level.
 fn clipped(series: &Series) -> Option<Refusal> {
     let mut amperes: Vec<f64> = series.amperes().iter().map(|a| a.abs()).collect();
     amperes.sort_by(f64::total_cmp);

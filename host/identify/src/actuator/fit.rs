@@ -1,4 +1,4 @@
-//! The impedance that explains the current, by nonlinear least squares.
+//! Nonlinear least-squares fit of the impedance to the current.
 //!
 //! Each line of the spectrum says
 //!
@@ -18,65 +18,65 @@ use crate::actuator::start::start;
 use nalgebra::{SMatrix, SVector};
 use realfft::num_complex::Complex;
 
-/// A matrix and a column of the numbers.
+/// Square matrix over the parameters.
 pub(crate) type Square = SMatrix<f64, NUMBERS, NUMBERS>;
-/// See [`Square`].
+/// Column vector over the parameters.
 pub(crate) type Column = SVector<f64, NUMBERS>;
 
-/// Enough for any start; ten are usual.
+/// Most iterations; about ten are usual.
 const MOST_STEPS: u32 = 100;
 
-/// Relative gain of a step that ends the fit.
+/// Relative decrease of the cost below which the fit has converged.
 const SMALLEST_GAIN: f64 = 1e-12;
 
-/// The impedance and how well it is known.
+/// A fitted impedance with its covariance and residual.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
     pub(crate) impedance: Impedance,
-    /// Covariance of its numbers.
+    /// Covariance of the parameters, in the order of [`NUMBERS`].
     pub(crate) covariance: Square,
-    /// Of the current in the band that is not explained.
+    /// Residual of the current in the band.
     pub(crate) residual: Residual,
-    /// ω, rad/s, and the share of the current that is not explained there, by narrow bands.
+    /// Relative residual of each narrow band: ω, rad/s, and share of the current.
     pub(crate) misfits: Vec<(f64, f64)>,
 }
 
-/// What of the current is left unexplained.
+/// Residual of the current.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Residual {
-    /// Its root mean square over that of the current in the band, beyond the noise.
+    /// RMS beyond the noise, as a share of the RMS current in the band.
     pub(crate) beyond_noise: f64,
-    /// Its root mean square over that of the noise; `None` if the noise is unknown.
+    /// RMS over the RMS noise; `None` if the noise is unknown.
     pub(crate) over_noise: Option<f64>,
-    /// Greatest mean over a narrow band, relative to the current there.
+    /// Largest mean over a narrow band, as a share of the current there.
     pub(crate) systematic: f64,
-    /// The same over its standard deviation.
+    /// [`systematic`](Self::systematic) over its standard deviation.
     pub(crate) deviations: f64,
-    /// Where, Hz.
+    /// Frequency of [`systematic`](Self::systematic), Hz.
     pub(crate) systematic_hz: f64,
-    /// The second resonance that would explain most of it.
+    /// Second resonance that would explain most of the residual.
     pub(crate) second: Option<Explained>,
-    /// Noise of a sample of the current, A; from the residual.
+    /// RMS noise of a current sample, A, from the residual.
     pub(crate) noise_a: f64,
 }
 
-/// What a second resonance would explain.
+/// A second resonance, as far as the residual shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Explained {
-    /// Where, Hz.
+    /// Its frequency, Hz.
     pub(crate) hz: f64,
     /// Height of its hump in the impedance over that of the first.
     pub(crate) height: f64,
-    /// Height over its standard deviation.
+    /// [`height`](Self::height) over its standard deviation.
     pub(crate) deviations: f64,
     /// Share of the power beyond the noise that it explains.
     pub(crate) share: f64,
-    /// It is so broad that nothing swings.
+    /// Damped so strongly that it is no resonance.
     pub(crate) is_broad: bool,
 }
 
 impl Fit {
-    /// Fits; `None` where nothing moves, so that no resonance can be told.
+    /// Fits a spectrum; `None` if the current shows no resonance.
     pub(crate) fn of(spectrum: &Spectrum) -> Option<Self> {
         let lines = &spectrum.lines;
         let means: Vec<Mean> = bands(lines).map(Mean::of).collect();
@@ -131,7 +131,7 @@ fn stepped(from: &Impedance, step: &Column) -> Impedance {
     numbers.into()
 }
 
-/// JᵀJ, Jᵀr and |r|².
+/// Returns the normal equations: JᵀJ, Jᵀr and |r|².
 fn equations(lines: &[Line], impedance: &Impedance) -> (Square, Column, f64) {
     let (mut normal, mut right, mut left) = (Square::zeros(), Column::zeros(), 0.0);
     for line in lines {
@@ -154,19 +154,19 @@ fn equations(lines: &[Line], impedance: &Impedance) -> (Square, Column, f64) {
     (normal, right, left)
 }
 
-/// What a narrow band's residual has in common with its voltage.
+/// Residual of a narrow band that is coherent with the voltage.
 struct Common {
     omega: f64,
-    /// Mean residual for a volt, A/V.
+    /// Mean residual admittance, A/V.
     admittance: Complex<f64>,
-    /// Its variance over that of a line.
+    /// Variance of the mean over that of a line.
     variance: f64,
-    /// Current for a volt, A/V.
+    /// Magnitude of the fitted admittance, A/V.
     expected: f64,
 }
 
 impl Common {
-    /// Of the current.
+    /// Returns the residual as a share of the current.
     fn share(&self) -> f64 {
         self.admittance.norm() / self.expected
     }
@@ -189,7 +189,7 @@ fn common(band: &[Line], impedance: &Impedance) -> Common {
 }
 
 impl Residual {
-    /// `variance` is that of the real part of a line.
+    /// Returns the residual after a fit. `variance` is that of the real part of a line.
     fn of(spectrum: &Spectrum, impedance: &Impedance, normal: &Square, variance: f64) -> Self {
         let lines = &spectrum.lines;
         let of_current: f64 = lines.iter().map(|line| line.amperes.norm_sqr()).sum();
@@ -222,8 +222,8 @@ impl Residual {
     }
 }
 
-/// Factor for the covariance where neighbouring lines err together: the mean square
-/// of what narrow bands have in common with the voltage, over that of white noise.
+/// Returns the factor for the covariance where residuals of neighbouring lines are correlated: mean
+/// square of the coherent residuals of narrow bands, over that of white noise.
 fn correlation(lines: &[Line], impedance: &Impedance, variance: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for band in bands(lines) {

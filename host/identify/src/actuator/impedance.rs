@@ -10,11 +10,10 @@
 
 use realfft::num_complex::Complex;
 
-/// Numbers of the impedance, in this order: R (Ω), L (H), b (Ω/s), ω₀ (rad/s),
-/// γ (1/s), τ (s).
+/// Number of parameters, in this order: R (Ω), L (H), b (Ω/s), ω₀ (rad/s), γ (1/s), τ (s).
 pub(crate) const NUMBERS: usize = 6;
 
-/// What the impedance is made of.
+/// Parameters of the impedance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Impedance {
     /// R, Ω.
@@ -25,7 +24,7 @@ pub(crate) struct Impedance {
     pub(crate) coupling: f64,
     /// ω₀, rad/s.
     pub(crate) resonance: f64,
-    /// γ = c/m, 1/s: without the coil.
+    /// γ = c/m, 1/s; mechanical damping alone.
     pub(crate) damping: f64,
     /// τ, s.
     pub(crate) delay: f64,
@@ -59,18 +58,18 @@ impl From<Impedance> for [f64; NUMBERS] {
 }
 
 impl Impedance {
-    /// s/(s² + γ·s + ω₀²).
+    /// Returns s/(s² + γ·s + ω₀²).
     fn swing(&self, s: Complex<f64>) -> Complex<f64> {
         s / (s * s + s * self.damping + self.resonance * self.resonance)
     }
 
-    /// Z at ω, Ω, without the delay.
+    /// Returns Z at ω, Ω, without the delay.
     pub(crate) fn at(&self, omega: f64) -> Complex<f64> {
         let s = Complex::i() * omega;
         s * self.inductance + self.swing(s) * self.coupling + self.resistance
     }
 
-    /// Current per voltage at ω, A/V, and its derivatives by the numbers.
+    /// Returns the admittance at ω, A/V, and its derivatives with respect to the parameters.
     pub(crate) fn admittance(&self, omega: f64) -> (Complex<f64>, [Complex<f64>; NUMBERS]) {
         let s = Complex::i() * omega;
         let z = self.at(omega);
@@ -91,13 +90,13 @@ impl Impedance {
         (admittance, derivatives)
     }
 
-    /// Excursion per voltage at ω, times m/Bl: 1/(D·Z).
+    /// Returns the excursion per volt at ω, times m/Bl: 1/(D·Z).
     pub(crate) fn reach(&self, omega: f64) -> f64 {
         let s = Complex::i() * omega;
         (self.swing(s) / s / self.at(omega)).norm()
     }
 
-    /// Resistance that the motion adds at the resonance, as a share of all there.
+    /// Returns the motional resistance at the resonance, as a share of the total one.
     pub(crate) fn motional_share(&self) -> f64 {
         let added = self.coupling / self.damping;
         added / (self.resistance + added)

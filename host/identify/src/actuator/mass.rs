@@ -1,4 +1,4 @@
-//! What the current alone does not tell: the mass. It shows b = Bl²/m only.
+//! Moving mass and force constant, which the current alone shows only as b = Bl²/m.
 //!
 //! Either the moving mass is weighed, or a second chirp is played with a known mass Δ
 //! on it. That lowers ω₀² and b by the same ratio
@@ -16,12 +16,12 @@ use crate::actuator::refusal::Refusal;
 use crate::estimate::{DEVIATIONS, Estimate};
 use std::f64::consts::TAU;
 
-/// A mass on a balance.
+/// A weighed mass with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weighed {
-    /// kg.
+    /// Mass, kg.
     pub mass_kg: f64,
-    /// It is known to ± this share of it, in 95 of 100 cases.
+    /// Half width of its 95 % confidence interval, as a share of the mass.
     pub share: f64,
 }
 
@@ -32,16 +32,16 @@ pub(crate) struct Split {
     pub(crate) force_constant: Estimate,
 }
 
-/// A difference between two estimates is one beyond this share, whatever the noise.
+/// Relative difference of two estimates that is tolerated, whatever the noise.
 const SAME: f64 = 0.02;
 
 /// Least ρ − 1.
 const LEAST_CHANGE: f64 = 0.08;
 
-/// Greatest change of the resistance: 13 K of copper.
+/// Largest relative change of the resistance between two chirps: 13 K of copper.
 const WARM: f64 = 0.05;
 
-/// With the mass that was weighed.
+/// Returns mass and force constant from a weighed mass.
 pub(crate) fn by_weight(fit: &Fit, weighed: Weighed) -> Split {
     let mass_kg = Estimate::known(weighed.mass_kg, weighed.share);
     let of_fit = derived(fit, |z| (z.coupling * weighed.mass_kg).sqrt());
@@ -55,7 +55,7 @@ pub(crate) fn by_weight(fit: &Fit, weighed: Weighed) -> Split {
     }
 }
 
-/// With a second chirp, with a known mass added.
+/// Returns mass and force constant from a second chirp with a known mass added.
 pub(crate) fn by_added_mass(fit: &Fit, with: &Fit, added: Weighed) -> Result<Split, Refusal> {
     is_as_cold(fit, with)?;
     let (z, z_with) = (fit.impedance, with.impedance);
@@ -104,7 +104,7 @@ pub(crate) fn by_added_mass(fit: &Fit, with: &Fit, added: Weighed) -> Result<Spl
     })
 }
 
-/// Both ways: they have to agree, and the more certain one counts.
+/// Returns the more certain of two results; rejects results that contradict each other.
 pub(crate) fn agreed(weighed: Split, added: Split) -> Result<Split, Refusal> {
     let (a, b) = (weighed.mass_kg, added.mass_kg);
     let most = a.half_width.hypot(b.half_width).hypot(SAME * a.value);

@@ -1,4 +1,4 @@
-//! The parameters of an actuator.
+//! Parameters of an actuator, from one or two chirps.
 
 use crate::actuator::bands::Mean;
 use crate::actuator::derived::derived;
@@ -12,25 +12,26 @@ use crate::estimate::Estimate;
 use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
 use std::f64::consts::TAU;
 
-/// m/s².
+/// Standard gravity, m/s².
 const STANDARD_GRAVITY: f64 = 9.806_65;
 
-/// A parameter that is less certain than ± this share is not proposed.
+/// Widest half interval of a proposed parameter, as a share of its value.
 const MOST_UNCERTAIN: f64 = 0.05;
 
-/// What tells the mass: one of both, or both, which then check each other.
+/// Evidence of the moving mass: a balance, a second chirp with a known mass added, or both, which
+/// are compared.
 #[derive(Clone, Copy, Debug)]
 pub enum MassEvidence<'s> {
-    /// It was weighed.
+    /// The moving mass was weighed.
     Weighed(Weighed),
-    /// A second chirp, with this mass added.
+    /// A second chirp was recorded with this mass added.
     Added(&'s Series, Weighed),
-    /// Both.
+    /// Both: the weighed mass, the second chirp, the added mass.
     Both(Weighed, &'s Series, Weighed),
 }
 
 impl MassEvidence<'_> {
-    /// The mass, if it was weighed.
+    /// Returns the weighed mass, kg.
     fn known_kg(&self) -> Option<f64> {
         match self {
             Self::Weighed(weighed) | Self::Both(weighed, ..) => Some(weighed.mass_kg),
@@ -54,7 +55,7 @@ impl MassEvidence<'_> {
     }
 }
 
-/// An actuator as its coil's current shows it.
+/// Identified parameters of an actuator, with 95 % confidence intervals.
 #[derive(Clone, Debug)]
 pub struct Actuator {
     /// Resistance of the coil and of what feeds it, Ω.
@@ -65,24 +66,23 @@ pub struct Actuator {
     pub resonance_hz: Estimate,
     /// Damping ratio of the flexure alone.
     pub mechanical_damping_ratio: Estimate,
-    /// Damping ratio with the coil connected: what the stage's parameter means.
+    /// Damping ratio with the coil connected, as the stage's parameter is defined.
     pub damping_ratio: Estimate,
     /// Moving mass, kg.
     pub moving_mass_kg: Estimate,
     /// Force constant, N/A.
     pub force_constant_n_per_a: Estimate,
-    /// Time by which the current lags the voltage in the recording, s.
+    /// Delay of the recorded current behind the voltage, s.
     pub delay_s: Estimate,
-    /// Amplitude of the mass at its greatest, m.
+    /// Peak excursion of the mass in the chirp, m.
     pub excursion_m: f64,
-    /// Greatest voltage, V.
+    /// Peak voltage of the chirp, V.
     pub amplitude_v: f64,
-    /// Noise of a sample of the current, A.
+    /// RMS noise of a current sample, A.
     pub noise_a: f64,
-    /// Root mean square of the current that is neither explained nor noise, over that of
-    /// the current.
+    /// Systematic residual: RMS beyond the noise, as a share of the RMS current.
     pub unexplained: f64,
-    /// Whether a second chirp has told the mass; else it is as good as the balance.
+    /// Whether a second chirp has confirmed the mass; otherwise its error is that of the balance.
     pub mass_is_checked: bool,
     pub(crate) impedance: Impedance,
     pub(crate) means: Vec<Mean>,
@@ -127,7 +127,7 @@ pub fn identify(
 }
 
 impl Actuator {
-    /// The settings of the stage with these parameters, and all others as they are in use.
+    /// Returns the settings in use with these parameters in their place.
     ///
     /// # Errors
     /// [`Refusal::Settings`] where the device would reject them.
@@ -147,7 +147,7 @@ impl Actuator {
         Ok(proposed)
     }
 
-    /// What a person should know who takes these parameters.
+    /// Returns warnings about the use of these parameters.
     pub fn notes(&self, in_use: &VibrationActuatorSettings) -> Vec<String> {
         let mut notes = Vec::new();
         if !self.mass_is_checked {

@@ -1,8 +1,8 @@
-//! Why no parameters are proposed.
+//! Reasons to reject a chirp.
 
 use crepitus_model::SettingsError;
 
-/// What the recording shows instead of an actuator, and what to do about it.
+/// Reason why a chirp gives no parameters; the text says what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {
@@ -12,7 +12,7 @@ pub enum Refusal {
          play a chirp over the whole band, or name the band that was played with --from-hz and --to-hz"
     )]
     LittleExcitation {
-        /// Where, Hz.
+        /// Frequency that lacks excitation, Hz.
         hz: f64,
         /// The limit, %.
         share: f64,
@@ -100,7 +100,7 @@ pub enum Refusal {
          noise): the ring moves; clamp it in a vice, and keep the cable from swinging"
     )]
     SecondResonance {
-        /// Where, Hz.
+        /// Frequency that lacks excitation, Hz.
         hz: f64,
         /// Height of its hump over that of the first, %.
         height: f64,

@@ -1,4 +1,4 @@
-//! Whether a second resonance would explain what the fit leaves.
+//! Search for a second resonance that explains the residual of the fit.
 //!
 //! A ring that moves in its clamp adds a term b₂·s/(s² + γ₂·s + ω₂²) to the impedance.
 //! To first order the current then changes by −Y/Z·V times that term, and the
@@ -16,23 +16,24 @@ use std::f64::consts::TAU;
 const STEPS: u32 = 60;
 const TWO_ZETAS: [f64; 4] = [0.05, 0.2, 0.6, BROAD];
 
-/// No resonance any more: what eddy currents look like.
+/// Damping 2ζ from which a term is no resonance: eddy currents look like it.
 const BROAD: f64 = 2.0;
 
-/// The second resonance that explains most.
+/// The second resonance that explains most of the residual.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Second {
-    /// Hz.
+    /// Its frequency, Hz.
     pub(crate) hz: f64,
-    /// Power of the residual that it takes, as a sum over the lines.
+    /// Power of the residual that it explains, as a sum over the lines.
     pub(crate) power: f64,
-    /// Its hump over that of the first.
+    /// Height of its hump in the impedance over that of the first.
     pub(crate) height: f64,
-    /// It is so broad that nothing swings.
+    /// Damped so strongly that it is no resonance.
     pub(crate) is_broad: bool,
 }
 
-/// The best on the grid that takes power from the coil, as every mass does.
+/// Returns the best second resonance on the grid, of those that take power from the coil, as every
+/// mass does.
 pub(crate) fn second(lines: &[Line], first: &Impedance, normal: &Square) -> Option<Second> {
     let inverse = normal.cholesky()?.inverse();
     let prepared: Vec<Prepared> = lines.iter().map(|line| Prepared::of(line, first)).collect();
@@ -77,7 +78,7 @@ struct Prepared {
     omega: f64,
     residual: Complex<f64>,
     columns: [Complex<f64>; NUMBERS],
-    /// Change of the current with the impedance.
+    /// Derivative of the current with respect to the impedance.
     by_impedance: Complex<f64>,
 }
 

@@ -2,14 +2,14 @@
 
 use std::io;
 
-/// Samples per second that are kept: what comes faster is averaged.
+/// Highest sampling rate that is kept, Hz; faster recordings are averaged down.
 const KEPT_PER_S: f64 = 4000.0;
 
-/// Fewest samples per second, and shortest recording, s.
+/// Lowest sampling rate, Hz, and shortest recording, s.
 const SLOWEST_PER_S: f64 = 500.0;
 const SHORTEST_S: f64 = 0.5;
 
-/// A time may be off by this share of a sample.
+/// Tolerated jitter of a sampling time, as a share of the sampling interval.
 const UNEVEN: f64 = 0.25;
 
 /// Voltage and current of a coil, sample by sample.
@@ -25,22 +25,21 @@ pub struct Series {
     hold: Option<Hold>,
 }
 
-/// A voltage that is held from tick to tick: its steps are fast, and show in its
-/// samples at the wrong frequency.
+/// Zero-order hold of the voltage between ticks, whose images alias into the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
-    /// Time for which a voltage is held, s.
+    /// Hold time, s.
     pub tick_s: f64,
-    /// What a sample of the current is.
+    /// Meaning of a current sample.
     pub current: Current,
 }
 
-/// What a sample of a current is.
+/// Meaning of a current sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Current {
-    /// Its mean since the last one.
+    /// Mean since the last sample.
     Mean,
-    /// The mean of its values at the ticks.
+    /// Mean of the values at the ticks since the last sample.
     Ticks,
 }
 
@@ -58,7 +57,7 @@ impl Hold {
     }
 }
 
-/// Why numbers are no recording of a coil.
+/// Reason why numbers are no recording of a coil.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SeriesError {
@@ -99,7 +98,7 @@ pub enum SeriesError {
     /// Too slow, or no time at all between samples.
     #[error("one sample every {step_s} s: expected at least {SLOWEST_PER_S} per second")]
     Slow {
-        /// Time between samples, s.
+        /// Sampling interval, s.
         step_s: f64,
     },
     /// Too short.
@@ -111,7 +110,7 @@ pub enum SeriesError {
 }
 
 impl Series {
-    /// Samples at this distance, s.
+    /// Creates a recording of samples `step_s` apart, s.
     ///
     /// # Errors
     /// [`SeriesError`] if they are too few, too slow or not finite.
@@ -141,7 +140,7 @@ impl Series {
         })
     }
 
-    /// The same, of a voltage that was held.
+    /// Marks the voltage as held between ticks.
     #[must_use]
     pub fn held(self, hold: Hold) -> Self {
         Self {
@@ -150,7 +149,7 @@ impl Series {
         }
     }
 
-    /// How the voltage was held.
+    /// Returns the hold of the voltage, if there was one.
     pub(crate) fn hold(&self) -> Option<Hold> {
         self.hold
     }
@@ -195,7 +194,7 @@ impl Series {
         Self::new(step_s, &volts, &amperes)
     }
 
-    /// Time between samples, s.
+    /// Sampling interval, s.
     pub fn step_s(&self) -> f64 {
         self.step_s
     }
@@ -210,13 +209,13 @@ impl Series {
         &self.amperes
     }
 
-    /// Length, s.
+    /// Duration, s.
     pub fn duration_s(&self) -> f64 {
         self.step_s * self.volts.len() as f64
     }
 }
 
-/// The one distance of all times, s.
+/// Returns the sampling interval, s; rejects uneven times.
 fn even(times_s: &[f64], lines: &[u64]) -> Result<f64, SeriesError> {
     let (Some(first), Some(last)) = (times_s.first(), times_s.last()) else {
         return Err(SeriesError::Short { duration_s: 0.0 });
@@ -235,7 +234,7 @@ fn even(times_s: &[f64], lines: &[u64]) -> Result<f64, SeriesError> {
     Ok(step_s)
 }
 
-/// Means of so many neighbours.
+/// Averages `together` neighbours each.
 fn means(values: &[f64], together: usize) -> Vec<f64> {
     values
         .chunks_exact(together)

@@ -1,10 +1,10 @@
-//! The lines of voltage and current within the band that the chirp covers.
+//! Spectral lines of voltage and current in the band of the chirp.
 
 use crate::actuator::{Band, Series};
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
-/// One frequency of both.
+/// Voltage and current at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Line {
     /// ω, rad/s.
@@ -15,24 +15,24 @@ pub(crate) struct Line {
     pub(crate) amperes: Complex<f64>,
 }
 
-/// Lines in the band, and the noise of the current beside it.
+/// Lines in the band, with the noise of the current above it.
 #[derive(Clone, Debug)]
 pub(crate) struct Spectrum {
     pub(crate) lines: Vec<Line>,
-    /// Mean square of a line of the current above the band; `None` if nothing is there.
+    /// Mean square of a line of the current above the band; `None` if the recording has none there.
     pub(crate) noise_square: Option<f64>,
-    /// Samples that were transformed.
+    /// Number of transformed samples.
     pub(crate) samples: usize,
 }
 
-/// Noise is looked for from here on, times the end of the band.
+/// Start of the noise band, as a multiple of the end of the band.
 const NOISE_FROM: f64 = 1.4;
 
-/// Fewest lines that tell a noise.
+/// Fewest lines of a noise estimate.
 const FEWEST_LINES: usize = 50;
 
 impl Spectrum {
-    /// Of the whole recording: no window, since both begin and end at rest.
+    /// Transforms the whole recording, without a window, since it begins and ends at rest.
     pub(crate) fn of(series: &Series, band: Band) -> Self {
         let (volts, amperes) = (transformed(series.volts()), transformed(series.amperes()));
         let step = std::f64::consts::TAU / series.duration_s();

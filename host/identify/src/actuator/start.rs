@@ -1,5 +1,5 @@
-//! Where the fit begins: resonance and damping on a grid, the rest by linear
-//! least squares, since the impedance is linear in R, L and b.
+//! Initial guess of the fit: resonance and damping on a grid, the rest by linear least squares,
+//! since the impedance is linear in R, L and b.
 
 use crate::actuator::bands::Mean;
 use crate::actuator::impedance::Impedance;
@@ -13,7 +13,7 @@ const STEPS: u32 = 120;
 /// number.
 const TWO_ZETAS: [f64; 7] = [-0.05, 0.03, 0.08, 0.2, 0.4, 0.8, 1.6];
 
-/// The best impedance on the grid; `None` without bands.
+/// Returns the best impedance on the grid; `None` without bands.
 pub(crate) fn start(means: &[Mean]) -> Option<Impedance> {
     let (low, high) = (means.first()?.omega, means.last()?.omega);
     let step = (high / low).ln() / f64::from(STEPS);
@@ -27,7 +27,7 @@ pub(crate) fn start(means: &[Mean]) -> Option<Impedance> {
         .map(|(candidate, _)| candidate)
 }
 
-/// R, L and b for a resonance and a damping, and the sum of the squares that are left.
+/// Fits R, L and b for a resonance and a damping; returns the residual sum of squares, too.
 fn linear(means: &[Mean], resonance: f64, damping: f64) -> Option<(Impedance, f64)> {
     let unit = Impedance {
         resistance: 0.0,

@@ -1,4 +1,4 @@
-//! Measured and simulated angle of each swing, and what is left between them, as a figure.
+//! Figure of the measured and the simulated angle of each swing, with the residual.
 
 use crate::brace::Brace;
 use crate::brace::problem::{RESIDUAL_S, STRIDE};
@@ -13,10 +13,10 @@ const LOW_HEIGHT: f64 = 170.0;
 /// Room for a heading.
 const HEAD: f64 = 30.0;
 
-/// Swings that are drawn.
+/// Most swings that are drawn.
 const MOST: usize = 6;
 
-/// The figure: angle and residual of each of the first swings, one below the other.
+/// Draws angle and residual of the first swings, one below the other.
 pub fn figure(brace: &Brace) -> Figure {
     let headings: Vec<String> = (brace.swings.iter().enumerate())
         .map(|(at, swing)| format!("Swing {} · recording {}", at + 1, swing.recording + 1))

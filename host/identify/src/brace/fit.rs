@@ -1,4 +1,4 @@
-//! The numbers that explain all swings together: simulated and compared angle by angle.
+//! Nonlinear least-squares fit of the simulated angles to those of all swings together.
 //!
 //! Levenberg–Marquardt over the numbers of the brace, the angle at which the weight hangs
 //! in each recording, and angle, velocity and bend of the cuffs as each swing begins. What
@@ -30,17 +30,18 @@ use crate::brace::residuals::{effective_deviation, rms};
 use crate::brace::swing::Swing;
 use nalgebra::{DMatrix, DVector};
 
-/// Parts of a swing that are fitted, one after the other, s: its beginning, and all.
+/// Lengths of the beginning of a swing that are fitted before the whole, s.
 const EARLY_S: [f64; 2] = [0.7, 1.6];
 const LATE_S: [f64; 2] = [3.5, f64::INFINITY];
 
-/// Most steps in each, and the relative gain that ends them; and of the whole in the end.
+/// Most iterations and relative decrease of the cost at convergence, of the beginnings; and of the
+/// whole.
 const EARLY_STEPS: u32 = 12;
 const EARLY_GAIN: f64 = 1e-3;
 const MOST_STEPS: u32 = 30;
 const SMALLEST_GAIN: f64 = 1e-6;
 
-/// Other starts: factors for some numbers.
+/// Factors of some parameters for other initial guesses.
 const AROUND: [[(usize, f64); 3]; 5] = [
     [
         (place::ROTOR, 1.4),
@@ -69,22 +70,23 @@ const AROUND: [[(usize, f64); 3]; 5] = [
     ],
 ];
 
-/// With this left no other start is tried, rad rms: a count of the usual encoder is 36 µrad, and
-/// leaves 10.
+/// RMS residual below which no other start is tried, rad: the counts of the usual encoder, 36 µrad,
+/// leave 10 µrad.
 pub(crate) const GOOD_ENOUGH: f64 = 2e-5;
 
-/// Deviation of an angle before it is known, rad, and the least: of a count.
+/// Initial standard deviation of an angle, rad, and the least one, that of a count.
 const FIRST_DEVIATION: f64 = 2e-3;
 pub(crate) const LEAST_DEVIATION: f64 = 1e-4;
 
-/// A fit.
+/// Fitted parameters with covariance and residuals.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
-    /// Of the brace.
+    /// Parameters of the brace, in the order of [`Numbers`](crate::brace::numbers::Numbers).
     pub(crate) numbers: [f64; NUMBERS],
-    /// Their covariance.
+    /// Covariance of the parameters.
     pub(crate) covariance: DMatrix<f64>,
-    /// Measured minus simulated, rad, by swing, every [`STRIDE`] steps; NaN where no sample is.
+    /// Residuals by swing: measured minus simulated angle every [`STRIDE`] steps, rad; NaN where no
+    /// sample is.
     pub(crate) residuals: Vec<Vec<f64>>,
     /// Angle at which the weight hangs, by recording, rad.
     pub(crate) hangs_rad: Vec<f64>,
@@ -93,7 +95,7 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
-    /// Fits all swings from the guess; `None` if the equations have no solution.
+    /// Fits all swings from the initial guess; `None` if the equations have no solution.
     pub(crate) fn of(swings: &[Swing], recordings: usize, prior: &Prior) -> Option<Self> {
         let mut problem = Problem::of(swings, recordings, prior);
         let guess = problem.start();
@@ -101,8 +103,8 @@ impl Fit {
         problem.whole(near)
     }
 
-    /// The beginnings of all swings from many starts: what is left, rad rms, and where to go
-    /// on.
+    /// Fits the beginnings of all swings from many starts; returns the RMS residual, rad, and the
+    /// parameters of each.
     pub(crate) fn candidates(
         swings: &[Swing],
         recordings: usize,
@@ -117,7 +119,7 @@ impl Fit {
             .collect()
     }
 
-    /// Goes on from one of these.
+    /// Fits all swings from a candidate.
     pub(crate) fn from(
         swings: &[Swing],
         recordings: usize,
@@ -127,7 +129,7 @@ impl Fit {
         Problem::of(swings, recordings, prior).whole(near)
     }
 
-    /// Standard deviation of a number.
+    /// Returns the standard deviation of a parameter.
     pub(crate) fn deviation(&self, at: usize) -> f64 {
         self.covariance[(at, at)].max(0.0).sqrt()
     }
@@ -145,7 +147,7 @@ impl<'s> Problem<'s> {
         }
     }
 
-    /// The whole of all swings from a fit of their beginnings, and how well each number is known.
+    /// Fits the whole of all swings from a fit of their beginnings, and computes the covariance.
     fn whole(mut self, near: DVector<f64>) -> Option<Fit> {
         let mut vector = self.along(near, &LATE_S)?;
         self.weight = 1.0 / LEAST_DEVIATION.powi(2);
@@ -189,7 +191,7 @@ impl<'s> Problem<'s> {
         })
     }
 
-    /// From a start to the fit of the beginnings.
+    /// Fits the beginnings from a start.
     fn near(&mut self, start: DVector<f64>) -> Option<DVector<f64>> {
         self.is_rough = true;
         let near = self.along(start, &EARLY_S);
@@ -197,7 +199,7 @@ impl<'s> Problem<'s> {
         near
     }
 
-    /// From a shorter part of the swings to a longer one.
+    /// Fits longer and longer parts of the swings.
     fn along(&mut self, mut vector: DVector<f64>, horizons_s: &[f64]) -> Option<DVector<f64>> {
         self.weight = 1.0 / FIRST_DEVIATION.powi(2);
         for horizon_s in horizons_s {
@@ -213,7 +215,7 @@ impl<'s> Problem<'s> {
         Some(vector)
     }
 
-    /// The guess, and starts about it.
+    /// Returns the initial guess, and starts around it.
     fn starts(&self) -> Vec<DVector<f64>> {
         let guess = self.start();
         let moved = AROUND.iter().map(|factors| {

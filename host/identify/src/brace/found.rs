@@ -1,4 +1,4 @@
-//! The brace as its recordings show it.
+//! Identified values of a brace.
 
 use crate::Estimate;
 use crate::brace::fit::{Fit, GOOD_ENOUGH};
@@ -10,44 +10,45 @@ use crate::brace::refusal::Refusal;
 use crate::brace::swing::{Swing, swings};
 use crate::brace::{plausible, visible};
 
-/// What recordings say of a quantity.
+/// Identification result of a quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Result {
-    /// Its value in the unit of its [spec](Quantity::spec), with its 95 % interval.
+    /// Value in the unit of the quantity's [spec](Quantity::spec), with its 95 % confidence
+    /// interval.
     Seen(Estimate),
-    /// These recordings do not show it.
+    /// Not identifiable from these recordings.
     NotVisible {
-        /// Why, and what to do.
+        /// Reason, and what to record to see it.
         why: String,
     },
 }
 
-/// A quantity and what is known of it.
+/// A quantity with its identification result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
-    /// Which.
+    /// The quantity.
     pub quantity: Quantity,
-    /// What is known.
+    /// Its value, or why it is not visible.
     pub result: Result,
 }
 
-/// A brace.
+/// Identified brace: values, quality of the fit, warnings.
 #[derive(Clone, Debug)]
 pub struct Brace {
     /// All quantities, in the order of [`Quantity::ALL`].
     pub shown: Vec<Shown>,
-    /// Root mean square of what the fit leaves of the angle, rad.
+    /// RMS residual of the angle, rad.
     pub rms_rad: f64,
-    /// The greatest amplitude, rad.
+    /// Largest amplitude of all swings, rad.
     pub amplitude_rad: f64,
-    /// What a person should know who takes these values.
+    /// Warnings about the use of these values.
     pub notes: Vec<String>,
     pub(crate) swings: Vec<Swing>,
     pub(crate) fit: Fit,
 }
 
 impl Brace {
-    /// A quantity's value, if it is visible.
+    /// Returns a quantity's value, if it is visible.
     pub fn value(&self, quantity: Quantity) -> Option<Estimate> {
         let shown = self.shown.iter().find(|shown| shown.quantity == quantity)?;
         match &shown.result {
@@ -56,7 +57,7 @@ impl Brace {
         }
     }
 
-    /// Number of swings, and their length together, s.
+    /// Returns the number of swings and their total duration, s.
     pub fn swung(&self) -> (usize, f64) {
         let steps: usize = self.swings.iter().map(|s| s.torques_nm.len()).sum();
         (
@@ -66,9 +67,9 @@ impl Brace {
     }
 }
 
-/// Identifies a brace from recordings of one weight that swings in it. `torque_deviation` is
-/// the standard deviation of the motor's torque constant, as a share. `progress` gets the share of
-/// the work that is done, and ends it by returning false.
+/// Identifies a brace from recordings of one weight that swings in it. `torque_deviation` is the
+/// standard deviation of the motor's torque constant, as a share of it. `progress` gets the
+/// completed share of the work, from 0 to 1, and cancels the work by returning false.
 ///
 /// # Errors
 /// [`Refusal`]: what the recordings show instead.
@@ -105,7 +106,7 @@ pub fn identify(
     })
 }
 
-/// The swings from where they begin best, and their fit.
+/// Finds the beginnings of the swings that fit best; returns the swings with their fit.
 ///
 /// A fit from the guess is enough where it leaves no more than whole counts do. Else teeth may
 /// touch once more or less in it than in truth, which no small step repairs: many starts
@@ -115,7 +116,7 @@ fn best(
     prior: &Prior,
     progress: &mut dyn FnMut(f64) -> bool,
 ) -> std::result::Result<(Vec<Swing>, Fit), Refusal> {
-    /// Of the starts.
+    /// Number of starts that are followed to the end.
     const FOLLOWED: usize = 5;
     let count = recordings.len();
     let mut watch = |share: f64| {
@@ -164,7 +165,7 @@ fn best(
     best.ok_or(Refusal::Singular)
 }
 
-/// Does a piece of work for each item, each in a thread of its own.
+/// Maps `work` over items, each in a thread of its own.
 fn in_parallel<T: Sync, R: Send + Default>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     std::thread::scope(|scope| {
         let work = &work;

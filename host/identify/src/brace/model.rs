@@ -1,4 +1,4 @@
-//! What the encoder sees of a weight that swings in the brace.
+//! Simulation of a weight that swings in the brace, as the encoder measures it.
 //!
 //! ```text
 //! motor, gear          gap           brace      cuffs      weight
@@ -18,10 +18,10 @@
 
 use crate::brace::numbers::Numbers;
 
-/// Length of a step, s; the current is averaged over it.
+/// Integration step, s; the current is averaged over it.
 pub(crate) const STEP_S: f64 = 5e-4;
 
-/// Changes of mode in one step, after which the rest of the step is done in the last one.
+/// Most changes of mode in one step; the rest of the step is integrated in the last mode.
 const MOST_CHANGES: u32 = 24;
 
 /// Angles and velocities of rotor, brace and weight.
@@ -44,16 +44,16 @@ impl State {
     }
 }
 
-/// What friction and teeth do.
+/// State of friction and teeth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mode {
-    /// Sense of the rotor's motion; `None`: friction holds it.
+    /// Sign of the rotor's velocity; `None` if friction holds it.
     sliding: Option<f64>,
-    /// Which side of the gap is closed: the sign of φ_r − φ_b; `None`: neither.
+    /// Sign of φ_r − φ_b where the gap is closed; `None` if it is open.
     contact: Option<f64>,
 }
 
-/// How a swing begins.
+/// Initial state of a swing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Begin {
     /// Angle of the rotor, rad.
@@ -62,22 +62,22 @@ pub(crate) struct Begin {
     pub(crate) omega_rad_s: f64,
     /// Deflection of the cuffs, φ_b − φ_w, beyond that of a steady motion, rad.
     pub(crate) deflection_rad: f64,
-    /// Its rate, rad/s.
+    /// Rate of that deflection, rad/s.
     pub(crate) deflection_rad_s: f64,
 }
 
-/// The brace in one step.
+/// The brace with the torque of one step.
 struct Step<'n> {
     n: &'n Numbers,
     /// Where the weight hangs at rest, rad.
     hang_rad: f64,
-    /// Torque of the motor, N·m, and what friction can hold.
+    /// Torque of the motor, N·m.
     torque: f64,
     limit: f64,
 }
 
 impl Step<'_> {
-    /// Torque of the cuffs on the brace.
+    /// Returns the torque of the cuffs on the brace, N·m.
     fn pull(&self, x: &State) -> f64 {
         -self.n.stiffness_nm * (x.angle[BRACE] - x.angle[WEIGHT])
             - self.n.damping_nms * (x.omega[BRACE] - x.omega[WEIGHT])
@@ -117,7 +117,7 @@ impl Step<'_> {
             .moved(h / 6.0, &d)
     }
 
-    /// How far each event is away; the mode ends where one is below zero.
+    /// Returns the distance to each event; the mode ends where one is below zero.
     fn margins(&self, x: &State, mode: Mode) -> [f64; 2] {
         let pull = self.pull(x);
         let friction = match (mode.sliding, mode.contact) {
@@ -132,7 +132,7 @@ impl Step<'_> {
         [friction, teeth]
     }
 
-    /// The mode after the end of one.
+    /// Changes the mode at an event.
     fn change(&self, x: &mut State, mode: &mut Mode, event: usize) {
         if event == 0 {
             match mode.sliding {
@@ -165,7 +165,7 @@ impl Step<'_> {
         }
     }
 
-    /// What acts on the rotor besides friction.
+    /// Returns the torque on the rotor without friction, N·m.
     fn net(&self, x: &State, mode: Mode) -> f64 {
         self.torque
             + if mode.contact.is_some() {
@@ -175,7 +175,7 @@ impl Step<'_> {
             }
     }
 
-    /// One whole step.
+    /// Advances the state by one step.
     fn go(&self, x: &mut State, mode: &mut Mode) {
         let mut left = STEP_S;
         for _ in 0..MOST_CHANGES {
@@ -216,7 +216,7 @@ impl Step<'_> {
         *x = self.after(x, *mode, left);
     }
 
-    /// When a margin passes zero: regula falsi (Illinois).
+    /// Returns the time at which a margin passes zero, s, by regula falsi (Illinois).
     fn end(&self, x: &State, mode: Mode, event: usize, low: f64, high: f64, length: f64) -> f64 {
         let (mut a, mut b) = ((0.0, low.max(0.0)), (length, high));
         for _ in 0..30 {
@@ -247,8 +247,8 @@ impl Step<'_> {
     }
 }
 
-/// The rotor's angle after each step, rad, with the motor's torque in each, N·m: as the
-/// current should give it.
+/// Simulates a swing; returns the rotor's angle after each step, rad. `torques_nm` is the motor's
+/// nominal torque in each step, N·m.
 pub(crate) fn swing(
     numbers: &Numbers,
     hang_rad: f64,
@@ -277,7 +277,8 @@ pub(crate) fn swing(
         .collect()
 }
 
-/// In passing: rotor and brace turn together, the cuffs are bent by what they transmit.
+/// Returns the initial state: rotor and brace turn together, the cuffs are deflected by the torque
+/// that they transmit.
 fn start(n: &Numbers, step: &Step<'_>, begin: &Begin) -> (State, Mode) {
     let sense = begin.omega_rad_s.signum();
     let (angle, omega) = (begin.angle_rad, begin.omega_rad_s);

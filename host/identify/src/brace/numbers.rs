@@ -1,10 +1,10 @@
-//! The numbers of a brace with a weight in its cuffs: what is estimated, and what a person
-//! has measured.
+//! Parameters of a brace with a weight in its cuffs, those to be estimated and those that were
+//! measured.
 
-/// How many.
+/// Number of parameters.
 pub(crate) const NUMBERS: usize = 11;
 
-/// A brace with its weight. Angles in rad, all of the joint.
+/// Parameters of a brace with its weight; angles are those of the joint, rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Numbers {
     /// Dry friction of motor and gear, N·m.
@@ -21,17 +21,17 @@ pub(crate) struct Numbers {
     pub(crate) gap_rad: f64,
     /// Stiffness of the cuffs, N·m/rad.
     pub(crate) stiffness_nm: f64,
-    /// Their damping, N·m·s/rad.
+    /// Damping of the cuffs, N·m·s/rad.
     pub(crate) damping_nms: f64,
     /// Moment of the weight when it is horizontal, N·m.
     pub(crate) moment_nm: f64,
     /// Inertia of the weight about the axis, kg·m².
     pub(crate) weight_kg_m2: f64,
-    /// Torque of the motor over what its current should give.
+    /// Torque of the motor over its nominal one, from current and torque constant.
     pub(crate) torque_scale: f64,
 }
 
-/// Places in the array, of those that something else has to name.
+/// Indices of parameters in the array.
 pub(crate) mod place {
     pub(crate) const FRICTION: usize = 0;
     pub(crate) const LOAD_LOSS: usize = 1;
@@ -46,13 +46,13 @@ pub(crate) mod place {
     pub(crate) const TORQUE_SCALE: usize = 10;
 }
 
-/// The least of each that the model can be computed with: no negative inertia, and no gap
-/// that closes within a step.
+/// Smallest values that the model can be computed with: no negative inertia, and no gap that closes
+/// within a step.
 pub(crate) const LEAST: [f64; NUMBERS] = [
     0.0, -0.5, -1.0, 1e-3, 5e-4, 1e-4, 2.0, 0.0, 1e-2, 1e-3, 0.05,
 ];
 
-/// The greatest: a stiffer cuff is shorter than a step.
+/// Largest values: the time constant of a stiffer cuff is shorter than a step.
 pub(crate) const MOST: [f64; NUMBERS] = [
     50.0, 3.0, 20.0, 5.0, 2.0, 0.5, 3000.0, 30.0, 500.0, 50.0, 20.0,
 ];

@@ -1,13 +1,13 @@
-//! The result as one HTML page, complete in itself.
+//! HTML page of the result, in one file.
 
 use crate::brace::{Brace, QuantityResult, chart};
 use crepitus_plot::page::{document, figure, footer, notes};
 use maud::html;
 
-/// Words stand left.
+/// Style sheet: tables are aligned to the left.
 const LAYOUT: &str = "section.table th, section.table td { text-align: left }";
 
-/// The page.
+/// Returns the page as HTML.
 pub fn html(brace: &Brace, title: &str, last_line: &str) -> String {
     let (swings, seconds) = brace.swung();
     let body = html! {

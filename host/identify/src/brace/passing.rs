@@ -1,16 +1,16 @@
-//! Where a swing begins.
+//! Choice of the beginning of a swing.
 
 use crate::brace::model::STEP_S;
 
-/// Where a swing begins. The cuffs may still ring of the release, and the teeth be apart: what
-/// explains more is better.
+/// Criterion for the beginning of a swing. After the release the cuffs may still ring and the teeth
+/// be apart, so the criterion with the smallest residual is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Passing {
-    /// Where the shaft turns most evenly.
+    /// Point of the most even velocity.
     Even,
-    /// Where it is fastest.
+    /// Point of the largest velocity.
     Fastest,
-    /// Just before it turns slowly.
+    /// Latest point before the shaft slows down.
     Late,
 }
 
@@ -18,15 +18,15 @@ impl Passing {
     pub(crate) const ALL: [Self; 3] = [Self::Even, Self::Fastest, Self::Late];
 }
 
-/// Where between a release and the first turning point a swing begins, and how fast the shaft
-/// turns there: at half of the greatest speed or more.
+/// Returns the step between a release and the first turning point at which a swing begins, and the
+/// velocity there, rad/s, which is at least half of the largest one.
 pub(crate) fn passes(
     passing: Passing,
     angles: &[f64],
     released: usize,
     first: usize,
 ) -> Option<(usize, f64)> {
-    /// Steps that are looked at before and after, and from one to the next.
+    /// Window of a velocity estimate, in steps, and the stride from one to the next.
     const BEFORE: usize = 60;
     const AFTER: usize = 120;
     const APART: usize = 10;

@@ -1,4 +1,4 @@
-//! Checks of a fit: whether it explains the motion, and what a person has given.
+//! Plausibility checks of a fit and of the given weight.
 
 use crate::brace::fit::Fit;
 use crate::brace::numbers::{LEAST, MOST, place};
@@ -9,13 +9,13 @@ use crate::brace::refusal::Refusal;
 use crate::brace::swing::Swing;
 use crate::estimate::DEVIATIONS;
 
-/// What the fit may leave of the angle, as a share of the amplitude.
+/// Largest RMS residual, as a share of the amplitude.
 const UNEXPLAINED: f64 = 0.004;
 
-/// Standard deviations by which the swing may contradict what was given.
+/// Largest deviation of a fitted value from a given one, standard deviations.
 const CONTRADICTION: f64 = 3.3;
 
-/// Rejects a weight that cannot be.
+/// Rejects an impossible weight or torque deviation.
 pub(crate) fn given(weight: &Weight, torque_deviation: f64) -> Result<(), Refusal> {
     let checked = [
         ("the weight's moment (N·m)", weight.moment_nm.value),
@@ -36,7 +36,7 @@ pub(crate) fn given(weight: &Weight, torque_deviation: f64) -> Result<(), Refusa
     }
 }
 
-/// The greatest amplitude of all swings, rad.
+/// Returns the largest amplitude of all swings, rad.
 pub(crate) fn amplitude_rad(swings: &[Swing], fit: &Fit) -> f64 {
     let of = |swing: &Swing| {
         let hang = fit.hangs_rad.get(swing.recording).copied().unwrap_or(0.0);
@@ -74,7 +74,7 @@ pub(crate) fn is_explained(swings: &[Swing], fit: &Fit, amplitude: f64) -> Resul
     })
 }
 
-/// Rejects numbers at the ends of what can be computed.
+/// Rejects parameters at the limits of the model.
 pub(crate) fn is_possible(fit: &Fit, prior: &Prior) -> Result<(), Refusal> {
     let checked = [
         (place::FRICTION, "dry friction", "N·m"),
@@ -99,11 +99,11 @@ pub(crate) fn is_possible(fit: &Fit, prior: &Prior) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// What else makes a weight contradict itself.
+/// Hint for a weight whose mass and inertia contradict each other.
 const INERTIA: &str = "; or its inertia is not the one given: only a small weight on a light bar has mass times the lever's square, any \
                        other needs --weight-inertia-kg-m2";
 
-/// Rejects a fit that has to bend what was given.
+/// Rejects a fit that contradicts the given values.
 pub(crate) fn agrees(fit: &Fit, prior: &Prior) -> Result<(), Refusal> {
     let checked = [
         (place::MOMENT, "the weight's moment", "N·m", INERTIA),

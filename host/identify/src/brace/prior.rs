@@ -1,5 +1,5 @@
-//! What is known before a recording: of the weight what a person has measured, of the
-//! brace what braces are like.
+//! Prior distribution of the parameters: of the weight as it was measured, of the brace as braces
+//! are.
 //!
 //! The second is so wide that a recording that shows a quantity overrules it; what a
 //! recording does not show stays as uncertain as it is here, and is not reported.
@@ -11,7 +11,7 @@ use crate::brace::recording::Weight;
 /// are usual.
 pub const TORQUE_DEVIATION: f64 = 0.05;
 
-/// Mean and standard deviation of each number.
+/// Mean and standard deviation of each parameter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Prior {
     pub(crate) mean: [f64; NUMBERS],
@@ -32,7 +32,7 @@ const BRACE: [(usize, f64, f64); 8] = [
 ];
 
 impl Prior {
-    /// With this weight, and a torque for an ampere that is known to this share.
+    /// Returns the prior for a weight, and a torque constant with this relative standard deviation.
     pub(crate) fn of(weight: &Weight, torque_deviation: f64) -> Self {
         let mut prior = Self {
             mean: [0.0; NUMBERS],

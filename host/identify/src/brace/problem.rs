@@ -1,5 +1,4 @@
-//! What is to be least: the residuals of all swings and what was known before, with their
-//! derivatives.
+//! Cost function of the fit: residuals of all swings and prior, with their derivatives.
 
 use crate::brace::model::{Begin, STEP_S, swing};
 use crate::brace::numbers::{LEAST, MOST, NUMBERS, place};
@@ -11,16 +10,18 @@ use nalgebra::{DMatrix, DVector};
 /// Steps from one compared angle to the next: 2 ms.
 pub(crate) const STRIDE: usize = 4;
 
-/// Numbers of a swing's own.
+/// Number of parameters of the initial state of a swing.
 pub(crate) const OWN: usize = 4;
 
-/// Their deviation before: the bend of the cuffs beyond a steady one.
+/// Prior standard deviations of the initial state, in the order of [`Begin`]: rad, rad/s, rad,
+/// rad/s.
 pub(crate) const OWN_DEVIATION: [f64; OWN] = [0.1, 3.0, 5e-3, 0.3];
 
 /// Time between two residuals, s.
 pub(crate) const RESIDUAL_S: f64 = STEP_S * STRIDE as f64;
 
-/// Numbers that are a torque for something: in the vector as p·M₀/M, with M₀ as it was given.
+/// Returns whether a parameter is a torque per something: it is in the vector as p·M₀/M, with M₀
+/// the given moment.
 pub(crate) fn is_torque(at: usize) -> bool {
     !matches!(at, place::LOAD_LOSS | place::GAP | place::MOMENT)
 }
@@ -29,11 +30,11 @@ pub(crate) struct Problem<'s> {
     pub(crate) swings: &'s [Swing],
     pub(crate) recordings: usize,
     pub(crate) prior: Prior,
-    /// Steps that are fitted.
+    /// Number of fitted steps of each swing.
     pub(crate) horizon: usize,
     /// Weight of a residual, 1/rad².
     pub(crate) weight: f64,
-    /// Derivatives by differences to one side.
+    /// One-sided differences instead of central ones.
     pub(crate) is_rough: bool,
 }
 
@@ -41,7 +42,7 @@ pub(crate) struct Equations {
     pub(crate) normal: DMatrix<f64>,
     pub(crate) right: DVector<f64>,
     pub(crate) left: f64,
-    /// Gradient of each half swing.
+    /// Gradients of the half swings.
     pub(crate) blocks: Vec<DVector<f64>>,
 }
 
@@ -68,12 +69,12 @@ impl Problem<'_> {
         vector
     }
 
-    /// M over M₀.
+    /// Returns M/M₀.
     pub(crate) fn ratio(&self, vector: &DVector<f64>) -> f64 {
         vector[place::MOMENT] / self.prior.mean[place::MOMENT]
     }
 
-    /// A number, or another entry, from the vector.
+    /// Returns a parameter, or another entry, from the vector.
     pub(crate) fn number(&self, vector: &DVector<f64>, at: usize) -> f64 {
         if at < NUMBERS && is_torque(at) {
             vector[at] * self.ratio(vector)
@@ -82,7 +83,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Its derivatives by entries of the vector.
+    /// Returns the derivatives of a parameter with respect to entries of the vector.
     pub(crate) fn slopes(&self, vector: &DVector<f64>, at: usize) -> Vec<(usize, f64)> {
         if at < NUMBERS && is_torque(at) {
             let by_moment = vector[at] / self.prior.mean[place::MOMENT];
@@ -92,7 +93,8 @@ impl Problem<'_> {
         }
     }
 
-    /// Mean and deviation of each number before; hang angles are free.
+    /// Returns prior mean and standard deviation of an entry; `None` for hang angles, which are
+    /// free.
     pub(crate) fn known(&self, at: usize) -> Option<(f64, f64)> {
         if at < NUMBERS {
             return Some((self.prior.mean[at], self.prior.deviation[at]));
@@ -102,7 +104,7 @@ impl Problem<'_> {
         (own >= 2).then_some((0.0, OWN_DEVIATION[own]))
     }
 
-    /// What was known before, as a matrix of information.
+    /// Returns the information matrix of the prior.
     pub(crate) fn information(&self, vector: &DVector<f64>) -> DMatrix<f64> {
         let n = self.length();
         let mut information = DMatrix::zeros(n, n);
@@ -119,7 +121,7 @@ impl Problem<'_> {
         information
     }
 
-    /// A number's own size, for steps and differences.
+    /// Returns the scale of an entry, for steps and finite differences.
     pub(crate) fn scale(&self, at: usize) -> f64 {
         match self.known(at) {
             Some((_, deviation)) => deviation,
@@ -158,7 +160,7 @@ impl Problem<'_> {
         self.compared(&self.simulate(vector, swing_at), swing_at)
     }
 
-    /// Measured minus simulated.
+    /// Returns the residuals of a swing, measured minus simulated angle, rad.
     pub(crate) fn compared(&self, simulated: &[f64], swing_at: usize) -> Vec<f64> {
         let measured = self.swings[swing_at].angles_rad.iter().step_by(STRIDE);
         measured.zip(simulated).map(|(m, s)| m - s).collect()
@@ -170,7 +172,7 @@ impl Problem<'_> {
             .collect()
     }
 
-    /// What is to be least.
+    /// Returns the cost.
     pub(crate) fn cost(&self, vector: &DVector<f64>) -> f64 {
         let squares: f64 = (0..self.swings.len())
             .flat_map(|swing| self.residual(vector, swing))
@@ -261,7 +263,8 @@ impl Problem<'_> {
         }
     }
 
-    /// Derivative of a swing's angles by one entry, by differences from `base` or to both sides.
+    /// Returns the derivative of a swing's angles with respect to one entry, by differences from
+    /// `base` or by central differences.
     pub(crate) fn slope(
         &self,
         vector: &DVector<f64>,

@@ -1,4 +1,4 @@
-//! What is estimated, where it stands in a scene, and from when on it counts as visible.
+//! Estimated quantities, their keys in a scene, and the limits of their visibility.
 
 use crate::brace::numbers::place;
 use crepitus_model::parameters::ParameterSpec;
@@ -29,7 +29,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// All, in the order of reports.
+    /// All quantities, in the order of reports.
     pub const ALL: [Self; 9] = [
         Self::Friction,
         Self::LoadLoss,
@@ -42,7 +42,7 @@ impl Quantity {
         Self::TorqueConstant,
     ];
 
-    /// What it is called in sentences.
+    /// Returns the name for sentences.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Friction => "dry friction",
@@ -57,7 +57,7 @@ impl Quantity {
         }
     }
 
-    /// The effect of a scene, and the key, that it is a value of.
+    /// Returns the effect of a scene and its key that the quantity is a value of.
     const fn key(self) -> (&'static Effect, &'static str) {
         match self {
             Self::Friction => (&drivetrain::EFFECT, "friction_nm"),
@@ -72,12 +72,12 @@ impl Quantity {
         }
     }
 
-    /// Name of the effect of a scene.
+    /// Returns the name of the effect of a scene.
     pub const fn effect(self) -> &'static str {
         self.key().0.name
     }
 
-    /// Its row in that effect's table: key, unit, range, meaning.
+    /// Returns the row of the effect's parameter table: key, unit, range, meaning.
     ///
     /// # Panics
     /// If the table has no such key: a mistake in this file, which a test finds.
@@ -87,7 +87,7 @@ impl Quantity {
         found.expect("a key of the effect's table")
     }
 
-    /// Its place among the numbers.
+    /// Returns the index among the parameters of the fit.
     pub(crate) const fn place(self) -> usize {
         match self {
             Self::Friction => place::FRICTION,
@@ -102,9 +102,10 @@ impl Quantity {
         }
     }
 
-    /// What a brace that is otherwise than the model does to it: 95 % are within this share of the
-    /// value, or within this in its unit, whichever is wider, where the fit leaves next to nothing. From the second simulation of the
-    /// tests, with teeth that give way and a friction that is 1.3 times as great at rest.
+    /// Allowance for model errors, half width of a 95 % interval at a small residual: as a share of
+    /// the value, or absolute in the unit of the quantity, whichever is wider. From the second
+    /// simulation of the tests, with compliant teeth and a friction that is 1.3 times as great at
+    /// rest.
     pub(crate) const fn model_error(self) -> (f64, f64) {
         match self {
             Self::Friction => (0.01, 0.002),
@@ -117,8 +118,8 @@ impl Quantity {
         }
     }
 
-    /// Its 95 % interval may be ± this share of the value, or ± this in its unit, whichever is
-    /// wider; else it is not visible.
+    /// Widest half interval of a visible quantity: as a share of the value, or absolute in the unit
+    /// of the quantity, whichever is wider.
     pub(crate) const fn widest(self) -> (f64, f64) {
         match self {
             Self::Friction => (0.2, 0.02),

@@ -1,4 +1,4 @@
-//! What the estimator gets: samples of a device, and what a person knows of the weight.
+//! Input of the identification: samples of a device, and the weight.
 
 /// A sample of a recorded device.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,36 +10,36 @@ pub struct Sample {
     /// Measured current of the motor, A; positive drives towards growing angle. `None` where
     /// it was not measured: the bridge was open.
     pub current_a: Option<f32>,
-    /// The drive has rejected the encoder's count.
+    /// Whether the drive has rejected the encoder's count.
     pub is_lost: bool,
 }
 
-/// One recording.
+/// Samples of one recording, with the constants of the device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// In the order of their ticks; ticks may be missing.
+    /// Samples in the order of their ticks; ticks may be missing.
     pub samples: Vec<Sample>,
     /// Length of a tick, s.
     pub tick_s: f64,
-    /// Angle of the joint for a count, rad.
+    /// Joint angle per encoder count, rad.
     pub rad_per_count: f64,
-    /// Torque constant of the motor as the device believes it, N·m/A.
+    /// Torque constant of the motor in the device's settings, N·m/A.
     pub torque_constant_nm_per_a: f64,
     /// Turns of the motor for one of the joint.
     pub gear_ratio: f64,
 }
 
 impl Recording {
-    /// Torque at the joint for an ampere without losses, N·m/A.
+    /// Returns the torque at the joint per ampere without losses, N·m/A.
     pub(crate) fn nm_per_a(&self) -> f64 {
         self.torque_constant_nm_per_a * self.gear_ratio
     }
 }
 
-/// A number that was measured by other means, with its standard deviation as a share.
+/// An independently measured value with its relative standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The number.
+    /// The value, in the unit of its field.
     pub value: f64,
     /// Standard deviation over the value.
     pub deviation: f64,
@@ -58,9 +58,10 @@ pub struct Weight {
 pub const GRAVITY: f64 = 9.806_65;
 
 impl Weight {
-    /// A mass with its centre at a lever from the axis, and its inertia about the axis; a
-    /// small one has m·l². `deviation` is that of mass and lever together, and
-    /// twice that of the inertia, in which the lever counts twice.
+    /// Returns a weight of `mass_kg` with its centre `lever_m` from the axis. Without
+    /// `inertia_kg_m2` the mass is a point, with m·l². `deviation` is the relative standard
+    /// deviation of the moment; that of the inertia is twice as large, since the lever counts
+    /// twice.
     pub fn new(mass_kg: f64, lever_m: f64, inertia_kg_m2: Option<f64>, deviation: f64) -> Self {
         let inertia = inertia_kg_m2.unwrap_or(mass_kg * lever_m * lever_m);
         Self {

@@ -1,6 +1,6 @@
-//! Why nothing is estimated.
+//! Reasons to reject recordings of a swinging weight.
 
-/// What the recording shows instead of a weight that swings freely, and what to do about it.
+/// Reason why recordings give no values; the text says what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {

@@ -1,4 +1,4 @@
-//! How large residuals are, and how many of them count.
+//! Effective standard deviation of correlated residuals.
 
 use crate::brace::fit::LEAST_DEVIATION;
 
@@ -8,8 +8,8 @@ pub(crate) fn rms(residuals: &[Vec<f64>]) -> f64 {
     if n > 0.0 { f64::sqrt(sum / n) } else { 0.0 }
 }
 
-/// Deviation with which an angle counts: as if so many fewer had been compared as
-/// neighbours err together.
+/// Returns the standard deviation of an angle in the cost, rad, enlarged by the integral
+/// correlation time of the residuals.
 pub(crate) fn effective_deviation(residuals: &[Vec<f64>]) -> f64 {
     let all = rms(residuals).max(LEAST_DEVIATION);
     let at = |lag: usize| -> f64 {

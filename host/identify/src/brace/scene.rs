@@ -3,8 +3,8 @@
 use crate::brace::{Brace, Quantity};
 use std::fmt::Write;
 
-/// Tables in the order of the chain; what is not visible is left out, so that the scene has its
-/// default, and is named in a comment.
+/// Returns the tables in the order of the chain. A quantity that is not visible is left out, so
+/// that the scene has its default, and is named in a comment.
 pub fn tables(brace: &Brace) -> String {
     let mut text = String::new();
     let mut effects: Vec<&str> = Quantity::ALL.iter().map(|q| q.effect()).collect();

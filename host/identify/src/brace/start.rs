@@ -1,4 +1,4 @@
-//! First guesses, from turning points alone.
+//! Initial guess of the fit, from turning points alone.
 
 use crate::brace::model::STEP_S;
 use crate::brace::numbers::{NUMBERS, place};
@@ -6,9 +6,9 @@ use crate::brace::prior::Prior;
 use crate::brace::swing::Swing;
 use std::f64::consts::PI;
 
-/// Angle at which the weight hangs at rest, by recording, rad: dry friction turns a
-/// pendulum about an angle off it by F/M to one side, then to the other, so (a + 2b + c)/4 of
-/// three turning points is free of it.
+/// Estimates the angle at which the weight hangs at rest, by recording, rad. Dry friction shifts
+/// the centre of a half swing by F/M to one side, then to the other, so (a + 2b + c)/4 of three
+/// turning points is free of it.
 pub(crate) fn hangs(swings: &[Swing], recordings: usize) -> Vec<f64> {
     (0..recordings)
         .map(|recording| {
@@ -30,8 +30,8 @@ pub(crate) fn hangs(swings: &[Swing], recordings: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The numbers: friction from what each half swing loses, the rotor's inertia from the
-/// time that it takes, all others as before.
+/// Estimates friction from the loss of each half swing and the rotor's inertia from its duration;
+/// the others are those of the prior.
 pub(crate) fn numbers(swings: &[Swing], hangs: &[f64], prior: &Prior) -> [f64; NUMBERS] {
     let mut numbers = prior.mean;
     let moment = numbers[place::MOMENT];

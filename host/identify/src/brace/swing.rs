@@ -1,4 +1,4 @@
-//! Where in a recording a weight swings freely.
+//! Detection of the free swings in a recording.
 //!
 //! ```text
 //!  held   ╲    ╱‾╲          at rest
@@ -17,16 +17,16 @@ use crate::brace::recording::Recording;
 use crate::brace::refusal::Refusal;
 use crate::brace::whole::whole;
 
-/// For so long nothing turns in a rest, s: more than a weight needs to cross the gap.
+/// Shortest rest, s: longer than a weight needs to cross the gap.
 const REST_S: f64 = 0.35;
 
-/// Turning less than this in a rest, rad.
+/// Largest motion in a rest, rad.
 const STILL_RAD: f64 = 2e-3;
 
-/// A motion back of this size is a turning point, rad.
+/// Smallest reversal that makes a turning point, rad.
 const TURN_RAD: f64 = 4e-3;
 
-/// Amplitude that a swing needs, rad.
+/// Smallest amplitude of a swing, rad.
 const AMPLITUDE_RAD: f64 = 0.1;
 
 /// Rest that is kept at the end of a swing, s.
@@ -35,38 +35,38 @@ const TAIL_S: f64 = 0.05;
 /// A free swing, step by step.
 #[derive(Clone, Debug)]
 pub(crate) struct Swing {
-    /// Which recording.
+    /// Index of the recording.
     pub(crate) recording: usize,
-    /// Time of its first angle in the recording, s.
+    /// Time of the first angle in the recording, s.
     pub(crate) begins_s: f64,
     /// Angle of the rotor as each step begins, and as the last one ends, rad; NaN where no
     /// sample is.
     pub(crate) angles_rad: Vec<f64>,
-    /// Torque of the motor in each step, N·m, as its current should give it.
+    /// Nominal torque of the motor in each step, N·m, from its current.
     pub(crate) torques_nm: Vec<f64>,
-    /// Velocity as it begins, rad/s.
+    /// Initial velocity, rad/s.
     pub(crate) omega_rad_s: f64,
-    /// Turning points after that, rad.
+    /// Angles of the turning points, rad.
     pub(crate) turns_rad: Vec<f64>,
     /// Steps at the turning points.
     pub(crate) turn_steps: Vec<usize>,
 }
 
 impl Swing {
-    /// Root mean square of the motor's torque while it swings, N·m.
+    /// Returns the RMS torque of the motor during the swing, N·m.
     pub(crate) fn torque_rms_nm(&self) -> f64 {
         let squares: f64 = self.torques_nm.iter().map(|t| t * t).sum();
         (squares / self.torques_nm.len().max(1) as f64).sqrt()
     }
 }
 
-/// Steps of a recording: angle as each begins, and mean torque in it.
+/// A recording by integration steps: angle at the start of each, rad, and mean torque, N·m.
 struct Steps {
     angles: Vec<f64>,
     torques: Vec<f64>,
 }
 
-/// The free swings of a recording.
+/// Returns the free swings of a recording.
 pub(crate) fn swings(
     place: usize,
     recording: &Recording,
@@ -144,7 +144,7 @@ impl Steps {
         })
     }
 
-    /// The free swing in a motion, if it has one.
+    /// Returns the free swing in a motion, if it has one.
     fn swing(
         &self,
         (recording, passing): (usize, Passing),
@@ -184,7 +184,7 @@ impl Steps {
     }
 }
 
-/// The angles, with the last one where none is.
+/// Fills missing angles with the last one.
 fn filled(angles: &[f64]) -> Vec<f64> {
     let mut last = angles.iter().copied().find(|a| !a.is_nan()).unwrap_or(0.0);
     angles
@@ -207,8 +207,8 @@ fn extent(angles: &[f64]) -> f64 {
     high - low
 }
 
-/// From where to where the shaft turns, between two rests; and whether it still turns in the
-/// end.
+/// Returns first and last step of each motion between two rests, and whether the recording ends in
+/// motion.
 fn motions(angles: &[f64]) -> (Vec<(usize, usize)>, bool) {
     #[expect(
         clippy::cast_possible_truncation,
@@ -235,7 +235,7 @@ fn motions(angles: &[f64]) -> (Vec<(usize, usize)>, bool) {
     (found, begun.is_some())
 }
 
-/// Turning points between two steps.
+/// Returns the steps of the turning points between two steps.
 fn turns(angles: &[f64], from: usize, to: usize) -> Vec<usize> {
     let mut found = Vec::new();
     let (mut low, mut high) = (from, from);

@@ -1,4 +1,5 @@
-//! What recordings show of each quantity; and where they do not, why, and what to do.
+//! Visibility of each quantity in the recordings, with the reason and the remedy if it is not
+//! visible.
 
 use crate::Estimate;
 use crate::brace::fit::Fit;
@@ -10,16 +11,16 @@ use crate::brace::recording::Recording;
 use crate::brace::swing::Swing;
 use crate::estimate::DEVIATIONS;
 
-/// Torque of the motor that shows what the gear loses of it, N·m rms.
+/// Least RMS torque of the motor that shows the load loss of the gear, N·m.
 const SOME_TORQUE_NM: f64 = 0.1;
 
-/// An interval that is narrower than before by this share was seen in the recording.
+/// Largest interval of a visible quantity, as a share of the prior one.
 const NARROWED: f64 = 0.7;
 
-/// What the fit leaves of the angle, rad rms, that doubles the error of the model.
+/// RMS residual of the angle that doubles the allowance for model errors, rad.
 const MORE_RAD: f64 = 2e-4;
 
-/// In units of the quantity's table.
+/// Returns the factor from the unit of the fit to that of the quantity's spec.
 fn unit(quantity: Quantity, recording: &Recording) -> f64 {
     match quantity {
         Quantity::Backlash => 1_f64.to_degrees(),
@@ -28,7 +29,7 @@ fn unit(quantity: Quantity, recording: &Recording) -> f64 {
     }
 }
 
-/// What is known of a quantity.
+/// Returns the identification result of a quantity.
 pub(crate) fn result(
     quantity: Quantity,
     fit: &Fit,
@@ -70,7 +71,7 @@ fn torque_rms(swings: &[Swing]) -> f64 {
     swings.iter().map(Swing::torque_rms_nm).fold(0.0, f64::max)
 }
 
-/// A sum of two numbers, and its half width.
+/// Returns the sum of two parameters and the half width of its 95 % confidence interval.
 fn sum(fit: &Fit, a: usize, b: usize) -> (f64, f64) {
     let c = &fit.covariance;
     let variance = c[(a, a)] + c[(b, b)] + 2.0 * c[(a, b)];
@@ -116,7 +117,7 @@ fn why(quantity: Quantity, uncertain: &str, torque_nm: f64, fit: &Fit) -> String
     }
 }
 
-/// What a person should know, where the torque constant is visible or not.
+/// Returns warnings about the torque constant, whether it is visible or not.
 pub(crate) fn notes(fit: &Fit, prior: &Prior, is_torque_seen: bool) -> Vec<String> {
     if !is_torque_seen {
         return vec![

@@ -1,18 +1,18 @@
-//! Whether a recording is whole, and its counts those of a shaft.
+//! Checks of a recording: completeness, and counts that a shaft can make.
 
 use crate::brace::recording::{Recording, Sample};
 use crate::brace::refusal::Refusal;
 
-/// Missing samples that a recording may have, as a share, and in a row.
+/// Most missing samples, as a share, and in a row.
 const MISSING_SHARE: f64 = 0.02;
 const MISSING_IN_A_ROW: u64 = 400;
 
-/// A count further from its neighbours than this motion in a tick is a jump, rad/s.
+/// Velocity between neighbouring counts from which they are a jump, rad/s.
 const FASTEST_RAD_S: f64 = 40.0;
 
-/// Refuses a recording with too little in it, or with counts that no shaft makes.
+/// Rejects a recording that is too short or incomplete, or whose counts jump or freeze.
 pub(crate) fn whole(recording: &Recording, first: &Sample, last: &Sample) -> Result<(), Refusal> {
-    /// A release, two turning points and a rest take longer.
+    /// Shortest recording, s: a release, two turning points and a rest take longer.
     const SHORTEST_S: f64 = 1.5;
     let samples = &recording.samples;
     let mut missing = 0;
@@ -52,11 +52,11 @@ pub(crate) fn whole(recording: &Recording, first: &Sample, last: &Sample) -> Res
     Ok(())
 }
 
-/// Refuses counts that stop in mid-motion: friction takes longer to stop a rotor.
+/// Rejects counts that stop in mid-motion: friction takes longer to stop a rotor.
 fn frozen(recording: &Recording) -> Result<(), Refusal> {
-    /// Ticks of motion before, and of standstill after.
+    /// Length of the motion before, and of the standstill after, ticks.
     const TICKS: usize = 200;
-    /// Slower is a turning point, rad/s: friction stops more than that within the ticks.
+    /// Smallest velocity of a motion that froze, rad/s; slower is a turning point.
     const SLOWEST_RAD_S: f64 = 0.6;
     let samples = &recording.samples;
     let window_s = TICKS as f64 * recording.tick_s;

@@ -1,27 +1,29 @@
-//! The fit of torque constant, losses and friction to the mean currents, and their intervals.
+//! Least-squares fit of torque constant, losses and friction to the mean currents, with 95 %
+//! confidence intervals.
 
 use super::way::Mean;
 use crate::Estimate;
 use crate::estimate::DEVIATIONS;
 use nalgebra::{SMatrix, SVector};
 
-/// K/M in 1/A, μ, F/M, φ₀, c·M.
+/// Parameters of the fit: K/M (1/A), μ, F/M, φ₀ (rad), c·M (rad).
 type Numbers = SVector<f64, 5>;
 type Square = SMatrix<f64, 5, 5>;
 
-/// Means in either sense that a fit needs at least.
+/// Fewest means of a fit, in either sense of the motion.
 const LEAST_MEANS: usize = 12;
 
-/// The least way of the load: the greatest less the least of |sin|.
+/// Smallest range of the load: largest less smallest |sin(φw − φ₀)|.
 const LEAST_LOAD: f64 = 0.25;
 
-/// Around the hanging weight the teeth of the gear change sides: left out, rad.
+/// Half width of the range around the hanging weight that is left out, rad: the teeth of the gear
+/// change sides there.
 const LEFT_OUT_RAD: f64 = 0.07;
 
-/// Allowances of the 95 % intervals for a brace that is otherwise than the model: share of K, of F, and μ.
+/// Allowances for model errors in the 95 % intervals: share of K, share of F, and absolute for μ.
 const MODEL: [f64; 3] = [0.01, 0.03, 0.015];
 
-/// Why there is no torque constant.
+/// Reason why the currents give no torque constant.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// Too little motion.
@@ -30,9 +32,9 @@ pub enum Refusal {
          or the brace is at a stop"
     )]
     Short {
-        /// Whole degrees away.
+        /// Number of whole degrees on the way up.
         up: usize,
-        /// Whole degrees back.
+        /// Number of whole degrees on the way down.
         down: usize,
     },
     /// The load hardly changes.
@@ -40,7 +42,7 @@ pub enum Refusal {
         "the weight's torque changed by {share:.0} % of its greatest only, 25 % are needed: begin with the weight hanging, not held aside"
     )]
     Flat {
-        /// In percent.
+        /// Range of the load, % of the moment.
         share: f64,
     },
     /// The currents are not those of a weight.
@@ -49,41 +51,42 @@ pub enum Refusal {
          did something else touch the arm, or does the weight swing on its hook?"
     )]
     Misfit {
-        /// Root mean square of what the fit leaves, A.
+        /// RMS residual of the current, A.
         residual_a: f64,
-        /// The greatest mean current, A.
+        /// Largest mean current, A.
         greatest_a: f64,
     },
-    /// No motor, gear or weight is like this.
+    /// A fitted value is impossible for motor, gear or weight.
     #[error(
         "the fit ends at {what}, which no brace has: is a weight on the arm at all, and is the polarity proven?"
     )]
     Implausible {
-        /// Which.
+        /// Name of the implausible quantity.
         what: &'static str,
     },
 }
 
-/// What the weight shows.
+/// Values identified from the hanging weight, with 95 % confidence intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// Torque at the joint for one ampere, without losses, N·m/A.
+    /// Torque at the joint per ampere, without losses, N·m/A.
     pub nm_per_a: Estimate,
     /// Share of the motor's torque that the gear loses.
     pub load_loss: Estimate,
-    /// Dry friction, N·m, with the viscous one at the speed of the motion.
+    /// Dry friction, N·m; includes viscous friction at the speed of the motion.
     pub friction_nm: Estimate,
     /// Encoder's angle at which the weight hangs, rad.
     pub hangs_rad: Estimate,
-    /// Root mean square of what the fit leaves, A.
+    /// RMS residual of the current, A.
     pub residual_a: f64,
-    /// Angle, measured and fitted current, of each mean.
+    /// Angle, rad, measured current, A, and fitted current, A, of each mean.
     pub curve: Vec<[f64; 3]>,
-    /// Whether the load was large enough to tell what gives way in the brace; else it is an assumption, and the interval wider.
+    /// Whether the compliance of the brace was identified; otherwise it is an assumption, and the
+    /// interval wider.
     pub tells_stiffness: bool,
 }
 
-/// The current of a mean, A.
+/// Returns the modelled current of a mean, A.
 fn current_a(n: &Numbers, mean: &Mean) -> f64 {
     let [scale, loss, friction, hangs, gives] = [n[0], n[1], n[2], n[3], n[4]];
     let mut load = (mean.angle_rad - hangs).sin();
@@ -96,8 +99,9 @@ fn current_a(n: &Numbers, mean: &Mean) -> f64 {
     torque / (scale * share)
 }
 
-/// Finds the numbers. `moment_nm` is the weight's when it is horizontal, with its 95 % interval; `hangs_rad` about where it hangs;
-/// `nm_per_a` about the torque for an ampere, from which the search begins.
+/// Fits torque constant, losses and friction. `moment_nm` is the moment of the horizontal weight
+/// with its 95 % confidence interval; `hangs_rad` and `nm_per_a` are initial guesses of the angle
+/// at which it hangs, rad, and of the torque per ampere, N·m/A.
 ///
 /// # Errors
 /// [`Refusal`]: what the currents show instead.
@@ -144,7 +148,7 @@ pub fn found(
     let square: f64 = residuals.iter().map(|r| r * r).sum();
     let residual_a = (square / residuals.len() as f64).sqrt();
     let greatest_a = used.iter().map(|m| m.current_a.abs()).fold(0.0, f64::max);
-    for (what, is) in [
+    for (what, is_wrong) in [
         (
             "no torque for an ampere",
             !(numbers[0] * moment > 0.05 && numbers[0].is_finite()),
@@ -163,7 +167,7 @@ pub fn found(
             (numbers[3] - hangs_rad).abs() > 1.0,
         ),
     ] {
-        if is {
+        if is_wrong {
             return Err(Refusal::Implausible { what });
         }
     }
@@ -204,7 +208,7 @@ pub fn found(
     })
 }
 
-/// Slopes of the current in each number.
+/// Returns the derivatives of the current with respect to the parameters.
 fn slopes(numbers: &Numbers, mean: &Mean) -> Numbers {
     Numbers::from_fn(|at, _| {
         let step = 1e-6 * numbers[at].abs().max(1e-2);
@@ -215,10 +219,10 @@ fn slopes(numbers: &Numbers, mean: &Mean) -> Numbers {
     })
 }
 
-/// About the noise of a mean, A: only how much the assumptions weigh depends on it.
+/// Approximate noise of a mean, A, which weighs the assumptions against the data.
 const NOISE_A: f64 = 0.005;
 
-/// Gauss and Newton with a damping that falls, as Levenberg and Marquardt do.
+/// Minimises the residuals by the Levenberg–Marquardt method.
 fn fitted(means: &[Mean], from: Numbers, prior: &Numbers, weights: &Numbers) -> Numbers {
     let cost = |n: &Numbers| {
         let misfit: f64 = means
@@ -260,7 +264,8 @@ fn fitted(means: &[Mean], from: Numbers, prior: &Numbers, weights: &Numbers) -> 
     numbers
 }
 
-/// Covariance of the numbers with the noise that is left, and how much the data say of what gives way.
+/// Returns the covariance of the parameters, scaled by the residual, and the information of the data
+/// on c·M, 1/rad², marginal over the other parameters.
 fn covariance(
     means: &[Mean],
     numbers: &Numbers,

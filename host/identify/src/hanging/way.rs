@@ -1,12 +1,12 @@
-//! Means of the current over the way of the joint.
+//! Mean currents over the path of the joint.
 
-/// Width of a mean, rad: a degree.
+/// Width of a mean, rad: one degree.
 const WIDTH_RAD: f64 = std::f64::consts::PI / 180.0;
 
-/// The mean current over one degree of one way.
+/// Mean current over one degree of the path, in one sense.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mean {
-    /// Angle at its middle, by the encoder, rad.
+    /// Encoder's angle at the middle, rad.
     pub angle_rad: f64,
     /// Current, A; positive drives towards growing angle.
     pub current_a: f64,
@@ -14,8 +14,9 @@ pub struct Mean {
     pub sense: f64,
 }
 
-/// Means over whole degrees of a way in one sense; `samples` are angle, rad, and current, A, in the order of time. A way back within it
-/// counts against it. Degrees that are not passed whole are left out.
+/// Averages the current over whole degrees of a path in one sense. `samples` are angle, rad, and
+/// current, A, in the order of time. A reversal within it counts against it. Degrees that are not
+/// passed whole are left out.
 pub fn means(samples: &[(f64, f64)], sense: f64) -> Vec<Mean> {
     let mut means = Vec::new();
     let Some(&(first, _)) = samples.first() else {

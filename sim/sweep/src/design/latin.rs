@@ -1,4 +1,4 @@
-//! Latin hypercubes, any point of one at once, so that a shard needs no memory for all.
+//! Latin hypercube sampling with random access to points, so that a shard needs no memory for all.
 
 use super::hash;
 
@@ -6,8 +6,8 @@ use super::hash;
 /// random one (Luby and Rackoff, SIAM J. Comput. 17 (1988), 373–386).
 const ROUNDS: u64 = 4;
 
-/// A coordinate of a point, in [0, 1): of each axis every one of `count` equal parts
-/// has exactly one point, anywhere in it.
+/// Returns a coordinate of a point, in [0, 1). Each of `count` equal strata of an axis has exactly
+/// one point, anywhere in it.
 pub(super) fn coordinate(seed: u64, point: u64, axis: usize, count: u64) -> f64 {
     let axis = axis as u64;
     let part = permuted(seed, axis, point, count);
@@ -18,8 +18,8 @@ pub(super) fn coordinate(seed: u64, point: u64, axis: usize, count: u64) -> f64 
     coordinate.min(1.0 - f64::EPSILON)
 }
 
-/// Where a permutation of `0..count` takes `place`: a permutation of the next power of
-/// four, walked until it is below `count`.
+/// Returns the image of `place` under a keyed permutation of `0..count`: a permutation of the next
+/// power of four, walked until it is below `count`.
 fn permuted(seed: u64, axis: u64, place: u64, count: u64) -> u64 {
     let half_bits = (64 - count.saturating_sub(1).leading_zeros())
         .div_ceil(2)

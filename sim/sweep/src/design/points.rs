@@ -1,16 +1,16 @@
-//! Points of another program, as CSV: a key of the scene over each column.
+//! Points of another program from a CSV file with a key of the scene over each column.
 
 use std::io;
 use std::path::Path;
 
-/// Points, one a row.
+/// Table of points, one per row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Points {
     paths: Vec<String>,
     values: Vec<Vec<String>>,
 }
 
-/// A table of points that is none.
+/// Error of an invalid table of points.
 #[derive(Debug, thiserror::Error)]
 pub enum PointsError {
     /// The file cannot be read as CSV; the line is in the cause.
@@ -21,26 +21,26 @@ pub enum PointsError {
         "line 1: column {column} has {what}: the first line has a key of the scene over each column"
     )]
     Header {
-        /// Counted from 1.
+        /// Column, from 1.
         column: usize,
-        /// What is wrong with it.
+        /// Description of the mistake.
         what: String,
     },
     /// An empty cell.
     #[error("line {line}: {path} is empty")]
     Empty {
-        /// Counted from 1.
+        /// Line, from 1.
         line: usize,
         /// The key.
         path: String,
     },
-    /// A header alone.
+    /// There is only a header.
     #[error("there is no row of values below the header")]
     NoRows,
 }
 
 impl Points {
-    /// Reads a file.
+    /// Reads a CSV file.
     ///
     /// # Errors
     /// [`PointsError`].
@@ -65,7 +65,7 @@ impl Points {
         Self::new(paths, rows)
     }
 
-    /// Rows of values, a column a key.
+    /// Creates a table from rows of values, with a key per column.
     ///
     /// # Errors
     /// [`PointsError`].

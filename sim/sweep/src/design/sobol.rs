@@ -1,5 +1,5 @@
-//! Sobol's sequence, any point of it at once, which a shard needs; libraries give
-//! one point after another.
+//! Sobol's sequence with random access to points, which a shard needs; libraries give one point
+//! after another.
 
 use super::hash;
 
@@ -29,14 +29,14 @@ const JOE_KUO: [(u32, u32, &[u32]); 20] = [
     (7, 4, &[1, 3, 7, 13, 13, 15, 69]),
 ];
 
-/// How many axes there may be.
+/// Most axes.
 pub(super) const MOST_AXES: usize = JOE_KUO.len() + 1;
 
-/// Bits of a coordinate, and of a point's number.
+/// Bits of a coordinate and of a point's number.
 const BITS: u32 = 32;
 
-/// The number that bit `k` of the Gray code of a point's number contributes, from the
-/// highest bit down.
+/// Returns the direction numbers of an axis: number `k` is the contribution of bit `k` of the Gray
+/// code of a point's number.
 fn directions(axis: usize) -> [u32; BITS as usize] {
     let mut numbers = [0_u32; BITS as usize];
     let Some((degree, coefficients, first)) = axis.checked_sub(1).and_then(|i| JOE_KUO.get(i))
@@ -62,7 +62,7 @@ fn directions(axis: usize) -> [u32; BITS as usize] {
     numbers
 }
 
-/// The coordinate of a point before its shift.
+/// Returns the coordinate of a point before the digital shift, in units of 2⁻³².
 fn unshifted(point: u64, axis: usize) -> u32 {
     let gray = point ^ (point >> 1);
     directions(axis)
@@ -72,8 +72,8 @@ fn unshifted(point: u64, axis: usize) -> u32 {
         .fold(0, |x, (_, direction)| x ^ direction)
 }
 
-/// A coordinate of a point, in (0, 1), with a digital shift of all points by the seed:
-/// it keeps every property of the net and leaves no point at 0.
+/// Returns a coordinate of a point, in (0, 1), after a digital shift of all points by the seed: it
+/// keeps every property of the net and leaves no point at 0.
 pub(super) fn coordinate(seed: u64, point: u64, axis: usize) -> f64 {
     let shift = (hash(&[seed, axis as u64]) >> 32) as u32;
     (f64::from(unshifted(point, axis) ^ shift) + 0.5) / f64::from(2_u32).powi(BITS.cast_signed())
