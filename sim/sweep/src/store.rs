@@ -1,4 +1,4 @@
-//! The folder of a sweep: what it is (`sweep.json`), rows so far (`parts`), the table.
+//! Folder of a sweep: identity (`sweep.json`), rows so far (`parts`), the table.
 
 use crate::parts::{Parts, missing, scratch_file};
 use crate::plan::Identity;
@@ -13,17 +13,17 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// What is lost of a sweep that is killed.
+/// Interval of writing rows: as much is lost of a sweep that is killed.
 const FLUSH_AFTER: Duration = Duration::from_secs(2);
 
-/// Rows that are held at most before they are written.
+/// Most rows that are held in memory.
 const FLUSH_ROWS: usize = 8192;
 
 const ABOUT: &str = "sweep.json";
 const PARTS: &str = "parts";
 const TRACES: &str = "traces";
 
-/// The folder of a sweep.
+/// Folder of a sweep.
 #[derive(Debug)]
 pub struct Store {
     folder: PathBuf,
@@ -34,12 +34,12 @@ pub struct Store {
     flushed: Instant,
 }
 
-/// `sweep.json`.
+/// Content of `sweep.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct About {
     #[serde(flatten)]
     identity: Identity,
-    /// The table, once it is whole.
+    /// The table, once it is complete.
     table: Option<Finished>,
 }
 
@@ -49,10 +49,10 @@ struct Finished {
     failed: u64,
 }
 
-/// Why a folder is not the one of a sweep.
+/// Error of the folder of a sweep.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// There is none.
+    /// The folder has no sweep.
     #[error("{}: this is not the folder of a sweep: sweep.json is missing", .0.display())]
     None(PathBuf),
     /// `sweep.json` cannot be read.
@@ -60,26 +60,26 @@ pub enum StoreError {
     Unreadable {
         /// The folder.
         folder: PathBuf,
-        /// Why not.
+        /// Reason.
         why: String,
     },
-    /// Another sweep is there.
+    /// The folder has another sweep.
     #[error("{} has another sweep: {difference}", folder.display())]
     Another {
         /// The folder.
         folder: PathBuf,
-        /// In what they differ.
+        /// Their difference.
         difference: String,
     },
-    /// Another program has worked on the same points.
+    /// Another program has completed the sweep meanwhile.
     #[error("{}: another program has finished this sweep meanwhile, and its table is there", .0.display())]
     Overtaken(PathBuf),
-    /// The disk.
+    /// A file cannot be read or written.
     #[error("{}: {error}", path.display())]
     Io {
-        /// Where.
+        /// Its path.
         path: PathBuf,
-        /// What.
+        /// The error.
         error: io::Error,
     },
 }
@@ -90,7 +90,7 @@ fn at(path: &Path) -> impl FnOnce(io::Error) -> StoreError {
 }
 
 impl Store {
-    /// The folder of this sweep, new or with what is there of it.
+    /// Creates the folder of a sweep, or opens it to resume the sweep.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -127,7 +127,7 @@ impl Store {
         }
     }
 
-    /// The folder of a sweep.
+    /// Opens the folder of a sweep.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -156,7 +156,7 @@ impl Store {
         }
     }
 
-    /// Removes a sweep from its folder, and nothing else.
+    /// Removes the files of a sweep from its folder, and no others.
     ///
     /// # Errors
     /// If a file of it cannot be removed.
@@ -177,13 +177,12 @@ impl Store {
         Ok(())
     }
 
-    /// Which sweep it is.
+    /// Returns the identity of the sweep.
     pub const fn identity(&self) -> &Identity {
         &self.about.identity
     }
 
-    /// The folder of traces, made if it is missing, and one for files that are not whole
-    /// yet.
+    /// Creates the folder of traces; returns it with the one of incomplete files.
     ///
     /// # Errors
     /// If it cannot be made.
@@ -196,7 +195,7 @@ impl Store {
         })
     }
 
-    /// The table, if the sweep is complete.
+    /// Returns the table, if the sweep is complete.
     pub fn table(&self) -> Option<Written> {
         let table = self.about.table.as_ref()?;
         let file = self.folder.join(&table.file);
@@ -207,7 +206,7 @@ impl Store {
         })
     }
 
-    /// What of these points has no row yet.
+    /// Returns the ranges of these points that have no row yet.
     ///
     /// # Errors
     /// If the parts cannot be listed.
@@ -216,7 +215,7 @@ impl Store {
         Ok(missing(points, &there))
     }
 
-    /// Takes a row; every other second rows become a part.
+    /// Takes a row. Every two seconds, or 8192 rows, the rows become a part.
     ///
     /// # Errors
     /// If a part cannot be written.
@@ -245,7 +244,7 @@ impl Store {
         Ok(())
     }
 
-    /// Takes the parts of another folder of the same sweep.
+    /// Copies the parts of another folder of the same sweep.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -262,7 +261,7 @@ impl Store {
             .map_err(at(other.parts.folder()))
     }
 
-    /// Makes the table, if every row is there, and removes the parts.
+    /// Writes the table, if every row is there, and removes the parts.
     ///
     /// # Errors
     /// [`TableError`].
@@ -295,7 +294,7 @@ impl Store {
     }
 }
 
-/// In what two sweeps differ.
+/// Describes the first difference of two sweeps.
 fn difference(there: &Identity, wanted: &Identity) -> Option<String> {
     if there == wanted {
         return None;
@@ -320,3 +319,6 @@ fn difference(there: &Identity, wanted: &Identity) -> Option<String> {
     }
     Some("another scene text, recording, value or override".to_owned())
 }
+
+#[cfg(test)]
+mod tests;

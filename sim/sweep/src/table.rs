@@ -1,4 +1,4 @@
-//! All parts as one table: a row a run, in the order of their points.
+//! Table of a sweep from its parts: a row per run, in the order of their points.
 
 #[cfg(feature = "parquet")]
 mod parquet;
@@ -12,27 +12,27 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// The column of a point's number.
+/// Column of the point's number.
 pub const INDEX: &str = "index";
 
-/// The form of the table.
+/// File format of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// A Parquet file; in programs that are built with it.
+    /// Parquet; needs the feature `parquet`.
     Parquet,
-    /// A CSV file; numbers read back to the same bits.
+    /// CSV; numbers are read back to the same bits.
     Csv,
 }
 
 impl Format {
-    /// What a program makes if it is not told.
+    /// Default format: Parquet, if the program was built with it.
     pub const DEFAULT: Self = if cfg!(feature = "parquet") {
         Self::Parquet
     } else {
         Self::Csv
     };
 
-    /// Its name.
+    /// Returns the name of the format.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Parquet => "parquet",
@@ -40,7 +40,7 @@ impl Format {
         }
     }
 
-    /// The name of the file.
+    /// Returns the name of the file.
     pub const fn file(self) -> &'static str {
         match self {
             Self::Parquet => "sweep.parquet",
@@ -64,35 +64,35 @@ impl FromStr for Format {
     }
 }
 
-/// Why there is no table.
+/// Error of writing a table.
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
-    /// Points that no part has.
+    /// Rows are missing.
     #[error("{missing} of {runs} runs are not there: points {ranges}")]
     Incomplete {
-        /// How many.
+        /// Number of missing runs.
         missing: u64,
-        /// Of how many.
+        /// Number of all runs.
         runs: u64,
-        /// The first of them, as ranges.
+        /// First missing points, as ranges.
         ranges: String,
     },
     /// A part cannot be read.
     #[error(transparent)]
     Part(#[from] PartError),
-    /// The disk, or the caller has ended it ([`io::ErrorKind::Interrupted`]).
+    /// A file cannot be written, or the caller has cancelled ([`io::ErrorKind::Interrupted`]).
     #[error(transparent)]
     Io(#[from] io::Error),
 }
 
-/// What the table of a sweep holds.
+/// A written table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
     /// Its size, bytes.
     pub bytes: u64,
-    /// Rows that have a reason instead of results.
+    /// Number of failed runs.
     pub failed: u64,
 }
 
@@ -103,12 +103,12 @@ pub(crate) struct Field {
     pub(crate) kind: Kind,
 }
 
-/// Rows of neighbouring points: some of a part.
+/// Rows of neighbouring points of one part.
 pub(crate) struct Chunk {
     points: Range<u64>,
-    /// The row of the part that is the first of these.
+    /// Number of rows of the part before the first of these.
     skipped: usize,
-    /// Columns of the part by the place of their field.
+    /// Columns of the part by the index of their field.
     columns: Vec<Option<Column>>,
 }
 
@@ -117,15 +117,15 @@ impl Chunk {
         usize::try_from(self.points.end - self.points.start).unwrap_or(usize::MAX)
     }
 
-    /// The cell of a field, empty if there is none.
+    /// Returns the cell of a field, empty if there is none.
     fn cell(&self, field: usize, row: usize) -> &str {
         let column = self.columns.get(field).and_then(Option::as_ref);
         column.map_or("", |column| column.cells.get(self.skipped + row))
     }
 }
 
-/// Writes the table of a sweep into `folder`, whole or not at all. `progress` gets the
-/// share of it that is done; if it returns false, there is no table.
+/// Writes the table of a sweep into `folder`, whole or not at all. `progress` gets the completed
+/// share, 0 to 1, and cancels by returning false.
 ///
 /// # Errors
 /// [`TableError`].
@@ -171,9 +171,9 @@ pub fn write(
     })
 }
 
-/// How many runs of a sweep, and which, no part has.
+/// Rejects parts that do not cover all runs.
 fn check_complete(there: &[Range<u64>], runs: u64) -> Result<(), TableError> {
-    /// Ranges that are named.
+    /// Most ranges in the error.
     const NAMED: usize = 8;
     let gaps = missing(0..runs, there);
     if gaps.is_empty() {
@@ -196,7 +196,7 @@ fn check_complete(there: &[Range<u64>], runs: u64) -> Result<(), TableError> {
     })
 }
 
-/// Of each part, the points that no part before it has.
+/// Returns the parts with those of their points that no earlier part has.
 fn without_overlaps(there: &[Range<u64>], runs: u64) -> Vec<(Range<u64>, Range<u64>)> {
     let mut next = 0;
     let mut kept = Vec::new();
@@ -212,13 +212,13 @@ fn without_overlaps(there: &[Range<u64>], runs: u64) -> Vec<(Range<u64>, Range<u
 
 struct Table<'p> {
     parts: &'p Parts,
-    /// Each part, and its points that the table takes.
+    /// Parts, each with its points that go into the table.
     points: Vec<(Range<u64>, Range<u64>)>,
     fields: Vec<Field>,
 }
 
 impl Table<'_> {
-    /// Reads which columns there are.
+    /// Collects names and kinds of all columns.
     fn with_fields(mut self, progress: &mut dyn FnMut(f64) -> bool) -> Result<Self, TableError> {
         let mut places: HashMap<String, usize> = HashMap::new();
         for (number, (part, _)) in self.points.iter().enumerate() {
@@ -234,7 +234,7 @@ impl Table<'_> {
                     }),
                 }
             }
-            go_on(progress(share(number + 1, self.points.len())))?;
+            unless_cancelled(progress(share(number + 1, self.points.len())))?;
         }
         if !places.contains_key(FAILURE) {
             self.fields.push(Field {
@@ -245,7 +245,7 @@ impl Table<'_> {
         Ok(self)
     }
 
-    /// Its rows in their order, a part at a time.
+    /// Passes the rows in their order to `take`, a part at a time.
     fn each_chunk(
         &self,
         seen: &mut dyn FnMut(&Chunk, f64) -> bool,
@@ -270,7 +270,7 @@ impl Table<'_> {
                 skipped: usize::try_from(skipped).unwrap_or(usize::MAX),
                 columns,
             };
-            go_on(seen(&chunk, share(number + 1, self.points.len())))?;
+            unless_cancelled(seen(&chunk, share(number + 1, self.points.len())))?;
             take(chunk)?;
         }
         Ok(())
@@ -301,8 +301,9 @@ impl Table<'_> {
     }
 }
 
-fn go_on(goes_on: bool) -> io::Result<()> {
-    if goes_on {
+/// Returns an error if the caller has cancelled.
+fn unless_cancelled(continues: bool) -> io::Result<()> {
+    if continues {
         Ok(())
     } else {
         Err(io::ErrorKind::Interrupted.into())
@@ -314,5 +315,5 @@ fn share(done: usize, of: usize) -> f64 {
     done as f64 / of.max(1) as f64
 }
 
-#[cfg(all(test, feature = "parquet"))]
+#[cfg(test)]
 mod tests;

@@ -1,11 +1,8 @@
-//! Both forms of a table hold the same.
+//! Tables of parts that overlap, or are not complete.
 
 use super::*;
 use crate::row::{Cell, Row};
-use ::parquet::file::reader::{FileReader, SerializedFileReader};
-use ::parquet::record::Field as Value;
-use std::collections::HashMap;
-use std::fs::{self, File};
+use std::fs;
 
 fn identity(runs: u64) -> Identity {
     Identity {
@@ -43,65 +40,6 @@ fn rows(random: &mut fastrand::Rng, count: u64) -> Vec<Row> {
     (0..count).map(row).collect()
 }
 
-/// A Parquet file as texts, a map of columns a row.
-fn parquet_rows(file: &Path) -> Vec<HashMap<String, String>> {
-    let reader = SerializedFileReader::new(File::open(file).unwrap()).unwrap();
-    let text = |value: &Value| match value {
-        Value::Null => String::new(),
-        Value::Long(whole) => whole.to_string(),
-        Value::Double(number) => format!("{number:?}"),
-        Value::Str(text) => text.clone(),
-        other => panic!("{other:?}"),
-    };
-    let rows = reader.get_row_iter(None).unwrap();
-    rows.map(|row| {
-        let row = row.unwrap();
-        let columns = row.get_column_iter();
-        columns
-            .map(|(name, value)| (name.clone(), text(value)))
-            .collect()
-    })
-    .collect()
-}
-
-#[test]
-fn parquet_and_csv_hold_the_same_rows_in_the_same_order() {
-    let mut random = fastrand::Rng::with_seed(4);
-    let home = tempfile::tempdir().unwrap();
-    let parts = Parts::in_folder(home.path().join("parts"));
-    fs::create_dir(parts.folder()).unwrap();
-    let rows = rows(&mut random, 500);
-    // In pieces that overlap, and not in their order.
-    for piece in [300..500, 0..120, 100..250, 200..310] {
-        parts.write(&rows[piece]).unwrap();
-    }
-    for format in [Format::Csv, Format::Parquet] {
-        write(&parts, &identity(500), home.path(), format, &mut |_| true).unwrap();
-    }
-    let parquet = parquet_rows(&home.path().join("sweep.parquet"));
-    let mut csv = csv::Reader::from_path(home.path().join("sweep.csv")).unwrap();
-    let header = csv.headers().unwrap().clone();
-    let mut count = 0;
-    for (record, row) in csv.records().zip(&parquet) {
-        let record = record.unwrap();
-        assert_eq!(record[0], count.to_string());
-        let given = &rows[count].cells;
-        assert_eq!(
-            record.iter().filter(|cell| !cell.is_empty()).count(),
-            given.len() + 1
-        );
-        for (name, cell) in header.iter().zip(&record) {
-            let same = match (cell.parse::<f64>(), row[name].parse::<f64>()) {
-                (Ok(a), Ok(b)) => a.to_bits() == b.to_bits(),
-                _ => cell == row[name],
-            };
-            assert!(same, "row {count}, {name}: {cell} and {}", row[name]);
-        }
-        count += 1;
-    }
-    assert_eq!((count, parquet.len()), (500, 500));
-}
-
 #[test]
 fn what_is_missing_is_named_and_an_end_leaves_nothing() {
     let home = tempfile::tempdir().unwrap();
@@ -130,4 +68,73 @@ fn what_is_missing_is_named_and_an_end_leaves_nothing() {
     let text = attempt(10, false);
     assert!(text.contains("interrupted"), "{text}");
     assert!(!home.path().join("sweep.csv").exists());
+}
+
+#[cfg(feature = "parquet")]
+mod both_formats {
+    use super::{identity, rows};
+    use crate::table::*;
+    use ::parquet::file::reader::{FileReader, SerializedFileReader};
+    use ::parquet::record::Field as Value;
+    use std::collections::HashMap;
+    use std::fs::{self, File};
+
+    /// A Parquet file as texts, a map of columns a row.
+    fn parquet_rows(file: &Path) -> Vec<HashMap<String, String>> {
+        let reader = SerializedFileReader::new(File::open(file).unwrap()).unwrap();
+        let text = |value: &Value| match value {
+            Value::Null => String::new(),
+            Value::Long(whole) => whole.to_string(),
+            Value::Double(number) => format!("{number:?}"),
+            Value::Str(text) => text.clone(),
+            other => panic!("{other:?}"),
+        };
+        let rows = reader.get_row_iter(None).unwrap();
+        rows.map(|row| {
+            let row = row.unwrap();
+            let columns = row.get_column_iter();
+            columns
+                .map(|(name, value)| (name.clone(), text(value)))
+                .collect()
+        })
+        .collect()
+    }
+
+    #[test]
+    fn parquet_and_csv_hold_the_same_rows_in_the_same_order() {
+        let mut random = fastrand::Rng::with_seed(4);
+        let home = tempfile::tempdir().unwrap();
+        let parts = Parts::in_folder(home.path().join("parts"));
+        fs::create_dir(parts.folder()).unwrap();
+        let rows = rows(&mut random, 500);
+        // In pieces that overlap, and not in their order.
+        for piece in [300..500, 0..120, 100..250, 200..310] {
+            parts.write(&rows[piece]).unwrap();
+        }
+        for format in [Format::Csv, Format::Parquet] {
+            write(&parts, &identity(500), home.path(), format, &mut |_| true).unwrap();
+        }
+        let parquet = parquet_rows(&home.path().join("sweep.parquet"));
+        let mut csv = csv::Reader::from_path(home.path().join("sweep.csv")).unwrap();
+        let header = csv.headers().unwrap().clone();
+        let mut count = 0;
+        for (record, row) in csv.records().zip(&parquet) {
+            let record = record.unwrap();
+            assert_eq!(record[0], count.to_string());
+            let given = &rows[count].cells;
+            assert_eq!(
+                record.iter().filter(|cell| !cell.is_empty()).count(),
+                given.len() + 1
+            );
+            for (name, cell) in header.iter().zip(&record) {
+                let same = match (cell.parse::<f64>(), row[name].parse::<f64>()) {
+                    (Ok(a), Ok(b)) => a.to_bits() == b.to_bits(),
+                    _ => cell == row[name],
+                };
+                assert!(same, "row {count}, {name}: {cell} and {}", row[name]);
+            }
+            count += 1;
+        }
+        assert_eq!((count, parquet.len()), (500, 500));
+    }
 }
