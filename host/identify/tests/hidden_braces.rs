@@ -2,16 +2,17 @@
 //! simulated plant, with every number drawn within a factor of 2 of the data sheet, the weight
 //! weighed as well as a person can, and the torque constant off by some percent.
 //!
-//! `cargo test -p crepitus-identify --test hidden_braces -- --nocapture` prints the table.
+//! `cargo test -p crepitus-identify --test hidden_braces -- --nocapture` prints the table, which is
+//! that of docs/identification.md.
 
 mod braces;
+mod compared;
 #[path = "../../../sim/board/tests/support/mod.rs"]
 mod support;
 
 use braces::{Truth, in_table};
-use crepitus_identify::brace::{
-    Brace, Quantity, QuantityResult, Recording, TORQUE_DEVIATION, identify,
-};
+use compared::{Compared, PAGE, compared};
+use crepitus_identify::brace::{Brace, Quantity, Recording, TORQUE_DEVIATION, identify};
 
 const DEVICES: usize = 20;
 
@@ -42,62 +43,45 @@ fn all(truths: &[Truth]) -> Vec<(Recording, Brace)> {
 #[test]
 fn values_of_hidden_braces_are_within_their_intervals() {
     let mut random = fastrand::Rng::with_seed(2024);
-    let mut inside = [0_usize; Quantity::ALL.len()];
-    let mut visible = [0_usize; Quantity::ALL.len()];
-    // The greatest error and half width, as shares.
-    let mut worst = [(0.0_f64, 0.0_f64); Quantity::ALL.len()];
-    let mut whole_devices = 0;
     let truths: Vec<Truth> = (0..DEVICES).map(|_| Truth::hidden(&mut random)).collect();
-    for (device, (truth, (recording, brace))) in truths.iter().zip(all(&truths)).enumerate() {
-        println!(
-            "device {device}: {:.4}° rms left",
-            brace.rms_rad.to_degrees()
-        );
-        let mut is_whole = true;
-        for (n, shown) in brace.shown.iter().enumerate() {
-            let expected = in_table(truth, shown.quantity, &recording);
-            let QuantityResult::Seen(estimate) = &shown.result else {
-                println!(
-                    "  {:24} {expected:10.5}  not visible",
-                    shown.quantity.name()
-                );
-                continue;
-            };
-            let holds = estimate.holds(expected);
-            println!(
-                "  {:24} {expected:10.5}  {:10.5} ± {:8.5} {}",
-                shown.quantity.name(),
-                estimate.value,
-                estimate.half_width,
-                if holds { "inside" } else { "OUTSIDE" }
-            );
-            is_whole &= holds;
-            visible[n] += 1;
-            inside[n] += usize::from(holds);
-            let error = (estimate.value / expected - 1.0).abs();
-            worst[n] = (worst[n].0.max(error), worst[n].1.max(estimate.share()));
-        }
-        whole_devices += usize::from(is_whole);
-    }
-    for (n, quantity) in Quantity::ALL.iter().enumerate() {
-        println!(
-            "{:24} inside {} of {} visible; worst error {:.1} %, widest ± {:.1} %",
+    let braces = truths.iter().zip(all(&truths)).enumerate();
+    let devices: Vec<Vec<Compared>> = braces
+        .map(|(device, (truth, (recording, brace)))| {
+            let truth = |quantity| in_table(truth, quantity, &recording);
+            compared(&format!("device {device}"), &brace, truth)
+        })
+        .collect();
+    let mut table = vec![
+        "| | inside, of those visible | worst error | widest interval |".to_owned(),
+        "|---|---|---|---|".to_owned(),
+    ];
+    let inside = |values: &[Compared]| values.iter().filter(|value| value.holds()).count();
+    for quantity in Quantity::ALL {
+        let values = devices.iter().flatten().copied();
+        let values: Vec<Compared> = values.filter(|value| value.quantity == quantity).collect();
+        let worst = |of: fn(&Compared) -> f64| values.iter().map(of).fold(0.0, f64::max);
+        table.push(format!(
+            "| {} | {} of {} | {:.1} % | ± {:.1} % |",
             quantity.name(),
-            inside[n],
-            visible[n],
-            100.0 * worst[n].0,
-            100.0 * worst[n].1
-        );
-        assert!(
-            visible[n] >= 15,
-            "{quantity:?} is visible in {}",
-            visible[n]
-        );
+            inside(&values),
+            values.len(),
+            worst(|value| value.error_percent().abs()),
+            worst(|value| 100.0 * value.estimate.share())
+        ));
+        let visible = values.len();
+        assert!(visible >= 15, "{quantity:?} is visible in {visible}");
     }
-    let (inside, visible) = (inside.iter().sum::<usize>(), visible.iter().sum::<usize>());
-    println!(
-        "{inside} of {visible} values inside; {whole_devices} of {DEVICES} devices with all inside"
-    );
-    assert!(whole_devices >= 18, "{whole_devices}");
+    let all: Vec<Compared> = devices.concat();
+    let whole = devices
+        .iter()
+        .filter(|values| inside(values) == values.len());
+    let (inside, visible, whole) = (inside(&all), all.len(), whole.count());
+    table.push(format!("| all values | {inside} of {visible} | | |"));
+    table.push(format!(
+        "| devices with all their values inside | {whole} of {DEVICES} | | |"
+    ));
+    println!("{}", table.join("\n"));
+    assert!(whole >= 18, "{whole}");
     assert!(100 * inside >= 95 * visible, "{inside} of {visible}");
+    PAGE.hold("hidden braces", &table);
 }

@@ -1,11 +1,11 @@
 //! The estimator on braces that it does not model to the letter: a second simulation that shares
 //! no code with the first and none with the estimator.
 
+mod compared;
 mod pendulum;
 
-use crepitus_identify::brace::{
-    Measured, Quantity, QuantityResult, TORQUE_DEVIATION, Weight, identify,
-};
+use compared::{Compared, PAGE, compared};
+use crepitus_identify::brace::{Measured, Quantity, TORQUE_DEVIATION, Weight, identify};
 use pendulum::Pendulum;
 
 fn truth(it: &Pendulum, quantity: Quantity) -> f64 {
@@ -49,11 +49,12 @@ fn drawn(random: &mut fastrand::Rng, stiction: f64) -> Pendulum {
     }
 }
 
-/// Values inside and outside, of so many braces.
-fn counted(seed: u64, stiction: f64, braces: usize) -> (usize, usize) {
+/// Values of four braces, compared; the row `name` of the page's table has what is outside.
+fn simulated(seed: u64, stiction: f64, name: &str) -> (usize, usize) {
+    const BRACES: usize = 4;
     let mut random = fastrand::Rng::with_seed(seed);
-    let (mut inside, mut outside) = (0, 0);
-    for _ in 0..braces {
+    let mut all: Vec<Compared> = Vec::new();
+    for number in 0..BRACES {
         let it = drawn(&mut random, stiction);
         let armed = Pendulum {
             spring_nm: 3.0,
@@ -71,38 +72,30 @@ fn counted(seed: u64, stiction: f64, braces: usize) -> (usize, usize) {
         };
         let found = identify(&recordings, &weight, TORQUE_DEVIATION, &mut |_| true);
         let brace = found.unwrap_or_else(|refusal| panic!("{it:?}: {refusal}"));
-        println!(
-            "stiction {stiction}: {:.4}° rms left",
-            brace.rms_rad.to_degrees()
-        );
-        for shown in &brace.shown {
-            let expected = truth(&it, shown.quantity);
-            if let QuantityResult::Seen(estimate) = &shown.result {
-                let holds = estimate.holds(expected);
-                println!(
-                    "  {:24} {expected:9.5}  {:9.5} ± {:8.5} {}",
-                    shown.quantity.name(),
-                    estimate.value,
-                    estimate.half_width,
-                    if holds { "inside" } else { "OUTSIDE" }
-                );
-                inside += usize::from(holds);
-                outside += usize::from(!holds);
-            }
-        }
+        let title = format!("{name}, brace {number}");
+        all.extend(compared(&title, &brace, |quantity| truth(&it, quantity)));
     }
-    println!("stiction {stiction}: {inside} inside, {outside} outside");
-    (inside, outside)
+    let outside: Vec<String> = (all.iter().filter(|value| !value.holds()))
+        .map(|value| format!("{}, {:+.0} %", value.quantity.name(), value.error_percent()))
+        .collect();
+    let (visible, wrong) = (all.len(), outside.len());
+    let row = match outside.as_slice() {
+        [] => format!("| {visible} of {visible} | none |"),
+        list => format!("| {} of {visible} | {} |", visible - wrong, list.join("; ")),
+    };
+    let head = ["| inside, of those visible | outside |", "|---|---|"].map(str::to_owned);
+    PAGE.hold(name, &[&head[..], &[row]].concat());
+    (visible - wrong, wrong)
 }
 
 #[test]
 fn soft_teeth_and_a_noisy_current_are_within_the_intervals() {
-    let (inside, outside) = counted(101, 1.0, 4);
+    let (inside, outside) = simulated(101, 1.0, "soft teeth");
     assert!(inside >= 30 && outside <= 1, "{inside} {outside}");
 }
 
 #[test]
 fn a_friction_that_is_greater_at_rest_is_within_the_intervals() {
-    let (inside, outside) = counted(102, 1.3, 4);
+    let (inside, outside) = simulated(102, 1.3, "soft teeth and stiction");
     assert!(inside >= 28 && outside <= 2, "{inside} {outside}");
 }

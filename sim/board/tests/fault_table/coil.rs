@@ -1,8 +1,8 @@
 //! Faults of the vibration actuator's coil: each switches off the actuator and leaves the
 //! motor on.
 
+use crate::PAGE;
 use crate::breakage::board;
-use crate::page;
 use crate::support::{Host, set, with_actuator};
 use crepitus_board::Start;
 use crepitus_board::board::Controller;
@@ -256,7 +256,7 @@ fn every_fault_of_the_coil_switches_it_off_in_time_and_leaves_the_motor() {
         }
         assert!(rows.len() > before, "{} has no cause", spec.name);
     }
-    page::hold("coil", &rows);
+    PAGE.hold("coil", &rows);
 }
 
 #[test]

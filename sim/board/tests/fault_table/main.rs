@@ -12,7 +12,6 @@ mod blind;
 mod breakage;
 mod case;
 mod coil;
-mod page;
 mod pairs;
 mod provocation;
 mod trial;
@@ -20,7 +19,14 @@ mod trial;
 use case::Moment;
 use crepitus_protocol::fault::FAULTS;
 use provocation::{Provocation, provocation};
+use support::page::Page;
 use trial::PUSH_TICKS;
+
+/// The page of these tables.
+const PAGE: Page = Page {
+    file: "fault-matrix.md",
+    bless: "cargo test -p crepitus-board --test fault_table -- --test-threads=1",
+};
 
 /// A tick that has begun is gone through.
 const AT_ONCE_TICKS: u32 = 2;
@@ -75,5 +81,5 @@ fn every_fault_is_noticed_in_time_latched_and_cleared() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    page::hold("single", &rows);
+    PAGE.hold("single", &rows);
 }

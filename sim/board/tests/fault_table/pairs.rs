@@ -1,7 +1,7 @@
 //! Two faults of sensors at once, of parts that are independent: who notices,
 //! when, and the most that the hand can feel until then.
 
-use crate::page;
+use crate::PAGE;
 use crate::support::{Host, examination};
 use crepitus_board::leg::CurrentPath::{Monitor, Sensor};
 use crepitus_board::leg::CurrentSensor::{Gain, StuckAt};
@@ -175,5 +175,5 @@ fn pairs_of_independent_sensor_faults_are_bounded() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    page::hold("pairs", &rows);
+    PAGE.hold("pairs", &rows);
 }

@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test uses its part")]
 
 pub(crate) mod oracle;
+pub(crate) mod page;
 pub(crate) mod random_values;
 
 use crepitus_board::{Start, VirtualDevice};
