@@ -72,6 +72,15 @@ cargo run --profile dist --features emulator --quiet -- effects tardieu-fast --o
     --set effects.spasticity.form=catch --set effects.clasp-knife.onset_deg=30 --set effects.clonus.hold_deg=60 \
     --set effects.texture.pitch_deg=1.5
 
+# The page about sweeps: the indices of every parameter, by the Python package and SALib.
+if python3 -c 'import crepitus, SALib, matplotlib' 2>/dev/null; then
+    python3 python/examples/sensitivity.py target/figures 128 >/dev/null
+    cp target/figures/sensitivity.svg docs/images/sensitivity.svg
+    echo docs/images/sensitivity.svg
+else
+    echo "left out: docs/images/sensitivity.svg, which needs Python: pip install ./python SALib matplotlib" >&2
+fi
+
 # The page about figures for a paper: letters as outlines, so with the feature that has fonts. One run stands in for a
 # measurement of another.
 paper() {
