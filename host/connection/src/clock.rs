@@ -3,17 +3,17 @@
 use crepitus_protocol::TICKS_PER_S;
 use std::time::{Duration, Instant};
 
-/// Simulated time that lags more than this is not caught up.
+/// Longest lag of simulated time that is caught up.
 const MOST_LAG: Duration = Duration::from_millis(200);
 
-/// Keeps simulated time up with real time.
+/// Clock that counts real time in ticks of the device.
 pub struct Clock {
     begun: Instant,
     ticks: u64,
 }
 
 impl Clock {
-    /// Starts now.
+    /// Starts the clock.
     #[expect(
         clippy::new_without_default,
         reason = "a clock that starts by default would hide when"
@@ -25,7 +25,7 @@ impl Clock {
         }
     }
 
-    /// Ticks that are due.
+    /// Returns the ticks since the last call, at most those of 200 ms.
     pub fn due_ticks(&mut self) -> u64 {
         let per_tick = Duration::from_secs(1) / TICKS_PER_S;
         let elapsed = self.begun.elapsed().as_nanos();

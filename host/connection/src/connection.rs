@@ -1,4 +1,4 @@
-//! The transport of the device that a name means.
+//! Transport to a device by its name.
 
 use crate::open_error::OpenError;
 use crate::simulated::Simulated;
@@ -9,7 +9,7 @@ use crepitus_sharing::{Program, Shared};
 use std::path::Path;
 use std::time::Duration;
 
-/// The names of a simulated, and of an emulated device in this process.
+/// Names of a simulated, and of an emulated device in this process.
 const SIMULATED: &str = "sim";
 const EMULATED: &str = "emulated";
 
@@ -43,13 +43,16 @@ impl Connection {
                 let scene = scene().map_err(OpenError::Scene)?;
                 Simulated::emulated(&scene).map_err(OpenError::Emulated)?
             }
-            Some(name) => return serial(&port(name)?, program),
-            None => return serial(&only_port()?, program),
+            Some(name) => return serial(&port(name, simulated_devices)?, program),
+            None => {
+                let devices = discovery::devices().map_err(OpenError::Discovery)?;
+                return serial(&only_port(&devices)?, program);
+            }
         };
         Ok(Self::Simulated(Box::new(simulated)))
     }
 
-    /// The same; a device in this process is not faster than real time.
+    /// Limits a device in this process to real time; a device at a port is unchanged.
     pub fn in_real_time(self) -> Self {
         match self {
             Self::Simulated(simulated) => Self::Simulated(Box::new(simulated.in_real_time())),
@@ -57,8 +60,8 @@ impl Connection {
         }
     }
 
-    /// The programs that are connected to the device; none to one in this
-    /// process. If they cannot be told, there are none to name.
+    /// Returns the programs that are connected to the device. Empty for a device in this process,
+    /// and if the list cannot be read.
     pub fn programs(&mut self) -> Vec<Program> {
         match self {
             Self::Shared(shared) => shared.programs().unwrap_or_default(),
@@ -92,13 +95,22 @@ fn serial(port: &str, program: &str) -> Result<Connection, OpenError> {
         .map_err(OpenError::Transport)
 }
 
-/// The port of a name: the name itself, or the port of a simulated device.
-fn port(name: &str) -> Result<String, OpenError> {
-    if name.contains(['/', '\\']) || name.to_ascii_uppercase().starts_with("COM") {
+/// Returns whether a name is a port: a path, or `COM` with a number.
+fn is_port(name: &str) -> bool {
+    let of_windows = name
+        .get(..3)
+        .filter(|start| start.eq_ignore_ascii_case("COM"))
+        .and_then(|_| name.get(3..));
+    name.contains(['/', '\\']) || of_windows.is_some_and(|number| number.parse::<u32>().is_ok())
+}
+
+/// Resolves a name to a port: a port stands for itself, another name for the simulated device of
+/// `offered` that is served under it.
+fn port(name: &str, offered: impl FnOnce() -> Vec<Device>) -> Result<String, OpenError> {
+    if is_port(name) {
         return Ok(name.to_owned());
     }
-    let offered = discovery::simulated_devices(&discovery::simulated_folder());
-    let found = offered
+    let found = offered()
         .into_iter()
         .find(|device| matches!(&device.kind, DeviceKind::Simulated { name: its } if its == name));
     found
@@ -108,9 +120,13 @@ fn port(name: &str) -> Result<String, OpenError> {
         })
 }
 
-fn only_port() -> Result<String, OpenError> {
-    let devices = discovery::devices().map_err(OpenError::Discovery)?;
-    match devices.as_slice() {
+fn simulated_devices() -> Vec<Device> {
+    discovery::simulated_devices(&discovery::simulated_folder())
+}
+
+/// Returns the port of the only device.
+fn only_port(devices: &[Device]) -> Result<String, OpenError> {
+    match devices {
         [Device { port, .. }] => Ok(port.clone()),
         [] => Err(OpenError::None),
         several => Err(OpenError::Several {
@@ -153,6 +169,55 @@ mod tests {
 
     fn scene() -> Result<Scene, SceneError> {
         shipped::scene(Path::new("passive-examination"), &Overrides::default())
+    }
+
+    fn served(names: &[&str]) -> Vec<Device> {
+        let device = |name: &&str| Device {
+            port: format!("/run/crepitus/{name}"),
+            kind: DeviceKind::Simulated {
+                name: (*name).to_owned(),
+            },
+        };
+        names.iter().map(device).collect()
+    }
+
+    #[test]
+    fn a_name_is_that_of_one_device() {
+        let offered = || served(&["knee", "knee-2", "left"]);
+        for name in ["knee", "knee-2", "left"] {
+            let port = port(name, offered).unwrap();
+            assert_eq!(port, format!("/run/crepitus/{name}"));
+        }
+        for name in ["kne", "Knee", ""] {
+            let error = port(name, offered).unwrap_err();
+            assert!(matches!(error, OpenError::Unknown { .. }), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_port_stands_for_itself() {
+        let none = || -> Vec<Device> { panic!("for a port") };
+        for name in ["/dev/ttyACM0", "COM3", "com12", r"\\.\COM10"] {
+            assert_eq!(port(name, none).unwrap(), name);
+        }
+        // Names of simulated devices.
+        let names = ["comms", "COM", "compass", "com3x"];
+        for name in names {
+            assert!(port(name, || served(&names)).unwrap().ends_with(name));
+        }
+    }
+
+    #[test]
+    fn without_a_name_there_has_to_be_one_device() {
+        assert_eq!(only_port(&served(&["knee"])).unwrap(), "/run/crepitus/knee");
+        assert!(matches!(only_port(&[]), Err(OpenError::None)));
+        let several = only_port(&served(&["left", "right"]))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            several.contains("/run/crepitus/left, /run/crepitus/right"),
+            "{several}"
+        );
     }
 
     #[test]

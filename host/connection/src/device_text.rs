@@ -7,7 +7,7 @@ use crepitus_protocol::management::Identity;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
-/// Version, schema hash, serial number, cause of the last reset.
+/// Formats version, schema hash, serial number and cause of the last reset.
 pub fn identity(identity: &Identity) -> String {
     let [major, minor, patch] = identity.version;
     format!(
@@ -18,7 +18,7 @@ pub fn identity(identity: &Identity) -> String {
     )
 }
 
-/// The same as JSON.
+/// Returns version, schema hash, serial number, image hash and cause of the last reset as JSON.
 pub fn identity_json(identity: &Identity) -> Value {
     let [major, minor, patch] = identity.version;
     json!({
@@ -30,7 +30,7 @@ pub fn identity_json(identity: &Identity) -> Value {
     })
 }
 
-/// The chip's serial number: as text if it is printable, else hexadecimal.
+/// Formats the chip's serial number: as text if it is printable, else hexadecimal.
 pub fn serial(identity: &Identity) -> String {
     let bytes = &identity.serial;
     if bytes.iter().all(u8::is_ascii_graphic) {
@@ -44,7 +44,7 @@ pub fn serial(identity: &Identity) -> String {
     }
 }
 
-/// The text of each active fault.
+/// Returns the text of each active fault.
 pub fn faults(status: &Status) -> Vec<String> {
     [status.drive_fault, status.comms_fault]
         .into_iter()
@@ -54,7 +54,7 @@ pub fn faults(status: &Status) -> Vec<String> {
         .collect()
 }
 
-/// The status as JSON.
+/// Returns the status as JSON.
 pub fn status_json(status: &Status) -> Value {
     json!({
         "state": status.state.name(),
@@ -76,7 +76,7 @@ pub fn status_json(status: &Status) -> Value {
     })
 }
 
-/// Port, identities, status, faults and counters as JSON.
+/// Returns port, identities, status, faults and counters as JSON.
 pub fn info_json(port: &str, handshake: &Handshake, status: &Status, counters: &Counters) -> Value {
     json!({
         "port": port,

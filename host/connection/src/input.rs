@@ -1,11 +1,11 @@
-//! Which failed requests are the caller's mistake.
+//! Classification of failed requests: invalid input or failed work.
 
 use crepitus_client::Error;
 use crepitus_protocol::ValueError;
 use crepitus_protocol::host::Refusal;
 
-/// Whether a request was bad input: an unknown parameter, or values that no device
-/// takes. All other errors are failed work.
+/// Returns whether an error is invalid input: an unknown parameter, or values that no device
+/// accepts. All other errors are failed work.
 pub fn is_input(error: &Error) -> bool {
     match error {
         Error::UnknownParameter { .. } => true,

@@ -1,6 +1,6 @@
 //! # Connections to a device
 //!
-//! What a user calls a device, and the [`Transport`](crepitus_client::Transport) to it. The command line tool and the Python
+//! Opens the [`Transport`](crepitus_client::Transport) to a device by its name. The command line tool and the Python
 //! package open devices here, so that a name means the same in both:
 //!
 //! | name | device |
@@ -8,7 +8,7 @@
 //! | none | the only one that is attached |
 //! | `sim` | a simulated one in this process, with a scene's leg and parameters |
 //! | `emulated` | the same from the firmware's own images, with the feature `core` of `crepitus-emulator` |
-//! | with `/` or `\`, or `COM…` | a port |
+//! | with `/` or `\`, or `COM` with a number | a port |
 //! | any other | one that `crepitus serve-sim` serves under this name |
 //!
 //! | to find | look in |
@@ -16,7 +16,7 @@
 //! | names, ports, errors of opening | [`Connection`], [`OpenError`] |
 //! | a device in this process as a transport | [`Simulated`] |
 //! | real time, in ticks | [`Clock`] |
-//! | what a device says of itself, as text and as JSON | [`device_text`] |
+//! | identity, status and faults, as text and as JSON | [`device_text`] |
 //! | parameters by name and as JSON | [`parameters`] |
 #![forbid(unsafe_code)]
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic)]

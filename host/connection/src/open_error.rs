@@ -1,4 +1,4 @@
-//! Why a device cannot be opened.
+//! Errors of opening a device.
 
 use crepitus_board::VirtualError;
 use crepitus_client::TransportError;
@@ -6,17 +6,17 @@ use crepitus_client::discovery::DiscoveryError;
 use crepitus_emulator::on_target::NoTarget;
 use crepitus_scene::SceneError;
 
-/// Why a device cannot be opened.
+/// Reason why a device cannot be opened.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum OpenError {
     /// The ports of this computer cannot be listed.
     #[error(transparent)]
     Discovery(DiscoveryError),
-    /// There is none.
+    /// No device is attached.
     #[error("no device is attached: plug one in, or use a simulated one with `--device sim`")]
     None,
-    /// There are several.
+    /// Several devices are attached, and no name was given.
     #[error("several devices are attached: choose one with `--device`: {}", ports.join(", "))]
     Several {
         /// Their ports.
@@ -31,24 +31,24 @@ pub enum OpenError {
         /// The name.
         name: String,
     },
-    /// The program that served it has ended.
+    /// The program that served the simulated device has ended.
     #[error(
         "{port}: no program serves this simulated device any more; `crepitus serve-sim` starts one"
     )]
     Stale {
-        /// The port.
+        /// Its port.
         port: String,
     },
-    /// The port.
+    /// The port cannot be opened.
     #[error(transparent)]
     Transport(TransportError),
-    /// The scene of a simulated device.
+    /// The scene of a simulated device is invalid.
     #[error(transparent)]
     Scene(SceneError),
-    /// The simulated device.
+    /// The simulated device cannot render the scene.
     #[error(transparent)]
     Simulated(VirtualError),
-    /// The emulated device.
+    /// No emulated device is available.
     #[error(transparent)]
     Emulated(NoTarget),
 }

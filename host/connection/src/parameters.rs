@@ -4,17 +4,17 @@ use crepitus_client::values::{full_name, show_value};
 use crepitus_protocol::parameters::{self, Kind, PARAMETERS, Parameter, When};
 use serde_json::{Value, json};
 
-/// No parameter has this name.
+/// Error of an unknown parameter name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown parameter {name:?}: did you mean {like:?}? `crepitus params list` lists all")]
 pub struct UnknownParameter {
-    /// The name.
+    /// Name that was given.
     pub name: String,
-    /// The most similar one.
+    /// Most similar name of a parameter.
     pub like: String,
 }
 
-/// The parameter of a full name, with its id.
+/// Finds a parameter by its full name; returns its id, too.
 ///
 /// # Errors
 /// [`UnknownParameter`] suggests a similar one.
@@ -29,7 +29,7 @@ pub fn find(name: &str) -> Result<(u8, &'static Parameter), UnknownParameter> {
     })
 }
 
-/// Name, unit, range or choices, default and meaning of a parameter.
+/// Returns name, unit, range or choices, default and meaning of a parameter as JSON.
 pub fn described(parameter: &Parameter) -> Value {
     let (unit, min, max, choices) = match parameter.kind {
         Kind::Number(spec) => (Some(spec.unit), Some(spec.min), Some(spec.max), None),
@@ -48,7 +48,7 @@ pub fn described(parameter: &Parameter) -> Value {
     })
 }
 
-/// A value: a number, or the name of a choice.
+/// Returns a value as JSON: a number, or the name of a choice.
 pub fn named(parameter: &Parameter, value: f64) -> Value {
     match parameter.kind {
         Kind::Number(_) => json!(value),

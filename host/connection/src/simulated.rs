@@ -18,23 +18,23 @@ const TIMEOUT_TICKS: u64 = 10_000;
 pub struct Simulated {
     device: Box<dyn CabledDevice>,
     name: String,
-    /// The last write was incomplete: send a delimiter first.
+    /// Whether the last write was incomplete, so that a delimiter has to go first.
     torn: bool,
-    /// Keeps it from being faster than real time.
+    /// Limit to real time, if there is one.
     pace: Option<Pace>,
 }
 
-/// Real time, and the ticks of it that are due.
+/// Limit to real time, with the ticks that are due.
 struct Pace {
     clock: Clock,
     due: u64,
 }
 
-/// Wait for a tick that is not due yet.
+/// Poll interval of a tick that is not due yet.
 const NAP: Duration = Duration::from_micros(500);
 
 impl Simulated {
-    /// The device of a scene.
+    /// Creates the simulated device of a scene.
     ///
     /// # Errors
     /// [`crepitus_board::VirtualError`] if the scene has what no device has.
@@ -43,8 +43,7 @@ impl Simulated {
         Ok(Self::cabled(device).named("a simulated device"))
     }
 
-    /// The device of a scene, as the firmware's own images on emulated
-    /// controllers.
+    /// Creates the device of a scene with the firmware's own images on emulated controllers.
     ///
     /// # Errors
     /// [`NoTarget`] without the emulator or the images.
@@ -53,7 +52,7 @@ impl Simulated {
         Ok(Self::cabled(on_target::device(scene, on_build)?).named("an emulated device"))
     }
 
-    /// A device at the end of a virtual cable, such as one that breaks on purpose.
+    /// Wraps a device at the end of a virtual cable, such as one with injected faults.
     pub fn cabled(device: Box<dyn CabledDevice>) -> Self {
         Self {
             device,
@@ -68,7 +67,7 @@ impl Simulated {
         self
     }
 
-    /// The same, not faster than real time.
+    /// Limits the device to real time.
     pub fn in_real_time(mut self) -> Self {
         self.pace = Some(Pace {
             clock: Clock::new(),
@@ -77,7 +76,7 @@ impl Simulated {
         self
     }
 
-    /// The next tick, when it is due.
+    /// Advances the device by one tick, once it is due.
     fn tick(&mut self) {
         if let Some(pace) = &mut self.pace {
             while pace.due == 0 {
