@@ -5,19 +5,9 @@ mod support;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use support::{names, run, stderr, stdout};
+use support::{WEIGHT_IN_THE_BRACE, names, refuses, run, stderr, stdout};
 
-/// What the weight of the scene `weight-in-the-brace` is.
-const WEIGHT: [&str; 6] = [
-    "--weight-kg",
-    "2.44",
-    "--lever-m",
-    "0.2477",
-    "--weight-inertia-kg-m2",
-    "0.2202",
-];
-
-/// What its brace is, which nobody tells the estimator.
+/// Values of the brace of the scene `weight-in-the-brace`, which the estimator does not know.
 const TRUTH: [(&str, f64); 9] = [
     ("friction_nm", 0.42),
     ("load_loss", 0.24),
@@ -59,7 +49,7 @@ fn a_recorded_device_is_identified() {
     let [out_name, scene_name] = [&out, &scene].map(|path| path.to_str().unwrap());
     let results = ["--out", out_name, "--scene-out", scene_name];
     let verb = ["identify", &swing, &armed];
-    let done = run(&[&verb[..], &WEIGHT, &results].concat());
+    let done = run(&[&verb[..], &WEIGHT_IN_THE_BRACE, &results].concat());
     assert!(done.status.success(), "{}", stderr(&done));
     let text = stdout(&done);
     assert!(text.contains("drivetrain.friction_nm"), "{text}");
@@ -100,7 +90,12 @@ fn a_recorded_device_is_identified() {
     ]);
     assert!(ran.status.success(), "{}\n{tables}", stderr(&ran));
     // An existing file is kept.
-    let again = run(&[&verb[..], &WEIGHT, &["--scene-out", scene_name]].concat());
+    let again = run(&[
+        &verb[..],
+        &WEIGHT_IN_THE_BRACE,
+        &["--scene-out", scene_name],
+    ]
+    .concat());
     assert_eq!(again.status.code(), Some(2));
     assert!(stderr(&again).contains("already exists"));
 }
@@ -109,13 +104,13 @@ fn a_recorded_device_is_identified() {
 fn what_one_recording_does_not_show_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let swing = recorded(folder.path(), "swing", &[]);
-    let done = run(&[&["--json", "identify", &swing][..], &WEIGHT].concat());
+    let done = run(&[&["--json", "identify", &swing][..], &WEIGHT_IN_THE_BRACE].concat());
     assert!(done.status.success(), "{}", stderr(&done));
     let printed: Value = serde_json::from_str(&stdout(&done)).unwrap();
     let loss = value(&printed["identified"], "load_loss");
     assert_eq!(loss["value"], Value::Null);
     assert!(loss["not_visible"].as_str().unwrap().contains("--arm"));
-    let plain = run(&[&["identify", &swing][..], &WEIGHT].concat());
+    let plain = run(&[&["identify", &swing][..], &WEIGHT_IN_THE_BRACE].concat());
     let text = stdout(&plain);
     assert!(
         text.contains("load-dependent friction: not visible in this recording, because"),
@@ -133,56 +128,29 @@ fn what_is_refused_has_its_exit_code_and_its_reason() {
     let knee = knee.to_str().unwrap();
     let done = run(&["record", knee, "--for", "3s", "--device", "sim"]);
     assert!(done.status.success(), "{}", stderr(&done));
-    let refused = run(&[&["identify", knee, "--out", "never"][..], &WEIGHT].concat());
-    assert_eq!(refused.status.code(), Some(1));
-    assert!(
-        stderr(&refused).contains("nothing is identified: "),
-        "{}",
-        stderr(&refused)
-    );
+    let never = [
+        &["identify", knee, "--out", "never"][..],
+        &WEIGHT_IN_THE_BRACE,
+    ]
+    .concat();
+    refuses(&never, 1, "nothing is identified: ");
     assert!(!Path::new("never").exists());
-    for (arguments, text) in [
-        (vec![&*swing], "--weight-kg"),
+    let weight = ["--weight-kg", "2", "--lever-m", "1"];
+    let sure = [&[&*swing][..], &weight, &["--weight-tolerance", "0"]].concat();
+    for (arguments, part) in [
+        (&[&*swing][..], "--weight-kg"),
         (
-            vec![&*swing, "--weight-kg", "0", "--lever-m", "0.3"],
+            &[&swing, "--weight-kg", "0", "--lever-m", "0.3"],
             "--weight-kg: expected",
         ),
         (
-            vec![&*swing, "--weight-kg", "2", "--lever-m", "nan"],
+            &[&swing, "--weight-kg", "2", "--lever-m", "nan"],
             "--lever-m: expected",
         ),
-        (
-            vec![
-                &*swing,
-                "--weight-kg",
-                "2",
-                "--lever-m",
-                "1",
-                "--weight-tolerance",
-                "0",
-            ],
-            "--weight-tolerance",
-        ),
-        (
-            vec!["nowhere", "--weight-kg", "2", "--lever-m", "1"],
-            "nowhere",
-        ),
-        (
-            vec!["Cargo.toml", "--weight-kg", "2", "--lever-m", "1"],
-            "not a recording",
-        ),
+        (&sure, "--weight-tolerance"),
+        (&[&["nowhere"][..], &weight].concat(), "nowhere"),
+        (&[&["Cargo.toml"][..], &weight].concat(), "not a recording"),
     ] {
-        let bad = run(&[&["identify"][..], &arguments].concat());
-        assert_eq!(
-            bad.status.code(),
-            Some(2),
-            "{arguments:?}: {}",
-            stderr(&bad)
-        );
-        assert!(
-            stderr(&bad).contains(text),
-            "{arguments:?}: {}",
-            stderr(&bad)
-        );
+        refuses(&[&["identify"], arguments].concat(), 2, part);
     }
 }

@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use support::{run, stderr, stdout};
+use support::{refuses, run, stderr, stdout};
 
 /// An actuator that is none of the data sheet.
 const OURS: Simulated = Simulated {
@@ -167,13 +167,7 @@ fn what_is_refused_has_its_exit_code_and_its_reason() {
         ),
         (vec!["--from", "Cargo.toml", "--moving-mass-g", "52"], "t_s"),
     ] {
-        let bad = run(&[&["identify-actuator"][..], &arguments].concat());
-        assert_eq!(bad.status.code(), Some(2), "{arguments:?}");
-        assert!(
-            stderr(&bad).contains(text),
-            "{arguments:?}: {}",
-            stderr(&bad)
-        );
+        refuses(&[&["identify-actuator"][..], &arguments].concat(), 2, text);
     }
 }
 

@@ -10,7 +10,7 @@ use crepitus_recording::{Damage, Recording, Row, Totals};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 /// The program.
 pub(crate) fn crepitus() -> Command {
@@ -24,6 +24,28 @@ pub(crate) fn run(arguments: &[&str]) -> Output {
         .output()
         .expect("the program starts")
 }
+
+/// Runs the program without anything at stdin; asserts its exit code and a part of its error.
+pub(crate) fn refuses(arguments: &[&str], code: i32, part: &str) {
+    let output = crepitus()
+        .args(arguments)
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program starts");
+    let text = stderr(&output);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {text}");
+    assert!(text.contains(part), "{arguments:?}: {text}");
+}
+
+/// Weight of the scene `weight-in-the-brace`.
+pub(crate) const WEIGHT_IN_THE_BRACE: [&str; 6] = [
+    "--weight-kg",
+    "2.44",
+    "--lever-m",
+    "0.2477",
+    "--weight-inertia-kg-m2",
+    "0.2202",
+];
 
 /// The top of the repository.
 pub(crate) fn repository() -> PathBuf {

@@ -17,4 +17,4 @@ pub mod brace;
 mod estimate;
 pub mod hanging;
 
-pub use estimate::Estimate;
+pub use estimate::{DEVIATIONS, Estimate};

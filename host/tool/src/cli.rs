@@ -1,6 +1,7 @@
 //! The command line: what all verbs share. The arguments of a verb are in its
 //! file under `verbs`.
 
+use crate::failure::Failure;
 use crate::verbs::Verb;
 use clap::{Args, Parser};
 use std::path::PathBuf;
@@ -76,6 +77,28 @@ pub(crate) fn duration(text: &str) -> Result<Duration, String> {
         _ => return Err(invalid()),
     };
     Duration::try_from_secs_f64(number * seconds).map_err(|_| invalid())
+}
+
+/// Checks that the value of an option is above 0.
+pub(crate) fn above_zero(option: &str, value: f64) -> Result<f64, Failure> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(Failure::Input(format!(
+            "{option}: expected a number above 0, got {value}"
+        )))
+    }
+}
+
+/// The half width of a 95 % interval, given in percent above 0, up to 50, as a share.
+pub(crate) fn tolerance(option: &str, percent: f64) -> Result<f64, Failure> {
+    if percent > 0.0 && percent <= 50.0 {
+        Ok(percent / 100.0)
+    } else {
+        Err(Failure::Input(format!(
+            "{option}: expected a number above 0, up to 50 %, got {percent}"
+        )))
+    }
 }
 
 #[cfg(test)]

@@ -33,6 +33,11 @@ impl Failure {
         Self::Input(error.to_string())
     }
 
+    /// Ctrl-C, before anything was written.
+    pub(crate) fn interrupted() -> Self {
+        Self::Work("interrupted: nothing was written".to_owned())
+    }
+
     /// The work failed at `path`; a path without permission is bad input.
     pub(crate) fn at(path: &Path, doing: &str, error: &io::Error) -> Self {
         let message = format!("{}: {doing}: {error}", path.display());

@@ -129,6 +129,11 @@ impl Overlay {
             _ => Ok(measured),
         }
     }
+
+    /// The file.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
 }
 
 fn failed(error: &RecordingError) -> Failure {
@@ -218,12 +223,5 @@ pub(crate) fn warn_of_nothing(differences: &[Difference], file: Option<&Path>) {
             "{file}no time of the measured {} lies within the run: shift it with --overlay-shift",
             d.column
         ));
-    }
-}
-
-impl Overlay {
-    /// The file.
-    pub(crate) fn file(&self) -> Option<&Path> {
-        self.file.as_deref()
     }
 }

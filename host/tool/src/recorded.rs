@@ -161,7 +161,7 @@ pub(crate) fn written(
         return Err(exists(out));
     }
     let failed = |error: io::Error| match error.kind() {
-        ErrorKind::Interrupted => Failure::Work("interrupted: nothing was written".to_owned()),
+        ErrorKind::Interrupted => Failure::interrupted(),
         _ => Failure::at(out, "cannot be written", &error),
     };
     let file = new_file(out).map_err(failed)?;

@@ -1,6 +1,7 @@
 //! The files that a run, a study or a recording's report leaves.
 
 use crate::failure::Failure;
+use crepitus_plot::{Figure, pictures};
 use crepitus_scene::output::Folder;
 use serde::Serialize;
 use serde_json::Value;
@@ -33,9 +34,22 @@ pub(crate) fn report_files(
 
 /// `summary.json`.
 pub(crate) fn summary_file(summary: &impl Serialize) -> Result<(String, Vec<u8>), Failure> {
-    let summary = serde_json::to_string_pretty(summary)
-        .map_err(|e| Failure::Work(format!("the summary cannot be written: {e}")))?;
-    Ok(("summary.json".to_owned(), (summary + "\n").into()))
+    json_file("summary.json", summary)
+}
+
+/// A JSON file of this name.
+pub(crate) fn json_file(name: &str, value: &impl Serialize) -> Result<(String, Vec<u8>), Failure> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|e| Failure::Work(format!("{name} cannot be written: {e}")))?;
+    Ok((name.to_owned(), (text + "\n").into()))
+}
+
+/// The charts of figures as SVG files.
+pub(crate) fn svg_files<'f>(figures: impl IntoIterator<Item = &'f Figure>) -> Files {
+    let files = pictures(figures).into_iter();
+    files
+        .map(|picture| (format!("{}.svg", picture.name), picture.svg.into()))
+        .collect()
 }
 
 /// This folder, or the first of `folder-2`, `folder-3`, … that holds no other

@@ -35,9 +35,7 @@ impl Watcher for Watch {
 /// The failure of a study.
 pub(crate) fn failed(error: StudyError<Interrupted>) -> Failure {
     match error {
-        StudyError::Watcher(Interrupted) => {
-            Failure::Work("interrupted: nothing was written".to_owned())
-        }
+        StudyError::Watcher(Interrupted) => Failure::interrupted(),
         other => Failure::Work(format!("the study failed: {other}")),
     }
 }

@@ -91,16 +91,14 @@ impl Wav {
 
 impl Listener {
     /// Takes a row, the first value of which is its time.
-    pub(crate) fn row(&mut self, values: &[f64]) -> Result<(), SoundError> {
+    pub(crate) fn row(&mut self, values: &[f64]) -> Result<(), Failure> {
         match (values.first(), values.get(self.index)) {
-            (Some(time_s), Some(value)) => self.sound.row(*time_s, *value),
+            (Some(time_s), Some(value)) => self
+                .sound
+                .row(*time_s, *value)
+                .map_err(|e| failed(&self.file, &e)),
             _ => Ok(()),
         }
-    }
-
-    /// The failure of this sound.
-    pub(crate) fn failed(file: Option<&Path>, error: &SoundError) -> Failure {
-        failed(file.unwrap_or(Path::new("the sound")), error)
     }
 
     /// Writes the file.
@@ -119,13 +117,6 @@ impl Listener {
             ));
         }
         Ok(summary)
-    }
-}
-
-impl Wav {
-    /// The file.
-    pub(crate) fn file(&self) -> Option<&Path> {
-        self.file.as_deref()
     }
 }
 

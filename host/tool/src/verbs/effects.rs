@@ -139,9 +139,7 @@ fn refuse(scene: &Scene, refusal: Refusal) -> Failure {
 
 fn failed(scene: &Scene, error: EffectsError<Interrupted>) -> Failure {
     match error {
-        EffectsError::Watcher(Interrupted) => {
-            Failure::Work("interrupted: nothing was written".to_owned())
-        }
+        EffectsError::Watcher(Interrupted) => Failure::interrupted(),
         EffectsError::Refused(refusal) => refuse(scene, refusal),
         other => Failure::Work(format!("{}: {other}", scene.file.display())),
     }

@@ -1,15 +1,17 @@
 //! `crepitus identify`: friction, inertia, backlash and cuffs of the brace from recordings of a
 //! weight that swings in it.
 
-mod recordings;
+pub(crate) mod recordings;
 mod results;
 mod table;
 
+use crate::cli::{above_zero, tolerance};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::results::folder;
 use clap::{Args, ValueHint};
+use crepitus_identify::DEVIATIONS;
 use crepitus_identify::brace::{Refusal, Weight, identify};
 use serde_json::json;
 use std::path::PathBuf;
@@ -73,34 +75,18 @@ pub(crate) struct Arguments {
 
 /// Standard deviation, as a share, of a 95 % interval in percent.
 fn deviation(option: &str, percent: f64) -> Result<f64, Failure> {
-    if percent > 0.0 && percent <= 50.0 {
-        Ok(percent / 196.0)
-    } else {
-        Err(Failure::Input(format!(
-            "{option}: expected a number above 0, up to 50 %, got {percent}"
-        )))
-    }
+    Ok(tolerance(option, percent)? / DEVIATIONS)
 }
 
 impl Arguments {
     fn weight(&self) -> Result<Weight, Failure> {
-        let given = [
-            ("--weight-kg", Some(self.weight_kg)),
-            ("--lever-m", Some(self.lever_m)),
-            ("--weight-inertia-kg-m2", self.weight_inertia_kg_m2),
-        ];
-        for (option, value) in given {
-            if value.is_some_and(|value| !(value.is_finite() && value > 0.0)) {
-                let value = value.unwrap_or_default();
-                return Err(Failure::Input(format!(
-                    "{option}: expected a number above 0, got {value}"
-                )));
-            }
-        }
+        let inertia = self.weight_inertia_kg_m2;
         Ok(Weight::new(
-            self.weight_kg,
-            self.lever_m,
-            self.weight_inertia_kg_m2,
+            above_zero("--weight-kg", self.weight_kg)?,
+            above_zero("--lever-m", self.lever_m)?,
+            inertia
+                .map(|value| above_zero("--weight-inertia-kg-m2", value))
+                .transpose()?,
             deviation("--weight-tolerance", self.weight_tolerance)?,
         ))
     }
@@ -124,7 +110,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     });
     drop(progress);
     let brace = found.map_err(|refusal| match refusal {
-        Refusal::Interrupted => Failure::Work("interrupted: nothing was written".to_owned()),
+        Refusal::Interrupted => Failure::interrupted(),
         refusal => Failure::Work(format!("nothing is identified: {refusal}")),
     })?;
     let summary = table::summary(&brace, &weight);

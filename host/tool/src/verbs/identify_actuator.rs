@@ -11,6 +11,7 @@ mod table;
 use crate::cli::DeviceArguments;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::line::{Line, connect, failure};
+use crate::results::folder;
 use chirp::ChirpArguments;
 use clap::Args;
 use crepitus_client::Client;
@@ -84,6 +85,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let chirp = arguments.chirp.played()?;
     let masses = arguments.masses.weighed()?;
     let files = arguments.recordings.read(masses.added.is_some())?;
+    let out = arguments.out.as_deref();
+    let prepared = out.map(folder).transpose()?;
     let needs_device = files.is_none() || arguments.apply || arguments.device.device.is_some();
     let mut client = needs_device
         .then(|| connect(&arguments.device))
@@ -110,8 +113,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let found = match found {
         Ok(found) => found,
         Err(refusal) => {
-            if let Some(out) = arguments.out.as_deref().filter(|_| is_played) {
-                results::write(out, None, files)?;
+            if let (Some(out), Some(folder), true) = (out, prepared, is_played) {
+                results::write(out, folder, None, files)?;
             }
             return Err(Failure::Work(format!("no parameters: {refusal}")));
         }
@@ -119,8 +122,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let rows = table::rows(&found, &in_use, masses.moving.is_some());
     let notes = found.notes(&in_use);
     let summary = table::summary(&found, &rows, &notes);
-    if let Some(out) = &arguments.out {
-        results::write(out, Some((&found, &summary)), files)?;
+    if let (Some(out), Some(folder)) = (out, prepared) {
+        results::write(out, folder, Some((&found, &summary)), files)?;
     }
     let revision = match &mut client {
         Some(client) if arguments.apply => {
@@ -130,9 +133,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     };
     if as_json {
         let revision = revision.map(|revision| revision.0);
-        return print_json(
-            &json!({ "identified": summary, "revision": revision, "out": arguments.out }),
-        );
+        return print_json(&json!({ "identified": summary, "revision": revision, "out": out }));
     }
     for note in notes {
         warn(note);
@@ -142,7 +143,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         table::text(&rows, source),
         table::facts(&found)
     ))?;
-    if let Some(out) = &arguments.out {
+    if let Some(out) = out {
         print(&format!("plot: {}\n", out.join(results::PLOT).display()))?;
     }
     match revision {

@@ -12,7 +12,7 @@ use crate::recorded::beside;
 use crate::reported::Reported;
 use crate::results::{self, footer, report_files};
 use crate::sections::torque_levels;
-use crate::wav::{Listener, Wav};
+use crate::wav::Wav;
 use clap::Args;
 use crepitus_protocol::TICK_S;
 use crepitus_recording::{
@@ -172,9 +172,7 @@ pub(super) fn write(
         values.extend(symptoms.phases(&row));
         collector.row(&values);
         if let Some(listener) = &mut listener {
-            listener
-                .row(&values)
-                .map_err(|e| Listener::failed(extras.wav.file(), &e))?;
+            listener.row(&values)?;
         }
         if let Some(event) = derived.event {
             collector.event(&event);
@@ -186,7 +184,7 @@ pub(super) fn write(
             #[expect(clippy::cast_precision_loss, reason = "a share")]
             progress.reached(n as f64 / expected.max(1) as f64);
             if interrupt::requested() {
-                return Err(Failure::Work("interrupted: nothing was written".to_owned()));
+                return Err(Failure::interrupted());
             }
         }
     }

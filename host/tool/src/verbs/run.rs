@@ -12,7 +12,7 @@ use crate::pictures::Pictures;
 use crate::reported::Reported;
 use crate::results::{self, footer, report_files};
 use crate::sections::torque_levels;
-use crate::wav::{Listener, Wav};
+use crate::wav::Wav;
 use clap::Args;
 use crepitus_report::{Setup, Text};
 use crepitus_scene::shipped;
@@ -140,14 +140,12 @@ fn out_folder(arguments: &Arguments, scene: &Scene) -> PathBuf {
 }
 
 /// The failure of a run, for people.
-fn failure(scene: &Scene, out: &Path, wav: &Wav, error: RunError<WatchError>) -> Failure {
+fn failure(scene: &Scene, out: &Path, error: RunError<WatchError>) -> Failure {
     let file = scene.file.display();
     match error {
         RunError::Observer(WatchError::Write(e)) => Failure::at(out, "writing the results", &e),
-        RunError::Observer(WatchError::Sound(e)) => Listener::failed(wav.file(), &e),
-        RunError::Observer(WatchError::Interrupted) => {
-            Failure::Work("interrupted: nothing was written".to_owned())
-        }
+        RunError::Observer(WatchError::Sound(failure)) => failure,
+        RunError::Observer(WatchError::Interrupted) => Failure::interrupted(),
         RunError::Settings(e) => Failure::Input(format!("{file}: {e}")),
         RunError::Diverged(e) => Failure::Work(format!("{file}: {e}")),
         // `RunError` is non-exhaustive.
@@ -174,7 +172,7 @@ fn simulate(
     let failed = |e: &std::io::Error| Failure::at(out, "writing the results", e);
     let folder = results::folder(out)?;
     interrupt::listen();
-    let failed_run = |e| failure(scene, out, &arguments.wav, e);
+    let failed_run = |e| failure(scene, out, e);
     if arguments.no_trace {
         let mut watch =
             watch::EventsAlone::new(&folder, scene.duration_s).map_err(|e| failed(&e))?;

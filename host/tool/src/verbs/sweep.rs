@@ -326,13 +326,7 @@ fn done(plan: &Plan, table: &Written, ran: Option<&Ran>, as_json: bool) -> Resul
             "sweep": plan.identity(),
         }));
     }
-    if table.failed > 0 {
-        warn(format!(
-            "{} of {} runs failed: the column `failure` says why",
-            table.failed,
-            plan.runs()
-        ));
-    }
+    warn_of_failed(table, plan.runs());
     let what = match ran {
         None => format!("{} runs: this sweep is complete already", plan.runs()),
         Some(ran) => words::ran(plan.runs(), ran),
@@ -342,6 +336,16 @@ fn done(plan: &Plan, table: &Written, ran: Option<&Ran>, as_json: bool) -> Resul
         "{what}\ntable: {} ({size})\n",
         table.file.display()
     ))
+}
+
+/// Warns of failed runs.
+fn warn_of_failed(table: &Written, runs: u64) {
+    if table.failed > 0 {
+        warn(format!(
+            "{} of {runs} runs failed: the column `failure` says why",
+            table.failed
+        ));
+    }
 }
 
 fn shard_done(

@@ -144,9 +144,7 @@ fn text(study: &VibrationStudy) -> StudyText {
 
 fn failed(error: VibrationError<Interrupted>) -> Failure {
     match error {
-        VibrationError::Watcher(Interrupted) => {
-            Failure::Work("interrupted: nothing was written".to_owned())
-        }
+        VibrationError::Watcher(Interrupted) => Failure::interrupted(),
         other => Failure::Input(format!(
             "{other}; crepitus scenes fig8-6-actuator is a scene that has all"
         )),

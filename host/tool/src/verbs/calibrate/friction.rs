@@ -9,13 +9,12 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::line::{Line, failure};
 use crate::progress::Progress;
+use crate::verbs::identify::recordings::recording;
 use crepitus_client::Client;
-use crepitus_identify::brace::{
-    Quantity, QuantityResult, Recording, Refusal, TORQUE_DEVIATION, identify,
-};
+use crepitus_identify::brace::{Quantity, QuantityResult, Refusal, TORQUE_DEVIATION, identify};
 use crepitus_model::parameters::Source;
 use crepitus_model::render::effects::friction_compensation::FrictionCompensationSettings;
-use crepitus_protocol::{DeviceSettings, TICK_S};
+use crepitus_protocol::DeviceSettings;
 
 /// The parameter that this step finds.
 pub(super) const FRICTION: &str = "friction-compensation.friction_nm";
@@ -33,16 +32,9 @@ pub(super) fn found(
             "the device's own parameters are invalid: {error:?}"
         ))
     })?;
-    let recording = Recording {
-        samples,
-        tick_s: TICK_S,
-        rad_per_count: settings.encoder.rad_per_count(),
-        torque_constant_nm_per_a: settings.motor.torque_constant_nm_per_a,
-        gear_ratio: settings.encoder.gear_ratio,
-    };
     let mut progress = Progress::of_study();
     let brace = identify(
-        &[recording],
+        &[recording(samples, &settings)],
         &weight.swinging(),
         TORQUE_DEVIATION,
         &mut |share| {

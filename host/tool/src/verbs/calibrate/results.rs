@@ -3,10 +3,9 @@
 use super::finding::Finding;
 use super::page;
 use crate::failure::Failure;
-use crate::results::{Files, footer, write as write_files};
+use crate::results::{footer, json_file, svg_files, write as write_files};
 use crepitus_client::values::{full_name, show_number};
 use crepitus_connection::parameters::find;
-use crepitus_plot::pictures;
 use crepitus_protocol::parameters::{Kind, Parameter};
 use crepitus_scene::output::Folder;
 use crepitus_table::Table;
@@ -108,18 +107,14 @@ pub(super) fn write(
     changes: &[Change],
     summary: &Json,
 ) -> Result<(), Failure> {
-    let json = serde_json::to_string_pretty(summary)
-        .map_err(|error| Failure::Work(format!("the calibration cannot be written: {error}")))?;
     let figure = page::figure(findings);
-    let mut files: Files = vec![
+    let mut files = vec![
         (
             PAGE.to_owned(),
             page::html(findings, changes, figure.as_ref(), &footer()).into(),
         ),
-        ("calibration.json".to_owned(), (json + "\n").into()),
+        json_file("calibration.json", summary)?,
     ];
-    for picture in pictures(&figure) {
-        files.push((format!("{}.svg", picture.name), picture.svg.into()));
-    }
+    files.extend(svg_files(&figure));
     write_files(folder, out, files)
 }

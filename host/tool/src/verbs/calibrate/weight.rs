@@ -1,9 +1,10 @@
 //! The weight that a person has weighed.
 
+use crate::cli::{above_zero, tolerance};
 use crate::failure::Failure;
 use clap::Args;
-use crepitus_identify::Estimate;
 use crepitus_identify::brace::{GRAVITY, Weight};
+use crepitus_identify::{DEVIATIONS, Estimate};
 
 /// The weight.
 #[derive(Debug, Args)]
@@ -57,7 +58,8 @@ impl Known {
 
     /// As the identification of the brace takes it.
     pub(super) fn swinging(&self) -> Weight {
-        Weight::new(self.kg, self.lever_m, self.inertia_kg_m2, self.share / 1.96)
+        let deviation = self.share / DEVIATIONS;
+        Weight::new(self.kg, self.lever_m, self.inertia_kg_m2, deviation)
     }
 }
 
@@ -69,32 +71,17 @@ impl WeightArguments {
 
     /// The weight, if there is one.
     pub(super) fn weight(&self) -> Result<Option<Known>, Failure> {
-        let given = [
-            ("--weight-kg", self.weight_kg),
-            ("--lever-m", self.lever_m),
-            ("--weight-inertia-kg-m2", self.weight_inertia_kg_m2),
-        ];
-        for (option, value) in given {
-            if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
-                return Err(Failure::Input(format!(
-                    "{option}: expected a number above 0, got {value}"
-                )));
-            }
-        }
-        let percent = self.weight_tolerance;
-        if !(percent > 0.0 && percent <= 50.0) {
-            return Err(Failure::Input(format!(
-                "--weight-tolerance: expected a number above 0, up to 50 %, got {percent}"
-            )));
-        }
-        let (Some(kg), Some(lever_m)) = (self.weight_kg, self.lever_m) else {
-            return Ok(None);
-        };
-        Ok(Some(Known {
+        let positive =
+            |option, value: Option<f64>| value.map(|value| above_zero(option, value)).transpose();
+        let kg = positive("--weight-kg", self.weight_kg)?;
+        let lever_m = positive("--lever-m", self.lever_m)?;
+        let inertia_kg_m2 = positive("--weight-inertia-kg-m2", self.weight_inertia_kg_m2)?;
+        let share = tolerance("--weight-tolerance", self.weight_tolerance)?;
+        Ok(kg.zip(lever_m).map(|(kg, lever_m)| Known {
             kg,
             lever_m,
-            inertia_kg_m2: self.weight_inertia_kg_m2,
-            share: percent / 100.0,
+            inertia_kg_m2,
+            share,
         }))
     }
 }

@@ -35,17 +35,22 @@ fn one(path: &Path, progress: &mut Progress) -> Result<Recording, Failure> {
             #[expect(clippy::cast_precision_loss, reason = "a share")]
             progress.reached(samples.len() as f64 / total as f64);
             if interrupt::requested() {
-                return Err(Failure::Work("interrupted: nothing was written".to_owned()));
+                return Err(Failure::interrupted());
             }
         }
     }
-    Ok(Recording {
+    Ok(recording(samples, &settings))
+}
+
+/// Samples of a device with these settings.
+pub(crate) fn recording(samples: Vec<Sample>, settings: &DeviceSettings) -> Recording {
+    Recording {
         samples,
         tick_s: TICK_S,
         rad_per_count: settings.encoder.rad_per_count(),
         torque_constant_nm_per_a: settings.motor.torque_constant_nm_per_a,
         gear_ratio: settings.encoder.gear_ratio,
-    })
+    }
 }
 
 /// Encoder and motor of all parameters that were in force; they must not change.

@@ -1,9 +1,8 @@
 //! The files of an identification.
 
 use crate::failure::Failure;
-use crate::results::{Files, footer, write as write_files};
+use crate::results::{footer, json_file, svg_files, write as write_files};
 use crepitus_identify::brace::{Brace, chart, page, scene};
-use crepitus_plot::pictures;
 use crepitus_recording::new_file;
 use crepitus_scene::output::Folder;
 use serde_json::Value;
@@ -20,16 +19,12 @@ pub(super) fn write(
     brace: &Brace,
     summary: &Value,
 ) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(summary)
-        .map_err(|e| Failure::Work(format!("the values cannot be written: {e}")))?;
     let html = page::html(brace, "The brace by a swinging weight", &footer());
-    let mut files: Files = vec![
+    let mut files = vec![
         (PAGE.to_owned(), html.into()),
-        ("identified.json".to_owned(), (text + "\n").into()),
+        json_file("identified.json", summary)?,
     ];
-    for picture in pictures([&chart::figure(brace)]) {
-        files.push((format!("{}.svg", picture.name), picture.svg.into()));
-    }
+    files.extend(svg_files([&chart::figure(brace)]));
     write_files(folder, out, files)
 }
 

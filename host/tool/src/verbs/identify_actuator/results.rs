@@ -2,9 +2,9 @@
 
 use super::recorded::Measured;
 use crate::failure::Failure;
-use crate::results::{Files, folder, summary_file, write as write_files};
+use crate::results::{Files, summary_file, svg_files, write as write_files};
 use crepitus_identify::actuator::{Actuator, Series, chart};
-use crepitus_plot::pictures;
+use crepitus_scene::output::Folder;
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
@@ -16,16 +16,14 @@ pub(super) const PLOT: &str = "impedance.svg";
 /// shown.
 pub(super) fn write(
     out: &Path,
+    folder: Folder,
     found: Option<(&Actuator, &Value)>,
     measured: Option<&Measured>,
 ) -> Result<(), Failure> {
-    let folder = folder(out)?;
     let mut files = Files::new();
     if let Some((actuator, summary)) = found {
         files.push(summary_file(summary)?);
-        for picture in pictures([&chart::figure(actuator)]) {
-            files.push((format!("{}.svg", picture.name), picture.svg.into()));
-        }
+        files.extend(svg_files([&chart::figure(actuator)]));
     }
     if let Some(measured) = measured {
         files.push(("measured.csv".to_owned(), csv(&measured.bare).into()));

@@ -1,6 +1,7 @@
 //! The observer of a run: writes its rows and events, collects the report's
 //! figures, moves the progress bar, and stops at Ctrl-C.
 
+use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::wav::Listener;
@@ -8,7 +9,6 @@ use crepitus_report::{Collector, Figures, Measured, Setup};
 use crepitus_scene::Observer;
 use crepitus_scene::output::{EventsCsv, Folder, TraceCsv};
 use crepitus_scene::trace::{Column, EventRecord, SymptomEvent};
-use crepitus_sound::SoundError;
 use std::fs::File;
 use std::io::{self, BufWriter};
 
@@ -28,7 +28,7 @@ pub(super) enum WatchError {
     /// The results cannot be written.
     Write(io::Error),
     /// The sound cannot be made.
-    Sound(SoundError),
+    Sound(Failure),
     /// Ctrl-C.
     Interrupted,
 }

@@ -123,7 +123,7 @@ impl From<io::Error> for Interrupted {
 }
 
 fn failure(_: Interrupted) -> Failure {
-    Failure::Work("interrupted: nothing was written".to_owned())
+    Failure::interrupted()
 }
 
 impl Receiver for Rows {

@@ -1,7 +1,7 @@
 //! `crepitus sweep --merge DIR…`: the table of a sweep that ran in parts.
 
-use super::{store_failure, table, words};
-use crate::failure::{Failure, print, print_json, warn};
+use super::{store_failure, table, warn_of_failed, words};
+use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crepitus_sweep::{Format, Store};
 use serde_json::json;
@@ -32,12 +32,7 @@ pub(super) fn run(folders: &[PathBuf], format: Format, as_json: bool) -> Result<
             "sweep": sweep,
         }));
     }
-    if written.failed > 0 {
-        warn(format!(
-            "{} of {} runs failed: the column `failure` says why",
-            written.failed, sweep.runs
-        ));
-    }
+    warn_of_failed(&written, sweep.runs);
     print(&format!(
         "all {} runs are there\ntable: {} ({})\n",
         sweep.runs,
