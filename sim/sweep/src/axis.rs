@@ -41,6 +41,10 @@ pub enum Scale {
 impl Scale {
     /// Returns the number at a share of the interval, 0 to 1; exact at both ends.
     fn at(self, from: f64, to: f64, share: f64) -> f64 {
+        // Rounding would take the last digits of an end.
+        if share <= 0.0 {
+            return from;
+        }
         if share >= 1.0 {
             return to;
         }
@@ -220,6 +224,14 @@ mod tests {
         assert_eq!(grid("a=0.1:0.7:lin4").last().unwrap(), "0.7");
         assert_eq!(grid("a=1e-6:1e-4:log3"), ["1e-6", "1e-5", "0.0001"]);
         assert_eq!(grid("a=3:-3:lin2"), ["3.0", "-3.0"]);
+        // More digits than a power keeps.
+        let ends = ["0.1234567890127", "0.9876543210123"];
+        for (from, to) in [(ends[0], ends[1]), (ends[1], ends[0])] {
+            for scale in ["lin", "log"] {
+                let values = grid(&format!("a={from}:{to}:{scale}4"));
+                assert_eq!([&*values[0], &*values[3]], [from, to], "{scale}");
+            }
+        }
         assert_eq!(grid("solver.kind = exact, heun"), ["exact", "heun"]);
         assert_eq!(grid("a=7"), ["7"]);
     }

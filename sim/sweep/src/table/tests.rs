@@ -73,11 +73,13 @@ fn what_is_missing_is_named_and_an_end_leaves_nothing() {
 #[cfg(feature = "parquet")]
 mod both_formats {
     use super::{identity, rows};
-    use crate::table::*;
+    use crate::parts::Parts;
+    use crate::table::{Format, write};
     use ::parquet::file::reader::{FileReader, SerializedFileReader};
     use ::parquet::record::Field as Value;
     use std::collections::HashMap;
     use std::fs::{self, File};
+    use std::path::Path;
 
     /// A Parquet file as texts, a map of columns a row.
     fn parquet_rows(file: &Path) -> Vec<HashMap<String, String>> {
