@@ -63,7 +63,17 @@ fn what_was_put_in_comes_out() {
         assert!(found.nm_per_a.holds(constant), "{constant} {found:?}");
         assert!(found.load_loss.holds(loss), "{loss} {found:?}");
         assert!(found.friction_nm.holds(friction), "{friction} {found:?}");
-        assert!(found.nm_per_a.share() < 0.03, "{found:?}");
+        // No narrower than the interval of the weight and the allowances for the model.
+        assert!(
+            (0.0141..0.03).contains(&found.nm_per_a.share()),
+            "{found:?}"
+        );
+        assert!(
+            (0.015..0.1).contains(&found.load_loss.half_width),
+            "{found:?}"
+        );
+        let of_friction = found.friction_nm.half_width / friction;
+        assert!((0.0316 * 0.97..0.5).contains(&of_friction), "{found:?}");
     }
 }
 
