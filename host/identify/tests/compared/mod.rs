@@ -2,12 +2,12 @@
 
 #![allow(dead_code, reason = "each test uses its part")]
 
-#[path = "../../../../sim/board/tests/support/page.rs"]
-mod page;
+#[path = "../../../../sim/board/tests/book/mod.rs"]
+mod book;
 
+use book::Page;
 use crepitus_identify::Estimate;
 use crepitus_identify::brace::{Brace, Quantity, QuantityResult};
-use page::Page;
 
 /// The page of the results.
 pub(crate) const PAGE: Page = Page {

@@ -5,6 +5,8 @@
 //! cause, that nothing drives it again, that arming is refused until the cause
 //! is repaired and the fault cleared, and that the device then works as before.
 
+#[path = "../book/mod.rs"]
+mod book;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -16,10 +18,10 @@ mod pairs;
 mod provocation;
 mod trial;
 
+use book::Page;
 use case::Moment;
 use crepitus_protocol::fault::FAULTS;
 use provocation::{Provocation, provocation};
-use support::page::Page;
 use trial::PUSH_TICKS;
 
 /// The page of these tables.

@@ -3,7 +3,6 @@
 #![allow(dead_code, reason = "each test uses its part")]
 
 pub(crate) mod oracle;
-pub(crate) mod page;
 pub(crate) mod random_values;
 
 use crepitus_board::{Start, VirtualDevice};
