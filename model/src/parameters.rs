@@ -407,6 +407,28 @@ pub(crate) mod tests {
         );
     }
 
+    #[test]
+    fn a_parameter_allows_its_range_or_its_choices_only() {
+        for parameter in crate::render::effects::DEVICE.iter().copied().flatten() {
+            let (good, bad) = match parameter.kind {
+                Kind::Number(spec) => {
+                    let beyond = 1e-9 + 0.01 * (spec.max - spec.min);
+                    ([spec.min, spec.max], [spec.min - beyond, spec.max + beyond])
+                }
+                Kind::Choice(choice) => {
+                    let last = f64::from(u8::try_from(choice.names.len()).unwrap()) - 1.0;
+                    ([0.0, last], [-1.0, last + 1.0])
+                }
+            };
+            for value in good {
+                assert!(parameter.allows(value), "{parameter:?} {value}");
+            }
+            for value in bad.into_iter().chain([f64::NAN]) {
+                assert!(!parameter.allows(value), "{parameter:?} {value}");
+            }
+        }
+    }
+
     /// What holds for the table of any settings.
     pub(crate) fn is_its_table_and_is_held_to_it<const N: usize, T: Tabled<N>>() {
         let defaults = T::defaults().values();

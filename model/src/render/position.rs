@@ -257,6 +257,7 @@ pub fn rise<F: Real>(slope: F, bend: F, missing: F) -> F {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::control::encoder::EncoderReader;
 
     #[test]
     fn an_angle_is_split_and_its_differences_are_exact() {
@@ -279,6 +280,27 @@ mod tests {
         }
         let wrapped = Position::<f64>::at(i32::MIN).beyond(&Position::at(i32::MAX), 0.5);
         assert_eq!(wrapped, 0.5);
+    }
+
+    #[test]
+    fn the_velocity_is_as_late_as_that_of_the_encoder() {
+        let (settings, step_s, acceleration) = (EncoderSettings::default(), 5e-5, 50.0);
+        let mut reader = EncoderReader::<f64>::new(&settings, step_s, 0, 0.0).unwrap();
+        let mut late_s = 0.0;
+        for tick in 1..=4000 {
+            let time_s = f64::from(tick) * step_s;
+            let angle_rad = 0.5 * acceleration * time_s * time_s;
+            #[expect(clippy::cast_possible_truncation, reason = "a revolution or less")]
+            reader.read((angle_rad / settings.rad_per_count()) as i32);
+            if tick > 3000 {
+                late_s += (acceleration * time_s - reader.omega_rad_s()) / acceleration / 1000.0;
+            }
+        }
+        let expected_s = Sight::of_encoder(&settings).velocity_lag_s;
+        assert!(
+            (late_s - expected_s).abs() < step_s,
+            "{late_s} {expected_s}"
+        );
     }
 
     /// From 1 rad, Δφ = (Ω₀ + Ω₁)·h/2.
@@ -329,6 +351,7 @@ mod tests {
             let travel = Travel::of(&input, &to, &scale).unwrap();
             assert_eq!((travel.ticks, travel.omega_start_rad_s), (3, 1.0));
             assert!((travel.bend_rad - 2.0 * 3.0 * 2.5e-5).abs() < 1e-18);
+            assert_eq!(travel.decayed(8.0, 0.5), 1.0);
         }
         assert_eq!(Travel::of(&Checked::Missing(1), &to, &scale), None);
     }
