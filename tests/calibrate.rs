@@ -147,29 +147,30 @@ fn a_wrong_weight_is_said_and_nothing_applied() {
     );
 }
 
-/// A joint that a hand moves from straight to this angle and back, after two seconds at rest.
-fn moved_to(folder: &Path, deg: f64) -> String {
-    let speed = deg.to_radians() / 2.5;
-    let knots: Vec<String> = [
-        (0.0, 0.0),
-        (2.0, 0.0),
-        (2.5, speed),
-        (4.5, speed),
-        (5.0, 0.0),
-        (5.5, -speed),
-        (7.5, -speed),
-        (8.0, 0.0),
-        (20.0, 0.0),
-    ]
-    .iter()
-    .map(|(t, omega)| format!("{{ t_s = {t:?}, omega_rad_s = {omega:?} }}"))
-    .collect();
+/// A joint that a hand moves from straight to both angles and back, after two seconds at rest.
+fn moved_to(folder: &Path, first_deg: f64, then_deg: f64) -> String {
+    let (mut t_s, mut at_deg, mut knots) = (2.0, 0.0, vec![(0.0, 0.0)]);
+    for (to_deg, takes_s) in [(first_deg, 1.0), (then_deg, 3.0), (0.0, 2.0)] {
+        // Half of the time at full speed.
+        let speed: f64 = f64::to_radians(to_deg - at_deg) / (0.75 * takes_s);
+        knots.extend([
+            (t_s, 0.0),
+            (t_s + 0.25 * takes_s, speed),
+            (t_s + 0.75 * takes_s, speed),
+        ]);
+        (t_s, at_deg) = (t_s + takes_s, to_deg);
+    }
+    knots.extend([(t_s, 0.0), (20.0, 0.0)]);
+    let knots: Vec<String> = knots
+        .iter()
+        .map(|(t, omega)| format!("{{ t_s = {t:?}, omega_rad_s = {omega:?} }}"))
+        .collect();
     let scene = format!(
         "version = 1\ntitle = \"A range\"\nduration_s = 20.0\n[motion]\nkind = \"velocity-knots\"\nknots = [{}]\n\
          [solver]\nkind = \"exact-events\"\nstep_s = 5e-5\nprecision = \"f32\"\n[effects.encoder]\n[effects.motor]\n",
         knots.join(", ")
     );
-    let file = folder.join(format!("range{deg}.toml"));
+    let file = folder.join(format!("range{first_deg}to{then_deg}.toml"));
     fs::write(&file, scene).unwrap();
     file.to_str().unwrap().to_owned()
 }
@@ -177,26 +178,27 @@ fn moved_to(folder: &Path, deg: f64) -> String {
 #[test]
 fn a_range_is_looked_at_by_hand() {
     let folder = tempfile::tempdir().unwrap();
-    for (deg, code, words) in [
-        (128.0, 0, ["range: good", "range.most_deg"]),
-        (60.0, 1, ["range: bad", "bends to about 140"]),
-        (-120.0, 1, ["range: bad", "swap A and B"]),
-        (250.0, 1, ["range: bad", "encoder.lines"]),
-        (1.0, 1, ["range: bad", "move the joint"]),
+    for (first_deg, then_deg, code, words) in [
+        (-10.0, 128.0, 0, ["range: good", "range.most_deg"]),
+        (-10.0, 60.0, 1, ["range: bad", "bends to about 140"]),
+        (3.0, -120.0, 1, ["range: bad", "swap A and B"]),
+        (-10.0, 250.0, 1, ["range: bad", "encoder.lines"]),
+        (0.0, 1.0, 1, ["range: bad", "move the joint"]),
+        (0.0, 128.0, 1, ["range: bad", "extension stop"]),
     ] {
-        let scene = moved_to(folder.path(), deg);
+        let scene = moved_to(folder.path(), first_deg, then_deg);
         let device = ["--yes", "--for", "8s", "--device", "sim", "--scene", &scene];
         let done = calibrate("zero,range", &[&device]);
         let text = stdout(&done);
         assert_eq!(
             done.status.code(),
             Some(code),
-            "{deg}: {text}{}",
+            "{then_deg}: {text}{}",
             stderr(&done)
         );
         assert!(text.contains("zero: good"), "{text}");
         for word in words {
-            assert!(text.contains(word), "{deg}: {word} is not in {text}");
+            assert!(text.contains(word), "{then_deg}: {word} is not in {text}");
         }
     }
 }

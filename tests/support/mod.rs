@@ -4,6 +4,8 @@
 
 #[cfg(target_os = "linux")]
 pub(crate) mod served;
+#[cfg(target_os = "linux")]
+pub(crate) mod terminal;
 
 use crepitus_protocol::telemetry::{Block, TICKS_BYTES};
 use crepitus_recording::{Damage, Recording, Row, Totals};

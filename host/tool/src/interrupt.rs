@@ -27,6 +27,13 @@ pub(crate) fn forget() {
     }
 }
 
+/// Requests a stop, as the signal does: for a Ctrl-C that arrived as a key.
+pub(crate) fn request() {
+    if let Some(requested) = REQUESTED.get() {
+        requested.store(true, Ordering::Relaxed);
+    }
+}
+
 /// Whether a stop was requested.
 pub(crate) fn requested() -> bool {
     REQUESTED

@@ -79,6 +79,14 @@ fn judged(least_deg: f64, most_deg: f64, values: &Values) -> Finding {
                 "move it to its flexion stop; if that was it, open the stop, or compare encoder.lines and encoder.gear_ratio with the data sheets",
             );
     }
+    if least_deg + range.fade_deg > 0.0 {
+        return finding(Verdict::Bad)
+            .remark(format!(
+                "a range that ends {} deg before what was reached leaves out the zero, where the device could not be armed",
+                range.fade_deg
+            ))
+            .remedy("move it to its extension stop; if that was it, set the stop some 10 deg beyond straight");
+    }
     proposed(
         finding(Verdict::Good),
         least_deg,
@@ -132,6 +140,7 @@ mod tests {
             (-10.0, 260.0, Verdict::Bad, "no knee"),
             (-30.0, 130.0, Verdict::Bad, "no knee"),
             (-2.0, 60.0, Verdict::Bad, "bends to about 140"),
+            (-4.9, 130.0, Verdict::Bad, "leaves out the zero"),
         ] {
             let finding = judged(least, most);
             assert_eq!(finding.verdict, verdict, "{least} {most}");
@@ -140,11 +149,11 @@ mod tests {
         }
         // The stops that the hardware page wants need no change.
         assert!(judged(-10.0, 130.0).proposals.is_empty());
-        let narrow = judged(-1.0, 110.5);
+        let narrow = judged(-7.5, 110.5);
         assert_eq!(
             narrow.proposals,
             [
-                ("range.least_deg".to_owned(), 4.0),
+                ("range.least_deg".to_owned(), -2.0),
                 ("range.most_deg".to_owned(), 105.0)
             ]
         );

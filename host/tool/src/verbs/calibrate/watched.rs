@@ -20,7 +20,6 @@ struct Watch {
     is_awaited: bool,
     keys: Option<Keys>,
     status: StatusLine,
-    is_interrupted: bool,
 }
 
 impl Follower for Watch {
@@ -48,7 +47,7 @@ impl Follower for Watch {
         }
         match self.keys.get_or_insert_with(Keys::listen).next() {
             Some(Key::Interrupt) => {
-                self.is_interrupted = true;
+                interrupt::request();
                 Ok(true)
             }
             Some(_) => Ok(true),
@@ -75,10 +74,9 @@ pub(super) fn watched(
         is_awaited,
         keys: None,
         status: StatusLine::new(),
-        is_interrupted: false,
     };
     follow(client, time, Arming::default(), &mut watch)?;
-    if interrupt::requested() || watch.is_interrupted {
+    if interrupt::requested() {
         return Err(interrupted());
     }
     Ok(watch.samples)

@@ -1,25 +1,20 @@
-//! `crepitus monitor`, on a terminal.
-#![cfg(target_os = "linux")]
-
-mod support;
+//! A program on a terminal of its own.
 
 use std::io::{Read, Write};
 use std::process::{Command, Stdio};
 use std::sync::{Arc, Mutex};
 use std::thread::{sleep, spawn};
 use std::time::{Duration, Instant};
-use support::served::Served;
-use support::{run, stderr};
 
 /// A program on a terminal of its own, and what it has written so far.
-struct Terminal {
+pub(crate) struct Terminal {
     child: std::process::Child,
     shown: Arc<Mutex<String>>,
 }
 
 impl Terminal {
     /// `script` of util-linux gives it the terminal.
-    fn new(arguments: &str, runtime: Option<&std::path::Path>) -> Self {
+    pub(crate) fn new(arguments: &str, runtime: Option<&std::path::Path>) -> Self {
         let program = env!("CARGO_BIN_EXE_crepitus");
         let mut command = Command::new("script");
         command
@@ -48,14 +43,14 @@ impl Terminal {
         Self { child, shown }
     }
 
-    fn press(&mut self, keys: &str) {
+    pub(crate) fn press(&mut self, keys: &str) {
         let input = self.child.stdin.as_mut().unwrap();
         input.write_all(keys.as_bytes()).unwrap();
         input.flush().unwrap();
     }
 
     /// Waits for a text. Blanks of an empty screen are not written.
-    fn until(&self, text: &str) {
+    pub(crate) fn until(&self, text: &str) {
         let end = Instant::now() + Duration::from_secs(20);
         loop {
             let shown = self.shown.lock().unwrap();
@@ -73,7 +68,7 @@ impl Terminal {
         }
     }
 
-    fn end(&mut self) -> (i32, String) {
+    pub(crate) fn end(&mut self) -> (i32, String) {
         let code = self.child.wait().unwrap().code().unwrap();
         sleep(Duration::from_millis(50));
         let shown = self.shown.lock().unwrap().clone();
@@ -85,55 +80,4 @@ impl Drop for Terminal {
     fn drop(&mut self) {
         let _ = self.child.kill();
     }
-}
-
-#[test]
-fn it_shows_a_device_and_obeys_keys() {
-    let mut terminal = Terminal::new("monitor --device sim --zero --arm --target medium", None);
-    terminal.until("medium:");
-    terminal.until("ARMED");
-    terminal.press("m");
-    terminal.press("t");
-    terminal.until("ashworth");
-    terminal.press("s");
-    terminal.until("DIS");
-    terminal.press("q");
-    let (code, shown) = terminal.end();
-    assert_eq!(code, 0, "{shown}");
-    // The screen is given back before the marks are printed.
-    let (_, after) = shown
-        .rsplit_once("\u{1b}[?1049l")
-        .expect("the other screen is left");
-    assert!(after.contains("mark 1 at "), "{after}");
-}
-
-#[test]
-fn it_stops_what_another_program_has_armed() {
-    let served = Served::new();
-    let mut armed = served
-        .command(&["arm", "--device", "knee", "--zero", "--for", "20s"])
-        .stdin(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut terminal = Terminal::new("monitor --device knee", Some(served.home.path()));
-    terminal.until("`crepitus");
-    terminal.press("d");
-    terminal.until("rejected:");
-    terminal.press("\u{1b}");
-    terminal.until("DIS");
-    assert!(!armed.wait().unwrap().success(), "it says why it ended");
-    terminal.press("q");
-    assert_eq!(terminal.end().0, 0);
-}
-
-#[test]
-fn without_a_terminal_it_says_what_to_use() {
-    let output = run(&["monitor", "--device", "sim"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(
-        stderr(&output).contains("crepitus stream"),
-        "{}",
-        stderr(&output)
-    );
 }
