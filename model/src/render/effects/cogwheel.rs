@@ -400,3 +400,40 @@ impl Turn {
         F::from_whole(passed >> COARSE) / F::from_whole(whole)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::position::Sight;
+
+    #[test]
+    fn an_angle_between_two_counts_is_a_part_of_a_tooth() {
+        let settings = CogwheelSettings {
+            mode: 1,
+            pitch_deg: 7.0,
+            ..CogwheelSettings::default()
+        };
+        // So coarse that what lies between two counts is most of a tooth.
+        let sight = Sight {
+            rad_per_count: 0.1,
+            ..Sight::IDEAL
+        };
+        let timing = Timing {
+            step_s: 5e-5,
+            delay_ticks: 0,
+            sight,
+        };
+        let with: CogwheelCoefficients<f64> = Cogwheel::coefficients(&settings, &timing).unwrap();
+        let Clock::Space(per_count, per_rest) = with.clock else {
+            panic!("a clock in space");
+        };
+        for angle_rad in [0.0, 0.03, 0.1, 0.15, 2.09, -0.03, -1.77] {
+            let found = angle::<f64>(&sight.position(angle_rad), per_count, per_rest);
+            let teeth = angle_rad / settings.pitch_deg.to_radians();
+            let expected = teeth - libm::floor(teeth);
+            #[expect(clippy::cast_precision_loss, reason = "far less than is asked for")]
+            let off = found as f64 / TOOTH - expected;
+            assert!(off.abs() < 1e-8, "{angle_rad} rad: {off} of a tooth");
+        }
+    }
+}
