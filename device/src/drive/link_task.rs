@@ -6,7 +6,7 @@ use crate::drive::command::Command;
 use crate::drive::commits::Commits;
 use crate::drive::heartbeat_monitor::Freshness;
 use crate::drive::link::Link;
-use crate::drive::outgoing::{BlockPiece, Outgoing, PIECE_PHASES, PIECE_SAMPLES};
+use crate::drive::outgoing::{BlockPiece, FIRST_PHASES, LAST_PHASES, Outgoing, PIECE_SAMPLES};
 use crate::drive::slow_checks::SlowReadings;
 use core::borrow::BorrowMut;
 use crepitus_protocol::counters::DriveCounter;
@@ -169,7 +169,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
     ) -> Option<EncodedFrame<P>> {
         self.poll_changes(shared);
         if self.outgoing.is_idle() {
-            self.start_frame(unit, crash, spare, shared, counters);
+            self.start_frame(crash, spare, shared, counters);
             return None;
         }
         match self.outgoing.block_piece() {
@@ -182,12 +182,20 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
                 self.outgoing.samples(unit, &piece).ok()?;
                 None
             }
-            Some(BlockPiece::Phases(next)) => {
+            Some(BlockPiece::FirstPhases) => {
                 let piece = shared.command(|command| {
-                    let phases = command.block()?.phases.get(next..)?;
-                    phases.first_chunk::<PIECE_PHASES>().copied()
+                    let phases = &command.block()?.phases;
+                    phases.first_chunk::<FIRST_PHASES>().copied()
                 })?;
-                let frame = self.outgoing.phases(unit, &piece)?;
+                self.outgoing.first_phases(unit, &piece).ok()?;
+                None
+            }
+            Some(BlockPiece::LastPhases) => {
+                let piece = shared.command(|command| {
+                    let phases = &command.block()?.phases;
+                    phases.last_chunk::<LAST_PHASES>().copied()
+                })?;
+                let frame = self.outgoing.last_phases(unit, &piece)?;
                 shared.command(Command::pop_block);
                 self.blocks_before_status = self.blocks_before_status.saturating_sub(1);
                 Some(frame)
@@ -227,7 +235,6 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
     /// a new revision appears only in blocks after its status.
     fn start_frame(
         &mut self,
-        unit: &mut impl WordCrc,
         crash: impl FnOnce(u8) -> Part,
         spare: impl FnOnce() -> Option<P>,
         shared: &mut impl Shared,
@@ -255,7 +262,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
         if let Some(head) = head
             && !(is_status_due && self.blocks_before_status == 0)
         {
-            return self.outgoing.begin_block(unit, spare()?, &head).ok();
+            return self.outgoing.begin_block(spare()?, &head).ok();
         }
         if is_status_due {
             self.link.status_sent(now);

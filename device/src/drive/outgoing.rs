@@ -12,15 +12,16 @@ use crepitus_protocol::telemetry::{
     BLOCK_SAMPLES, Block, BlockHead, EFFECT_PHASES_BYTES, EffectPhases, SAMPLE_BYTES, Sample,
 };
 
-/// Samples per piece: with its head and its phases a block takes thirteen of its twenty
-/// ticks.
+/// Samples per piece: with its head, which takes two, and its phases a block takes fourteen of
+/// its twenty ticks.
 pub const PIECE_SAMPLES: usize = 2;
 const _: () = assert!(BLOCK_SAMPLES.is_multiple_of(PIECE_SAMPLES));
 
-/// Phases per piece: fewer words than samples have, as the last piece also ends the
-/// frame.
-pub const PIECE_PHASES: usize = 10;
-const _: () = assert!(BLOCK_SAMPLES.is_multiple_of(PIECE_PHASES));
+/// Phases of the first and of the last piece: as many words as samples have, and few, as the
+/// last piece also ends the frame.
+pub const FIRST_PHASES: usize = 16;
+/// See [`FIRST_PHASES`].
+pub const LAST_PHASES: usize = BLOCK_SAMPLES - FIRST_PHASES;
 
 /// Bytes per piece of a management reply.
 const ANSWER_BYTES: usize = 32;
@@ -46,11 +47,13 @@ enum Rest {
     CrashPart(usize),
     /// Checksum and delimiter; those of a block come with its last phases.
     End,
-    /// The samples of a block, from this one on, and then its phases. These two are last,
+    /// The head of a block, so many bytes, which were written when it began.
+    Head(usize),
+    /// The samples of a block, from this one on, and then its phases. These three are last,
     /// as [`Outgoing::piece`] does not meet them: a table of jumps without a hole.
     Samples(usize),
-    /// The phases of a block, from those of this sample on.
-    Phases(usize),
+    FirstPhases,
+    LastPhases,
 }
 
 /// The next piece of a block.
@@ -58,8 +61,10 @@ enum Rest {
 pub enum BlockPiece {
     /// Samples, from this one on: [`Outgoing::samples`].
     Samples(usize),
-    /// Phases, from those of this sample on: [`Outgoing::phases`].
-    Phases(usize),
+    /// The first phases: [`Outgoing::first_phases`].
+    FirstPhases,
+    /// The last phases: [`Outgoing::last_phases`].
+    LastPhases,
 }
 
 /// Encodes one frame at a time, in buffers `P`.
@@ -134,19 +139,14 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
         Ok(())
     }
 
-    /// Starts the frame of a block; its samples and phases follow in pieces.
+    /// Starts the frame of a block; its head, samples and phases follow in pieces.
     ///
     /// # Errors
     /// [`TooLong`]; never, as a block fits.
-    pub fn begin_block(
-        &mut self,
-        unit: &mut impl WordCrc,
-        buffer: P,
-        head: &BlockHead,
-    ) -> Result<(), TooLong> {
-        let mut encoder = Encoder::new(buffer, Lane::Telemetry)?;
-        encoder.push_by(unit, frame::write(head, &mut self.bytes)?)?;
-        (self.current, self.rest) = (Some(encoder), Rest::Samples(0));
+    pub fn begin_block(&mut self, buffer: P, head: &BlockHead) -> Result<(), TooLong> {
+        let encoder = Encoder::new(buffer, Lane::Telemetry)?;
+        let length = frame::write(head, &mut self.bytes)?.len();
+        (self.current, self.rest) = (Some(encoder), Rest::Head(length));
         Ok(())
     }
 
@@ -154,7 +154,8 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
     pub fn block_piece(&self) -> Option<BlockPiece> {
         match (&self.current, self.rest) {
             (Some(_), Rest::Samples(next)) => Some(BlockPiece::Samples(next)),
-            (Some(_), Rest::Phases(next)) => Some(BlockPiece::Phases(next)),
+            (Some(_), Rest::FirstPhases) => Some(BlockPiece::FirstPhases),
+            (Some(_), Rest::LastPhases) => Some(BlockPiece::LastPhases),
             _ => None,
         }
     }
@@ -180,33 +181,50 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
         self.rest = if next < BLOCK_SAMPLES {
             Rest::Samples(next)
         } else {
-            Rest::Phases(0)
+            Rest::FirstPhases
         };
         Ok(())
     }
 
-    /// Encodes phases of the block; returns the finished frame after the last.
-    pub fn phases(
+    /// Encodes the first phases of the block.
+    ///
+    /// # Errors
+    /// [`TooLong`]; never, as a block fits.
+    pub fn first_phases(
         &mut self,
         unit: &mut impl WordCrc,
-        piece: &[EffectPhases; PIECE_PHASES],
+        piece: &[EffectPhases; FIRST_PHASES],
+    ) -> Result<(), TooLong> {
+        let (Some(encoder), Rest::FirstPhases) = (&mut self.current, self.rest) else {
+            return Ok(());
+        };
+        let mut bytes = [0; FIRST_PHASES * EFFECT_PHASES_BYTES];
+        for (bytes, phases) in bytes.as_chunks_mut().0.iter_mut().zip(piece) {
+            *bytes = phases.bytes();
+        }
+        encoder.push_by(unit, &bytes)?;
+        self.rest = Rest::LastPhases;
+        Ok(())
+    }
+
+    /// Encodes the last phases of the block; returns the finished frame.
+    pub fn last_phases(
+        &mut self,
+        unit: &mut impl WordCrc,
+        piece: &[EffectPhases; LAST_PHASES],
     ) -> Option<EncodedFrame<P>> {
-        let (Some(encoder), Rest::Phases(next)) = (&mut self.current, &mut self.rest) else {
+        let (Some(encoder), Rest::LastPhases) = (&mut self.current, self.rest) else {
             return None;
         };
-        let mut bytes = [0; PIECE_PHASES * EFFECT_PHASES_BYTES];
+        let mut bytes = [0; LAST_PHASES * EFFECT_PHASES_BYTES];
         for (bytes, phases) in bytes.as_chunks_mut().0.iter_mut().zip(piece) {
             *bytes = phases.bytes();
         }
         encoder.push_by(unit, &bytes).ok()?;
-        *next = next.saturating_add(PIECE_PHASES);
-        if *next < BLOCK_SAMPLES {
-            return None;
-        }
         self.finish()
     }
 
-    /// Encodes the next piece of a reply or a status; returns the finished frame
+    /// Encodes the next piece of a reply or a status, or the head of a block; returns the finished frame
     /// after the last.
     pub fn piece(&mut self, unit: &mut impl WordCrc) -> Option<EncodedFrame<P>> {
         let encoder = self.current.as_mut()?;
@@ -256,7 +274,8 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
                 };
                 (write_words(words, &mut self.bytes)?, next)
             }
-            Rest::Samples(_) | Rest::Phases(_) => return None,
+            Rest::Head(length) => (self.bytes.get(..length)?, Rest::Samples(0)),
+            Rest::Samples(_) | Rest::FirstPhases | Rest::LastPhases => return None,
             Rest::End => return self.finish(),
         };
         encoder.push_by(unit, written).ok()?;
@@ -294,9 +313,14 @@ mod tests {
                     outgoing.samples(&mut SoftwareCrc, piece).unwrap();
                     None
                 }
-                Some(BlockPiece::Phases(next)) => {
-                    let piece = block.phases[next..].first_chunk().unwrap();
-                    outgoing.phases(&mut SoftwareCrc, piece)
+                Some(BlockPiece::FirstPhases) => {
+                    let piece = block.phases.first_chunk().unwrap();
+                    outgoing.first_phases(&mut SoftwareCrc, piece).unwrap();
+                    None
+                }
+                Some(BlockPiece::LastPhases) => {
+                    let piece = block.phases.last_chunk().unwrap();
+                    outgoing.last_phases(&mut SoftwareCrc, piece)
                 }
                 None => outgoing.piece(&mut SoftwareCrc),
             };
@@ -344,12 +368,11 @@ mod tests {
             assert_eq!(frame, frame::encode(Lane::FromDrive, &whole).unwrap());
             assert!(runs <= 5, "{runs}");
         }
-        let begun = outgoing.begin_block(&mut SoftwareCrc, buffer(), &block.head());
-        begun.unwrap();
+        outgoing.begin_block(buffer(), &block.head()).unwrap();
         let (frame, runs) = run(&mut outgoing, &block);
         assert_eq!(frame, frame::encode(Lane::Telemetry, &block).unwrap());
-        let pieces = BLOCK_SAMPLES / PIECE_SAMPLES + BLOCK_SAMPLES / PIECE_PHASES;
-        assert_eq!(runs, pieces);
+        // Head, samples, phases.
+        assert_eq!(runs, 1 + BLOCK_SAMPLES / PIECE_SAMPLES + 2);
         outgoing.begin_answer(buffer(), &answer).unwrap();
         let (frame, _) = run(&mut outgoing, &block);
         let whole = frame::encode_bytes(Lane::ManagementAnswer, &answer.bytes());
