@@ -204,7 +204,7 @@ impl Drive {
     /// `link`, priority 1: a byte from comms.
     pub fn link_received(&mut self, byte: u8) {
         let (link, mut parts, counters) = self.link();
-        link.received(&mut SoftwareCrc, byte, &mut parts, counters);
+        link.received(&mut SoftwareCrc, &[byte], &mut parts, counters);
     }
 
     /// The transmit half of `link`: encodes one piece of the current frame for

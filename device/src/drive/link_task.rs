@@ -74,15 +74,15 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
         }
     }
 
-    /// Receives a byte from comms.
+    /// Receives bytes from comms: those up to a delimiter, and it, but none behind it.
     pub fn received(
         &mut self,
         unit: &mut impl WordCrc,
-        byte: u8,
+        bytes: &[u8],
         shared: &mut impl Shared,
         counters: &Counters,
     ) {
-        let Some(frame) = self.decoder.push_by(unit, byte) else {
+        let (_, Some(frame)) = self.decoder.extend_by(unit, bytes) else {
             return;
         };
         let Ok(body) = frame else {

@@ -18,7 +18,7 @@
 
 use crate::raw;
 use core::sync::atomic::{AtomicU8, Ordering, fence};
-use crepitus_protocol::frame::{EncodedFrame, FRAME_BYTES, Frame, FrameBuffer};
+use crepitus_protocol::frame::{DELIMITER, EncodedFrame, FRAME_BYTES, Frame, FrameBuffer};
 use stm32f4xx_hal::gpio::{PC6, PC7, Pull, Speed};
 use stm32f4xx_hal::pac::{DMA2, USART6};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
@@ -119,13 +119,13 @@ impl Link {
         end.wrapping_sub(self.next) % RING_BYTES
     }
 
-    /// The byte that [`Self::take_byte`] takes next, if it has been received.
+    /// The oldest received byte; while there is none, what was there before.
     pub fn next_byte(&self) -> Option<u8> {
         Some(RING.get(self.next)?.load(Ordering::Relaxed))
     }
 
     /// Takes the oldest received byte.
-    pub fn take_byte(&mut self) -> Option<u8> {
+    fn take_byte(&mut self) -> Option<u8> {
         let byte = self.next_byte()?;
         self.next = (self.next + 1) % RING_BYTES;
         Some(byte)
@@ -138,6 +138,26 @@ impl Link {
             *place = self.take_byte().unwrap_or_default();
         }
         into.get(..count).unwrap_or_default()
+    }
+
+    /// Takes the oldest received bytes before the next delimiter, as many as there is room
+    /// for; or that delimiter, if it is the oldest.
+    pub fn take_part<'a>(&mut self, into: &'a mut [u8]) -> &'a [u8] {
+        let count = self.received().min(into.len());
+        let mut taken = 0;
+        for place in into.iter_mut().take(count) {
+            let byte = self.next_byte().unwrap_or(DELIMITER);
+            if byte == DELIMITER && taken > 0 {
+                break;
+            }
+            *place = byte;
+            self.next = (self.next + 1) % RING_BYTES;
+            taken += 1;
+            if byte == DELIMITER {
+                break;
+            }
+        }
+        into.get(..taken).unwrap_or_default()
     }
 
     /// Takes a free buffer, if there is one.

@@ -264,20 +264,15 @@ mod app {
         if !cx.shared.is_link_due.swap(false, Ordering::Relaxed) {
             return;
         }
-        let received = link.received().min(RUN_BYTES);
-        let is_end = received > 0 && link.next_byte() == Some(DELIMITER);
+        let has_bytes = link.received() > 0;
+        let is_end = has_bytes && link.next_byte() == Some(DELIMITER);
         let may_receive = !*cx.local.has_received || is_end && !*cx.local.has_ended;
-        let receives = received > 0 && may_receive;
+        let receives = has_bytes && may_receive;
         (*cx.local.has_received, *cx.local.has_ended) = (receives, receives && is_end);
         if receives {
-            for _ in 0..if is_end { 1 } else { received } {
-                if let Some(byte) = link.take_byte() {
-                    task.received(unit, byte, &mut parts, counters);
-                }
-                if link.next_byte() == Some(DELIMITER) {
-                    break;
-                }
-            }
+            let mut bytes = [0; RUN_BYTES];
+            let part = link.take_part(&mut bytes);
+            task.received(unit, part, &mut parts, counters);
         } else {
             let spare = || link.spare();
             let made = task.next_frame(unit, board::crash::part, spare, &mut parts, counters);
