@@ -140,12 +140,11 @@ impl Link {
         into.get(..count).unwrap_or_default()
     }
 
-    /// Takes the oldest received bytes before the next delimiter, as many as there is room
-    /// for; or that delimiter, if it is the oldest.
-    pub fn take_part<'a>(&mut self, into: &'a mut [u8]) -> &'a [u8] {
-        let count = self.received().min(into.len());
+    /// Takes the oldest of these received bytes before the next delimiter, as many as there is
+    /// room for; or that delimiter, if it is the oldest.
+    pub fn take_part<'a>(&mut self, received: usize, into: &'a mut [u8]) -> &'a [u8] {
         let mut taken = 0;
-        for place in into.iter_mut().take(count) {
+        for place in into.iter_mut().take(received) {
             let byte = self.next_byte().unwrap_or(DELIMITER);
             if byte == DELIMITER && taken > 0 {
                 break;

@@ -67,10 +67,9 @@ mod app {
     const LINKED: usize = 2;
     const TASKS: usize = 3;
 
-    /// The most bytes that a run of `link` receives, every other tick: 120 in a
-    /// millisecond. Comms sends 25, and while a commit is sent 145: what is left of
-    /// it waits in the ring.
-    const RUN_BYTES: usize = 12;
+    /// The most bytes that a run of `link` receives, every other tick: 160 in a
+    /// millisecond. Comms sends 25, and while a commit is sent 145.
+    const RUN_BYTES: usize = 16;
 
     /// Timeout of `idle` in runs of `link`: at most 250 ms.
     const IDLE_TIMEOUT_RUNS: u32 = 5_000;
@@ -264,14 +263,14 @@ mod app {
         if !cx.shared.is_link_due.swap(false, Ordering::Relaxed) {
             return;
         }
-        let has_bytes = link.received() > 0;
-        let is_end = has_bytes && link.next_byte() == Some(DELIMITER);
+        let received = link.received();
+        let is_end = received > 0 && link.next_byte() == Some(DELIMITER);
         let may_receive = !*cx.local.has_received || is_end && !*cx.local.has_ended;
-        let receives = has_bytes && may_receive;
+        let receives = received > 0 && may_receive;
         (*cx.local.has_received, *cx.local.has_ended) = (receives, receives && is_end);
         if receives {
             let mut bytes = [0; RUN_BYTES];
-            let part = link.take_part(&mut bytes);
+            let part = link.take_part(received, &mut bytes);
             task.received(unit, part, &mut parts, counters);
         } else {
             let spare = || link.spare();

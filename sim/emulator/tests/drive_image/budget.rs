@@ -38,17 +38,17 @@ struct Limits {
 const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::ZeroWaitStates,
-        share: 45,
+        share: 41,
         commit_share: 54,
-        cold_share: 42,
+        cold_share: 40,
         render_cycles: 900,
     },
     // About 3 % above what was measured.
     Limits {
         flash: Flash::Modelled,
-        share: 60,
+        share: 56,
         commit_share: 74,
-        cold_share: 56,
+        cold_share: 54,
         render_cycles: 1_310,
     },
 ];

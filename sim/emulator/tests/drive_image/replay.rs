@@ -61,7 +61,7 @@ pub(crate) const REGISTERS: [u32; 19] = [
 const RING: u32 = 2_048;
 
 /// The most that a run of the task takes of them.
-const RUN: u32 = 12;
+const RUN: u32 = 16;
 
 /// Ticks that are compared, at least.
 const TICKS: usize = 20_000;
