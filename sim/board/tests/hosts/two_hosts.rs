@@ -134,6 +134,8 @@ fn stopping_is_for_everybody_and_then_the_other_one_may_arm() {
     assert!(host.manage(Action::Stop, 7).is_some());
     host.run(21);
     assert!(!host.device.board().is_driven());
+    // Comms hears of it behind the blocks that were ready before.
+    host.run(21);
     assert_eq!(host.status().lease, None);
     assert_eq!(
         host.ask_as(OTHER, 2, Operation::Arm),
@@ -205,6 +207,8 @@ fn stopping_is_for_everybody_and_needs_no_session() {
     );
     host.run(21);
     assert!(!host.device.board().is_driven());
+    // Comms hears of it behind the blocks that were ready before.
+    host.run(21);
     let status = host.status();
     assert_eq!(
         (status.state, status.drive_fault, status.comms_fault),
