@@ -224,19 +224,21 @@ fn a_wrong_weight() {
         "{:?}",
         brace.notes
     );
-    // Without the motor a wrong mass goes unnoticed, which is said, but for a wrong lever.
-    let brace = found(&recordings[..1], &with(1.25, 1.0)).expect("accepted");
-    assert!(
+    // Without the motor a wrong weight may go unnoticed, which is said.
+    let is_told = |brace: &Brace| {
         brace
             .notes
             .iter()
-            .any(|n| n.contains("nothing here checks")),
-        "{:?}",
-        brace.notes
-    );
+            .any(|n| n.contains("nothing here checks"))
+    };
+    let brace = found(&recordings[..1], &with(1.25, 1.0)).expect("accepted");
+    assert!(is_told(&brace), "{:?}", brace.notes);
     let wrong = brace.value(Quantity::Friction).expect("visible");
     assert!(!wrong.holds(TRUTH.friction_nm));
-    assert!(found(&recordings[..1], &with(1.0, 1.2)).is_err());
+    for lever in [0.75, 1.2] {
+        let brace = found(&recordings[..1], &with(1.0, lever));
+        assert!(brace.as_ref().map_or(true, is_told), "{lever}");
+    }
 }
 
 #[test]
