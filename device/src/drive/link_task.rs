@@ -6,7 +6,7 @@ use crate::drive::command::Command;
 use crate::drive::commits::Commits;
 use crate::drive::heartbeat_monitor::Freshness;
 use crate::drive::link::Link;
-use crate::drive::outgoing::{BlockPiece, FIRST_PHASES, LAST_PHASES, Outgoing, PIECE_SAMPLES};
+use crate::drive::outgoing::{BlockPiece, Outgoing, PIECE_SAMPLES, first_phases, last_phases};
 use crate::drive::slow_checks::SlowReadings;
 use core::borrow::BorrowMut;
 use crepitus_protocol::counters::DriveCounter;
@@ -183,18 +183,12 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
                 None
             }
             Some(BlockPiece::FirstPhases) => {
-                let piece = shared.command(|command| {
-                    let phases = &command.block()?.phases;
-                    phases.first_chunk::<FIRST_PHASES>().copied()
-                })?;
+                let piece = shared.command(|command| first_phases(command.block()?).copied())?;
                 self.outgoing.first_phases(unit, &piece).ok()?;
                 None
             }
             Some(BlockPiece::LastPhases) => {
-                let piece = shared.command(|command| {
-                    let phases = &command.block()?.phases;
-                    phases.last_chunk::<LAST_PHASES>().copied()
-                })?;
+                let piece = shared.command(|command| last_phases(command.block()?).copied())?;
                 let frame = self.outgoing.last_phases(unit, &piece)?;
                 shared.command(Command::pop_block);
                 self.blocks_before_status = self.blocks_before_status.saturating_sub(1);

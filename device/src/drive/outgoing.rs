@@ -67,6 +67,16 @@ pub enum BlockPiece {
     LastPhases,
 }
 
+/// The first phases of a block.
+pub fn first_phases(block: &Block) -> Option<&[EffectPhases; FIRST_PHASES]> {
+    block.phases.first_chunk()
+}
+
+/// Its last phases.
+pub fn last_phases(block: &Block) -> Option<&[EffectPhases; LAST_PHASES]> {
+    block.phases.last_chunk()
+}
+
 /// Encodes one frame at a time, in buffers `P`.
 #[derive(Debug)]
 pub struct Outgoing<P> {
@@ -314,12 +324,12 @@ mod tests {
                     None
                 }
                 Some(BlockPiece::FirstPhases) => {
-                    let piece = block.phases.first_chunk().unwrap();
+                    let piece = first_phases(block).unwrap();
                     outgoing.first_phases(&mut SoftwareCrc, piece).unwrap();
                     None
                 }
                 Some(BlockPiece::LastPhases) => {
-                    let piece = block.phases.last_chunk().unwrap();
+                    let piece = last_phases(block).unwrap();
                     outgoing.last_phases(&mut SoftwareCrc, piece)
                 }
                 None => outgoing.piece(&mut SoftwareCrc),
