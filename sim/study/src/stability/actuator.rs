@@ -1,10 +1,11 @@
 //! The vibration actuator on a leg, with the stages of the drive in its loop.
 
-use super::input::{ActuatorRun, Upset};
+use super::input::{ActuatorLoop, ActuatorRun, Upset};
 use super::observation::{ActuatorSeen, Observation};
 use super::observe::bits;
 use super::parameter_changes::SLEW_NM_PER_S;
 use super::subject::Subject;
+use crate::vibration::loop_gain;
 use crepitus_model::control::device_limits::LimitSettings;
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
@@ -47,6 +48,29 @@ pub(super) fn observe(subject: Subject, run: &ActuatorRun, late_s: f64) -> Obser
         overflow_s: Some(0.0),
         ..Observation::default()
     })
+}
+
+/// The largest gains of the loop over hands and cuffs; a scene that is refused is an
+/// overflow at 0 s.
+pub(super) fn observe_loop(linear: &ActuatorLoop) -> Observation {
+    let text = super::catalogue::ACTUATOR.scene(Precision::F64);
+    let Ok(scene) = Scene::parse(Path::new("shaken.toml"), &text, &Overrides::default()) else {
+        return Observation {
+            overflow_s: Some(0.0),
+            ..Observation::default()
+        };
+    };
+    let mut seen = Observation::default();
+    let whole = &mut seen.actuator.whole;
+    whole.ticks = 1.0;
+    for hand in linear.hands {
+        for cuff in linear.cuffs_nm_per_rad {
+            let margin = loop_gain::margin(&scene, hand, *cuff, linear.late_ticks);
+            whole.loop_gain = whole.loop_gain.max(margin.largest);
+            whole.loop_in_phase = whole.loop_in_phase.max(1.0 / margin.stable_to);
+        }
+    }
+    seen
 }
 
 fn stages<F: Real>(scene: &Scene, timing: &Timing) -> Result<Stages<F>, SettingsError> {

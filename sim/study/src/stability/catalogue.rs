@@ -31,6 +31,7 @@ mod tools;
 
 use super::case::Case;
 
+pub(super) use actuator::NOMINAL as ACTUATOR;
 pub(crate) use motions::WANDER;
 
 /// All cases.
@@ -125,6 +126,8 @@ pub fn all() -> Vec<Case> {
         actuator::gain_ramp(),
         actuator::all_off(),
         actuator::lost_samples(),
+        actuator::held_loop(),
+        actuator::free_loop(),
     ]
 }
 

@@ -308,6 +308,10 @@ pub enum ActuatorMeasure {
     CurrentRms,
     /// Largest speed of the shaft, rad/s.
     ShaftSpeed,
+    /// Largest gain of the loop from the actuator to the encoder and back, at gain 1.
+    LoopGain,
+    /// The same where the loop is in phase: beyond its reciprocal the loop oscillates.
+    LoopInPhase,
 }
 
 impl ActuatorMeasure {
@@ -320,6 +324,8 @@ impl ActuatorMeasure {
             Self::VoltageStep => ("a step of the coil's voltage", "V"),
             Self::CurrentRms => ("the coil's current", "A rms"),
             Self::ShaftSpeed => ("the shaft's speed", "rad/s"),
+            Self::LoopGain => ("the loop gain", "at gain 1"),
+            Self::LoopInPhase => ("the loop gain in phase", "at gain 1"),
         }
     }
 }

@@ -5,7 +5,7 @@ mod device;
 mod symptom;
 mod words;
 
-pub use actuator::{ActuatorRun, Upset};
+pub use actuator::{ActuatorLoop, ActuatorRun, Upset};
 pub use device::{Attempt, Change, Fault, Lost, Rendered, Shake};
 pub use symptom::{Pressed, RefusedSymptoms, SymptomRun};
 
@@ -149,6 +149,8 @@ pub enum Input {
     Pressed(Pressed),
     /// A device with the vibration actuator, on a leg in a hand.
     Actuator(ActuatorRun),
+    /// The loop from the vibration actuator to the encoder and back, linear.
+    ActuatorLoop(ActuatorLoop),
     /// Settings and steps that must be refused.
     Refusals(Vec<Attempt>),
     /// Symptoms that must be refused.
@@ -239,7 +241,7 @@ impl Input {
                 rate_hz,
                 ..
             } => Some((duration_s, 1.0 / rate_hz)),
-            Self::Refusals(_) | Self::SymptomRefusals(_) => None,
+            Self::ActuatorLoop(_) | Self::Refusals(_) | Self::SymptomRefusals(_) => None,
         }
     }
 

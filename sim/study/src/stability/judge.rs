@@ -61,6 +61,8 @@ fn actuator(what: ActuatorMeasure, part: &ActuatorPart, least: f64, most: f64) -
         ActuatorMeasure::VoltageStep => part.volts_a_tick,
         ActuatorMeasure::CurrentRms => rms(part.current_squares),
         ActuatorMeasure::ShaftSpeed => part.shaft_rad_s,
+        ActuatorMeasure::LoopGain => part.loop_gain,
+        ActuatorMeasure::LoopInPhase => part.loop_in_phase,
     };
     if part.ticks == 0.0 || found < least {
         return Finding::Failed(

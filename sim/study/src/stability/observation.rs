@@ -88,6 +88,10 @@ pub(super) struct ActuatorPart {
     pub(super) volts: f64,
     pub(super) volts_a_tick: f64,
     pub(super) shaft_rad_s: f64,
+    /// Of the loop from the actuator to the encoder, at gain 1: largest gain, and largest
+    /// where it is in phase.
+    pub(super) loop_gain: f64,
+    pub(super) loop_in_phase: f64,
 }
 
 /// Observation of symptoms besides crepitus.

@@ -54,6 +54,9 @@ pub(super) fn observe(
     if let Input::Actuator(run) = input {
         return Ok(super::actuator::observe(subject, run, late_s));
     }
+    if let Input::ActuatorLoop(linear) = input {
+        return Ok(super::actuator::observe_loop(linear));
+    }
     if let Input::Symptoms(run) = input {
         return super::symptom::observe(subject, run, late_s);
     }

@@ -36,6 +36,7 @@ pub(super) fn motion(input: &Input) -> Motion {
         | Input::Hand { .. }
         | Input::Pressed(_)
         | Input::Actuator(_)
+        | Input::ActuatorLoop(_)
         | Input::Refusals(_)
         | Input::SymptomRefusals(_) => Motion::constant(0.0),
     }
@@ -138,6 +139,7 @@ pub(super) fn source<'a, F: Real>(
         | Input::Symptoms(_)
         | Input::Pressed(_)
         | Input::Actuator(_)
+        | Input::ActuatorLoop(_)
         | Input::Refusals(_)
         | Input::SymptomRefusals(_) => Box::new(Same {
             step: ShaftStep::default(),

@@ -71,12 +71,16 @@ pub fn margins(scene: &Scene) -> Vec<Margin> {
     for late_ticks in LATE_TICKS {
         for cuff_nm_per_rad in CUFFS {
             for hand in HANDS {
-                let plant = Linear::of(scene, hand, cuff_nm_per_rad);
-                margins.push(plant.margin(hand, late_ticks));
+                margins.push(margin(scene, hand, cuff_nm_per_rad, late_ticks));
             }
         }
     }
     margins
+}
+
+/// The margin of a scene's device on one cuff and in one hand.
+pub fn margin(scene: &Scene, hand: &'static str, cuff_nm_per_rad: f64, late_ticks: u32) -> Margin {
+    Linear::of(scene, hand, cuff_nm_per_rad).margin(hand, late_ticks)
 }
 
 /// Inertias, springs and dampers, all about the knee.

@@ -3,8 +3,9 @@
 use super::tools::TICK_S;
 use crate::stability::case::{Case, Trial, located};
 use crate::stability::criterion::{ActuatorMeasure as Measure, Criterion};
-use crate::stability::input::{ActuatorRun, Input, Lost, Upset};
+use crate::stability::input::{ActuatorLoop, ActuatorRun, Input, Lost, Upset};
 use crate::stability::subject::{Rung, Subject};
+use crate::vibration::loop_gain::CUFFS;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Settings};
 
@@ -15,7 +16,7 @@ fn shakes(subject: Subject) -> bool {
 }
 
 /// A firm hand on a nominal device.
-const NOMINAL: ActuatorRun = ActuatorRun {
+pub(in crate::stability) const NOMINAL: ActuatorRun = ActuatorRun {
     with: "",
     preset: "coarse",
     speed_rad_s: 0.5,
@@ -423,6 +424,76 @@ pub(super) fn lost_samples() -> Case {
                     ],
                 )],
             )
+        },
+    )
+}
+
+/// The loop without lateness, and four ticks late.
+fn loops(
+    subject: Subject,
+    linear: ActuatorLoop,
+    on_time: Vec<Criterion>,
+    late: Vec<Criterion>,
+) -> Vec<Trial> {
+    if !shakes(subject) {
+        return Vec::new();
+    }
+    let late_linear = ActuatorLoop {
+        late_ticks: 4,
+        ..linear
+    };
+    [(linear, on_time), (late_linear, late)]
+        .map(|(linear, criteria)| Trial {
+            settings: Settings::default(),
+            input: Input::ActuatorLoop(linear),
+            criteria,
+        })
+        .into()
+}
+
+pub(super) fn held_loop() -> Case {
+    case(
+        (
+            "H86",
+            "actuator-loop",
+            "The loop from the actuator to the encoder, in a hand",
+        ),
+        "The actuator shakes the shell, the shell the rotor, the encoder sees it, and the stick answers with kr: that \
+         torque goes to the actuator, too. In the worst case for it the joint sticks always and the gear has no friction.",
+        |subject| {
+            let linear = ActuatorLoop {
+                hands: &["light", "firm", "whole-arm"],
+                cuffs_nm_per_rad: &CUFFS,
+                late_ticks: 0,
+            };
+            loops(
+                subject,
+                linear,
+                vec![at_most(Measure::LoopGain, 0.4)],
+                // Stable to gain 2.
+                vec![at_most(Measure::LoopInPhase, 0.5)],
+            )
+        },
+    )
+}
+
+pub(super) fn free_loop() -> Case {
+    case(
+        (
+            "H87",
+            "actuator-loop-let-go",
+            "The same loop when nobody holds the shell",
+        ),
+        "On the stiffest cuff the gain of 0.4 is missed, without a hand that takes part. Up to gain 2, where the \
+         parameter ends, it is stable all the same, though by little.",
+        |subject| {
+            let linear = ActuatorLoop {
+                hands: &["nobody"],
+                cuffs_nm_per_rad: &CUFFS,
+                late_ticks: 0,
+            };
+            let stable = || vec![at_most(Measure::LoopInPhase, 0.5)];
+            loops(subject, linear, stable(), stable())
         },
     )
 }

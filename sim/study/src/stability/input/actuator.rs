@@ -29,6 +29,35 @@ pub struct ActuatorRun {
     pub step_s: f64,
 }
 
+/// The loop that it closes, with a joint that sticks: see
+/// [`loop_gain`](crate::vibration::loop_gain).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ActuatorLoop {
+    /// What holds the shell: each of these.
+    pub hands: &'static [&'static str],
+    /// On each of these cuffs, N·m/rad.
+    pub cuffs_nm_per_rad: &'static [f64],
+    /// Ticks that everything is late besides.
+    pub late_ticks: u32,
+}
+
+impl fmt::Display for ActuatorLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let cuffs = self.cuffs_nm_per_rad.iter();
+        let cuffs: Vec<String> = cuffs.map(|cuff| Plain(*cuff).to_string()).collect();
+        write!(
+            f,
+            "the loop of a joint that sticks; hand: {}; cuff: {} N·m/rad",
+            self.hands.join(", "),
+            cuffs.join(", ")
+        )?;
+        match self.late_ticks {
+            0 => Ok(()),
+            ticks => write!(f, "; {ticks} ticks late"),
+        }
+    }
+}
+
 /// What happens to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Upset {

@@ -124,6 +124,7 @@ impl fmt::Display for Input {
             Self::Symptoms(run) => write!(f, "{run}")?,
             Self::Pressed(pressed) => write!(f, "{pressed}")?,
             Self::Actuator(run) => write!(f, "{run}")?,
+            Self::ActuatorLoop(linear) => write!(f, "{linear}")?,
             Self::SymptomRefusals(attempts) => {
                 for (i, attempt) in attempts.iter().enumerate() {
                     let comma = if i == 0 { "" } else { ", " };
