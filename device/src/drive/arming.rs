@@ -9,9 +9,10 @@
 //!        it       on        may flow    await comms may flow    back on  the push's direction
 //! ```
 //!
-//! Two pushes must *not* move current: each with one of the two lines off. They are
-//! 0.6 V beside the back-EMF, 1 ms each way, which through a gate that does not follow
-//! its line gives 0.5 A. Comms switches its line on when the drive awaits it.
+//! Two pushes must *not* move current: each with one of the two lines off and the other
+//! on, as read back in every tick of it. They are 0.6 V beside the back-EMF, 1 ms each
+//! way, which through a gate that does not follow its line gives 0.5 A. Comms switches its
+//! line on when the drive awaits it.
 //!
 //! The push is a current of 1.2 A (4 N·m) for 2 ms in each direction, four
 //! times: it moves a free shaft by 7 counts forward, twice back, and forward.
@@ -132,11 +133,14 @@ impl Arming {
             Step::ProveComms if seen.comms_line_is_on => {
                 ArmingOutput::Failed(Fault::CommsGateStuck)
             }
+            // With both lines off the push would show nothing.
+            Step::ProveComms if !seen.line_is_on => ArmingOutput::Failed(Fault::EnableStuckOff),
             Step::ProveComms => self.prove(seen.raw_a, true, Fault::CommsGateStuck, Step::Off),
             Step::Off => self.line(seen.line_is_on, false, Step::AwaitComms),
             Step::AwaitComms => self.await_comms(seen.comms_line_is_on),
             // Without the line of comms the push would show nothing.
             Step::ProveDrive if !seen.comms_line_is_on => ArmingOutput::Failed(Fault::CommsLineOff),
+            Step::ProveDrive if seen.line_is_on => ArmingOutput::Failed(Fault::EnableStuckOn),
             Step::ProveDrive => {
                 self.prove(seen.raw_a, false, Fault::DriveGateStuck, Step::SecondOn)
             }
@@ -456,6 +460,41 @@ mod tests {
         // Its line is on too early, or never.
         assert_eq!(leaks(0.0, 0.0, Some(true)), failed(Fault::CommsGateStuck));
         assert_eq!(leaks(0.0, 0.0, Some(false)), failed(Fault::CommsLineOff));
+    }
+
+    #[test]
+    fn a_push_that_must_not_move_current_proves_nothing_while_its_line_is_not_as_it_should() {
+        // The read-back is wrong in one tick of a push; what that push uses.
+        let arm = |of_line: bool, wrong_tick: u32| {
+            let mut arming = Arming::default();
+            let (mut line, mut ticks) = (false, 0);
+            (0..5_000).find_map(|_| {
+                let is_wrong = ticks == wrong_tick && ticks > 0;
+                let wish = arming.tick(&Seen {
+                    raw_a: Some((0.0, 0.0)),
+                    line_is_on: line != is_wrong,
+                    comms_line_is_on: arming.awaits_comms(),
+                    count: 0,
+                });
+                match wish {
+                    ArmingOutput::Off => line = false,
+                    ArmingOutput::Line | ArmingOutput::Push(_) => line = true,
+                    ArmingOutput::Proof(_, on) => {
+                        line = on;
+                        ticks += u32::from(on == of_line);
+                    }
+                    _ => return Some(wish),
+                }
+                None
+            })
+        };
+        for (of_line, fault) in [(true, Fault::EnableStuckOff), (false, Fault::EnableStuckOn)] {
+            assert_eq!(arm(of_line, 0), Some(ArmingOutput::Armed));
+            for wrong_tick in [1, 7, 20, 39] {
+                let end = arm(of_line, wrong_tick);
+                assert_eq!(end, Some(ArmingOutput::Failed(fault)), "{wrong_tick}");
+            }
+        }
     }
 
     #[test]
