@@ -1,6 +1,6 @@
 //! `crepitus report FILE`: the report of a recording.
 
-mod symptoms;
+mod effects;
 mod tables;
 
 use crate::failure::{Failure, print, print_json};
@@ -20,8 +20,8 @@ use crepitus_recording::{
 };
 use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
 use crepitus_scene::trace::{Column, ColumnKind};
+use effects::Effects;
 use std::path::{Path, PathBuf};
-use symptoms::Symptoms;
 
 /// The columns that every report of a recording draws.
 const COLUMNS: [Column; 8] = {
@@ -123,8 +123,8 @@ pub(super) fn write(
     extras: &Extras<'_>,
 ) -> Result<Reported<RecordingSummary>, Failure> {
     let parameters = recording.parameters();
-    let symptoms = Symptoms::of(parameters);
-    let columns = symptoms.columns();
+    let effects = Effects::of(parameters);
+    let columns = effects.columns();
     let measured = extras.overlay.read(&columns)?;
     let mut listener = extras.wav.listener(&columns, TICK_S)?;
     let folder = results::folder(out)?;
@@ -134,7 +134,7 @@ pub(super) fn write(
         rows_expected: expected,
         row_step_s: TICK_S,
         levels: levels(parameters),
-        effects: symptoms.settings,
+        effects: effects.settings,
     };
     let mut collector = Collector::new(&setup);
     collector.compare(measured, &columns);
@@ -169,7 +169,7 @@ pub(super) fn write(
             f64::from(row.model_torque_nm),
             derived.motor_torque_nm,
         ]);
-        values.extend(symptoms.phases(&row));
+        values.extend(effects.values(&row));
         collector.row(&values);
         if let Some(listener) = &mut listener {
             listener.row(&values)?;
