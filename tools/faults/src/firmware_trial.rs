@@ -13,8 +13,8 @@ use std::process::Command;
 use std::time::Duration;
 
 /// Tests of the drive's image that look at registers, locks, outputs, tasks, protected
-/// memory and the post-mortem record.
-const FIRST: [&str; 7] = [
+/// memory, the post-mortem record and the coil.
+const FIRST: [&str; 9] = [
     "registers::",
     "locks::",
     "outputs::",
@@ -22,6 +22,8 @@ const FIRST: [&str; 7] = [
     "mpu::",
     "crash::",
     "commits::",
+    "actuator::it",
+    "actuator::what",
 ];
 
 /// Some tests of a test program.
