@@ -3,16 +3,20 @@
 //! What the image reads from its registers is written down, in its order: the
 //! encoder's counter, the converters, the clock, the enable line, the break, and how far
 //! the DMA has come. The native drive is given just that, at the same places
-//! of its program, and has to send the same blocks.
+//! of its program, has to send the same blocks, and to want the same duties of motor and
+//! coil.
 
 use crate::host::{Flash, Host, examination, image};
 use crate::symptoms::{self, CASES, Case, PERIOD_TICKS, SYMPTOMS};
 use crepitus_device::Drive;
 use crepitus_device::drive::Boot;
-use crepitus_device::drive::command::Inputs;
+use crepitus_device::drive::coil::{CoilOutput, LARGEST_COIL_DUTY};
+use crepitus_device::drive::command::{Inputs, Outputs};
+use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_emulator::Mcu;
 use crepitus_emulator::mcu::Access;
+use crepitus_model::Real;
 use crepitus_model::render::effects::Phases;
 use crepitus_protocol::frame::DELIMITER;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
@@ -35,7 +39,10 @@ const LINE: u32 = 0x4002_0410;
 const BREAK_FLAGS: u32 = 0x4001_0010;
 const LINK_CONTROL: u32 = 0x4001_140c;
 const RECEIVED_LEFT: u32 = 0x4002_642c;
-pub(crate) const REGISTERS: [u32; 19] = [
+/// Compare values of bridge and coil, in the order in which they are written.
+const MOTOR_COMPARE: [u32; 2] = [0x4001_0034, 0x4001_0038];
+const COIL_COMPARE: [u32; 2] = [0x4001_043c, 0x4001_0440];
+pub(crate) const REGISTERS: [u32; 23] = [
     ENCODER,
     SENSOR_FLAGS,
     SENSOR_DATA[0],
@@ -55,7 +62,14 @@ pub(crate) const REGISTERS: [u32; 19] = [
     BREAK_FLAGS,
     LINK_CONTROL,
     RECEIVED_LEFT,
+    MOTOR_COMPARE[0],
+    MOTOR_COMPARE[1],
+    COIL_COMPARE[0],
+    COIL_COMPARE[1],
 ];
+
+/// Clocks of half a period of both timers.
+const TOP: f64 = 4_200.0;
 
 /// Bytes of the ring that the DMA fills.
 const RING: u32 = 2_048;
@@ -95,6 +109,12 @@ fn coil_amperes(counts: u32) -> f32 {
 struct Replay<'a> {
     drive: Drive,
     inputs: Inputs,
+    /// What it wanted of motor and coil in its last tick.
+    outputs: Outputs,
+    /// The first compare value of a pair.
+    compare: u32,
+    /// Duties of the image that were compared with it.
+    duties: u64,
     /// Of the counts of a current that were read.
     sum: u32,
     /// Channel of the third converter.
@@ -117,8 +137,25 @@ struct Replay<'a> {
 impl Replay<'_> {
     fn access(&mut self, access: &Access) {
         if access.is_write {
-            if access.address == SLOW_SEQUENCE {
-                self.channel = access.value;
+            match access.address {
+                SLOW_SEQUENCE => self.channel = access.value,
+                first if first == MOTOR_COMPARE[0] || first == COIL_COMPARE[0] => {
+                    self.compare = access.value;
+                }
+                second if second == MOTOR_COMPARE[1] => {
+                    let is_driven = self.outputs.bridge != Bridge::Float;
+                    let duty = if is_driven { self.outputs.duty } else { 0.0 };
+                    self.duty("motor", duty, self.compare, access.value);
+                }
+                // The coil's inputs are high from their compare value up.
+                second if second == COIL_COMPARE[1] => {
+                    let duty = match self.outputs.coil {
+                        CoilOutput::Driven(duty) => duty.within(LARGEST_COIL_DUTY),
+                        CoilOutput::Asleep => 0.0,
+                    };
+                    self.duty("coil", duty, access.value, self.compare);
+                }
+                _ => {}
             }
             return;
         }
@@ -147,7 +184,7 @@ impl Replay<'_> {
             }
             BREAK_FLAGS => {
                 self.inputs.has_tripped = access.value >> 7 & 1 == 1;
-                self.drive.command_motor(&self.inputs);
+                self.outputs = self.drive.command_motor(&self.inputs);
                 self.pushed += u64::from(self.drive.next_tick() > 0);
             }
             RECEIVED_LEFT => {
@@ -158,6 +195,17 @@ impl Replay<'_> {
             }
             _ => {}
         }
+    }
+
+    /// Compares a duty that the image sets with the native drive's: a clock of each.
+    fn duty(&mut self, what: &str, wanted: f32, high: u32, low: u32) {
+        let set = (f64::from(high) - f64::from(low)) / TOP;
+        let tick = self.drive.next_tick();
+        assert!(
+            (set - f64::from(wanted)).abs() <= 2.0 / TOP,
+            "before tick {tick} the {what} has a duty of {set}, and {wanted} is wanted"
+        );
+        self.duties += 1;
     }
 
     /// Adds counts of a current; returns the sum of all once the last has been read.
@@ -311,6 +359,9 @@ pub(crate) fn compare(host: &mut Host) -> usize {
     let mut replay = Replay {
         drive: Drive::new(&boot).expect("a drive"),
         inputs: Inputs::default(),
+        outputs: Outputs::default(),
+        compare: 0,
+        duties: 0,
         sum: 0,
         channel: 13,
         clock_us: 0,
@@ -343,5 +394,6 @@ pub(crate) fn compare(host: &mut Host) -> usize {
             armed += BLOCK_SAMPLES;
         }
     }
+    assert!(replay.duties >= armed as u64, "{} duties", replay.duties);
     armed
 }
