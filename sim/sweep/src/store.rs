@@ -321,4 +321,4 @@ fn difference(there: &Identity, wanted: &Identity) -> Option<String> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -3,7 +3,7 @@
 use super::*;
 use crate::row::Cell;
 
-fn identity(runs: u64, sha256: &str) -> Identity {
+pub(crate) fn identity(runs: u64, sha256: &str) -> Identity {
     Identity {
         crepitus_version: "0".to_owned(),
         scene: "a".to_owned(),

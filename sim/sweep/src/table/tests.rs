@@ -2,19 +2,8 @@
 
 use super::*;
 use crate::row::{Cell, Row};
+use crate::store::tests::identity;
 use std::fs;
-
-fn identity(runs: u64) -> Identity {
-    Identity {
-        crepitus_version: "0".to_owned(),
-        scene: "a".to_owned(),
-        title: "b".to_owned(),
-        paths: vec!["x".to_owned()],
-        runs,
-        design_seed: None,
-        sha256: String::new(),
-    }
-}
 
 /// Rows whose columns come, go, and change from counts to numbers to texts.
 fn rows(random: &mut fastrand::Rng, count: u64) -> Vec<Row> {
@@ -52,7 +41,7 @@ fn what_is_missing_is_named_and_an_end_leaves_nothing() {
     let attempt = |runs, goes_on| {
         write(
             &parts,
-            &identity(runs),
+            &identity(runs, ""),
             home.path(),
             Format::Csv,
             &mut |_| goes_on,
@@ -114,7 +103,10 @@ mod both_formats {
             parts.write(&rows[piece]).unwrap();
         }
         for format in [Format::Csv, Format::Parquet] {
-            write(&parts, &identity(500), home.path(), format, &mut |_| true).unwrap();
+            write(&parts, &identity(500, ""), home.path(), format, &mut |_| {
+                true
+            })
+            .unwrap();
         }
         let parquet = parquet_rows(&home.path().join("sweep.parquet"));
         let mut csv = csv::Reader::from_path(home.path().join("sweep.csv")).unwrap();
