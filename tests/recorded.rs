@@ -440,6 +440,32 @@ fn a_symptom_of_a_recording_is_drawn_with_its_limits() {
         assert!(page.contains(words), "{words}");
     }
     assert!(!page.contains("Clasp-knife"));
+    // Before it is armed a symptom has no phase, which is no broken row.
+    assert!(!page.contains("not finite"));
+}
+
+#[test]
+fn the_current_of_the_actuators_coil_is_drawn_where_it_was_driven() {
+    let home = tempfile::tempdir().unwrap();
+    for (scene, is_drawn) in [("fig8-6-actuator", true), ("passive-examination", false)] {
+        let output = crepitus()
+            .current_dir(home.path())
+            .args(["record", scene, "--device", "sim", "--scene", scene])
+            .args(["--for", "600ms", "--arm", "--zero"])
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", stderr(&output));
+        let output = crepitus()
+            .current_dir(home.path())
+            .args(["report", scene])
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", stderr(&output));
+        let page = home.path().join(format!("{scene}-report/report.html"));
+        let page = fs::read_to_string(page).unwrap();
+        assert_eq!(page.contains("Coil of the actuator"), is_drawn, "{scene}");
+        assert!(!page.contains("not finite"), "{scene}");
+    }
 }
 
 /// Time and size of each format, and memory over a long recording: a minute and

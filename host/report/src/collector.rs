@@ -33,6 +33,8 @@ pub struct Collector {
     channels: Channels,
     levels: Option<TorqueLevels>,
     rows: u64,
+    /// Columns that have a value in every row: the first so many.
+    always: usize,
     broken_rows: u64,
     angle: Thinned,
     omega: Thinned,
@@ -160,6 +162,7 @@ impl Collector {
                     .all(|level| level.is_finite())
             }),
             rows: 0,
+            always: setup.columns.len(),
             broken_rows: 0,
             angle: Thinned::new(LINE),
             omega: Thinned::new(LINE),
@@ -191,11 +194,19 @@ impl Collector {
         self.comparisons.extend(found);
     }
 
+    /// From this column on a row may have no value: NaN is none there.
+    pub fn may_lack_from(&mut self, column: usize) {
+        self.always = column;
+    }
+
     /// Takes one row of the trace, in the order of the columns. A value that
     /// is not finite is left out of the figures, and the page says so.
     pub fn row(&mut self, values: &[f64]) {
         self.rows += 1;
-        if values.iter().any(|value| !value.is_finite()) {
+        let is_broken = |(column, value): (usize, &f64)| {
+            !value.is_finite() && !(value.is_nan() && column >= self.always)
+        };
+        if values.iter().enumerate().any(is_broken) {
             self.broken_rows += 1;
         }
         let sample = self.channels.sample(values);

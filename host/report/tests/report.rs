@@ -249,6 +249,29 @@ fn broken_values_are_left_out_and_counted() {
 }
 
 #[test]
+fn a_column_that_may_lack_a_value_breaks_no_row() {
+    let columns = Run::columns(true, false);
+    for (lacks, told) in [(f64::NAN, false), (f64::INFINITY, true)] {
+        let mut collector = Collector::new(&Setup {
+            columns: &columns,
+            rows_expected: 100,
+            row_step_s: 1e-3,
+            levels: None,
+            effects: EffectSettings::default(),
+        });
+        collector.may_lack_from(columns.len() - 1);
+        for n in 0..100 {
+            let mut row = vec![0.0; columns.len()];
+            row[0] = f64::from(n) * 1e-3;
+            row[columns.len() - 1] = lacks;
+            collector.row(&row);
+        }
+        let page = crepitus_report::html(&text("Lacks"), &collector.finish());
+        assert_eq!(page.contains("not finite"), told, "{lacks}");
+    }
+}
+
+#[test]
 fn words_are_escaped() {
     let evil = "<script>alert('&')</script>";
     let columns = Run::columns(false, false);

@@ -137,6 +137,7 @@ pub(super) fn write(
         effects: effects.settings,
     };
     let mut collector = Collector::new(&setup);
+    collector.may_lack_from(COLUMNS.len());
     collector.compare(measured, &columns);
     let mut changes = parameters.changes().peekable();
     let mut changed_at_s = Vec::new();
