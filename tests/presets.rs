@@ -420,3 +420,16 @@ fn the_folder_is_the_users_configuration() {
         assert!(home.path().join(file).is_file(), "{file}");
     }
 }
+
+#[test]
+fn a_part_of_a_name_leads_to_the_presets_that_have_it() {
+    let output = run(&["presets", "updrs"]);
+    assert_eq!(output.status.code(), Some(2));
+    let error = stderr(&output);
+    assert!(
+        error.contains("updrs-1-lead-pipe, updrs-2-lead-pipe"),
+        "{error}"
+    );
+    let error = stderr(&run(&["presets", "nothing-like-it"]));
+    assert!(!error.contains("of this kind"), "{error}");
+}

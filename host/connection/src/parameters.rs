@@ -6,12 +6,15 @@ use serde_json::{Value, json};
 
 /// Error of an unknown parameter name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown parameter {name:?}: did you mean {like:?}? `crepitus params list` lists all")]
+#[error(
+    "unknown parameter {name:?}: {}`crepitus params list` lists all",
+    like.as_ref().map(|like| format!("did you mean {like:?}? ")).unwrap_or_default()
+)]
 pub struct UnknownParameter {
     /// Name that was given.
     pub name: String,
-    /// Most similar name of a parameter.
-    pub like: String,
+    /// Name of the most similar parameter, if there is a similar one.
+    pub like: Option<String>,
 }
 
 /// Finds a parameter by its full name; returns its id, too.
@@ -23,10 +26,23 @@ pub fn find(name: &str) -> Result<(u8, &'static Parameter), UnknownParameter> {
         name: name.to_owned(),
         like: PARAMETERS
             .iter()
-            .map(full_name)
-            .max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)))
-            .unwrap_or_default(),
+            // Of equals the last is taken.
+            .rev()
+            .map(|parameter| (likeness(parameter, name), full_name(parameter)))
+            .filter(|(likeness, _)| *likeness > ALIKE)
+            .max_by(|(a, _), (b, _)| a.total_cmp(b))
+            .map(|(_, like)| like),
     })
+}
+
+/// Likeness of names that are probably meant for each other, from 0 to 1.
+const ALIKE: f64 = 0.85;
+
+/// How much a parameter's name, with or without that of its group, is like a given one.
+fn likeness(parameter: &Parameter, given: &str) -> f64 {
+    let full = strsim::jaro_winkler(&full_name(parameter), given);
+    let short = strsim::jaro_winkler(parameter.key(), given);
+    full.max(short)
 }
 
 /// Returns name, unit, range or choices, default and meaning of a parameter as JSON.
@@ -68,6 +84,16 @@ mod tests {
             assert_eq!(described(parameter)["id"], parameter.id);
         }
         let error = find("crepitus.static_torqe_nm").unwrap_err();
-        assert_eq!(error.like, "crepitus.static_torque_nm");
+        assert_eq!(error.like.as_deref(), Some("crepitus.static_torque_nm"));
+        let error = find("static_torque_nm").unwrap_err();
+        assert_eq!(error.like.as_deref(), Some("crepitus.static_torque_nm"));
+        let error = find("stiffness_nm_per_rad").unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "unknown parameter \"stiffness_nm_per_rad\": did you mean \"crepitus.stiffness_nm_per_rad\"? \
+             `crepitus params list` lists all"
+        );
+        let error = find("nosuch").unwrap_err().to_string();
+        assert!(!error.contains("did you mean"), "{error}");
     }
 }

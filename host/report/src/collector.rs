@@ -204,7 +204,8 @@ impl Collector {
     pub fn row(&mut self, values: &[f64]) {
         self.rows += 1;
         let is_broken = |(column, value): (usize, &f64)| {
-            !value.is_finite() && !(value.is_nan() && column >= self.always)
+            let is_none = value.is_nan() && column >= self.always;
+            !is_none && !value.is_finite()
         };
         if values.iter().enumerate().any(is_broken) {
             self.broken_rows += 1;

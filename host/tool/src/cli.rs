@@ -51,13 +51,13 @@ pub(crate) struct DeviceArguments {
     pub(crate) scene: PathBuf,
 }
 
-/// Parses `PATH=VALUE`.
+/// Parses `PATH=VALUE`, and whatever else has a name and a value.
 pub(crate) fn key_and_value(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((path, value)) if !path.trim().is_empty() => {
             Ok((path.trim().to_owned(), value.trim().to_owned()))
         }
-        _ => Err("expected PATH=VALUE, for example solver.step_s=1e-3".to_owned()),
+        _ => Err("expected a name, `=` and a value, without spaces between them".to_owned()),
     }
 }
 

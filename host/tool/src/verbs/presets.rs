@@ -55,15 +55,23 @@ fn find(name: &str) -> Result<(Preset, Option<PathBuf>), Failure> {
         return Ok((preset.clone(), None));
     }
     let Some(file) = own_presets::find(name) else {
-        return Err(Failure::Input(match own_presets::grade_0(name) {
-            Some(text) => text,
-            None => {
-                format!("no preset {name:?} ships or is your own: `crepitus presets` lists them")
-            }
-        }));
+        let text = own_presets::grade_0(name).unwrap_or_else(|| unknown(name));
+        return Err(Failure::Input(text));
     };
     let preset = Preset::read(&file).map_err(Failure::input)?;
     Ok((preset, Some(file)))
+}
+
+/// That there is no such preset, with those whose names contain it.
+fn unknown(name: &str) -> String {
+    let names = preset::shipped().iter().map(|preset| preset.name.as_str());
+    let alike: Vec<&str> = names.filter(|other| other.contains(name)).collect();
+    let alike = if alike.is_empty() {
+        String::new()
+    } else {
+        format!("; of this kind are {}", alike.join(", "))
+    };
+    format!("no preset {name:?} ships or is your own{alike}: `crepitus presets` lists them")
 }
 
 /// One line a preset, by disorder.

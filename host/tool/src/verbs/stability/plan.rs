@@ -22,14 +22,13 @@ fn cases(arguments: &Arguments) -> Result<Vec<Case>, Failure> {
     let mut cases: Vec<Case> = Vec::new();
     for name in &arguments.cases {
         let case = catalogue::find(name).map_err(|near| {
-            let which = if near.len() < catalogue::all().len() {
-                "near it are"
+            let near = if near.is_empty() {
+                String::new()
             } else {
-                "the cases are"
+                ["; near it are: ", &near.join(", ")].concat()
             };
             Failure::Input(format!(
-                "--case {name}: there is no such case; {which}: {}",
-                near.join(", ")
+                "--case {name}: there is no such case{near}; `crepitus stability --list` lists all"
             ))
         })?;
         if cases.iter().all(|other| other.id != case.id) {
