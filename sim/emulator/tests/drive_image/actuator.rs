@@ -15,8 +15,8 @@ use crepitus_protocol::host::{Answer, Operation, Status};
 use crepitus_protocol::telemetry::CoilCurrent;
 use crepitus_protocol::{CoilFault, State, Values};
 
-const TIM8_BDTR: u32 = 0x4001_0444;
-const MOE: u32 = 1 << 15;
+pub(crate) const TIM8_BDTR: u32 = 0x4001_0444;
+pub(crate) const MOE: u32 = 1 << 15;
 
 /// The most that the stage may add to a tick of `render_torque`, cycles with 0 wait states.
 const MOST_CYCLES: u64 = 350;

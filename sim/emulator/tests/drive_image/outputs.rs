@@ -1,6 +1,7 @@
 //! What switches the outputs off: each way by itself, without the help of the
 //! next one.
 
+use crate::actuator::{MOE, TIM8_BDTR};
 use crate::host::{Host, examination, image};
 use crepitus_emulator::drive_board::Faults;
 use crepitus_emulator::mcu::Access;
@@ -11,7 +12,6 @@ use crepitus_protocol::host::{Answer, Operation};
 
 const GPIOB_BSRR: u32 = 0x4002_0418;
 const TIM1_BDTR: u32 = 0x4001_0044;
-const MOE: u32 = 1 << 15;
 
 /// Sets an interrupt pending; enables one.
 const NVIC_ISPR: u32 = 0xe000_e200;
@@ -74,7 +74,7 @@ fn a_line_that_stays_high_is_noticed_by_its_read_back() {
     assert_eq!(drive_fault(&mut host), Fault::EnableStuckOn.code());
 }
 
-/// Whether the program has switched off line and bridge, before the reset that
+/// Whether the program has switched off line, bridge and coil, before the reset that
 /// then does so in any case.
 fn assert_off_before_reset(host: &Host, accesses: &[Access]) {
     let (reset, cause) = *host.board.resets().first().expect("a reset");
@@ -91,19 +91,20 @@ fn assert_off_before_reset(host: &Host, accesses: &[Access]) {
         Some(0),
         "the enable line is left on"
     );
-    let bridge = before().rfind(|access| access.address == TIM1_BDTR);
-    assert_eq!(
-        bridge.map(|access| access.value & MOE),
-        Some(0),
-        "MOE is left on"
-    );
+    for (timer, name) in [(TIM1_BDTR, "bridge"), (TIM8_BDTR, "coil")] {
+        let last = before().rfind(|access| access.address == timer);
+        let outputs = last.map(|access| access.value & MOE);
+        assert_eq!(outputs, Some(0), "MOE of the {name} is left on");
+    }
 }
 
 #[test]
 fn a_processor_fault_switches_off_before_it_resets() {
     let Some(mut host) = armed() else { return };
     host.run(100);
-    host.board.mcu_mut().listen(&[GPIOB_BSRR, TIM1_BDTR]);
+    host.board
+        .mcu_mut()
+        .listen(&[GPIOB_BSRR, TIM1_BDTR, TIM8_BDTR]);
     // An undefined instruction where the idle loop goes on.
     let idle = host.idle_pc();
     host.board
@@ -124,7 +125,7 @@ fn an_interrupt_that_nobody_handles_switches_off_before_it_resets() {
     let Some(mut host) = armed() else { return };
     host.run(100);
     let mcu = host.board.mcu_mut();
-    mcu.listen(&[GPIOB_BSRR, TIM1_BDTR]);
+    mcu.listen(&[GPIOB_BSRR, TIM1_BDTR, TIM8_BDTR]);
     let (word, bit) = (4 * (UNUSED / 32), 1 << (UNUSED % 32));
     mcu.poke(NVIC_ISER + word, bit);
     mcu.poke(NVIC_ISPR + word, bit);
