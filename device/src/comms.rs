@@ -111,7 +111,9 @@ pub struct Comms {
     job: Option<Job>,
     stream: Stream,
     outbox: Outbox,
-    save: Option<(Revision, Values)>,
+    save_is_due: bool,
+    /// The revision that is being saved, from [`Outputs::save`] to [`Comms::saved`].
+    saving: Option<Revision>,
     /// Post-mortem record of the last crash.
     crash: Option<Head>,
     /// Time of the requested reboot, ms.
@@ -142,7 +144,8 @@ impl Comms {
             job: None,
             stream: Stream::default(),
             outbox: Outbox::default(),
-            save: None,
+            save_is_due: false,
+            saving: None,
             crash: boot.crash,
             reboot_ms: None,
         }
@@ -168,7 +171,7 @@ impl Comms {
         self.to_drive.tick(self.now_ms);
         Outputs {
             enable,
-            save: self.save.take(),
+            save: self.take_save(),
             reboot: self.reboot_ms.is_some_and(|at| self.now_ms >= at),
         }
     }

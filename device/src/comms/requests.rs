@@ -181,7 +181,7 @@ impl Comms {
         if self.supervision.is_enable_requested() {
             return Err(Refusal::Armed);
         }
-        self.save = Some((self.parameters.revision(), *self.parameters.values()));
+        self.save_is_due = true;
         Ok(Started::Pending(JobState::Save))
     }
 
@@ -394,14 +394,27 @@ impl Comms {
         self.reply(job.session, job.number, answer);
     }
 
-    /// Ends the job of a save.
+    /// What is to be saved now: the committed values with the revision that they have
+    /// now, as a drive that restarts gives them another one.
+    pub(super) fn take_save(&mut self) -> Option<(Revision, Values)> {
+        if !core::mem::take(&mut self.save_is_due) {
+            return None;
+        }
+        self.saving = Some(self.parameters.revision());
+        Some((self.parameters.revision(), *self.parameters.values()))
+    }
+
+    /// Ends the job of a save. What was not handed out cannot have been saved.
     pub(super) fn finish_save(&mut self, done: bool) {
-        let Some(job) = self.job.filter(|job| job.state == JobState::Save) else {
+        let Some(revision) = self.saving.take() else {
             return;
         };
         if done {
-            self.parameters.mark_saved(self.parameters.revision());
+            self.parameters.mark_saved(revision);
         }
+        let Some(job) = self.job.filter(|job| job.state == JobState::Save) else {
+            return;
+        };
         let answer = if done {
             Ok(Answer::Done)
         } else {
