@@ -15,7 +15,7 @@ pub(crate) mod clocks;
 pub(crate) mod memory;
 pub(crate) mod part;
 mod timed_flash;
-mod waits;
+pub(crate) mod waits;
 pub(crate) mod wires;
 
 use crate::devices::adc::{self, Adc, Adcs, Analog};

@@ -10,8 +10,8 @@
 //! So an interrupt is pending with the step after its event, and a register is
 //! read with its value at the start of the instruction.
 //!
-//! Unless the core is watched, `fast_path` executes most instructions, with the
-//! same result in the same cycles.
+//! Unless accesses to memory are observed, `fast_path` executes most instructions, with
+//! the same result in the same cycles.
 
 mod as_mcu;
 mod exception_state;
@@ -28,7 +28,7 @@ use crate::mcu::{Mcu, Pin, RamAccess, Reset, Step, Watch};
 use crate::pins::Mode;
 use crate::time::Time;
 use exception_state::Before;
-use fast_path::FastPath;
+use fast_path::{Executed, FastPath};
 use rsemu::core::space::MemAttrs;
 use rsemu::core::value::Width;
 use rsemu::core::wire::Level;
@@ -237,6 +237,12 @@ impl Stm32f405 {
         self.core.reg(number)
     }
 
+    /// S0 to S31 and FPSCR of the floating-point unit.
+    pub fn float_registers(&self) -> impl Iterator<Item = u32> {
+        let floats = (0..32).map(|number| self.core.s(number));
+        floats.chain([self.core.fpscr()])
+    }
+
     /// Base address (RBAR) and attributes (RASR) of each region of the MPU.
     pub fn mpu_regions(&self) -> [(u32, u32); 8] {
         let (bases, attributes) = self.core.with_sys(|sys| (sys.mpu_rbar, sys.mpu_rasr));
@@ -331,13 +337,33 @@ impl Stm32f405 {
     }
 
     /// Executes plain instructions until `stop`. Returns `false` if there is none,
-    /// or if accesses to memory are observed or take their time.
-    fn fast_steps(&mut self, stop: u64, units: u64) -> bool {
-        if self.is_reset || self.memory.is_observed() || self.chip.bus.waits.is_on() {
+    /// or if accesses to memory are observed.
+    fn fast_steps<const WATCHED: bool>(
+        &mut self,
+        stop: u64,
+        units: u64,
+        watch: &mut dyn Watch,
+    ) -> bool {
+        if self.is_reset || self.memory.is_observed() {
             return false;
         }
         let most = (stop - self.now).div_ceil(units);
-        let cycles = self.fast_path.run(&self.core, most);
+        // No plain instruction changes them.
+        let exception = if WATCHED { self.exception() } else { 0 };
+        let (active, now) = (self.active, self.now);
+        let each = |executed: &Executed| {
+            if WATCHED {
+                watch.step(&Step {
+                    pc: executed.pc,
+                    exception,
+                    active,
+                    cycles: u32::try_from(executed.cycles).unwrap_or(u32::MAX),
+                    waits: u32::try_from(executed.waits).unwrap_or(u32::MAX),
+                    at: Time::from_units(now + executed.begin * units),
+                });
+            }
+        };
+        let cycles = self.fast_path.run(&self.core, self.clock, most, each);
         self.cycles += cycles;
         self.clock += cycles;
         self.now += cycles * units;
@@ -360,7 +386,7 @@ impl Stm32f405 {
                 self.now = stop.min(busy_until);
                 break;
             }
-            if !WATCHED && self.fast_steps(stop, units) && self.now >= stop {
+            if self.fast_steps::<WATCHED>(stop, units, watch) && self.now >= stop {
                 break;
             }
             self.chip.bus.now.store(self.now, Relaxed);

@@ -38,10 +38,7 @@ impl Waits {
 
     /// A step of the core begins.
     pub(crate) fn begin(&self, at: u64) {
-        let mut state = lock(&self.state);
-        state.at = at;
-        state.waits = 0;
-        state.has_fetched = false;
+        lock(&self.state).begin(at);
     }
 
     /// The step's waits.
@@ -51,26 +48,26 @@ impl Waits {
 
     /// Reads flash.
     pub(crate) fn flash(&self, offset: u32, is_fetch: bool) {
+        lock(&self.state).flash(offset, is_fetch);
+    }
+
+    /// A whole step that begins at `at`: an instruction of these half words, and its
+    /// data. Returns its waits.
+    pub(crate) fn step(
+        &self,
+        at: u64,
+        fetched: impl Iterator<Item = u32>,
+        data: impl Iterator<Item = u32>,
+    ) -> u64 {
         let mut state = lock(&self.state);
-        // A step that fetches nothing enters an exception, or leaves reset.
-        let kind = match (is_fetch, state.has_fetched) {
-            (true, _) => Kind::Instruction,
-            (false, true) => Kind::Data,
-            (false, false) => Kind::Vector,
-        };
-        state.has_fetched |= is_fetch;
-        let at = state.at;
-        let waits = state.flash.read(kind, offset, at);
-        state.waits += waits;
-        state.at += waits + u64::from(kind == Kind::Data);
-        if let Some(reads) = &mut state.reads {
-            reads.push(FlashRead {
-                at,
-                offset,
-                kind,
-                waits,
-            });
+        state.begin(at);
+        for offset in fetched {
+            state.flash(offset, true);
         }
+        for offset in data {
+            state.flash(offset, false);
+        }
+        state.waits
     }
 
     /// Accesses a register that makes the core wait.
@@ -102,5 +99,35 @@ impl Waits {
             .as_mut()
             .map(std::mem::take)
             .unwrap_or_default()
+    }
+}
+
+impl State {
+    fn begin(&mut self, at: u64) {
+        self.at = at;
+        self.waits = 0;
+        self.has_fetched = false;
+    }
+
+    fn flash(&mut self, offset: u32, is_fetch: bool) {
+        // A step that fetches nothing enters an exception, or leaves reset.
+        let kind = match (is_fetch, self.has_fetched) {
+            (true, _) => Kind::Instruction,
+            (false, true) => Kind::Data,
+            (false, false) => Kind::Vector,
+        };
+        self.has_fetched |= is_fetch;
+        let at = self.at;
+        let waits = self.flash.read(kind, offset, at);
+        self.waits += waits;
+        self.at += waits + u64::from(kind == Kind::Data);
+        if let Some(reads) = &mut self.reads {
+            reads.push(FlashRead {
+                at,
+                offset,
+                kind,
+                waits,
+            });
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! Fast path: plain instructions without the library, which spends most of its time
 //! not with the instruction but with locks, the memory map and the MPU's regions.
 //!
-//! An instruction is plain if it is one of the integer unit and touches registers,
-//! RAM and flash only. The fast path runs while no exception can be taken, and ends
+//! An instruction is plain if it is a common one and touches registers, RAM and flash
+//! only. The fast path runs while no exception can be taken, and ends
 //! before an instruction that is not plain, may fault or is refused by the MPU: the
 //! library executes that. Result and cycles are the library's;
 //! `tests/timing/fast_path.rs` compares them for random instructions.
@@ -10,20 +10,25 @@
 mod accesses;
 mod arithmetic;
 mod code;
+mod floats;
 mod instructions;
 mod memory;
 mod permissions;
+mod timing;
 
 use crate::chip::Chip;
 use crate::chip::memory::Memory;
+use crate::chip::waits::Waits;
 use crate::chip::wires::Raised;
 use code::Code;
+use floats::Floats;
 use instructions::Executor;
 use memory::Windows;
 use permissions::Permissions;
-use rsemu::cpu::arm::v7m::sys::{Exception, Sys, control};
+use rsemu::cpu::arm::v7m::sys::{Exception, Sys, control, fpccr};
 use rsemu::cpu::arm::v7m::{ArmV7m, Regs, xpsr};
 use std::sync::Arc;
+use timing::Timing;
 
 /// With fewer plain instructions in a row, reading and writing the library's
 /// registers takes longer than its step.
@@ -34,10 +39,24 @@ const SHORTEST_RUN: u8 = 2;
 struct Context {
     /// Unaligned accesses and divisions by zero may fault.
     ccr: u32,
+    /// The floating-point unit owes no saving of its registers.
+    has_floats: bool,
+    /// Its use is noted, for the next exception.
+    notes_floats: bool,
     /// DWT counts cycles.
     is_counted: bool,
     /// Priority of the exception that waits, if one does.
     pending: Option<i32>,
+}
+
+/// An instruction that was executed.
+pub(super) struct Executed {
+    pub(super) pc: u32,
+    /// Cycles from the begin of the run to its own.
+    pub(super) begin: u64,
+    /// Waits included.
+    pub(super) cycles: u64,
+    pub(super) waits: u64,
 }
 
 /// The fast path of a chip.
@@ -46,6 +65,7 @@ pub(super) struct FastPath {
     permissions: Permissions,
     windows: Windows,
     raised: Arc<Raised>,
+    waits: Arc<Waits>,
 }
 
 impl FastPath {
@@ -55,26 +75,34 @@ impl FastPath {
             permissions: Permissions::default(),
             windows: Windows::new(chip, memory),
             raised: chip.raised.clone(),
+            waits: chip.bus.waits.clone(),
         }
     }
 
-    /// Executes plain instructions until `most` cycles have passed. Returns the
-    /// cycles, at most one instruction's more; 0 if the library has to go on.
-    pub(super) fn run(&mut self, core: &ArmV7m, most: u64) -> u64 {
+    /// Executes plain instructions from the cycle `clock` on, until `most` have passed,
+    /// and passes each to `each`. Returns the cycles, at most one instruction's more; 0
+    /// if the library has to go on.
+    pub(super) fn run(
+        &mut self,
+        core: &ArmV7m,
+        clock: u64,
+        most: u64,
+        each: impl FnMut(&Executed),
+    ) -> u64 {
         let mut registers = core.regs();
         self.code.refresh();
         let run = self.code.at(registers.r[15]).map_or(0, |code| code.run);
         if run < SHORTEST_RUN || registers.faultmask || registers.xpsr & xpsr::T == 0 {
             return 0;
         }
-        let Some(context) = core.with_sys(|sys| self.context(sys)) else {
+        let is_privileged = registers.in_handler() || registers.control & control::NPRIV == 0;
+        let Some(context) = core.with_sys(|sys| self.context(sys, is_privileged)) else {
             return 0;
         };
         let waits = context.pending;
         if waits.is_some_and(|priority| priority < core.execution_priority()) || core.is_asleep() {
             return 0;
         }
-        let is_privileged = registers.in_handler() || registers.control & control::NPRIV == 0;
         let mut executor = Executor {
             r: registers.r,
             xpsr: registers.xpsr,
@@ -82,17 +110,28 @@ impl FastPath {
             has_branched: false,
             ccr: context.ccr,
             is_privileged,
+            has_floats: context.has_floats,
+            floats: Floats::default(),
             core,
             permissions: &mut self.permissions,
             windows: &self.windows,
+            timing: Timing::new(&self.waits, clock),
         };
-        executor.run(&mut self.code, most);
+        executor.run(&mut self.code, most, each);
         let cycles = executor.cycles;
         if cycles > 0 {
             (registers.r, registers.xpsr) = (executor.r, executor.xpsr);
+            if executor.floats.is_used {
+                executor.floats.write_back(core);
+                if context.notes_floats {
+                    registers.control |= control::FPCA;
+                }
+            }
             select_stack(&mut registers);
             core.set_regs(registers);
             if context.is_counted {
+                // It does not know of waits.
+                let cycles = cycles - executor.timing.waits();
                 core.with_sys(|sys| sys.tick_cyccnt(cycles));
             }
         }
@@ -100,7 +139,7 @@ impl FastPath {
     }
 
     /// `None` if more can happen than instructions.
-    fn context(&mut self, sys: &Sys) -> Option<Context> {
+    fn context(&mut self, sys: &Sys, is_privileged: bool) -> Option<Context> {
         let is_handled = |number| {
             let exception = Exception(number);
             sys.is_active(exception) || sys.is_pending(exception)
@@ -117,6 +156,8 @@ impl FastPath {
         self.permissions.refresh(sys);
         Some(Context {
             ccr: sys.ccr,
+            has_floats: sys.fp_enabled(is_privileged) && sys.fpccr & fpccr::LSPACT == 0,
+            notes_floats: sys.fpccr & fpccr::ASPEN != 0,
             is_counted: sys.cyccnt_enabled(),
             pending: sys.highest_pending().map(|(_, priority)| priority),
         })

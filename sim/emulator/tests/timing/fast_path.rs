@@ -1,15 +1,18 @@
-//! A run that is not watched is the same as one that is: the fast path, which a
-//! watch switches off, does what the library does, in as many cycles.
+//! The fast path, which observed accesses switch off, does what the library does, in as
+//! many cycles and with the same waits for flash.
 
 use crate::assembler::{Assembler, HANDLER, PROGRAM, RAM, UNITS, image, image_of};
 use crepitus_emulator::mcu::{Step, Watch};
-use crepitus_emulator::{Mcu, Reset, Stm32f405, Time};
+use crepitus_emulator::{Image, Mcu, Reset, Stm32f405, Time};
 use fastrand::Rng;
 
 const FLASH: u32 = 0x0800_0000;
 
-/// First values of registers 0 to 13 and of the flags.
+/// First values of registers 0 to 13 and of the flags; all are those of the
+/// floating-point unit, too.
 const TABLE: u32 = FLASH + 0x400;
+const WORDS: usize = 32;
+const CORE_WORDS: usize = 15;
 
 /// Where the instructions begin that are compared.
 const COMPARED: u32 = FLASH + 0x280;
@@ -23,22 +26,41 @@ const CYCLES: u64 = 80;
 /// Bytes of RAM that are compared.
 const RAM_BYTES: u32 = 0x1000;
 
+const ACR: u32 = 0x4002_3c00;
+const CPACR: u32 = 0xe000_ed88;
+const FLOATS_ON: u32 = 0xf << 20;
+const FPCCR: u32 = 0xe000_ef34;
 const CCR: u32 = 0xe000_ed14;
 const MPU_CTRL: u32 = 0xe000_ed94;
 const MPU_RBAR: u32 = 0xe000_ed9c;
 const MPU_RASR: u32 = 0xe000_eda0;
 
-struct NoWatch;
+/// All steps.
+#[derive(Default)]
+struct Steps(Vec<Step>);
 
-impl Watch for NoWatch {
-    fn step(&mut self, _: &Step) {}
+impl Watch for Steps {
+    fn step(&mut self, step: &Step) {
+        self.0.push(*step);
+    }
 }
 
-/// A chip that loads its registers from the table and goes on at [`COMPARED`]. All
-/// faults end in a loop.
-fn chip() -> Stm32f405 {
+/// The same chip twice: by the library, and with the fast path.
+fn both(chip: impl Fn() -> Stm32f405) -> [Stm32f405; 2] {
+    let (mut by_library, fast) = (chip(), chip());
+    by_library.observe_ram(&[]);
+    [by_library, fast]
+}
+
+/// A chip that loads its registers from the table, those of the floating-point unit
+/// too if it is on, and goes on at [`COMPARED`]. All faults end in a loop.
+fn chip(has_floats: bool) -> Stm32f405 {
     let mut program = Assembler::default();
     program.load(0, TABLE);
+    if has_floats {
+        // `vldmia r0, {s0-s31}`; `vmsr fpscr, r0`, without effect but on the flags.
+        program.raw(0xec90).raw(0x0a20).raw(0xeee1).raw(0x0a10);
+    }
     // `ldr r1, [r0, #56]`; `msr apsr_nzcvqg, r1`; `ldr.w r13, [r0, #52]`;
     // `ldm.w r0, {r0-r12}`
     program.raw(0x6b81).raw(0xf381).raw(0x8c00);
@@ -92,6 +114,36 @@ fn narrow_or_wide(random: &mut Rng) -> Vec<u16> {
     }
 }
 
+/// An instruction of the floating-point unit, most of which exist.
+fn float(random: &mut Rng) -> Vec<u16> {
+    let precision = if random.u32(..16) == 0 { 0xb00 } else { 0xa00 };
+    // Any, or one of an operand: root, comparison, conversion.
+    let (first, second) = if random.bool() {
+        (0xec00 | random.u16(..0x400), 0)
+    } else {
+        (0xeeb0 | random.u16(..0x10), 0x40)
+    };
+    let mut code = vec![first, random.u16(..) & 0xf0ff | precision | second];
+    match random.u32(..8) {
+        0 => code.insert(0, 0xbf08 | random.u16(..15) << 4),
+        1 => code.extend(narrow(random)),
+        _ => {}
+    }
+    code
+}
+
+/// The bits of a number: small, one with a short mantissa, or any.
+fn float_value(random: &mut Rng) -> u32 {
+    match random.u32(..6) {
+        0 => 0,
+        1 => (random.f32() * 100.0 - 50.0).to_bits(),
+        2 => f32::from(random.i8(..)).to_bits(),
+        3 => random.u32(..) & 0x807f_ffff,
+        4 => random.u32(..) | 0x7f80_0000,
+        _ => random.u32(..),
+    }
+}
+
 /// An `IT` for up to four instructions.
 fn it_block(random: &mut Rng) -> Vec<u16> {
     let mut block = vec![0xbf00 | random.u16(..15) << 4 | random.u16(1..16)];
@@ -125,22 +177,39 @@ fn state(mcu: &Stm32f405) -> (u64, u64, u16, Vec<u32>) {
     let memory = (0..RAM_BYTES)
         .step_by(4)
         .map(|at| mcu.peek(RAM + at).unwrap());
-    let all = registers.chain(memory).collect();
-    (mcu.now().units(), mcu.cycles(), mcu.exception(), all)
+    let all = registers.chain(mcu.float_registers()).chain(memory);
+    (
+        mcu.now().units(),
+        mcu.cycles(),
+        mcu.exception(),
+        all.collect(),
+    )
 }
 
-/// Runs both for so many cycles, one of them watched.
-fn run_both(chips: &mut [Stm32f405; 2], cycles: u64) -> bool {
-    let [watched, fast] = chips;
+/// Runs both for so many cycles, watched or not.
+fn run_both(chips: &mut [Stm32f405; 2], cycles: u64, is_watched: bool) -> bool {
     let time = Time::from_units(cycles * UNITS);
-    watched.watch_until(watched.now() + time, &mut NoWatch);
-    fast.run_until(fast.now() + time);
-    state(watched) == state(fast)
+    let mut steps = [Steps::default(), Steps::default()];
+    for (mcu, steps) in chips.iter_mut().zip(&mut steps) {
+        let end = mcu.now() + time;
+        if is_watched {
+            mcu.watch_until(end, steps);
+        } else {
+            mcu.run_until(end);
+        }
+    }
+    state(&chips[0]) == state(&chips[1]) && steps[0].0 == steps[1].0
 }
 
-fn compare(rounds: u32, next: fn(&mut Rng) -> Vec<u16>, core: fn(&mut Rng) -> Vec<(u32, u32)>) {
+/// Compares random programs of such instructions.
+fn compare(
+    rounds: u32,
+    chip: impl Fn() -> Stm32f405,
+    next: fn(&mut Rng) -> Vec<u16>,
+    core: fn(&mut Rng) -> Vec<(u32, u32)>,
+) {
     let mut random = Rng::with_seed(1);
-    let mut chips = [chip(), chip()];
+    let mut chips = both(chip);
     for _ in 0..rounds {
         let mut code = Vec::new();
         while code.len() < HALF_WORDS - 2 {
@@ -150,7 +219,12 @@ fn compare(rounds: u32, next: fn(&mut Rng) -> Vec<u16>, core: fn(&mut Rng) -> Ve
         code.extend([0xf3ef, 0x8000 | random.u16(..13) << 8, 0xe7fe]);
         let start = Start {
             code,
-            table: (0..15).map(|_| value(&mut random)).collect(),
+            table: (0..WORDS)
+                .map(|place| match place {
+                    0..CORE_WORDS => value(&mut random),
+                    _ => float_value(&mut random),
+                })
+                .collect(),
             core: core(&mut random),
         };
         for mcu in &mut chips {
@@ -171,63 +245,130 @@ fn compare(rounds: u32, next: fn(&mut Rng) -> Vec<u16>, core: fn(&mut Rng) -> Ve
                 mcu.poke(*address, *value);
             }
         }
+        let is_watched = random.bool();
         for cycles in [random.u64(1..CYCLES), CYCLES] {
-            let is_same = run_both(&mut chips, cycles);
+            let is_same = run_both(&mut chips, cycles, is_watched);
             assert!(is_same, "after {cycles} cycles: {start:08x?}");
         }
     }
+}
+
+/// A chip whose flash makes the core wait, with prefetch and both caches.
+fn waiting(has_floats: bool) -> Stm32f405 {
+    let mut mcu = chip(has_floats);
+    mcu.model_flash();
+    mcu
 }
 
 fn nothing(_: &mut Rng) -> Vec<(u32, u32)> {
     Vec::new()
 }
 
+fn floats_on(_: &mut Rng) -> Vec<(u32, u32)> {
+    vec![(CPACR, FLOATS_ON)]
+}
+
+/// Five wait states, with or without prefetch and caches.
+fn waits(random: &mut Rng) -> Vec<(u32, u32)> {
+    vec![(CPACR, FLOATS_ON), (ACR, random.u32(..8) << 8 | 5)]
+}
+
 #[test]
 fn instructions_of_16_bits_are_executed_as_by_the_library() {
-    compare(8_000, narrow, nothing);
+    compare(8_000, || chip(false), narrow, nothing);
 }
 
 #[test]
 fn instructions_of_32_bits_are_executed_as_by_the_library() {
-    compare(8_000, wide, nothing);
+    compare(8_000, || chip(false), wide, nothing);
 }
 
 #[test]
 fn conditional_blocks_are_executed_as_by_the_library() {
-    compare(8_000, it_block, nothing);
+    compare(8_000, || chip(false), it_block, nothing);
 }
 
 #[test]
 fn what_the_mpu_refuses_and_traps_fault_as_in_the_library() {
-    compare(8_000, narrow_or_wide, core_registers);
+    compare(8_000, || chip(false), narrow_or_wide, core_registers);
 }
 
 #[test]
-fn interrupts_come_at_the_same_cycle() {
-    let mut random = Rng::with_seed(1);
-    for period in [61, 97, 200] {
-        let mut program = Assembler::interrupted(period, 3);
-        let begin = program.0.len();
-        // `adds r3, #1`, `str r3, [r6, #64]`, `ldr r5, [r6, #64]`, `cpsid i`,
-        // `cpsie i`, in some order; `b` to the first.
-        for _ in 0..12 {
-            let code = [0x3301, 0x6433, 0x6c35, 0xb672, 0xb662];
-            program.raw(*random.choice(&code).unwrap());
+fn floats_are_calculated_as_by_the_library() {
+    compare(16_000, || chip(true), float, floats_on);
+}
+
+#[test]
+fn flash_makes_it_wait_as_the_library() {
+    compare(8_000, || waiting(false), narrow_or_wide, waits);
+    compare(8_000, || waiting(true), float, waits);
+}
+
+/// A program that is interrupted by one that is interrupted, of some instructions in
+/// some order.
+fn interrupted(random: &mut Rng, period: u32, code: &[&[u16]], handled: &[u16]) -> Image {
+    let mut program = Assembler::interrupted(period, 3);
+    let begin = program.0.len();
+    for _ in 0..12 {
+        for half in *random.choice(code).unwrap() {
+            program.raw(*half);
         }
-        program.raw(0xb662);
-        let back = u16::try_from(program.0.len() - begin + 2).unwrap();
-        program.raw(0xe000 | 0x7ff & 0_u16.wrapping_sub(back));
-        // The flags of both timers off, the second's a while later; `bx lr`.
-        let mut handler = Assembler::default();
-        handler.raw(0x2300).store(3, 4, 0x10).load(2, 0x4000_0410);
-        handler.raw(0x3701).raw(0x6077).store(3, 2, 0).raw(0x4770);
-        let image = image(&program, &handler);
-        let mut chips = [Stm32f405::new(&image), Stm32f405::new(&image)];
+    }
+    program.raw(0xb662);
+    let back = u16::try_from(program.0.len() - begin + 2).unwrap();
+    program.raw(0xe000 | 0x7ff & 0_u16.wrapping_sub(back));
+    // The flags of both timers off, the second's a while later; `bx lr`.
+    let mut handler = Assembler::default();
+    handler.raw(0x2300).store(3, 4, 0x10);
+    for half in handled {
+        handler.raw(*half);
+    }
+    handler.load(2, 0x4000_0410).raw(0x3701).raw(0x6077);
+    handler.store(3, 2, 0).raw(0x4770);
+    image(&program, &handler)
+}
+
+fn compare_interrupted(chip: impl Fn(u32, &mut Rng) -> Stm32f405) {
+    for period in [61, 97, 200] {
+        let mut chips = both(|| chip(period, &mut Rng::with_seed(1)));
+        let mut random = Rng::with_seed(2);
         for round in 0..2_000 {
-            let is_same = run_both(&mut chips, random.u64(1..60));
+            let is_watched = random.bool();
+            let is_same = run_both(&mut chips, random.u64(1..60), is_watched);
             assert!(is_same, "period {period}, slice {round}");
         }
         let entries = chips[0].register(7);
         assert!(entries > 100, "{entries}");
+    }
+}
+
+#[test]
+fn interrupts_come_at_the_same_cycle() {
+    // `adds r3, #1`, `str r3, [r6, #64]`, `ldr r5, [r6, #64]`, `cpsid i`, `cpsie i`.
+    let code: [&[u16]; 5] = [&[0x3301], &[0x6433], &[0x6c35], &[0xb672], &[0xb662]];
+    compare_interrupted(|period, random| Stm32f405::new(&interrupted(random, period, &code, &[])));
+}
+
+#[test]
+fn floats_of_what_is_interrupted_are_saved_alike() {
+    // `vadd s1, s2, s3`, `vldr s2, [r6, #64]`, `vstr s1, [r6, #64]`, `vmov s3, r3`,
+    // `adds r3, #1`.
+    let code: [&[u16]; 5] = [
+        &[0xee71, 0x0a21],
+        &[0xed96, 0x1a10],
+        &[0xedc6, 0x0a10],
+        &[0xee01, 0x3a90],
+        &[0x3301],
+    ];
+    // `vadd s1, s1, s1` in the handler; with and without lazy saving, and without any.
+    for fpccr in [3_u32 << 30, 1 << 31, 0] {
+        for handled in [&[0xee70_u16, 0x0aa0][..], &[]] {
+            compare_interrupted(|period, random| {
+                let mut mcu = Stm32f405::new(&interrupted(random, period, &code, handled));
+                mcu.poke(CPACR, FLOATS_ON);
+                mcu.poke(FPCCR, fpccr);
+                mcu
+            });
+        }
     }
 }

@@ -167,16 +167,17 @@ impl Executor<'_> {
             return None;
         }
         let value = self.windows.read(address, bytes)?;
+        self.timing.data(address, bytes)?;
         self.cycles += 1;
         Some(value)
     }
 
-    fn may_store(&mut self, address: u32, bytes: u32) -> bool {
+    pub(super) fn may_store(&mut self, address: u32, bytes: u32) -> bool {
         self.windows.is_writable(address, bytes) && self.may(address, bytes, Access::Write)
     }
 
     #[inline]
-    fn store(&mut self, address: u32, bytes: u32, value: u32) -> Option<()> {
+    pub(super) fn store(&mut self, address: u32, bytes: u32, value: u32) -> Option<()> {
         if !self.is_aligned(address, bytes, false) || !self.may(address, bytes, Access::Write) {
             return None;
         }

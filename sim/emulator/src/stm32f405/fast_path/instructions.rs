@@ -3,10 +3,13 @@
 //! Nothing is changed before it is certain that the instruction can be executed
 //! here: `None` leaves the core as it was.
 
+use super::Executed;
 use super::arithmetic::{extended, is_jump, it_state, low_word, offset, shift, sum};
 use super::code::{Code, Decoded};
+use super::floats::{self, Floats};
 use super::memory::Windows;
 use super::permissions::Permissions;
+use super::timing::Timing;
 use rsemu::cpu::arm::v7m::isa::{
     BitfieldOp, Cond, DpOp, ExtendOp, HintOp, Insn, MiscOp, Operand, Size,
 };
@@ -43,6 +46,7 @@ pub(super) fn is_plain(instruction: &Insn) -> bool {
         | Insn::Misc { .. }
         | Insn::Bitfield { .. }
         | Insn::Barrier { .. } => true,
+        Insn::Fp(instruction) => floats::is_plain(instruction),
         _ => false,
     }
 }
@@ -56,24 +60,36 @@ pub(super) struct Executor<'a> {
     pub(super) has_branched: bool,
     pub(super) ccr: u32,
     pub(super) is_privileged: bool,
+    /// The floating-point unit is enabled and owes no saving of its registers.
+    pub(super) has_floats: bool,
+    pub(super) floats: Floats,
     pub(super) core: &'a ArmV7m,
     pub(super) permissions: &'a mut Permissions,
     pub(super) windows: &'a Windows,
+    pub(super) timing: Timing<'a>,
 }
 
 impl Executor<'_> {
     /// Executes instructions until these cycles have passed, or one is not plain.
-    pub(super) fn run(&mut self, code: &mut Code, most: u64) {
+    pub(super) fn run(&mut self, code: &mut Code, most: u64, mut each: impl FnMut(&Executed)) {
         while self.cycles < most {
             let pc = self.r[15];
             let Some(decoded) = code.at(pc).filter(|decoded| decoded.run > 0) else {
                 return;
             };
-            let cycles = self.cycles;
+            let begin = self.cycles;
             if self.step(pc, decoded).is_none() {
-                (self.r[15], self.cycles) = (pc, cycles);
+                (self.r[15], self.cycles) = (pc, begin);
                 return;
             }
+            let waits = self.timing.instruction(begin, pc, decoded.width);
+            self.cycles += waits;
+            each(&Executed {
+                pc,
+                begin,
+                cycles: self.cycles - begin,
+                waits,
+            });
         }
     }
 
@@ -278,6 +294,7 @@ impl Executor<'_> {
                 u32::from(width).clamp(1, 32),
             ),
             Insn::Hint { .. } | Insn::Barrier { .. } => {}
+            Insn::Fp(instruction) => self.float(&instruction)?,
             _ => return None,
         }
         Some(())
