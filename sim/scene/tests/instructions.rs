@@ -13,6 +13,7 @@ use crepitus_scene::{Overrides, Scene, run};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread;
 
 /// Set for the process that is counted: the scene's file.
 const SCENE_VARIABLE: &str = "CREPITUS_COUNTED_SCENE";
@@ -51,8 +52,8 @@ type Profile = BTreeMap<String, u64>;
 
 /// Counts a run of this many steps.
 fn count(folder: &Path, effects: &[&Effect], steps: u32) -> Profile {
-    let scene = folder.join("scene.toml");
-    let out = folder.join("callgrind.out");
+    let scene = folder.join(format!("{steps}.toml"));
+    let out = folder.join(format!("{steps}.out"));
     std::fs::write(&scene, scene_text(effects, steps)).unwrap();
     let ran = Command::new("valgrind")
         .args([
@@ -100,8 +101,13 @@ fn parse(text: &str) -> Profile {
 /// Instructions for each step: what twice the steps need more.
 fn per_step(folder: &Path, effects: &[&Effect]) -> f64 {
     let total = |steps| count(folder, effects, steps).values().sum::<u64>();
+    let (once, twice) = thread::scope(|scope| {
+        let once = scope.spawn(|| total(STEPS));
+        let twice = total(2 * STEPS);
+        (once.join().unwrap(), twice)
+    });
     #[expect(clippy::cast_precision_loss, reason = "far below 2^53")]
-    let more = (total(2 * STEPS) - total(STEPS)) as f64;
+    let more = (twice - once) as f64;
     more / f64::from(STEPS)
 }
 
@@ -226,18 +232,19 @@ fn costs_add_up() {
     println!("{:24} {base:8.1}", "none");
     let mut sum = base;
     for effect in EFFECTS {
-        let needed_by: Vec<_> = EFFECTS
+        let rest = without(effect.name, &EFFECTS);
+        let with_it: Vec<_> = EFFECTS
             .iter()
             .copied()
-            .filter(|e| {
-                e.name == effect.name
-                    || without(effect.name, &EFFECTS)
-                        .iter()
-                        .any(|o| o.name == e.name)
-            })
+            .filter(|e| e.name == effect.name || rest.iter().any(|o| o.name == e.name))
             .collect();
-        let cost =
-            per_step(&folder, &needed_by) - per_step(&folder, &without(effect.name, &EFFECTS));
+        // No other needs it: these are all.
+        let with_it = if with_it.len() == EFFECTS.len() {
+            whole
+        } else {
+            per_step(&folder, &with_it)
+        };
+        let cost = with_it - per_step(&folder, &rest);
         println!("{:24} {cost:8.1}", effect.name);
         sum += cost;
     }
