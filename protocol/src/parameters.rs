@@ -173,7 +173,7 @@ pub static DEFAULTS: Values = {
 impl Values {
     /// The value of a parameter, if there is one.
     pub fn get(&self, id: u8) -> Option<f64> {
-        self.0.get(index(id)).copied()
+        self.0.get(index(id)?).copied()
     }
 
     /// The place of the option that is chosen.
@@ -189,7 +189,7 @@ impl Values {
 
     /// Sets a parameter; ignores an unknown id.
     pub fn set(&mut self, id: u8, value: f64) {
-        if let Some(slot) = self.0.get_mut(index(id)) {
+        if let Some(slot) = index(id).and_then(|index| self.0.get_mut(index)) {
             *slot = value;
         }
     }
@@ -265,32 +265,16 @@ impl Source for Values {
 /// [`PARAMETERS`] in memory, once.
 static PARAMETERS_BY_ID: [Parameter; PARAMETER_COUNT] = PARAMETERS;
 
-/// Place of the parameter of each id in [`PARAMETERS`], or [`NO_PLACE`]. A search
-/// would compare ten thousand ids while a commit becomes settings.
-static PLACES: [u8; 256] = {
-    let mut places = [NO_PLACE; 256];
-    let mut place = 0;
-    #[expect(clippy::indexing_slicing, reason = "at compile time")]
-    while (place as usize) < PARAMETER_COUNT {
-        places[PARAMETERS[place as usize].id as usize] = place;
-        place += 1;
-    }
-    places
-};
-const NO_PLACE: u8 = u8::MAX;
-
-/// Index of a parameter in [`PARAMETERS`] and [`Values`], or that of none.
-fn index(id: u8) -> usize {
-    PLACES
-        .get(usize::from(id))
-        .copied()
-        .unwrap_or(NO_PLACE)
-        .into()
+/// Index of a parameter in [`PARAMETERS`] and [`Values`]. Not inlined: copies
+/// would fill the controllers' flash.
+#[inline(never)]
+fn index(id: u8) -> Option<usize> {
+    PARAMETERS_BY_ID.iter().position(|p| p.id == id)
 }
 
 /// The parameter with this id.
 pub fn with_id(id: u8) -> Option<&'static Parameter> {
-    PARAMETERS_BY_ID.get(index(id))
+    PARAMETERS_BY_ID.iter().find(|p| p.id == id)
 }
 
 /// The parameter of this name, `group.key`, with its id.
@@ -317,10 +301,7 @@ mod tests {
         }
         assert_eq!(find("crepitus.nothing"), None);
         assert_eq!(find("crepitus"), None);
-        for id in 0..=u8::MAX {
-            let found = PARAMETERS.iter().find(|parameter| parameter.id == id);
-            assert_eq!(with_id(id), found, "{id}");
-        }
+        assert_eq!(with_id(u8::MAX), None);
     }
 
     /// Programs of other versions and records in flash depend on the ids.
