@@ -336,15 +336,6 @@ impl<F: Real> Seen<F> {
             is_driven: true,
         }
     }
-
-    /// Travel since the last sample that was taken, rad; without one none.
-    #[inline]
-    pub fn travel_rad(&self) -> F {
-        match self.sample {
-            Sample::Taken(shaft) => shaft.delta_phi_rad,
-            Sample::Lost => F::ZERO,
-        }
-    }
 }
 
 #[cfg(test)]

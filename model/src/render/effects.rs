@@ -129,7 +129,7 @@ impl Timing {
 pub struct Tick<'a, F> {
     /// The joint's velocity as far as known, rad/s.
     pub omega_rad_s: F,
-    /// Its travel since the last sample that was taken, rad; without one none.
+    /// Its travel since the last sample that was taken, rad; without a good one none.
     pub travel_rad: F,
     /// What symptoms may believe of its motion; `None` without a good sample.
     pub travel: Option<&'a Travel<F>>,
@@ -154,7 +154,7 @@ impl<'a, F: Real> Tick<'a, F> {
     ) -> Self {
         Self {
             omega_rad_s: seen.omega_rad_s,
-            travel_rad: seen.travel_rad(),
+            travel_rad: input.travel_rad().unwrap_or(F::ZERO),
             travel,
             missing_ticks: match input {
                 Checked::Missing(ticks) => *ticks,
@@ -436,6 +436,18 @@ pub(crate) mod tests {
         };
         let added_nm = stage.tick(&missing(&seen(omega_rad_s)), &mut shown, &mut ());
         (added_nm, shown)
+    }
+
+    #[test]
+    fn a_sample_that_is_refused_moves_nothing() {
+        let shaft = ShaftStep {
+            delta_phi_rad: 1e3,
+            ..ShaftStep::default()
+        };
+        let seen = Seen::taken(&shaft, Position::at(0));
+        let travel_rad = |input| Tick::of(&seen, &input, None, 1.0).travel_rad;
+        assert_eq!(travel_rad(Checked::Missing(1)), 0.0);
+        assert_eq!(travel_rad(Checked::Step(shaft)), 1e3);
     }
 
     /// A symptom of 0.5 N·m that is always in its third phase.

@@ -160,7 +160,7 @@ macro_rules! effects {
                 shown: &mut Shown<F>,
                 observe: &mut impl Observe<F>,
             ) {
-                let paid_share = self.tank.open(seen.travel_rad());
+                let paid_share = self.tank.open(input.travel_rad().unwrap_or(F::ZERO));
                 let travel = Travel::plausible(input, &seen.place, &self.scale);
                 let tick = Tick::of(seen, input, travel.as_ref(), paid_share);
                 $(if let Some(law) = &mut self.$effect {
@@ -300,7 +300,7 @@ macro_rules! effects {
                 shown: &mut Shown<F>,
                 observe: &mut impl Observe<F>,
             ) {
-                let paid_share = self.tank.open(seen.travel_rad());
+                let paid_share = self.tank.open(input.travel_rad().unwrap_or(F::ZERO));
                 if self.on != 0 {
                     self.add_symptoms(seen, input, paid_share, shown, observe);
                 }
