@@ -157,6 +157,11 @@ enum Stage<F> {
         /// Lr·(1 − r)·e^(−(t − tr)/τ), N·m.
         decaying_nm: F,
     },
+    /// The same, by settings that are no longer in force.
+    Outdated {
+        left_nm: F,
+        decaying_nm: F,
+    },
 }
 
 /// The blade.
@@ -256,13 +261,13 @@ impl<F: Real> Law for ClaspKnife<F> {
             Stage::Fallen {
                 left_nm,
                 decaying_nm,
+            } => self.follow_fallen((left_nm, decaying_nm), beyond_rad, travel, on_change),
+            Stage::Outdated {
+                left_nm,
+                decaying_nm,
             } => {
-                let nm = self.fall(F::ZERO, (left_nm, decaying_nm), travel, on_change);
-                if -beyond_rad >= self.with.rearm_rad {
-                    self.rearm(travel, nm, on_change)
-                } else {
-                    nm
-                }
+                let limits_nm = self.at_most_now(left_nm, decaying_nm, beyond_rad);
+                self.follow_fallen(limits_nm, beyond_rad, travel, on_change)
             }
         };
         self.torque_nm = self.with.sense * nm;
@@ -279,6 +284,16 @@ impl<F: Real> Law for ClaspKnife<F> {
             self.play.change(from, to, slew_nm);
             self.torque_nm = coefficients.sense * self.play.torque_nm();
             self.with = coefficients;
+            if let Stage::Fallen {
+                left_nm,
+                decaying_nm,
+            } = self.stage
+            {
+                self.stage = Stage::Outdated {
+                    left_nm,
+                    decaying_nm,
+                };
+            }
         } else {
             *self = Self::new(coefficients);
         }
@@ -293,7 +308,7 @@ impl<F: Real> Law for ClaspKnife<F> {
         match self.stage {
             Stage::Out => 0,
             Stage::Build => 1,
-            Stage::Fallen { .. } => 2,
+            Stage::Fallen { .. } | Stage::Outdated { .. } => 2,
         }
     }
 }
@@ -415,6 +430,35 @@ impl<F: Real> ClaspKnife<F> {
         on_change.hear(Change::at(Word::Release, fraction, shown_nm, shown_nm));
         let left_nm = limit_nm * with.residual;
         self.fall(fraction, (left_nm, limit_nm - left_nm), travel, on_change)
+    }
+
+    /// Fallen before this travel; rearmed once the joint has returned.
+    #[inline]
+    fn follow_fallen(
+        &mut self,
+        limits_nm: (F, F),
+        beyond_rad: F,
+        travel: &Travel<F>,
+        on_change: &mut impl Hear<F>,
+    ) -> F {
+        let nm = self.fall(F::ZERO, limits_nm, travel, on_change);
+        if -beyond_rad >= self.with.rearm_rad {
+            self.rearm(travel, nm, on_change)
+        } else {
+            nm
+        }
+    }
+
+    /// What is left and what decays, no more than of a collapse here and now: the play
+    /// slews down to it.
+    #[cold]
+    fn at_most_now(&self, left_nm: F, decaying_nm: F, beyond_rad: F) -> (F, F) {
+        let limit_nm = self.limit_nm(beyond_rad);
+        let most_left_nm = limit_nm * self.with.residual;
+        (
+            left_nm.at_most(most_left_nm),
+            decaying_nm.at_most(limit_nm - most_left_nm),
+        )
     }
 
     /// Fallen, before this travel or at this share of it.

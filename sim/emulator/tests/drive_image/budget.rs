@@ -39,7 +39,7 @@ const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::ZeroWaitStates,
         share: 41,
-        commit_share: 54,
+        commit_share: 56,
         cold_share: 40,
         render_cycles: 900,
     },
@@ -47,7 +47,7 @@ const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::Modelled,
         share: 56,
-        commit_share: 74,
+        commit_share: 76,
         cold_share: 54,
         render_cycles: 1_310,
     },

@@ -216,7 +216,7 @@ const ALL: [All; 2] = [
     All {
         flash: Flash::Modelled,
         share: 84,
-        commit_share: 95,
+        commit_share: 99,
     },
 ];
 
