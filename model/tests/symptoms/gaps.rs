@@ -1,12 +1,16 @@
 //! Commits and gaps in contact: what a fuzzer found.
 
 use super::rig::*;
-use crepitus_model::Sample;
+use crepitus_model::render::effects::clasp_knife::ClaspKnifeSettings;
 use crepitus_model::render::effects::lead_pipe::LeadPipeSettings;
 use crepitus_model::render::effects::range_limit::RangeLimitSettings;
+use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_model::render::effects::texture::TextureSettings;
 use crepitus_model::render::effects::{EffectSettings, MOST_STIFFNESS_NM_PER_RAD};
+use crepitus_model::render::input_check::{InputCheck, InputLimits};
 use crepitus_model::render::position::Sight;
+use crepitus_model::render::{Addition, Check, Seen, Shown};
+use crepitus_model::{Sample, ShaftStep};
 
 fn lead_pipe(settings: LeadPipeSettings) -> EffectSettings {
     EffectSettings {
@@ -188,4 +192,121 @@ fn a_torque_that_fades_gives_way_as_a_spring_where_it_would_push() {
         );
         at += travel_rad;
     }
+}
+
+#[test]
+fn a_blade_that_has_fallen_obeys_a_commit() {
+    let knife = |onset_torque_nm, slope_nm_per_rad| EffectSettings {
+        clasp_knife: Some(ClaspKnifeSettings {
+            onset_torque_nm,
+            slope_nm_per_rad,
+            ..ClaspKnifeSettings::default()
+        }),
+        ..EffectSettings::default()
+    };
+    let mut rig = only::<f64>(knife(0.8, 3.0), 70.0);
+    // Past the release at 75 deg: what is left is 0.15 of 3.2 N·m.
+    let rest = moved(&mut rig, 70_f64.to_radians(), 8_000);
+    near(rig.step(rest, rest, 0.0), 0.47, 0.02);
+    rig.commit(knife(0.2, 0.0));
+    let mut last_nm = rig.step(rest, rest, 0.0);
+    for _ in 0..200 {
+        let nm = rig.step(rest, rest, 0.0);
+        assert!((last_nm - nm).abs() <= SLEW_NM + 1e-12, "{last_nm} {nm}");
+        last_nm = nm;
+    }
+    // It rests: the spring holds what its limit allowed last.
+    near(last_nm, 0.15 * 0.2, 1e-3);
+}
+
+#[test]
+fn a_muscle_that_has_caught_obeys_a_commit() {
+    let muscle = |torque_nm| EffectSettings {
+        spasticity: Some(SpasticitySettings {
+            form: 0,
+            threshold_deg: 40.0,
+            velocity_shift_s: 0.0,
+            threshold_velocity_deg_s: 20.0,
+            torque_nm,
+            ..SpasticitySettings::default()
+        }),
+        ..EffectSettings::default()
+    };
+    let mut rig = only::<f64>(muscle(3.0), 30.0);
+    let rest = moved(&mut rig, 30_f64.to_radians(), 8_000);
+    let caught_nm = rig.step(rest, rest, 0.0);
+    assert!(caught_nm > 0.2, "{caught_nm}");
+    rig.commit(muscle(0.1));
+    let fallen_nm = (0..400).fold(0.0, |_, _| rig.step(rest, rest, 0.0));
+    let slope_nm = SpasticitySettings::default().stiffness_nm_per_rad * 0.3;
+    assert!(
+        fallen_nm <= 0.1 + slope_nm,
+        "{caught_nm} falls to {fallen_nm}"
+    );
+}
+
+/// When the sample is refused: the hand goes back, and the tank is low.
+const REFUSED_TICK: u32 = 1_900;
+
+/// The torque of a reflex whose tank is low, and after a sample that is refused: a travel
+/// of a thousand radians against that torque.
+fn around_a_refused_sample(effects: &mut impl Addition<f64>) -> (f64, f64) {
+    let mut check = InputCheck::new(&InputLimits::device(TICK_S), TICK_S, 0.0);
+    let motion = |tick: u32| {
+        let phase = 25.0 * f64::from(tick) * TICK_S;
+        (1.05 + 0.3 * phase.sin(), 7.5 * phase.cos())
+    };
+    effects.rest(&Sight::IDEAL.position(motion(0).0));
+    let mut tick = |shaft: ShaftStep<f64>, at_rad: f64| {
+        let sample = Sample::Taken(shaft);
+        let seen = Seen {
+            sample,
+            omega_rad_s: 0.0,
+            place: Sight::IDEAL.position(at_rad),
+            is_driven: true,
+        };
+        let mut shown = Shown::nothing();
+        effects.tick(&seen, &check.check(&sample), &mut shown, &mut ());
+        shown.torque_nm
+    };
+    let mut before_nm = 0.0;
+    for n in 0..REFUSED_TICK {
+        let (from, to) = (motion(n), motion(n + 1));
+        let shaft = ShaftStep {
+            delta_phi_rad: to.0 - from.0,
+            omega_start_rad_s: from.1,
+            omega_end_rad_s: to.1,
+        };
+        before_nm = tick(shaft, to.0);
+    }
+    let refused = ShaftStep {
+        delta_phi_rad: 1e3_f64.copysign(before_nm),
+        ..ShaftStep::default()
+    };
+    (before_nm, tick(refused, motion(REFUSED_TICK).0))
+}
+
+#[test]
+fn a_sample_that_is_refused_fills_no_tank() {
+    let reflex = EffectSettings {
+        spasticity: Some(SpasticitySettings {
+            form: 1,
+            threshold_deg: 60.0,
+            velocity_shift_s: 0.27,
+            gain_nm_per_rad: 15.0,
+            ..SpasticitySettings::default()
+        }),
+        ..EffectSettings::default()
+    };
+    let mut alone = reflex.laws::<f64>(&timing(Sight::IDEAL)).unwrap();
+    let mut armed = only::<f64>(reflex, 60.0).effects;
+    for (before_nm, after_nm) in [
+        around_a_refused_sample(&mut alone),
+        around_a_refused_sample(&mut armed),
+    ] {
+        assert!(before_nm > 0.05, "{before_nm}");
+        near(after_nm, before_nm, 0.01 * before_nm);
+    }
+    let level_j = alone.tank.level_j();
+    assert!(level_j < 0.05, "{level_j} J: nothing would be seen");
 }

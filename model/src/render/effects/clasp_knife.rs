@@ -157,7 +157,7 @@ enum Stage<F> {
         /// Lr·(1 − r)·e^(−(t − tr)/τ), N·m.
         decaying_nm: F,
     },
-    /// The same, by settings that are no longer in force.
+    /// Fallen before the settings in force were committed: its limits may be above theirs.
     Outdated {
         left_nm: F,
         decaying_nm: F,
@@ -266,7 +266,7 @@ impl<F: Real> Law for ClaspKnife<F> {
                 left_nm,
                 decaying_nm,
             } => {
-                let limits_nm = self.at_most_now(left_nm, decaying_nm, beyond_rad);
+                let limits_nm = self.capped(left_nm, decaying_nm, beyond_rad);
                 self.follow_fallen(limits_nm, beyond_rad, travel, on_change)
             }
         };
@@ -449,10 +449,10 @@ impl<F: Real> ClaspKnife<F> {
         }
     }
 
-    /// What is left and what decays, no more than of a collapse here and now: the play
-    /// slews down to it.
+    /// The residual and the decaying part of the limit, N·m, each at most that of a collapse
+    /// at this angle under the settings in force. The play's torque slews down to them.
     #[cold]
-    fn at_most_now(&self, left_nm: F, decaying_nm: F, beyond_rad: F) -> (F, F) {
+    fn capped(&self, left_nm: F, decaying_nm: F, beyond_rad: F) -> (F, F) {
         let limit_nm = self.limit_nm(beyond_rad);
         let most_left_nm = limit_nm * self.with.residual;
         (

@@ -106,6 +106,12 @@ impl<F: Real> Caught<F> {
             self.play
                 .change(self.with.stiffness, with.stiffness, slew_nm);
             self.torque_nm = with.threshold.sense * self.play.torque_nm();
+            // The play slews down to what another catch would leave at most.
+            if let Some(catch) = &mut self.catch {
+                let most_left_nm = with.most_nm * with.residual;
+                catch.left_nm = catch.left_nm.at_most(most_left_nm);
+                catch.decaying_nm = catch.decaying_nm.at_most(with.most_nm - most_left_nm);
+            }
             self.with = with;
         } else {
             *self = Self::new(with);
