@@ -141,3 +141,126 @@ fn a_torque_that_never_ends_leaves_the_coil_within_its_limit() {
     let rms_a = f64::sqrt(squares / ticks);
     assert!((0.4..=0.5).contains(&rms_a), "{rms_a}");
 }
+
+/// The mass and the coil again, by other equations: Newton's law in steps of a hundredth
+/// of a tick, the heat by its differential equation.
+struct Coil {
+    settings: VibrationActuatorSettings,
+    x_m: f64,
+    v_m_s: f64,
+    heat: f64,
+}
+
+impl Coil {
+    fn run(&mut self, volts: f64) {
+        const STEPS: u32 = 100;
+        let s = &self.settings;
+        let step_s = TICK_S / f64::from(STEPS);
+        let mass_kg = s.moving_mass_g * 1e-3;
+        let omega = s.resonance_rad_s();
+        let force_n = s.force_constant_n_per_a * volts / s.resistance_ohm;
+        for _ in 0..STEPS {
+            let pull_n = mass_kg * omega * (2.0 * s.damping_ratio * self.v_m_s + omega * self.x_m);
+            self.v_m_s += (force_n - pull_n) / mass_kg * step_s;
+            self.x_m += self.v_m_s * step_s;
+            let amperes = (volts - s.force_constant_n_per_a * self.v_m_s) / s.resistance_ohm;
+            let share = amperes / s.continuous_current_a;
+            self.heat += (share * share - self.heat) / HEATING_S * step_s;
+        }
+    }
+
+    /// √(x² + (ẋ/ω₀)²) as a share of what may be.
+    fn amplitude(&self) -> f64 {
+        let rate_m = self.v_m_s / self.settings.resonance_rad_s();
+        self.x_m.hypot(rate_m) / self.settings.usable_stroke_m()
+    }
+}
+
+/// What each limit leaves of a command is what the module says, and the observer sees
+/// what such a coil does. The command without limits is that of a law that gets a
+/// ten-thousandth of the torque.
+#[test]
+fn limits_take_what_the_module_says_of_a_coil_of_other_code() {
+    const SMALL: f64 = 1e-4;
+    /// From where on, as a share of a limit.
+    const BEGINS_AT: f64 = 0.8;
+    let warm = VibrationActuatorSettings {
+        gain: 2.0,
+        continuous_current_a: 0.4,
+        ..VibrationActuatorSettings::default()
+    };
+    let short = VibrationActuatorSettings {
+        stroke_mm: 0.8,
+        damping_ratio: 0.1,
+        moving_mass_g: 80.0,
+        ..VibrationActuatorSettings::default()
+    };
+    let (mut hot, mut far, mut high, mut whole) = (0, 0, 0, 0);
+    for (settings, torque, most_nm, ticks) in [
+        (warm, Torque::Square { hertz: 120.0 }, 2.0, 200_000_u32),
+        (short, Torque::Sine { hertz: 35.0 }, 0.3, 20_000),
+        (short, Torque::Noise, 2.0, 20_000),
+    ] {
+        let coefficients = VibrationActuator::<f64>::coefficients(&settings, &TIMING).unwrap();
+        let (mut law, mut free): (VibrationActuator<f64>, VibrationActuator<f64>) = (
+            DeviceEffect::new(coefficients),
+            DeviceEffect::new(coefficients),
+        );
+        let mut coil = Coil {
+            settings,
+            x_m: 0.0,
+            v_m_s: 0.0,
+            heat: 0.0,
+        };
+        for n in 0..ticks {
+            let nm = f64::from(torque.at(n, most_nm));
+            let wanted_v = free.tick(SMALL * nm, true) / SMALL;
+            let cool = ((1.0 - law.heat()) / (1.0 - BEGINS_AT)).clamp(0.0, 1.0);
+            let swing = law.amplitude() * law.amplitude();
+            let room = ((1.0 - swing) / (1.0 - BEGINS_AT * BEGINS_AT)).clamp(0.0, 1.0);
+            let drives_out = wanted_v * coil.v_m_s > 0.0;
+            let left_v = cool
+                * if drives_out {
+                    room * wanted_v
+                } else {
+                    wanted_v
+                };
+            let expected_v = left_v.clamp(-settings.supply_v, settings.supply_v);
+            let volts = law.tick(nm, true);
+            // At a turn of the mass its direction is a matter of rounding.
+            if coil.v_m_s.abs() > 1e-4 {
+                assert!(
+                    (volts - expected_v).abs() < 1e-6,
+                    "{n}: {volts} {expected_v}"
+                );
+                let phase = law.phase();
+                let is_high = left_v.abs() > settings.supply_v;
+                let expected = match (is_high, drives_out && room < 1.0, cool < 1.0) {
+                    (true, ..) => (&mut high, 2),
+                    (_, true, _) => (&mut far, 3),
+                    (.., true) => (&mut hot, 4),
+                    _ => (&mut whole, 1),
+                };
+                *expected.0 += 1;
+                assert_eq!(phase, expected.1, "{n}");
+            }
+            coil.run(volts);
+            assert!(
+                (law.amplitude() - coil.amplitude()).abs() < 2e-3,
+                "{n}: {} {}",
+                law.amplitude(),
+                coil.amplitude()
+            );
+            assert!(
+                (law.heat() - coil.heat).abs() < 2e-3,
+                "{n}: {} {}",
+                law.heat(),
+                coil.heat
+            );
+        }
+    }
+    assert!(
+        hot > 1000 && far > 1000 && high > 1000 && whole > 1000,
+        "{hot} {far} {high} {whole}"
+    );
+}
