@@ -106,6 +106,7 @@ fn a_bad_sample_is_counted_held_and_leaves_no_trace() {
                 for _ in 0..7 {
                     joint.tick(&good(), |_| {});
                 }
+                assert!(!joint.is_holding());
                 let before = joint.counters();
                 let (torque, theta) = (joint.torque_nm(), joint.joint().theta_rad());
                 joint.tick(&bad, |_| panic!("{name}: no event"));

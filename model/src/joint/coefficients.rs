@@ -228,6 +228,7 @@ impl<F: Real> StepCoefficients<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::joint::{Convention, Parameters};
 
     fn coefficients<F: Real>() -> StepCoefficients<F> {
         StepCoefficients::new(&Settings::default().validate().unwrap(), 5e-5).unwrap()
@@ -251,6 +252,85 @@ mod tests {
     }
 
     type F32 = f32;
+
+    /// Half way of a ramp, by reciprocals, is what settings there give by division.
+    fn is_consistent_on_the_way<F: Real>(most_off: f64) {
+        let from = Parameters {
+            damping_nms_per_rad: 0.1,
+            ..Parameters::default()
+        };
+        let (softer, heavier) = (0.7_f64, 1.9_f64);
+        let at = |share: f64| {
+            let between = |a: f64, b: f64| a + (b - a) * share;
+            let scale = |factor: f64| if share > 0.0 { factor } else { 1.0 };
+            let parameters = Parameters {
+                inertia_kg_m2: from.inertia_kg_m2 * scale(heavier),
+                stiffness_nm_per_rad: from.stiffness_nm_per_rad * scale(softer),
+                damping_nms_per_rad: between(0.1, 0.4),
+                static_torque_nm: between(from.static_torque_nm, 3.0),
+                kinetic_torque_nm: between(from.kinetic_torque_nm, 2.0),
+                ..from
+            };
+            let settings = Settings {
+                parameters,
+                convention: Convention::Physical,
+                ..Settings::default()
+            };
+            let settings = settings.validate().unwrap();
+            StepCoefficients::<F>::new(&settings, 5e-5).unwrap()
+        };
+        let f = F::from_f64;
+        let made = at(0.0).towards(&at(1.0), f(0.25), f(softer), f(heavier));
+        let expected = at(0.25);
+        let off = |name: &str, made: F, expected: F| {
+            let off = ((made - expected) / expected).abs();
+            assert!(off <= f(most_off), "{name}: {made:?} {expected:?}");
+        };
+        off("step_s", made.step_s, expected.step_s);
+        off("per_step", made.per_step, expected.per_step);
+        off("stiffness", made.stiffness, expected.stiffness);
+        off("inertia", made.inertia, expected.inertia);
+        off("damping", made.damping, expected.damping);
+        off("kinetic_nm", made.kinetic_nm, expected.kinetic_nm);
+        off("static_nm", made.static_nm, expected.static_nm);
+        off("restart_nm", made.restart_nm, expected.restart_nm);
+        off(
+            "kinetic_angle_rad",
+            made.kinetic_angle_rad,
+            expected.kinetic_angle_rad,
+        );
+        off(
+            "static_angle_rad",
+            made.static_angle_rad,
+            expected.static_angle_rad,
+        );
+        off(
+            "restart_angle_rad",
+            made.restart_angle_rad,
+            expected.restart_angle_rad,
+        );
+        off("drop_nm", made.drop_nm, expected.drop_nm);
+        off("impedance", made.impedance, expected.impedance);
+        off(
+            "ticks_per_half_radian",
+            made.ticks_per_half_radian,
+            expected.ticks_per_half_radian,
+        );
+        let ticks = |t: &Ticks<F>| F::from_whole(t.whole) + t.fraction;
+        off("period", ticks(&made.period), ticks(&expected.period));
+        for time_s in [5e-5, 1e-3, 0.02] {
+            let (x, v) = made.oscillator.moved(f(0.1), f(-2.0), f(time_s));
+            let (expected_x, expected_v) = expected.oscillator.moved(f(0.1), f(-2.0), f(time_s));
+            off("x", x, expected_x);
+            off("v", v, expected_v);
+        }
+    }
+
+    #[test]
+    fn on_the_way_to_other_settings_all_numbers_are_those_of_the_settings_there() {
+        is_consistent_on_the_way::<f64>(4e-14);
+        is_consistent_on_the_way::<f32>(2e-5);
+    }
 
     #[test]
     fn a_slip_against_the_shaft_lasts_half_a_period() {

@@ -257,6 +257,18 @@ mod tests {
     }
 
     #[test]
+    fn a_bend_of_either_sign_widens_a_bound_and_scales() {
+        for omega_ddot in [2.0, -2.0] {
+            let shape = Quadratic { omega_ddot };
+            assert_eq!(shape.bound(3.0), 5.0);
+            assert_eq!(shape.times(0.25).omega_ddot, 0.25 * omega_ddot);
+            assert_eq!(shape.plus(3.0, || 0.5), 3.0 + 0.5 * omega_ddot);
+        }
+        assert_eq!(Linear.bound(3.0), 3.0);
+        assert_eq!(Linear.plus(3.0, || 0.5), 3.0);
+    }
+
+    #[test]
     fn the_quadratic_path_is_a_cubic_motion_to_rounding() {
         // φ = 0.3 + 2t − 40t² + 3e4·t³, over a millisecond from 2 ms on.
         let phi = |t: f64| ((3e4 * t - 40.0) * t + 2.0) * t + 0.3;

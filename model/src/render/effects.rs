@@ -420,6 +420,18 @@ pub(crate) mod tests {
         E::new(E::coefficients(settings, &TIMING).unwrap())
     }
 
+    #[test]
+    fn a_tick_that_no_device_has_has_no_scale() {
+        let scale = |step_s| Timing { step_s, ..TIMING }.scale::<f64>();
+        for step_s in [f64::MIN_POSITIVE, 5e-5, LONGEST_STEP_S] {
+            assert!(scale(step_s).is_ok(), "{step_s}");
+        }
+        for step_s in [0.0, -5e-5, 1.01 * LONGEST_STEP_S, f64::NAN] {
+            let error = scale(step_s).map(|_| ()).unwrap_err();
+            assert!(matches!(error, SettingsError::Step { .. }), "{step_s}");
+        }
+    }
+
     /// What an effect adds to 1 N·m in a tick, and what is shown then.
     pub(crate) fn after<E>(
         stage: &mut impl Switched<f32, E>,

@@ -357,6 +357,38 @@ mod tests {
     }
 
     #[test]
+    fn what_no_joint_can_have_is_no_travel() {
+        const MOST: f64 = 1e9;
+        let scale = Scale::<f64>::new(&Sight::IDEAL, 5e-5);
+        let of = |delta_rad: f64, start_rad_s: f64, end_rad_s: f64, rest_rad: f64| {
+            let shaft = ShaftStep {
+                delta_phi_rad: delta_rad,
+                omega_start_rad_s: start_rad_s,
+                omega_end_rad_s: end_rad_s,
+            };
+            let to = Position { count: 1, rest_rad };
+            Travel::plausible(&Checked::Step(shaft), &to, &scale)
+        };
+        for sign in [1.0, -1.0] {
+            for place in 0..4 {
+                let with = |x: f64| {
+                    let mut numbers = [0.0; 4];
+                    numbers[place] = sign * x;
+                    let [delta, start, end, rest] = numbers;
+                    of(delta, start, end, rest)
+                };
+                assert!(with(0.99 * MOST).is_some(), "{place}");
+                for no_number in [MOST, f64::INFINITY, f64::NAN] {
+                    assert_eq!(with(no_number), None, "{place}");
+                }
+            }
+            // Together they are too much, and none makes up for another.
+            let part = 0.3 * sign * MOST;
+            assert_eq!(of(part, part, -part, -part), None);
+        }
+    }
+
+    #[test]
     fn a_rise_is_found_and_always_a_share_of_the_tick() {
         assert_eq!(rise(2.0, 0.0, 1.0), 0.5);
         assert!((rise(1.0, 1.0, 0.75) - 0.5).abs() < 1e-15);

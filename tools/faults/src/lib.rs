@@ -19,10 +19,13 @@
 //!                                                   └─> docs/planted-firmware-faults.md
 //! ```
 
+//! [`mutants`] are not chosen by us: all that `cargo mutants` lists of a crate.
+
 pub mod fault;
 pub mod firmware;
 pub mod firmware_page;
 pub mod firmware_trial;
+pub mod mutants;
 pub mod outcome;
 pub mod page;
 pub mod process;

@@ -3,6 +3,7 @@
 //! `firmware.toml` with the emulator's tests.
 
 mod firmware_run;
+mod mutants_run;
 
 use clap::Parser;
 use crepitus_faults::fault::Fault;
@@ -30,6 +31,9 @@ struct Arguments {
     /// Plant the faults of the drive's firmware instead of those of the model.
     #[arg(long)]
     firmware: bool,
+    /// Try every mutant that `cargo mutants` lists of this crate: model, device or protocol.
+    #[arg(long, value_name = "CRATE", conflicts_with_all = ["only", "list", "firmware", "cases_only", "page"])]
+    mutants: Option<String>,
     /// Run the hard cases only, and leave the model's tests to a later run.
     #[arg(long)]
     cases_only: bool,
@@ -55,6 +59,9 @@ fn main() -> ExitCode {
 }
 
 fn work(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
+    if let Some(folder) = &arguments.mutants {
+        return mutants_run::work(arguments, folder);
+    }
     if arguments.firmware {
         return firmware_run::work(arguments);
     }
