@@ -234,6 +234,32 @@ fn a_blade_that_has_fallen_obeys_a_commit() {
 }
 
 #[test]
+fn an_onset_that_is_moved_behind_the_joint_pushes_nobody() {
+    for (trigger, from_deg) in [(0, 20.0), (1, 45.0)] {
+        let knife = |onset_deg| EffectSettings {
+            clasp_knife: Some(ClaspKnifeSettings {
+                trigger,
+                onset_deg,
+                release_deg: 90.0,
+                onset_torque_nm: 3.0,
+                ..ClaspKnifeSettings::default()
+            }),
+            ..EffectSettings::default()
+        };
+        let mut rig = only::<f64>(knife(80.0), from_deg);
+        let rest = moved(&mut rig, f64::to_radians(from_deg), 10_000);
+        rig.commit(knife(40.0));
+        for _ in 0..200 {
+            assert_eq!(rig.step(rest, rest, 0.0), 0.0);
+        }
+        // Onwards it is a spring from here on.
+        let stiffness = knife(40.0).clasp_knife.unwrap().catch_stiffness_nm_per_rad;
+        let to = (rest.0 + 1e-3, 0.0);
+        near(rig.step(rest, to, 1e-3), 1e-3 * stiffness, 1e-9);
+    }
+}
+
+#[test]
 fn a_muscle_that_has_caught_obeys_a_commit() {
     for (release_s, later) in DECAYS {
         let muscle = |torque_nm| EffectSettings {

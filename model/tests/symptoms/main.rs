@@ -12,6 +12,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod anew;
 mod closed;
 mod gaps;
 mod laws;
@@ -21,3 +22,4 @@ mod phases;
 mod play;
 mod random;
 mod rig;
+mod rules;

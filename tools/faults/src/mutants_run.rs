@@ -35,7 +35,7 @@ const TESTS: [(&str, &[&str]); 3] = [
     ),
 ];
 
-/// Tries all mutants without a result, and lists what no test notices.
+/// Tries all mutants that no earlier run has noticed, and lists what no test notices.
 pub(crate) fn work(arguments: &Arguments, folder: &str) -> Result<ExitCode, Box<dyn Error>> {
     let Some((_, tests)) = TESTS.iter().find(|(name, _)| *name == folder) else {
         let names = TESTS.map(|(name, _)| name).join(", ");

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// Entries of the root that a build of the model's tests and the hard cases
 /// does not need.
-const LEFT_OUT: [&str; 5] = [".git", "target", "out", "docs", "bench"];
+const LEFT_OUT: [&str; 4] = [".git", "target", "out", "bench"];
 
 /// Folders that the outcome of a fault depends on.
 const DECIDES: [&str; 5] = ["model", "sim/ladder", "sim/plant", "sim/scene", "sim/study"];

@@ -251,7 +251,7 @@ impl<F: Real> Law for ClaspKnife<F> {
     fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let beyond_rad = self.with.sense * travel.end_beyond(&self.with.onset);
         let nm = match self.stage {
-            Stage::Out if beyond_rad < F::ZERO => self.wait(travel, on_change),
+            Stage::Out if beyond_rad < F::ZERO => F::ZERO,
             Stage::Out => {
                 let from = self.begin(travel, on_change);
                 self.build(from, beyond_rad, travel, on_change)
@@ -314,18 +314,6 @@ impl<F: Real> Law for ClaspKnife<F> {
 }
 
 impl<F: Real> ClaspKnife<F> {
-    /// Out: torque is left only where the onset was moved away.
-    #[inline]
-    fn wait(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
-        if self.play.torque_nm() == F::ZERO {
-            return F::ZERO;
-        }
-        let (part, stiffness) = (Part::whole(self.with.sense), self.with.stiffness);
-        let none = Limits::both(F::ZERO);
-        self.play
-            .follow(travel, part, stiffness, |_| none, on_change)
-    }
-
     /// The onset is met, within this travel or before (armed beyond it): at this share
     /// of it.
     #[cold]
@@ -333,18 +321,13 @@ impl<F: Real> ClaspKnife<F> {
         self.stage = Stage::Build;
         let started =
             self.with.sense * (travel.end_beyond(&self.with.onset) - travel.delta_rad) < F::ZERO;
-        if started && self.play.torque_nm() == F::ZERO {
-            self.play.put(&self.with.onset, F::ZERO, Hold::Elastic);
-        } else if self.play.torque_nm() == F::ZERO {
-            // Armed beyond the onset, or the onset was moved: it pushes nobody.
-            self.play
-                .put(&travel.place(F::ZERO), F::ZERO, Hold::Elastic);
-        }
-        let fraction = if started {
-            travel.reaches(&self.with.onset)
+        let (place, fraction) = if started {
+            (self.with.onset, travel.reaches(&self.with.onset))
         } else {
-            F::ZERO
+            // Armed beyond the onset, or the onset was moved: it pushes nobody.
+            (travel.place(F::ZERO), F::ZERO)
         };
+        self.play.put(&place, F::ZERO, Hold::Elastic);
         on_change.hear(Change::at(Word::Onset, fraction, F::ZERO, F::ZERO));
         fraction
     }

@@ -321,20 +321,14 @@ fn numbers(text: &str) -> impl Iterator<Item = u32> {
         .filter_map(|rest| rest.split(')').next()?.parse().ok())
 }
 
-/// Fates of an earlier run that still hold, by the mutant's name.
+/// What earlier runs have noticed, by the mutant's name; the rest is tried again, as there
+/// may be other tests now.
 pub fn known(text: &str) -> HashMap<&str, Fate> {
     text.lines()
         .filter_map(|line| {
             let mut parts = line.split('\t');
             let (name, fate, by) = (parts.next()?, parts.next()?, parts.next()?);
-            Some((
-                name,
-                match fate {
-                    "noticed" => Fate::Noticed(by.to_owned()),
-                    "missed" => Fate::Missed,
-                    _ => Fate::Unreached,
-                },
-            ))
+            (fate == "noticed").then(|| (name, Fate::Noticed(by.to_owned())))
         })
         .collect()
 }
@@ -347,4 +341,30 @@ pub fn line(name: &str, fate: &Fate) -> String {
         Fate::Unreached => ("unreached", ""),
     };
     format!("{name}\t{fate}\t{by}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_noticed_is_known_and_the_rest_is_tried_again() {
+        let noticed = Fate::Noticed("model: laws".to_owned());
+        let text = line("a.rs:1:2: replace + with -", &noticed)
+            + &line("b", &Fate::Missed)
+            + &line("c", &Fate::Unreached)
+            + "half a li";
+        assert_eq!(
+            known(&text),
+            HashMap::from([("a.rs:1:2: replace + with -", noticed)])
+        );
+    }
+
+    #[test]
+    fn an_error_names_the_mutants_before_its_place() {
+        let found: Vec<u32> =
+            numbers("if crate::mutant::is(12) { a } else if crate::mutant::is(7) { b").collect();
+        assert_eq!(found, [12, 7]);
+        assert_eq!(numbers("nothing here").count(), 0);
+    }
 }

@@ -1,0 +1,164 @@
+//! What settings are refused: each number outside its range, and what contradicts itself.
+
+use super::rig::timing;
+use crepitus_model::SettingsError;
+use crepitus_model::parameters::Tabled;
+use crepitus_model::render::effects::clasp_knife::{ClaspKnife, ClaspKnifeSettings};
+use crepitus_model::render::effects::clonus::Clonus;
+use crepitus_model::render::effects::cogwheel::Cogwheel;
+use crepitus_model::render::effects::lead_pipe::LeadPipe;
+use crepitus_model::render::effects::range_limit::{RangeLimit, RangeLimitSettings};
+use crepitus_model::render::effects::spasticity::{Spasticity, SpasticitySettings};
+use crepitus_model::render::effects::texture::{Texture, TextureSettings};
+use crepitus_model::render::effects::{DeviceEffect, EffectSettings};
+use crepitus_model::render::position::Sight;
+
+/// Each number just outside its range is refused, by the rules of a knee and before a law
+/// is made of it; no number is.
+fn keeps_its_ranges<const N: usize, E>(with: fn(E::Settings) -> EffectSettings)
+where
+    E: DeviceEffect<f64>,
+    E::Settings: Tabled<N>,
+{
+    let defaults = E::Settings::defaults();
+    assert_eq!(with(defaults).check(None), Ok(()));
+    assert!(E::coefficients(&defaults, &timing(Sight::IDEAL)).is_ok());
+    for (place, spec) in E::Settings::TABLE.iter().enumerate() {
+        let width = spec.max - spec.min;
+        for value in [spec.min - 1e-6 * width, spec.max + 1e-6 * width, f64::NAN] {
+            let mut settings = defaults;
+            *settings.values_mut()[place] = value;
+            let (key, refused) = (spec.key, with(settings).check(None));
+            assert!(
+                matches!(refused, Err(SettingsError::OutOfRange { .. })),
+                "{key} = {value}: {refused:?}"
+            );
+            let refused = E::coefficients(&settings, &timing(Sight::IDEAL)).map(|_| ());
+            assert!(refused.is_err(), "{key} = {value}");
+        }
+    }
+}
+
+#[test]
+fn a_number_outside_its_range_is_refused() {
+    keeps_its_ranges::<_, RangeLimit<f64>>(|s| EffectSettings {
+        range_limit: Some(s),
+        ..EffectSettings::default()
+    });
+    keeps_its_ranges::<_, LeadPipe<f64>>(|s| EffectSettings {
+        lead_pipe: Some(s),
+        ..EffectSettings::default()
+    });
+    keeps_its_ranges::<_, Cogwheel<f64>>(|s| EffectSettings {
+        cogwheel: Some(s),
+        ..EffectSettings::default()
+    });
+    keeps_its_ranges::<_, Spasticity<f64>>(|s| EffectSettings {
+        spasticity: Some(s),
+        ..EffectSettings::default()
+    });
+    keeps_its_ranges::<_, ClaspKnife<f64>>(|s| EffectSettings {
+        clasp_knife: Some(s),
+        ..EffectSettings::default()
+    });
+    keeps_its_ranges::<_, Clonus<f64>>(|s| EffectSettings {
+        clonus: Some(s),
+        ..EffectSettings::default()
+    });
+    keeps_its_ranges::<_, Texture<f64>>(|s| EffectSettings {
+        texture: Some(s),
+        ..EffectSettings::default()
+    });
+}
+
+fn is_refused(settings: EffectSettings) -> bool {
+    match settings.check(None) {
+        Ok(()) => false,
+        Err(SettingsError::Contradiction { .. }) => true,
+        Err(other) => panic!("{other}"),
+    }
+}
+
+#[test]
+fn a_blade_falls_beyond_its_onset() {
+    for (muscles, onset_deg, release_deg, refused) in [
+        (0, 40.0, 40.5, false),
+        (0, 40.0, 40.0, true),
+        (0, 40.0, 39.5, true),
+        (1, 40.0, 39.5, false),
+        (1, 40.0, 40.0, true),
+        (1, 40.0, 40.5, true),
+    ] {
+        let settings = EffectSettings {
+            clasp_knife: Some(ClaspKnifeSettings {
+                muscles,
+                onset_deg,
+                release_deg,
+                ..ClaspKnifeSettings::default()
+            }),
+            ..EffectSettings::default()
+        };
+        assert_eq!(is_refused(settings), refused, "{muscles} {release_deg}");
+    }
+}
+
+#[test]
+fn ends_of_a_range_are_five_degrees_apart() {
+    for (flexion_limit_deg, refused) in [(25.0, false), (24.9, true), (15.0, true)] {
+        let settings = EffectSettings {
+            range_limit: Some(RangeLimitSettings {
+                extension_limit_deg: 20.0,
+                flexion_limit_deg,
+                ..RangeLimitSettings::default()
+            }),
+            ..EffectSettings::default()
+        };
+        assert_eq!(is_refused(settings), refused, "{flexion_limit_deg}");
+    }
+}
+
+#[test]
+fn a_reflex_that_would_give_energy_at_every_speed_is_refused() {
+    // 0.0625 + 0.0125 s are 0.075 s to the bit.
+    for (form, velocity_shift_s, refused) in [
+        (1, 0.075, false),
+        (1, 0.074, true),
+        (1, 0.05, true),
+        (0, 0.0, false),
+    ] {
+        let settings = EffectSettings {
+            spasticity: Some(SpasticitySettings {
+                form,
+                velocity_shift_s,
+                delay_s: 0.0625,
+                activation_s: 0.0125,
+                ..SpasticitySettings::default()
+            }),
+            ..EffectSettings::default()
+        };
+        assert_eq!(is_refused(settings), refused, "{form} {velocity_shift_s}");
+    }
+}
+
+#[test]
+fn asperities_rise_and_are_no_steeper_than_their_spring() {
+    let rough = |base_nm, peak_nm, pitch_deg: f64, width_share, stiffness_nm_per_rad| {
+        is_refused(EffectSettings {
+            texture: Some(TextureSettings {
+                base_nm,
+                peak_nm,
+                pitch_deg,
+                width_share,
+                stiffness_nm_per_rad,
+                ..TextureSettings::default()
+            }),
+            ..EffectSettings::default()
+        })
+    };
+    // 2·0.5 N·m over 0.5·2 deg.
+    let steepest = 1.0 / 1_f64.to_radians();
+    assert!(!rough(0.25, 0.75, 2.0, 0.5, steepest));
+    assert!(rough(0.25, 0.75, 2.0, 0.5, 0.999 * steepest));
+    assert!(!rough(0.5, 0.5, 2.0, 0.5, 1.0));
+    assert!(rough(0.5, 0.499, 2.0, 0.5, 400.0));
+}
