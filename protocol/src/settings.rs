@@ -312,8 +312,48 @@ mod tests {
             DeviceSettings::of(&values),
             Err(ValueError::StaticAboveLimit)
         );
-        values.set(id::TORQUE_LIMIT, 4.5);
-        assert!(DeviceSettings::of(&values).is_ok());
+        // At the limit itself it is allowed.
+        for limit_nm in [3.0, 4.5] {
+            values.set(id::TORQUE_LIMIT, limit_nm);
+            assert!(DeviceSettings::of(&values).is_ok());
+        }
+    }
+
+    #[test]
+    fn a_range_has_room_for_the_fades_at_both_its_ends() {
+        for (least_deg, most_deg, has_room) in [
+            (-40.0, 20.0, true),
+            (-40.0, 19.9, false),
+            (20.0, 80.0, true),
+            (20.0, 79.9, false),
+            (20.0, -40.0, false),
+        ] {
+            let mut values = Values::default();
+            values.set(id::RANGE_LEAST, least_deg);
+            values.set(id::RANGE_MOST, most_deg);
+            values.set(id::RANGE_FADE, 30.0);
+            let expected = if has_room {
+                Ok(())
+            } else {
+                Err(ValueError::NarrowRange)
+            };
+            let found = DeviceSettings::of(&values).map(|_| ());
+            assert_eq!(found, expected, "{least_deg} to {most_deg}");
+        }
+    }
+
+    #[test]
+    fn the_brace_has_its_constants_and_its_range_in_counts() {
+        let mut values = Values::default();
+        values.set(id::LINES, 1000.0);
+        values.set(id::GEAR_RATIO, 9.0);
+        values.set(id::RANGE_LEAST, -45.0);
+        values.set(id::RANGE_MOST, 90.0);
+        let settings = DeviceSettings::of(&values).unwrap();
+        // Four counts a line, nine revolutions of the motor for one of the joint.
+        assert_eq!(settings.range_counts(), (-4500, 9000));
+        let torque_constant = settings.motor.torque_constant_nm_per_a;
+        assert_eq!(settings.joint_constant(), 9.0 * torque_constant);
     }
 
     #[test]

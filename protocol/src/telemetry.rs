@@ -346,6 +346,15 @@ mod tests {
     }
 
     #[test]
+    fn phases_of_effects_are_the_same_on_the_wire() {
+        for bits in [0, 1, 0x8421, u16::MAX] {
+            let phases = EffectPhases::from(Phases(bits));
+            assert_eq!(Phases::from(phases), Phases(bits));
+            assert_eq!(phases.bytes(), bits.to_le_bytes());
+        }
+    }
+
+    #[test]
     fn samples_are_of_fixed_width() {
         let mut bytes = [0; 32];
         for (count, current_ma) in [(0, 0), (i32::MIN, i16::MIN), (i32::MAX, i16::MAX)] {
