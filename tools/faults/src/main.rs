@@ -34,6 +34,15 @@ struct Arguments {
     /// Try every mutant that `cargo mutants` lists of this crate: model, device or protocol.
     #[arg(long, value_name = "CRATE", conflicts_with_all = ["only", "list", "firmware", "cases_only", "page"])]
     mutants: Option<String>,
+    /// Arguments of `cargo test` for the tests that are to notice mutants, instead of the
+    /// crate's own and those that compare with it; may be given several times.
+    #[arg(
+        long,
+        value_name = "ARGUMENTS",
+        requires = "mutants",
+        allow_hyphen_values = true
+    )]
+    tests: Vec<String>,
     /// Run the hard cases only, and leave the model's tests to a later run.
     #[arg(long)]
     cases_only: bool,

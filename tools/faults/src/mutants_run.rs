@@ -21,8 +21,8 @@ const TESTS: [(&str, &[&str]); 3] = [
             "-p crepitus-model",
             "-p crepitus-scene --lib --test symptom_agreement --test symptom_promises \
              --test symptom_scenes --test reference_cases --test runs",
-            "-p crepitus-study --lib --test hard_cases",
-            "-p crepitus-device --tests",
+            "-p crepitus-study --lib",
+            "-p crepitus-device --lib",
         ],
     ),
     (
@@ -44,7 +44,11 @@ pub(crate) fn work(arguments: &Arguments, folder: &str) -> Result<ExitCode, Box<
         );
         return Ok(ExitCode::from(2));
     };
-    let tests: Vec<String> = tests.iter().map(ToString::to_string).collect();
+    let tests = if arguments.tests.is_empty() {
+        tests.iter().map(ToString::to_string).collect()
+    } else {
+        arguments.tests.clone()
+    };
     let all = listed(&arguments.root, folder)?;
     let scratch = std::path::absolute(&arguments.scratch)?.join(format!("mutants-{folder}"));
     std::fs::create_dir_all(&scratch)?;
