@@ -3,7 +3,6 @@
 use super::random::*;
 use super::rig::*;
 use super::support;
-use crepitus_model::Real;
 use crepitus_model::render::Addition;
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::clonus::ClonusSettings;
@@ -12,6 +11,7 @@ use crepitus_model::render::effects::lead_pipe::LeadPipeSettings;
 use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_model::render::position::Sight;
+use crepitus_model::{Real, Sample};
 use proptest::prelude::*;
 
 /// A symptom whose mirror image about 0 deg has settings of its own, and that image.
@@ -79,17 +79,40 @@ fn mirrored(which: usize, x: &[f64]) -> [EffectSettings; 2] {
     both
 }
 
-/// Follows a hand and its mirror image: the torques are each other's to the bit.
-fn mirrors<F: Real>(both: &[EffectSettings; 2], angles: &[f64]) -> Result<(), TestCaseError> {
+/// Follows a hand and its mirror image, with samples that are lost in every `gap.1` ticks of
+/// each `gap.0`, and these settings instead from the middle on: the torques are each
+/// other's to the bit.
+fn mirrors<F: Real>(
+    both: &[EffectSettings; 2],
+    later: &[EffectSettings; 2],
+    angles: &[f64],
+    gap: (usize, usize),
+) -> Result<(), TestCaseError> {
     let [mut one, mut two] = both.map(|settings| Rig::<F>::new(settings, Sight::IDEAL, angles[0]));
     two.effects.rest(&Sight::IDEAL.position(-angles[0]));
-    let mut omega = 0.0;
-    for pair in angles.windows(2) {
-        let moved = pair[1] - pair[0];
-        let end = moved / TICK_S;
-        let nm = one.step((pair[0], omega), (pair[1], end), moved);
-        let image_nm = two.step((-pair[0], -omega), (-pair[1], -end), -moved);
-        prop_assert_eq!(nm, -image_nm, "{}", F::NAME);
+    let (mut omega, mut seen) = (0.0, angles[0]);
+    for (n, pair) in angles.windows(2).enumerate() {
+        if n == angles.len() / 2 {
+            one.commit(later[0]);
+            two.commit(later[1]);
+        }
+        let end = (pair[1] - pair[0]) / TICK_S;
+        let (nm, image_nm) = if n % gap.0 < gap.1 {
+            let place = |rad| Sight::IDEAL.position(rad);
+            (
+                one.tick(Sample::Lost, place(seen)),
+                two.tick(Sample::Lost, place(-seen)),
+            )
+        } else {
+            let moved = pair[1] - seen;
+            let both = (
+                one.step((seen, omega), (pair[1], end), moved),
+                two.step((-seen, -omega), (-pair[1], -end), -moved),
+            );
+            seen = pair[1];
+            both
+        };
+        prop_assert_eq!(nm, -image_nm, "{} {}", F::NAME, n);
         omega = end;
     }
     Ok(())
@@ -102,12 +125,14 @@ proptest! {
     fn a_mirrored_joint_shows_the_mirrored_torque_to_the_bit(
         which in 0..6_usize,
         x in prop::collection::vec(0.0..1.0_f64, 6),
+        y in prop::collection::vec(0.0..1.0_f64, 6),
         points in points(),
+        gap in (200..2000_usize, prop::sample::select(vec![0, 3, 150])),
     ) {
-        let both = mirrored(which, &x);
+        let (both, later) = (mirrored(which, &x), mirrored(which, &y));
         let middle = 60_f64.to_radians();
         let angles: Vec<_> = hand(&points).iter().map(|rad| rad - middle).collect();
-        mirrors::<f64>(&both, &angles)?;
-        mirrors::<f32>(&both, &angles)?;
+        mirrors::<f64>(&both, &later, &angles, gap)?;
+        mirrors::<f32>(&both, &later, &angles, gap)?;
     }
 }

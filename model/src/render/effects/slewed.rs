@@ -85,10 +85,12 @@ mod tests {
         let (_, second) = after(&mut stage, 1.0, 0.0);
         assert!((second.torque_nm - 0.6).abs() < 1e-6);
         assert_eq!(second.limit, Limit::None);
+        assert!(stage.law().is_some());
         stage.change(&None, 0.3);
         let (_, kept) = after(&mut stage, 1.0, 0.0);
         assert_eq!(kept.torque_nm, second.torque_nm);
         stage.change(&Some(None), 0.3);
+        assert_eq!(stage.law(), None);
         let (_, leaving) = after(&mut stage, 1.0, 0.0);
         assert!((leaving.torque_nm - 0.9).abs() < 1e-6);
         assert_eq!(leaving.limit, Limit::Slew);

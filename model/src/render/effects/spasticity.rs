@@ -351,3 +351,59 @@ impl<F: Real> Law for Spasticity<F> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ShaftStep;
+    use crate::render::input_check::Checked;
+    use crate::render::position::{Scale, Sight};
+
+    /// A travel of a tick between two velocities, from 1 rad on.
+    fn travel(from_rad_s: f64, to_rad_s: f64) -> Travel<f64> {
+        let scale = Scale::new(&Sight::IDEAL, 5e-5);
+        let delta = 0.5 * (from_rad_s + to_rad_s) * 5e-5;
+        let shaft = ShaftStep {
+            delta_phi_rad: delta,
+            omega_start_rad_s: from_rad_s,
+            omega_end_rad_s: to_rad_s,
+        };
+        let to = Sight::IDEAL.position(1.0 + delta);
+        Travel::of(&Checked::Step(shaft), &to, &scale).unwrap()
+    }
+
+    #[test]
+    fn a_level_is_met_where_angle_and_velocity_make_it() {
+        for (from, to) in [(1.0, 1.0), (1.0, 4.0), (0.5, 9.0), (4.0, 3.0)] {
+            for (sense, shift_s) in [(1.0, 0.0), (-1.0, 0.0), (1.0, 1e-5), (-1.0, 1e-5)] {
+                let travel = travel(sense * from, sense * to);
+                let threshold = Threshold {
+                    place: Sight::IDEAL.position(1.0),
+                    shift_s,
+                    sense,
+                };
+                let beyond = |fraction: f64| {
+                    let place = travel.place(fraction);
+                    let angle_rad = place.beyond(&threshold.place, travel.rad_per_count);
+                    sense * (angle_rad + shift_s * travel.omega_rad_s(fraction))
+                };
+                let start = threshold.start_beyond(&travel);
+                assert!((start - beyond(0.0)).abs() < 1e-15);
+                assert!((threshold.end_beyond(&travel) - beyond(1.0)).abs() < 1e-15);
+                for fraction in [0.1, 0.5, 0.9] {
+                    let found = threshold.rises_to(beyond(fraction), start, &travel);
+                    assert!((found - fraction).abs() < 1e-6, "{found} {fraction}");
+                    // The same motion seen from the other side falls.
+                    let other = Threshold {
+                        sense: -sense,
+                        ..threshold
+                    };
+                    let level = -beyond(fraction);
+                    let found = other.falls_to(level, other.start_beyond(&travel), &travel);
+                    assert!((found - fraction).abs() < 1e-6, "{found} {fraction}");
+                }
+                assert_eq!(threshold.rises_to(start, start, &travel), 0.0);
+            }
+        }
+    }
+}

@@ -116,3 +116,99 @@ impl<F: Real> Tank<F> {
         acting.fold(first, |least, t| least.at_most(*t * delta_phi_rad))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TICK_S: f64 = 5e-5;
+
+    /// 0.2 J and 0.04 W; a torque acts in the tick after it or the next.
+    fn tank() -> Tank<f64> {
+        Tank::new(0.2, 0.04, TICK_S, 1)
+    }
+
+    #[test]
+    fn what_a_torque_gives_the_hand_is_taken_and_what_the_hand_gives_fills_it() {
+        let mut tank = tank();
+        tank.give(2.0);
+        tank.account(-0.05);
+        assert!((tank.level_j() - (0.1 + 0.04 * TICK_S)).abs() < 1e-15);
+        assert!(
+            (tank.share() - tank.level_j() / 0.1)
+                .min(1.0 - tank.share())
+                .abs()
+                < 1e-12
+        );
+        tank.account(0.02);
+        // The one before gave nothing, which is the least.
+        assert!((tank.level_j() - (0.1 + 2.0 * 0.04 * TICK_S)).abs() < 1e-15);
+        tank.give(2.0);
+        tank.account(0.02);
+        assert!((tank.level_j() - (0.14 + 3.0 * 0.04 * TICK_S)).abs() < 1e-15);
+        for no_travel in [f64::NAN, f64::INFINITY] {
+            let before = tank;
+            tank.account(no_travel);
+            assert_eq!(tank, before);
+        }
+        tank.account(1e9);
+        assert_eq!(tank.level_j(), 0.2);
+    }
+
+    #[test]
+    fn what_is_overdrawn_is_paid_back_first() {
+        let mut tank = tank();
+        tank.give(2.0);
+        tank.account(-1e9);
+        assert_eq!((tank.level_j(), tank.share()), (-0.2, 0.0));
+        tank.forget();
+        // 0.2 J at 0.04 W, and nothing for 5 s.
+        for _ in 0..99_900 {
+            tank.account(-1e9);
+            assert_eq!(tank.share(), 0.0);
+        }
+        for _ in 0..200 {
+            tank.account(0.0);
+        }
+        assert!(tank.share() > 0.0);
+    }
+
+    #[test]
+    fn what_was_forgotten_takes_nothing() {
+        let mut tank = tank();
+        (tank.give(3.0), tank.give(3.0));
+        tank.forget();
+        tank.account(-0.05);
+        assert_eq!(tank.level_j(), 0.2);
+    }
+
+    #[test]
+    fn a_tank_that_lacks_something_is_accounted_for_until_it_is_full() {
+        let mut tank = tank();
+        assert_eq!(tank.open(-1.0), 1.0);
+        tank.close(2.0);
+        let low = tank.open(-0.075);
+        assert!((low - 0.5).abs() < 1e-4, "{low}");
+        // Nothing is given any more.
+        for n in 1..5_000 {
+            tank.close(0.0);
+            let share = tank.open(0.0);
+            assert!(
+                (share - low - f64::from(n) * 0.4 * TICK_S).abs() < 1e-9,
+                "{share}"
+            );
+        }
+        let mut ticks = 5_000;
+        while tank.level_j() < 0.2 {
+            tank.close(0.0);
+            tank.open(0.0);
+            ticks += 1;
+        }
+        // 0.15 J at 0.04 W.
+        assert!((74_990..75_010).contains(&ticks), "{ticks}");
+        tank.close(0.0);
+        let full = tank;
+        assert_eq!(tank.open(-1.0), 1.0);
+        assert_eq!(tank, full, "it costs nothing");
+    }
+}
