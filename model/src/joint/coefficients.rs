@@ -269,7 +269,6 @@ mod tests {
                 damping_nms_per_rad: between(0.1, 0.4),
                 static_torque_nm: between(from.static_torque_nm, 3.0),
                 kinetic_torque_nm: between(from.kinetic_torque_nm, 2.0),
-                ..from
             };
             let settings = Settings {
                 parameters,
