@@ -92,6 +92,8 @@ fn a_wall_that_leaves_and_is_committed_again_does_not_push() {
     for _ in 0..1_000 {
         let nm = rig.step(rest, rest, 0.0);
         assert!(nm <= left_nm + 1e-12, "{left_nm} grows to {nm}");
+        // Nor does more of it go.
+        near(nm, left_nm, 0.02);
     }
 }
 
@@ -199,6 +201,10 @@ fn committed(rig: &mut Rig<f64>, settings: EffectSettings, rest: (f64, f64)) -> 
     let mut last_nm = rig.step(rest, rest, 0.0);
     assert!(last_nm > 0.4, "{last_nm}");
     rig.commit(settings);
+    // Without a sample nothing grows.
+    let unseen_nm = lost(rig, rest.0, 5);
+    assert!((last_nm - 6.0 * SLEW_NM..=last_nm + 1e-12).contains(&unseen_nm));
+    last_nm = unseen_nm;
     for _ in 0..700 {
         let nm = rig.step(rest, rest, 0.0);
         assert!((last_nm - nm).abs() <= SLEW_NM + 1e-3, "{last_nm} {nm}");

@@ -92,12 +92,15 @@ fn mirrors<F: Real>(
     two.effects.rest(&Sight::IDEAL.position(-angles[0]));
     let (mut omega, mut seen) = (0.0, angles[0]);
     for (n, pair) in angles.windows(2).enumerate() {
-        if n == angles.len() / 2 {
+        let middle = angles.len() / 2;
+        // The torque of a commit is shown before the next sample, too.
+        let is_lost = n % gap.0 < gap.1 || gap.1 > 0 && (middle..middle + 3).contains(&n);
+        if n == middle {
             one.commit(later[0]);
             two.commit(later[1]);
         }
         let end = (pair[1] - pair[0]) / TICK_S;
-        let (nm, image_nm) = if n % gap.0 < gap.1 {
+        let (nm, image_nm) = if is_lost {
             let place = |rad| Sight::IDEAL.position(rad);
             (
                 one.tick(Sample::Lost, place(seen)),

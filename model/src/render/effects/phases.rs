@@ -133,6 +133,16 @@ mod tests {
         // More than there are: cut, not written over its neighbour.
         assert_eq!(Phases::default().with(low, 6), Phases(0));
         assert_eq!(Phases(u16::MAX).with_named("no-effect", "rest"), None);
+        for spec in SPECS {
+            for name in spec.phases.iter().flat_map(|phases| phases.names).skip(1) {
+                let phases = Phases(0).with_named(spec.name, name).unwrap();
+                let [(of, is)] = phases.named().collect::<std::vec::Vec<_>>()[..] else {
+                    panic!("{name}: one effect is not at rest");
+                };
+                assert_eq!((of.name, is), (spec.name, *name));
+                assert_eq!(Phases(0).with_named(spec.name, "no-phase"), None);
+            }
+        }
         assert_eq!(Phases(0).named().count(), 0);
     }
 }

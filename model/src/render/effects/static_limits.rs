@@ -237,6 +237,45 @@ mod tests {
     }
 
     #[test]
+    fn closed_forms_of_ends_catches_and_blades() {
+        let settings = RangeLimitSettings {
+            flexion_limit_deg: 0.0,
+            flexion_stiffness_nm_per_rad: 40.0,
+            flexion_stiffening_nm_per_rad2: 1000.0,
+            flexion_torque_nm: 6.0,
+            extension_limit_deg: -10.0,
+            ..RangeLimitSettings::defaults()
+        };
+        for (beyond_rad, nm) in [(-0.01, 0.0), (0.01, 0.5), (0.05, 4.5), (0.1, 6.0)] {
+            let upper_nm = settings.limits_at(beyond_rad).upper_nm;
+            assert!((upper_nm - nm).abs() < 1e-12, "{upper_nm} for {nm}");
+        }
+        for (muscles, sign) in [(0, 1.0), (1, -1.0)] {
+            let muscle = SpasticitySettings {
+                muscles,
+                velocity_torque_nms_per_rad: 0.5,
+                torque_nm: 2.0,
+                ..SpasticitySettings::defaults()
+            };
+            for (rad_s, nm) in [(3.0, 1.5), (9.0, 2.0), (-3.0, 0.0)] {
+                assert_eq!(muscle.catch_nm(sign * rad_s), nm);
+            }
+            let blade = ClaspKnifeSettings {
+                muscles,
+                onset_deg: 60.0,
+                onset_torque_nm: 1.5,
+                slope_nm_per_rad: 2.0,
+                ..ClaspKnifeSettings::defaults()
+            };
+            let onset_rad = 60_f64.to_radians();
+            for (beyond_rad, nm) in [(-0.1, 0.0), (0.0, 1.5), (0.25, 2.0)] {
+                let found_nm = blade.building_nm(onset_rad + sign * beyond_rad);
+                assert!((found_nm - sign * nm).abs() < 1e-12, "{found_nm} {nm}");
+            }
+        }
+    }
+
+    #[test]
     fn rigidity_is_a_band_about_its_spring() {
         let settings = LeadPipeSettings {
             elastic_nm_per_rad: 2.0,
