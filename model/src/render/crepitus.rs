@@ -60,11 +60,6 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Crepitus<F, L> {
         self.ramp = ramp;
     }
 
-    /// Whether parameters are on their way.
-    pub fn is_settling(&self) -> bool {
-        self.ramp.is_settling()
-    }
-
     /// Whether samples are missing and the torque is held.
     pub fn is_holding(&self) -> bool {
         self.held.is_holding()
@@ -211,6 +206,21 @@ mod tests {
         let shown = renderer.render(&moved(1e-4), |_| {});
         assert_eq!(shown.limit, Limit::None);
         assert!((shown.torque_nm - 0.24).abs() < 1e-6);
+    }
+
+    #[test]
+    fn it_settles_from_a_commit_to_the_end_of_its_ramp() {
+        let mut renderer = after(100);
+        let mut settings = Settings::default();
+        settings.parameters.static_torque_nm += 0.05;
+        let next = StepCoefficients::new(&settings.validate().unwrap(), TICK_S).unwrap();
+        renderer.commit(next, 100.0);
+        // 5 mN·m a tick.
+        let settling: std::vec::Vec<bool> = (0..12)
+            .map(|_| renderer.render(&moved(5e-5), |_| {}).settling)
+            .collect();
+        let settles = settling.iter().filter(|is_settling| **is_settling).count();
+        assert!((9..=10).contains(&settles) && settling[0], "{settling:?}");
     }
 
     /// What rings a bone.

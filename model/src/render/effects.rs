@@ -319,14 +319,6 @@ pub trait Switched<F: Real, E: DeviceEffect<F>> {
     /// Absent.
     fn new(slew_nm: F) -> Self;
 
-    /// Adds its torque to what is shown, and returns it, N·m.
-    fn tick(
-        &mut self,
-        tick: &Tick<'_, F>,
-        shown: &mut Shown<F>,
-        observe: &mut impl Observe<F>,
-    ) -> F;
-
     /// From the next tick on: another law, or none, where coefficients are given;
     /// and torque that changes for it by at most `slew_nm` a tick.
     fn change(&mut self, coefficients: &Option<Option<E::Coefficients>>, slew_nm: F);
@@ -336,6 +328,17 @@ pub trait Switched<F: Real, E: DeviceEffect<F>> {
 
     /// The law in force.
     fn law(&self) -> Option<&E>;
+}
+
+/// One that is no symptom: it adds by itself. (Symptoms are followed together.)
+pub trait Adds<F: Real, E: DeviceEffect<F>>: Switched<F, E> {
+    /// Adds its torque to what is shown, and returns it, N·m.
+    fn tick(
+        &mut self,
+        tick: &Tick<'_, F>,
+        shown: &mut Shown<F>,
+        observe: &mut impl Observe<F>,
+    ) -> F;
 }
 
 /// The tank of a device's symptoms.
@@ -434,7 +437,7 @@ pub(crate) mod tests {
 
     /// What an effect adds to 1 N·m in a tick, and what is shown then.
     pub(crate) fn after<E>(
-        stage: &mut impl Switched<f32, E>,
+        stage: &mut impl Adds<f32, E>,
         omega_rad_s: f32,
         jump_nm: f32,
     ) -> (f32, Shown<f32>)

@@ -1,6 +1,6 @@
 //! An effect whose torque fades out where it is exchanged.
 
-use super::{DeviceEffect, Observe, Switched, Target, Tick, give};
+use super::{Adds, DeviceEffect, Observe, Switched, Target, Tick, give};
 use crate::real::Real;
 use crate::render::Shown;
 
@@ -43,7 +43,9 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Faded<F, E> {
     fn law(&self) -> Option<&E> {
         self.law.as_ref()
     }
+}
 
+impl<F: Real, E: DeviceEffect<F>> Adds<F, E> for Faded<F, E> {
     #[inline]
     fn tick(
         &mut self,

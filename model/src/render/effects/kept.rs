@@ -3,7 +3,6 @@
 use super::symptom::{Besides, Law, law_nm};
 use super::{MOST_STIFFNESS_NM_PER_RAD, Observe, Switched, Tick};
 use crate::real::Real;
-use crate::render::Shown;
 use crate::render::input_check::HOLD_TICKS;
 use crate::render::position::{Position, Travel};
 
@@ -94,27 +93,6 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
     #[inline]
     fn law(&self) -> Option<&E> {
         self.is_on.then_some(&self.law)
-    }
-
-    fn tick(
-        &mut self,
-        tick: &Tick<'_, F>,
-        shown: &mut Shown<F>,
-        observe: &mut impl Observe<F>,
-    ) -> F {
-        if !self.is_on {
-            return F::ZERO;
-        }
-        let mut besides = Besides::NOTHING;
-        let nm = match tick.travel {
-            Some(travel) if tick.is_driven => {
-                self.follow(travel, tick.paid_share, &mut besides, observe)
-            }
-            _ => self.unseen(tick, &mut besides),
-        };
-        besides.add_to(shown);
-        shown.torque_nm += nm;
-        nm
     }
 }
 

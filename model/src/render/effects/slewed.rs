@@ -1,6 +1,6 @@
 //! An effect that is followed at most as fast as the slew limit.
 
-use super::{DeviceEffect, Observe, Switched, Tick};
+use super::{Adds, DeviceEffect, Observe, Switched, Tick};
 use crate::real::Real;
 use crate::render::{Limit, Shown};
 
@@ -34,7 +34,9 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Slewed<F, E> {
     fn law(&self) -> Option<&E> {
         self.law.as_ref()
     }
+}
 
+impl<F: Real, E: DeviceEffect<F>> Adds<F, E> for Slewed<F, E> {
     #[inline]
     fn tick(
         &mut self,

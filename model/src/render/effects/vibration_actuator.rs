@@ -56,7 +56,7 @@ use crate::parameters::{Tabled, settings};
 use crate::real::Real;
 use crate::render::Shown;
 use crate::render::effects::{
-    DeviceEffect, EffectSpec, Need, Observe, PhaseSpec, Switched, Target, Tick, Timing,
+    Adds, DeviceEffect, EffectSpec, Need, Observe, PhaseSpec, Switched, Target, Tick, Timing,
 };
 
 settings! {
@@ -605,7 +605,9 @@ impl<F: Real> Switched<F, VibrationActuator<F>> for Exchanged<F> {
     fn law(&self) -> Option<&VibrationActuator<F>> {
         self.law.as_ref()
     }
+}
 
+impl<F: Real> Adds<F, VibrationActuator<F>> for Exchanged<F> {
     #[inline]
     fn tick(
         &mut self,
