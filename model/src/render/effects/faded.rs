@@ -103,17 +103,25 @@ mod tests {
 
     #[test]
     fn a_bone_that_is_exchanged_fades_out() {
-        let mut stage = faded();
-        after(&mut stage, 0.0, 0.4);
-        let ringing: Vec<f32> = (0..40).map(|_| after(&mut stage, 0.0, 0.0).0).collect();
-        let last = ringing[39];
-        assert!(last.abs() > 0.1, "{last}");
-        stage.change(&Some(None), 0.01);
-        let (fading_nm, shown) = after(&mut stage, 0.0, 0.0);
-        assert!((fading_nm - (last.abs() - 0.01).copysign(last)).abs() < 1e-6);
-        assert_eq!(shown.torque_nm, 1.0 + fading_nm);
-        let ticks = (0..100).take_while(|_| after(&mut stage, 0.0, 0.0).0 != 0.0);
-        assert!(ticks.count() < 60);
+        for jump_nm in [0.4, -0.4] {
+            let mut stage = faded();
+            after(&mut stage, 0.0, jump_nm);
+            let ringing: Vec<f32> = (0..40).map(|_| after(&mut stage, 0.0, 0.0).0).collect();
+            let last = ringing[39];
+            assert!(last.abs() > 0.1, "{last}");
+            stage.change(&Some(None), 0.01);
+            let mut left = last.abs();
+            for _ in 0..60 {
+                left = (left - 0.01).max(0.0);
+                let (fading_nm, shown) = after(&mut stage, 0.0, 0.0);
+                assert!(
+                    (fading_nm - left.copysign(last)).abs() < 1e-6,
+                    "{fading_nm}"
+                );
+                assert_eq!(shown.torque_nm, 1.0 + fading_nm);
+            }
+            assert_eq!(after(&mut stage, 0.0, 0.0).0, 0.0);
+        }
     }
 
     #[test]
