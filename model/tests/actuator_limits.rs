@@ -176,9 +176,8 @@ impl Coil {
     }
 }
 
-/// What each limit leaves of a command is what the module says, and the observer sees
-/// what such a coil does. The command without limits is that of a law that gets a
-/// ten-thousandth of the torque.
+/// Limits and observer against the equations of the module and a coil of other code. The
+/// command without limits is that of a law that gets a ten-thousandth of the torque.
 #[test]
 fn limits_take_what_the_module_says_of_a_coil_of_other_code() {
     const SMALL: f64 = 1e-4;

@@ -255,7 +255,7 @@ pub fn rise<F: Real>(slope: F, bend: F, missing: F) -> F {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::control::encoder::EncoderReader;
 
@@ -304,7 +304,7 @@ mod tests {
     }
 
     /// From 1 rad, Δφ = (Ω₀ + Ω₁)·h/2.
-    fn travel(from_rad_s: f64, to_rad_s: f64) -> Travel<f64> {
+    pub(crate) fn travel(from_rad_s: f64, to_rad_s: f64) -> Travel<f64> {
         let scale = Scale::new(&Sight::IDEAL, 5e-5);
         let delta = (from_rad_s + to_rad_s) * scale.half_step_s;
         let shaft = ShaftStep {

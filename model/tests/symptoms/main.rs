@@ -12,7 +12,6 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-mod anew;
 mod closed;
 mod gaps;
 mod laws;
@@ -21,5 +20,6 @@ mod mirror;
 mod phases;
 mod play;
 mod random;
+mod reset;
 mod rig;
 mod rules;

@@ -1,4 +1,4 @@
-//! What settings are refused: each number outside its range, and what contradicts itself.
+//! Settings that are refused: numbers out of range, and contradictions.
 
 use super::rig::timing;
 use crepitus_model::SettingsError;

@@ -25,7 +25,7 @@ pub struct Mutant {
     pub file: PathBuf,
     /// Place and mutation, for people.
     pub name: String,
-    /// What kind of mutation it is.
+    /// Its kind, in the terms of `cargo mutants`.
     pub genre: Genre,
     /// The text that replaces what is at `span`.
     pub replacement: String,
@@ -50,7 +50,7 @@ pub enum Genre {
     StructField,
 }
 
-/// Where a mutant is.
+/// The part of the file that a mutant replaces.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct Span {
     /// Its beginning.

@@ -355,22 +355,8 @@ impl<F: Real> Law for Spasticity<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ShaftStep;
-    use crate::render::input_check::Checked;
-    use crate::render::position::{Scale, Sight};
-
-    /// A travel of a tick between two velocities, from 1 rad on.
-    fn travel(from_rad_s: f64, to_rad_s: f64) -> Travel<f64> {
-        let scale = Scale::new(&Sight::IDEAL, 5e-5);
-        let delta = 0.5 * (from_rad_s + to_rad_s) * 5e-5;
-        let shaft = ShaftStep {
-            delta_phi_rad: delta,
-            omega_start_rad_s: from_rad_s,
-            omega_end_rad_s: to_rad_s,
-        };
-        let to = Sight::IDEAL.position(1.0 + delta);
-        Travel::of(&Checked::Step(shaft), &to, &scale).unwrap()
-    }
+    use crate::render::position::Sight;
+    use crate::render::position::tests::travel;
 
     #[test]
     fn a_level_is_met_where_angle_and_velocity_make_it() {

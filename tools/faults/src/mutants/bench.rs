@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 /// Timeout of a build: every operator is a function with branches.
 const BUILD: Duration = Duration::from_hours(2);
 
-/// How often a copy may fail to build before that is not for its mutants.
+/// The most builds: each leaves out the mutants that did not compile in the one before.
 const BUILDS: u32 = 20;
 
 /// Few random cases, and without the longest tests: a mutant that survives waits for all.
@@ -26,8 +26,8 @@ const LONGEST: [&str; 3] = [
     "--skip=ten_million",
 ];
 
-/// How often the time without a mutant, and how much more, until a program hangs.
-const PATIENCE: (u32, Duration) = (8, Duration::from_secs(8));
+/// Timeout of a program: so many times what it takes without a mutant, and so much more.
+const TIMEOUT: (u32, Duration) = (8, Duration::from_secs(8));
 
 /// A test program.
 #[derive(Clone, Debug)]
@@ -279,7 +279,7 @@ impl Bench {
         {
             let mut command = program.command();
             command.env("CREPITUS_MUTANT", number.to_string());
-            let most = program.takes * PATIENCE.0 + PATIENCE.1;
+            let most = program.takes * TIMEOUT.0 + TIMEOUT.1;
             if run(&mut command, &log, most).map_err(io(&program.path))? != End::Success {
                 return Ok(Fate::Noticed(program.name.clone()));
             }

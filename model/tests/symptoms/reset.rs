@@ -1,4 +1,4 @@
-//! A law that starts over is a new one: nothing of an earlier contact is left.
+//! A symptom that is reset, as at arming, keeps nothing of an earlier contact.
 
 use super::random::*;
 use super::rig::*;
@@ -56,7 +56,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: proptest::test_runner::RngSeed::Fixed(1), cases: 48, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_symptom_that_starts_over_is_a_new_one(
+    fn a_symptom_that_is_reset_is_a_new_one(
         kind in 0..KINDS + 2,
         x in prop::collection::vec(0.0..1.0_f64, 6),
         before in points(),
