@@ -5,6 +5,7 @@ use crepitus_model::render::effects::clasp_knife::ClaspKnifeSettings;
 use crepitus_model::render::effects::lead_pipe::LeadPipeSettings;
 use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
+use crepitus_model::render::effects::symptom::Word;
 use crepitus_model::render::effects::texture::TextureSettings;
 use crepitus_model::render::effects::{EffectSettings, MOST_STIFFNESS_NM_PER_RAD};
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
@@ -262,6 +263,60 @@ fn an_onset_that_is_moved_behind_the_joint_pushes_nobody() {
         let stiffness = knife(40.0).clasp_knife.unwrap().catch_stiffness_nm_per_rad;
         let to = (rest.0 + 1e-3, 0.0);
         near(rig.step(rest, to, 1e-3), 1e-3 * stiffness, 1e-9);
+    }
+}
+
+/// Commits an onset that the joint has not met yet: what the blade lets go of goes with the
+/// slew limit. Returns the word, the torques that it tells, and that before the commit.
+fn let_go(muscles: u8, has_fallen: bool) -> (Word, (f64, f64), f64) {
+    // Flexors: the mirror image about 60 deg.
+    let along = if muscles == 0 { 1.0 } else { -1.0 };
+    let knife = |onset_deg: f64, release_deg: f64| EffectSettings {
+        clasp_knife: Some(ClaspKnifeSettings {
+            muscles,
+            onset_deg: 60.0 + along * (onset_deg - 60.0),
+            release_deg: 60.0 + along * (release_deg - 60.0),
+            onset_torque_nm: 2.0,
+            residual_share: 0.5,
+            ..ClaspKnifeSettings::default()
+        }),
+        ..EffectSettings::default()
+    };
+    let release_deg = if has_fallen { 45.0 } else { 90.0 };
+    let mut at = (60.0 - along * 21.0_f64).to_radians();
+    let mut rig = only::<f64>(knife(40.0, release_deg), at.to_degrees());
+    for _ in 0..4_000 {
+        let to = at + along * TICK_S;
+        rig.step((at, along), (to, along), along * TICK_S);
+        at = to;
+    }
+    let rest = (at, 0.0);
+    let before_nm = rig.step(rest, rest, 0.0);
+    assert!(along * before_nm > 0.9, "{before_nm}");
+    rig.commit(knife(80.0, 90.0));
+    let mut last_nm = rig.step(rest, rest, 0.0);
+    let told = (rig.words.last().unwrap().0, *rig.torques_nm.last().unwrap());
+    assert!((last_nm - before_nm).abs() <= SLEW_NM + 1e-9);
+    for _ in 0..1_000 {
+        let nm = rig.step(rest, rest, 0.0);
+        assert!((last_nm - nm).abs() <= SLEW_NM + 1e-9, "{last_nm} {nm}");
+        last_nm = nm;
+    }
+    assert_eq!(last_nm, 0.0);
+    (told.0, told.1, before_nm)
+}
+
+#[test]
+fn an_onset_that_is_moved_before_the_joint_lets_go_within_the_slew_limit() {
+    for (muscles, has_fallen, word) in [
+        (0, false, Word::Back),
+        (1, false, Word::Back),
+        (0, true, Word::Rearm),
+        (1, true, Word::Rearm),
+    ] {
+        let (told, (from_nm, to_nm), before_nm) = let_go(muscles, has_fallen);
+        assert_eq!((told, to_nm), (word, 0.0));
+        near(from_nm, before_nm, 2.0 * SLEW_NM);
     }
 }
 

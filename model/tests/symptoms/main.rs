@@ -12,6 +12,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod asperities;
 mod closed;
 mod gaps;
 mod laws;

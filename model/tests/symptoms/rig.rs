@@ -28,6 +28,8 @@ pub(crate) struct Rig<F: Real> {
     pub(crate) timing: Timing,
     /// What happened, and in which share of the last tick.
     pub(crate) words: Vec<(Word, f64)>,
+    /// The torque just before and after each, N·m.
+    pub(crate) torques_nm: Vec<(f64, f64)>,
     pub(crate) settling: bool,
     phases: Phases,
     /// Jump of the torque in the last tick, N·m.
@@ -43,6 +45,7 @@ impl<F: Real> Rig<F> {
             settings: EffectSettings::default(),
             timing,
             words: Vec::new(),
+            torques_nm: Vec::new(),
             settling: false,
             phases: Phases::default(),
             jump_nm: 0.0,
@@ -69,13 +72,15 @@ impl<F: Real> Rig<F> {
         };
         let mut shown = Shown::nothing();
         self.words.clear();
-        let words = &mut self.words;
+        self.torques_nm.clear();
+        let (words, torques_nm) = (&mut self.words, &mut self.torques_nm);
         self.effects.tick(
             &seen,
             &input,
             &mut shown,
             &mut |_: &'static EffectSpec, change: Change<F>| {
                 words.push((change.word, change.fraction.to_f64()));
+                torques_nm.push((change.before_nm.to_f64(), change.after_nm.to_f64()));
             },
         );
         self.settling = shown.settling;

@@ -338,17 +338,15 @@ impl<F: Real> Wall<F> {
                 self.stage = Stage::Out;
                 on_change.tell(Word::Leave, || travel.reaches(&end.place), nm, nm);
             }
-        } else if self.play.hold() != Hold::Upper {
+        } else if self.play.hold() != Hold::Upper || beyond_rad < end.cap_rad {
             self.stage = Stage::In;
-        } else if beyond_rad >= end.cap_rad {
-            if is_below_cap && !is_told && nm > F::ZERO {
+        } else {
+            if is_below_cap && !is_told {
                 let place = end.place.moved(sense * end.cap_rad);
                 let nm = sense * nm;
                 on_change.tell(Word::Cap, || travel.reaches(&place), nm, nm);
             }
             self.stage = Stage::AtCap;
-        } else if beyond_rad < end.cap_rad - flicker_rad {
-            self.stage = Stage::In;
         }
         nm
     }

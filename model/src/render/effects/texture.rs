@@ -452,13 +452,7 @@ impl<F: Real> Texture<F> {
         self.step(upwards);
         let Limits { lower_nm, upper_nm } = self.pair.limits_at(&self.with, !upwards, &place);
         let after_nm = before_nm.at_most(upper_nm).at_least(lower_nm);
-        // A limit that is wider behind the asperity lets go of the torque.
-        let hold = match upwards {
-            true if after_nm == upper_nm => Hold::Upper,
-            false if after_nm == lower_nm => Hold::Lower,
-            _ => Hold::Elastic,
-        };
-        self.play.put(&place, after_nm, hold);
+        self.play.put(&place, after_nm, Hold::Elastic);
         if is_at_limit {
             on_change.hear(Change::at(Word::Snap, fraction, before_nm, after_nm));
         }
