@@ -124,18 +124,7 @@ impl Decoder {
         unit: &mut impl WordCrc,
         byte: u8,
     ) -> Option<Result<Body<'_>, FrameError>> {
-        if byte != DELIMITER {
-            self.begin();
-            self.length = self.length.saturating_add(1);
-            if self.left > 0 {
-                self.left = self.left.wrapping_sub(1);
-                self.add(unit, byte);
-            } else {
-                self.code(unit, byte);
-            }
-            return None;
-        }
-        self.end(unit)
+        self.extend_by(unit, &[byte]).1
     }
 
     /// Decodes bytes up to the first delimiter among them: how many, and the
@@ -151,29 +140,64 @@ impl Decoder {
         bytes: &[u8],
     ) -> (usize, Option<Result<Body<'_>, FrameError>>) {
         let end = bytes.iter().position(|byte| *byte == DELIMITER);
-        let mut rest = bytes.get(..end.unwrap_or(bytes.len())).unwrap_or_default();
-        if !rest.is_empty() {
-            self.begin();
-            self.length = self.length.saturating_add(rest.len());
-        }
-        while let Some((code, behind)) = rest.split_first() {
-            if self.left == 0 {
-                self.code(unit, *code);
-                rest = behind;
-                continue;
-            }
-            let length = rest.len().min(usize::from(self.left));
-            let (run, behind) = rest.split_at(length);
-            self.left = self
-                .left
-                .wrapping_sub(u8::try_from(length).unwrap_or(u8::MAX));
-            self.add_run(unit, run);
-            rest = behind;
-        }
+        self.add_part(
+            unit,
+            bytes.get(..end.unwrap_or(bytes.len())).unwrap_or(bytes),
+        );
         match end {
             Some(end) => (end.saturating_add(1), self.end(unit)),
             None => (bytes.len(), None),
         }
+    }
+
+    /// Decodes bytes without a delimiter among them.
+    pub fn add_part(&mut self, unit: &mut impl WordCrc, bytes: &[u8]) {
+        if bytes.is_empty() {
+            return;
+        }
+        self.begin();
+        self.length = self.length.saturating_add(bytes.len());
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            rest = self.add_places(rest);
+        }
+        if self.plain.len().wrapping_sub(self.summed) >= CHUNK {
+            self.sum_words(unit);
+        }
+    }
+
+    /// Adds bytes, of which each code becomes the zero in its place. Ends before a code
+    /// without a zero, which is the first one and that behind one of 255; returns the rest.
+    fn add_places<'a>(&mut self, bytes: &'a [u8]) -> &'a [u8] {
+        if self.left == 0 && !self.is_zero_due {
+            let Some((code, behind)) = bytes.split_first() else {
+                return bytes;
+            };
+            self.take_code(*code);
+            return behind;
+        }
+        let from = self.plain.len();
+        let room = self.plain.capacity().wrapping_sub(from);
+        // It fits.
+        let _ = self
+            .plain
+            .extend_from_slice(bytes.get(..room).unwrap_or(bytes));
+        let mut at = usize::from(self.left);
+        while let Some(code) = bytes.get(at) {
+            if !self.is_zero_due {
+                break;
+            }
+            if let Some(place) = self.plain.get_mut(from.wrapping_add(at)) {
+                *place = 0;
+            }
+            self.take_code(*code);
+            at = at.wrapping_add(1).wrapping_add(usize::from(self.left));
+        }
+        let (taken, behind) = bytes.split_at(at.min(bytes.len()));
+        self.plain.truncate(from.wrapping_add(taken.len()));
+        // Less than 255.
+        self.left = u8::try_from(at.wrapping_sub(taken.len())).unwrap_or_default();
+        behind
     }
 
     /// Before the first byte of a frame.
@@ -186,18 +210,14 @@ impl Decoder {
 
     /// A COBS code.
     #[inline]
-    fn code(&mut self, unit: &mut impl WordCrc, code: u8) {
-        if self.is_zero_due {
-            self.add(unit, 0);
-        }
+    fn take_code(&mut self, code: u8) {
         // Code 255: 254 bytes without a zero after them.
         self.is_zero_due = code != u8::MAX;
         self.left = code.wrapping_sub(1);
     }
 
     /// A delimiter: the frame or the error, unless there were no bytes.
-    #[inline]
-    fn end(&mut self, unit: &mut impl WordCrc) -> Option<Result<Body<'_>, FrameError>> {
+    pub fn end(&mut self, unit: &mut impl WordCrc) -> Option<Result<Body<'_>, FrameError>> {
         let length = core::mem::take(&mut self.length);
         if length == 0 {
             return None;
@@ -235,25 +255,6 @@ impl Decoder {
         self.checksum = Checksum::new();
         self.summed = 0;
         self.length = 0;
-    }
-
-    /// Adds a byte of the body. Surplus bytes are dropped; the length shows
-    /// that the frame is overlong.
-    #[inline]
-    fn add(&mut self, unit: &mut impl WordCrc, byte: u8) {
-        if self.plain.push(byte).is_ok() && self.plain.len().wrapping_sub(self.summed) >= CHUNK {
-            self.sum_words(unit);
-        }
-    }
-
-    /// Adds bytes of the body, as [`Self::add`] does.
-    fn add_run(&mut self, unit: &mut impl WordCrc, run: &[u8]) {
-        let room = self.plain.capacity().saturating_sub(self.plain.len());
-        // It fits.
-        let _ = self.plain.extend_from_slice(run.get(..room).unwrap_or(run));
-        if self.plain.len().wrapping_sub(self.summed) >= CHUNK {
-            self.sum_words(unit);
-        }
     }
 
     /// Adds the whole words that were received to the checksum.

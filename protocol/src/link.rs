@@ -114,10 +114,10 @@ impl DriveStatus {
         let begin = (STATUS, self.tick, self.start, self.comms_start);
         let middle = (
             (self.state, self.fault, self.coil_fault),
-            (self.revision, self.refused),
+            (self.revision, self.refused, self.last),
         );
         let end = (
-            (self.last, self.zeroed, self.polarity_proven),
+            (self.zeroed, self.polarity_proven),
             (self.awaits_comms, self.measured),
         );
         (begin, middle, end)

@@ -61,7 +61,7 @@ impl Commits {
     /// Returns the values of a commit if its checksum is valid; comms repeats an
     /// invalid one. The checksum takes long, so call this outside a lock.
     pub fn verified(reassembly: &Reassembly, counters: &Counters) -> Option<Values> {
-        let values = reassembly.values().copied().map(Values);
+        let values = reassembly.values().map(Values);
         if values.is_none() {
             counters.count(DriveCounter::Discarded);
         }

@@ -11,7 +11,7 @@ use crate::drive::slow_checks::SlowReadings;
 use core::borrow::BorrowMut;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::crash::Part;
-use crepitus_protocol::frame::{EncodedFrame, FrameBuffer, WordCrc};
+use crepitus_protocol::frame::{DELIMITER, EncodedFrame, FrameBuffer, WordCrc};
 use crepitus_protocol::link::{DriveRefusal, DriveStatus, Order, ToDrive};
 use crepitus_protocol::management::{Action, Identity, ManagementRequest};
 use crepitus_protocol::measured::Measured;
@@ -28,13 +28,9 @@ pub trait Shared {
     fn commits<R>(&mut self, work: impl FnOnce(&mut Commits) -> R) -> R;
 }
 
-/// State and faults, revision, whether a commit was refused, whether arming waits.
-type Reported = (
-    (State, Option<Fault>, Option<CoilFault>),
-    Revision,
-    bool,
-    bool,
-);
+/// State, the codes of both faults, and whether a commit was refused and arming waits, as
+/// four bytes: compared in one go, in every tick. And the revision.
+type Reported = ([u8; 4], Revision);
 
 /// The drive's end of the link. Frames are encoded in buffers `P`.
 #[derive(Debug)]
@@ -70,7 +66,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             crash_part: None,
             blocks_before_status: 0,
             gathered: None,
-            reported: ((State::Disarmed, None, None), Revision::NONE, false, false),
+            reported: ([State::Disarmed as u8, 0, 0, 0], Revision::NONE),
         }
     }
 
@@ -82,7 +78,11 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
         shared: &mut impl Shared,
         counters: &Counters,
     ) {
-        let (_, Some(frame)) = self.decoder.extend_by(unit, bytes) else {
+        let Some((&DELIMITER, part)) = bytes.split_last() else {
+            return self.decoder.add_part(unit, bytes);
+        };
+        self.decoder.add_part(unit, part);
+        let Some(frame) = self.decoder.end(unit) else {
             return;
         };
         let Ok(body) = frame else {
@@ -203,15 +203,11 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
         let (outcome, current, queued) = shared.command(|command| {
             let revision = command.revision();
             let queued = command.queued_blocks();
-            let coil_fault = command.coil().fault();
+            let coil_fault = command.coil().fault().map_or(0, CoilFault::code);
             let safety = command.safety_mut();
-            let awaits_comms = safety.awaits_comms();
-            let current = (
-                (safety.state(), safety.fault(), coil_fault),
-                revision,
-                is_refused,
-                awaits_comms,
-            );
+            let fault = safety.fault().map_or(0, Fault::code);
+            let flags = u8::from(is_refused) | u8::from(safety.awaits_comms()) << 1;
+            let current = ([safety.state() as u8, fault, coil_fault, flags], revision);
             (safety.take_outcome(), current, queued)
         });
         if let Some(result) = outcome {

@@ -150,10 +150,10 @@ impl Plausibility {
         let speeds_excess = (emf - encoder).abs() - slack;
         let holds = conditions(observed, motor, speed_limit_rad_s, speeds_excess);
         // Mostly there is nothing, and was nothing.
-        if !holds.contains(&true) && !observed.is_late && !self.remembers {
+        if holds.0 == 0 && !observed.is_late && !self.remembers {
             return None;
         }
-        self.count(Conditions::of(holds), observed.is_late, speeds_excess)
+        self.count(holds, observed.is_late, speeds_excess)
     }
 
     #[inline(never)]
@@ -193,7 +193,7 @@ fn conditions(
     motor: &Motor,
     speed_limit_rad_s: f32,
     speeds_excess: f32,
-) -> [bool; CHECKS] {
+) -> Conditions {
     let (current_a, monitor_a) = (observed.current_a, observed.monitor_a);
     let encoder = observed.omega_rad_s;
     let is_over = |a: Option<f32>| a.is_some_and(|a| a.abs() > TRIP_A);
@@ -203,7 +203,7 @@ fn conditions(
         (a - motor.setpoint_a()).abs() > CURRENT_SLACK_A && !motor.is_out_of_voltage(encoder)
     });
     let is_irregular = observed.interval_us.abs_diff(TICK_US) > INTERVAL_SLACK_US;
-    [
+    Conditions::of([
         observed.has_tripped,
         !observed.torque_is_finite,
         is_over(current_a) || is_over(monitor_a),
@@ -216,7 +216,7 @@ fn conditions(
         encoder.abs() > speed_limit_rad_s,
         deviates,
         speeds_excess > 0.0,
-    ]
+    ])
 }
 
 #[cfg(test)]

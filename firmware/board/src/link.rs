@@ -143,19 +143,21 @@ impl Link {
     /// Takes the oldest of these received bytes before the next delimiter, as many as there is
     /// room for; or that delimiter, if it is the oldest.
     pub fn take_part<'a>(&mut self, received: usize, into: &'a mut [u8]) -> &'a [u8] {
+        let into_len = into.len().min(received);
         let mut taken = 0;
-        for place in into.iter_mut().take(received) {
-            let byte = self.next_byte().unwrap_or(DELIMITER);
-            if byte == DELIMITER && taken > 0 {
-                break;
-            }
-            *place = byte;
-            self.next = (self.next + 1) % RING_BYTES;
-            taken += 1;
-            if byte == DELIMITER {
+        // Up to the ring's end, and on from its beginning.
+        for ring in [RING.get(self.next..).unwrap_or_default(), &RING] {
+            let places = into.get_mut(taken..into_len).unwrap_or_default();
+            let (count, is_end) = copy_part(ring, places);
+            taken += count;
+            if is_end {
                 break;
             }
         }
+        if taken == 0 && received > 0 {
+            taken = 1;
+        }
+        self.next = (self.next + taken) % RING_BYTES;
         into.get(..taken).unwrap_or_default()
     }
 
@@ -211,6 +213,21 @@ impl Link {
         stream.cr().modify(|_, w| w.en().enabled());
         self.sending = Some(buffer);
     }
+}
+
+/// Copies bytes up to a delimiter; returns how many, and whether one was met. It is copied,
+/// too, and counts for nothing.
+#[inline]
+fn copy_part(ring: &[AtomicU8], into: &mut [u8]) -> (usize, bool) {
+    let mut count = 0;
+    for (place, byte) in into.iter_mut().zip(ring) {
+        *place = byte.load(Ordering::Relaxed);
+        if *place == DELIMITER {
+            return (count, true);
+        }
+        count += 1;
+    }
+    (count, false)
 }
 
 /// Appends to the occupied slots.

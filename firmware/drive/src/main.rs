@@ -249,6 +249,10 @@ mod app {
     fn link(cx: link::Context) {
         let (link, task) = (cx.local.link, cx.local.link_task);
         link.acknowledge();
+        // The end of a sent frame is no tick.
+        if !cx.shared.is_link_due.swap(false, Ordering::Relaxed) {
+            return;
+        }
         cx.shared.checkins.check_in(LINKED);
         cx.local.watchdog.feed(cx.shared.checkins);
         let (counters, unit) = (cx.shared.counters, cx.local.crc_unit);
@@ -260,9 +264,6 @@ mod app {
         // so that no tick has much to do. If both are pending they alternate. The end
         // of a frame, whose message is handled at once, has a run of its own, which
         // may follow the one before.
-        if !cx.shared.is_link_due.swap(false, Ordering::Relaxed) {
-            return;
-        }
         let received = link.received();
         let is_end = received > 0 && link.next_byte() == Some(DELIMITER);
         let may_receive = !*cx.local.has_received || is_end && !*cx.local.has_ended;

@@ -4,6 +4,7 @@
 use crate::host::{Flash, Host, examination, image, scene};
 use crepitus_emulator::Image;
 use crepitus_emulator::cycles::Cycles;
+use crepitus_protocol::Revision;
 use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::parameters;
 use crepitus_scene::Scene;
@@ -106,8 +107,8 @@ fn a_tick_with_a_commit_takes_its_share_at_most() {
     }
 }
 
-/// The worst tick while a commit arrives and takes effect.
-fn worst_while_committing(host: &mut Host, added_nm: f64) -> u64 {
+/// Requests a commit that adds this to the static torque; returns the revision before it.
+pub(crate) fn begin_commit(host: &mut Host, added_nm: f64) -> Revision {
     let Ok(Answer::Parameters {
         revision,
         mut values,
@@ -122,6 +123,12 @@ fn worst_while_committing(host: &mut Host, added_nm: f64) -> u64 {
         values,
     };
     host.request(commit);
+    revision
+}
+
+/// The worst tick while a commit arrives and takes effect.
+fn worst_while_committing(host: &mut Host, added_nm: f64) -> u64 {
+    let revision = begin_commit(host, added_nm);
     // From the first piece on the link to the end of the ramp.
     let mut cycles = Cycles::default();
     host.board.watch(600, &mut cycles);

@@ -1,11 +1,11 @@
-//! Cycles of the two tasks of every tick by function, with a symptom or the vibration
-//! actuator and without: where they go is seen before they are saved.
+//! Cycles of the tasks of a tick by function, with a symptom or the vibration actuator and
+//! without, and while a commit arrives: where they go is seen before they are saved.
 //!
 //! `cargo test -p crepitus-emulator --test drive_image -- --nocapture profile`; all
 //! symptoms with `CREPITUS_LONG` set.
 
 use crate::actuator;
-use crate::budget::RENDER;
+use crate::budget::{RENDER, begin_commit};
 use crate::host::Flash;
 use crate::symptoms::{CASES, Case, PERIOD_TICKS, SYMPTOMS, armed, commit, values_of};
 use crepitus_emulator::Time;
@@ -20,8 +20,15 @@ const LISTED: usize = 18;
 /// Cycles by the address of an instruction.
 type Addresses = BTreeMap<u32, u64>;
 
-/// Exception of `command_motor`.
+/// Exceptions of the other tasks.
 const COMMAND: u16 = 16 + 29;
+const LINK: u16 = 16 + 69;
+
+const TASKS: [(&str, u16); 3] = [
+    ("command_motor", COMMAND),
+    ("render_torque", RENDER),
+    ("link", LINK),
+];
 
 /// The cycles of a task in each tick.
 struct Profile {
@@ -124,5 +131,19 @@ fn where_the_cycles_go_without_the_actuator_and_with_it() {
             host.watch(PERIOD_TICKS, &mut profile);
             profile.print(&format!("{task} {name} the actuator"), &lines);
         }
+    }
+}
+
+#[test]
+fn where_the_cycles_of_a_commit_go() {
+    let Some(mut host) = armed(&[], Flash::ZeroWaitStates) else {
+        return;
+    };
+    let lines = Lines::of(&path(Program::Drive).expect("an image"));
+    for (name, exception) in TASKS {
+        let mut profile = Profile::of(exception);
+        begin_commit(&mut host, 0.02);
+        host.watch(PERIOD_TICKS, &mut profile);
+        profile.print(&format!("{name} while a commit arrives"), &lines);
     }
 }
