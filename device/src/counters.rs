@@ -32,9 +32,11 @@ impl Counters {
             .map_or(0, |place| place.load(Ordering::Relaxed))
     }
 
-    /// Returns all counters, in the order of their table.
-    pub fn all(&self) -> [u32; DRIVE_COUNT] {
-        self.0.each_ref().map(|c| c.load(Ordering::Relaxed))
+    /// Reads all counters, in the order of their table.
+    pub fn read(&self, into: &mut [u32; DRIVE_COUNT]) {
+        for (count, counter) in into.iter_mut().zip(&self.0) {
+            *count = counter.load(Ordering::Relaxed);
+        }
     }
 }
 

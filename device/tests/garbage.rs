@@ -3,8 +3,10 @@
 mod support;
 
 use crepitus_device::comms::Inputs;
+use crepitus_device::counters::Counters;
 use crepitus_device::usb_port::HostBytes;
 use crepitus_device::{Comms, Drive};
+use crepitus_protocol::counters::DRIVE_COUNT;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::frame::{encode_body, encode_bytes};
 use crepitus_protocol::host::{Answer, Operation, Reply};
@@ -38,6 +40,12 @@ fn sent(comms: &mut Comms) -> Vec<u8> {
         all.extend(run);
     }
     all
+}
+
+fn sum(counters: &Counters) -> u32 {
+    let mut all = [0; DRIVE_COUNT];
+    counters.read(&mut all);
+    all.iter().sum()
 }
 
 #[test]
@@ -77,7 +85,7 @@ fn bodies_of_every_length_do_nothing_to_comms() {
         assert_eq!(counters.get(discarded), short);
         assert_eq!(counters.get(CommsCounter::Foreign), foreign);
         assert_eq!(counters.get(frames), 0);
-        assert_eq!(counters.all().iter().sum::<u32>(), short + foreign);
+        assert_eq!(sum(&counters), short + foreign);
         assert_eq!(comms.state(), State::Disarmed);
         assert_eq!(comms.revision().0, 1);
     }
@@ -99,7 +107,7 @@ fn bodies_of_every_length_do_nothing_to_the_drive() {
     let counters = drive.counters();
     assert_eq!(counters.get(DriveCounter::Discarded), short);
     assert_eq!(counters.get(DriveCounter::Foreign), foreign);
-    assert_eq!(counters.all().iter().sum::<u32>(), short + foreign);
+    assert_eq!(sum(&counters), short + foreign);
     assert_eq!((drive.state(), drive.revision().0), (State::Disarmed, 0));
     assert!(!drive.take_reboot());
 }

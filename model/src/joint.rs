@@ -18,6 +18,7 @@ pub mod shaft;
 mod stick_slip;
 pub mod ticks;
 
+pub(crate) use coefficients::Given;
 pub use coefficients::StepCoefficients;
 pub use event::{EVENTS_PER_STEP, Event};
 pub use parameters::Parameters;

@@ -77,7 +77,9 @@ pub struct Decoder {
     /// Whether the current run ends with a zero, if more bytes follow.
     is_zero_due: bool,
     /// Body and checksum received so far.
-    plain: heapless::Vec<u8, { BODY_BYTES + CRC_BYTES }>,
+    plain: [u8; BODY_BYTES + CRC_BYTES],
+    /// Bytes of it.
+    filled: usize,
     checksum: Checksum,
     /// Bytes included in the checksum.
     summed: usize,
@@ -104,7 +106,8 @@ impl Decoder {
         Self {
             left: 0,
             is_zero_due: false,
-            plain: heapless::Vec::new(),
+            plain: [0; BODY_BYTES + CRC_BYTES],
+            filled: 0,
             checksum: Checksum::new(),
             summed: 0,
             length: 0,
@@ -161,7 +164,7 @@ impl Decoder {
         while !rest.is_empty() {
             rest = self.add_places(rest);
         }
-        if self.plain.len().wrapping_sub(self.summed) >= CHUNK {
+        if self.filled.wrapping_sub(self.summed) >= CHUNK {
             self.sum_words(unit);
         }
     }
@@ -173,31 +176,31 @@ impl Decoder {
             let Some((code, behind)) = bytes.split_first() else {
                 return bytes;
             };
-            self.take_code(*code);
+            (self.left, self.is_zero_due) = self::code(*code);
             return behind;
         }
-        let from = self.plain.len();
-        let room = self.plain.capacity().wrapping_sub(from);
-        // It fits.
-        let _ = self
-            .plain
-            .extend_from_slice(bytes.get(..room).unwrap_or(bytes));
-        let mut at = usize::from(self.left);
-        while let Some(code) = bytes.get(at) {
-            if !self.is_zero_due {
+        let places = self.plain.get_mut(self.filled..).unwrap_or_default();
+        let (mut left, mut is_zero_due, mut taken) = (self.left, self.is_zero_due, 0_usize);
+        for (place, byte) in places.iter_mut().zip(bytes) {
+            if left > 0 {
+                *place = *byte;
+                left = left.wrapping_sub(1);
+            } else if is_zero_due {
+                *place = 0;
+                (left, is_zero_due) = code(*byte);
+            } else {
                 break;
             }
-            if let Some(place) = self.plain.get_mut(from.wrapping_add(at)) {
-                *place = 0;
-            }
-            self.take_code(*code);
-            at = at.wrapping_add(1).wrapping_add(usize::from(self.left));
+            taken = taken.wrapping_add(1);
         }
-        let (taken, behind) = bytes.split_at(at.min(bytes.len()));
-        self.plain.truncate(from.wrapping_add(taken.len()));
-        // Less than 255.
-        self.left = u8::try_from(at.wrapping_sub(taken.len())).unwrap_or_default();
-        behind
+        (self.left, self.is_zero_due) = (left, is_zero_due);
+        self.filled = self.filled.wrapping_add(taken);
+        if self.filled >= self.plain.len() && taken < bytes.len() {
+            // No body is so long.
+            self.length = FRAME_BYTES;
+            return &[];
+        }
+        bytes.get(taken..).unwrap_or_default()
     }
 
     /// Before the first byte of a frame.
@@ -206,14 +209,6 @@ impl Decoder {
         if self.length == 0 {
             self.reset();
         }
-    }
-
-    /// A COBS code.
-    #[inline]
-    fn take_code(&mut self, code: u8) {
-        // Code 255: 254 bytes without a zero after them.
-        self.is_zero_due = code != u8::MAX;
-        self.left = code.wrapping_sub(1);
     }
 
     /// A delimiter: the frame or the error, unless there were no bytes.
@@ -229,7 +224,8 @@ impl Decoder {
             count.overlong = count.overlong.wrapping_add(1);
             return Some(Err(FrameError::Overlong));
         }
-        let plain = self.plain.split_last_chunk::<CRC_BYTES>();
+        let plain = self.plain.get(..self.filled);
+        let plain = plain.and_then(<[u8]>::split_last_chunk::<CRC_BYTES>);
         let opened = if let (0, Some(([lane, tag, payload @ ..], _))) = (self.left, plain) {
             if self.checksum.value() == RESIDUE {
                 Ok(Body {
@@ -251,7 +247,7 @@ impl Decoder {
     /// Discards a partial frame, after a disconnect.
     pub fn reset(&mut self) {
         (self.left, self.is_zero_due) = (0, false);
-        self.plain.clear();
+        self.filled = 0;
         self.checksum = Checksum::new();
         self.summed = 0;
         self.length = 0;
@@ -260,7 +256,7 @@ impl Decoder {
     /// Adds the whole words that were received to the checksum.
     #[inline]
     fn sum_words(&mut self, unit: &mut impl WordCrc) {
-        let new = self.plain.get(self.summed..).unwrap_or_default();
+        let new = self.plain.get(self.summed..self.filled).unwrap_or_default();
         let whole = new.len() & !(WORD - 1);
         self.checksum
             .update_by(unit, new.get(..whole).unwrap_or_default());
@@ -270,15 +266,21 @@ impl Decoder {
     /// Adds the received bytes to the checksum, up to the end.
     #[inline]
     fn sum_up(&mut self, unit: &mut impl WordCrc) {
-        let new = self.plain.get(self.summed..).unwrap_or_default();
+        let new = self.plain.get(self.summed..self.filled).unwrap_or_default();
         self.checksum.update_by(unit, new);
-        self.summed = self.plain.len();
+        self.summed = self.filled;
     }
 
     /// Counters of discarded frames.
     pub fn discarded(&self) -> Discarded {
         self.discarded
     }
+}
+
+/// Bytes until the next code, and whether a zero follows them: 254 have none.
+#[inline]
+fn code(code: u8) -> (u8, bool) {
+    (code.wrapping_sub(1), code != u8::MAX)
 }
 
 #[cfg(test)]

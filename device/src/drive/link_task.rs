@@ -48,7 +48,7 @@ pub struct LinkTask<P> {
     blocks_before_status: usize,
     /// A status for the next frame: gathered in one run, encoded in the next, since
     /// both take long.
-    gathered: Option<DriveStatus>,
+    is_gathered: bool,
     /// The state that was reported last.
     reported: Reported,
 }
@@ -65,7 +65,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             reboot_requested: false,
             crash_part: None,
             blocks_before_status: 0,
-            gathered: None,
+            is_gathered: false,
             reported: ([State::Disarmed as u8, 0, 0, 0], Revision::NONE),
         }
     }
@@ -241,9 +241,9 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             self.crash_part = None;
             return begun;
         }
-        if let Some(status) = &self.gathered {
-            let begun = self.outgoing.begin_status(spare()?, status).ok();
-            self.gathered = None;
+        if self.is_gathered {
+            let begun = self.outgoing.begin_status(spare()?).ok();
+            self.is_gathered = false;
             return begun;
         }
         let (now, head) =
@@ -256,33 +256,46 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
         }
         if is_status_due {
             self.link.status_sent(now);
-            self.gathered = Some(self.status(shared, counters));
+            self.gather(shared, counters);
+            self.is_gathered = true;
         }
         None
     }
 
-    fn status(&self, shared: &mut impl Shared, counters: &Counters) -> DriveStatus {
-        let refused = shared.commits(|commits| commits.refused());
-        let measured = measured(&shared.command(|command| command.slow_readings()));
+    /// Gathers a status, in its place: a copy of it would take as long as the rest.
+    fn gather(&mut self, shared: &mut impl Shared, counters: &Counters) {
+        let DriveStatus {
+            tick,
+            start,
+            comms_start,
+            state,
+            fault,
+            coil_fault,
+            revision,
+            refused,
+            last,
+            zeroed,
+            polarity_proven,
+            awaits_comms,
+            measured: readings,
+            counters: counts,
+        } = self.outgoing.status_mut();
+        *refused = shared.commits(|commits| commits.refused());
+        *readings = measured(&shared.command(|command| command.slow_readings()));
+        (*start, *last) = (self.start, self.link.last());
         shared.command(|command| {
             let safety = command.safety();
-            DriveStatus {
-                tick: command.next_tick(),
-                start: self.start,
-                comms_start: safety.comms_start(),
-                state: safety.state(),
-                fault: safety.fault().map_or(0, Fault::code),
-                coil_fault: command.coil().fault().map_or(0, CoilFault::code),
-                revision: command.revision(),
-                refused,
-                last: self.link.last(),
-                zeroed: command.is_zeroed(),
-                polarity_proven: safety.polarity_proven(),
-                awaits_comms: safety.awaits_comms(),
-                measured,
-                counters: counters.all(),
-            }
-        })
+            *tick = command.next_tick();
+            *comms_start = safety.comms_start();
+            *state = safety.state();
+            *fault = safety.fault().map_or(0, Fault::code);
+            *coil_fault = command.coil().fault().map_or(0, CoilFault::code);
+            *revision = command.revision();
+            *zeroed = command.is_zeroed();
+            *polarity_proven = safety.polarity_proven();
+            *awaits_comms = safety.awaits_comms();
+        });
+        counters.read(counts);
     }
 
     /// Returns a pending reboot request, once. The board executes it.

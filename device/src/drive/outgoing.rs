@@ -121,12 +121,16 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
         Ok(())
     }
 
-    /// Starts the frame of a status.
+    /// The next status. While one is being sent nobody changes it.
+    pub fn status_mut(&mut self) -> &mut DriveStatus {
+        &mut self.status
+    }
+
+    /// Starts the frame of [the status](Self::status_mut).
     ///
     /// # Errors
     /// [`TooLong`]; never, as a status fits.
-    pub fn begin_status(&mut self, buffer: P, status: &DriveStatus) -> Result<(), TooLong> {
-        self.status = *status;
+    pub fn begin_status(&mut self, buffer: P) -> Result<(), TooLong> {
         let encoder = Encoder::new(buffer, Lane::FromDrive)?;
         (self.current, self.rest) = (Some(encoder), Rest::Status(0));
         Ok(())
@@ -365,7 +369,8 @@ mod tests {
             own: Identity::default(),
             drive: Identity::default(),
         };
-        outgoing.begin_status(buffer(), &status).unwrap();
+        *outgoing.status_mut() = status;
+        outgoing.begin_status(buffer()).unwrap();
         let (frame, runs) = run(&mut outgoing, &block);
         let whole = FromDrive::Status(status);
         assert_eq!(frame, frame::encode(Lane::FromDrive, &whole).unwrap());

@@ -11,10 +11,9 @@
 //!
 //! | shared | between | locked for |
 //! |---|---|---|
-//! | `command`: safety, motor, blocks | 4, 1, 0 | a status, two samples |
+//! | `command`: safety, motor, blocks, its plan | 4, 1, 0 | a status, two samples; storing the plan |
 //! | `exchange` | 4, 3, 0 | never: atomic |
 //! | `rendering_plan` | 3, 0 | storing it; applying it |
-//! | `command_plan` | 4, 0 | storing it |
 //! | `commits` | 1, 0 | handing over a commit |
 //!
 //! Parameters go from `link` by `commits` to `idle`, which computes step
@@ -29,7 +28,7 @@ use defmt_rtt as _;
 
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
-    use crate::shared::Parts;
+    use crate::shared::{Commanding, Parts};
     use board::bridge::Bridge;
     use board::coil::Coil;
     use board::converter::Converters;
@@ -51,7 +50,7 @@ mod app {
     use crepitus_device::drive::exchange::Exchange;
     use crepitus_device::drive::link_task::LinkTask;
     use crepitus_device::drive::motor;
-    use crepitus_device::drive::prepare::{CommandPlan, Preparation, RenderingPlan};
+    use crepitus_device::drive::prepare::{Preparation, RenderingPlan};
     use crepitus_device::drive::rendering::Rendering;
     use crepitus_protocol::Fault;
     use crepitus_protocol::crash::Tick;
@@ -76,10 +75,9 @@ mod app {
 
     #[shared]
     struct Shared {
-        command: Command,
+        command: Commanding,
         commits: Commits,
         rendering_plan: Option<RenderingPlan>,
-        command_plan: Option<CommandPlan>,
         exchange: Exchange,
         is_running: AtomicBool,
         is_link_due: AtomicBool,
@@ -130,10 +128,12 @@ mod app {
             panic!("the default parameters are invalid");
         };
         let shared = Shared {
-            command: Command::new(&first.motor, &first.prepared.command, &boot),
+            command: Commanding {
+                command: Command::new(&first.motor, &first.prepared.command, &boot),
+                plan: None,
+            },
             commits: Commits::default(),
             rendering_plan: None,
-            command_plan: None,
             exchange: Exchange::new(boot.tick),
             is_running: AtomicBool::new(false),
             is_link_due: AtomicBool::new(false),
@@ -172,9 +172,9 @@ mod app {
             middle, converters, clock, line, comms_line, bridge, coil, output_access, black_box,
             middles: u8 = 0,
         ],
-        shared = [command, command_plan, &exchange, &is_running, &is_link_due, &counters, &checkins]
+        shared = [command, &exchange, &is_running, &is_link_due, &counters, &checkins]
     )]
-    fn command_motor(cx: command_motor::Context) {
+    fn command_motor(mut cx: command_motor::Context) {
         let part = cx.local;
         part.middle.acknowledge();
         cx.shared.checkins.check_in(COMMANDED);
@@ -200,8 +200,10 @@ mod app {
         };
         let (exchange, counters) = (cx.shared.exchange, cx.shared.counters);
         let keep = |tick: &Tick| part.black_box.record(tick);
-        let outputs = (cx.shared.command, cx.shared.command_plan)
-            .lock(|command, plan| command.tick(&inputs, plan.as_ref(), exchange, counters, keep));
+        let outputs = cx.shared.command.lock(|part| {
+            let plan = part.plan.as_ref();
+            part.command.tick(&inputs, plan, exchange, counters, keep)
+        });
         part.output_access.write(|| {
             part.line.set(outputs.enable);
             match outputs.bridge {
@@ -288,7 +290,7 @@ mod app {
     #[idle(
         local = [preparation],
         shared = [
-            command, commits, rendering_plan, command_plan, &exchange, &counters, &checkins,
+            command, commits, rendering_plan, &exchange, &counters, &checkins,
         ]
     )]
     fn idle(mut cx: idle::Context) -> ! {
@@ -298,7 +300,7 @@ mod app {
                 && let Some((revision, gathered)) = cx.shared.commits.lock(Commits::take)
                 && let Some(values) = Commits::verified(&gathered, cx.shared.counters)
             {
-                let is_live = cx.shared.command.lock(|command| command.safety().is_live());
+                let is_live = cx.shared.command.lock(|part| part.command.safety().is_live());
                 let result = cx.local.preparation.prepare(revision, &values, is_live);
                 let done = result.as_ref().map(|_| ()).map_err(|error| *error);
                 let counters = cx.shared.counters;
@@ -310,14 +312,14 @@ mod app {
                     cx.shared
                         .rendering_plan
                         .lock(|slot| *slot = Some(rendering));
-                    cx.shared.command_plan.lock(|slot| *slot = Some(command));
+                    cx.shared.command.lock(|part| part.plan = Some(command));
                     cx.shared.exchange.plan_stored();
                 }
             }
-            let now = cx.shared.command.lock(|command| {
-                let safety = command.safety();
+            let now = cx.shared.command.lock(|part| {
+                let safety = part.command.safety();
                 let fault = safety.fault().map_or(0, Fault::code);
-                (safety.state(), fault, command.revision())
+                (safety.state(), fault, part.command.revision())
             });
             if reported != Some(now) {
                 reported = Some(now);

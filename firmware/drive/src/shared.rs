@@ -3,7 +3,15 @@
 use crepitus_device::drive::command::Command;
 use crepitus_device::drive::commits::Commits;
 use crepitus_device::drive::link_task::Shared;
+use crepitus_device::drive::prepare::CommandPlan;
 use rtic::Mutex;
+
+/// What `command_motor` owns: one lock instead of two in every tick.
+pub struct Commanding {
+    pub command: Command,
+    /// Its half of the plan that `idle` has stored.
+    pub plan: Option<CommandPlan>,
+}
 
 /// Locks of the shared resources.
 pub(crate) struct Parts<C, K> {
@@ -13,11 +21,11 @@ pub(crate) struct Parts<C, K> {
 
 impl<C, K> Shared for Parts<C, K>
 where
-    C: Mutex<T = Command>,
+    C: Mutex<T = Commanding>,
     K: Mutex<T = Commits>,
 {
     fn command<R>(&mut self, work: impl FnOnce(&mut Command) -> R) -> R {
-        self.command.lock(|command| work(command))
+        self.command.lock(|part| work(&mut part.command))
     }
 
     fn commits<R>(&mut self, work: impl FnOnce(&mut Commits) -> R) -> R {

@@ -48,7 +48,8 @@ pub struct StepCoefficients<F> {
 }
 
 /// The numbers that all others of an [`StepCoefficients`] follow from.
-struct Given<F> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Given<F> {
     step_s: F,
     stiffness: F,
     inertia: F,
@@ -59,6 +60,33 @@ struct Given<F> {
 }
 
 impl<F: Real> Given<F> {
+    /// The numbers on the way from these to `next`: friction torques and
+    /// damping move linearly, stiffness and inertia by the factors given.
+    ///
+    /// Both ends valid, every point between is: Tk ≤ Ts and |2Tk − Ts| ≤ Ts
+    /// hold along a line. In F, so cheap enough for a tick.
+    pub(crate) fn towards(
+        &self,
+        next: &StepCoefficients<F>,
+        fraction: F,
+        stiffness_factor: F,
+        inertia_factor: F,
+    ) -> StepCoefficients<F> {
+        let between = |a: F, b: F| a + (b - a) * fraction;
+        let static_nm = between(self.static_nm, next.static_nm);
+        Self {
+            step_s: self.step_s,
+            stiffness: self.stiffness * stiffness_factor,
+            inertia: self.inertia * inertia_factor,
+            damping: between(self.damping, next.damping),
+            // Rounding must not lift it above.
+            kinetic_nm: between(self.kinetic_nm, next.kinetic_nm).at_most(static_nm),
+            static_nm,
+            restart_nm: between(self.restart_nm, next.restart_nm),
+        }
+        .coefficients::<Reciprocal<F>>(next.per_step)
+    }
+
     fn coefficients<D: Divisor<F>>(self, per_step: F) -> StepCoefficients<F> {
         let Self {
             step_s,
@@ -142,31 +170,17 @@ impl<F: Real> StepCoefficients<F> {
         })
     }
 
-    /// The numbers on the way from these to `next`: friction torques and
-    /// damping move linearly, stiffness and inertia by the factors given.
-    ///
-    /// Both ends valid, every point between is: Tk ≤ Ts and |2Tk − Ts| ≤ Ts
-    /// hold along a line. In F, so cheap enough for a tick.
-    pub(crate) fn towards(
-        &self,
-        next: &Self,
-        fraction: F,
-        stiffness_factor: F,
-        inertia_factor: F,
-    ) -> Self {
-        let between = |a: F, b: F| a + (b - a) * fraction;
-        let static_nm = between(self.static_nm, next.static_nm);
+    /// The numbers that all others follow from.
+    pub(crate) fn given(&self) -> Given<F> {
         Given {
             step_s: self.step_s,
-            stiffness: self.stiffness * stiffness_factor,
-            inertia: self.inertia * inertia_factor,
-            damping: between(self.damping, next.damping),
-            // Rounding must not lift it above.
-            kinetic_nm: between(self.kinetic_nm, next.kinetic_nm).at_most(static_nm),
-            static_nm,
-            restart_nm: between(self.restart_nm, next.restart_nm),
+            stiffness: self.stiffness,
+            inertia: self.inertia,
+            damping: self.damping,
+            kinetic_nm: self.kinetic_nm,
+            static_nm: self.static_nm,
+            restart_nm: self.restart_nm,
         }
-        .coefficients::<Reciprocal<F>>(self.per_step)
     }
 
     /// Duration of a frozen slip that begins while the shaft moves with
@@ -279,7 +293,9 @@ mod tests {
             StepCoefficients::<F>::new(&settings, 5e-5).unwrap()
         };
         let f = F::from_f64;
-        let made = at(0.0).towards(&at(1.0), f(0.25), f(softer), f(heavier));
+        let made = at(0.0)
+            .given()
+            .towards(&at(1.0), f(0.25), f(softer), f(heavier));
         let expected = at(0.25);
         let off = |name: &str, made: F, expected: F| {
             let off = ((made - expected) / expected).abs();

@@ -16,13 +16,13 @@
 //!
 //! [`Frozen::adjust`]: crate::Frozen::adjust
 
-use crate::joint::StepCoefficients;
+use crate::joint::{Given, StepCoefficients};
 use crate::real::Real;
 
 /// Ramp from one set of coefficients to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ramp<F> {
-    from: StepCoefficients<F>,
+    from: Given<F>,
     to: StepCoefficients<F>,
     /// Length, ticks.
     ticks: u32,
@@ -40,7 +40,7 @@ impl<F: Real> Ramp<F> {
     /// No change under way.
     pub fn at(coefficients: StepCoefficients<F>) -> Self {
         Self {
-            from: coefficients,
+            from: coefficients.given(),
             to: coefficients,
             ticks: 0,
             passed: 0,
@@ -67,7 +67,7 @@ impl<F: Real> Ramp<F> {
         let ticks = libm::ceil(ticks * (1.0 - 1e-6)).at_least(1.0);
         let per_tick = 1.0 / ticks;
         Self {
-            from,
+            from: from.given(),
             to,
             ticks: u32::try_from(ticks.whole()).unwrap_or(u32::MAX),
             passed: 0,
