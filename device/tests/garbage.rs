@@ -85,7 +85,7 @@ fn bodies_of_every_length_do_nothing_to_comms() {
         assert_eq!(counters.get(discarded), short);
         assert_eq!(counters.get(CommsCounter::Foreign), foreign);
         assert_eq!(counters.get(frames), 0);
-        assert_eq!(sum(&counters), short + foreign);
+        assert_eq!(counters.all().iter().sum::<u32>(), short + foreign);
         assert_eq!(comms.state(), State::Disarmed);
         assert_eq!(comms.revision().0, 1);
     }
