@@ -107,7 +107,7 @@ fn bodies_of_every_length_do_nothing_to_the_drive() {
     let counters = drive.counters();
     assert_eq!(counters.get(DriveCounter::Discarded), short);
     assert_eq!(counters.get(DriveCounter::Foreign), foreign);
-    assert_eq!(sum(&counters), short + foreign);
+    assert_eq!(sum(counters), short + foreign);
     assert_eq!((drive.state(), drive.revision().0), (State::Disarmed, 0));
     assert!(!drive.take_reboot());
 }

@@ -107,7 +107,7 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
         besides: &mut Besides<F>,
         observe: &mut impl Observe<F>,
     ) -> F {
-        if self.way == Way::Appearing {
+        if matches!(self.way, Way::Appearing) {
             return self.appear(&travel.to, besides);
         }
         let law_nm = law_nm(&mut self.law, Some(travel), besides, observe);
@@ -122,7 +122,7 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
             self.rest(&tick.place);
             return F::ZERO;
         }
-        if self.way == Way::Appearing {
+        if matches!(self.way, Way::Appearing) {
             return self.appear(&tick.place, besides);
         }
         if tick.missing_ticks > HOLD_TICKS {
@@ -156,7 +156,7 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
             nm = paid_share * nm;
         }
         let gives = is_active && nm != F::ZERO;
-        if self.way != Way::Free {
+        if !matches!(self.way, Way::Free) {
             nm = self.held_back(nm, travel);
             besides.is_settling = true;
         }

@@ -39,17 +39,17 @@ struct Limits {
 const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::ZeroWaitStates,
-        share: 41,
-        commit_share: 56,
-        cold_share: 40,
+        share: 39,
+        commit_share: 46,
+        cold_share: 39,
         render_cycles: 900,
     },
     // About 3 % above what was measured.
     Limits {
         flash: Flash::Modelled,
-        share: 56,
-        commit_share: 76,
-        cold_share: 54,
+        share: 55,
+        commit_share: 63,
+        cold_share: 53,
         render_cycles: 1_310,
     },
 ];

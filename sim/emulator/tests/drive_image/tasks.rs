@@ -16,9 +16,9 @@ const TICK_UNITS: u64 = 16_800;
 
 /// Limits of a run with the modelled flash, cycles: about 3 % above what was
 /// measured.
-const COMMAND_CYCLES: u64 = 2_110;
-const RENDER_CYCLES: u64 = 1_250;
-const LINK_CYCLES: u64 = 1_450;
+const COMMAND_CYCLES: u64 = 2_060;
+const RENDER_CYCLES: u64 = 1_275;
+const LINK_CYCLES: u64 = 1_100;
 
 /// Ticks that are watched.
 const TICKS: u64 = 1_000;
