@@ -512,4 +512,71 @@ mod tests {
             .find(|wish| matches!(wish, ArmingOutput::Failed(_)));
         assert_eq!(wish, Some(ArmingOutput::Failed(Fault::EnableStuckOn)));
     }
+
+    /// Arms with sensors that are off by so much, and show so much more in each push that must
+    /// not move current; what came of it, and the offsets.
+    fn off(off_a: (f32, f32), leak_a: (f32, f32)) -> (ArmingOutput, Option<(f32, f32)>) {
+        let mut arming = Arming::default();
+        let (mut line, mut leaks) = (false, false);
+        loop {
+            let share = if leaks { 1.0 } else { 0.0 };
+            let wish = arming.tick(&Seen {
+                raw_a: Some((off_a.0 + share * leak_a.0, off_a.1 + share * leak_a.1)),
+                line_is_on: line,
+                comms_line_is_on: arming.awaits_comms(),
+                count: 0,
+            });
+            leaks = matches!(wish, ArmingOutput::Proof(..));
+            match wish {
+                ArmingOutput::Off => line = false,
+                ArmingOutput::Line | ArmingOutput::Push(_) => line = true,
+                ArmingOutput::Proof(_, on) => line = on,
+                _ => return (wish, arming.offsets_a()),
+            }
+        }
+    }
+
+    #[test]
+    fn each_sensor_is_judged_by_itself_and_by_its_own_offset() {
+        let (wish, offsets_a) = off((0.09, -0.07), (0.1, 0.1));
+        assert_eq!(wish, ArmingOutput::Armed);
+        let (sensor_a, monitor_a) = offsets_a.unwrap();
+        assert!((sensor_a - 0.09).abs() < 1e-6 && (monitor_a + 0.07).abs() < 1e-6);
+        let failed = ArmingOutput::Failed;
+        for off_a in [(0.11, 0.0), (0.0, 0.11)] {
+            assert_eq!(off(off_a, (0.0, 0.0)).0, failed(Fault::CurrentOffset));
+        }
+        // Against its offset; without, it would be a leak of 0.11 A, and none of 0.25.
+        for leak_a in [(-0.2, 0.0), (0.0, 0.2)] {
+            let (wish, _) = off((0.09, -0.09), leak_a);
+            assert_eq!(wish, failed(Fault::CommsGateStuck));
+        }
+        assert_eq!(off((0.09, -0.09), (0.14, -0.14)).0, ArmingOutput::Armed);
+    }
+
+    #[test]
+    fn a_line_of_comms_that_falls_within_its_push_ends_the_arming() {
+        let mut arming = Arming::default();
+        let (mut line, mut pushes) = (false, 0);
+        let wish = (0..5_000).find_map(|_| {
+            let wish = arming.tick(&Seen {
+                raw_a: Some((0.0, 0.0)),
+                line_is_on: line,
+                comms_line_is_on: arming.awaits_comms() && pushes < 30,
+                count: 0,
+            });
+            match wish {
+                ArmingOutput::Off => line = false,
+                ArmingOutput::Line | ArmingOutput::Push(_) => line = true,
+                ArmingOutput::Proof(_, on) => {
+                    line = on;
+                    pushes += u32::from(!on);
+                }
+                _ => return Some(wish),
+            }
+            None
+        });
+        assert_eq!(wish, Some(ArmingOutput::Failed(Fault::CommsLineOff)));
+        assert_eq!(pushes, 30);
+    }
 }

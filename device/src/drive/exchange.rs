@@ -267,6 +267,19 @@ mod tests {
         }
     }
 
+    /// It is written where `command_motor` does not read.
+    #[test]
+    fn the_result_before_stays_whole_while_the_next_is_shown() {
+        let exchange = Exchange::new(0);
+        for n in 0..5 {
+            exchange.show(&rendered(n));
+            let shown = exchange.newest.load(Relaxed);
+            exchange.show(&rendered(n + 1));
+            let before = exchange.slots[shown].each_ref().map(|w| w.load(Relaxed));
+            assert_eq!(Rendered::of(before), rendered(n));
+        }
+    }
+
     #[test]
     fn a_plan_is_applied_by_both_between_two_blocks() {
         let exchange = Exchange::new(7);

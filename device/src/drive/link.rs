@@ -97,3 +97,44 @@ impl Link {
         self.last
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_is_accepted_once_newer_than_the_last_and_fresh() {
+        let (mut link, counters) = (Link::default(), Counters::new());
+        let stale = |counters: &Counters| counters.get(DriveCounter::StaleCommands);
+        assert!(link.accepts(1_000, 990, 7, &counters));
+        // Repeated while it is executed, and when it has ended.
+        assert!(!link.accepts(1_001, 990, 7, &counters));
+        link.finish(Ok(()));
+        assert!(!link.accepts(1_002, 990, 7, &counters));
+        assert_eq!(stale(&counters), 0);
+        // Older ones, and one that was on its way for long.
+        for number in [6, 0, 7_u16.wrapping_sub(0x7fff)] {
+            assert!(!link.accepts(1_003, 1_003, number, &counters), "{number}");
+        }
+        assert!(!link.accepts(10_000, 1_003, 8, &counters));
+        assert_eq!(stale(&counters), 4);
+        assert!(link.accepts(10_000, 9_990, 8, &counters));
+        link.finish(Err(DriveRefusal::NotZeroed));
+        let last = link.last().map(|outcome| (outcome.number, outcome.result));
+        assert_eq!(last, Some((8, Err(DriveRefusal::NotZeroed))));
+    }
+
+    #[test]
+    fn another_boot_of_comms_counts_from_the_beginning() {
+        let (mut link, counters) = (Link::default(), Counters::new());
+        assert!(link.accepts(100, 90, 7, &counters));
+        link.finish(Ok(()));
+        link.clear();
+        assert_eq!(link.last(), None);
+        assert!(link.accepts(100, 90, 1, &counters));
+        // What is executed has ended for comms, too.
+        link.clear();
+        link.finish(Ok(()));
+        assert_eq!(link.last(), None);
+    }
+}

@@ -345,3 +345,109 @@ fn execute(order: Order, shared: &mut impl Shared) -> Option<Result<(), DriveRef
         Order::PlayChirp(chirp) => Some(command.play_chirp(&chirp)),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::Boot;
+    use crate::drive::prepare::Preparation;
+    use crepitus_protocol::ValueError;
+    use crepitus_protocol::frame::{FRAME_BYTES, SoftwareCrc};
+    use crepitus_protocol::link::FromDrive;
+    use std::vec::Vec;
+
+    struct Parts {
+        command: Command,
+        commits: Commits,
+    }
+
+    impl Shared for Parts {
+        fn command<R>(&mut self, work: impl FnOnce(&mut Command) -> R) -> R {
+            work(&mut self.command)
+        }
+
+        fn commits<R>(&mut self, work: impl FnOnce(&mut Commits) -> R) -> R {
+            work(&mut self.commits)
+        }
+    }
+
+    struct Bench {
+        task: LinkTask<FrameBuffer>,
+        parts: Parts,
+        counters: Counters,
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            let (_, first) = Preparation::new().unwrap();
+            let boot = Boot::default();
+            Self {
+                task: LinkTask::new(boot.identity, boot.start),
+                parts: Parts {
+                    command: Command::new(&first.motor, &first.prepared.command, &boot),
+                    commits: Commits::default(),
+                },
+                counters: Counters::new(),
+            }
+        }
+
+        /// The statuses in so many runs, in which the drive's clock stands still.
+        fn statuses(&mut self, runs: u32) -> Vec<DriveStatus> {
+            let mut statuses = Vec::new();
+            for _ in 0..runs {
+                let crash = |number| Part {
+                    number,
+                    words: None,
+                };
+                let spare = || Some([0; FRAME_BYTES]);
+                let parts = &mut self.parts;
+                let made =
+                    self.task
+                        .next_frame(&mut SoftwareCrc, crash, spare, parts, &self.counters);
+                let Some(made) = made else { continue };
+                let mut decoder = Decoder::new();
+                let (_, frame) = decoder.extend(&made.buffer[..made.length]);
+                match frame.unwrap().unwrap().message() {
+                    Some(FromDrive::Status(status)) => statuses.push(status),
+                    other => panic!("{other:?}"),
+                }
+            }
+            statuses
+        }
+    }
+
+    #[test]
+    fn a_status_is_sent_when_something_has_changed_and_not_before() {
+        let mut bench = Bench::new();
+        assert_eq!(bench.statuses(40).len(), 1, "the first one");
+        assert_eq!(bench.statuses(40).len(), 0);
+        let why = ValueError::NeedsDisarmed { id: 6 };
+        let commits = &mut bench.parts.commits;
+        commits.done(Revision(3), Err(why), &bench.counters);
+        let [status] = bench.statuses(40)[..] else {
+            panic!("one status");
+        };
+        assert_eq!(status.refused, Some((Revision(3), why)));
+        assert_eq!(bench.statuses(40).len(), 0);
+        bench.parts.commits.clear();
+        let [status] = bench.statuses(40)[..] else {
+            panic!("one status");
+        };
+        assert_eq!(status.refused, None);
+    }
+
+    #[test]
+    fn what_is_measured_is_rounded() {
+        let readings = SlowReadings {
+            supply_v: 23.996,
+            motor_c: 41.2,
+            joint_span: Some(0.250_02),
+        };
+        let expected = Measured {
+            supply_cv: 2_400,
+            motor_c: 41,
+            joint_cdeg: Some(9_001),
+        };
+        assert_eq!(measured(&readings), expected);
+    }
+}
