@@ -161,3 +161,66 @@ impl Supervision {
         self.fault.get_or_insert(fault);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn supervision() -> Supervision {
+        Supervision::new(ResetCause::Power, SelfTest::Passed)
+    }
+
+    #[test]
+    fn a_fault_ends_the_request_and_stays_the_first_one() {
+        let mut supervision = supervision();
+        supervision.request_enable();
+        assert!(supervision.is_enable_requested());
+        assert!(supervision.observed(Fault::CommsOvercurrent));
+        assert!(!supervision.is_enable_requested());
+        assert!(!supervision.observed(Fault::CommsOverspeed));
+        assert_eq!(supervision.fault(), Some(Fault::CommsOvercurrent));
+        assert_eq!(supervision.state(&DriveView::default()), State::Faulted);
+        assert_eq!(supervision.clear(false), None);
+        assert_eq!(supervision.state(&DriveView::default()), State::Disarmed);
+    }
+
+    #[test]
+    fn a_drive_that_restarts_is_a_fault_only_while_torque_is_requested() {
+        let mut supervision = supervision();
+        supervision.drive_restarted();
+        assert_eq!(supervision.fault(), None);
+        supervision.request_enable();
+        supervision.drive_restarted();
+        assert_eq!(supervision.fault(), Some(Fault::DriveRestarted));
+    }
+
+    #[test]
+    fn a_fault_is_cleared_when_its_cause_is_gone() {
+        for self_test in [SelfTest::ImageBroken, SelfTest::OptionBytesWrong] {
+            let mut supervision = Supervision::new(ResetCause::Power, self_test);
+            let fault = supervision.fault();
+            assert!(fault.is_some());
+            assert_eq!(supervision.clear(false), fault);
+        }
+        let mut other_schema = supervision();
+        other_schema.check_schema(!schema::HASH);
+        assert_eq!(other_schema.clear(false), Some(Fault::VersionMismatch));
+        other_schema.check_schema(schema::HASH);
+        assert_eq!(other_schema.clear(false), None);
+        let mut stuck = supervision();
+        stuck.observed(Fault::CommsEnableStuckOn);
+        assert_eq!(stuck.clear(true), Some(Fault::CommsEnableStuckOn));
+        assert_eq!(stuck.clear(false), None);
+    }
+
+    #[test]
+    fn a_drive_that_is_silent_is_a_fault_only_while_torque_is_requested() {
+        let mut supervision = supervision();
+        let view = DriveView::default();
+        assert!(!supervision.tick(false, true, true, &view));
+        assert_eq!(supervision.fault(), None);
+        supervision.request_enable();
+        assert!(!supervision.tick(false, true, true, &view));
+        assert_eq!(supervision.fault(), Some(Fault::DriveSilent));
+    }
+}

@@ -155,3 +155,155 @@ impl ToDriveQueue {
 fn message(message: &ToDrive) -> Option<Frame> {
     frame::encode(Lane::ToDrive, message).ok()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_protocol::Decoder;
+    use std::vec::Vec;
+
+    const NOTHING: Wanted<'static> = Wanted {
+        commit: None,
+        command: None,
+        crash_part: None,
+        hello: false,
+    };
+
+    /// What a frame is.
+    #[derive(Debug, PartialEq)]
+    enum Sent {
+        Heartbeat,
+        Command(u16),
+        Piece(u8),
+        CrashPart(u8),
+        Asked(Action),
+    }
+
+    fn sent(frame: &Frame) -> Sent {
+        let mut decoder = Decoder::new();
+        let (_, body) = decoder.extend(frame);
+        let body = body.unwrap().unwrap();
+        if body.lane() == Some(Lane::Management) {
+            return Sent::Asked(ManagementRequest::of(body.payload).unwrap().action);
+        }
+        match body.message().unwrap() {
+            ToDrive::Heartbeat(_) => Sent::Heartbeat,
+            ToDrive::Command { number, .. } => Sent::Command(number),
+            ToDrive::Commit { piece, .. } => Sent::Piece(piece.index),
+            ToDrive::ReadCrash { part } => Sent::CrashPart(part),
+        }
+    }
+
+    /// The frames of each of so many milliseconds.
+    fn run(
+        queue: &mut ToDriveQueue,
+        from_ms: u64,
+        count: u64,
+        wanted: &Wanted<'_>,
+    ) -> Vec<Vec<Sent>> {
+        let heartbeat = Heartbeat {
+            seen_tick: 5,
+            lease_left: 9,
+            enable: false,
+            start: 1,
+        };
+        (from_ms..from_ms + count)
+            .map(|now_ms| {
+                queue.tick(now_ms);
+                let mut frames = Vec::new();
+                while let Some(frame) = queue.next_frame(heartbeat, wanted) {
+                    frames.push(sent(&frame));
+                    assert!(frames.len() < 10, "without an end: {frames:?}");
+                }
+                frames
+            })
+            .collect()
+    }
+
+    /// The milliseconds in which something else than a heartbeat was sent.
+    fn when(frames: &[Vec<Sent>]) -> Vec<usize> {
+        frames
+            .iter()
+            .enumerate()
+            .filter_map(|(ms, frames)| {
+                assert_eq!(frames[0], Sent::Heartbeat);
+                (frames.len() > 1).then_some(ms)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_heartbeat_goes_each_millisecond_and_once_more_when_asked_for() {
+        let mut queue = ToDriveQueue::default();
+        for frames in run(&mut queue, 0, 30, &NOTHING) {
+            assert_eq!(frames, [Sent::Heartbeat]);
+        }
+        queue.heartbeat_now();
+        let heartbeat = Heartbeat {
+            seen_tick: 5,
+            lease_left: 0,
+            enable: false,
+            start: 1,
+        };
+        let frame = queue.next_frame(heartbeat, &NOTHING);
+        assert_eq!(frame.map(|frame| sent(&frame)), Some(Sent::Heartbeat));
+        assert!(queue.next_frame(heartbeat, &NOTHING).is_none());
+    }
+
+    #[test]
+    fn a_command_is_repeated_every_ten_milliseconds_and_another_goes_at_once() {
+        let mut queue = ToDriveQueue::default();
+        let command = |number| Wanted {
+            command: Some((number, Order::Zero)),
+            ..NOTHING
+        };
+        let frames = run(&mut queue, 100, 25, &command(4));
+        assert_eq!(when(&frames), [0, 10, 20]);
+        assert_eq!(frames[10][1], Sent::Command(4));
+        let frames = run(&mut queue, 125, 12, &command(5));
+        assert_eq!(when(&frames), [0, 10]);
+    }
+
+    #[test]
+    fn a_commit_goes_a_piece_a_millisecond_and_again_ten_after_the_last() {
+        let mut queue = ToDriveQueue::default();
+        let mut values = Values::default();
+        values.0[0] = 0.25;
+        values.0[9] = 0.25;
+        let wanted = |revision| Wanted {
+            commit: Some((Revision(revision), &values)),
+            ..NOTHING
+        };
+        let frames = run(&mut queue, 100, 24, &wanted(3));
+        assert_eq!(when(&frames), [0, 1, 11, 12, 22, 23]);
+        assert_eq!(frames[0][1..], [Sent::Piece(0)]);
+        assert_eq!(frames[12][1..], [Sent::Piece(2)]);
+        // Another begins anew, at once.
+        let frames = run(&mut queue, 124, 3, &wanted(4));
+        assert_eq!(when(&frames), [0, 1]);
+        assert_eq!(frames[0][1..], [Sent::Piece(0)]);
+    }
+
+    #[test]
+    fn questions_wait_for_ten_milliseconds_and_come_after_all_else() {
+        let mut queue = ToDriveQueue::default();
+        let hello = Wanted {
+            hello: true,
+            ..NOTHING
+        };
+        let frames = run(&mut queue, 100, 21, &hello);
+        assert_eq!(when(&frames), [0, 10, 20]);
+        assert_eq!(frames[0][1..], [Sent::Asked(Action::Hello)]);
+        let all = Wanted {
+            command: Some((1, Order::Zero)),
+            crash_part: Some(2),
+            ..hello
+        };
+        let frames = run(&mut queue, 130, 1, &all);
+        assert_eq!(frames[0][1..], [Sent::Command(1), Sent::CrashPart(2)]);
+        queue.queue_management(Action::Stop);
+        let frames = run(&mut queue, 131, 2, &all);
+        assert_eq!(frames[0][1..], [Sent::Asked(Action::Stop)]);
+        assert_eq!(frames[1], [Sent::Heartbeat]);
+    }
+}
