@@ -300,7 +300,10 @@ mod app {
                 && let Some((revision, gathered)) = cx.shared.commits.lock(Commits::take)
                 && let Some(values) = Commits::verified(&gathered, cx.shared.counters)
             {
-                let is_live = cx.shared.command.lock(|part| part.command.safety().is_live());
+                let is_live = cx
+                    .shared
+                    .command
+                    .lock(|part| part.command.safety().is_live());
                 let result = cx.local.preparation.prepare(revision, &values, is_live);
                 let done = result.as_ref().map(|_| ()).map_err(|error| *error);
                 let counters = cx.shared.counters;
