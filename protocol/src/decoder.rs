@@ -195,12 +195,13 @@ impl Decoder {
         }
         (self.left, self.is_zero_due) = (left, is_zero_due);
         self.filled = self.filled.wrapping_add(taken);
-        if self.filled >= self.plain.len() && taken < bytes.len() {
-            // No body is so long.
+        let rest = bytes.get(taken..).unwrap_or_default();
+        if !rest.is_empty() && (left > 0 || is_zero_due) {
+            // Without a place for the next one: no body is so long.
             self.length = FRAME_BYTES;
             return &[];
         }
-        bytes.get(taken..).unwrap_or_default()
+        rest
     }
 
     /// Before the first byte of a frame.
@@ -321,6 +322,33 @@ mod tests {
             let mut decoder = Decoder::new();
             assert_eq!(decode(&mut decoder, &frame), (std::vec![body(length)], 0));
         }
+    }
+
+    /// Some end a run of 254 bytes with a code of none.
+    #[test]
+    fn frames_of_other_encoders_are_understood() {
+        let longest = (BODY_BYTES + CRC_BYTES) / 254 * 254 - CRC_BYTES;
+        for length in [2, 250, 251, 504, longest, BODY_BYTES - 1, BODY_BYTES] {
+            let body = std::vec![7; length];
+            let mut plain = body.clone();
+            plain.extend(CRC.checksum(&body).to_le_bytes());
+            let whole = (length + CRC_BYTES).is_multiple_of(254) && !plain.contains(&0);
+            for ends in [&[0][..], &[1, 0]] {
+                if ends.len() > 1 && !whole {
+                    continue;
+                }
+                let mut frame = cobs::encode_vec(&plain);
+                frame.extend(ends);
+                let found = decode(&mut Decoder::new(), &frame);
+                assert_eq!(found, (std::vec![body.clone()], 0), "{length} {ends:?}");
+            }
+        }
+        // One byte more than any body has.
+        let mut frame = cobs::encode_vec(&[7; BODY_BYTES + CRC_BYTES + 1]);
+        frame.push(0);
+        let mut decoder = Decoder::new();
+        assert_eq!(decode(&mut decoder, &frame), (Vec::new(), 1));
+        assert_eq!(decoder.discarded().overlong, 1);
     }
 
     #[test]

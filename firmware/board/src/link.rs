@@ -143,20 +143,19 @@ impl Link {
     /// Takes the oldest of these received bytes before the next delimiter, as many as there is
     /// room for; or that delimiter, if it is the oldest.
     pub fn take_part<'a>(&mut self, received: usize, into: &'a mut [u8]) -> &'a [u8] {
-        let into_len = into.len().min(received);
+        let most = into.len().min(received);
         let mut taken = 0;
         // Up to the ring's end, and on from its beginning.
         for ring in [RING.get(self.next..).unwrap_or_default(), &RING] {
-            let places = into.get_mut(taken..into_len).unwrap_or_default();
+            let places = into.get_mut(taken..most).unwrap_or_default();
             let (count, is_end) = copy_part(ring, places);
             taken += count;
             if is_end {
                 break;
             }
         }
-        if taken == 0 && received > 0 {
-            taken = 1;
-        }
+        // Nothing before it: the delimiter itself.
+        taken = taken.max(1).min(most);
         self.next = (self.next + taken) % RING_BYTES;
         into.get(..taken).unwrap_or_default()
     }
