@@ -39,7 +39,7 @@ struct Limits {
 const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::ZeroWaitStates,
-        share: 39,
+        share: 40,
         commit_share: 46,
         cold_share: 39,
         render_cycles: 900,
