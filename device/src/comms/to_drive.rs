@@ -169,7 +169,7 @@ mod tests {
         hello: false,
     };
 
-    /// What a frame is.
+    /// The message in a frame.
     #[derive(Debug, PartialEq)]
     enum Sent {
         Heartbeat,
@@ -278,7 +278,7 @@ mod tests {
         assert_eq!(when(&frames), [0, 1, 11, 12, 22, 23]);
         assert_eq!(frames[0][1..], [Sent::Piece(0)]);
         assert_eq!(frames[12][1..], [Sent::Piece(2)]);
-        // Another begins anew, at once.
+        // A newer commit starts with its first piece, without waiting.
         let frames = run(&mut queue, 124, 3, &wanted(4));
         assert_eq!(when(&frames), [0, 1]);
         assert_eq!(frames[0][1..], [Sent::Piece(0)]);

@@ -6,7 +6,7 @@ use crepitus_device::drive::link_task::Shared;
 use crepitus_device::drive::prepare::CommandPlan;
 use rtic::Mutex;
 
-/// What `command_motor` owns: one lock instead of two in every tick.
+/// The resource of `command_motor`: its state and its plan, behind one lock.
 pub struct Commanding {
     pub command: Command,
     /// Its half of the plan that `idle` has stored.

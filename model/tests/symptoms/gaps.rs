@@ -266,8 +266,7 @@ fn an_onset_that_is_moved_behind_the_joint_pushes_nobody() {
     }
 }
 
-/// Commits an onset that the joint has not met yet: what the blade lets go of goes with the
-/// slew limit. Returns the word, the torques that it tells, and that before the commit.
+/// Commits an onset beyond the joint's angle: the torque falls to zero within the slew limit. Returns the word, the torques that it tells, and that before the commit.
 fn let_go(muscles: u8, has_fallen: bool) -> (Word, (f64, f64), f64) {
     // Flexors: the mirror image about 60 deg.
     let along = if muscles == 0 { 1.0 } else { -1.0 };
