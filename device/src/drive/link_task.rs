@@ -437,6 +437,39 @@ mod tests {
     }
 
     #[test]
+    fn a_status_has_what_is_in_force() {
+        let (_, first) = Preparation::new().unwrap();
+        let mut plan = first.prepared.command;
+        plan.revision = Revision(7);
+        let boot = Boot {
+            start: 5,
+            tick: 1_000,
+            ..Boot::default()
+        };
+        let mut bench = Bench::new();
+        bench.task = LinkTask::new(boot.identity, boot.start);
+        bench.parts.command = Command::new(&first.motor, &plan, &boot);
+        bench.parts.command.zero().unwrap();
+        bench.counters.count(DriveCounter::Foreign);
+        let [status] = bench.statuses(40)[..] else {
+            panic!("one status");
+        };
+        let mut counters = [0; crepitus_protocol::counters::DRIVE_COUNT];
+        bench.counters.read(&mut counters);
+        let expected = DriveStatus {
+            tick: 1_000,
+            start: 5,
+            revision: Revision(7),
+            zeroed: true,
+            counters,
+            measured: status.measured,
+            ..DriveStatus::default()
+        };
+        assert_eq!(status, expected);
+        assert_eq!(counters.iter().sum::<u32>(), 1);
+    }
+
+    #[test]
     fn what_is_measured_is_rounded() {
         let readings = SlowReadings {
             supply_v: 23.996,
