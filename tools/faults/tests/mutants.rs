@@ -1,4 +1,4 @@
-//! A small crate whose mutants are noticed, missed, not reached, or do not compile.
+//! A small crate whose mutants are noticed, missed, not reached, hang, or do not compile.
 
 use crepitus_faults::mutants::bench::{Bench, Fate};
 use crepitus_faults::mutants::read;
@@ -19,12 +19,19 @@ pub fn alone(a: u32) -> u32 {
 pub fn whole() -> Whole {
     Whole(3)
 }
+pub fn ends() -> u32 {
+    let mut n = 0;
+    while n < 3 {
+        n += 1;
+    }
+    n
+}
 #[cfg(test)]
 mod tests {
     #[test]
     fn sums() {
         assert_eq!(super::sum(2, 3), 5);
-        let _ = (super::called(1), super::whole().0);
+        let _ = (super::called(1), super::whole().0, super::ends());
     }
 }
 ";
@@ -64,16 +71,19 @@ fn each_mutant_has_its_fate() {
         listed("BinaryOperator", "+ 1", "*"),
         listed("BinaryOperator", "+ 2", "*"),
         listed("FnValue", "Whole(3)", "Default::default()"),
+        listed("BinaryOperator", "+= 1", "*="),
     ];
     let mutants = read(&format!("[{}]", list.join(","))).expect("a list");
     let tests = ["-p small --lib".to_owned()];
     let bench = Bench::open(&root, &scratch, "small", &mutants, &tests).expect("it builds");
     assert_eq!(bench.unviable, [4].into());
-    assert_eq!(bench.placed, [1, 2, 3].into());
+    assert_eq!(bench.placed, [1, 2, 3, 5].into());
     let fate = |number| bench.judge(number, 0).expect("it runs");
     assert_eq!(fate(1), Fate::Noticed("small: small".to_owned()));
     assert_eq!(fate(2), Fate::Missed);
     assert_eq!(fate(3), Fate::Unreached);
+    // Ended at its timeout.
+    assert_eq!(fate(5), Fate::Noticed("small: small".to_owned()));
     // The sources themselves are as they were.
     let source = fs::read_to_string(root.join("small/src/lib.rs")).expect("a file");
     assert_eq!(source, SOURCE);
