@@ -70,18 +70,21 @@ impl<M: Borrow<Motion>> Walk<M> {
         (from, to)
     }
 
-    /// One step of the motion and of a plant that is held by it.
+    /// One step of the motion and of a plant that is held by it; returns the shaft at its
+    /// end, just inside it: before its velocity jumps, if it does.
     #[inline]
-    pub fn advance<A: Actuator>(&mut self, plant: &mut Plant<A>) {
+    pub fn advance<A: Actuator>(&mut self, plant: &mut Plant<A>) -> Body {
         let (from, to) = self.step();
         plant.advance(&MotionStep {
             length_s: self.clock.step_s,
             from,
             to,
         });
+        let shaft = plant.shaft();
         if self.now.omega_rad_s != to.omega_rad_s {
             plant.jump(self.now.omega_rad_s);
         }
+        shaft
     }
 }
 

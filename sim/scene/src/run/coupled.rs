@@ -12,7 +12,7 @@ use crate::walk::Walk;
 use crepitus_model::render::effects::{EffectSpec, SPECS};
 use crepitus_model::solver::Solver;
 use crepitus_plant::boundary::MotionStep;
-use crepitus_plant::chain::Impacts;
+use crepitus_plant::chain::{Body, Impacts};
 use crepitus_plant::energy_balance::EnergyBalance;
 use crepitus_plant::{Motion, Plant};
 
@@ -179,12 +179,11 @@ impl Run {
             let (model_nm, taken_nm) = self.command();
             let felt_before = self.plant.felt_nms();
             let struck_before = self.plant.struck_nms();
-            self.advance(&mut walk, parts);
+            let after = self.advance(&mut walk, parts);
             struck_nms = self.plant.struck_nms() - struck_before;
             most_struck_nms = most_struck_nms.max(struck_nms.abs());
             felt_nm = (self.plant.felt_nms() - felt_before - struck_nms) / self.tick_s;
             felt.note(felt_nm);
-            let after = self.plant.shaft();
             let turned = after.angle_rad - before.angle_rad;
             held += model_nm * turned;
             limited += taken_nm * turned;
@@ -255,12 +254,14 @@ impl Run {
         (joint_nm, taken_nm)
     }
 
-    /// The plant through one tick.
+    /// The plant through one tick; the shaft at its end, before a jump there.
     #[inline]
-    fn advance(&mut self, walk: &mut Walk<&Motion>, parts: u32) {
+    fn advance(&mut self, walk: &mut Walk<&Motion>, parts: u32) -> Body {
+        let mut shaft = self.plant.shaft();
         for _ in 0..parts {
-            walk.advance(&mut self.plant);
+            shaft = walk.advance(&mut self.plant);
         }
+        shaft
     }
 }
 

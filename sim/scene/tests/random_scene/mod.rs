@@ -11,16 +11,6 @@ pub(crate) struct Tolerance {
     pub(crate) torque_nm: f64,
 }
 
-impl Tolerance {
-    /// The same where the velocity jumps.
-    pub(crate) fn with_jumps(&self) -> Self {
-        Self {
-            time_s: TICK_S,
-            ..*self
-        }
-    }
-}
-
 /// Numbers that look random.
 pub(crate) struct Random(u64);
 
