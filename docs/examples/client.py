@@ -72,7 +72,7 @@ request(b"\x04" + varint(base) + struct.pack(f"<{len(values)}d", *values))
 arms = "--arm" in sys.argv and [request(b"\x06"), request(b"\x07")] is not None
 first_tick, dropped_before = (unvarint(answer) for answer in [request(b"\x0a")] * 2)
 for number in range(1, 201):
-    arms and number % 50 == 1 and send(b"Q" + tag + session + nonce + b"\0\0")  # Renews the lease.
+    arms and number % 50 == 1 and send(b"Q" + tag + session + nonce + varint(next(numbers)) + b"\0")  # Renews the lease.
     block = wait_for(b"T" + tag)
     sequence, tick, revision, dropped = (unvarint(block) for _ in range(4))
     assert tick + 20 - first_tick == 20 * number + dropped - dropped_before, "samples are missing from the books"

@@ -1,4 +1,4 @@
-//! Frame decoding, one byte at a time.
+//! Frame decoding, as the bytes arrive: one by one, or as many at once as there are.
 //!
 //! The first complete frame after a delimiter is always received: the decoder
 //! discards and counts invalid bytes and resynchronises at the next zero byte.

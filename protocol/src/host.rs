@@ -27,8 +27,9 @@ pub struct Request {
     pub session: Session,
     /// The nonce of the open session; ignored by [`Operation::Open`].
     pub nonce: Nonce,
-    /// Sequence number; incremented for each request, wraps.
-    pub number: u16,
+    /// Sequence number; greater in each request. It does not wrap: there are more than
+    /// a session can send.
+    pub number: u32,
     /// The requested operation.
     pub operation: Operation,
 }
@@ -37,7 +38,8 @@ pub struct Request {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 #[expect(clippy::large_enum_variant, reason = "there is no heap to put it on")]
 pub enum Operation {
-    /// Renews the lease. Has no reply; its number is ignored.
+    /// Renews the lease, if its number is greater than that of any renewal before. Has no
+    /// reply.
     Renew,
     /// Reads the status. → [`Answer::Status`]
     Status,
@@ -90,7 +92,7 @@ pub struct Reply {
     /// The request's session.
     pub session: Session,
     /// The request's sequence number.
-    pub number: u16,
+    pub number: u32,
     /// The result.
     pub answer: Result<Answer, Refusal>,
 }

@@ -36,7 +36,7 @@ pub struct Job {
     /// The host's session.
     pub session: Session,
     /// Sequence number of the request.
-    pub number: u16,
+    pub number: u32,
     /// Deadline, ms.
     pub end_ms: u64,
     /// Current state.

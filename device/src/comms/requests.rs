@@ -97,12 +97,13 @@ impl Comms {
 
     /// Renews the lease, without a reply.
     fn renew(&mut self, request: &Request) {
-        let Request { session, nonce, .. } = *request;
         let seen_tick = self.drive.seen_tick();
-        if !self.sessions.is_open(session, nonce) {
-            self.counters.count(CommsCounter::NotOpen);
-        } else if self.lease.renew(session, self.now_ms, seen_tick) {
-            self.counters.count(CommsCounter::Renewals);
+        match self.sessions.classify_renewal(request) {
+            RequestClass::NotOpen => self.counters.count(CommsCounter::NotOpen),
+            RequestClass::New if self.lease.renew(request.session, self.now_ms, seen_tick) => {
+                self.counters.count(CommsCounter::Renewals);
+            }
+            _ => {}
         }
     }
 
@@ -457,7 +458,7 @@ impl Comms {
         }
     }
 
-    fn reply(&mut self, session: Session, number: u16, answer: &Result<Answer, Refusal>) {
+    fn reply(&mut self, session: Session, number: u32, answer: &Result<Answer, Refusal>) {
         let reply = Reply {
             session,
             number,

@@ -5,7 +5,8 @@
 //! session was opened last, is ever obeyed again.
 //!
 //! The last sequence number and reply of each session are stored: a repeated
-//! request gets the stored reply, an older one is ignored.
+//! request gets the stored reply, an older one is ignored. Renewals have the same numbers and
+//! no reply; each counts once, and none after a newer one.
 
 use crepitus_protocol::host::{Answer, Operation, Reply, Request};
 use crepitus_protocol::{Nonce, Session};
@@ -33,7 +34,9 @@ pub enum RequestClass {
 struct Entry {
     session: Session,
     nonce: Nonce,
-    number: u16,
+    number: u32,
+    /// Number of the last renewal.
+    renewed: u32,
     /// None while it is being carried out.
     reply: Option<Reply>,
     is_subscribed: bool,
@@ -60,12 +63,6 @@ impl Sessions {
         }
     }
 
-    /// Whether this session is open with this nonce.
-    pub fn is_open(&self, session: Session, nonce: Nonce) -> bool {
-        self.entry(session)
-            .is_some_and(|entry| entry.nonce == nonce)
-    }
-
     /// Classifies a request; a new one becomes the session's current request.
     pub fn classify(&mut self, request: &Request) -> RequestClass {
         self.requests = self.requests.wrapping_add(1);
@@ -87,7 +84,7 @@ impl Sessions {
                 .reply
                 .map_or(RequestClass::Ignore, RequestClass::Repeat);
         }
-        if request.number.wrapping_sub(entry.number).cast_signed() < 0 {
+        if request.number < entry.number {
             return RequestClass::Ignore;
         }
         if is_opening {
@@ -95,6 +92,20 @@ impl Sessions {
         }
         (entry.number, entry.reply) = (request.number, None);
         RequestClass::New
+    }
+
+    /// Classifies a renewal: new, of a session that is not open, or to be ignored.
+    pub fn classify_renewal(&mut self, request: &Request) -> RequestClass {
+        match self.entry_mut(request.session) {
+            Some(entry) if entry.nonce == request.nonce => {
+                if request.number <= entry.renewed {
+                    return RequestClass::Ignore;
+                }
+                entry.renewed = request.number;
+                RequestClass::New
+            }
+            _ => RequestClass::NotOpen,
+        }
     }
 
     /// Opens a session, or gives it another nonce; it has no subscription then.
@@ -114,6 +125,7 @@ impl Sessions {
             session,
             nonce,
             number,
+            renewed: number,
             reply: Some(reply),
             is_subscribed: false,
             used: self.requests,
@@ -174,10 +186,6 @@ impl Sessions {
         self.entries.iter().any(|entry| entry.is_subscribed)
     }
 
-    fn entry(&self, session: Session) -> Option<&Entry> {
-        self.entries.iter().find(|entry| entry.session == session)
-    }
-
     fn entry_mut(&mut self, session: Session) -> Option<&mut Entry> {
         self.entries
             .iter_mut()
@@ -202,7 +210,15 @@ mod tests {
 
     const NOBODY: [Option<Session>; 2] = [None; 2];
 
-    fn request(session: u32, nonce: Nonce, number: u16, operation: Operation) -> Request {
+    impl Sessions {
+        /// Whether this session is open with this nonce.
+        fn is_open(&self, session: Session, nonce: Nonce) -> bool {
+            let mut entries = self.entries.iter();
+            entries.any(|entry| (entry.session, entry.nonce) == (session, nonce))
+        }
+    }
+
+    fn request(session: u32, nonce: Nonce, number: u32, operation: Operation) -> Request {
         Request {
             session: Session(session),
             nonce,
@@ -212,7 +228,7 @@ mod tests {
     }
 
     /// Opens a session with this number.
-    fn open(sessions: &mut Sessions, session: u32, number: u16) -> Nonce {
+    fn open(sessions: &mut Sessions, session: u32, number: u32) -> Nonce {
         let opening = request(session, Nonce::NONE, number, Operation::Open);
         assert_eq!(sessions.classify(&opening), RequestClass::Open);
         let Ok(Answer::Opened { nonce }) = sessions.open(&opening, NOBODY).answer else {
@@ -226,8 +242,7 @@ mod tests {
         let mut sessions = Sessions::new(1);
         let nonce = open(&mut sessions, 1, 0xfffd);
         let status = |number| request(1, nonce, number, Operation::Status);
-        // Across the wrap of the number.
-        for number in [0xfffe, 0xffff, 0, 1] {
+        for number in [0xfffe, 0xffff, 0x1_0000, u32::MAX] {
             assert_eq!(sessions.classify(&status(number)), RequestClass::New);
             assert_eq!(sessions.classify(&status(number)), RequestClass::Ignore);
             let reply = Reply {
@@ -240,9 +255,38 @@ mod tests {
                 sessions.classify(&status(number)),
                 RequestClass::Repeat(reply)
             );
-            let older = status(number.wrapping_sub(1));
+            let older = status(number - 1);
             assert_eq!(sessions.classify(&older), RequestClass::Ignore);
         }
+    }
+
+    #[test]
+    fn a_renewal_counts_once_and_not_after_a_newer_one() {
+        let mut sessions = Sessions::new(1);
+        let nonce = open(&mut sessions, 1, 7);
+        let renewal = |number| request(1, nonce, number, Operation::Renew);
+        let numbers = [7, 8, 8, 7, 10, 9, 10, 0x1_0000, 11, u32::MAX, 0];
+        let new =
+            numbers.map(|number| sessions.classify_renewal(&renewal(number)) == RequestClass::New);
+        let expected = [8, 10, 0x1_0000, u32::MAX];
+        let mut left = expected.iter();
+        for (number, is_new) in numbers.iter().zip(new) {
+            assert!(!is_new || left.next() == Some(number), "{number}");
+        }
+        assert_eq!(left.next(), None);
+        // Requests are numbered with them, and are none of them.
+        let status = request(1, nonce, 9, Operation::Status);
+        assert_eq!(sessions.classify(&status), RequestClass::New);
+        let other = request(1, Nonce(nonce.0 ^ 1), 12, Operation::Renew);
+        assert_eq!(sessions.classify_renewal(&other), RequestClass::NotOpen);
+        // Opened again, it begins where its opening was.
+        let nonce = open(&mut sessions, 1, 20);
+        let renewal = |number| request(1, nonce, number, Operation::Renew);
+        assert_eq!(
+            sessions.classify_renewal(&renewal(20)),
+            RequestClass::Ignore
+        );
+        assert_eq!(sessions.classify_renewal(&renewal(21)), RequestClass::New);
     }
 
     #[test]

@@ -60,7 +60,7 @@ pub(crate) struct Bench {
     enable: [bool; 2],
     from_comms: Decoder,
     pub(crate) session: Session,
-    pub(crate) number: u16,
+    pub(crate) number: u32,
     nonce: Nonce,
     replies: Vec<Reply>,
     pub(crate) blocks: Vec<Block>,
@@ -195,7 +195,7 @@ impl Bench {
         if self.nonce == Nonce::NONE && operation != Operation::Open {
             self.open();
         }
-        self.number = self.number.wrapping_add(1);
+        self.number += 1;
         self.tell(operation);
         for _ in 0..700 {
             self.millisecond();
@@ -220,6 +220,7 @@ impl Bench {
     pub(crate) fn run_leased(&mut self, ms: u32) {
         for n in 0..ms {
             if n % 50 == 0 {
+                self.number += 1;
                 self.tell(Operation::Renew);
             }
             self.millisecond();

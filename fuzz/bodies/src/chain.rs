@@ -47,7 +47,7 @@ const SESSIONS: [Session; 3] = [Session(0), Session(7), Session(0x1001)];
 
 /// Numbers of their first requests, also after a restart of comms: so requests
 /// of before are not just older.
-const NUMBERS: [u16; SESSIONS.len()] = [0, 0x7ffe, 0xfffe];
+const NUMBERS: [u32; SESSIONS.len()] = [0, 0x7ffe, 0xfffe];
 
 /// Checks the laws.
 ///
@@ -79,7 +79,7 @@ struct Chain {
     device: Device,
     host: HostOracle,
     frames: Frames,
-    numbers: [u16; SESSIONS.len()],
+    numbers: [u32; SESSIONS.len()],
     /// All requests that comms has received.
     sent: Vec<Sent>,
     /// Frames to the host that will be lost.
@@ -93,7 +93,7 @@ struct Chain {
     stopped: u64,
     values: KnownValues,
     /// Commits that were sent to this start of comms, until they are answered.
-    commits: BTreeMap<(u32, u16), Values>,
+    commits: BTreeMap<(u32, u32), Values>,
     /// Values that were in force, by revision.
     in_force: BTreeMap<u32, Values>,
     revision: Option<Revision>,

@@ -95,7 +95,7 @@ struct Bench {
     link_ear: Decoder,
     /// The last byte from hosts was no delimiter.
     is_in_frame: bool,
-    numbers: [u16; 5],
+    numbers: [u32; 5],
     /// When a block came last.
     block_ms: Option<u64>,
     lease: LeaseOracle,
@@ -103,9 +103,11 @@ struct Bench {
     /// have restarted since it was acquired.
     lease_end_tick: Option<u64>,
     /// Last request of each session that was executed.
-    executed: BTreeMap<u32, (Nonce, u16)>,
+    executed: BTreeMap<u32, (Nonce, u32)>,
+    /// Last renewal of each.
+    renewed: BTreeMap<u32, (Nonce, u32)>,
     /// Commits that were sent, until they are refused.
-    commits: BTreeMap<(u32, u16), Values>,
+    commits: BTreeMap<(u32, u32), Values>,
     /// Reasons that there were for another revision.
     numbered: u32,
     revision: Revision,
@@ -126,11 +128,12 @@ impl Bench {
             ear: Decoder::new(),
             link_ear: Decoder::new(),
             is_in_frame: false,
-            numbers: [0, 1, 0x7ffe, 0xfffe, 9],
+            numbers: [1, 2, 0x7ffe, 0xfffe, 9],
             block_ms: None,
             lease: LeaseOracle::new(LEASE_MS),
             lease_end_tick: None,
             executed: BTreeMap::new(),
+            renewed: BTreeMap::new(),
             commits: BTreeMap::new(),
             numbered: 0,
             revision: comms.revision(),
@@ -167,23 +170,25 @@ impl Bench {
                 let place = usize::from(bytes.byte()) % self.numbers.len();
                 let operation = link_inputs::operation(bytes, self.comms.revision());
                 let number = &mut self.numbers[place];
+                let mut before = 0;
                 match bytes.byte() {
                     // Repeated; but of a subscription nobody could tell which
                     // one it is that begins.
                     0..=47 if operation != Operation::Subscribe => {}
-                    48..=63 => *number = number.wrapping_add(bytes.u16()),
-                    _ => *number = number.wrapping_add(1),
+                    48..=55 => *number += u32::from(bytes.u16()),
+                    56..=63 => before = u32::from(bytes.u16()),
+                    _ => *number += 1,
                 }
-                let number = *number;
+                let number = number.saturating_sub(before);
                 let session = Session(u32::try_from(place).unwrap_or(0) * 0x1001);
                 if self.host.nonce(session) == Nonce::NONE {
                     // One number before, so that what follows is newer.
-                    self.request(session, number.wrapping_sub(1), Operation::Open);
+                    self.request(session, number.saturating_sub(1), Operation::Open);
                     self.read(usize::MAX);
                 }
                 self.request(session, number, operation);
                 if number % 8 == 3 {
-                    self.stale_request(session, number.wrapping_add(1), operation);
+                    self.stale_request(session, number + 1, operation);
                 }
             }
             4 => {
@@ -226,12 +231,12 @@ impl Bench {
         }
     }
 
-    fn request(&mut self, session: Session, number: u16, operation: Operation) {
+    fn request(&mut self, session: Session, number: u32, operation: Operation) {
         self.request_with(self.host.nonce(session), session, number, operation);
     }
 
     /// A request with another nonce than that of the session is not executed.
-    fn stale_request(&mut self, session: Session, number: u16, operation: Operation) {
+    fn stale_request(&mut self, session: Session, number: u32, operation: Operation) {
         if operation == Operation::Open {
             return;
         }
@@ -245,7 +250,7 @@ impl Bench {
         assert_eq!(executed(&self.comms), before, "{session:?} {operation:?}");
     }
 
-    fn request_with(&mut self, nonce: Nonce, session: Session, number: u16, operation: Operation) {
+    fn request_with(&mut self, nonce: Nonce, session: Session, number: u32, operation: Operation) {
         let request = Request {
             session,
             nonce,
@@ -313,7 +318,10 @@ impl Bench {
         }
         let end_tick = self.drive.tick() + LEASE_TICKS;
         if operation == Operation::Renew {
-            if nonce == self.host.nonce(session) {
+            let last = self.renewed.get(&session.0);
+            let is_newer = last.is_none_or(|last| last.0 != nonce || last.1 < number);
+            if nonce == self.host.nonce(session) && is_newer {
+                self.renewed.insert(session.0, (nonce, number));
                 self.lease.renew(session, self.now_ms);
                 self.lease_end_tick = self.lease_end_tick.map(|end| end.max(end_tick));
             }

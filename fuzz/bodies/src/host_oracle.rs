@@ -20,13 +20,13 @@ struct SampleAccounting {
 #[derive(Default)]
 pub(crate) struct HostOracle {
     /// How many replies may still come to each request.
-    expected: BTreeMap<(u32, u16), u32>,
+    expected: BTreeMap<(u32, u32), u32>,
     /// Nonces of the sessions.
     nonces: BTreeMap<u32, Nonce>,
     /// Sessions whose nonce is of this start of comms.
     open: BTreeSet<u32>,
     /// Which request of each session was a subscription; the last one counts.
-    subscriptions: BTreeMap<u32, u16>,
+    subscriptions: BTreeMap<u32, u32>,
     /// Of each session, also of one that has unsubscribed: the count is one for
     /// all.
     accountings: BTreeMap<u32, SampleAccounting>,

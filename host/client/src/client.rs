@@ -35,7 +35,7 @@ pub struct Client<T> {
     pub(crate) nonce: Nonce,
     /// Sequence number of the last request, and token of the last management
     /// request.
-    pub(crate) number: u16,
+    pub(crate) number: u32,
     pub(crate) token: u8,
     handshake: Handshake,
     pub(crate) lease: Lease,
@@ -66,7 +66,7 @@ pub(crate) enum Lease {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Watch {
     /// Sequence number of the pending request.
-    pub(crate) asked: Option<u16>,
+    pub(crate) asked: Option<u32>,
     pub(crate) asked_at: Duration,
     /// Time of an additional request.
     pub(crate) due_at: Option<Duration>,

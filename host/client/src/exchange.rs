@@ -57,7 +57,7 @@ impl<T: Transport> Client<T> {
     }
 
     /// A request of this session.
-    pub(crate) fn numbered(&self, number: u16, operation: Operation) -> Request {
+    pub(crate) fn numbered(&self, number: u32, operation: Operation) -> Request {
         Request {
             session: self.session,
             nonce: self.nonce,
@@ -193,13 +193,14 @@ impl<T: Transport> Client<T> {
             return Ok(());
         }
         self.renewed_at = now;
-        let renewal = self.numbered(self.number, Operation::Renew);
+        let number = self.next_number();
+        let renewal = self.numbered(number, Operation::Renew);
         let sent = self.wire.request(&renewal);
         self.counts.renewals += 1;
         self.sent(sent)
     }
 
-    pub(crate) fn next_number(&mut self) -> u16 {
+    pub(crate) fn next_number(&mut self) -> u32 {
         self.number = self.number.wrapping_add(1);
         self.number
     }

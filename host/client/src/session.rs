@@ -9,8 +9,8 @@ use std::time::SystemTime;
 pub struct Options {
     /// Session number.
     pub session: Session,
-    /// Sequence number of the first request; it wraps.
-    pub first_number: u16,
+    /// Sequence number of the first request.
+    pub first_number: u32,
 }
 
 impl Default for Options {

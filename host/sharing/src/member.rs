@@ -45,7 +45,7 @@ impl Member {
     pub(crate) fn requests(&mut self, request: &Request) {
         self.program.session = Some(request.session);
         match request.operation {
-            // Its number is ignored.
+            // Its number is compared with those of renewals only.
             Operation::Renew => return self.renewed = Some(Instant::now()),
             Operation::Arm => self.asked = Some(Instant::now()),
             Operation::Disarm => (self.asked, self.renewed) = (None, None),
@@ -87,7 +87,7 @@ impl Member {
             .into_iter()
             .chain(unsubscribe)
             .filter_map(|operation| {
-                number = number.wrapping_add(1);
+                number = number.saturating_add(1);
                 let request = Request {
                     number,
                     operation,
@@ -111,7 +111,7 @@ mod tests {
     use crepitus_protocol::{Decoder, Nonce, Session};
     use std::sync::mpsc::sync_channel;
 
-    fn request(number: u16, operation: Operation) -> Request {
+    fn request(number: u32, operation: Operation) -> Request {
         Request {
             session: Session(7),
             nonce: Nonce(8),
@@ -139,17 +139,17 @@ mod tests {
         member.requests(&request(0xfffe, Operation::Subscribe));
         member.requests(&request(0xffff, Operation::Arm));
         let will = [
-            request(0, Operation::Disarm),
-            request(1, Operation::Unsubscribe),
+            request(0x1_0000, Operation::Disarm),
+            request(0x1_0001, Operation::Unsubscribe),
         ];
         // Killed before its first renewal, it may be armed all the same.
         assert_eq!(said(&member.last_will()), will);
         assert!(!member.program().is_armed);
-        member.requests(&request(0xffff, Operation::Renew));
+        member.requests(&request(0x1_0005, Operation::Renew));
         assert!(member.program().is_armed);
         assert_eq!(said(&member.last_will()), will);
-        member.requests(&request(0, Operation::Disarm));
-        member.requests(&request(1, Operation::Unsubscribe));
+        member.requests(&request(0x1_0000, Operation::Disarm));
+        member.requests(&request(0x1_0001, Operation::Unsubscribe));
         assert_eq!(said(&member.last_will()), []);
         assert!(!member.program().is_armed);
     }

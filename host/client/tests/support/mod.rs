@@ -43,7 +43,7 @@ pub fn client(port: Port, session: u32) -> Client<Port> {
 pub fn options(session: u32) -> Options {
     Options {
         session: Session(session),
-        first_number: u16::MAX - 3,
+        first_number: u32::from(u16::MAX) - 3,
     }
 }
 

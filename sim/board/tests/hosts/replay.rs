@@ -122,7 +122,8 @@ fn nothing_that_is_replayed_is_obeyed() {
 fn renewals_of_before_the_session_was_opened_again_are_none() {
     let mut host = connected();
     host.arm();
-    let old = host.request_of(host.session, 0, Operation::Renew);
+    // Its number is newer than all that follow.
+    let old = host.request_of(host.session, u32::MAX, Operation::Renew);
     host.open();
     host.run(2_000);
     assert!(host.device.board().is_driven(), "the new nonce renews");
@@ -133,6 +134,53 @@ fn renewals_of_before_the_session_was_opened_again_are_none() {
     }
     assert!(!host.device.board().is_driven());
     assert_eq!(host.status().state, State::Faulted);
+}
+
+/// The holder of a lease falls silent, and somebody sends what it sent last, in its own
+/// session, again and again.
+#[test]
+fn a_renewal_that_is_repeated_keeps_no_torque_on() {
+    let mut host = connected();
+    host.sent = Some(Vec::new());
+    host.arm();
+    host.run(4_000);
+    host.renew_every = None;
+    let sent = host.sent.take().expect("what was sent");
+    let last = sent.last().expect("a renewal").clone();
+    let renewals = host.comms_count(CommsCounter::Renewals);
+    assert!(renewals > 1);
+    for tick in 0..5_001 {
+        if tick % 500 == 0 {
+            host.send(&last);
+        }
+        host.tick();
+    }
+    assert!(!host.device.board().is_driven());
+    assert_eq!(host.comms_count(CommsCounter::Renewals), renewals);
+    assert_eq!(host.status().state, State::Faulted, "the lease has expired");
+}
+
+/// As many requests later as half of the numbers that sixteen bits have: what arms is
+/// still what came before.
+#[test]
+fn a_request_to_arm_does_not_become_new_with_time() {
+    let mut host = connected();
+    host.sent = Some(Vec::new());
+    host.arm();
+    let sent = host.sent.take().expect("what was sent");
+    host.renew_every = None;
+    assert_eq!(host.ask(Operation::Disarm), Ok(Answer::Done));
+    let before = changes(&host);
+    for later in [1, 1 << 15, 1 << 16, 3 << 15, 1 << 31] {
+        host.number += later;
+        host.status();
+        for frame in &sent {
+            host.send(frame);
+            host.run(200);
+            assert!(!host.device.board().is_driven());
+        }
+    }
+    assert_eq!(changes(&host), before);
 }
 
 /// A request to arm arrives after the host has given up and disarmed.

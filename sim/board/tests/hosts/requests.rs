@@ -7,7 +7,7 @@ use crepitus_protocol::Session;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::host::{Operation, Refusal, Request};
 
-fn commit(host: &mut Host, number: u16, static_nm: f64) -> Request {
+fn commit(host: &mut Host, number: u32, static_nm: f64) -> Request {
     let (base, mut values) = host.parameters();
     set(&mut values, "crepitus.static_torque_nm", static_nm);
     host.request_of(host.session, number, Operation::Commit { base, values })

@@ -48,7 +48,8 @@ fn what_concerns_the_torque_is_for_the_one_with_the_lease() {
     let renewals = host.comms_count(CommsCounter::Renewals);
     host.renew_every = None;
     for _ in 0..40 {
-        let renewal = host.request_of(OTHER, 0, Operation::Renew);
+        number += 1;
+        let renewal = host.request_of(OTHER, number, Operation::Renew);
         host.say(&renewal);
         host.run(200);
     }
@@ -144,8 +145,8 @@ fn stopping_is_for_everybody_and_then_the_other_one_may_arm() {
     // The first one goes on renewing, which is nothing now.
     assert_eq!(host.status().lease, Some(OTHER));
     assert_eq!(host.ask(Operation::Arm), Err(Refusal::Leased { by: OTHER }));
-    for _ in 0..20 {
-        let renewal = host.request_of(OTHER, 0, Operation::Renew);
+    for number in 3..23 {
+        let renewal = host.request_of(OTHER, number, Operation::Renew);
         host.say(&renewal);
         host.run(1_000);
     }
@@ -220,16 +221,16 @@ fn stopping_is_for_everybody_and_needs_no_session() {
 #[test]
 fn two_hosts_that_ask_in_turn_both_get_their_answers() {
     let mut host = streaming();
-    assert!(host.ask_as(OTHER, 0, Operation::Status).is_some());
-    for number in 0..200_u16 {
+    assert!(host.ask_as(OTHER, 1, Operation::Status).is_some());
+    for number in 0..200_u32 {
         let asks = [
             Operation::Status,
             Operation::Parameters,
             Operation::Counters,
         ];
-        let operation = asks[usize::from(number) % 3];
+        let operation = asks[number as usize % 3];
         let first = host.request(operation);
-        let second = host.request_of(OTHER, 1 + number, operation);
+        let second = host.request_of(OTHER, 2 + number, operation);
         host.say(&first);
         host.say(&second);
         host.run(u64::from(number) % 50);

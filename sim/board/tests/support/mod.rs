@@ -86,7 +86,7 @@ pub(crate) enum Heard {
 pub(crate) struct Host {
     pub(crate) device: VirtualDevice,
     pub(crate) session: Session,
-    pub(crate) number: u16,
+    pub(crate) number: u32,
     /// What was sent, if it is wanted, write by write.
     pub(crate) sent: Option<Vec<Vec<u8>>>,
     /// Nonces of the sessions that are open.
@@ -144,7 +144,8 @@ impl Host {
         if let Some(every) = self.renew_every
             && self.device.board().now().is_multiple_of(every)
         {
-            let renewal = self.request_of(self.session, 0, Operation::Renew);
+            self.number += 1;
+            let renewal = self.request_of(self.session, self.number, Operation::Renew);
             self.say(&renewal);
         }
         self.device.tick();
@@ -210,7 +211,7 @@ impl Host {
     pub(crate) fn request_of(
         &self,
         session: Session,
-        number: u16,
+        number: u32,
         operation: Operation,
     ) -> Request {
         Request {
@@ -226,7 +227,7 @@ impl Host {
         if !self.nonces.contains_key(&self.session) {
             self.open();
         }
-        self.number = self.number.wrapping_add(1);
+        self.number += 1;
         self.request_of(self.session, self.number, operation)
     }
 
@@ -238,7 +239,7 @@ impl Host {
         times: u32,
     ) -> Option<Result<Answer, Refusal>> {
         if !self.nonces.contains_key(&self.session) {
-            self.number = self.number.wrapping_add(1);
+            self.number += 1;
             self.try_open(self.session, self.number, times)?;
         }
         let request = self.request(operation);
@@ -255,12 +256,12 @@ impl Host {
 
     /// Opens this host's session.
     pub(crate) fn open(&mut self) {
-        self.number = self.number.wrapping_add(1);
+        self.number += 1;
         self.try_open(self.session, self.number, 40)
             .expect("an open session");
     }
 
-    fn try_open(&mut self, session: Session, number: u16, times: u32) -> Option<()> {
+    fn try_open(&mut self, session: Session, number: u32, times: u32) -> Option<()> {
         let request = self.request_of(session, number, Operation::Open);
         (0..times).find_map(|_| {
             self.say(&request);
@@ -277,11 +278,11 @@ impl Host {
     pub(crate) fn ask_as(
         &mut self,
         session: Session,
-        number: u16,
+        number: u32,
         operation: Operation,
     ) -> Option<Result<Answer, Refusal>> {
         if !self.nonces.contains_key(&session) {
-            self.try_open(session, number.wrapping_sub(1), 40);
+            self.try_open(session, number - 1, 40);
         }
         let request = self.request_of(session, number, operation);
         self.say(&request);

@@ -44,7 +44,7 @@ const BOOT_TICKS: u64 = 1_000;
 
 pub(crate) struct Host {
     pub(crate) board: DriveBoard,
-    number: u16,
+    number: u32,
     nonce: Nonce,
     holds_lease: bool,
     ticks: u64,
@@ -165,8 +165,13 @@ impl Host {
     /// Renews the lease, when it is time.
     fn renew(&mut self) {
         if self.holds_lease && self.ticks.is_multiple_of(RENEWAL_TICKS) {
-            self.say(0, Operation::Renew);
+            self.say_renewal();
         }
+    }
+
+    fn say_renewal(&mut self) {
+        self.number += 1;
+        self.say(self.number, Operation::Renew);
     }
 
     /// After a tick: what was sent, and what the board found.
@@ -191,7 +196,7 @@ impl Host {
         );
     }
 
-    fn say(&mut self, number: u16, operation: Operation) {
+    fn say(&mut self, number: u32, operation: Operation) {
         let request = Request {
             session: Session(0x1234),
             nonce: self.nonce,
@@ -265,7 +270,7 @@ impl Host {
     /// As [`Self::arm`], with the answer.
     pub(crate) fn try_to_arm(&mut self) -> Result<Answer, Refusal> {
         self.holds_lease = true;
-        self.say(0, Operation::Renew);
+        self.say_renewal();
         for _ in 0..100 {
             match self.ask(Operation::Arm) {
                 Err(Refusal::Busy | Refusal::DriveSilent) => self.run(200),
