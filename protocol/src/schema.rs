@@ -1,7 +1,8 @@
 //! Schema hash: compatibility of two programs.
 //!
 //! [`HASH`] is computed at compile time from the shape and the names of every
-//! message and from the parameters, faults and counters, in their order.
+//! message and from the parameters, faults and counters, in their order; of parameters
+//! with ranges and defaults: a commit leaves out values that are the default.
 //! Programs with equal hashes are compatible; others only on the
 //! [management lane](crate::management). The low byte is the tag of all other
 //! frames, so that incompatible frames are rejected.
@@ -41,6 +42,14 @@ const fn counted(mut hash: u64, mut list: &[CounterSpec]) -> u64 {
     hash
 }
 
+const fn numbers(mut hash: u64, mut list: &[f64]) -> u64 {
+    while let [number, tail @ ..] = list {
+        hash = update(hash, &number.to_bits().to_le_bytes());
+        list = tail;
+    }
+    hash
+}
+
 const fn hash() -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325;
     hash = update(hash, &Key::for_path::<Request>("request").to_bytes());
@@ -52,7 +61,10 @@ const fn hash() -> u64 {
     while let [parameter, tail @ ..] = parameters {
         hash = update(hash, parameter.group.as_bytes());
         match parameter.kind {
-            Kind::Number(spec) => hash = update(hash, spec.key.as_bytes()),
+            Kind::Number(spec) => {
+                hash = update(hash, spec.key.as_bytes());
+                hash = numbers(hash, &[spec.default, spec.min, spec.max]);
+            }
             Kind::Choice(choice) => {
                 hash = update(hash, choice.key.as_bytes());
                 let mut names = choice.names;
@@ -60,6 +72,7 @@ const fn hash() -> u64 {
                     hash = update(hash, name.as_bytes());
                     names = tail;
                 }
+                hash = update(hash, &[choice.default]);
             }
         }
         parameters = tail;

@@ -38,7 +38,8 @@ pub enum ValueError {
         /// The parameter.
         id: u8,
     },
-    /// The model rejects values that the device's rules allow: a bug.
+    /// A rule of the effects, by themselves or together: [`DeviceSettings::broken_rule`] says
+    /// which.
     Contradiction,
     /// The range of motion is narrower than its two fades.
     NarrowRange,
@@ -142,6 +143,15 @@ impl DeviceSettings {
         })
     }
 
+    /// The rule of the effects, by themselves or together, that these values break, in words: on
+    /// the wire it is [`ValueError::Contradiction`].
+    pub fn broken_rule(values: &Values) -> Option<SettingsError> {
+        let joint = values.joint().parameters;
+        let is_on = values.is_on(id::CREPITUS);
+        let checked = EffectSettings::read(values).check(is_on.then_some(&joint));
+        checked.err()
+    }
+
     /// Torque at the joint for one ampere, N·m/A, and voltage of the back-EMF
     /// for one rad/s of the joint.
     pub fn joint_constant(&self) -> f64 {
@@ -229,8 +239,14 @@ mod tests {
             );
         }
         // Flexors are stretched towards smaller angles.
-        let (onset, _) = crate::parameters::find("clasp-knife.onset_deg").unwrap();
-        values.set(onset, 80.0);
+        let mut set = |name, value| {
+            let (id, _) = crate::parameters::find(name).unwrap();
+            values.set(id, value);
+        };
+        set("clasp-knife.onset_deg", 80.0);
+        // Whole numbers.
+        set("clonus.beats", 7.0);
+        set("texture.seed", 8.0);
         let s = DeviceSettings::of(&values).unwrap();
         let p = s.crepitus.unwrap().parameters;
         let crepitus = [

@@ -2,7 +2,7 @@
 
 use crate::comms::Comms;
 use crate::comms::job::{Job, JobState};
-use crate::comms::sessions::RequestClass;
+use crate::comms::sessions::{RenewalClass, RequestClass};
 use crepitus_protocol::chirp::PlayedChirp;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::crash::{Controller, Part};
@@ -98,9 +98,9 @@ impl Comms {
     /// Renews the lease, without a reply.
     fn renew(&mut self, request: &Request) {
         let seen_tick = self.drive.seen_tick();
-        match self.sessions.classify_renewal(request) {
-            RequestClass::NotOpen => self.counters.count(CommsCounter::NotOpen),
-            RequestClass::New if self.lease.renew(request.session, self.now_ms, seen_tick) => {
+        match self.sessions.renew(request) {
+            RenewalClass::NotOpen => self.counters.count(CommsCounter::NotOpen),
+            RenewalClass::New if self.lease.renew(request.session, self.now_ms, seen_tick) => {
                 self.counters.count(CommsCounter::Renewals);
             }
             _ => {}

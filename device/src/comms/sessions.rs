@@ -30,6 +30,17 @@ pub enum RequestClass {
     NotOpen,
 }
 
+/// Classification of a renewal, which has no reply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RenewalClass {
+    /// It counts.
+    New,
+    /// Repeated or older.
+    Ignore,
+    /// Of a session that is not open, or with an old nonce.
+    NotOpen,
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     session: Session,
@@ -94,17 +105,17 @@ impl Sessions {
         RequestClass::New
     }
 
-    /// Classifies a renewal: new, of a session that is not open, or to be ignored.
-    pub fn classify_renewal(&mut self, request: &Request) -> RequestClass {
+    /// Classifies a renewal; a new one becomes the session's last.
+    pub fn renew(&mut self, request: &Request) -> RenewalClass {
         match self.entry_mut(request.session) {
             Some(entry) if entry.nonce == request.nonce => {
                 if request.number <= entry.renewed {
-                    return RequestClass::Ignore;
+                    return RenewalClass::Ignore;
                 }
                 entry.renewed = request.number;
-                RequestClass::New
+                RenewalClass::New
             }
-            _ => RequestClass::NotOpen,
+            _ => RenewalClass::NotOpen,
         }
     }
 
@@ -266,8 +277,7 @@ mod tests {
         let nonce = open(&mut sessions, 1, 7);
         let renewal = |number| request(1, nonce, number, Operation::Renew);
         let numbers = [7, 8, 8, 7, 10, 9, 10, 0x1_0000, 11, u32::MAX, 0];
-        let new =
-            numbers.map(|number| sessions.classify_renewal(&renewal(number)) == RequestClass::New);
+        let new = numbers.map(|number| sessions.renew(&renewal(number)) == RenewalClass::New);
         let expected = [8, 10, 0x1_0000, u32::MAX];
         let mut left = expected.iter();
         for (number, is_new) in numbers.iter().zip(new) {
@@ -278,15 +288,12 @@ mod tests {
         let status = request(1, nonce, 9, Operation::Status);
         assert_eq!(sessions.classify(&status), RequestClass::New);
         let other = request(1, Nonce(nonce.0 ^ 1), 12, Operation::Renew);
-        assert_eq!(sessions.classify_renewal(&other), RequestClass::NotOpen);
+        assert_eq!(sessions.renew(&other), RenewalClass::NotOpen);
         // Opened again, it begins where its opening was.
         let nonce = open(&mut sessions, 1, 20);
         let renewal = |number| request(1, nonce, number, Operation::Renew);
-        assert_eq!(
-            sessions.classify_renewal(&renewal(20)),
-            RequestClass::Ignore
-        );
-        assert_eq!(sessions.classify_renewal(&renewal(21)), RequestClass::New);
+        assert_eq!(sessions.renew(&renewal(20)), RenewalClass::Ignore);
+        assert_eq!(sessions.renew(&renewal(21)), RenewalClass::New);
     }
 
     #[test]

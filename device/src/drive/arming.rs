@@ -202,12 +202,17 @@ impl Arming {
         }
     }
 
-    /// Offsets of the current sensor and of the monitor, once measured, A.
+    /// Offsets of the current sensor and of the monitor, A, once they were measured and
+    /// found small.
     pub fn offsets_a(&self) -> Option<(f32, f32)> {
+        (self.step != Step::Offset).then(|| self.mean_offsets_a())
+    }
+
+    fn mean_offsets_a(&self) -> (f32, f32) {
         #[expect(clippy::cast_precision_loss, reason = "a small number")]
         let share = 1.0 / OFFSET_TICKS as f32;
         let (sensor_a, monitor_a) = self.offset_sums_a;
-        (self.step != Step::Offset).then_some((sensor_a * share, monitor_a * share))
+        (sensor_a * share, monitor_a * share)
     }
 
     /// Whether the push has shown that encoder and motor turn the same way.
@@ -231,17 +236,14 @@ impl Arming {
         if self.ticks < OFFSET_TICKS {
             return ArmingOutput::Off;
         }
-        self.go_to(Step::FirstOn);
         // `<=` so that NaN fails.
         let is_small = |offset_a: f32| offset_a.abs() <= LARGEST_OFFSET_A;
-        if self
-            .offsets_a()
-            .is_some_and(|(sensor_a, monitor_a)| is_small(sensor_a) && is_small(monitor_a))
-        {
-            ArmingOutput::Line
-        } else {
-            ArmingOutput::Failed(Fault::CurrentOffset)
+        let (sensor_a, monitor_a) = self.mean_offsets_a();
+        if !(is_small(sensor_a) && is_small(monitor_a)) {
+            return ArmingOutput::Failed(Fault::CurrentOffset);
         }
+        self.go_to(Step::FirstOn);
+        ArmingOutput::Line
     }
 
     /// Waits for the read-back of the line.

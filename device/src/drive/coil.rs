@@ -6,7 +6,7 @@
 //! that is not known and a back-EMF of which only the largest is, e = Bl·ω₀·X:
 //!
 //! ```text
-//! short     |i| ≤ 1.3·(V̂ + e)/R + 0.15 A, 3.1 A  V̂: the largest |V| of the last milliseconds
+//! short     |i| ≤ 1.3·(V̂ + e)/R + 0.15 A         V̂: the largest |V| of the last milliseconds
 //! open      ⟨V·i⟩ ≥ ⅛·⟨V²⟩/(R + Rm)              ⟨ ⟩: mean over 10 ms
 //! hot       ⟨i²⟩ ≤ 1.25·Ic²                       mean over the model's 10 s
 //! ```
@@ -16,8 +16,9 @@
 //! the power of the second into a smaller one: an eighth is reached where ωL = 2.6·R.
 //! A sensor that is stuck, or that shows the other sign, violates one of the two.
 //!
-//! Not detected: a mass that is stuck or strikes its stops, as its back-EMF is a few
-//! percent of the voltage; a coil whose two wires are swapped, as current and voltage
+//! Not detected: a short where a cold coil may take 3.1 A, which is left to the driver; a mass
+//! that is stuck or strikes its stops, as its back-EMF is a few percent of the voltage, and a
+//! fifth of it at the resonance; a coil whose two wires are swapped, as current and voltage
 //! fit; anything while the command is below 0.08 A.
 
 use crate::drive::prepare::CoilPlan;
@@ -51,7 +52,8 @@ const SHORT_TICKS: u8 = 5;
 const COLD: f32 = 1.3;
 const SHORT_SLACK_A: f32 = 0.15;
 
-/// The most that the sensor can tell from more, A: its range is 3.3 A.
+/// The most that the sensor can tell from more, A: its range is 3.3 A. Where a cold coil may
+/// take so much, only the driver knows a short.
 const SENSOR_A: f32 = 3.1;
 
 /// Share of the largest voltage that is left a tick later: 5 ms, more than L/R of any
@@ -246,8 +248,8 @@ impl Means {
         self.missing = 0;
         self.peak_v = volts.abs().at_least(PEAK_KEPT * self.peak_v);
         let most_a = COLD * plan.per_ohm * (self.peak_v + plan.emf_v) + SHORT_SLACK_A;
-        let most_a = most_a.at_most(SENSOR_A);
-        self.short = held(self.short, current_a.abs() > most_a);
+        let is_short = most_a < SENSOR_A && current_a.abs() > most_a;
+        self.short = held(self.short, is_short);
         let squared = current_a * current_a;
         self.volts_squared += MEAN_SHARE * (volts * volts - self.volts_squared);
         self.power_w += MEAN_SHARE * (volts * current_a - self.power_w);

@@ -375,7 +375,7 @@ impl Command {
         if self.has_coil {
             outputs.coil = self.drive_coil(
                 permit == Permit::Torque,
-                rendered.coil_v,
+                rendered.coil_v * share,
                 inputs.coil_a,
                 inputs.coil_has_tripped,
                 counters,

@@ -20,8 +20,10 @@ pub enum Freshness {
 /// Monitors heartbeats and lease.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HeartbeatMonitor {
-    /// Tick of the last fresh heartbeat.
+    /// Tick of the last heartbeat that had seen more than those before.
     last_tick: Option<u64>,
+    /// What it had seen.
+    seen_tick: u64,
     /// Tick at which the lease expires.
     lease_end: u64,
     /// Boot counter of comms.
@@ -45,7 +47,10 @@ impl HeartbeatMonitor {
             .comms_start
             .is_some_and(|start| start != heartbeat.start);
         self.comms_start = Some(heartbeat.start);
-        self.last_tick = Some(now);
+        // One that has seen no more may be an old one again.
+        if self.last_tick.is_none() || heartbeat.seen_tick > self.seen_tick {
+            (self.last_tick, self.seen_tick) = (Some(now), heartbeat.seen_tick);
+        }
         self.lease_end = heartbeat
             .seen_tick
             .saturating_add(u64::from(heartbeat.lease_left));
@@ -107,6 +112,25 @@ mod tests {
             assert_eq!(monitor.timeout(start + 92), None);
             assert_eq!(monitor.timeout(start + 93), Some(Fault::CommsSilent));
         }
+    }
+
+    #[test]
+    fn a_heartbeat_that_is_repeated_does_not_keep_comms_alive() {
+        let mut monitor = HeartbeatMonitor::default();
+        let last = heartbeat(9_980, 5_000);
+        for now in (10_000..10_380).step_by(20) {
+            assert_eq!(monitor.receive(now, &last), Freshness::Fresh);
+            let silent = (now >= 10_093).then_some(Fault::CommsSilent);
+            assert_eq!(monitor.timeout(now), silent, "{now}");
+        }
+        // Nor do older ones.
+        monitor.receive(10_400, &heartbeat(10_390, 5_000));
+        for late in 0..20 {
+            monitor.receive(10_401 + 10 * late, &heartbeat(10_380 - late, 5_000));
+        }
+        assert_eq!(monitor.timeout(10_592), Some(Fault::CommsSilent));
+        monitor.receive(10_593, &heartbeat(10_580, 5_000));
+        assert_eq!(monitor.timeout(10_593), None);
     }
 
     #[test]

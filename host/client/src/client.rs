@@ -210,6 +210,14 @@ impl<T: Transport> Client<T> {
         self.lease == Lease::Held
     }
 
+    /// Ends the subscription, if there is one, before the client is given up. Where that fails the
+    /// device has gone, and sends nobody anything.
+    pub fn end_telemetry(&mut self) {
+        if self.telemetry.is_subscribed && self.is_connected() {
+            let _gone = self.unsubscribe();
+        }
+    }
+
     /// Whether the connection is open.
     pub fn is_connected(&self) -> bool {
         self.loss.is_none()

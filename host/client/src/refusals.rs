@@ -6,7 +6,7 @@ use crate::values::{allowed_text, full_name, show_value};
 use crepitus_protocol::host::Refusal;
 use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::parameters::{id, with_id};
-use crepitus_protocol::{ValueError, Values};
+use crepitus_protocol::{DeviceSettings, ValueError, Values};
 use std::fmt;
 
 /// A rejected request.
@@ -64,8 +64,9 @@ impl fmt::Display for Refused {
             ),
             Refusal::Drive(refusal) => drive_text(f, request, refusal),
             Refusal::Storage => f.write_str(
-                "the parameters could not be saved: writing the flash memory of comms failed; \
-                 they stay active until the next boot",
+                "the parameters could not be saved: since its start comms has saved as often as its \
+                 log has room for, or its flash memory cannot be written; restart the device, which \
+                 forgets them, set them again and save",
             ),
             Refusal::NotOpen => write!(
                 f,
@@ -116,11 +117,19 @@ impl Refused {
                         values.guarded_rad_per_count() * 1e6
                     )?;
                 }
-                f.write_str(": lower the kinetic torque or the stiffness, or raise the static torque")?;
+                f.write_str(
+                    ": lower the kinetic torque or the stiffness, or raise the static torque",
+                )?;
             }
-            ValueError::Contradiction => f.write_str(
-                "the device's rules contradict each other, a bug in its firmware: please report these values",
-            )?,
+            ValueError::Contradiction => {
+                match self.values.as_ref().and_then(DeviceSettings::broken_rule) {
+                    Some(rule) => write!(f, "{rule}")?,
+                    None => f.write_str(
+                        "they contradict a rule of the device that this program does not know: \
+                         please report these values",
+                    )?,
+                }
+            }
             ValueError::StaticAboveLimit => {
                 write!(
                     f,

@@ -193,19 +193,20 @@ impl<F: Real> Travel<F> {
         all < F::from_f64(1e9)
     }
 
-    /// Returns what a decay leaves of `x` after all its ticks, `share` of it per tick.
+    /// Returns what a decay leaves of `x` after all its ticks; `growth` is a tick's, e to the power
+    /// of −h/τ, less 1: near a share of 1 it has more digits than the share.
     #[inline]
-    pub fn decayed(&self, x: F, share: F) -> F {
+    pub fn decayed(&self, x: F, growth: F) -> F {
         if self.ticks == 1 {
-            x * share
+            x + x * growth
         } else {
-            self.decayed_over_gap(x, share)
+            self.decayed_over_gap(x, growth)
         }
     }
 
     #[cold]
-    fn decayed_over_gap(&self, x: F, share: F) -> F {
-        (0..self.ticks).fold(x, |left, _| left * share)
+    fn decayed_over_gap(&self, x: F, growth: F) -> F {
+        (0..self.ticks).fold(x, |left, _| left + left * growth)
     }
 
     /// Where the joint is after this share of the time.
@@ -351,7 +352,7 @@ pub(crate) mod tests {
             let travel = Travel::of(&input, &to, &scale).unwrap();
             assert_eq!((travel.ticks, travel.omega_start_rad_s), (3, 1.0));
             assert!((travel.bend_rad - 2.0 * 3.0 * 2.5e-5).abs() < 1e-18);
-            assert_eq!(travel.decayed(8.0, 0.5), 1.0);
+            assert_eq!(travel.decayed(8.0, -0.5), 1.0);
         }
         assert_eq!(Travel::of(&Checked::Missing(1), &to, &scale), None);
     }

@@ -4,7 +4,7 @@ use super::rig::timing;
 use crepitus_model::SettingsError;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::render::effects::clasp_knife::{ClaspKnife, ClaspKnifeSettings};
-use crepitus_model::render::effects::clonus::Clonus;
+use crepitus_model::render::effects::clonus::{Clonus, ClonusSettings};
 use crepitus_model::render::effects::cogwheel::Cogwheel;
 use crepitus_model::render::effects::lead_pipe::LeadPipe;
 use crepitus_model::render::effects::range_limit::{RangeLimit, RangeLimitSettings};
@@ -103,6 +103,28 @@ fn a_blade_falls_beyond_its_onset() {
 }
 
 #[test]
+fn beats_and_seeds_are_whole_numbers() {
+    for (number, refused) in [(0.0, false), (3.0, false), (2.5, true), (0.5, true)] {
+        let settings = EffectSettings {
+            clonus: Some(ClonusSettings {
+                beats: number,
+                ..ClonusSettings::default()
+            }),
+            ..EffectSettings::default()
+        };
+        assert_eq!(is_refused(settings), refused, "{number} beats");
+        let settings = EffectSettings {
+            texture: Some(TextureSettings {
+                seed: number,
+                ..TextureSettings::default()
+            }),
+            ..EffectSettings::default()
+        };
+        assert_eq!(is_refused(settings), refused, "seed {number}");
+    }
+}
+
+#[test]
 fn ends_of_a_range_are_five_degrees_apart() {
     for (flexion_limit_deg, refused) in [(25.0, false), (24.9, true), (15.0, true)] {
         let settings = EffectSettings {
@@ -137,6 +159,20 @@ fn a_reflex_that_would_give_energy_at_every_speed_is_refused() {
             ..EffectSettings::default()
         };
         assert_eq!(is_refused(settings), refused, "{form} {velocity_shift_s}");
+    }
+    // As people write them: the least shift, whose sum is a rounding more.
+    for (delay_s, activation_s, velocity_shift_s) in [(0.05, 0.01, 0.06), (0.05, 0.1, 0.15)] {
+        let settings = EffectSettings {
+            spasticity: Some(SpasticitySettings {
+                form: 1,
+                velocity_shift_s,
+                delay_s,
+                activation_s,
+                ..SpasticitySettings::default()
+            }),
+            ..EffectSettings::default()
+        };
+        assert!(!is_refused(settings), "{delay_s} + {activation_s}");
     }
 }
 

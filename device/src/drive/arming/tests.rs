@@ -252,7 +252,9 @@ fn each_sensor_is_judged_by_itself_and_by_its_own_offset() {
     assert!((sensor_a - 0.09).abs() < 1e-6 && (monitor_a + 0.07).abs() < 1e-6);
     let failed = ArmingOutput::Failed;
     for off_a in [(0.11, 0.0), (0.0, 0.11)] {
-        assert_eq!(off(off_a, (0.0, 0.0)).0, failed(Fault::CurrentOffset));
+        // An offset that is refused is none.
+        let refused = (failed(Fault::CurrentOffset), None);
+        assert_eq!(off(off_a, (0.0, 0.0)), refused);
     }
     // Against its offset; without, it would be a leak of 0.11 A, and none of 0.25.
     for leak_a in [(-0.2, 0.0), (0.0, 0.2)] {

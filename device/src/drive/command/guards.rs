@@ -96,7 +96,7 @@ impl Command {
     }
 
     /// Checks that a floating bridge has no current: a shorted switch and a diode
-    /// would brake. Both sensors have to agree.
+    /// would brake. Both sensors have to agree, in its sign, too.
     pub(super) fn check_floating(
         &mut self,
         currents_a: Option<(f32, f32)>,
@@ -104,7 +104,7 @@ impl Command {
         counters: &Counters,
     ) {
         let conducts = currents_a.is_some_and(|(sensor_a, monitor_a)| {
-            sensor_a.abs() > FLOATING_A && monitor_a.abs() > FLOATING_A
+            sensor_a.min(monitor_a) > FLOATING_A || sensor_a.max(monitor_a) < -FLOATING_A
         });
         let is_slow = omega_rad_s.abs() < self.motor.plan().floats_below_rad_s;
         self.conducting_ticks = if conducts && is_slow && !self.was_driven {

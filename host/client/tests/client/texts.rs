@@ -8,7 +8,7 @@ use crepitus_protocol::fault::FAULTS;
 use crepitus_protocol::host::Refusal;
 use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::parameters::{self, Kind, PARAMETERS};
-use crepitus_protocol::{Revision, Session, ValueError, Values};
+use crepitus_protocol::{DeviceSettings, Revision, Session, ValueError, Values};
 use std::time::Duration;
 
 #[test]
@@ -83,6 +83,45 @@ fn every_refusal_has_a_remedy() {
         }
     }
     golden("refusals", &lines.join("\n"));
+}
+
+/// On the wire a broken rule of the effects has no name: the text has it all the same.
+#[test]
+fn a_broken_rule_of_the_effects_is_told() {
+    let text = |changes: &[(&str, f64)]| {
+        let mut values = Values::default();
+        for (name, value) in changes {
+            let (id, _) = parameters::find(name).expect("a parameter");
+            values.set(id, *value);
+        }
+        let error = DeviceSettings::of(&values).expect_err("a broken rule");
+        assert_eq!(error, ValueError::Contradiction);
+        Refused {
+            request: RequestKind::Commit,
+            refusal: Refusal::Values(error),
+            values: Some(values),
+        }
+        .to_string()
+    };
+    let actuator = [("bone-shaping.render", 1.0), ("bone-shaping.output", 1.0)];
+    let reflex = [
+        ("spasticity.render", 1.0),
+        ("spasticity.form", 1.0),
+        ("spasticity.velocity_shift_s", 0.01),
+    ];
+    let stiff = [
+        ("lead-pipe.render", 1.0),
+        ("lead-pipe.torque_nm", 4.5),
+        ("lead-pipe.presliding_deg", 0.2),
+    ];
+    let lines = [text(&actuator), text(&reflex), text(&stiff)];
+    assert!(
+        lines[0].contains("needs vibration-actuator"),
+        "{}",
+        lines[0]
+    );
+    assert!(lines[1].contains("velocity_shift_s"), "{}", lines[1]);
+    assert!(lines[2].contains("N·m/rad together"), "{}", lines[2]);
 }
 
 #[test]

@@ -143,6 +143,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     } else {
         None
     };
+    client.end_telemetry();
     let summary = results::summary(&findings, &changes, revision);
     if let (Some(out), Some(folder)) = (out, prepared) {
         results::write(out, folder, &findings, &changes, &summary)?;

@@ -75,6 +75,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         Arming::default(),
         &mut monitor,
     );
+    client.end_telemetry();
     // Restores the terminal before anything is printed.
     let marks = monitor.close();
     end?;

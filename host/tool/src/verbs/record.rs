@@ -54,6 +54,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         arguments.arming,
         &mut recorded,
     );
+    client.end_telemetry();
     // Finishes the file also after an error.
     let totals = recorded.finish()?;
     end?;

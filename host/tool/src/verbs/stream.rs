@@ -83,13 +83,14 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let header: Vec<_> = COLUMNS.iter().map(|(name, _)| *name).collect();
         print(&(header.join(",") + "\n"))?;
     }
-    follow(
+    let end = follow(
         &mut client,
         arguments.for_s,
         arguments.arming,
         &mut printing,
-    )?;
-    Ok(())
+    );
+    client.end_telemetry();
+    end.map(|_| ())
 }
 
 struct Printing {

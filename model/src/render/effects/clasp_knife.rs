@@ -121,9 +121,14 @@ settings! {
 }
 
 impl ClaspKnifeSettings {
-    /// From onset to release by the angle, rad.
-    pub fn travel_rad(&self) -> f64 {
-        (self.release_deg - self.onset_deg).to_radians().abs()
+    /// The torque with which it collapses, the largest, N·m.
+    pub fn largest_torque_nm(&self) -> f64 {
+        if self.trigger == 0 {
+            let travel_rad = (self.release_deg - self.onset_deg).to_radians().abs();
+            self.onset_torque_nm + self.slope_nm_per_rad * travel_rad
+        } else {
+            self.release_torque_nm.max(self.onset_torque_nm)
+        }
     }
 }
 
@@ -139,9 +144,9 @@ pub struct ClaspKnifeCoefficients<F> {
     onset_nm: F,
     slope: F,
     residual: F,
-    /// −h/τ, and e to its power.
+    /// −h/τ, and e to its power, less 1.
     rate: F,
-    decay: F,
+    growth: F,
     stiffness: F,
     rearm_rad: F,
 }
@@ -224,7 +229,7 @@ impl<F: Real> Law for ClaspKnife<F> {
             slope: F::from_f64(s.slope_nm_per_rad),
             residual: F::from_f64(s.residual_share),
             rate: F::from_f64(-timing.step_s / s.collapse_s),
-            decay: F::from_f64(libm::exp(-timing.step_s / s.collapse_s)),
+            growth: F::from_f64(libm::expm1(-timing.step_s / s.collapse_s)),
             stiffness: F::from_f64(s.catch_stiffness_nm_per_rad),
             rearm_rad: F::from_f64(s.rearm_deg.to_radians()),
         })
@@ -455,7 +460,7 @@ impl<F: Real> ClaspKnife<F> {
     ) -> F {
         let with = self.with;
         let after_nm = if from == F::ZERO {
-            travel.decayed(before_nm, with.decay)
+            travel.decayed(before_nm, with.growth)
         } else {
             before_nm * short_decay(with.rate * (F::ONE - from))
         };

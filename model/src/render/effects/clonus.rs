@@ -218,6 +218,11 @@ impl<F: Real> Law for Clonus<F> {
 
     fn check(s: &ClonusSettings) -> Result<(), SettingsError> {
         s.validate()?;
+        if libm::trunc(s.beats) != s.beats {
+            return Err(SettingsError::Contradiction {
+                reason: "clonus: beats is a whole number; 0 is without end",
+            });
+        }
         Ok(())
     }
 
@@ -280,7 +285,7 @@ impl<F: Real> Law for Clonus<F> {
             Stage::Ready if beyond_rad >= F::ZERO => self.cross(travel, on_change),
             Stage::Beating => {
                 self.interval_since.whole = self.interval_since.whole.saturating_add(travel.ticks);
-                self.pace(travel, on_change);
+                self.pace(F::ZERO, travel, on_change);
             }
             Stage::Ready | Stage::Over => {}
         }
@@ -338,15 +343,15 @@ impl<F: Real> Clonus<F> {
         self.interval = self.with.delay;
         self.stretch = self.with.first_stretch;
         self.beaten = 0;
-        self.pace(travel, on_change);
+        self.pace(fraction, travel, on_change);
     }
 
-    /// Begins the next beat when its time has come.
+    /// Begins the next beat when its time has come, within this tick after `from`.
     #[inline]
-    fn pace(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
+    fn pace(&mut self, from: F, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
         let late = self.interval_since.ticks() - self.interval;
         if late >= F::ZERO {
-            self.next(late, travel, on_change);
+            self.next(late, from, travel, on_change);
         }
     }
 
@@ -367,8 +372,8 @@ impl<F: Real> Clonus<F> {
 
     /// An interval is over, so many ticks ago: the next beat, if there is one.
     #[cold]
-    fn next(&mut self, late: F, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
-        let fraction = (F::ONE - late / F::from_whole(u64::from(travel.ticks))).at_least(F::ZERO);
+    fn next(&mut self, late: F, from: F, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
+        let fraction = (F::ONE - late / F::from_whole(u64::from(travel.ticks))).at_least(from);
         if self.with.beats > 0 && self.beaten >= self.with.beats {
             on_change.hear(Change::at(Word::Done, fraction, F::ZERO, F::ZERO));
             self.stage = Stage::Over;

@@ -59,7 +59,7 @@ settings! {
             unit: "s",
             range: 0.0..=0.5,
             default: 0.25,
-            meaning: "how much earlier the threshold is for each rad/s of stretch (sourced)",
+            meaning: "how much earlier the threshold is for each rad/s of stretch (sourced; of a reflex, 0.27)",
         },
         torque_nm {
             id: 77 always,
@@ -255,7 +255,8 @@ impl<F: Real> Law for Spasticity<F> {
 
     fn check(s: &SpasticitySettings) -> Result<(), SettingsError> {
         s.validate()?;
-        if s.form == 1 && s.velocity_shift_s < s.delay_s + s.activation_s {
+        // Rounding must not refuse the least shift itself.
+        if s.form == 1 && s.velocity_shift_s * (1.0 + 1e-9) < s.delay_s + s.activation_s {
             return Err(SettingsError::Contradiction {
                 reason: "spasticity: in the form reflex velocity_shift_s is no less than delay_s + activation_s: \
                          otherwise it gives energy at every speed",

@@ -218,6 +218,11 @@ impl<F: Real> Law for Texture<F> {
 
     fn check(s: &TextureSettings) -> Result<(), SettingsError> {
         s.validate()?;
+        if libm::trunc(s.seed) != s.seed {
+            return Err(SettingsError::Contradiction {
+                reason: "texture: seed is a whole number",
+            });
+        }
         let height_nm = s.peak_nm - s.base_nm;
         if height_nm < 0.0 {
             return Err(SettingsError::Contradiction {

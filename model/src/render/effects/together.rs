@@ -117,8 +117,7 @@ impl EffectSettings {
             self.lead_pipe.map(|s| s.torque_nm),
             self.cogwheel.map(|s| s.torque_nm),
             self.spasticity.map(|s| s.torque_nm),
-            self.clasp_knife
-                .map(|s| s.onset_torque_nm + s.slope_nm_per_rad * s.travel_rad()),
+            self.clasp_knife.map(|s| s.largest_torque_nm()),
             self.clonus.map(|s| s.amplitude_nm),
             self.texture.map(|s| s.peak_nm),
         ];
@@ -219,6 +218,17 @@ mod tests {
         let bound_nm = all.torque_bound_nm(Some(&joint));
         let slopes = 2.0 + 5.0 + 1.0 + 3.0;
         assert!((bound_nm - sum_nm - slopes * core::f64::consts::PI).abs() < 1e-12);
+        // A blade that falls by its torque has no more, wherever it falls.
+        let by_torque = EffectSettings {
+            clasp_knife: Some(ClaspKnifeSettings {
+                trigger: 1,
+                release_torque_nm: 2.5,
+                slope_nm_per_rad: 20.0,
+                ..ClaspKnifeSettings::default()
+            }),
+            ..EffectSettings::default()
+        };
+        assert_eq!(by_torque.largest_torque_nm(None), 2.5);
     }
 
     #[test]

@@ -20,7 +20,7 @@ pub fn steps(rows: &[Row]) -> Table<'_, Row> {
         .remark(|row: &Row| row.failure.clone())
         .people("hand, m/s² rms", measured(|m| m.acceleration_m_s2))
         .rounded(fixed::<4>)
-        .people("level, dB", measured(|m| m.level_db))
+        .people("level, dB (±10)", measured(|m| m.level_db))
         .rounded(fixed::<1>)
         .people("of T/r, %", measured(|m| m.share.unwrap_or(f64::NAN)))
         .rounded(scaled::<100, 2>)

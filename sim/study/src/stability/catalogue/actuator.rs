@@ -254,7 +254,7 @@ pub(super) fn crawl() -> Case {
 pub(super) fn hot_coil() -> Case {
     case(
         ("H81", "actuator-hot", "A coil that bears little current"),
-        "It is asked for four times what it bears for ever. The command is reduced until the mean square is within, \
+        "It is asked for several times the current that it bears for ever. The command is reduced until the mean square is within, \
          without a jump and without pumping.",
         |subject| {
             let run = ActuatorRun {
