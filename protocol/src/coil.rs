@@ -61,8 +61,7 @@ pub const COIL_FAULTS: [CoilFaultSpec; 6] = [
         name: "coil-short",
         cause: "turns of the coil, or its wires, are shorted, or its current sensor is stuck high",
         detection: "for 5 consecutive ticks the current is above 0.15 A and 1.3 times what voltage and back-EMF of the \
-                    last milliseconds drive through vibration-actuator.resistance_ohm, while that is below the \
-                    3.1 A that its sensor can tell",
+                    last milliseconds drive through vibration-actuator.resistance_ohm, or above 3.1 A",
         within_ticks: 8,
         clear: REPAIR,
     },

@@ -6,7 +6,7 @@
 //! that is not known and a back-EMF of which only the largest is, e = Bl·ω₀·X:
 //!
 //! ```text
-//! short     |i| ≤ 1.3·(V̂ + e)/R + 0.15 A         V̂: the largest |V| of the last milliseconds
+//! short     |i| ≤ 1.3·(V̂ + e)/R + 0.15 A, 3.1 A  V̂: the largest |V| of the last milliseconds
 //! open      ⟨V·i⟩ ≥ ⅛·⟨V²⟩/(R + Rm)              ⟨ ⟩: mean over 10 ms
 //! hot       ⟨i²⟩ ≤ 1.25·Ic²                       mean over the model's 10 s
 //! ```
@@ -16,9 +16,12 @@
 //! the power of the second into a smaller one: an eighth is reached where ωL = 2.6·R.
 //! A sensor that is stuck, or that shows the other sign, violates one of the two.
 //!
-//! Not detected: a short where a cold coil may take 3.1 A, which is left to the driver; a mass
-//! that is stuck or strikes its stops, as its back-EMF is a few percent of the voltage, and a
-//! fifth of it at the resonance; a coil whose two wires are swapped, as current and voltage
+//! 3.1 A is what the sensor can tell from more. No voltage is put out that drives more than
+//! 3.1/1.1 A through R, so a coil of nine tenths of R is whole wherever it is used; one of less
+//! is not at the largest voltages, so R has to be known.
+//!
+//! Not detected: a mass that is stuck or strikes its stops, as its back-EMF is a few percent of
+//! the voltage, and a fifth of it at the resonance; a coil whose two wires are swapped, as current and voltage
 //! fit; anything while the command is below 0.08 A.
 
 use crate::drive::prepare::CoilPlan;
@@ -45,6 +48,9 @@ pub const LARGEST_COIL_DUTY: f32 = 0.92;
 /// Ticks without a measured current until the fault.
 const MISSING_TICKS: u8 = 3;
 
+/// How much more than believed a coil may take where it is driven most.
+const LEAST_MARGIN: f64 = 1.1;
+
 /// Ticks with too much current until the fault.
 const SHORT_TICKS: u8 = 5;
 
@@ -52,8 +58,7 @@ const SHORT_TICKS: u8 = 5;
 const COLD: f32 = 1.3;
 const SHORT_SLACK_A: f32 = 0.15;
 
-/// The most that the sensor can tell from more, A: its range is 3.3 A. Where a cold coil may
-/// take so much, only the driver knows a short.
+/// The most that the sensor can tell from more, A: its range is 3.3 A.
 const SENSOR_A: f32 = 3.1;
 
 /// Share of the largest voltage that is left a tick later: 5 ms, more than L/R of any
@@ -212,7 +217,7 @@ impl Coil {
         if !may || self.fault.is_some() || !coil_v.is_finite() {
             return self.sleep();
         }
-        let duty = (coil_v * plan.duty_per_volt).within(LARGEST_COIL_DUTY);
+        let duty = (coil_v * plan.duty_per_volt).within(plan.largest_duty);
         // Before the first output its terminals were open.
         self.before_v = self.last_v.unwrap_or(0.0);
         self.last_v = Some(duty * plan.supply_v);
@@ -248,8 +253,8 @@ impl Means {
         self.missing = 0;
         self.peak_v = volts.abs().at_least(PEAK_KEPT * self.peak_v);
         let most_a = COLD * plan.per_ohm * (self.peak_v + plan.emf_v) + SHORT_SLACK_A;
-        let is_short = most_a < SENSOR_A && current_a.abs() > most_a;
-        self.short = held(self.short, is_short);
+        let most_a = most_a.at_most(SENSOR_A);
+        self.short = held(self.short, current_a.abs() > most_a);
         let squared = current_a * current_a;
         self.volts_squared += MEAN_SHARE * (volts * volts - self.volts_squared);
         self.power_w += MEAN_SHARE * (volts * current_a - self.power_w);
@@ -303,11 +308,13 @@ impl CoilPlan {
         let m_per_v = s.force_constant_n_per_a / (s.resistance_ohm * s.stiffness_n_per_m());
         let most_m = CHIRP_STROKES * s.stroke_mm * 1e-3;
         let chirp_v = most_m * (2.0 * ratio).min(1.0) / m_per_v;
-        let supplied_v = f64::from(LARGEST_COIL_DUTY) * s.supply_v;
+        let told_v = f64::from(SENSOR_A) / LEAST_MARGIN * s.resistance_ohm - emf_v;
+        let supplied_v = (f64::from(LARGEST_COIL_DUTY) * s.supply_v).min(told_v.max(0.0));
         let continuous_a2 = s.continuous_current_a * s.continuous_current_a;
         Self {
             supply_v: s.supply_v as f32,
             duty_per_volt: (1.0 / s.supply_v) as f32,
+            largest_duty: (supplied_v / s.supply_v) as f32,
             per_ohm: (1.0 / s.resistance_ohm) as f32,
             emf_v: emf_v as f32,
             compared_v2: compared_v2 as f32,

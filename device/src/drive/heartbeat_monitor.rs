@@ -20,10 +20,9 @@ pub enum Freshness {
 /// Monitors heartbeats and lease.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HeartbeatMonitor {
-    /// Tick of the last heartbeat that had seen more than those before.
+    /// Tick of the last fresh heartbeat, and its number.
     last_tick: Option<u64>,
-    /// What it had seen.
-    seen_tick: u64,
+    last_number: u8,
     /// Tick at which the lease expires.
     lease_end: u64,
     /// Boot counter of comms.
@@ -40,17 +39,14 @@ pub fn is_fresh(now: u64, seen_tick: u64) -> bool {
 impl HeartbeatMonitor {
     /// Handles a heartbeat that was decoded in the tick `now`.
     pub fn receive(&mut self, now: u64, heartbeat: &Heartbeat) -> Freshness {
-        if !is_fresh(now, heartbeat.seen_tick) {
+        if !is_fresh(now, heartbeat.seen_tick) || self.is_repeated(now, heartbeat) {
             return Freshness::Stale;
         }
         let restarted = self
             .comms_start
             .is_some_and(|start| start != heartbeat.start);
         self.comms_start = Some(heartbeat.start);
-        // One that has seen no more may be an old one again.
-        if self.last_tick.is_none() || heartbeat.seen_tick > self.seen_tick {
-            (self.last_tick, self.seen_tick) = (Some(now), heartbeat.seen_tick);
-        }
+        (self.last_tick, self.last_number) = (Some(now), heartbeat.number);
         self.lease_end = heartbeat
             .seen_tick
             .saturating_add(u64::from(heartbeat.lease_left));
@@ -59,6 +55,19 @@ impl HeartbeatMonitor {
         } else {
             Freshness::Fresh
         }
+    }
+
+    /// Whether it is the last one again, or an older one. Of what came longer ago than a
+    /// heartbeat can be late, every repetition is stale.
+    fn is_repeated(&self, now: u64, heartbeat: &Heartbeat) -> bool {
+        let is_of_now = |last_tick| now.saturating_sub(last_tick) <= STALE_TICKS;
+        self.last_tick.is_some_and(is_of_now)
+            && self.comms_start == Some(heartbeat.start)
+            && heartbeat
+                .number
+                .wrapping_sub(self.last_number)
+                .cast_signed()
+                <= 0
     }
 
     /// Boot counter of comms, from the last heartbeat.
@@ -97,6 +106,7 @@ mod tests {
             lease_left,
             enable: true,
             start: 1,
+            number: u8::try_from(seen_tick / 10 % 256).unwrap(),
         }
     }
 
@@ -115,28 +125,40 @@ mod tests {
     }
 
     #[test]
-    fn a_heartbeat_that_is_repeated_does_not_keep_comms_alive() {
-        let mut monitor = HeartbeatMonitor::default();
-        let last = heartbeat(9_980, 5_000);
-        for now in (10_000..10_380).step_by(20) {
-            assert_eq!(monitor.receive(now, &last), Freshness::Fresh);
-            let silent = (now >= 10_093).then_some(Fault::CommsSilent);
-            assert_eq!(monitor.timeout(now), silent, "{now}");
+    fn a_heartbeat_that_is_repeated_keeps_nothing_alive() {
+        for number in [7, 127, 128, 255] {
+            let mut monitor = HeartbeatMonitor::default();
+            let last = Heartbeat {
+                number,
+                ..heartbeat(9_980, 5_000)
+            };
+            let older = Heartbeat {
+                number: number.wrapping_sub(3),
+                ..last
+            };
+            assert_eq!(monitor.receive(10_000, &last), Freshness::Fresh);
+            for now in (10_010..10_380).step_by(10) {
+                assert_eq!(monitor.receive(now, &last), Freshness::Stale);
+                assert_eq!(monitor.receive(now, &older), Freshness::Stale);
+                let silent = (now >= 10_093).then_some(Fault::CommsSilent);
+                assert_eq!(monitor.timeout(now), silent, "{now}");
+            }
+            // The next one is heard, whatever was lost meanwhile, and however much.
+            for (now, lost) in [(10_380, 3), (10_480, 100), (10_980, 200)] {
+                let next = Heartbeat {
+                    number: monitor.last_number.wrapping_add(lost),
+                    ..heartbeat(now - 20, 5_000)
+                };
+                assert_eq!(monitor.receive(now, &next), Freshness::Fresh, "{lost}");
+                assert_eq!(monitor.timeout(now), None);
+            }
         }
-        // Nor do older ones.
-        monitor.receive(10_400, &heartbeat(10_390, 5_000));
-        for late in 0..20 {
-            monitor.receive(10_401 + 10 * late, &heartbeat(10_380 - late, 5_000));
-        }
-        assert_eq!(monitor.timeout(10_592), Some(Fault::CommsSilent));
-        monitor.receive(10_593, &heartbeat(10_580, 5_000));
-        assert_eq!(monitor.timeout(10_593), None);
     }
 
     #[test]
     fn a_lease_ends_at_its_tick_whatever_the_latency() {
         let mut monitor = HeartbeatMonitor::default();
-        for (now, late) in [(10_000, 0), (10_000, 300), (10_000, 400)] {
+        for (now, late) in [(10_000, 0), (11_000, 300), (12_000, 400)] {
             monitor.receive(now, &heartbeat(now - late, 500));
             assert!(monitor.is_leased(now - late + 499));
             assert!(!monitor.is_leased(now - late + 500));
@@ -168,6 +190,10 @@ mod tests {
             ..heartbeat(110, 5_000)
         };
         assert_eq!(monitor.receive(110, &other), Freshness::Restarted);
-        assert_eq!(monitor.receive(120, &other), Freshness::Fresh);
+        let next = Heartbeat {
+            number: other.number + 1,
+            ..other
+        };
+        assert_eq!(monitor.receive(120, &next), Freshness::Fresh);
     }
 }

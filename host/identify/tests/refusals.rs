@@ -136,6 +136,30 @@ fn a_clipped_current() {
 }
 
 #[test]
+fn a_current_of_few_milliamperes() {
+    let weak = ChirpSettings {
+        amplitude_v: 0.01,
+        ..CHIRP
+    };
+    let found = |noise_a: f64| {
+        let truth = Simulated { noise_a, ..NOMINAL };
+        let series = truth.played(&weak, &mut fastrand::Rng::with_seed(1));
+        identify(&series, band(&weak), &MassEvidence::Weighed(MASS))
+    };
+    // Its plateau is one milliampere of the record, not the end of the sensor.
+    let refusal = found(0.0).unwrap_err();
+    eprintln!("{refusal}");
+    assert!(matches!(refusal, Refusal::Weak { .. }), "{refusal}");
+    assert!(refusal.to_string().contains("raise the amplitude"));
+    // Noise makes the steps even; too much of it, and the advice is the same.
+    let found_hz = found(0.3e-3).unwrap().resonance_hz.value;
+    assert!((found_hz / 35.0 - 1.0).abs() < 0.05, "{found_hz}");
+    let refusal = found(2e-3).unwrap_err();
+    eprintln!("{refusal}");
+    assert!(refusal.to_string().contains("higher amplitude"));
+}
+
+#[test]
 fn friction_and_a_dead_time() {
     for (friction_n, dead_v) in [(0.1, 0.0), (0.05, 0.0), (0.0, 0.02), (0.0, 0.1)] {
         let (refusal, text) = refused(&Simulated {

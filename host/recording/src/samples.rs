@@ -98,7 +98,7 @@ mod tests {
     use super::*;
     use crepitus_model::render::effects::Phases;
     use crepitus_protocol::State;
-    use crepitus_protocol::telemetry::{BlockFlags, CoilCurrent, EffectPhases};
+    use crepitus_protocol::telemetry::{BlockFlags, CoilCurrent, EffectPhases, Sample};
 
     #[test]
     fn time_goes_on_where_the_drive_has_restarted() {
@@ -115,6 +115,46 @@ mod tests {
         assert_eq!(first_s(block(20, 2)), 0.004);
         // With the same number.
         assert_eq!(first_s(block(20, 2)), 0.005);
+    }
+
+    /// Counts are from the zero: another one is no motion.
+    #[test]
+    fn another_zero_is_no_speed() {
+        // One count a tick, and the zero is set in the middle.
+        let block = |first_tick: u64| Block {
+            first_tick,
+            samples: core::array::from_fn(|n| Sample {
+                count: i32::try_from(first_tick).unwrap() + i32::try_from(n).unwrap()
+                    - if first_tick + n as u64 >= 2_010 {
+                        8_000
+                    } else {
+                        0
+                    },
+                ..Sample::default()
+            }),
+            ..Block::default()
+        };
+        let mut samples = Samples::default();
+        let begin = (0..200).map(|n| block(20 * n));
+        let speeds: Vec<f32> = begin
+            .flat_map(|block| {
+                samples
+                    .rows(&block)
+                    .map(|row| row.omega_rad_s)
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+        let usual = speeds[1_900];
+        assert!(usual > 0.5, "{usual}");
+        for speed in &speeds[1_900..] {
+            assert!((speed - usual).abs() < 0.01 * usual, "{speed} for {usual}");
+        }
+        // Also where a block with the jump is the first.
+        let first = Samples::default()
+            .rows(&block(2_000))
+            .next()
+            .expect("a row");
+        assert_eq!(first.omega_rad_s, 0.0);
     }
 
     #[test]

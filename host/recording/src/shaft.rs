@@ -1,6 +1,8 @@
-//! Angle and speed from counts, by the drive's own estimator: the same numbers.
+//! Angle and speed from counts, by the drive's own estimator: the same numbers. The counts of a
+//! recording are from the angle's zero; where that is set anew they jump, and the shaft does not.
 
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_protocol::{DeviceSettings, TICK_S, Values};
 
 /// The shaft's estimator.
@@ -9,6 +11,7 @@ pub(crate) struct Shaft {
     settings: EncoderSettings,
     reader: Option<EncoderReader<f32>>,
     next_tick: u64,
+    last_count: i32,
 }
 
 impl Shaft {
@@ -17,6 +20,7 @@ impl Shaft {
             settings: EncoderSettings::default(),
             reader: None,
             next_tick: 0,
+            last_count: 0,
         }
     }
 
@@ -40,11 +44,21 @@ impl Shaft {
         self.next_tick = tick.wrapping_add(1);
         let rad_per_count = self.settings.rad_per_count();
         let angle_rad = f64::from(count) * rad_per_count;
+        let moved = count.wrapping_sub(self.last_count);
+        self.last_count = count;
+        let most_rad_s = InputLimits::<f64>::device(TICK_S).speed_rad_s;
+        let is_motion = |rad_s: f64| rad_s.abs() <= most_rad_s;
         let omega_rad_s = if let Some(reader) = &mut self.reader {
-            reader.read(count).omega_end_rad_s
+            if is_motion(f64::from(moved) * rad_per_count / TICK_S) {
+                reader.read(count).omega_end_rad_s
+            } else {
+                *reader = reader.restarted(count, reader.omega_rad_s());
+                reader.omega_rad_s()
+            }
         } else {
+            let begin = Some(counts_per_s * rad_per_count).filter(|rad_s| is_motion(*rad_s));
             #[expect(clippy::cast_possible_truncation, reason = "a speed has few digits")]
-            let begin = (counts_per_s * rad_per_count) as f32;
+            let begin = begin.unwrap_or(0.0) as f32;
             self.reader = EncoderReader::new(&self.settings, TICK_S, count, begin).ok();
             begin
         };

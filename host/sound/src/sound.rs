@@ -208,7 +208,11 @@ impl Sound {
         let folder = file
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty());
-        let mut out = NamedTempFile::new_in(folder.unwrap_or(Path::new(".")))?;
+        let mut builder = tempfile::Builder::new();
+        // The usual permissions, not those of a temporary file.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let mut out = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
         let specification = hound::WavSpec {
             channels: 1,
             sample_rate: RATE_HZ,

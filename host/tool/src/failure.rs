@@ -42,9 +42,9 @@ impl Failure {
     pub(crate) fn at(path: &Path, doing: &str, error: &io::Error) -> Self {
         let message = format!("{}: {doing}: {error}", path.display());
         match error.kind() {
-            io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
-                Self::Input(message)
-            }
+            io::ErrorKind::PermissionDenied
+            | io::ErrorKind::ReadOnlyFilesystem
+            | io::ErrorKind::NotADirectory => Self::Input(message),
             _ => Self::Work(message),
         }
     }
@@ -89,7 +89,10 @@ fn write(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes())
         .and_then(|()| out.flush())
-        .map_err(|_| Failure::NoReader)
+        .map_err(|error| match error.kind() {
+            io::ErrorKind::BrokenPipe => Failure::NoReader,
+            _ => Failure::Work(format!("stdout cannot be written: {error}")),
+        })
 }
 
 /// Writes JSON and a newline to stdout.

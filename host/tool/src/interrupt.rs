@@ -16,6 +16,9 @@ pub(crate) fn listen() {
             // its end is lost.
             let _ = signal_hook::flag::register(signal, requested.clone());
         }
+        // With a handler, a file that would be larger than it may be is an error of the write.
+        #[cfg(unix)]
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
         requested
     });
 }

@@ -1,12 +1,11 @@
 //! The user's own presets: a folder of files in the form of those that ship.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, warn};
 use crepitus_scene::preset::{self, Disorder, Preset};
 use std::env;
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use tempfile::Builder;
 
 /// Names another folder.
 pub(crate) const FOLDER_VARIABLE: &str = "CREPITUS_PRESETS";
@@ -102,9 +101,14 @@ pub(crate) fn files() -> Result<Vec<PathBuf>, Failure> {
     let mut files: Vec<_> = entries
         .filter_map(|entry| Some(entry.ok()?.path()))
         .filter(|path| {
+            if path.extension().is_none_or(|e| e != "toml") {
+                return false;
+            }
             let name = path.file_stem().and_then(|stem| stem.to_str());
-            path.extension().is_some_and(|e| e == "toml")
-                && name.is_some_and(|name| check_name(name).is_ok())
+            let checked = check_name(name.unwrap_or_default());
+            checked
+                .map_err(|error| warn(format!("{}: {}", path.display(), error.into_text())))
+                .is_ok()
         })
         .collect();
     files.sort();
@@ -121,7 +125,7 @@ pub(crate) fn write(name: &str, preset: &Preset, force: bool) -> Result<PathBuf,
     Preset::parse(&target, &text).map_err(Failure::input)?;
     let put = || {
         fs::create_dir_all(&folder)?;
-        let mut part = Builder::new().prefix(".crepitus-").tempfile_in(&folder)?;
+        let mut part = crepitus_recording::new_file(&target)?;
         part.write_all(text.as_bytes())?;
         part.as_file().sync_all()?;
         if force {

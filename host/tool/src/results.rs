@@ -14,8 +14,27 @@ pub(crate) type Files = Vec<(String, Vec<u8>)>;
 
 /// The folder of the results, not yet in place. Called before the work, so
 /// that a folder without write permission fails early.
+///
+/// One that holds a run, which could not be repeated without its summary, is refused.
 pub(crate) fn folder(out: &Path) -> Result<Folder, Failure> {
+    if summary_in(out)["scene_as_run"].is_string() {
+        return Err(Failure::Input(format!(
+            "{} holds a run, whose summary.json would be replaced: name another folder with --out",
+            out.display()
+        )));
+    }
+    folder_of_run(out)
+}
+
+/// The same for a run.
+pub(crate) fn folder_of_run(out: &Path) -> Result<Folder, Failure> {
     Folder::create(out).map_err(|e| Failure::at(out, "cannot be written", &e))
+}
+
+/// The summary that a folder has; null if there is none.
+fn summary_in(folder: &Path) -> Value {
+    let text = fs::read_to_string(folder.join("summary.json")).unwrap_or_default();
+    serde_json::from_str(&text).unwrap_or_default()
 }
 
 /// `report.html` and `summary.json`, and the pictures.
@@ -77,10 +96,10 @@ pub(crate) fn free_folder(wanted: &Path, as_run: &str) -> Result<PathBuf, Failur
 
 /// Whether a folder holds another run.
 fn holds_another(folder: &Path, as_run: &str) -> bool {
-    let Ok(text) = fs::read_to_string(folder.join("summary.json")) else {
+    if !folder.join("summary.json").exists() {
         return false;
-    };
-    let summary: Value = serde_json::from_str(&text).unwrap_or_default();
+    }
+    let summary = summary_in(folder);
     let version = summary["crepitus_version"].as_str();
     summary["scene_as_run"].as_str() != Some(as_run) || version != Some(env!("CARGO_PKG_VERSION"))
 }

@@ -193,20 +193,19 @@ impl<F: Real> Travel<F> {
         all < F::from_f64(1e9)
     }
 
-    /// Returns what a decay leaves of `x` after all its ticks; `growth` is a tick's, e to the power
-    /// of −h/τ, less 1: near a share of 1 it has more digits than the share.
+    /// Returns what a decay leaves of `x` after all its ticks, `share` of it per tick.
     #[inline]
-    pub fn decayed(&self, x: F, growth: F) -> F {
+    pub fn decayed(&self, x: F, share: F) -> F {
         if self.ticks == 1 {
-            x + x * growth
+            x * share
         } else {
-            self.decayed_over_gap(x, growth)
+            self.decayed_over_gap(x, share)
         }
     }
 
     #[cold]
-    fn decayed_over_gap(&self, x: F, growth: F) -> F {
-        (0..self.ticks).fold(x, |left, _| left + left * growth)
+    fn decayed_over_gap(&self, x: F, share: F) -> F {
+        (0..self.ticks).fold(x, |left, _| left * share)
     }
 
     /// Where the joint is after this share of the time.
@@ -352,7 +351,7 @@ pub(crate) mod tests {
             let travel = Travel::of(&input, &to, &scale).unwrap();
             assert_eq!((travel.ticks, travel.omega_start_rad_s), (3, 1.0));
             assert!((travel.bend_rad - 2.0 * 3.0 * 2.5e-5).abs() < 1e-18);
-            assert_eq!(travel.decayed(8.0, -0.5), 1.0);
+            assert_eq!(travel.decayed(8.0, 0.5), 1.0);
         }
         assert_eq!(Travel::of(&Checked::Missing(1), &to, &scale), None);
     }

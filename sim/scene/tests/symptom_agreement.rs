@@ -254,43 +254,6 @@ fn clonus() {
     agree("clonus", "", &USUAL);
 }
 
-/// A decay of a second, whose share of a tick single precision does not have.
-#[test]
-fn slow_decays_in_single_precision() {
-    let effects = [
-        "[effects.spasticity]\nform = \"catch\"\nrelease_s = 0.7\n",
-        "[effects.clasp-knife]\nonset_deg = 40.0\nrelease_deg = 60.0\ncollapse_s = 0.3\n",
-    ];
-    for effect in effects {
-        let mut motion = "[motion]\nkind = \"velocity-knots\"\nfrom_deg = 20.0\n".to_owned();
-        for (time_s, speed) in [(0.0, 0.0), (0.1, 2.0), (0.5, 2.0), (0.6, 0.0), (1.5, 0.0)] {
-            motion += &format!(
-                "[[motion.knots]]\nt_s = {time_s:?}\nomega_left_rad_s = {speed:?}\nomega_right_rad_s = {speed:?}\n"
-            );
-        }
-        let text =
-            format!("version = 1\ntitle = \"decay\"\nduration_s = {END_S:?}\n{effect}{motion}");
-        let single = "kind = \"exact-events\"\nstep_s = 5e-5\nprecision = \"f32\"";
-        let (rows, events) = render(&text, single);
-        let (exact, _) = render(&text, "kind = \"reference\"");
-        let word = if effect.contains("clasp") {
-            Word::Release
-        } else {
-            Word::Catch
-        };
-        let falls = events.iter().find(|e| e.word == word).expect("it falls");
-        let after = rows
-            .iter()
-            .zip(&exact)
-            .filter(|(row, _)| row.0 > falls.time_s + CLOSE_S);
-        let worst_nm = after
-            .map(|(row, exact)| (row.1 - exact.1).abs())
-            .fold(0.0, f64::max);
-        println!("{worst_nm:e} N·m");
-        assert!(worst_nm < 5e-5, "{worst_nm:e} N·m off\n{effect}");
-    }
-}
-
 #[test]
 fn texture() {
     agree("texture", "", &USUAL);

@@ -29,6 +29,9 @@ const MOST_STEPS: u32 = 100;
 /// Relative decrease of the cost below which the fit has converged.
 const SMALLEST_GAIN: f64 = 1e-12;
 
+/// How well noise and residual are known from a few thousand lines each: twice 2 %.
+const NOISE_UNSURE: f64 = 0.04;
+
 /// A fitted impedance with its covariance and residual.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
@@ -69,7 +72,9 @@ pub(crate) struct Explained {
     pub(crate) height: f64,
     /// [`height`](Self::height) over its standard deviation.
     pub(crate) deviations: f64,
-    /// Share of the power beyond the noise that it explains.
+    /// How far resonance, damping or force constant are off by it: the greatest share.
+    pub(crate) moved: f64,
+    /// Share of the power surely beyond the noise that it explains.
     pub(crate) share: f64,
     /// Damped so strongly that it is no resonance.
     pub(crate) is_broad: bool,
@@ -89,7 +94,7 @@ impl Fit {
                 cautious[(i, i)] += caution * normal[(i, i)];
             }
             let step = cautious.cholesky()?.solve(&right);
-            let next = stepped(&impedance, &step);
+            let next = impedance.stepped(&step);
             let (next_normal, next_right, next_left) = equations(lines, &next);
             if next_left < left {
                 let gain = (left - next_left) / left;
@@ -121,14 +126,6 @@ impl Fit {
             misfits,
         })
     }
-}
-
-fn stepped(from: &Impedance, step: &Column) -> Impedance {
-    let mut numbers = <[f64; NUMBERS]>::from(*from);
-    for (number, step) in numbers.iter_mut().zip(step.iter()) {
-        *number += step;
-    }
-    numbers.into()
 }
 
 /// Returns the normal equations: JᵀJ, Jᵀr and |r|².
@@ -195,6 +192,9 @@ impl Residual {
         let of_current: f64 = lines.iter().map(|line| line.amperes.norm_sqr()).sum();
         let noise = spectrum.noise_square.unwrap_or(0.0);
         let beyond = (2.0 * variance - noise).max(0.0) * lines.len() as f64;
+        // Where the noise is unknown, a residual may be noise.
+        let most_noise = (1.0 + NOISE_UNSURE) * spectrum.noise_square.unwrap_or(2.0 * variance);
+        let surely_beyond = (2.0 * variance - most_noise) * lines.len() as f64;
         let worst = bands(lines)
             .map(|band| common(band, impedance))
             .max_by(|a, b| a.share().total_cmp(&b.share()));
@@ -212,9 +212,10 @@ impl Residual {
             second: second(lines, impedance, normal).map(|second| Explained {
                 hz: second.hz,
                 height: second.height,
+                moved: second.moved,
                 is_broad: second.is_broad,
                 deviations: (second.power / variance).sqrt(),
-                share: second.power / beyond.max(second.power),
+                share: second.power / surely_beyond.max(second.power),
             }),
             // A line of n samples of noise has n times its variance.
             noise_a: (2.0 * variance / samples).sqrt(),

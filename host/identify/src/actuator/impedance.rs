@@ -8,6 +8,7 @@
 //!
 //! and the current lags by a time τ, which is that of the measurement.
 
+use crate::actuator::fit::Column;
 use realfft::num_complex::Complex;
 
 /// Number of parameters, in this order: R (Ω), L (H), b (Ω/s), ω₀ (rad/s), γ (1/s), τ (s).
@@ -59,7 +60,7 @@ impl From<Impedance> for [f64; NUMBERS] {
 
 impl Impedance {
     /// Returns s/(s² + γ·s + ω₀²).
-    fn swing(&self, s: Complex<f64>) -> Complex<f64> {
+    pub(crate) fn swing(&self, s: Complex<f64>) -> Complex<f64> {
         s / (s * s + s * self.damping + self.resonance * self.resonance)
     }
 
@@ -94,6 +95,20 @@ impl Impedance {
     pub(crate) fn reach(&self, omega: f64) -> f64 {
         let s = Complex::i() * omega;
         (self.swing(s) / s / self.at(omega)).norm()
+    }
+
+    /// Returns ζ with the coil connected: its current brakes the mass, Bl²/R beside c.
+    pub(crate) fn damping_ratio(&self) -> f64 {
+        0.5 * (self.damping + self.coupling / self.resistance) / self.resonance
+    }
+
+    /// Returns the impedance with a step of its numbers.
+    pub(crate) fn stepped(&self, step: &Column) -> Self {
+        let mut numbers = <[f64; NUMBERS]>::from(*self);
+        for (number, step) in numbers.iter_mut().zip(step.iter()) {
+            *number += step;
+        }
+        numbers.into()
     }
 
     /// Returns the motional resistance at the resonance, as a share of the total one.

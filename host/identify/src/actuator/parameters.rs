@@ -84,6 +84,8 @@ pub struct Actuator {
     pub unexplained: f64,
     /// Whether a second chirp has confirmed the mass; otherwise its error is that of the balance.
     pub mass_is_checked: bool,
+    /// Whether a weighed mass and an added one agree: then the ring stands still, too.
+    pub ring_is_checked: bool,
     pub(crate) impedance: Impedance,
     pub(crate) means: Vec<Mean>,
     pub(crate) misfits: Vec<(f64, f64)>,
@@ -106,10 +108,7 @@ pub fn identify(
         inductance_h: derived(fit, |z| z.inductance),
         resonance_hz: derived(fit, |z| z.resonance / TAU),
         mechanical_damping_ratio: derived(fit, |z| 0.5 * z.damping / z.resonance),
-        // The coil's current brakes the mass: Bl²/R beside c.
-        damping_ratio: derived(fit, |z| {
-            0.5 * (z.damping + z.coupling / z.resistance) / z.resonance
-        }),
+        damping_ratio: derived(fit, Impedance::damping_ratio),
         moving_mass_kg: split.mass_kg,
         force_constant_n_per_a: split.force_constant,
         delay_s: derived(fit, |z| z.delay),
@@ -118,6 +117,7 @@ pub fn identify(
         noise_a: fit.residual.noise_a,
         unexplained: fit.residual.beyond_noise,
         mass_is_checked: !matches!(evidence, MassEvidence::Weighed(_)),
+        ring_is_checked: matches!(evidence, MassEvidence::Both(..)),
         impedance: fit.impedance,
         misfits: fit.misfits.clone(),
         means: examined.means,
@@ -156,6 +156,13 @@ impl Actuator {
                  given; a second chirp with an added mass would check it"
                     .to_owned(),
             );
+        }
+        if !self.ring_is_checked {
+            notes.push(format!(
+                "a ring that a hand holds can pass for one in a vice: with {:.1} mA of noise in the current its \
+                 resonance may not show; a weighed mass and a second chirp with an added one would check it",
+                1e3 * self.noise_a
+            ));
         }
         let sag_m = STANDARD_GRAVITY / (TAU * self.resonance_hz.value).powi(2);
         let (excursion_mm, sag_mm) = (1e3 * self.excursion_m, 1e3 * sag_m);

@@ -94,13 +94,24 @@ pub enum Refusal {
         /// Share of the samples above 70 % of it, %.
         share: f64,
     },
+    /// The current is too small for the steps in which it is recorded.
+    #[error(
+        "the current is too weak: it reaches {milliamperes:.1} mA, and is recorded in steps of {step_ma:.1} mA; \
+         raise the amplitude"
+    )]
+    Weak {
+        /// What it reaches, mA.
+        milliamperes: f64,
+        /// Least difference of two samples, mA.
+        step_ma: f64,
+    },
     /// A second resonance.
     #[error(
-        "a second resonance near {hz:.0} Hz, with {height:.0} % of the first one's hump ({deviations:.0} times its \
-         noise): the ring moves; clamp it in a vice, and keep the cable from swinging"
+        "a second resonance near {hz:.0} Hz, with {height:.1} % of the first one's hump ({deviations:.0} times its \
+         noise): the ring moves, as in a hand or on a leg; clamp it in a vice, and keep the cable from swinging"
     )]
     SecondResonance {
-        /// Frequency that lacks excitation, Hz.
+        /// Its frequency, Hz.
         hz: f64,
         /// Height of its hump over that of the first, %.
         height: f64,
@@ -191,8 +202,8 @@ pub enum Refusal {
     },
     /// The mass that was weighed is not the one that moves.
     #[error(
-        "the added mass says that {found_g:.1} g move, but {weighed_g:.1} g were given: weigh again, and count a \
-         third of the flexure and what of the cable moves"
+        "the added mass says that {found_g:.1} g move, but {weighed_g:.1} g were given: the ring moves, as in a hand; or \
+         weigh again, and count a third of the flexure and what of the cable moves"
     )]
     WrongMass {
         /// From the two chirps, g.

@@ -61,6 +61,8 @@ pub struct Background {
     /// Bytes that wait.
     waiting: Arc<AtomicU64>,
     thread: Option<JoinHandle<io::Result<()>>>,
+    /// The error with which the thread has ended.
+    cause: Option<(io::ErrorKind, String)>,
 }
 
 impl Background {
@@ -73,6 +75,7 @@ impl Background {
             orders: Some(orders),
             waiting,
             thread: Some(thread::spawn(move || work(disk, &due, &of_thread))),
+            cause: None,
         }
     }
 
@@ -109,9 +112,15 @@ impl Disk for Background {
     fn finish(&mut self) -> io::Result<()> {
         self.orders = None;
         match self.thread.take().map(JoinHandle::join) {
-            Some(Ok(result)) => result,
-            _ => Err(io::Error::other("writing has ended before")),
+            Some(Ok(Ok(()))) => return Ok(()),
+            Some(Ok(Err(error))) => self.cause = Some((error.kind(), error.to_string())),
+            _ => {}
         }
+        // Whoever asks again gets the same.
+        Err(match &self.cause {
+            Some((kind, text)) => io::Error::new(*kind, text.clone()),
+            None => io::Error::other("writing has ended before"),
+        })
     }
 }
 

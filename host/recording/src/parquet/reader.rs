@@ -121,19 +121,34 @@ impl Reader {
 
     /// The rows of a group; none if it is damaged.
     fn group(&self, seal: &Seal) -> io::Result<Option<Vec<Row>>> {
-        let length = usize::try_from(seal.bytes).map_err(io::Error::other)?;
-        let mut bytes = Vec::new();
-        let mut file = &self.file;
-        file.seek(SeekFrom::Start(seal.first_byte))?;
-        file.take(seal.bytes).read_to_end(&mut bytes)?;
-        if bytes.len() != length || CRC.checksum(&bytes) != seal.crc {
-            return Ok(None);
+        // Where bytes were lost or added before it, it stands elsewhere, before its seal.
+        let moved = seal.at.checked_sub(seal.bytes);
+        let places = std::iter::once(seal.first_byte).chain(moved);
+        let mut found = None;
+        for place in places {
+            if found.is_none() {
+                found = self.bytes(place, seal)?;
+            }
         }
+        let Some(bytes) = found else {
+            return Ok(None);
+        };
         let group = GroupBytes {
             first_byte: seal.first_byte,
             bytes: bytes.into(),
         };
         columns::read(&Arc::new(group), seal.footer()?.row_group(0)).map(Some)
+    }
+
+    /// The bytes of a group, if it stands at this place.
+    fn bytes(&self, place: u64, seal: &Seal) -> io::Result<Option<Vec<u8>>> {
+        let length = usize::try_from(seal.bytes).map_err(io::Error::other)?;
+        let mut bytes = Vec::new();
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start(place))?;
+        file.take(seal.bytes).read_to_end(&mut bytes)?;
+        let is_it = bytes.len() == length && CRC.checksum(&bytes) == seal.crc;
+        Ok(is_it.then_some(bytes))
     }
 
     pub(crate) fn rows(&self) -> ParquetRows<'_> {

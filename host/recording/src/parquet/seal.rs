@@ -28,6 +28,8 @@ const FIXED: usize = 28;
 /// A seal.
 #[derive(Clone, Debug)]
 pub(super) struct Seal {
+    /// Where it stands, which is where its group ends.
+    pub(super) at: u64,
     pub(super) first_byte: u64,
     pub(super) bytes: u64,
     pub(super) crc: u32,
@@ -68,8 +70,8 @@ impl Seal {
         ParquetMetaDataReader::decode_metadata(&self.footer).map_err(other)
     }
 
-    /// Reads the body of a seal; none if it is damaged.
-    fn of(body: &[u8]) -> Option<Self> {
+    /// Reads the body of a seal at this byte; none if it is damaged.
+    fn of(at: u64, body: &[u8]) -> Option<Self> {
         let (first_byte, rest) = body.split_first_chunk()?;
         let (bytes, rest) = rest.split_first_chunk()?;
         let (crc, rest) = rest.split_first_chunk()?;
@@ -84,6 +86,7 @@ impl Seal {
             .map(RowGroupMetaData::num_rows)
             .sum();
         Some(Self {
+            at,
             first_byte: u64::from_le_bytes(*first_byte),
             bytes: u64::from_le_bytes(*bytes),
             crc: u32::from_le_bytes(*crc),
@@ -101,6 +104,8 @@ const BLOCK: usize = 1 << 20;
 pub(super) fn find(mut file: &File) -> io::Result<Vec<Seal>> {
     let mut seals = Vec::new();
     let mut window: Vec<u8> = Vec::new();
+    // Where the window begins.
+    let mut begin = 0;
     file.seek(SeekFrom::Start(0))?;
     loop {
         let before = window.len();
@@ -111,7 +116,7 @@ pub(super) fn find(mut file: &File) -> io::Result<Vec<Seal>> {
             at += found;
             match length(&window[at..]) {
                 Some(length) if at + length <= window.len() => {
-                    seals.extend(checked(&window[at..at + length]));
+                    seals.extend(checked(begin + at as u64, &window[at..at + length]));
                     at += MARK.len();
                 }
                 // The rest of it is yet to be read.
@@ -129,7 +134,9 @@ pub(super) fn find(mut file: &File) -> io::Result<Vec<Seal>> {
         } else {
             at.max((window.len() + 1).saturating_sub(MARK.len()))
         };
-        window.drain(..keep.min(window.len()));
+        let keep = keep.min(window.len());
+        begin += keep as u64;
+        window.drain(..keep);
     }
 }
 
@@ -149,8 +156,8 @@ fn length(bytes: &[u8]) -> Option<usize> {
     (length <= LONGEST).then_some(MARK.len() + HEAD + length)
 }
 
-fn checked(seal: &[u8]) -> Option<Seal> {
+fn checked(at: u64, seal: &[u8]) -> Option<Seal> {
     let (head, body) = seal.get(MARK.len()..)?.split_first_chunk::<HEAD>()?;
     let crc = u32::from_le_bytes(*head.last_chunk()?);
-    (CRC.checksum(body) == crc).then(|| Seal::of(body))?
+    (CRC.checksum(body) == crc).then(|| Seal::of(at, body))?
 }

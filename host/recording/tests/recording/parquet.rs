@@ -149,6 +149,17 @@ fn wherever_it_is_cut_the_groups_before_are_kept() {
     );
 }
 
+/// Bytes that are missing or too many move all that stands behind them.
+#[test]
+fn groups_that_have_moved_are_found_before_their_seals() {
+    let bench = Bench::new(BLOCKS);
+    let early = bench.whole.len() / 20;
+    let without = [&bench.whole[..early], &bench.whole[early + 1..]].concat();
+    bench.check(&without, 60_000);
+    let doubled = [&bench.whole[..early + 900], &bench.whole[early..]].concat();
+    bench.check(&doubled, 60_000);
+}
+
 #[test]
 fn a_zeroed_page_costs_its_group() {
     let bench = Bench::new(BLOCKS);

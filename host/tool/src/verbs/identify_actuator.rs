@@ -146,10 +146,15 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let Some(out) = out {
         print(&format!("plot: {}\n", out.join(results::PLOT).display()))?;
     }
-    match revision {
-        Some(revision) => print(&format!("revision {revision} is applied\n")),
-        None => Ok(()),
+    if let Some(revision) = revision {
+        print(&format!("revision {revision} is applied\n"))?;
     }
+    if is_played {
+        print(
+            "the gain is still 0, as the chirp needs it: `crepitus params set vibration-actuator.gain=1`\n",
+        )?;
+    }
+    Ok(())
 }
 
 /// The actuator that the device believes in.

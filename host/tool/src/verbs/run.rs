@@ -170,7 +170,7 @@ fn simulate(
     let measured = arguments.overlay.read(&columns)?;
     let listener = arguments.wav.listener(&columns, scene.trace_step_s)?;
     let failed = |e: &std::io::Error| Failure::at(out, "writing the results", e);
-    let folder = results::folder(out)?;
+    let folder = results::folder_of_run(out)?;
     interrupt::listen();
     let failed_run = |e| failure(scene, out, e);
     if arguments.no_trace {

@@ -55,13 +55,11 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let rate = arguments.rate;
     if !TICKS_PER_S.is_multiple_of(rate) {
-        let every = TICKS_PER_S / rate;
+        let fits = |rate: &u32| TICKS_PER_S.is_multiple_of(*rate);
+        let below = (1..rate).rev().find(fits).unwrap_or(1);
+        let above = (rate..=TICKS_PER_S).find(fits).unwrap_or(TICKS_PER_S);
         return Err(Failure::Input(format!(
-            "--rate {rate}: expected {TICKS_PER_S} divided by a whole number, for example {} (every \
-             {every}th sample) or {} (every {}th)",
-            TICKS_PER_S / every,
-            TICKS_PER_S / (every + 1),
-            every + 1
+            "--rate {rate}: expected {TICKS_PER_S} divided by a whole number, for example {below} or {above}"
         )));
     }
     let format = if as_json {

@@ -30,9 +30,9 @@ use std::time::Instant;
 Examples:
   crepitus sweep low-speed --vary effects.crepitus.static_torque_nm=1:4:lin7 \\
                            --vary effects.crepitus.stiffness_nm_per_rad=20:200:log5
-  crepitus sweep knee-pass-frozen --vary solver.kind=exact,exact-events,heun --vary solver.step_s=1e-5:1e-3:log9
+  crepitus sweep knee-pass-frozen --vary solver.kind=exact,exact-events,rk4 --vary solver.step_s=1e-5:1e-3:log9
   crepitus sweep everything --latin 1000 --seed 7 --vary effects.cuff.stiffness_nm_per_rad=30:300 \\
-                            --vary effects.limb.mass_kg=2:6
+                            --vary effects.limb.body_mass_kg=50:90
   crepitus sweep everything --sobol 4096 --vary …
   crepitus sweep low-speed --points saltelli.csv      points of another program
   crepitus sweep low-speed --vary … --estimate=1e7    what that would cost

@@ -28,9 +28,9 @@ pub struct CaughtCoefficients<F> {
     most_nm: F,
     residual: F,
     slope: F,
-    /// −h/τ, and e to its power, less 1.
+    /// −h/τ, and e to its power.
     rate: F,
-    growth: F,
+    decay: F,
     stiffness: F,
     rearm_rad: F,
 }
@@ -50,7 +50,7 @@ impl<F: Real> CaughtCoefficients<F> {
             residual: F::from_f64(s.residual_share),
             slope: F::from_f64(s.stiffness_nm_per_rad),
             rate: F::from_f64(-timing.step_s / s.release_s),
-            growth: F::from_f64(libm::expm1(-timing.step_s / s.release_s)),
+            decay: F::from_f64(libm::exp(-timing.step_s / s.release_s)),
             stiffness: F::from_f64(s.catch_stiffness_nm_per_rad),
             rearm_rad: F::from_f64(s.rearm_deg.to_radians()),
         })
@@ -207,7 +207,7 @@ impl<F: Real> Caught<F> {
         let sense = with.threshold.sense;
         let before_nm = catch.decaying_nm;
         let after_nm = if from == F::ZERO {
-            travel.decayed(before_nm, with.growth)
+            travel.decayed(before_nm, with.decay)
         } else {
             before_nm * short_decay(with.rate * (F::ONE - from))
         };
