@@ -253,7 +253,6 @@ impl Comms {
                 .remaining_ticks(self.drive.seen_tick(), self.now_ms),
             enable: self.supervision.is_enable_requested(),
             start: self.start,
-            number: self.to_drive.next_heartbeat(),
         };
         let commit = self
             .parameters

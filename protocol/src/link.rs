@@ -70,8 +70,6 @@ pub struct Heartbeat {
     pub enable: bool,
     /// Boot counter of comms.
     pub start: u16,
-    /// One more than that of the heartbeat before; wraps.
-    pub number: u8,
 }
 
 /// Orders to the drive.

@@ -23,8 +23,6 @@ pub(super) struct ToDriveQueue {
     /// When it may be asked again for this.
     again_ms: u64,
     last_number: u16,
-    /// Heartbeats that were sent; wraps.
-    heartbeats: u8,
 }
 
 /// Pending messages to the drive, besides heartbeats.
@@ -101,11 +99,6 @@ impl ToDriveQueue {
         self.last_number
     }
 
-    /// The number of the next heartbeat.
-    pub(super) fn next_heartbeat(&self) -> u8 {
-        self.heartbeats.wrapping_add(1)
-    }
-
     /// Returns the next frame, the most urgent first.
     pub(super) fn next_frame(
         &mut self,
@@ -113,7 +106,6 @@ impl ToDriveQueue {
         wanted: &Wanted<'_>,
     ) -> Option<Frame> {
         if core::mem::take(&mut self.heartbeat_due) {
-            self.heartbeats = heartbeat.number;
             return message(&ToDrive::Heartbeat(heartbeat));
         }
         if let Some(question) = self.management.take() {
@@ -214,7 +206,6 @@ mod tests {
             lease_left: 9,
             enable: false,
             start: 1,
-            number: 1,
         };
         (from_ms..from_ms + count)
             .map(|now_ms| {
@@ -253,7 +244,6 @@ mod tests {
             lease_left: 0,
             enable: false,
             start: 1,
-            number: 1,
         };
         let frame = queue.next_frame(heartbeat, &NOTHING);
         assert_eq!(frame.map(|frame| sent(&frame)), Some(Sent::Heartbeat));

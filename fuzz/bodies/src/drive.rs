@@ -126,7 +126,6 @@ struct Bench {
     lease_end: u64,
     sent: Vec<(Revision, Values)>,
     number: u16,
-    heartbeats: u8,
     /// Ticks in a row with a driven bridge and the line read back off.
     astray: u32,
     /// Decoder of the bytes from the drive.
@@ -151,7 +150,6 @@ impl Bench {
             lease_end: 0,
             sent: Vec::new(),
             number: 0,
-            heartbeats: 0,
             astray: 0,
             host: Decoder::new(),
             states: VecDeque::new(),
@@ -174,7 +172,6 @@ impl Bench {
                     lease_left: bytes.u16(),
                     enable: !bytes.byte().is_multiple_of(8),
                     start: u16::from(bytes.byte() / 64),
-                    number: self.next_heartbeat(),
                 };
                 self.send(&ToDrive::Heartbeat(heartbeat));
             }
@@ -247,13 +244,11 @@ impl Bench {
                 for _ in 0..20 {
                     let now = self.drive.next_tick();
                     let left = end.saturating_sub(now);
-                    let number = self.next_heartbeat();
                     self.send(&ToDrive::Heartbeat(Heartbeat {
                         seen_tick: now,
                         lease_left: u16::try_from(left).unwrap_or(u16::MAX),
                         enable: true,
                         start: 0,
-                        number,
                     }));
                     self.run(20, &Readings::good());
                 }
@@ -261,20 +256,12 @@ impl Bench {
         }
     }
 
-    /// The number of a heartbeat that is newer than all before.
-    fn next_heartbeat(&mut self) -> u8 {
-        self.heartbeats = self.heartbeats.wrapping_add(1);
-        self.heartbeats
-    }
-
     fn heartbeat(&mut self) {
-        let number = self.next_heartbeat();
         self.send(&ToDrive::Heartbeat(Heartbeat {
             seen_tick: self.drive.next_tick(),
             lease_left: 5_000,
             enable: true,
             start: 0,
-            number,
         }));
     }
 

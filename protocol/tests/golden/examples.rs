@@ -423,7 +423,6 @@ fn to_drive() -> Vec<Example> {
             lease_left: 4_980,
             enable: true,
             start: 7,
-            number: 201,
         }),
         ToDrive::Commit {
             revision: Revision(301),
