@@ -218,7 +218,7 @@ impl<F: Real> Law for Clonus<F> {
 
     fn check(s: &ClonusSettings) -> Result<(), SettingsError> {
         s.validate()?;
-        if libm::trunc(s.beats) != s.beats {
+        if libm::trunc(s.beats) < s.beats {
             return Err(SettingsError::Contradiction {
                 reason: "clonus: beats is a whole number; 0 is without end",
             });

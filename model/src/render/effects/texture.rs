@@ -218,7 +218,7 @@ impl<F: Real> Law for Texture<F> {
 
     fn check(s: &TextureSettings) -> Result<(), SettingsError> {
         s.validate()?;
-        if libm::trunc(s.seed) != s.seed {
+        if libm::trunc(s.seed) < s.seed {
             return Err(SettingsError::Contradiction {
                 reason: "texture: seed is a whole number",
             });
