@@ -104,7 +104,9 @@ impl Command {
         counters: &Counters,
     ) {
         let conducts = currents_a.is_some_and(|(sensor_a, monitor_a)| {
-            sensor_a.min(monitor_a) > FLOATING_A || sensor_a.max(monitor_a) < -FLOATING_A
+            sensor_a.abs() > FLOATING_A
+                && monitor_a.abs() > FLOATING_A
+                && sensor_a * monitor_a > 0.0
         });
         let is_slow = omega_rad_s.abs() < self.motor.plan().floats_below_rad_s;
         self.conducting_ticks = if conducts && is_slow && !self.was_driven {
