@@ -90,7 +90,12 @@ fn settings(bytes: &mut Bytes<'_>) -> EffectSettings {
                     .enumerate()
                     .map(|(n, p)| match seed >> (n % 8) & 1 {
                         0 => p.default,
-                        _ => p.min + (p.max - p.min) * bytes.part(),
+                        _ => {
+                            let number = p.min + (p.max - p.min) * bytes.part();
+                            // Others are refused.
+                            let is_whole = matches!(p.key, "beats" | "seed");
+                            if is_whole { number.trunc() } else { number }
+                        }
                     })
                     .collect();
                 let options: Vec<u8> = spec
@@ -361,10 +366,9 @@ impl<F: Real> Knee<F> {
         self.highest_j = self.highest_j.max(self.level_j);
         self.tick_j = self.tick_j.max(work_j.abs());
         let given_j = self.highest_j - self.level_j;
-        // Torque answers two ticks late, and each of two may take more than is left; a fading one
-        // still answers then.
+        // Torque answers two ticks late, and each may take more than is left.
         assert!(
-            given_j <= TANK_J + 5.0 * self.tick_j + 1e-3,
+            given_j <= TANK_J + 4.0 * self.tick_j + 1e-3,
             "{given_j} J out of a tank of {TANK_J} J"
         );
     }
