@@ -125,7 +125,7 @@ fn invalid_values_are_rejected_with_the_reason() {
             2,
             &["frozen", "physical"],
         ),
-        (&["stream", "--rate", "300"], 2, &["20000", "66"]),
+        (&["stream", "--rate", "300"], 2, &["20000", "250 or 400"]),
         (&["stream", "--for", "soon"], 2, &["soon", "30s"]),
         (&["info", "--scene", "no-such-scene"], 2, &["no-such-scene"]),
     ] {
