@@ -198,7 +198,7 @@ fn a_folder_that_cannot_be_written_is_known_before_the_work() {
     let out = home.path().join("file");
     fs::write(&out, "mine").unwrap();
     let output = stability(&out, &[]);
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("file"), "{}", stderr(&output));
     assert_eq!(fs::read_to_string(&out).unwrap(), "mine");
 }
