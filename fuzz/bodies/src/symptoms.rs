@@ -88,14 +88,14 @@ fn settings(bytes: &mut Bytes<'_>) -> EffectSettings {
                     .parameters
                     .iter()
                     .enumerate()
-                    .map(|(n, p)| match seed >> (n % 8) & 1 {
-                        0 => p.default,
-                        _ => {
-                            let number = p.min + (p.max - p.min) * bytes.part();
-                            // Others are refused.
-                            let is_whole = matches!(p.key, "beats" | "seed");
-                            if is_whole { number.trunc() } else { number }
+                    .map(|(n, p)| {
+                        if seed >> (n % 8) & 1 == 0 {
+                            return p.default;
                         }
+                        let number = p.min + (p.max - p.min) * bytes.part();
+                        // Others are refused.
+                        let is_whole = matches!(p.key, "beats" | "seed");
+                        if is_whole { number.trunc() } else { number }
                     })
                     .collect();
                 let options: Vec<u8> = spec
