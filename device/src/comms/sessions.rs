@@ -222,7 +222,6 @@ mod tests {
     const NOBODY: [Option<Session>; 2] = [None; 2];
 
     impl Sessions {
-        /// Whether this session is open with this nonce.
         fn is_open(&self, session: Session, nonce: Nonce) -> bool {
             let mut entries = self.entries.iter();
             entries.any(|entry| (entry.session, entry.nonce) == (session, nonce))

@@ -5,19 +5,7 @@ mod support;
 
 use crepitus_identify::actuator::{MassEvidence, Refusal, Weighed, identify};
 use crepitus_model::control::chirp::ChirpSettings;
-use support::{NOMINAL, Ring, Simulated, band};
-
-const CHIRP: ChirpSettings = ChirpSettings {
-    amplitude_v: 0.4,
-    from_hz: 8.0,
-    to_hz: 500.0,
-    duration_ticks: 200_000,
-};
-
-const MASS: Weighed = Weighed {
-    mass_kg: 0.060,
-    share: 0.01,
-};
+use support::{CHIRP, MASS, NOMINAL, Ring, Simulated, band};
 
 /// The shell of 0.25 kg on its seat, and a palm with its tissue that grips it: its lever from the
 /// knee over that of the shell is its `place`.

@@ -5,19 +5,7 @@ mod support;
 use crepitus_identify::actuator::{Actuator, MassEvidence, Refusal, Series, Weighed, identify};
 use crepitus_model::control::chirp::ChirpSettings;
 use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
-use support::{NOMINAL, Ring, Simulated, band};
-
-const CHIRP: ChirpSettings = ChirpSettings {
-    amplitude_v: 0.4,
-    from_hz: 8.0,
-    to_hz: 500.0,
-    duration_ticks: 200_000,
-};
-
-const MASS: Weighed = Weighed {
-    mass_kg: 0.060,
-    share: 0.01,
-};
+use support::{CHIRP, MASS, NOMINAL, Ring, Simulated, band};
 
 fn played(truth: &Simulated) -> Series {
     truth.played(&CHIRP, &mut fastrand::Rng::with_seed(1))

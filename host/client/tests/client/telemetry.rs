@@ -20,6 +20,18 @@ fn blocks_for(client: &mut Client<Port>, time: std::time::Duration) -> Vec<Block
 }
 
 #[test]
+fn nothing_is_streamed_to_a_client_that_has_ended_its_telemetry() {
+    let (_shared, mut client) = turning(|t| 0.3 * t);
+    client.end_telemetry();
+    client.subscribe().unwrap();
+    assert!(!blocks_for(&mut client, ms(20)).is_empty());
+    client.end_telemetry();
+    // What was under way.
+    blocks_for(&mut client, ms(20));
+    assert!(blocks_for(&mut client, ms(50)).is_empty());
+}
+
+#[test]
 fn ten_seconds_arrive_whole() {
     let (shared, mut client) = turning(|t| 0.3 * t);
     client.set(&[(id::RANGE_MOST, 180.0)]).unwrap();

@@ -29,7 +29,8 @@ const MOST_STEPS: u32 = 100;
 /// Relative decrease of the cost below which the fit has converged.
 const SMALLEST_GAIN: f64 = 1e-12;
 
-/// How well noise and residual are known from a few thousand lines each: twice 2 %.
+/// Uncertainty of noise and residual, each estimated from a few thousand spectral lines: two standard
+/// errors of 2 %.
 const NOISE_UNSURE: f64 = 0.04;
 
 /// A fitted impedance with its covariance and residual.
@@ -72,7 +73,7 @@ pub(crate) struct Explained {
     pub(crate) height: f64,
     /// [`height`](Self::height) over its standard deviation.
     pub(crate) deviations: f64,
-    /// How far resonance, damping or force constant are off by it: the greatest share.
+    /// Largest relative error that it causes in resonance, damping ratio or force constant.
     pub(crate) moved: f64,
     /// Share of the power surely beyond the noise that it explains.
     pub(crate) share: f64,

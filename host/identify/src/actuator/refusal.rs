@@ -100,7 +100,7 @@ pub enum Refusal {
          raise the amplitude"
     )]
     Weak {
-        /// What it reaches, mA.
+        /// Largest current, mA.
         milliamperes: f64,
         /// Least difference of two samples, mA.
         step_ma: f64,

@@ -38,7 +38,7 @@ pub(crate) struct Second {
     pub(crate) power: f64,
     /// Height of its hump in the impedance over that of the first.
     pub(crate) height: f64,
-    /// How far resonance, damping or force constant are off by it: the greatest share.
+    /// Largest relative error that it causes in resonance, damping ratio or force constant.
     pub(crate) moved: f64,
     /// Damped so strongly that it is no resonance.
     pub(crate) is_broad: bool,
@@ -67,7 +67,7 @@ pub(crate) fn second(lines: &[Line], first: &Impedance, normal: &Square) -> Opti
         .max_by(|a, b| a.power.total_cmp(&b.power))
 }
 
-/// What swings.
+/// Cause of the second resonance.
 #[derive(Clone, Copy)]
 enum Kind {
     /// Something beside the mass.

@@ -3,7 +3,7 @@
 
 #![allow(dead_code, reason = "each test program uses its part")]
 
-use crepitus_identify::actuator::{Band, Current, Hold, Series};
+use crepitus_identify::actuator::{Band, Current, Hold, Series, Weighed};
 use crepitus_model::control::chirp::{Chirp, ChirpSettings};
 
 /// Samples of the simulation in a tick of 50 µs, and ticks in a sample of telemetry.
@@ -14,6 +14,20 @@ const STEP_S: f64 = 5e-5 / STEPS as f64;
 /// Ticks before and after the chirp.
 const BEFORE: u32 = 2_000;
 const AFTER: u32 = 12_000;
+
+/// The chirp of most tests.
+pub(crate) const CHIRP: ChirpSettings = ChirpSettings {
+    amplitude_v: 0.4,
+    from_hz: 8.0,
+    to_hz: 500.0,
+    duration_ticks: 200_000,
+};
+
+/// The moving mass, as weighed.
+pub(crate) const MASS: Weighed = Weighed {
+    mass_kg: 0.060,
+    share: 0.01,
+};
 
 /// A ring that is not clamped.
 #[derive(Clone, Copy, Debug)]
