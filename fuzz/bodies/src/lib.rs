@@ -34,6 +34,7 @@ mod known_values;
 mod laws;
 mod lease_oracle;
 mod link_inputs;
+pub mod mutate;
 pub mod recording;
 pub mod renderer;
 mod rung;
