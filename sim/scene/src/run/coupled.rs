@@ -152,7 +152,14 @@ impl Run {
         loop {
             let before = self.plant.shaft();
             fastest_rad_s = fastest_rad_s.max(before.omega_rad_s.abs());
-            if wants_rows && n % every == 0 {
+            let is_row = wants_rows && n % every == 0;
+            // Before its row: a trace holds numbers.
+            if (is_row || n % CHECK_STEPS == 0 || n == steps)
+                && !(self.device.is_finite() && before.angle_rad.is_finite())
+            {
+                return Err(RunError::Diverged(diverged(scene, time_s)));
+            }
+            if is_row {
                 row.clear();
                 row.extend([time_s, before.angle_rad, before.omega_rad_s]);
                 self.write(scene, &mut row);
@@ -163,11 +170,6 @@ impl Run {
                     }
                 }
                 watch.row(&row)?;
-            }
-            if (n % CHECK_STEPS == 0 || n == steps)
-                && !(self.device.is_finite() && before.angle_rad.is_finite())
-            {
-                return Err(RunError::Diverged(diverged(scene, time_s)));
             }
             if n % PROGRESS_STEPS == 0 {
                 watch.progress(time_s)?;
