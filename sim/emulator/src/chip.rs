@@ -23,9 +23,10 @@ use crate::devices::brake::{self, Brake};
 use crate::devices::flash::Flash;
 use crate::devices::otg::{self, Otg};
 use crate::devices::registers::AsRegisters;
-use crate::devices::usart::Usart;
+use crate::devices::usart::{Usart, Wires};
 use crate::image::Image;
-use crate::pins::Pins;
+use crate::mcu::Pin;
+use crate::pins::{Mode, Pins};
 use bus::{Bus, Now};
 use clocks::{Clock, Rates};
 use part::{Gate, Library, Part, registers};
@@ -167,7 +168,7 @@ impl Chip {
         ];
         let brakes = brakes.map(|timer| Self::add_advanced_timer(&mut parts, &nets, &pins, timer));
         let quadrature = Self::add_timers(&mut parts, &nets, &adcs);
-        let usart = Self::add_usart(&mut parts, &nets, &rates, &now, &dma[1]);
+        let usart = Self::add_usart(&mut parts, &nets, &rates, &now, (&dma[1], &pins));
         let otg = Self::add_otg(&mut parts, &nets, &rates, &now, &pins);
         let causes = wires::Causes::new(&nets, &rcc);
         Self {
@@ -329,9 +330,15 @@ impl Chip {
         nets: &Nets<'_>,
         rates: &Arc<Rates>,
         now: &Now,
-        dma: &Arc<Dma>,
+        (dma, pins): (&Arc<Dma>, &Arc<Pins>),
     ) -> Arc<Usart> {
         const CHANNEL: u8 = 5;
+        let wires = Wires {
+            pins: pins.clone(),
+            sends: Pin::new('C', 6),
+            receives: Pin::new('C', 7),
+            function: Mode::Alternate(8),
+        };
         let requests = |streams: [usize; 2]| {
             streams
                 .map(|stream| (dma.clone(), stream, CHANNEL))
@@ -340,6 +347,7 @@ impl Chip {
         let usart = Arc::new(Usart::new(
             rates.clone(),
             now.clone(),
+            wires,
             nets.interrupt(71),
             requests([1, 2]),
             requests([6, 7]),

@@ -174,12 +174,12 @@ pub trait Mcu {
     /// Takes the sampling intervals of the converters since the last call.
     fn take_samplings(&mut self) -> Vec<Sampling>;
 
-    /// Feeds a character to the link's receiver, in order. Lost unless its pin
-    /// is connected to it.
+    /// Puts a character on the wire to the link's receiver, in order. Lost unless its pin
+    /// is connected to it when it arrives.
     fn link_feed(&mut self, character: Character);
 
-    /// Takes the characters sent by the link since the last call; none unless its
-    /// pin is connected to it.
+    /// Takes the characters sent by the link since the last call: those at whose ends
+    /// its pin was connected to it.
     fn link_take(&mut self) -> Vec<Character>;
 
     /// Units of time of a character on the link, as the program has set it.

@@ -42,12 +42,9 @@ const CORE: u32 = 0xe000_0000;
 /// SysTick is enabled.
 const SYSTICK_ENABLE: u32 = 1;
 
-/// Pins of the encoder's channels and of the link, and their functions.
+/// Pins of the encoder's channels, and their function.
 const ENCODER_PINS: [Pin; 2] = [Pin::new('A', 0), Pin::new('A', 1)];
 const ENCODER_FUNCTION: Mode = Mode::Alternate(2);
-const LINK_SENDS: Pin = Pin::new('C', 6);
-const LINK_RECEIVES: Pin = Pin::new('C', 7);
-const LINK_FUNCTION: Mode = Mode::Alternate(8);
 
 /// Interval at which the core is polled for a reset request, or for sleep
 /// with its own timer running: 10 µs.

@@ -14,6 +14,8 @@ use super::registers::Words;
 use crate::chip::bus::Now;
 use crate::chip::clocks::{Clock, Rates};
 use crate::chip::part::{Peripheral, lock};
+use crate::mcu::Pin;
+use crate::pins::{Mode, Pins};
 use rsemu::core::wire::Level;
 use rsemu::dev::stm32::dma::Dma;
 use std::collections::VecDeque;
@@ -72,6 +74,20 @@ struct State {
     sr_was_read: bool,
 }
 
+/// The pins of its wires. A character is on a wire only where its pin has the function.
+pub(crate) struct Wires {
+    pub(crate) pins: Arc<Pins>,
+    pub(crate) sends: Pin,
+    pub(crate) receives: Pin,
+    pub(crate) function: Mode,
+}
+
+impl Wires {
+    fn has(&self, pin: Pin) -> bool {
+        self.pins.mode(pin) == self.function
+    }
+}
+
 /// Where its DMA requests go: controller, stream and channel.
 pub(crate) type Request = (Arc<Dma>, usize, u8);
 
@@ -81,6 +97,7 @@ pub(crate) struct Usart {
     sent: Mutex<Vec<Character>>,
     rates: Arc<Rates>,
     now: Now,
+    wires: Wires,
     interrupt: rsemu::core::wire::WireSource,
     receives: Vec<Request>,
     sends: Vec<Request>,
@@ -91,6 +108,7 @@ impl Usart {
     pub(crate) fn new(
         rates: Arc<Rates>,
         now: Now,
+        wires: Wires,
         interrupt: rsemu::core::wire::WireSource,
         receives: Vec<Request>,
         sends: Vec<Request>,
@@ -100,6 +118,7 @@ impl Usart {
             sent: Mutex::default(),
             rates,
             now,
+            wires,
             interrupt,
             receives,
             sends,
@@ -109,7 +128,7 @@ impl Usart {
         usart
     }
 
-    /// Feeds a character to the receiver, in order.
+    /// Puts a character on the wire to the receiver, in order.
     pub(crate) fn feed(&self, character: Character) {
         lock(&self.state).arriving.push_back(character);
     }
@@ -175,7 +194,9 @@ impl Usart {
     fn happen(&self, state: &mut State, at: u64) {
         if let Some(character) = state.shifting.filter(|character| character.at == at) {
             state.shifting = None;
-            lock(&self.sent).push(character);
+            if self.wires.has(self.wires.sends) {
+                lock(&self.sent).push(character);
+            }
             match state.waiting.take() {
                 Some(byte) => self.shift(state, byte, at),
                 None => state.sr |= TC,
@@ -184,7 +205,7 @@ impl Usart {
         let is_due = |character: &&Character| character.at == at;
         if let Some(character) = state.arriving.front().filter(is_due).copied() {
             state.arriving.pop_front();
-            if state.cr1 & (UE | RE) == UE | RE {
+            if state.cr1 & (UE | RE) == UE | RE && self.wires.has(self.wires.receives) {
                 if state.sr & RXNE != 0 {
                     state.sr |= ORE;
                 } else {

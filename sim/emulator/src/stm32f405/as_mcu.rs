@@ -1,6 +1,6 @@
 //! The chip as a microcontroller.
 
-use super::{CORE, LINK_FUNCTION, LINK_RECEIVES, LINK_SENDS, Stm32f405};
+use super::{CORE, Stm32f405};
 use crate::devices::usart::Character;
 use crate::mcu::{Access, Mcu, Pin, Reset, Sampling, Watch};
 use crate::pins::PinSetup;
@@ -92,21 +92,13 @@ impl Mcu for Stm32f405 {
     }
 
     fn link_feed(&mut self, character: Character) {
-        if self.chip.pins.mode(LINK_RECEIVES) != LINK_FUNCTION {
-            return;
-        }
         self.chip.usart.feed(character);
         self.chip.bus.touch("USART6");
         self.settle();
     }
 
     fn link_take(&mut self) -> Vec<Character> {
-        let sent = self.chip.usart.take_sent();
-        if self.chip.pins.mode(LINK_SENDS) == LINK_FUNCTION {
-            sent
-        } else {
-            Vec::new()
-        }
+        self.chip.usart.take_sent()
     }
 
     fn link_character_units(&self) -> u64 {

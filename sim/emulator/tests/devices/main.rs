@@ -4,3 +4,4 @@
 mod bench;
 mod flash;
 mod otg;
+mod usart;

@@ -95,6 +95,18 @@ impl Host {
         host
     }
 
+    /// As [`Self::listening`], with a core that stands still for so long before it sets
+    /// anything up: comms sends meanwhile.
+    pub(crate) fn late(image: &Image, scene: &Scene, registers: &[u32], late: Time) -> Self {
+        let mut host = Self::switched_on(image, scene, registers);
+        let mcu = host.board.mcu_mut();
+        mcu.set_hung(true);
+        mcu.run_until(late);
+        mcu.set_hung(false);
+        host.boot();
+        host
+    }
+
     /// With accesses to these registers written down from the first
     /// instruction on.
     pub(crate) fn listening(image: &Image, scene: &Scene, registers: &[u32]) -> Self {

@@ -14,7 +14,7 @@ use crepitus_device::drive::coil::{CoilOutput, LARGEST_COIL_DUTY};
 use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::slow_checks::SlowInput;
-use crepitus_emulator::Mcu;
+use crepitus_emulator::{Mcu, Time};
 use crepitus_emulator::mcu::Access;
 use crepitus_model::Real;
 use crepitus_model::render::effects::Phases;
@@ -276,6 +276,20 @@ fn twenty_thousand_ticks_are_those_of_the_native_drive_bit_for_bit() {
 #[test]
 fn with_the_modelled_flash_too() {
     check(Flash::Modelled);
+}
+
+/// Its link is switched on at any instant of the frames of comms: every millisecond there
+/// are 31 µs of them.
+#[test]
+fn whatever_comms_sends_while_it_starts() {
+    let Some(image) = image() else { return };
+    for late_us in (0..1_000).step_by(29) {
+        let late = Time::from_us(late_us);
+        let mut host = Host::late(&image, &examination(), &REGISTERS, late);
+        host.arm();
+        host.run(100);
+        compare(&mut host);
+    }
 }
 
 fn check(flash: Flash) {
