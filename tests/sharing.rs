@@ -10,6 +10,7 @@ use crepitus_recording::Recording;
 use crepitus_scene::{Overrides, Scene};
 use crepitus_usb::pty::Pty;
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::sync::Arc;
@@ -170,6 +171,50 @@ fn the_one_that_serves_disarms_for_a_program_that_is_killed() {
     });
     signal(&serving, "-INT");
     serving.wait().unwrap();
+}
+
+/// What a program has subscribed to with one that served before ends with it, too.
+#[test]
+fn the_next_one_that_serves_knows_what_was_subscribed_before() {
+    let served = Served::new();
+    let port = fs::canonicalize(served.port()).unwrap();
+    // The reader is kept, as a closed one would end the program.
+    let stream = || {
+        let mut child = start(&served, &["stream", "--rate", "10"]);
+        let mut rows = BufReader::new(child.stdout.take().unwrap()).lines();
+        assert!(rows.nth(1).unwrap().is_ok(), "a first row");
+        (child, rows)
+    };
+    let serves = |child: &Child| {
+        let files = fs::read_dir(format!("/proc/{}/fd", child.id())).unwrap();
+        files
+            .filter_map(|file| fs::read_link(file.ok()?.path()).ok())
+            .any(|target| target == port)
+    };
+    let (mut first, _rows) = stream();
+    assert!(serves(&first));
+    let mut others = [stream(), stream()];
+    signal(&first, "-INT");
+    first.wait().unwrap();
+    until("another serves", || {
+        others.iter().any(|(child, _)| serves(child))
+    });
+    sleep(Duration::from_millis(300));
+    others.sort_by_key(|(child, _)| serves(child));
+    let [(mut member, _), (mut serving, _)] = others;
+    signal(&member, "-KILL");
+    member.wait().unwrap();
+    sleep(Duration::from_millis(300));
+    signal(&serving, "-INT");
+    serving.wait().unwrap();
+    let sent = || {
+        served.info()["counters"]["comms"]["sent-samples"]
+            .as_u64()
+            .unwrap()
+    };
+    let before = sent();
+    sleep(Duration::from_millis(500));
+    assert_eq!(sent(), before, "samples are sent to nobody");
 }
 
 /// A program that serves and is stopped, as by Ctrl-Z: the others are told, and

@@ -44,7 +44,10 @@ pub fn keys() -> Vec<(String, Vec<String>)> {
         ("solver.kind".to_owned(), names(&solvers)),
         ("solver.precision".to_owned(), names(&["f32", "f64"])),
         ("solver.step_s".to_owned(), vec!["5e-5".to_owned()]),
-        ("device".to_owned(), vec!["true".to_owned(), "false".to_owned()]),
+        (
+            "device".to_owned(),
+            vec!["true".to_owned(), "false".to_owned()],
+        ),
         (
             "effects.crepitus.convention".to_owned(),
             names(&Convention::ALL.map(Convention::name)),
@@ -116,14 +119,19 @@ mod tests {
             let mut data = [7; 64];
             other_rung(&mut data, n.wrapping_mul(0x9e37_79b9));
             let rung = Rung::of(&mut Bytes::new(&data));
-            rungs.insert((rung.settings.convention.name(), rung.solver.name(), rung.double));
+            rungs.insert((
+                rung.settings.convention.name(),
+                rung.solver.name(),
+                rung.double,
+            ));
         }
         let ladder: usize = super::Convention::ALL
             .into_iter()
             .map(|convention| {
                 let solvers = super::Solver::ALL.into_iter();
                 let fit = solvers.filter(|s| s.refusal(convention).is_none());
-                fit.map(|s| 1 + usize::from(s.single_refusal().is_none())).sum::<usize>()
+                fit.map(|s| 1 + usize::from(s.single_refusal().is_none()))
+                    .sum::<usize>()
             })
             .sum();
         assert_eq!(rungs.len(), ladder);

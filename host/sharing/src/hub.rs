@@ -10,11 +10,11 @@
 //! the lock falls to one of them.
 
 use crate::frames::Frames;
+use crate::left_open::requests_in;
 use crate::member::{Chunk, Member};
 use crate::note::Note;
 use crepitus_client::{Transport, TransportError};
-use crepitus_protocol::host::Request;
-use crepitus_protocol::{Decoder, Lane};
+use crepitus_protocol::Decoder;
 use interprocess::local_socket::traits::ListenerExt;
 use interprocess::local_socket::{Listener, Stream};
 use std::collections::BTreeMap;
@@ -204,18 +204,16 @@ impl State {
     fn is_for_device(&self, number: u64, frame: &[u8]) -> bool {
         let mut decoder = Decoder::new();
         for byte in frame {
-            let Some(Ok(body)) = decoder.push(*byte) else {
-                continue;
-            };
-            if let Some(note) = Note::of(&body) {
+            if let Some(Ok(body)) = decoder.push(*byte)
+                && let Some(note) = Note::of(&body)
+            {
                 self.note(number, note);
                 return false;
             }
-            let request = body
-                .message::<Request>()
-                .filter(|_| body.lane() == Some(Lane::Request));
-            if let (Some(request), Some(member)) = (request, self.members().get_mut(&number)) {
-                member.requests(&request);
+        }
+        if let Some(member) = self.members().get_mut(&number) {
+            for request in requests_in(frame) {
+                member.open.requests(&request);
             }
         }
         true
@@ -229,6 +227,11 @@ impl State {
                     member.introduce(program);
                     let welcome = Note::Welcome.frame();
                     member.pass(&Chunk::from(welcome.unwrap_or_default().as_slice()));
+                }
+            }
+            Note::LeftOpen(open) => {
+                if let Some(member) = members.get_mut(&number) {
+                    member.open = open;
                 }
             }
             Note::Who => {
@@ -251,7 +254,7 @@ impl State {
         let Some(member) = self.members().remove(&number) else {
             return;
         };
-        for frame in member.last_will() {
+        for frame in member.open.last_will() {
             // Fails only when the hub ends.
             let _ = self.to_port.send(Chunk::from(frame.as_slice()));
         }

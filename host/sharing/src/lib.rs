@@ -31,6 +31,7 @@
 //! | its connection to the hub | `link.rs` |
 //! | merging and distributing frames | `hub.rs` |
 //! | what the hub knows of each program | `member.rs` |
+//! | what should end with a program | `left_open.rs` |
 //! | names of socket and lock | `place.rs` |
 //! | messages between programs, which the device never sees | `note.rs` |
 #![forbid(unsafe_code)]
@@ -39,6 +40,7 @@
 
 mod frames;
 mod hub;
+mod left_open;
 mod link;
 mod member;
 mod note;

@@ -1,6 +1,7 @@
 //! Messages between programs that share a device: frames of a lane that the
 //! device does not have. The hub never passes them on.
 
+use crate::left_open::LeftOpen;
 use crepitus_protocol::Session;
 use crepitus_protocol::decoder::Body;
 use crepitus_protocol::frame::{self, BODY_BYTES, Frame};
@@ -45,6 +46,8 @@ impl Program {
 pub(crate) enum Note {
     /// To the hub: who connects. Answered by [`Note::Welcome`].
     Hello(Program),
+    /// To the hub, before it is greeted: what was asked of the hub before.
+    LeftOpen(LeftOpen),
     /// The hub serves.
     Welcome,
     /// To the hub: who is connected? Answered by [`Note::Member`]s and
@@ -96,6 +99,7 @@ mod tests {
         };
         for note in [
             Note::Hello(longest),
+            Note::LeftOpen(LeftOpen::default()),
             Note::Welcome,
             Note::Who,
             Note::Leaving,

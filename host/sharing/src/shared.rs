@@ -1,6 +1,8 @@
 //! The transport of a program that shares a device.
 
+use crate::frames::Frames;
 use crate::hub::Hub;
+use crate::left_open::{LeftOpen, requests_in};
 use crate::link::Link;
 use crate::note::{Note, Program};
 use crate::place::Place;
@@ -30,6 +32,9 @@ const ANSWER: Duration = Duration::from_millis(500);
 pub struct Shared {
     port: String,
     program: Program,
+    /// What it has asked for, for the next hub.
+    sent: Frames,
+    open: LeftOpen,
     link: Option<Link>,
     /// Where this program serves the others.
     hub: Option<Hub>,
@@ -47,6 +52,8 @@ impl Shared {
         let mut shared = Self {
             port: port.to_owned(),
             program: Program::this(name),
+            sent: Frames::default(),
+            open: LeftOpen::default(),
             link: None,
             hub: None,
             began: Instant::now(),
@@ -148,8 +155,10 @@ impl Shared {
     /// Says hello and waits for the answer: a program that was stopped accepts
     /// connections, and does nothing.
     fn greet(&self, mut link: Link) -> io::Result<Link> {
-        let hello = Note::Hello(self.program.clone()).frame();
-        link.send(&hello.unwrap_or_default())?;
+        let hello = Note::Hello(self.program.clone());
+        for note in [Note::LeftOpen(self.open.clone()), hello] {
+            link.send(&note.frame().unwrap_or_default())?;
+        }
         let end = Instant::now() + ANSWER;
         loop {
             match link.note() {
@@ -176,6 +185,12 @@ impl Shared {
 
 impl Transport for Shared {
     fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
+        let Self { sent, open, .. } = self;
+        sent.push(bytes, |frame| {
+            for request in requests_in(frame) {
+                open.requests(&request);
+            }
+        });
         for _ in 0..2 {
             let link = self.link.as_mut().ok_or_else(|| lost(&self.port))?;
             if link.send(bytes).is_ok() {
