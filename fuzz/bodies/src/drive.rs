@@ -40,6 +40,9 @@ const MOST_NM: f32 = 6.5;
 /// More runs than a status takes to be made.
 const STATUS_RUNS: usize = 20;
 
+/// Bytes that say how it starts.
+pub(crate) const HEAD_BYTES: usize = 5;
+
 /// Checks the laws.
 ///
 /// # Panics

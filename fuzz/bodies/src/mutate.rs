@@ -1,11 +1,14 @@
 //! Changes of an input that bytes alone rarely hit: the same motion on another
-//! rung of the ladder, another key of a scene. What one input has found, every
-//! rung and every effect is then tried with.
+//! rung of the ladder, another key of a scene, a commit that switches an effect on and a
+//! shaft that turns under torque. What one input has found, every rung and every effect is then
+//! tried with.
 
 use crepitus_model::parameters::{ParameterSpec, Tabled};
 use crepitus_model::render::effects::SPECS;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters, Restart};
+use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter};
+use fastrand::Rng;
 
 /// One change in so many is one of these.
 pub const ONE_IN: u32 = 4;
@@ -32,6 +35,94 @@ pub fn other_key(data: &[u8], seed: u32) -> Option<Vec<u8>> {
     let new = format!("{set}{value}");
     lines.push(&new);
     Some((lines.join("\n") + "\n").into_bytes())
+}
+
+/// What a target of the device reads as its operations.
+pub struct Operations {
+    /// Bytes before the first operation.
+    pub head: usize,
+    /// Up to the values of a commit.
+    commit: fn(&mut Rng) -> Vec<u8>,
+    /// Operations without values: arming, a shaft that turns.
+    others: fn(&mut Rng) -> Vec<u8>,
+}
+
+/// Of `drive.rs`.
+pub const DRIVE: Operations = Operations {
+    head: crate::drive::HEAD_BYTES,
+    commit: |random| vec![3, random.u8(..)],
+    others: |random| match random.usize(..3) {
+        0 => vec![8],
+        _ => vec![2, random.u8(..), random.u8(..)],
+    },
+};
+
+/// Of `chain.rs`, where nothing was saved.
+pub const CHAIN: Operations = Operations {
+    head: 1,
+    commit: |random| vec![1, random.u8(..) % 3, 5, 0],
+    others: |random| match random.usize(..4) {
+        0 => vec![4, random.u8(..) % 3],
+        1 => vec![3, random.u8(..) % 3, random.u8(..), random.u8(..)],
+        _ => vec![0, random.u8(..), random.u8(..)],
+    },
+};
+
+/// Some more operations before all others, or behind them.
+pub fn more_operations(data: &[u8], operations: &Operations, seed: u32) -> Vec<u8> {
+    let mut random = Rng::with_seed(u64::from(seed));
+    let mut more = Vec::new();
+    for _ in 0..=random.usize(..4) {
+        if random.usize(..2) == 0 {
+            more.extend((operations.commit)(&mut random));
+            more.extend(values_of_an_effect(&mut random));
+        } else {
+            more.extend((operations.others)(&mut random));
+        }
+    }
+    let (head, rest) = data.split_at(operations.head.min(data.len()));
+    if random.usize(..2) == 0 {
+        [head, &more, rest].concat()
+    } else {
+        [head, rest, &more].concat()
+    }
+}
+
+/// Values as `link_inputs.rs` reads them: an effect that is switched on, and two of its
+/// parameters.
+fn values_of_an_effect(random: &mut Rng) -> Vec<u8> {
+    let groups: Vec<&str> = PARAMETERS
+        .iter()
+        .filter(|parameter| is_switch(parameter))
+        .map(|parameter| parameter.group)
+        .collect();
+    let group = groups.get(random.usize(..groups.len())).copied();
+    let all = (0_u8..).zip(PARAMETERS);
+    let of_group: Vec<_> = all.filter(|(_, p)| Some(p.group) == group).collect();
+    let switch = of_group.iter().filter(|(_, p)| is_switch(p));
+    let mut values = vec![3];
+    values.extend(switch.flat_map(|(place, _)| [*place, 1]));
+    for _ in 0..2 {
+        if let Some((place, parameter)) = of_group.get(random.usize(..of_group.len())) {
+            match parameter.kind {
+                Kind::Choice(_) => values.extend([*place, random.u8(..) % 3]),
+                Kind::Number(_) => {
+                    let wide = [random.u8(..), random.u8(..)];
+                    let how = random.u8(..) % 240;
+                    values.extend([*place, how]);
+                    if how >= 120 {
+                        values.extend(wide);
+                    }
+                }
+            }
+        }
+    }
+    values
+}
+
+/// Whether it switches an effect on.
+fn is_switch(parameter: &Parameter) -> bool {
+    matches!(parameter.kind, Kind::Choice(choice) if choice.names == ["off", "on"])
 }
 
 /// Keys of a scene that a solver and the model's effects have, each with values
@@ -78,8 +169,12 @@ pub fn keys() -> Vec<(String, Vec<String>)> {
 
 #[cfg(test)]
 mod tests {
-    use super::{keys, other_key, other_rung};
+    use super::{
+        DRIVE, PARAMETERS, Parameter, Rng, is_switch, keys, more_operations, other_key, other_rung,
+        values_of_an_effect,
+    };
     use crate::bytes::Bytes;
+    use crate::link_inputs;
     use crate::rung::Rung;
     use crepitus_scene::{Overrides, Scene};
     use std::collections::HashSet;
@@ -110,6 +205,37 @@ mod tests {
         assert_eq!(first, again);
         assert!(first.ends_with(b"#set solver.kind=\"euler\"\n"));
         assert_eq!(other_key(b"\xff", 0), None);
+    }
+
+    /// Each is read as it was meant: an effect is on, and it is armed.
+    #[test]
+    fn every_effect_is_switched_on() {
+        let mut on = HashSet::new();
+        for seed in 0..2_000 {
+            let values = values_of_an_effect(&mut Rng::with_seed(seed));
+            let mut bytes = Bytes::new(&values);
+            let values = link_inputs::values(&mut bytes);
+            assert!(bytes.is_empty());
+            let changed = PARAMETERS
+                .iter()
+                .zip(values.0)
+                .filter(|(p, v)| *v != p.default());
+            on.extend(changed.filter(|(p, _)| is_switch(p)).map(|(p, _)| p.group));
+        }
+        let off = |p: &&Parameter| is_switch(p) && p.default() == 0.0;
+        let mut effects = PARAMETERS.iter().filter(off).map(|p| p.group);
+        assert!(effects.all(|effect| on.contains(effect)), "{on:?}");
+    }
+
+    #[test]
+    fn more_operations_leave_the_others_as_they_are() {
+        let data = [1, 2, 3, 4, 5, 6, 7, 8];
+        for seed in 0..100 {
+            let more = more_operations(&data, &DRIVE, seed);
+            assert!(more.len() > data.len());
+            assert_eq!(more[..5], data[..5]);
+            assert!(more.ends_with(&data[5..]) || more.starts_with(&data));
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //! inputs that are nearly one of them. They are the same in every run.
 
 use crepitus_fuzz_bodies::TARGETS;
+use fastrand::Rng;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -34,64 +35,42 @@ fn corpus(target: &str) -> Vec<(PathBuf, Vec<u8>)> {
         .collect()
 }
 
-/// SplitMix64 (Steele, Lea and Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// From 0 up to, and without, `end`.
-    fn below(&mut self, end: usize) -> usize {
-        usize::try_from(self.next() % (end.max(1) as u64)).expect("a small number")
-    }
-
-    fn byte(&mut self) -> u8 {
-        self.next().to_le_bytes()[0]
-    }
-
-    /// Up to 16 bytes of `length`.
-    fn stretch(&mut self, length: usize) -> std::ops::Range<usize> {
-        let start = self.below(length + 1);
-        start..length.min(start + 1 + self.below(16))
-    }
+/// Up to 16 bytes of `length`.
+fn stretch(random: &mut Rng, length: usize) -> std::ops::Range<usize> {
+    let start = random.usize(..=length);
+    start..length.min(start + 1 + random.usize(..16))
 }
 
 /// An input that `seed` makes of the corpus.
 fn changed(corpus: &[(PathBuf, Vec<u8>)], seed: u64) -> Vec<u8> {
-    let mut random = Random(seed);
-    let mut data = corpus[random.below(corpus.len())].1.clone();
-    for _ in 0..=random.below(8) {
-        let at = random.below(data.len() + 1);
-        match random.below(6) {
+    let mut random = Rng::with_seed(seed);
+    let mut data = corpus[random.usize(..corpus.len())].1.clone();
+    for _ in 0..=random.usize(..8) {
+        let at = random.usize(..=data.len());
+        match random.usize(..6) {
             0 => {
                 if let Some(byte) = data.get_mut(at) {
-                    *byte ^= 1 << random.below(8);
+                    *byte ^= 1 << random.usize(..8);
                 }
             }
             1 => {
                 if let Some(byte) = data.get_mut(at) {
-                    *byte = [0, 1, 0x7f, 0x80, 0xff, random.byte()][random.below(6)];
+                    *byte = [0, 1, 0x7f, 0x80, 0xff, random.u8(..)][random.usize(..6)];
                 }
             }
-            2 => data.insert(at, random.byte()),
+            2 => data.insert(at, random.u8(..)),
             3 => {
-                let gone = random.stretch(data.len());
+                let gone = stretch(&mut random, data.len());
                 data.drain(gone);
             }
             4 => {
-                let again = random.stretch(data.len());
+                let again = stretch(&mut random, data.len());
                 let again = data[again].to_vec();
                 data.splice(at..at, again);
             }
             _ => {
-                let other = &corpus[random.below(corpus.len())].1;
-                let from = random.below(other.len() + 1);
+                let other = &corpus[random.usize(..corpus.len())].1;
+                let from = random.usize(..=other.len());
                 let cut = other[from..].to_vec();
                 data.splice(at.., cut);
             }

@@ -129,6 +129,29 @@ fn a_recording_that_ends_with_the_run_ends() {
     }
 }
 
+/// However strong the damping, a slip is searched with a few evaluations: without a bound of
+/// its own for two exponentials it took one for every few nanoseconds.
+#[test]
+fn a_slip_without_swings_takes_no_longer_than_others() {
+    let motion = knots(&[(0.0, 0.0, 2.0), (0.02, 2.0, -2.0), (0.05, -2.0, 0.0)]);
+    for ratio in [0.5, 1.0, 2.0, 100.0, 1e4, 1e5] {
+        let settings = joint(Convention::Paper, 0.2, 0.4, ratio);
+        let settings = settings.validate().unwrap();
+        let mut impatient = Impatient {
+            polls: 0,
+            events: 0,
+        };
+        let end = Reference::new(&settings, &motion).follow(0.05, &mut impatient);
+        assert_eq!(end, ControlFlow::Continue(()));
+        assert!(
+            impatient.events >= 3,
+            "ζ = {ratio}: {} events",
+            impatient.events
+        );
+        assert_eq!(impatient.polls, 0, "ζ = {ratio}");
+    }
+}
+
 #[test]
 fn equal_limits_reverse_with_the_shaft() {
     let settings = joint(Convention::Physical, 0.3, 0.3, 0.0);

@@ -110,7 +110,7 @@ impl Reference<'_> {
                 slope: slip
                     .sense
                     .of_signed(s.omega_dot - self.swing.oscillator().acceleration(x, v)),
-                bound: bounds.omega_ddot + self.swing.oscillator().jerk_bound(x, v),
+                bound: bounds.omega_ddot + self.swing.jerk_bound(x, v),
                 noise,
                 slack: noise,
             }

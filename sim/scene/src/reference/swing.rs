@@ -43,6 +43,22 @@ impl Swing {
         &self.oscillator
     }
 
+    /// A bound of |v̈| from (x, v) on, rad/s³. Far above critical damping the model's would
+    /// make a search look every few nanoseconds for as long as a slip lasts:
+    /// x = A·e^(−λ·t) + B·e^(−Λ·t), and each of the two only falls.
+    pub(super) fn jerk_bound(&self, x: f64, v: f64) -> f64 {
+        let bound = self.oscillator.jerk_bound(x, v);
+        if self.swings || self.root < 0.5 * self.decay {
+            return bound;
+        }
+        let fast = self.decay + self.root;
+        let slow = self.natural_squared / fast;
+        let fast_part = (v + slow * x).abs() + 4.0 * f64::EPSILON * (v.abs() + slow * x.abs());
+        let slow_part = v.abs() + fast * x.abs();
+        let parts = slow.powi(3) * slow_part + fast.powi(3) * fast_part;
+        bound.min(parts / (fast - slow))
+    }
+
     /// (x, v) after `time_s` ≥ 0.
     pub(super) fn after(&self, x: f64, v: f64, time_s: f64) -> (f64, f64) {
         if self.decay * time_s <= SHORT {
@@ -114,6 +130,33 @@ mod tests {
                     "ζ = {ratio}, step {n}: {long:?} {:?}",
                     (x, v)
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn no_jerk_ahead_is_larger_than_its_bound() {
+        for ratio in [0.0, 0.3, 1.0, 1.1, 1.2, 1.5, 30.0, 1e3, 1e5] {
+            let mut p = Parameters::default();
+            p.damping_nms_per_rad = 2.0 * ratio * p.impedance_nms_per_rad();
+            let swing = Swing::of(&p);
+            let jerk = |x: f64, v: f64| {
+                let acceleration = swing.oscillator.acceleration(x, v);
+                -swing.natural_squared * v - 2.0 * swing.decay * acceleration
+            };
+            for (x, v) in [(1e-3, 0.7), (1e-3, -0.7), (-1e-3, 0.0), (0.0, 1.0)] {
+                // From fractions of the fast decay to many of the slow one.
+                let times = (-120..40).map(|n| 10.0_f64.powf(0.1 * f64::from(n)));
+                let states: Vec<_> = times.map(|t| swing.after(x, v, t)).collect();
+                for (n, from) in states.iter().enumerate() {
+                    let bound = swing.jerk_bound(from.0, from.1);
+                    for to in &states[n..] {
+                        // What rounding makes of two large terms that cancel.
+                        let noise = 1e-15 * (2.0 * swing.decay).powi(2) * to.1.abs();
+                        let jerk = jerk(to.0, to.1).abs();
+                        assert!(jerk <= 1.000_001 * bound + 8.0 * noise, "ζ = {ratio}");
+                    }
+                }
             }
         }
     }
