@@ -98,6 +98,33 @@ fn a_wall_that_leaves_and_is_committed_again_does_not_push() {
     }
 }
 
+/// What a lowered cap lets fall is what the wall gave: once the leg has left it, nothing.
+#[test]
+fn a_wall_that_was_left_comes_back_with_its_new_cap() {
+    let wall = |flexion_torque_nm| EffectSettings {
+        range_limit: Some(RangeLimitSettings {
+            flexion_limit_deg: 60.0,
+            flexion_torque_nm,
+            ..RangeLimitSettings::default()
+        }),
+        ..EffectSettings::default()
+    };
+    let mut rig = only::<f64>(wall(4.0), 59.9);
+    let mut at_rad = moved(&mut rig, 59.9_f64.to_radians(), 2_000).0;
+    let mut go = |rig: &mut Rig<f64>, omega_rad_s: f64| {
+        let (from, to_rad) = (at_rad, at_rad + omega_rad_s * TICK_S);
+        at_rad = to_rad;
+        rig.step((from, omega_rad_s), (to_rad, omega_rad_s), to_rad - from)
+    };
+    assert_eq!(go(&mut rig, 1.0), 4.0);
+    rig.commit(wall(1.0));
+    let back: Vec<f64> = (0..400).map(|_| go(&mut rig, -8.0)).collect();
+    assert_eq!(back.last(), Some(&0.0));
+    let again = (0..600).map(|_| go(&mut rig, 8.0));
+    let most_nm = again.fold(0.0, f64::max);
+    near(most_nm, 1.0, 1e-12);
+}
+
 #[test]
 fn a_commit_between_two_samples_shows_within_the_slew_limit() {
     let spring = |neutral_deg| {
