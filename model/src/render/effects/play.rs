@@ -190,13 +190,9 @@ impl<F: Real> Play<F> {
         let moved_rad = part.sense * place.beyond(&self.place, travel.rad_per_count);
         let elastic_nm = self.there_nm + stiffness * moved_rad;
         if self.allowed_nm != F::ZERO {
-            // What has let go since then does not come back.
-            let least_nm = self.allowed_nm.at_most(F::ZERO);
-            let most_nm = self.allowed_nm.at_least(F::ZERO);
-            let left_nm = self.now_nm.at_least(least_nm).at_most(most_nm);
-            lower_nm = lower_nm.at_most(left_nm);
-            upper_nm = upper_nm.at_least(left_nm);
-            self.allowed_nm = left_nm - left_nm.within(self.slew_nm);
+            lower_nm = lower_nm.at_most(self.allowed_nm);
+            upper_nm = upper_nm.at_least(self.allowed_nm);
+            self.allowed_nm = self.allowed_nm - self.allowed_nm.within(self.slew_nm);
         }
         let was = self.hold;
         // A joint that rests at a limit is still there.

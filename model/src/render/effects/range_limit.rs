@@ -370,11 +370,14 @@ impl<F: Real> Wall<F> {
             }
         };
         if self.play.torque_nm() == F::ZERO {
-            if before_rad > F::ZERO {
-                self.play.put(&travel.place(F::ZERO), F::ZERO, Hold::Slack);
+            let (place, hold) = if before_rad > F::ZERO {
+                (travel.place(F::ZERO), Hold::Slack)
             } else {
-                self.play.put(&end.place, F::ZERO, Hold::Upper);
-            }
+                (end.place, Hold::Upper)
+            };
+            // Of the torque that a commit let fall nothing is left.
+            self.play.rest(&place);
+            self.play.put(&place, F::ZERO, hold);
         }
         on_change.tell(Word::Contact, fraction, F::ZERO, F::ZERO);
     }

@@ -4,7 +4,7 @@
 use crate::budget::{RENDER, TICK_CYCLES, percent};
 use crate::host::{Flash, Host, image};
 use crate::replay::{REGISTERS, compare};
-use crate::symptoms::{PERIOD_TICKS, commit, moving, renderings, tick_of, worst};
+use crate::symptoms::{PERIOD_TICKS, added, commit, moving, worst};
 use crepitus_board::leg::CoilFaults;
 use crepitus_board::values::values;
 use crepitus_emulator::cycles::Cycles;
@@ -226,17 +226,7 @@ fn the_stage_adds_no_more_than_its_cycles() {
         return;
     };
     commit(&mut with, on());
-    let with_it = renderings(&mut with);
-    // The same ticks of the same joint on the same shaft.
-    let (begin, _) = with_it.first_key_value().expect("a tick");
-    without.run(begin - tick_of(without.board.mcu().now()));
-    let without_it = renderings(&mut without);
-    let added = with_it.iter().filter_map(|(tick, cycles)| {
-        let less = without_it.get(tick)?;
-        Some(cycles.saturating_sub(*less))
-    });
-    let added: Vec<u64> = added.collect();
-    assert!(added.len() as u64 >= PERIOD_TICKS - 2);
+    let added = added(&mut with, &mut without);
     let most = added.iter().max().expect("ticks");
     let mean = added.iter().sum::<u64>() / PERIOD_TICKS;
     println!("vibration-actuator in render_torque: {mean} cycles more, worst {most}");

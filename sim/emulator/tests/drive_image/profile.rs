@@ -30,26 +30,29 @@ const TASKS: [(&str, u16); 3] = [
     ("link", LINK),
 ];
 
-/// The cycles of a task in each tick.
+/// The cycles of a task, run by run.
 struct Profile {
     exception: u16,
-    ticks: BTreeMap<u64, Addresses>,
+    runs: Vec<Addresses>,
+    last: Option<Time>,
     all: Addresses,
 }
 
 impl Watch for Profile {
     fn step(&mut self, step: &Step) {
-        if step.exception == self.exception {
-            let cycles = u64::from(step.cycles);
-            let tick = step.at.units() / Time::from_us(50).units();
-            *self
-                .ticks
-                .entry(tick)
-                .or_default()
-                .entry(step.pc)
-                .or_default() += cycles;
-            *self.all.entry(step.pc).or_default() += cycles;
+        if step.exception != self.exception {
+            return;
         }
+        let is_next = |last| step.at - last > Time::from_us(25);
+        if self.last.is_none_or(is_next) {
+            self.runs.push(Addresses::new());
+        }
+        self.last = Some(step.at);
+        let cycles = u64::from(step.cycles);
+        if let Some(run) = self.runs.last_mut() {
+            *run.entry(step.pc).or_default() += cycles;
+        }
+        *self.all.entry(step.pc).or_default() += cycles;
     }
 }
 
@@ -61,23 +64,24 @@ impl Profile {
     fn of(exception: u16) -> Self {
         Self {
             exception,
-            ticks: BTreeMap::new(),
+            runs: Vec::new(),
+            last: None,
             all: Addresses::new(),
         }
     }
 
     fn worst(&self) -> &Addresses {
-        let worst = self.ticks.values().max_by_key(|addresses| sum(addresses));
-        worst.expect("a tick")
+        let worst = self.runs.iter().max_by_key(|addresses| sum(addresses));
+        worst.expect("a run")
     }
 
     /// Prints cycles of the worst tick and of the mean one, by innermost function.
     fn print(&self, name: &str, lines: &Lines) {
-        let ticks = self.ticks.len() as u64;
+        let runs = self.runs.len() as u64;
         println!(
             "\n{name}: worst {}, mean {}",
             sum(self.worst()),
-            sum(&self.all) / ticks
+            sum(&self.all) / runs
         );
         let mut functions: BTreeMap<String, (u64, u64)> = BTreeMap::new();
         let mut add = |addresses: &Addresses, is_worst: bool| {
@@ -94,7 +98,7 @@ impl Profile {
         functions.sort_by_key(|(_, (worst, _))| std::cmp::Reverse(*worst));
         println!("{:>6} {:>6}", "worst", "mean");
         for (function, (worst, all)) in functions.iter().take(LISTED) {
-            println!("{worst:>6} {:>6} {function}", all / ticks);
+            println!("{worst:>6} {:>6} {function}", all / runs);
         }
     }
 }
@@ -114,7 +118,7 @@ fn where_the_cycles_of_render_torque_go() {
         let mut profile = Profile::of(RENDER);
         host.watch(PERIOD_TICKS, &mut profile);
         profile.print(name, &lines);
-        assert!(profile.ticks.len() as u64 >= PERIOD_TICKS - 1, "{name}");
+        assert!(profile.runs.len() as u64 >= PERIOD_TICKS - 1, "{name}");
     }
 }
 
