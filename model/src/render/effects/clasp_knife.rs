@@ -144,9 +144,9 @@ pub struct ClaspKnifeCoefficients<F> {
     onset_nm: F,
     slope: F,
     residual: F,
-    /// −h/τ, and e to its power.
+    /// −h/τ, and the share that a tick loses.
     rate: F,
-    decay: F,
+    lost: F,
     stiffness: F,
     rearm_rad: F,
 }
@@ -229,7 +229,7 @@ impl<F: Real> Law for ClaspKnife<F> {
             slope: F::from_f64(s.slope_nm_per_rad),
             residual: F::from_f64(s.residual_share),
             rate: F::from_f64(-timing.step_s / s.collapse_s),
-            decay: F::from_f64(libm::exp(-timing.step_s / s.collapse_s)),
+            lost: F::from_f64(-libm::expm1(-timing.step_s / s.collapse_s)),
             stiffness: F::from_f64(s.catch_stiffness_nm_per_rad),
             rearm_rad: F::from_f64(s.rearm_deg.to_radians()),
         })
@@ -460,7 +460,7 @@ impl<F: Real> ClaspKnife<F> {
     ) -> F {
         let with = self.with;
         let after_nm = if from == F::ZERO {
-            travel.decayed(before_nm, with.decay)
+            travel.decayed(before_nm, with.lost)
         } else {
             before_nm * short_decay(with.rate * (F::ONE - from))
         };

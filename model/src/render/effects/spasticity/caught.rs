@@ -28,9 +28,9 @@ pub struct CaughtCoefficients<F> {
     most_nm: F,
     residual: F,
     slope: F,
-    /// −h/τ, and e to its power.
+    /// −h/τ, and the share that a tick loses.
     rate: F,
-    decay: F,
+    lost: F,
     stiffness: F,
     rearm_rad: F,
 }
@@ -50,7 +50,7 @@ impl<F: Real> CaughtCoefficients<F> {
             residual: F::from_f64(s.residual_share),
             slope: F::from_f64(s.stiffness_nm_per_rad),
             rate: F::from_f64(-timing.step_s / s.release_s),
-            decay: F::from_f64(libm::exp(-timing.step_s / s.release_s)),
+            lost: F::from_f64(-libm::expm1(-timing.step_s / s.release_s)),
             stiffness: F::from_f64(s.catch_stiffness_nm_per_rad),
             rearm_rad: F::from_f64(s.rearm_deg.to_radians()),
         })
@@ -195,7 +195,7 @@ impl<F: Real> Caught<F> {
     }
 
     /// Caught, before this travel or within it.
-    #[inline]
+    #[inline(always)]
     fn follow_from(
         &mut self,
         from: F,
@@ -207,7 +207,7 @@ impl<F: Real> Caught<F> {
         let sense = with.threshold.sense;
         let before_nm = catch.decaying_nm;
         let after_nm = if from == F::ZERO {
-            travel.decayed(before_nm, with.decay)
+            travel.decayed(before_nm, with.lost)
         } else {
             before_nm * short_decay(with.rate * (F::ONE - from))
         };
