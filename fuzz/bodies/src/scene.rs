@@ -75,6 +75,13 @@ fn accepted(scene: &Scene) {
         Ok(summary) => {
             assert_eq!(rows_seen.count, rows(scene));
             assert!(summary.simulated_s.is_finite());
+            if let Some(t) = &summary.torque {
+                let most_nm = t.max_nm.max(-t.min_nm);
+                let rounding_nm = 1e-6 * (1.0 + most_nm);
+                let within = t.min_nm - rounding_nm..=t.max_nm + rounding_nm;
+                assert!(within.contains(&t.mean_nm), "{t:?}");
+                assert!(t.rms_nm <= most_nm + rounding_nm, "{t:?}");
+            }
         }
         Err(RunError::Diverged(diverged)) => assert!(
             may_diverge(scene),

@@ -1,5 +1,7 @@
 //! Runs of whole scenes against closed forms, and laws that hold for all.
 
+use crepitus_model::Convention;
+use crepitus_model::solver::Solver;
 use crepitus_scene::trace::EventRecord;
 use crepitus_scene::{Observer, Overrides, Scene, Summary, run};
 use std::convert::Infallible;
@@ -212,6 +214,44 @@ fn torque_never_exceeds_the_static_limit() {
             }
         }
     }
+}
+
+/// Also where a step is far too long for the damping, and finds the break at its end only.
+#[test]
+fn what_a_summary_says_of_the_torque_is_within_what_was_shown() {
+    let motion =
+        "kind = \"strokes\"\nfrom_deg = 5\nto_deg = 4\npeak_speed_deg_s = 421\npause_s = 0.003\n";
+    let mut runs = 0;
+    for solver in Solver::ALL {
+        for convention in Convention::ALL {
+            if solver.refusal(convention).is_some() {
+                continue;
+            }
+            for damping in ["0.0", "0.03", "500000.0"] {
+                let is_frozen = convention == Convention::Frozen;
+                if is_frozen && damping != "0.0" {
+                    continue;
+                }
+                let name = convention.name();
+                let effects = format!("{}\ndamping_nms_per_rad = {damping}\n", crepitus(name));
+                let ladder = format!("kind = \"{}\"\nstep_s = 2e-3\n", solver.name());
+                let scene = scene(1.5, motion, &ladder, &effects);
+                let Ok(summary) = run(&scene, &mut Keep::default()) else {
+                    // An explicit rung beyond its limit of stability.
+                    continue;
+                };
+                let torque = summary.torque.expect("a joint");
+                let label = format!("{}, {name}, {damping}: {torque:?}", solver.name());
+                let rounding = 1e-9 * (torque.max_nm - torque.min_nm);
+                assert!(torque.mean_nm >= torque.min_nm - rounding, "{label}");
+                assert!(torque.mean_nm <= torque.max_nm + rounding, "{label}");
+                let most_nm = torque.max_nm.max(-torque.min_nm);
+                assert!(torque.rms_nm <= most_nm + rounding, "{label}");
+                runs += 1;
+            }
+        }
+    }
+    assert!(runs > 40, "{runs}");
 }
 
 #[test]

@@ -80,6 +80,9 @@ pub(super) fn viscous_loss(
     before: (f64, f64),
     dt_s: f64,
 ) -> f64 {
+    /// Up to so many they are as quick as two exponentials, and keep the digits in which
+    /// those cancel.
+    const FEW_PANELS: f64 = 64.0;
     /// Beyond them the loss is taken from the stored energy, which it equals.
     const MOST_PANELS: f64 = 1e6;
     const NODES: [(f64, f64); 5] = [
@@ -94,6 +97,11 @@ pub(super) fn viscous_loss(
         .natural_rad_s()
         .max(parameters.damping_nms_per_rad / parameters.inertia_kg_m2);
     let panels = (2.0 * rate * dt_s).ceil().max(1.0);
+    if panels > FEW_PANELS
+        && let Some(loss_j) = overdamped_loss(parameters, before, dt_s)
+    {
+        return loss_j;
+    }
     if panels > MOST_PANELS {
         let (x, v) = oscillator.transition(dt_s).apply(before.0, before.1);
         return energy(parameters, before) - energy(parameters, (x, v));
@@ -118,7 +126,56 @@ pub(super) fn viscous_loss(
     parameters.damping_nms_per_rad * half_s * sum
 }
 
+/// The same above critical damping, where v = −λ·A·e^(−λ·t) − Λ·B·e^(−Λ·t): in closed form.
+/// `None` where the two are too close for that.
+fn overdamped_loss(p: &Parameters, (x, v): (f64, f64), dt_s: f64) -> Option<f64> {
+    let decay = 0.5 * p.damping_nms_per_rad / p.inertia_kg_m2;
+    let natural = p.natural_rad_s();
+    let root = ((decay - natural) * (decay + natural)).sqrt();
+    if root.is_nan() || root < 0.5 * decay {
+        return None;
+    }
+    let fast = decay + root;
+    let slow = natural * natural / fast;
+    // Velocities of the two parts.
+    let slow_v = -slow * (v + fast * x) / (fast - slow);
+    let fast_v = fast * (v + slow * x) / (fast - slow);
+    let integral = |rate: f64| -(-rate * dt_s).exp_m1() / rate;
+    let squares = slow_v * slow_v * integral(2.0 * slow) + fast_v * fast_v * integral(2.0 * fast);
+    let both = 2.0 * slow_v * fast_v * integral(slow + fast);
+    Some(p.damping_nms_per_rad * (squares + both))
+}
+
 /// Stored energy of free motion, J.
 fn energy(p: &Parameters, (x, v): (f64, f64)) -> f64 {
     0.5 * (p.stiffness_nm_per_rad * x * x + p.inertia_kg_m2 * v * v)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of one long stretch, and of the short ones that it is made of, each by quadrature.
+    #[test]
+    fn above_critical_damping_the_loss_is_that_of_many_short_stretches() {
+        for ratio in [1.05, 1.2, 1.5, 10.0, 300.0] {
+            let mut p = Parameters::default();
+            p.damping_nms_per_rad = 2.0 * ratio * p.impedance_nms_per_rad();
+            let oscillator = Oscillator::of(&p);
+            let fast = p.damping_nms_per_rad / p.inertia_kg_m2;
+            for before in [(1e-3, 0.7), (1e-3, 0.0), (-1e-3, 0.7), (0.0, 1.0)] {
+                let (parts, dt_s) = (2_000, 400.0 / fast);
+                let part_s = dt_s / f64::from(parts);
+                let short = oscillator.transition(part_s);
+                let (mut sum_j, mut state) = (0.0, before);
+                for _ in 0..parts {
+                    sum_j += viscous_loss(&p, &oscillator, state, part_s);
+                    state = short.apply(state.0, state.1);
+                }
+                let whole_j = viscous_loss(&p, &oscillator, before, dt_s);
+                let error = (whole_j - sum_j).abs() / sum_j;
+                assert!(error < 1e-11, "ζ = {ratio}, {before:?}: {error}");
+            }
+        }
+    }
 }

@@ -132,14 +132,21 @@ impl Tally {
             self.energy.work_in_j += viscous;
         } else {
             self.energy.convention_j += viscous;
-            // Held at the limit, less is shown than the spring pulls.
-            let limit = p.static_torque_nm;
-            let excess = f64::midpoint(from, to) - f64::midpoint(from, to).clamp(-limit, limit);
-            if excess != 0.0 {
-                self.energy.work_in_j -= excess * delta_phi;
-                self.energy.convention_j += excess * delta_phi;
-                integral -= excess * dt_s;
-            }
+        }
+        // Held at the limit, or in a step that finds the break at its end only, less is shown
+        // than the spring pulls.
+        let limit = p.static_torque_nm;
+        let shown = (from.clamp(-limit, limit), to.clamp(-limit, limit));
+        let shown_nm = f64::midpoint(shown.0, shown.1);
+        let excess = f64::midpoint(from, to) - shown_nm;
+        // More than rounding: a break that was located is at the limit.
+        if excess.abs() > 1e-12 * limit {
+            self.energy.work_in_j -= excess * delta_phi;
+            self.energy.convention_j += excess * delta_phi;
+            integral = shown_nm * dt_s;
+            (from, to) = shown;
+            self.shown(from);
+            self.shown(to);
         }
         self.torque.integral += integral;
         self.torque.square += dt_s * (from * from + from * to + to * to) / 3.0;
