@@ -75,6 +75,11 @@ fn accepted(scene: &Scene) {
         Ok(summary) => {
             assert_eq!(rows_seen.count, rows(scene));
             assert!(summary.simulated_s.is_finite());
+            if let Some(energy) = &summary.energy
+                && scene.solver == SolverChoice::Reference
+            {
+                assert!(energy.residual_relative.abs() < 1e-9, "{energy:?}");
+            }
             if let Some(t) = &summary.torque {
                 let most_nm = t.max_nm.max(-t.min_nm);
                 let rounding_nm = 1e-6 * (1.0 + most_nm);
