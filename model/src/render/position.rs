@@ -366,7 +366,7 @@ pub(crate) mod tests {
         let travel = Travel::of(&step, &Sight::IDEAL.position(0.5), &scale).unwrap();
         for release_s in [0.01, 0.06, 0.25, 0.5, 1.0] {
             let rate = -5e-5 / release_s;
-            let lost = -libm::expm1(rate) as f32;
+            let lost = f32::from_f64(-libm::expm1(rate));
             let mut nm = 4.5_f32;
             for n in 1..=40_000_u32 {
                 nm = travel.decayed(nm, lost);

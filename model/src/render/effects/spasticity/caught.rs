@@ -195,6 +195,10 @@ impl<F: Real> Caught<F> {
     }
 
     /// Caught, before this travel or within it.
+    #[expect(
+        clippy::inline_always,
+        reason = "otherwise another call in every tick, 50 cycles on the target"
+    )]
     #[inline(always)]
     fn follow_from(
         &mut self,
