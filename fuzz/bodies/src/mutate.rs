@@ -3,10 +3,10 @@
 //! shaft that turns under torque. What one input has found, every rung and every effect is then
 //! tried with.
 
-use crepitus_model::parameters::{ParameterSpec, Tabled};
-use crepitus_model::render::effects::SPECS;
+use crepitus_model::parameters::ParameterSpec;
 use crepitus_model::solver::Solver;
-use crepitus_model::{Convention, Parameters, Restart};
+use crepitus_model::{Convention, Restart};
+use crepitus_plant::effects::EFFECTS;
 use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter};
 use fastrand::Rng;
 
@@ -125,8 +125,7 @@ fn is_switch(parameter: &Parameter) -> bool {
     matches!(parameter.kind, Kind::Choice(choice) if choice.names == ["off", "on"])
 }
 
-/// Keys of a scene that a solver and the model's effects have, each with values
-/// that are allowed.
+/// Keys of a scene that a solver and the effects have, each with values that are allowed.
 pub fn keys() -> Vec<(String, Vec<String>)> {
     let names = |names: &[&str]| names.iter().map(|n| format!("{n:?}")).collect::<Vec<_>>();
     let mut solvers = Solver::ALL.map(Solver::name).to_vec();
@@ -156,8 +155,7 @@ pub fn keys() -> Vec<(String, Vec<String>)> {
         };
         parameters.iter().map(key).collect::<Vec<_>>()
     };
-    keys.extend(numbers("crepitus", Parameters::TABLE));
-    for spec in SPECS {
+    for spec in EFFECTS {
         keys.extend(numbers(spec.name, spec.parameters));
         keys.extend(spec.choices.iter().map(|choice| {
             let key = format!("effects.{}.{}", spec.name, choice.key);
@@ -170,8 +168,8 @@ pub fn keys() -> Vec<(String, Vec<String>)> {
 #[cfg(test)]
 mod tests {
     use super::{
-        DRIVE, PARAMETERS, Parameter, Rng, is_switch, keys, more_operations, other_key, other_rung,
-        values_of_an_effect,
+        Convention, DRIVE, PARAMETERS, Parameter, Rng, Solver, is_switch, keys, more_operations,
+        other_key, other_rung, values_of_an_effect,
     };
     use crate::bytes::Bytes;
     use crate::link_inputs;
@@ -183,6 +181,17 @@ mod tests {
     #[test]
     fn every_key_is_one_of_a_scene() {
         let text = include_str!("../../corpus/scene/seed-set");
+        for (name, least) in [
+            ("effects.crepitus.", 7),
+            ("effects.hand.", 2),
+            ("solver.", 3),
+        ] {
+            let count = keys()
+                .iter()
+                .filter(|(path, _)| path.starts_with(name))
+                .count();
+            assert!(count >= least, "{name}: {count} keys");
+        }
         for (path, values) in keys() {
             for value in values {
                 let overrides = Overrides {
@@ -251,10 +260,10 @@ mod tests {
                 rung.double,
             ));
         }
-        let ladder: usize = super::Convention::ALL
+        let ladder: usize = Convention::ALL
             .into_iter()
             .map(|convention| {
-                let solvers = super::Solver::ALL.into_iter();
+                let solvers = Solver::ALL.into_iter();
                 let fit = solvers.filter(|s| s.refusal(convention).is_none());
                 fit.map(|s| 1 + usize::from(s.single_refusal().is_none()))
                     .sum::<usize>()
