@@ -78,7 +78,10 @@ fn accepted(scene: &Scene) {
             if let Some(energy) = &summary.energy
                 && scene.solver == SolverChoice::Reference
             {
-                assert!(energy.residual_relative.abs() < 1e-9, "{energy:?}");
+                // Of nothing rounding is a large share.
+                let closes =
+                    energy.residual_relative.abs() < 1e-9 || energy.residual_j.abs() < 1e-12;
+                assert!(closes, "{energy:?}");
             }
             if let Some(t) = &summary.torque {
                 let most_nm = t.max_nm.max(-t.min_nm);

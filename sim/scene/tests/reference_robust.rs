@@ -342,3 +342,48 @@ fn a_run_can_be_ended_where_nothing_is_written() {
     let scene = Scene::parse(Path::new("long.toml"), text, &Overrides::default()).unwrap();
     assert!(run(&scene, &mut Patience(0)).is_err());
 }
+
+/// A stroke that ends at 0°, where the angle and the spring's anchor cancel: a torque that is
+/// beyond its limit by rounding has not met it again.
+#[test]
+fn a_play_that_turns_back_at_zero_does_not_chatter() {
+    for (mode, to_deg) in [("time", 0.0), ("space", 0.0), ("time", 1.0)] {
+        let text = format!(
+            "version = 1\ntitle = \"turns\"\nduration_s = 0.2\n\
+             [motion]\nkind = \"strokes\"\nfrom_deg = 2\nto_deg = {to_deg:?}\n\
+             peak_speed_deg_s = 346\npause_s = 0\n[solver]\nkind = \"reference\"\n\
+             [effects.cogwheel]\nmode = \"{mode}\"\n[output]\nplay_events = true\n"
+        );
+        let scene = Scene::parse(Path::new("scene.toml"), &text, &Overrides::default()).unwrap();
+        let mut words = Words(0);
+        run(&scene, &mut words).unwrap();
+        assert!(
+            (1..50).contains(&words.0),
+            "{mode}, {to_deg}: {} events",
+            words.0
+        );
+    }
+}
+
+struct Words(usize);
+
+impl Observer for Words {
+    type Error = std::convert::Infallible;
+
+    fn row(&mut self, _: &[f64]) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    fn event(&mut self, _: &EventRecord) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    fn symptom(&mut self, _: &crepitus_scene::trace::SymptomEvent) -> Result<(), Self::Error> {
+        self.0 += 1;
+        Ok(())
+    }
+
+    fn progress(&mut self, _: f64) -> Result<(), Self::Error> {
+        Ok(())
+    }
+}

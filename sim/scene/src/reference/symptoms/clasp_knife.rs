@@ -126,10 +126,12 @@ impl ClaspKnife {
         match (self.trigger, self.play.mode) {
             (Trigger::Angle(at), _) => Some(Guard::above(at)),
             (Trigger::Torque(torque_nm), Mode::Elastic { anchor }) => {
-                Some(Guard::above(anchor + torque_nm / self.play.sigma))
+                let moved = torque_nm / self.play.sigma;
+                Some(Guard::above(anchor + moved).of_terms(anchor.abs() + moved.abs()))
             }
             (Trigger::Torque(torque_nm), Mode::Flow(End::Upper)) => Some(Guard {
                 constant: torque_nm - self.onset_torque_nm + self.slope * self.onset,
+                terms: torque_nm + self.onset_torque_nm + (self.slope * self.onset).abs(),
                 angle: -self.slope,
                 ..Guard::default()
             }),

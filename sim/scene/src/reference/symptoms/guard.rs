@@ -42,6 +42,8 @@ impl Decay {
 pub(super) struct Guard {
     /// c.
     pub(super) constant: f64,
+    /// Size of what c is the sum of, where its terms may cancel: by that it is rounded.
+    pub(super) terms: f64,
     /// α, per rad.
     pub(super) angle: f64,
     /// β, per rad/s.
@@ -76,6 +78,11 @@ impl Guard {
             velocity: -1.0,
             ..Self::default()
         }
+    }
+
+    /// Whose c is the sum of terms of this size.
+    pub(super) fn of_terms(self, terms: f64) -> Self {
+        Self { terms, ..self }
     }
 
     /// The same condition on −x and −v if `sign` is −1.
@@ -187,7 +194,7 @@ impl<'a> Span<'a> {
         // The velocity and the angle are rounded by the sizes of their terms.
         let age_s = self.piece.age_s(time_s);
         let turned = omega_rad_s.abs() + self.bounds.omega_dot * age_s;
-        let size = guard.constant.abs()
+        let size = guard.constant.abs().max(guard.terms)
             + angle.abs() * (phi_rad.abs() + turned * age_s)
             + velocity.abs() * turned
             + decay.abs()

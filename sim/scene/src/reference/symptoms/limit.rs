@@ -92,6 +92,7 @@ impl Limit {
                 decay,
             } => Guard {
                 constant: base - slope * at + sigma * anchor,
+                terms: base.abs() + (slope * at).abs() + (sigma * anchor).abs(),
                 angle: slope - sigma,
                 velocity: 0.0,
                 decay,
@@ -111,11 +112,12 @@ impl Limit {
                 let p = 2.0 * sigma * q / (steeper + root);
                 let below_cap = (stiffening * p + stiffness) * p < cap;
                 // No root, or one beyond the cap: NaN and ∞ compare so, too.
-                Guard::above(if below_cap {
-                    at + p
+                let (from, moved) = if below_cap {
+                    (at, p)
                 } else {
-                    anchor + cap / sigma
-                })
+                    (anchor, cap / sigma)
+                };
+                Guard::above(from + moved).of_terms(from.abs() + moved.abs())
             }
             Self::Ramp {
                 base,

@@ -67,6 +67,7 @@ impl Reflex {
     fn rises_above(&self, torque_nm: f64) -> Guard {
         Guard {
             constant: torque_nm + self.gain * self.threshold,
+            terms: torque_nm.abs() + (self.gain * self.threshold).abs(),
             angle: -self.gain,
             velocity: -self.gain * self.shift_s,
             decay: None,
@@ -80,7 +81,7 @@ impl Reflex {
             constant: -up.constant,
             angle: -up.angle,
             velocity: -up.velocity,
-            decay: None,
+            ..up
         }
     }
 

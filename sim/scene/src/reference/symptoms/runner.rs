@@ -16,6 +16,9 @@ const WINDOW_S: f64 = 1.0;
 /// The most actions at one instant: no law takes so many on its own.
 const CROWD: u32 = 32;
 
+/// The furthest that the search is moved on for that, s.
+const MOST_MOVED_S: f64 = 1e-9;
+
 /// The shaft at one time, in the direction of the law.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Instant {
@@ -89,6 +92,8 @@ pub(super) struct Runner<'a, L: Law> {
     watches: Watches<L::Action>,
     /// Actions since the time last advanced.
     crowd: u32,
+    /// How far the search was moved on last, because there were too many, s.
+    moved_s: f64,
 }
 
 /// State of the search for the next action.
@@ -130,6 +135,7 @@ impl<'a, L: Law> Runner<'a, L> {
             ahead: Ahead::from(0.0),
             watches: Watches::new(),
             crowd: 0,
+            moved_s: 0.0,
         }
     }
 
@@ -173,11 +179,14 @@ impl<'a, L: Law> Runner<'a, L> {
     }
 
     fn act(&mut self, time_s: f64, action: L::Action, events: &mut Vec<SymptomEvent>) {
-        self.crowd = if time_s > self.time_s {
-            0
+        if time_s > self.time_s {
+            self.crowd = 0;
+            if time_s > self.time_s + 2.0 * MOST_MOVED_S {
+                self.moved_s = 0.0;
+            }
         } else {
-            self.crowd + 1
-        };
+            self.crowd += 1;
+        }
         self.time_s = time_s;
         let at = self.now();
         let before_nm = self.law.torque_nm(&at);
@@ -193,12 +202,16 @@ impl<'a, L: Law> Runner<'a, L> {
                 peak_nm,
             });
         }
-        // Rounding must not hold it at one instant.
-        self.ahead = Ahead::from(if self.crowd > CROWD {
-            time_s.next_up()
+        // Rounding must not hold it at one instant, nor in a row of them.
+        let moved_s = if self.crowd > CROWD {
+            self.crowd = 0;
+            let least_s = time_s.next_up() - time_s;
+            self.moved_s = (2.0 * self.moved_s).clamp(least_s, MOST_MOVED_S.max(least_s));
+            self.moved_s
         } else {
-            time_s
-        });
+            0.0
+        };
+        self.ahead = Ahead::from(time_s + moved_s);
     }
 }
 
