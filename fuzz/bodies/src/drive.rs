@@ -37,8 +37,8 @@ const MOST_TICKS: u64 = 4096;
 /// The largest torque that limits can be set to, N·m.
 const MOST_NM: f32 = 6.5;
 
-/// More runs than a status takes to be made.
-const STATUS_RUNS: usize = 20;
+/// More runs than a status takes to be made, with the answers that go before it.
+const STATUS_RUNS: usize = 60;
 
 /// Bytes that say how it starts.
 pub(crate) const HEAD_BYTES: usize = 5;

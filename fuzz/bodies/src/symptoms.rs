@@ -189,6 +189,14 @@ impl Bounds {
         // No neutral angle and no onset is beyond a turn.
         self.largest_nm + self.slope * (angle_rad.abs() + 2.0 * PI)
     }
+
+    fn spring_nm(&self, angle_rad: f64) -> f64 {
+        if self.is_elastic {
+            self.at(angle_rad) - self.largest_nm
+        } else {
+            0.0
+        }
+    }
 }
 
 /// What is known of the leg's way in a tick.
@@ -326,12 +334,14 @@ impl<F: Real> Knee<F> {
             // grows.
             let falls_nm = if way == Way::Unseen { 0.0 } else { SLEW_NM };
             let fading_nm = if shown.settling { was_nm.abs() } else { 0.0 };
+            // A new spring acts at once, beside what is left of an old limit.
+            let spring_nm = self.bounds[place].spring_nm(self.angle_rad);
             let allowed_nm = bound_nm
                 .max(self.allowed_nm[place] - falls_nm)
                 .max(fading_nm);
             let rounding_nm = 1e-12_f64.max(64.0 * F::EPSILON.to_f64()) * (1.0 + allowed_nm);
             assert!(
-                nm.is_finite() && nm.abs() <= allowed_nm + 2.0 * SLEW_NM + rounding_nm,
+                nm.is_finite() && nm.abs() <= allowed_nm + spring_nm + 2.0 * SLEW_NM + rounding_nm,
                 "{name}: {nm} N·m, where {allowed_nm} are allowed"
             );
             let Bounds {
