@@ -148,6 +148,10 @@ impl Tally {
             self.shown(from);
             self.shown(to);
         }
+        // Where a step had more events than it takes in, its shaft is not that of the joint.
+        if integral.abs() > (1.0 + 1e-9) * limit * dt_s {
+            integral = integral.clamp(-limit * dt_s, limit * dt_s);
+        }
         self.torque.integral += integral;
         self.torque.square += dt_s * (from * from + from * to + to * to) / 3.0;
     }
