@@ -245,8 +245,11 @@ impl<'p, T: Transport> Keeper<'p, T> {
         self.status_is_due = true;
     }
 
+    /// Takes what has come, for no longer than a poll waits: if the device sends faster than
+    /// this takes it, the pages have their turn all the same.
     fn pump(&mut self) {
         let mut patience = POLL;
+        let end = self.client.now() + POLL;
         loop {
             match self.client.pump(patience) {
                 Ok(Some(event)) => self.take(event),
@@ -256,7 +259,7 @@ impl<'p, T: Transport> Keeper<'p, T> {
                     return;
                 }
             }
-            if self.is_lost {
+            if self.is_lost || self.client.now() >= end {
                 return;
             }
             patience = Duration::ZERO;

@@ -109,8 +109,10 @@ fn run(
         if end.is_some_and(|end| client.now() >= end) {
             return Ok(End::Time);
         }
-        // All pending events, then the pause again.
+        // All pending events, then the pause again: at the latest after the same time, as a
+        // program that falls behind always has one pending.
         let mut timeout = POLL_TIMEOUT;
+        let pause_at = client.now() + POLL_TIMEOUT;
         while let Some(event) = client.pump(timeout).map_err(failure)? {
             timeout = Duration::ZERO;
             match event {
@@ -137,7 +139,8 @@ fn run(
                 }
                 _ => {}
             }
-            if end.is_some_and(|end| client.now() >= end) {
+            let now = client.now();
+            if now >= pause_at || end.is_some_and(|end| now >= end) {
                 break;
             }
         }
@@ -206,12 +209,52 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_panic_disarms_first() {
+    fn client() -> Client<Line> {
         let scene = shipped::scene(Path::new("passive-examination"), &Overrides::default())
             .expect("a scene");
         let device = Simulated::of(&scene).expect("a device");
-        let mut client = Client::connect(Line::Simulated(Box::new(device))).expect("a connection");
+        Client::connect(Line::Simulated(Box::new(device))).expect("a connection")
+    }
+
+    /// Takes longer for a block than the device until the next one.
+    #[derive(Default)]
+    struct FallsBehind {
+        blocks: u32,
+        pauses: u32,
+    }
+
+    impl Follower for FallsBehind {
+        fn block(&mut self, client: &mut Client<Line>, _: &Block) -> Result<(), Failure> {
+            self.blocks += 1;
+            client.transport_mut().wait(Duration::from_millis(3));
+            Ok(())
+        }
+
+        fn pause(&mut self, _: &mut Client<Line>) -> Result<bool, Failure> {
+            self.pauses += 1;
+            Ok(self.pauses > 20)
+        }
+    }
+
+    /// A signal is looked at where the follower pauses.
+    #[test]
+    fn a_program_that_falls_behind_still_pauses() {
+        let mut client = client();
+        client.subscribe().expect("a subscription");
+        let mut behind = FallsBehind::default();
+        let time = Some(Duration::from_secs(2));
+        let end = follow(&mut client, time, Arming::default(), &mut behind);
+        assert!(
+            matches!(end, Ok(End::Requested)),
+            "{} pauses",
+            behind.pauses
+        );
+        assert!(behind.blocks > 100, "{} blocks", behind.blocks);
+    }
+
+    #[test]
+    fn a_panic_disarms_first() {
+        let mut client = client();
         let panicked = catch_unwind(AssertUnwindSafe(|| {
             follow(&mut client, None, Arming::armed(true), &mut Panics)
         }));
