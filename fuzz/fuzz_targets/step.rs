@@ -6,10 +6,6 @@ use crepitus_fuzz_bodies::mutate;
 libfuzzer_sys::fuzz_target!(|data: &[u8]| crepitus_fuzz_bodies::step::body(data));
 
 libfuzzer_sys::fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
-    if seed.is_multiple_of(mutate::ONE_IN) {
-        mutate::other_rung(&mut data[..size], seed / mutate::ONE_IN);
-        size
-    } else {
-        libfuzzer_sys::fuzzer_mutate(data, size, max_size)
-    }
+    mutate::apply(data, (size, max_size), seed, mutate::other_rung)
+        .unwrap_or_else(|| libfuzzer_sys::fuzzer_mutate(data, size, max_size))
 });

@@ -11,14 +11,34 @@ use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter};
 use fastrand::Rng;
 
 /// One change in so many is one of these.
-pub const ONE_IN: u32 = 4;
+const ONE_IN: u32 = 4;
+
+/// Makes the change in one case of four, where the result fits: the new size. `data` has room
+/// for `max_size` bytes, of which `size` are the input.
+pub fn apply(
+    data: &mut [u8],
+    (size, max_size): (usize, usize),
+    seed: u32,
+    change: impl FnOnce(&[u8], u32) -> Option<Vec<u8>>,
+) -> Option<usize> {
+    if !seed.is_multiple_of(ONE_IN) {
+        return None;
+    }
+    let changed = change(data.get(..size)?, seed / ONE_IN)?;
+    if changed.len() > max_size {
+        return None;
+    }
+    data.get_mut(..changed.len())?.copy_from_slice(&changed);
+    Some(changed.len())
+}
 
 /// Another convention, solver and precision: see `Rung::of`.
-pub fn other_rung(data: &mut [u8], seed: u32) {
-    let [_, convention, solver, precision] = seed.to_le_bytes();
-    for (byte, new) in data.iter_mut().zip([convention, solver, precision]) {
-        *byte = new;
-    }
+pub fn other_rung(data: &[u8], seed: u32) -> Option<Vec<u8>> {
+    let [convention, solver, precision, _] = seed.to_le_bytes();
+    let mut changed = data.to_vec();
+    let rung = changed.get_mut(..3)?;
+    rung.copy_from_slice(&[convention, solver, precision]);
+    Some(changed)
 }
 
 /// The text of a scene with one key set to another value, in a line that the
@@ -37,10 +57,10 @@ pub fn other_key(data: &[u8], seed: u32) -> Option<Vec<u8>> {
     Some((lines.join("\n") + "\n").into_bytes())
 }
 
-/// What a target of the device reads as its operations.
-pub struct Operations {
+/// How a target of the device encodes its operations.
+struct Operations {
     /// Bytes before the first operation.
-    pub head: usize,
+    head: usize,
     /// Up to the values of a commit.
     commit: fn(&mut Rng) -> Vec<u8>,
     /// Operations without values: arming, a shaft that turns.
@@ -48,7 +68,7 @@ pub struct Operations {
 }
 
 /// Of `drive.rs`.
-pub const DRIVE: Operations = Operations {
+const DRIVE: Operations = Operations {
     head: crate::drive::HEAD_BYTES,
     commit: |random| vec![3, random.u8(..)],
     others: |random| match random.usize(..3) {
@@ -58,7 +78,7 @@ pub const DRIVE: Operations = Operations {
 };
 
 /// Of `chain.rs`, where nothing was saved.
-pub const CHAIN: Operations = Operations {
+const CHAIN: Operations = Operations {
     head: 1,
     commit: |random| vec![1, random.u8(..) % 3, 5, 0],
     others: |random| match random.usize(..4) {
@@ -68,8 +88,18 @@ pub const CHAIN: Operations = Operations {
     },
 };
 
+/// Some more operations of `drive.rs`.
+pub fn drive(data: &[u8], seed: u32) -> Option<Vec<u8>> {
+    Some(more_operations(data, &DRIVE, seed))
+}
+
+/// Some more operations of `chain.rs`.
+pub fn chain(data: &[u8], seed: u32) -> Option<Vec<u8>> {
+    Some(more_operations(data, &CHAIN, seed))
+}
+
 /// Some more operations before all others, or behind them.
-pub fn more_operations(data: &[u8], operations: &Operations, seed: u32) -> Vec<u8> {
+fn more_operations(data: &[u8], operations: &Operations, seed: u32) -> Vec<u8> {
     let mut random = Rng::with_seed(u64::from(seed));
     let mut more = Vec::new();
     for _ in 0..=random.usize(..4) {
@@ -120,13 +150,13 @@ fn values_of_an_effect(random: &mut Rng) -> Vec<u8> {
     values
 }
 
-/// Whether it switches an effect on.
+/// Whether the parameter switches an effect on and off.
 fn is_switch(parameter: &Parameter) -> bool {
     matches!(parameter.kind, Kind::Choice(choice) if choice.names == ["off", "on"])
 }
 
 /// Keys of a scene that a solver and the effects have, each with values that are allowed.
-pub fn keys() -> Vec<(String, Vec<String>)> {
+fn keys() -> Vec<(String, Vec<String>)> {
     let names = |names: &[&str]| names.iter().map(|n| format!("{n:?}")).collect::<Vec<_>>();
     let mut solvers = Solver::ALL.map(Solver::name).to_vec();
     solvers.push("reference");
@@ -168,8 +198,8 @@ pub fn keys() -> Vec<(String, Vec<String>)> {
 #[cfg(test)]
 mod tests {
     use super::{
-        Convention, DRIVE, PARAMETERS, Parameter, Rng, Solver, is_switch, keys, more_operations,
-        other_key, other_rung, values_of_an_effect,
+        Convention, DRIVE, PARAMETERS, Parameter, Rng, Solver, apply, is_switch, keys,
+        more_operations, other_key, other_rung, values_of_an_effect,
     };
     use crate::bytes::Bytes;
     use crate::link_inputs;
@@ -205,6 +235,21 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn one_change_in_four_is_made_where_it_fits() {
+        let mut data = [1, 2, 3, 4, 5, 0];
+        assert_eq!(apply(&mut data, (5, 6), 5, other_rung), None);
+        assert_eq!(apply(&mut data, (2, 6), 4, other_rung), None, "no rung");
+        assert_eq!(
+            apply(&mut data, (5, 6), 4 * 0x0906_0700, other_rung),
+            Some(5)
+        );
+        assert_eq!(data, [0, 7, 6, 4, 5, 0]);
+        let longer = |data: &[u8], _| Some([data, &[9]].concat());
+        assert_eq!(apply(&mut data, (5, 5), 0, longer), None);
+        assert_eq!(apply(&mut data, (5, 6), 0, longer), Some(6));
     }
 
     #[test]
@@ -251,8 +296,7 @@ mod tests {
     fn all_rungs_are_reached() {
         let mut rungs = HashSet::new();
         for n in 0..10_000_u32 {
-            let mut data = [7; 64];
-            other_rung(&mut data, n.wrapping_mul(0x9e37_79b9));
+            let data = other_rung(&[7; 64], n.wrapping_mul(0x9e37_79b9)).expect("a rung");
             let rung = Rung::of(&mut Bytes::new(&data));
             rungs.insert((
                 rung.settings.convention.name(),

@@ -1,4 +1,4 @@
-//! What a program has asked for that should end with it.
+//! Subscription and lease of a program, which have to end when it does.
 
 use crepitus_protocol::frame::{self, Frame};
 use crepitus_protocol::host::{Operation, Request};
@@ -41,7 +41,7 @@ impl LeftOpen {
         self.last.map(|(session, ..)| session)
     }
 
-    /// Whether it keeps the device armed.
+    /// Whether it renews the lease: the device is armed for it.
     pub(crate) fn renews(&self) -> bool {
         is_recent(self.renewed)
     }
@@ -86,7 +86,7 @@ pub(crate) fn requests_in(frames: &[u8]) -> Vec<Request> {
     requests
 }
 
-/// Whether a lease of then may last.
+/// Whether a lease that was renewed then may still be valid.
 fn is_recent(then: Option<Instant>) -> bool {
     let lease = Duration::from_secs(1) * u32::try_from(LEASE_TICKS).unwrap_or(0) / TICKS_PER_S;
     then.is_some_and(|then| then.elapsed() < lease)

@@ -32,7 +32,7 @@ const ANSWER: Duration = Duration::from_millis(500);
 pub struct Shared {
     port: String,
     program: Program,
-    /// What it has asked for, for the next hub.
+    /// Its subscription and lease, which it tells the next hub.
     sent: Frames,
     open: LeftOpen,
     link: Option<Link>,

@@ -98,7 +98,8 @@ fn a_wall_that_leaves_and_is_committed_again_does_not_push() {
     }
 }
 
-/// What a lowered cap lets fall is what the wall gave: once the leg has left it, nothing.
+/// A torque above a lowered cap falls at the slew limit only while the leg is in the wall: after
+/// the leg has left it, the new cap holds at once.
 #[test]
 fn a_wall_that_was_left_comes_back_with_its_new_cap() {
     let wall = |flexion_torque_nm| EffectSettings {

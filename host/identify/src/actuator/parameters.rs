@@ -84,8 +84,8 @@ pub struct Actuator {
     pub unexplained: f64,
     /// Whether a second chirp has confirmed the mass; otherwise its error is that of the balance.
     pub mass_is_checked: bool,
-    /// Whether the weighed and the added mass give the same moving mass, which they do not if
-    /// the ring moves.
+    /// Whether the moving mass was found by weighing and with an added mass, and both agree; they
+    /// do not if the ring moves.
     pub ring_is_checked: bool,
     pub(crate) impedance: Impedance,
     pub(crate) means: Vec<Mean>,
