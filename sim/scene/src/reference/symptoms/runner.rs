@@ -251,3 +251,50 @@ fn instant(piece: &Piece, sign: f64, time_s: f64) -> Instant {
         v: sign * omega_rad_s,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Acts at once, again and again, for a microsecond.
+    #[derive(Debug)]
+    struct Chatters {
+        actions: u32,
+        last_s: f64,
+    }
+
+    impl Law for Chatters {
+        type Action = ();
+
+        fn arm(&mut self, _: &Instant) {}
+
+        fn watches(&self, watches: &mut Watches<()>) {
+            if self.last_s < 0.5 + 1e-6 {
+                watches.push((When::At(0.5), ()));
+            }
+        }
+
+        fn act(&mut self, (): (), at: &Instant) -> Option<Reported> {
+            self.actions += 1;
+            assert!(self.actions < 100_000, "{self:?}");
+            self.last_s = at.time_s;
+            None
+        }
+
+        fn torque_nm(&self, _: &Instant) -> f64 {
+            0.0
+        }
+    }
+
+    #[test]
+    fn a_law_that_chatters_is_moved_on() {
+        let motion = Motion::constant(1.0);
+        let law = Chatters {
+            actions: 0,
+            last_s: 0.0,
+        };
+        let mut runner = Runner::new(law, 1.0, &motion);
+        runner.advance(1.0, &mut Vec::new());
+        assert!(runner.law.actions > CROWD);
+    }
+}
