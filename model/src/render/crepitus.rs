@@ -60,9 +60,9 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Crepitus<F, L> {
         self.ramp = ramp;
     }
 
-    /// Whether samples are missing and the torque is held.
-    pub fn is_holding(&self) -> bool {
-        self.held.is_holding()
+    /// While samples are missing, the torque that is held, N·m.
+    pub fn held_nm(&self) -> Option<F> {
+        self.held.is_holding().then(|| self.held.torque_nm())
     }
 
     /// The joint behind it all.
@@ -257,12 +257,12 @@ mod tests {
         // Seen to be that far back, it has turned.
         let shown = renderer.render(&moved(-3.0 * COUNT_RAD), |_| {});
         assert_eq!(shown.limit, Limit::TurnedBack);
-        assert!(!renderer.symptoms.is_holding());
+        assert_eq!(renderer.symptoms.held_nm(), None);
         assert_eq!((shown.torque_nm, shown.model_torque_nm), (0.0, 0.2));
         // With missing samples the output is held: zero.
         let shown = renderer.render(&Sample::Lost, |_| {});
         assert_eq!(shown.limit, Limit::TurnedBack);
-        assert!(renderer.symptoms.is_holding());
+        assert!(renderer.symptoms.held_nm().is_some());
         assert_eq!(shown.torque_nm, 0.0);
         let stick = (0..2000).find(|_| {
             renderer.render(&moved(5e-5), |_| {});

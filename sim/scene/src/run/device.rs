@@ -285,7 +285,14 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
                 recorder.note((start_s, from, to), effect, &change, events);
             },
         );
-        self.accounting.end_step(&seen, self.stages.joint());
+        let joint = self.stages.joint();
+        if let Some(held_nm) = self.stages.held_nm() {
+            let held_nm = held_nm.to_f64();
+            self.accounting.hold(&seen, start_s, joint, held_nm);
+        } else {
+            let restarts = self.stages.restarts();
+            self.accounting.end_tick(&seen, start_s, joint, restarts);
+        }
     }
 
     fn write(&self, row: &mut Vec<f64>) {
@@ -305,12 +312,7 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
     }
 
     fn finish(mut self: Box<Self>, time_s: f64) -> Option<(Tally, u64)> {
-        let joint = self.stages.joint();
-        let (theta, theta_dot) = (joint.theta_rad(), joint.theta_dot_rad_s());
-        let phi_rad = self.accounting.phi_rad;
-        self.accounting
-            .tally
-            .finish(time_s, phi_rad, theta.to_f64(), theta_dot.to_f64());
+        self.accounting.finish(time_s, self.stages.joint());
         let crowded = self.accounting.crowded_steps;
         Some((self.accounting.tally, crowded))
     }

@@ -41,6 +41,12 @@ impl Energy {
                 + self.inertia_kg_m2 * (new_theta_dot - theta_dot) * (new_theta_dot + theta_dot));
     }
 
+    /// Accounting the work of a torque that was shown while the object stood still.
+    pub(super) fn held(&mut self, work_j: f64) {
+        self.work_in_j += work_j;
+        self.convention_j -= work_j;
+    }
+
     /// Takes stock at the end of a run.
     pub(super) fn finish(&mut self, theta: f64, theta_dot: f64) {
         self.spring_change_j = 0.5 * self.stiffness_nm_per_rad * theta * theta;

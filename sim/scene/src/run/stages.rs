@@ -141,6 +141,12 @@ pub(super) trait HasJoint<F: Real>: Rendering<F> {
 
     /// The object.
     fn joint(&self) -> &Self::Joint;
+
+    /// While samples are refused, what is held in the place of the object's torque, N·m.
+    fn held_nm(&self) -> Option<F>;
+
+    /// After how many gaps the object began anew.
+    fn restarts(&self) -> u32;
 }
 
 impl<F: Real> HasJoint<F> for BareStages<F, Bare<AnyJoint<F>>> {
@@ -150,6 +156,14 @@ impl<F: Real> HasJoint<F> for BareStages<F, Bare<AnyJoint<F>>> {
     fn joint(&self) -> &AnyJoint<F> {
         &self.symptoms.0
     }
+
+    fn held_nm(&self) -> Option<F> {
+        None
+    }
+
+    fn restarts(&self) -> u32 {
+        0
+    }
 }
 
 impl<F: Real, L: Locate<F, Shape = Linear>> HasJoint<F> for DriveStages<F, Crepitus<F, L>> {
@@ -158,5 +172,15 @@ impl<F: Real, L: Locate<F, Shape = Linear>> HasJoint<F> for DriveStages<F, Crepi
     #[inline]
     fn joint(&self) -> &Self::Joint {
         self.symptoms.joint()
+    }
+
+    #[inline]
+    fn held_nm(&self) -> Option<F> {
+        self.symptoms.held_nm()
+    }
+
+    #[inline]
+    fn restarts(&self) -> u32 {
+        self.symptoms.counters().restarts
     }
 }

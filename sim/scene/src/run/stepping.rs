@@ -2,7 +2,7 @@
 
 use super::lead::Lead;
 use super::sensor::{Encoded, Ideal, Sensor};
-use super::tally::{StickEnd, Tally};
+use super::tally::{Gap, ObjectState, StickEnd, Tally};
 use super::watch::{Ended, Watch};
 use super::{Diverged, RunError, Totals, steps};
 use crate::scene::Scene;
@@ -163,13 +163,7 @@ impl<F: Real, S: Sensor<F>> JointVisitor<F> for Run<'_, S> {
             result?;
             accounting.end_step(&seen, &joint);
         }
-        let (theta, theta_dot) = (joint.theta_rad(), joint.theta_dot_rad_s());
-        accounting.tally.finish(
-            walk.time_s(),
-            accounting.phi_rad,
-            theta.to_f64(),
-            theta_dot.to_f64(),
-        );
+        accounting.finish(walk.time_s(), &joint);
         Ok(Totals {
             steps,
             end_s: walk.time_s(),
@@ -195,6 +189,10 @@ pub(super) struct StepAccounting {
     in_step: usize,
     /// Steps with as many events as a step may have: more may have followed.
     pub(super) crowded_steps: u64,
+    /// While the device refuses samples.
+    gap: Option<Gap>,
+    /// Gaps after which the joint began anew.
+    restarts: u32,
 }
 
 impl StepAccounting {
@@ -213,6 +211,8 @@ impl StepAccounting {
             },
             in_step: 0,
             crowded_steps: 0,
+            gap: None,
+            restarts: 0,
         }
     }
 
@@ -225,10 +225,10 @@ impl StepAccounting {
     ) -> EventRecord {
         let event = event.to_f64();
         let time_s = start_s + event.fraction * self.step_s;
-        let travel = travel(seen, event.fraction, self.step_s);
         if event.from == Phase::Stick {
             self.book_stick(seen, event.fraction, event.theta_rad);
         }
+        let travel = travel(seen, event.fraction, self.step_s);
         self.tally.event(time_s, self.phi_rad + travel, &event);
         self.in_step += 1;
         self.booked = event.fraction;
@@ -256,6 +256,60 @@ impl StepAccounting {
         self.in_step = 0;
         self.booked = 0.0;
         self.phi_rad += seen.delta_phi_rad.to_f64();
+    }
+
+    /// Accounts for a step whose sample the device refused: its joint never learns of this travel
+    /// and stands still; what it showed last is held or released.
+    #[cold]
+    pub(super) fn hold<F: Real, J: StickSlip<F>>(
+        &mut self,
+        seen: &ShaftStep<F>,
+        start_s: f64,
+        joint: &J,
+        held_nm: f64,
+    ) {
+        let delta_phi = seen.delta_phi_rad.to_f64();
+        let (step_s, phi_rad) = (self.step_s, self.phi_rad);
+        let begin = || Gap::new(object_state(start_s, phi_rad, joint));
+        let gap = self.gap.get_or_insert_with(begin);
+        gap.hold(held_nm, step_s, delta_phi);
+        self.tally.shown(held_nm);
+    }
+
+    /// Accounts for a step whose sample a device took, when it has begun anew so often.
+    #[inline]
+    pub(super) fn end_tick<F: Real, J: StickSlip<F>>(
+        &mut self,
+        seen: &ShaftStep<F>,
+        start_s: f64,
+        joint: &J,
+        restarts: u32,
+    ) {
+        if restarts == self.restarts {
+            self.end_step(seen, joint);
+        } else {
+            self.restarts = restarts;
+            self.phi_rad += seen.delta_phi_rad.to_f64();
+            let state = object_state(start_s + self.step_s, self.phi_rad, joint);
+            self.stick = self.stick_end(seen, 1.0, state.theta_rad);
+            self.tally.constant(joint.torque_nm().to_f64(), self.step_s);
+            if let Some(gap) = self.gap.take() {
+                self.tally.restart(&gap, state);
+            }
+        }
+        if let Some(gap) = self.gap.take() {
+            self.tally.caught_up(&gap);
+        }
+    }
+
+    /// Completes the totals at the end of the run.
+    pub(super) fn finish<F: Real, J: StickSlip<F>>(&mut self, time_s: f64, joint: &J) {
+        let end = object_state(time_s, self.phi_rad, joint);
+        if let Some(gap) = self.gap.take() {
+            self.tally.restart(&gap, end);
+        }
+        self.tally
+            .finish(end.time_s, end.phi_rad, end.theta_rad, end.theta_dot_rad_s);
     }
 
     /// Accounts for the stick from the last booked point to `fraction`.
@@ -287,6 +341,16 @@ impl StepAccounting {
             omega_rad_s: a + fraction * (b - a),
             omega_dot: (b - a) / self.step_s,
         }
+    }
+}
+
+fn object_state<F: Real, J: StickSlip<F>>(time_s: f64, phi_rad: f64, joint: &J) -> ObjectState {
+    ObjectState {
+        phase: joint.phase(),
+        time_s,
+        phi_rad,
+        theta_rad: joint.theta_rad().to_f64(),
+        theta_dot_rad_s: joint.theta_dot_rad_s().to_f64(),
     }
 }
 

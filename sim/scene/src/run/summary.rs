@@ -479,7 +479,7 @@ fn run_warnings(scene: &Scene, totals: &Totals) -> Vec<String> {
     }
     if totals.crowded_steps > 0 {
         warnings.push(format!(
-            "{} steps had {EVENTS_PER_STEP} events, the most that a step takes in, and more may have followed: events              and cycles are not those of the joint, and no frequency is given; choose a shorter step",
+            "{} steps had {EVENTS_PER_STEP} events, the most that a step takes in, and more may have followed: events and cycles are not those of the joint, and no frequency is given; choose a shorter step",
             totals.crowded_steps
         ));
     }
@@ -523,7 +523,7 @@ fn balance_warning(share: f64) -> Option<String> {
     let closes = share.abs() <= MOST_MISSING;
     (!closes).then(|| {
         format!(
-            "the energy of the plant balances to {:.1e} of all that moved only, above {MOST_MISSING:e}: the step is too              long for a part of it, and its torques are not to be trusted; choose a shorter step",
+            "the energy of the plant balances to {:.1e} of all that moved only, above {MOST_MISSING:e}: the step is too long for a part of it, and its torques are not to be trusted; choose a shorter step",
             share.abs()
         )
     })

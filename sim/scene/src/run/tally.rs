@@ -10,8 +10,8 @@
 //! `work_in` is ∫T·dφ of the torque shown. `convention` is the energy that the
 //! object gains without a torque being shown for it: under `frozen` and
 //! `paper` the inertia and damping that the stick torque leaves out, under
-//! `frozen` also the reset at the end of a slip. `residual` is what numerical
-//! error leaves.
+//! `frozen` also the reset at the end of a slip; behind a device also what it does while it
+//! refuses samples. `residual` is what numerical error leaves.
 
 use super::energy::Energy;
 use super::lead::Lead;
@@ -52,7 +52,7 @@ pub(super) struct StickEnd {
 pub(super) struct Tally {
     settings: Settings,
     oscillator: Oscillator<f64>,
-    start: PhaseStart,
+    start: ObjectState,
     pub(super) events: [u64; 3],
     pub(super) cycles: Cycles,
     pub(super) torque: TorqueTally,
@@ -60,14 +60,43 @@ pub(super) struct Tally {
     pub(super) lead: Lead,
 }
 
-/// The beginning of the present phase.
+/// The object at some time, on a shaft at the angle `phi_rad`.
 #[derive(Clone, Copy, Debug)]
-struct PhaseStart {
-    phase: Phase,
-    time_s: f64,
-    phi_rad: f64,
-    theta_rad: f64,
-    theta_dot_rad_s: f64,
+pub(super) struct ObjectState {
+    pub(super) phase: Phase,
+    pub(super) time_s: f64,
+    pub(super) phi_rad: f64,
+    pub(super) theta_rad: f64,
+    pub(super) theta_dot_rad_s: f64,
+}
+
+/// Time in which a device refuses samples: what it shows does not come from the object, which
+/// stands still.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gap {
+    start: ObjectState,
+    /// ∫T dt, ∫T² dt and ∫T dφ of what is shown instead.
+    integral: f64,
+    square: f64,
+    work_j: f64,
+}
+
+impl Gap {
+    pub(super) fn new(start: ObjectState) -> Self {
+        Self {
+            start,
+            integral: 0.0,
+            square: 0.0,
+            work_j: 0.0,
+        }
+    }
+
+    /// A step of it.
+    pub(super) fn hold(&mut self, torque_nm: f64, dt_s: f64, delta_phi: f64) {
+        self.integral += torque_nm * dt_s;
+        self.square += torque_nm * torque_nm * dt_s;
+        self.work_j += torque_nm * delta_phi;
+    }
 }
 
 impl Tally {
@@ -76,7 +105,7 @@ impl Tally {
     pub(super) fn new(settings: Settings, omega_rad_s: f64, lead: Lead) -> Self {
         Self {
             oscillator: Oscillator::of(&settings.parameters),
-            start: PhaseStart {
+            start: ObjectState {
                 phase: Phase::Stick,
                 time_s: 0.0,
                 phi_rad: 0.0,
@@ -102,6 +131,15 @@ impl Tally {
     pub(super) fn shown(&mut self, torque_nm: f64) {
         self.torque.min_nm = self.torque.min_nm.min(torque_nm);
         self.torque.max_nm = self.torque.max_nm.max(torque_nm);
+    }
+
+    /// Notes a torque that was computed again, unless it is beyond the others by rounding only.
+    #[inline]
+    fn shown_within(&mut self, torque_nm: f64, rounding_nm: f64) {
+        let known = self.torque.min_nm - rounding_nm..=self.torque.max_nm + rounding_nm;
+        if !known.contains(&torque_nm) && torque_nm.is_finite() {
+            self.shown(torque_nm);
+        }
     }
 
     /// A stretch of stick of `dt_s` in which the shaft turned by `delta_phi`.
@@ -145,12 +183,14 @@ impl Tally {
             self.energy.convention_j += excess * delta_phi;
             integral = shown_nm * dt_s;
             (from, to) = shown;
-            self.shown(from);
-            self.shown(to);
         }
-        // Where a step had more events than it takes in, its shaft is not that of the joint.
+        // Its shaft is not that of the joint: the step had more events than it takes in, or
+        // is far too long for the method.
         if integral.abs() > (1.0 + 1e-9) * limit * dt_s {
-            integral = integral.clamp(-limit * dt_s, limit * dt_s);
+            integral = f64::midpoint(from, to) * dt_s;
+        }
+        for torque_nm in [from, to, integral / dt_s] {
+            self.shown_within(torque_nm, 1e-6 * limit);
         }
         self.torque.integral += integral;
         self.torque.square += dt_s * (from * from + from * to + to * to) / 3.0;
@@ -178,13 +218,47 @@ impl Tally {
             self.energy
                 .reset(theta, theta_dot, event.theta_rad, event.theta_dot_rad_s);
         }
-        self.start = PhaseStart {
+        self.start = ObjectState {
             phase: event.to,
             time_s,
             phi_rad,
             theta_rad: event.theta_rad,
             theta_dot_rad_s: event.theta_dot_rad_s,
         };
+    }
+
+    /// A stretch in which this torque was shown.
+    pub(super) fn constant(&mut self, torque_nm: f64, dt_s: f64) {
+        self.torque.integral += torque_nm * dt_s;
+        self.torque.square += torque_nm * torque_nm * dt_s;
+        self.shown(torque_nm);
+    }
+
+    /// The end of a gap after which the object goes on in its phase.
+    pub(super) fn caught_up(&mut self, gap: &Gap) {
+        // Of a slip the whole time counts when it ends.
+        if gap.start.phase == Phase::Stick {
+            self.torque.integral += gap.integral;
+            self.torque.square += gap.square;
+        }
+        self.energy.held(gap.work_j);
+    }
+
+    /// The end of a gap after which the object begins anew.
+    pub(super) fn restart(&mut self, gap: &Gap, now: ObjectState) {
+        let s = gap.start;
+        self.end_phase(s.time_s, s.phi_rad, s.theta_rad, s.theta_dot_rad_s);
+        self.torque.integral += gap.integral;
+        self.torque.square += gap.square;
+        self.energy.held(gap.work_j);
+        self.energy.reset(
+            s.theta_rad,
+            s.theta_dot_rad_s,
+            now.theta_rad,
+            now.theta_dot_rad_s,
+        );
+        self.cycles.last_break = None;
+        self.start = now;
     }
 
     /// Completes the totals at the end of the run.
