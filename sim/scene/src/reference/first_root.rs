@@ -108,7 +108,8 @@ pub(super) fn first_root<B>(
         // Progress by at least one representable time, and not by one of those
         // that lie densely around zero: the search ends.
         time_s = (time_s + ahead_s.max(least_s)).max(time_s.next_up());
-        if time_s > to_s {
+        // Nothing follows an infinite time, and nothing can be known of it.
+        if time_s > to_s || time_s.is_infinite() {
             return ControlFlow::Continue(None);
         }
         count = count.wrapping_add(1);
@@ -203,6 +204,20 @@ mod tests {
         assert_eq!(search(0.0, 1.0, line(1.0)), None);
         assert_eq!(search(0.0, 1.0, line(-1.0)), Some(0.0));
         assert_eq!(search(0.0, 1.0, line(0.0)), None);
+    }
+
+    #[test]
+    fn a_search_without_an_end_ends_where_nothing_follows() {
+        let slow = |time_s: f64| Sample {
+            value: 0.4 - 1e-318 * time_s,
+            slope: -1e-318,
+            bound: 0.0,
+            noise: 1e-16,
+            slack: 1e-16,
+        };
+        let mut endless = || ControlFlow::Break("it goes on");
+        let found = first_root(0.0, f64::INFINITY, Touch::Passes, &mut endless, slow);
+        assert_eq!(found, ControlFlow::Continue(None));
     }
 
     /// A dead object on a shaft that starts from rest: g = −t² with g, ġ and
