@@ -95,20 +95,33 @@ pub enum RunError<E> {
     Diverged(#[from] Diverged),
 }
 
-/// The object's state is NaN or infinite: the solver is unstable with
-/// this step.
+/// A state is NaN or infinite: what computes it is unstable with this step.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "solver \"{solver}\" diverged: by t = {by_s} s the object's state is no number. ωn·h = {radians_per_step:.3} \
-     with this step; choose a shorter one, or a solver that propagates exactly"
-)]
-pub struct Diverged {
-    /// Which one.
-    pub solver: &'static str,
-    /// Time of detection, s.
-    pub by_s: f64,
-    /// ωn·h, what decides on its stability.
-    pub radians_per_step: f64,
+pub enum Diverged {
+    /// That of the object.
+    #[error(
+        "solver \"{solver}\" diverged: by t = {by_s} s the object's state is no number. ωn·h = {radians_per_step:.3} \
+         with this step; choose a shorter one, or a solver that propagates exactly"
+    )]
+    Object {
+        /// Name of the solver.
+        solver: &'static str,
+        /// Time of detection, s.
+        by_s: f64,
+        /// ωn·h, what decides on its stability.
+        radians_per_step: f64,
+    },
+    /// That of the shaft, which a plant moves and the device's torque of the step before.
+    #[error(
+        "the plant and the device diverged: by t = {by_s} s the shaft's angle is no number, with steps of {step_s} s; \
+         choose shorter ones, and a solver that propagates exactly"
+    )]
+    Shaft {
+        /// Time of detection, s.
+        by_s: f64,
+        /// A step, s.
+        step_s: f64,
+    },
 }
 
 /// The totals of a run before they are put into words.

@@ -2,7 +2,7 @@
 
 use crepitus_model::Convention;
 use crepitus_model::solver::Solver;
-use crepitus_scene::run::{TorqueSummary, columns};
+use crepitus_scene::run::{Diverged, RunError, TorqueSummary, columns};
 use crepitus_scene::trace::EventRecord;
 use crepitus_scene::{Observer, Overrides, Scene, Summary, run};
 use std::convert::Infallible;
@@ -264,6 +264,25 @@ fn what_a_summary_says_of_the_torque_is_within_what_was_shown() {
         }
     }
     assert!(runs > 60, "{runs}");
+}
+
+#[test]
+fn a_plant_that_diverges_is_not_the_solvers_fault() {
+    let hand = "[effects.crepitus]\n[effects.spasticity]\nform = \"reflex\"\n\
+        [effects.hand]\nstiffness_n_per_m = 0\n[effects.limb]\n";
+    let motion = "kind = \"constant\"\nvelocity_rad_s = 10";
+    let solver = "kind = \"exact-events\"\nstep_s = 0.5";
+    let text = format!(
+        "version = 1\ntitle = \"t\"\nduration_s = 6\ndevice = true\n[motion]\n{motion}\n[solver]\n{solver}\n{hand}"
+    );
+    let scene = Scene::parse(Path::new("t.toml"), &text, &Overrides::default()).unwrap();
+    let error = run(&scene, &mut Keep::default()).expect_err("steps of half a second");
+    assert!(matches!(error, RunError::Diverged(Diverged::Shaft { .. })));
+    let text = error.to_string();
+    assert!(
+        text.contains("the shaft's angle is no number, with steps of 0.5 s"),
+        "{text}"
+    );
 }
 
 /// A shaft too fast to be believed: a drive holds its torque, lets go, and catches up or begins

@@ -133,6 +133,24 @@ struct Run {
 }
 
 impl Run {
+    /// Whether a state is no number, and which: a shaft that is none makes an object none.
+    fn diverged(&self, scene: &Scene, by_s: f64) -> Option<Diverged> {
+        if !self.plant.shaft().angle_rad.is_finite() {
+            return Some(Diverged::Shaft {
+                by_s,
+                step_s: self.tick_s,
+            });
+        }
+        let swing = scene
+            .crepitus
+            .map_or(0.0, |c| c.settings.parameters.natural_rad_s());
+        (!self.device.is_finite()).then(|| Diverged::Object {
+            solver: scene.solver.name(),
+            by_s,
+            radians_per_step: swing * self.tick_s,
+        })
+    }
+
     fn go(mut self, scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, Ended> {
         let (steps, every) = steps(scene);
         let wants_rows = watch.wants_rows();
@@ -155,9 +173,9 @@ impl Run {
             let is_row = wants_rows && n % every == 0;
             // Before its row: a trace holds numbers.
             if (is_row || n % CHECK_STEPS == 0 || n == steps)
-                && !(self.device.is_finite() && before.angle_rad.is_finite())
+                && let Some(diverged) = self.diverged(scene, time_s)
             {
-                return Err(RunError::Diverged(diverged(scene, time_s)));
+                return Err(RunError::Diverged(diverged));
             }
             if is_row {
                 row.clear();
@@ -293,15 +311,4 @@ fn first_felt_nm(scene: &Scene) -> Result<f64, crepitus_model::SettingsError> {
         to,
     });
     Ok((plant.felt_nms() - plant.struck_nms()) / tick_s)
-}
-
-fn diverged(scene: &Scene, by_s: f64) -> Diverged {
-    let swing = scene
-        .crepitus
-        .map_or(0.0, |c| c.settings.parameters.natural_rad_s());
-    Diverged {
-        solver: scene.solver.name(),
-        by_s,
-        radians_per_step: swing * scene.step_s(),
-    }
 }

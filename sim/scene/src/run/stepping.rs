@@ -123,7 +123,7 @@ impl<F: Real, S: Sensor<F>> JointVisitor<F> for Run<'_, S> {
             if (is_row || walk.steps().is_multiple_of(CHECK_STEPS) || walk.steps() == steps)
                 && !(joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite())
             {
-                return Err(RunError::Diverged(Diverged {
+                return Err(RunError::Diverged(Diverged::Object {
                     solver: scene.solver.name(),
                     by_s: walk.time_s(),
                     radians_per_step: settings.parameters.natural_rad_s() * step_s,
