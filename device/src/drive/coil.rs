@@ -16,12 +16,12 @@
 //! the power of the second into a smaller one: an eighth is reached where ωL = 2.6·R.
 //! A sensor that is stuck, or that shows the other sign, violates one of the two.
 //!
-//! 3.1 A is what the sensor can tell from more: where a coil is driven most, one whose
-//! resistance is a tenth below what was set is taken for a short, and so is one at a supply that
-//! drives more.
+//! 3.1 A is what the sensor can tell from more. No voltage is put out that drives more than
+//! 3.1/1.1 A through R, so a coil of nine tenths of R is whole wherever it is used; one of less
+//! is not at the largest voltages, so R has to be known.
 //!
-//! Not detected: a mass that is stuck or strikes its stops, as its back-EMF is a few
-//! percent of the voltage, and a fifth of it at the resonance; a coil whose two wires are swapped, as current and voltage
+//! Not detected: a mass that is stuck or strikes its stops, as its back-EMF is a few percent of
+//! the voltage, and a fifth of it at the resonance; a coil whose two wires are swapped, as current and voltage
 //! fit; anything while the command is below 0.08 A.
 
 use crate::drive::prepare::CoilPlan;
@@ -47,6 +47,9 @@ pub const LARGEST_COIL_DUTY: f32 = 0.92;
 
 /// Ticks without a measured current until the fault.
 const MISSING_TICKS: u8 = 3;
+
+/// How much more than believed a coil may take where it is driven most.
+const LEAST_MARGIN: f64 = 1.1;
 
 /// Ticks with too much current until the fault.
 const SHORT_TICKS: u8 = 5;
@@ -214,7 +217,7 @@ impl Coil {
         if !may || self.fault.is_some() || !coil_v.is_finite() {
             return self.sleep();
         }
-        let duty = (coil_v * plan.duty_per_volt).within(LARGEST_COIL_DUTY);
+        let duty = (coil_v * plan.duty_per_volt).within(plan.largest_duty);
         // Before the first output its terminals were open.
         self.before_v = self.last_v.unwrap_or(0.0);
         self.last_v = Some(duty * plan.supply_v);
@@ -305,11 +308,13 @@ impl CoilPlan {
         let m_per_v = s.force_constant_n_per_a / (s.resistance_ohm * s.stiffness_n_per_m());
         let most_m = CHIRP_STROKES * s.stroke_mm * 1e-3;
         let chirp_v = most_m * (2.0 * ratio).min(1.0) / m_per_v;
-        let supplied_v = f64::from(LARGEST_COIL_DUTY) * s.supply_v;
+        let told_v = f64::from(SENSOR_A) / LEAST_MARGIN * s.resistance_ohm - emf_v;
+        let supplied_v = (f64::from(LARGEST_COIL_DUTY) * s.supply_v).min(told_v.max(0.0));
         let continuous_a2 = s.continuous_current_a * s.continuous_current_a;
         Self {
             supply_v: s.supply_v as f32,
             duty_per_volt: (1.0 / s.supply_v) as f32,
+            largest_duty: (supplied_v / s.supply_v) as f32,
             per_ohm: (1.0 / s.resistance_ohm) as f32,
             emf_v: emf_v as f32,
             compared_v2: compared_v2 as f32,

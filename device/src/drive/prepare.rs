@@ -122,6 +122,8 @@ pub struct CoilPlan {
     pub supply_v: f32,
     /// Share of the supply for a volt, 1/V.
     pub duty_per_volt: f32,
+    /// The largest duty: what the converter allows, or a current that its sensor can tell.
+    pub largest_duty: f32,
     /// Reciprocal of its resistance, 1/Ω.
     pub per_ohm: f32,
     /// Largest back-EMF, V: the whole stroke at the resonance.

@@ -7,6 +7,7 @@ const SETTINGS: fn() -> VibrationActuatorSettings = VibrationActuatorSettings::d
 /// A coil of R and L in a driver, sampled in the middle of a tick, as the drive sees it.
 struct Rig {
     coil: Coil,
+    supply_v: f32,
     resistance_ohm: f32,
     inductance_h: f32,
     current_a: f32,
@@ -19,6 +20,7 @@ impl Rig {
     fn new(settings: &VibrationActuatorSettings) -> Self {
         Self {
             coil: Coil::new(Some(CoilPlan::new(settings))),
+            supply_v: settings.supply_v as f32,
             resistance_ohm: settings.resistance_ohm as f32,
             inductance_h: 2e-4,
             current_a: 0.0,
@@ -50,7 +52,7 @@ impl Rig {
         let output = self.coil.tick(coil_v, true, measured, false);
         self.half();
         self.volts = match output {
-            CoilOutput::Driven(duty) => Some(duty * 5.0),
+            CoilOutput::Driven(duty) => Some(duty * self.supply_v),
             CoilOutput::Asleep => None,
         };
         output
@@ -103,6 +105,43 @@ fn a_whole_coil_is_none_of_all() {
                 assert_eq!(rig.ticks - begin, 20_000);
             }
         }
+    }
+}
+
+/// Wherever it is driven, a coil of nine tenths of the set resistance draws no more than its
+/// sensor can tell from a short.
+#[test]
+fn a_whole_coil_is_no_short_at_the_largest_voltage() {
+    for (supply_v, resistance_ohm) in [(5.0, 1.8), (12.0, 1.8), (5.0, 1.2), (5.0, 4.0)] {
+        let settings = VibrationActuatorSettings {
+            supply_v,
+            resistance_ohm,
+            ..SETTINGS()
+        };
+        for share in [0.91, 1.0] {
+            let mut rig = Rig::new(&settings);
+            rig.inductance_h = 1e-5;
+            rig.resistance_ohm *= share;
+            let context = format!("{supply_v} V, {resistance_ohm} Ω, {share}");
+            let bangs = |n: u32| if n / 100 % 2 == 0 { 20.0 } else { -20.0 };
+            let mut most_a = 0.0_f32;
+            for n in 0..2_000 {
+                rig.tick(bangs(n), Some);
+                most_a = most_a.max(rig.current_a.abs());
+            }
+            let fault = rig.coil.fault().filter(|fault| *fault != CoilFault::Hot);
+            assert_eq!(fault, None, "{context}");
+            let expected_a = (0.91 * supply_v / resistance_ohm).min(2.4);
+            assert!(f64::from(most_a) > expected_a, "{context}: {most_a} A");
+        }
+        let mut rig = Rig::new(&settings);
+        rig.resistance_ohm = 0.2;
+        let (ticks, fault) = rig.until(|_| 20.0, Some).expect("a fault");
+        assert_eq!(fault, CoilFault::Short);
+        assert!(
+            ticks < 20,
+            "{supply_v} V, {resistance_ohm} Ω: {ticks} ticks"
+        );
     }
 }
 
@@ -260,8 +299,15 @@ fn a_chirp_is_bounded_by_supply_and_stroke() {
         resonance_hz: 120.0,
         ..SETTINGS()
     };
+    // What the sensor can tell, with the back-EMF of the whole stroke.
+    let emf_v = 1.1 * core::f64::consts::TAU * 120.0 * 1.6e-3;
+    assert!((most(&stiff) - (3.1 / 1.1 * 1.8 - emf_v)).abs() < 2e-3);
+    let weak = VibrationActuatorSettings {
+        resistance_ohm: 4.0,
+        ..stiff
+    };
     let by_supply = f64::from(LARGEST_COIL_DUTY) * 5.0;
-    assert!((most(&stiff) - by_supply).abs() < 2e-3);
+    assert!((most(&weak) - by_supply).abs() < 2e-3);
     assert_eq!(
         Coil::new(None).check_chirp(0.1),
         Err(DriveRefusal::NoActuator)
